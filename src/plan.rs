@@ -7,6 +7,7 @@ mod grounds;
 mod inputs;
 mod listing;
 mod settings;
+mod sizes;
 mod slips;
 mod stiffness;
 mod recorders;
@@ -93,6 +94,8 @@ pub struct Plan {
     pub releases: Releases,
     /// Radius of the smallest, the median and the largest rock for the estimates of the plan (m).
     pub radii_m: [f64; 3],
+    /// Masses of the release table that are not those of its radii, where the scene says which count.
+    pub table_sizes: Option<String>,
     /// The meshes.
     pub terrain: Terrain,
     /// Health of the meshes; none where the terrain was given and not read from files.
@@ -206,6 +209,7 @@ impl Plan {
         let releases = Releases::compile(scene, &terrain)?;
         terrain.stems = grounds::stems(scene, &terrain)?;
         let mut warnings = [slips::of(scene), grounds::unused(scene, &terrain)].concat();
+        let table_sizes = sizes::of_table(scene, &mut warnings);
         let mut fast_warnings = Vec::new();
         releases.try_out(&terrain, &mut warnings)?;
         stiffness::check(scene, &terrain, &mut fast_warnings)?;
@@ -230,6 +234,7 @@ impl Plan {
             count: scene.release.count,
             releases,
             radii_m: scene.rocks.radius_m().reckoned(),
+            table_sizes,
             mesh_health: None,
             input_files: scene.inputs.clone(),
             ground_zones: Part::when(terrain.patched.clone(), "every file has one ground"),

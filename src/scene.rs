@@ -34,7 +34,7 @@ mod zone_sources;
 mod zones;
 
 pub use barrier::{BarrierTable, DesignTable, Simulation, Standard, Topography};
-pub use blocks::BlockRow;
+pub use blocks::{BlockRow, BothSizes, SizeFrom};
 pub use calibrate::{CalibrateTable, CalibrationScore, VaryKey, VaryTable};
 pub use catalogue::{CATALOGUE, KnownGround, catalogue, known_ground};
 pub use drawn::{BarrierEntry, LineEntry};
@@ -196,7 +196,8 @@ impl Scene {
     fn read_blocks(&mut self) -> Result<()> {
         let Some(table) = &self.release.table else { return Ok(()) };
         let has_height = self.release.height_m.is_some();
-        let blocks = blocks::read(table, has_height, self.rocks.density_kg_m3)?;
+        let sized = (self.rocks.density_kg_m3, self.release.size_from);
+        let blocks = blocks::read(table, has_height, sized)?;
         let radii_m: Vec<f64> = blocks.iter().filter_map(|block| block.radius_m).collect();
         if !radii_m.is_empty() {
             let refuse = |flaw: crate::error::Flaw| {

@@ -91,6 +91,19 @@ fn endless_rolling(scene: &Scene) -> impl Iterator<Item = String> {
     })
 }
 
+/// Warns of rolling friction beside shapes: what was fitted to spheres holds blocks back twice.
+fn rolling_of_blocks(scene: &Scene) -> impl Iterator<Item = String> {
+    let can_roll = |ground: &GroundTable| {
+        ground.rolling_friction.as_ref().is_some_and(|value| value.support().1 > 0.0)
+    };
+    let rolls = scene.grounds.iter().filter(move |(_, ground)| can_roll(ground));
+    rolls.filter(|_| scene.has_blocks()).map(|(name, _)| {
+        format!(
+            "[grounds.{name}] rolling_friction acts on blocks beside their shape, which already holds them back as they roll: keep only what soft ground takes; a value that was fitted to spheres counts the shape twice"
+        )
+    })
+}
+
 /// Warnings about grounds and keys that nothing answers with.
 pub(super) fn unused(scene: &Scene, terrain: &Terrain) -> Vec<String> {
     let used = |index: usize| terrain.sheets.iter().any(|sheet| usize::from(sheet.ground) == index);
@@ -106,7 +119,8 @@ pub(super) fn unused(scene: &Scene, terrain: &Terrain) -> Vec<String> {
             None
         }
     };
-    scene.grounds.iter().enumerate().filter_map(wrong).chain(endless_rolling(scene)).collect()
+    let wrong = scene.grounds.iter().enumerate().filter_map(wrong);
+    wrong.chain(endless_rolling(scene)).chain(rolling_of_blocks(scene)).collect()
 }
 
 /// Triangles of trees; none where there is no tree.

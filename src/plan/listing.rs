@@ -37,6 +37,7 @@ impl Plan {
             count: _, // as asked for
             releases: places_of_release,
             radii_m: [smallest_m, median_m, largest_m],
+            table_sizes,
             terrain,
             mesh_health: _, // printed above the listing
             input_files,
@@ -87,6 +88,7 @@ impl Plan {
             "radius",
             format!("{smallest_m:.3} m smallest, {median_m:.3} m median, {largest_m:.3} m largest"),
         );
+        list.lines("sizes of table", table_sizes.iter().cloned());
         list.line(
             "terrain",
             format!("{} triangles in {} files", terrain.triangles.len(), files(terrain)),
@@ -116,7 +118,7 @@ impl Plan {
             format!("{stems}, each whole again for the next rock")
         });
         list.line("flight", format!("leapt over: {}", never(flight)));
-        list.shapes(places_of_release.shapes(), orientation, step);
+        list.shapes((places_of_release.shapes(), rolling.is_kept()), orientation, step);
         list.touchable(&terrain.features.count);
         list.part("rolling friction", rolling, |()| "computed".to_owned());
         list.lines("rolling stops", rolling_stops.iter().cloned());
@@ -238,7 +240,12 @@ impl PlanList {
     }
 
     /// What shapes there are, and what they cost.
-    fn shapes(&mut self, shapes: &[String], orientation: &Part<Infallible>, step: &Settings) {
+    fn shapes(
+        &mut self,
+        (shapes, rolls): (&[String], bool),
+        orientation: &Part<Infallible>,
+        step: &Settings,
+    ) {
         if shapes.is_empty() {
             self.line("orientation", format!("left out: {}", never(orientation)));
             return;
@@ -250,7 +257,7 @@ impl PlanList {
         } else {
             "contact by contact: restitution along the normal, none along the surface; normal and shear stiffness play no part"
         });
-        if let Some(text) = settings::block_impacts(step) {
+        if let Some(text) = settings::block_impacts(step, rolls) {
             self.line("explicit stages", text);
         }
         self.line(

@@ -43,8 +43,8 @@ pub(super) fn plane_impacts(step: &Settings) -> &'static str {
 }
 
 /// What goes by explicit stages where rocks have shapes, in words; nothing where they take no time or the step is fixed.
-pub(super) fn block_impacts(step: &Settings) -> Option<&'static str> {
-    step.scheme.controls_error().then_some(if step.impact_kernels {
+pub(super) fn block_impacts(step: &Settings, rolls: bool) -> Option<&'static str> {
+    step.scheme.controls_error().then_some(if step.impact_kernels && !rolls {
         "impacts of blocks, in their own time; those of more than six contacts, and contacts that last, go by implicit stages"
     } else {
         "left out: every impact of a block goes by implicit stages"

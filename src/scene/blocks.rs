@@ -2,8 +2,42 @@
 
 use crate::error::{Error, Result};
 use crate::file::{self, LONGEST_TEXT};
+use serde::Deserialize;
 use std::f64::consts::PI;
 use std::path::Path;
+
+/// Which column of a release table says how large its blocks are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(expecting = "\"radius_m\" or \"mass_kg\"")]
+pub enum SizeFrom {
+    /// The radius of the sphere of equal volume.
+    #[serde(rename = "radius_m")]
+    Radius,
+    /// The mass, over the density of the scene.
+    #[serde(rename = "mass_kg")]
+    Mass,
+}
+
+impl SizeFrom {
+    /// The name of the column.
+    pub const fn column(self) -> &'static str {
+        match self {
+            Self::Radius => "radius_m",
+            Self::Mass => "mass_kg",
+        }
+    }
+}
+
+/// What a row says of a block's size where it says it twice.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BothSizes {
+    /// Line of the file.
+    pub line: u64,
+    /// Radius (m).
+    pub radius_m: f64,
+    /// Mass (kg).
+    pub mass_kg: f64,
+}
 
 /// One block of a table.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,6 +48,8 @@ pub struct BlockRow {
     pub height_m: Option<f64>,
     /// Radius (m); none if the scene's `radius_m` is drawn.
     pub radius_m: Option<f64>,
+    /// Radius and mass as written, where both are.
+    pub both: Option<BothSizes>,
     /// Which block it is, from the column `block` or `block_id`.
     pub block: Option<String>,
 }
@@ -35,24 +71,30 @@ struct BlockColumns {
 }
 
 /// Reads a table. With `has_height` the scene says how high blocks lie, else the table must; a mass becomes the radius of
-/// a sphere of the density (kg/m³).
+/// a sphere of the density (kg/m³). Where there are both, the radius counts unless the scene says otherwise.
 ///
 /// # Errors
 /// A file that cannot be read, a row without these numbers, no row at all.
-pub(super) fn read(path: &Path, has_height: bool, density_kg_m3: f64) -> Result<Vec<BlockRow>> {
+pub(super) fn read(
+    path: &Path,
+    has_height: bool,
+    (density_kg_m3, size_from): (f64, Option<SizeFrom>),
+) -> Result<Vec<BlockRow>> {
     let wrong =
         |line: u64, found: String| Error::input(path, format!("line {line}"), found, REMEDY);
     let file = file::open(path, LONGEST_TEXT)?;
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(file);
     let headers = reader.headers().cloned().unwrap_or_default();
     let columns = BlockColumns::of(&headers, has_height).map_err(|found| wrong(1, found))?;
+    columns.check_size(size_from).map_err(|found| wrong(1, found))?;
     let mut blocks = Vec::new();
     for row in reader.records() {
         let row = row.map_err(|why| {
             wrong(why.position().map_or(1, csv::Position::line), format!("found {why}"))
         })?;
         let line = row.position().map_or(1, csv::Position::line);
-        let block = columns.block(&row, density_kg_m3).map_err(|found| wrong(line, found))?;
+        let sized = (density_kg_m3, size_from.unwrap_or(SizeFrom::Radius));
+        let block = columns.block((line, &row), sized).map_err(|found| wrong(line, found))?;
         blocks.push(block);
     }
     if blocks.is_empty() {
@@ -77,10 +119,22 @@ impl BlockColumns {
         Ok(Self { x, y, z, radius: at("radius_m"), mass: at("mass_kg"), block })
     }
 
+    /// The column that the scene asks for must be there.
+    fn check_size(&self, size_from: Option<SizeFrom>) -> std::result::Result<(), String> {
+        let column = match size_from {
+            Some(SizeFrom::Radius) => self.radius,
+            Some(SizeFrom::Mass) => self.mass,
+            None => return Ok(()),
+        };
+        let asked = size_from.map_or("", SizeFrom::column);
+        let found = || format!("found no column {asked}, which [release] size_from names");
+        column.map(|_| ()).ok_or_else(found)
+    }
+
     fn block(
         &self,
-        row: &csv::StringRecord,
-        density_kg_m3: f64,
+        (line, row): (u64, &csv::StringRecord),
+        (density_kg_m3, size_from): (f64, SizeFrom),
     ) -> std::result::Result<BlockRow, String> {
         let number = |column: usize| {
             let text = row.get(column).unwrap_or_default();
@@ -91,15 +145,19 @@ impl BlockColumns {
             size if size > 0.0 => Ok(size),
             size => Err(format!("found {size}")),
         };
-        let radius_m = match (self.radius, self.mass) {
-            (Some(radius), _) => Some(size(radius)?),
-            (None, Some(mass)) => {
-                Some(crate::math::cbrt(size(mass)? / (density_kg_m3 * 4.0 / 3.0 * PI)))
-            }
-            (None, None) => None,
+        let of_mass = |mass: f64| crate::math::cbrt(mass / (density_kg_m3 * 4.0 / 3.0 * PI));
+        let radius_m = match (self.radius, self.mass, size_from) {
+            (_, Some(mass), SizeFrom::Mass) | (None, Some(mass), _) => Some(of_mass(size(mass)?)),
+            (Some(radius), ..) => Some(size(radius)?),
+            (None, None, _) => None,
         };
+        // the one that does not count may be missing
+        let written = |column: Option<usize>| column.and_then(|column| size(column).ok());
+        let both = written(self.radius)
+            .zip(written(self.mass))
+            .map(|(radius_m, mass_kg)| BothSizes { line, radius_m, mass_kg });
         let height_m = self.z.map(number).transpose()?;
         let block = self.block.and_then(|column| row.get(column)).map(str::to_owned);
-        Ok(BlockRow { at_m: [number(self.x)?, number(self.y)?], height_m, radius_m, block })
+        Ok(BlockRow { at_m: [number(self.x)?, number(self.y)?], height_m, radius_m, both, block })
     }
 }

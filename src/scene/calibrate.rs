@@ -149,11 +149,6 @@ impl Scene {
             let names: Vec<&str> = self.grounds.keys().map(String::as_str).collect();
             return Some(format!("write a name from [grounds]; {}", suggest(name, &names)));
         };
-        let rolls = matches!(vary.key, VaryKey::RollingFriction | VaryKey::RollingFrictionSpread);
-        if rolls && self.has_blocks() {
-            let remedy = "write another key: how a block rolls is its shape, which [[rocks.shapes]] computes";
-            return Some(remedy.to_owned());
-        }
         let (table, _) = vary.key.name().split_once('.')?;
         let is_there =
             if table == "scar" { ground.scar.is_some() } else { ground.slip_friction.is_some() };

@@ -1,6 +1,6 @@
 //! `[release]`.
 
-use super::blocks::BlockRow;
+use super::blocks::{BlockRow, SizeFrom};
 use super::check::{Allowed, Checked, Complaint, drawn};
 use super::frequency::SourceTable;
 use super::places::{Area, Corner, Polyline, ReleasePoint};
@@ -37,6 +37,8 @@ pub struct ReleaseTable {
     pub polygon_m: Option<Area>,
     /// Where: blocks one by one, from a CSV file; once a [`Scene`](super::Scene) is read, as seen from the working directory.
     pub table: Option<PathBuf>,
+    /// Which of a table's two columns of size counts, where it has both; absent = the radius, with a warning where they contradict.
+    pub size_from: Option<SizeFrom>,
     /// The blocks of the table, once a scene is read.
     #[serde(skip)]
     pub blocks: Vec<BlockRow>,
@@ -84,6 +86,10 @@ impl ReleaseTable {
                 return Err(Complaint::about(other, WHERE).finding(found));
             }
             _ => {}
+        }
+        if self.size_from.is_some() && self.table.is_none() {
+            let remedy = "remove it, or write table = \"blocks.csv\": it says which column of a table counts";
+            return Err(Complaint::about("size_from", remedy));
         }
         self.check_height()
     }

@@ -186,7 +186,7 @@ impl Scene {
             let remedy = "remove it, or the blocks of [[rocks.shapes]]: rocks that share one world are spheres";
             return Err(Complaint::about("together", remedy).inside("release"));
         }
-        self.check_grounds_of_blocks()
+        Ok(())
     }
 
     /// Names of blocks stand in a table; whether it has them is seen once it is read.
@@ -250,20 +250,6 @@ impl Scene {
             if let Some((key, _)) = soils.into_iter().find(|(_, given)| *given) {
                 let remedy = "remove it, or together = true: on soft soil rocks are computed one by one only, as yet";
                 return Err(Complaint::about(key, remedy).inside(name).inside("grounds"));
-            }
-        }
-        Ok(())
-    }
-
-    fn check_grounds_of_blocks(&self) -> Checked {
-        let above_0 =
-            |value: &Option<Distribution>| value.as_ref().is_some_and(|v| v.support().1 > 0.0);
-        for (name, ground) in &self.grounds {
-            if above_0(&ground.rolling_friction) {
-                let remedy = "write rolling_friction = 0.0: how a block rolls is its shape, which [[rocks.shapes]] computes";
-                return Err(Complaint::about("rolling_friction", remedy)
-                    .inside(name)
-                    .inside("grounds"));
             }
         }
         Ok(())

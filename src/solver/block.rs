@@ -10,6 +10,7 @@
 
 mod energy;
 mod facet;
+mod rolling;
 mod slip;
 mod solve;
 mod springs;
@@ -32,7 +33,8 @@ use crate::flight::top::{Top, spin_of};
 use crate::rock::{Motion, Vec3};
 use energy::hold_energy;
 use nalgebra::{Matrix3, Rotation3};
-use solve::{BlockContact, Mass, SWEEPS, solve};
+use rolling::Turning;
+use solve::{BlockContact, Mass, SWEEPS, rigid_turning, solve};
 use springs::Springs;
 
 /// Gaps no wider than this touch (–, relative to the radius of the sphere of equal volume).
@@ -71,6 +73,8 @@ pub(crate) struct Footing {
     /// Work space of the search for the end of a flight.
     pub(crate) window: WindowScratch,
     contacts: Vec<BlockContact>,
+    /// Rolling friction that they bear.
+    turning: Turning,
     /// Those of an impact, and the speed that each shall give back (m/s).
     wanted: Vec<(BlockContact, f64)>,
     /// Touches set aside for a moment.
@@ -137,11 +141,14 @@ impl Moving {
         self.pose.attitude = orthonormal(&top.attitude(t));
     }
 
-    /// Takes the impulses of the contacts.
-    fn take(&mut self, contacts: &[BlockContact], mass_kg: f64) {
+    /// Takes the impulses of the contacts, and of rolling friction.
+    fn take(&mut self, contacts: &[BlockContact], turning: &Turning, mass_kg: f64) {
         for contact in contacts {
             self.v += contact.impulse / mass_kg;
             self.momentum += contact.lever.cross(&contact.impulse);
+        }
+        if turning.is_on() {
+            self.momentum += turning.impulse;
         }
     }
 
@@ -243,9 +250,11 @@ impl Footing {
             self.contacts.clear();
             let goal = |(one, back): &(BlockContact, f64)| one.with_goal(one.n * (back * share));
             self.contacts.extend(wanted.iter().map(goal));
-            solve(&mass, &mut self.contacts, (v, w), (rounding_m_s, SWEEPS), &mut self.sweeps);
+            self.turning = rigid_turning(&self.contacts);
+            let asked = (&mut self.contacts[..], &mut self.turning);
+            solve(&mass, asked, (v, w), (rounding_m_s, SWEEPS), &mut self.sweeps);
             thrown = moving.clone();
-            thrown.take(&self.contacts, block.mass_kg);
+            thrown.take(&self.contacts, &self.turning, block.mass_kg);
             thrown.motion_j(block) <= before_j * (1.0 + ROUNDING)
         };
         if !try_with(1.0) {
@@ -262,26 +271,6 @@ impl Footing {
         *moving = thrown;
         hold_energy(block, moving, [before_j, 0.0]);
         Some(loss)
-    }
-
-    /// What friction and restitution of each contact took, together `lost_j`, each at least 0: impulses work with the mean of
-    /// the motion before and after.
-    fn booked(&self, world: &ContactEnvironment, motion: [(&Vec3, &Vec3); 2], lost_j: f64) -> Loss {
-        let part = |contact: &BlockContact| {
-            let [before, after] = motion.map(|motion| Mass::at(&contact.lever, motion));
-            let mean = (before + after) * 0.5;
-            let (push, up) = (contact.n.dot(&contact.impulse), contact.n.dot(&mean));
-            let drag = contact.impulse - contact.n * push;
-            ([-drag.dot(&mean), -push * up].map(|joule| joule.max(0.0)), contact.triangle)
-        };
-        let sum: f64 = self.contacts.iter().flat_map(|contact| part(contact).0).sum();
-        let share = if sum > 0.0 { lost_j.max(0.0) / sum } else { 0.0 };
-        let mut loss = Loss::default();
-        for ([friction, damping], triangle) in self.contacts.iter().map(part) {
-            let one = Loss { friction, damping, ..Loss::default() };
-            loss.add(&one.on(world, triangle), share);
-        }
-        loss
     }
 
     /// One step of sustained contact of at most `most_s`, in which no corner moves further than `corner_way` of its ball.
@@ -315,10 +304,11 @@ impl Footing {
         let rounding_m_s =
             f64::EPSILON * moving.pose.centre.amax() / dt + ROUNDING_OF_SPEED * v.norm();
         let free = (v + weight, w);
-        let settled =
-            solve(&mass, &mut self.contacts, free, (rounding_m_s, SWEEPS), &mut self.sweeps);
+        self.turning = rigid_turning(&self.contacts);
+        let asked = (&mut self.contacts[..], &mut self.turning);
+        let settled = solve(&mass, asked, free, (rounding_m_s, SWEEPS), &mut self.sweeps);
         moving.v += weight;
-        moving.take(&self.contacts, block.mass_kg);
+        moving.take(&self.contacts, &self.turning, block.mass_kg);
         // the way of the step is that of the mean velocity, so this is just what the weight gives
         let most_j = [&v, &moving.v].map(|v| 0.5 * block.mass_kg * weight.dot(v));
         let most_j = [before_j + most_j[0], most_j[1]];
@@ -348,6 +338,7 @@ impl Footing {
         let law = world.law(touch.triangle);
         let friction = self.slip.friction(world.ground_of(touch.triangle), law, ahead_m);
         BlockContact::new(mass, (touch.normal, touch.lever), (friction, touch.triangle), goal)
+            .rolling(law.limits())
     }
 
     /// Whether a contact still holds the block: it is near, and does not let go faster than its ground captures.

@@ -34,10 +34,8 @@ fn refused(change: &[(&str, &str)]) -> String {
 /// What blocks cannot have as yet, and shapes that cannot be: each is refused with its key.
 #[test]
 fn what_blocks_cannot_have_is_refused() {
-    let rolling = ("restitution = 0.35", "restitution = 0.35\nrolling_friction = 0.3");
     for (change, key, said) in [
         (("orientation = \"random\"", "together = true"), "together", "spheres"),
-        (rolling, "rolling_friction", "write rolling_friction = 0.0"),
         (("corner_radius = 0.15\n", ""), "corner_radius", "found nothing"),
         (("corner_radius = 0.15", "corner_radius = 0.001"), "corner_radius", "0.01..0.5"),
         (("kind = \"eota111\"", "kind = \"sphere\""), "corner_radius", "no corners"),
@@ -55,6 +53,33 @@ fn what_blocks_cannot_have_is_refused() {
         let found = refused(&[change]);
         assert!(found.contains(key) && found.contains(said), "{key}: {found}");
     }
+}
+
+/// Rolling friction beside a shape is computed, and the plan warns of it; absent or 0 it says nothing.
+#[test]
+fn rolling_friction_of_blocks_is_warned_of() {
+    let said = |rolling: &str| {
+        let text = text().replacen("restitution = 0.35", rolling, 1);
+        let scene = Scene::parse(&text, Path::new(FILE)).unwrap();
+        let (terrain, _) = scene.read_terrain().unwrap();
+        Plan::compile(&scene, terrain).unwrap()
+    };
+    let warns =
+        |plan: &Plan| plan.warnings.iter().any(|one| one.contains("counts the shape twice"));
+    let rolls = said("restitution = 0.35\nrolling_friction = 0.05");
+    assert!(rolls.rolling.is_kept() && warns(&rolls), "{:?}", rolls.warnings);
+    for rolling in ["restitution = 0.35", "restitution = 0.35\nrolling_friction = 0.0"] {
+        let plan = said(rolling);
+        assert!(!plan.rolling.is_kept() && !warns(&plan), "{:?}", plan.warnings);
+    }
+    let rock = |plan: &Plan, index| {
+        let fall = simulate_release(plan, index, None, &mut Scratch::default()).unwrap();
+        (fall.ledger.rolling_j, fall.energy_balance_error())
+    };
+    let (taken_j, off) = rock(&rolls, 3);
+    assert!(taken_j > 0.0 && off < 1e-9, "{taken_j} J, {off}");
+    let (taken_j, _) = rock(&said("restitution = 0.35"), 3);
+    assert_eq!(taken_j.to_bits(), 0.0_f64.to_bits());
 }
 
 /// A shape so slender that its balls leave no core, springs too soft for its corners, and a scan with a hole: refused before the run.

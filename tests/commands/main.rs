@@ -38,6 +38,7 @@ mod language;
 mod library;
 mod pages;
 mod rust_version;
+mod table_sizes;
 mod same_everywhere;
 mod shards;
 mod stem_lists;

@@ -21,6 +21,7 @@ use rockfall::solver::Scheme;
 use rockfall::study::bench::settings;
 use rockfall::terrain::Terrain;
 use rockfall::terrain::make::natural_slope;
+use std::ops::Range;
 use std::time::Instant;
 
 /// Gravity (m/s²).
@@ -44,6 +45,9 @@ const HARD: Ground = Ground {
     restitution: Some(0.4),
     ..GROUND
 };
+
+/// The same with rolling friction of soft ground.
+const ROLLING: Ground = Ground { rolling_friction: 0.1, ..HARD };
 
 /// A scan: bumps and dents on an ellipsoid, seen at 400 points, its hull thinned to 48 corners.
 fn scan() -> Shape {
@@ -71,6 +75,12 @@ fn scan() -> Shape {
     Shape::of(&Solid::of(&hull), &hull.points, 0.1).unwrap()
 }
 
+/// A sphere followed as a block: one ball at the centre.
+fn one_ball() -> Shape {
+    let core = Core { corners: vec![Vec3::zeros()], ridges: Vec::new(), faces: Vec::new() };
+    Shape { core, ball: 1.0, inertia: [0.4; 3], bound: 1.0, cut_off: 0.0 }
+}
+
 /// All kinds of shapes, with corners rounded at a tenth of the radius; none for a sphere.
 fn shapes() -> Vec<(&'static str, ShapeKind, Option<Shape>)> {
     let of =
@@ -87,6 +97,7 @@ fn shapes() -> Vec<(&'static str, ShapeKind, Option<Shape>)> {
         ("ellipsoid", ShapeKind::Ellipsoid, Some(ellipsoid)),
         ("mesh", ShapeKind::Mesh, Some(scan())),
         ("sphere", ShapeKind::Sphere, None),
+        ("ball", ShapeKind::Sphere, Some(one_ball())),
     ]
 }
 
@@ -157,9 +168,10 @@ struct Counts {
     spin: f64,
 }
 
-fn count(terrain: &Terrain, series: &Series, releases: usize) -> Counts {
+fn count(terrain: &Terrain, series: &Series, releases: Range<usize>) -> Counts {
     let (mut scratch, mut counts) = (Scratch::default(), Counts::default());
-    for index in 0..releases {
+    let number = releases.len() as f64;
+    for index in releases {
         let fall = fall(terrain, series, index, &mut scratch);
         let stop = match &fall.stop {
             Stop::Failed(why) => format!("failed: {why}"),
@@ -170,13 +182,14 @@ fn count(terrain: &Terrain, series: &Series, releases: usize) -> Counts {
         counts.unsettled += fall.effort.unsettled;
         counts.leaps += fall.effort.leaps;
         let ledger = &fall.ledger;
-        let whole = [ledger.friction_j, ledger.damping_j, ledger.soil_j];
+        let whole = [ledger.friction_j, ledger.damping_j, ledger.soil_j, ledger.rolling_j];
         assert!(whole.iter().all(|part| *part >= 0.0), "{index}: {ledger:?}");
+        let rolls = series.ground.rolling_friction > 0.0;
+        assert_eq!(ledger.rolling_j > 0.0, rolls, "{index}: {ledger:?}");
         counts.worst[0] = counts.worst[0].max(ledger.rise_j / fall.released_j);
         counts.worst[1] = counts.worst[1].max(fall.energy_balance_error());
-        counts.speed_m_s += fall.extremes.speed_m_s / releases as f64;
-        counts.spin +=
-            (fall.extremes.rotational_j / fall.extremes.translational_j) / releases as f64;
+        counts.speed_m_s += fall.extremes.speed_m_s / number;
+        counts.spin += (fall.extremes.rotational_j / fall.extremes.translational_j) / number;
     }
     counts
 }
@@ -192,20 +205,21 @@ fn hold(name: &str, counts: &Counts) {
 
 /// A ball rolls on until rolling friction stops it; a block needs none.
 fn under(shape: Option<&Shape>, ground: Ground) -> Ground {
-    let rolling_friction = if shape.is_none() { 0.5 } else { ground.rolling_friction };
+    let is_round = shape.is_none_or(|shape| shape.core.corners.len() == 1);
+    let rolling_friction = if is_round { 0.5 } else { ground.rolling_friction };
     Ground { rolling_friction, ..ground }
 }
 
-/// Every shape on hard ground and on soil: all releases come to an end by themselves, and nothing gains energy.
+/// Every shape on hard ground, on soil and with rolling friction: all releases come to an end by themselves, and nothing gains energy.
 #[test]
 fn no_block_is_lost_on_the_natural_slope() {
     let slope = slope(10_000);
     for (name, kind, shape) in shapes() {
-        for ground in [HARD, SOIL] {
+        for ground in [HARD, SOIL, ROLLING] {
             let ground = under(shape.as_ref(), ground);
             for (scheme, releases) in [(Scheme::Rigid, 12), (Scheme::Adaptive, 3)] {
                 let series = Series { scheme, kind, shape: shape.as_ref(), ground };
-                let counts = count(&slope, &series, releases);
+                let counts = count(&slope, &series, 0..releases);
                 println!("{name} {scheme:?} {counts:?}");
                 hold(name, &counts);
             }
@@ -213,25 +227,41 @@ fn no_block_is_lost_on_the_natural_slope() {
     }
 }
 
-/// The same with 100 000 triangles and any number of releases (`ROCKFALL_RELEASES`), with the rate on one thread.
+/// The same with 100 000 triangles and any number of releases (`ROCKFALL_RELEASES`, from number `ROCKFALL_FROM` on), with the rate on one
+/// thread: every shape on both grounds with `rigid`, or the series that are named
+/// (`ROCKFALL_SERIES="box hard rigid,eota221 hard adaptive"`).
 #[test]
 #[ignore = "hours with 100 000 releases: cargo test --test physics -- --ignored --nocapture blocks_by_the"]
 fn blocks_by_the_thousand_on_the_natural_slope() {
-    let releases = std::env::var("ROCKFALL_RELEASES").map_or(100_000, |n| n.parse().unwrap());
-    let slope = slope(100_000);
-    for (name, kind, shape) in shapes() {
+    let number =
+        |name: &str, usual: usize| std::env::var(name).map_or(usual, |n| n.parse().unwrap());
+    let (from, releases) = (number("ROCKFALL_FROM", 0), number("ROCKFALL_RELEASES", 100_000));
+    let named = std::env::var("ROCKFALL_SERIES").ok();
+    let shapes = shapes();
+    let mut all: Vec<(String, Series)> = Vec::new();
+    for (name, kind, shape) in &shapes {
         for (soil, ground) in [("hard", HARD), ("soil", SOIL)] {
-            let ground = under(shape.as_ref(), ground);
-            let begun = Instant::now();
-            let series = Series { scheme: Scheme::Rigid, kind, shape: shape.as_ref(), ground };
-            let counts = count(&slope, &series, releases);
-            let per_s = releases as f64 / begun.elapsed().as_secs_f64();
-            println!(
-                "{name} ({} corners), {soil}: {per_s:.1} rocks/s; {counts:?}",
-                shape.as_ref().map_or(0, |shape| shape.core.corners.len())
-            );
-            hold(name, &counts);
+            for scheme in [Scheme::Rigid, Scheme::Adaptive] {
+                let (kind, shape) = (*kind, shape.as_ref());
+                let series = Series { scheme, kind, shape, ground: under(shape, ground) };
+                all.push((format!("{name} {soil} {}", scheme.name()), series));
+            }
         }
+    }
+    let is_asked = |name: &str| match &named {
+        Some(named) => named.split(',').any(|one| one == name),
+        None => name.ends_with("rigid"),
+    };
+    all.retain(|(name, _)| is_asked(name));
+    assert!(named.is_none_or(|named| named.split(',').count() == all.len()), "unknown series");
+    let slope = slope(100_000);
+    for (name, series) in all {
+        let begun = Instant::now();
+        let counts = count(&slope, &series, from..from + releases);
+        let per_s = releases as f64 / begun.elapsed().as_secs_f64();
+        let corners = series.shape.map_or(0, |shape| shape.core.corners.len());
+        println!("{name} ({corners} corners): {per_s:.1} rocks/s; {counts:?}");
+        hold(&name, &counts);
     }
 }
 

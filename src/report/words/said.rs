@@ -140,6 +140,13 @@ mod tests {
         assert!(said.starts_with("1: computed (2.0 m)"), "{said}");
         let said = words.say_all("0 | 0.5 (0.1 to 0.9 in nine of ten, uniform) m/s");
         assert_eq!(said, "0 | 0.5 (0.1 bis 0.9 in neun von zehn, uniform) m/s");
+        let rows = "2 of 3 rows of a.csv have a mass_kg that is not that of their radius_m, line 3 the most: 78 kg, but 0.2 m at 2700 kg/m³ weigh 90.5 kg; radius_m is used";
+        let said = words.say(&format!(
+            "{rows}, write [release] size_from = \"mass_kg\" to use the mass, \"radius_m\" to keep the radius"
+        ));
+        assert!(
+            said.starts_with("2 von 3 Zeilen von a.csv") && said.ends_with("behält den Radius")
+        );
         let english = Words::of(Language::En);
         assert_eq!(english.say("left out: x"), "left out: x");
         assert_eq!(english.part("flat edges"), "flat edges");

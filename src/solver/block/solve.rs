@@ -7,6 +7,8 @@
 //! (projected Gauss–Seidel), each solved for its three unknowns at once. In the rigid limit a contact gives way to nothing, `C = 0`. A spring
 //! and dashpot over an implicit step is the same contact with a compliance and a goal of its own ([`GivingWay`]): one solver serves both.
 
+use super::rolling::Turning;
+use crate::ground::FrictionLimits;
 use crate::rock::Vec3;
 use crate::solver::law::within;
 use nalgebra::{Matrix2, Matrix3, Vector2};
@@ -47,6 +49,8 @@ pub(crate) struct BlockContact {
     pub(crate) triangle: u32,
     /// Impulse on the rock (N s).
     pub(crate) impulse: Vec3,
+    /// What rolling friction bears.
+    limits: FrictionLimits,
     /// `G` (1/kg).
     pub(super) answer: Matrix3<f64>,
     /// `G + C` and its inverse.
@@ -112,7 +116,8 @@ impl BlockContact {
     ) -> Self {
         let answer = mass.answer(&lever);
         let (impulse, whole) = (Vec3::zeros(), Inverted::of(answer, mass.mass));
-        Self { n, lever, friction, goal, triangle, impulse, answer, whole, springs: None }
+        let (limits, springs) = (FrictionLimits::NONE, None);
+        Self { n, lever, friction, goal, triangle, impulse, limits, answer, whole, springs }
     }
 
     /// The same with springs.
@@ -122,12 +127,31 @@ impl BlockContact {
         (friction, triangle): (f64, u32),
         (goal, springs): (Vec3, GivingWay),
     ) -> Self {
-        let answer = mass.answer(&lever);
         let ([along, across], normal) = (springs.compliance, n * n.transpose());
         let soft = normal * along + (Matrix3::identity() - normal) * across;
-        let (impulse, whole) = (Vec3::zeros(), Inverted::of(answer + soft, mass.mass));
-        let springs = Some(springs);
-        Self { n, lever, friction, goal, triangle, impulse, answer, whole, springs }
+        let hard = Self::new(mass, (n, lever), (friction, triangle), goal);
+        let whole = Inverted::of(hard.answer + soft, mass.mass);
+        Self { whole, springs: Some(springs), ..hard }
+    }
+
+    /// The same with what its sliders bear.
+    pub(crate) fn rolling(self, limits: FrictionLimits) -> Self {
+        Self { limits, ..self }
+    }
+
+    /// Whether it bears rolling friction.
+    pub(super) fn has_rolling(&self) -> bool {
+        self.limits.has_rolling()
+    }
+
+    /// The largest impulse of turning that its own bears (N m s).
+    pub(super) fn turning_limit(&self) -> f64 {
+        self.turning_limit_of(self.n.dot(&self.impulse))
+    }
+
+    /// The same for a normal impulse (N s).
+    pub(super) fn turning_limit_of(&self, push: f64) -> f64 {
+        self.limits.caps(push).1
     }
 
     /// How it gives way, in a scheme with springs.
@@ -230,6 +254,17 @@ impl BlockContact {
     }
 }
 
+/// Largest impulse of turning under the impulses of contacts (N m s).
+pub(super) fn turning_limit(contacts: &[BlockContact]) -> f64 {
+    contacts.iter().map(BlockContact::turning_limit).sum()
+}
+
+/// Rolling friction that contacts bear in the rigid limit.
+pub(super) fn rigid_turning(contacts: &[BlockContact]) -> Turning {
+    let rolls = contacts.iter().any(BlockContact::has_rolling);
+    if rolls { Turning::RIGID } else { Turning::NONE }
+}
+
 /// Sweeps until the body moves as it will, from velocity and spin without impulses; whether it did. `sweeps` counts.
 ///
 /// What must settle is the motion of the body, not each impulse. Where there are more contacts than a rigid body can tell apart, what one asks
@@ -238,12 +273,12 @@ impl BlockContact {
 /// there are at most so many sweeps.
 pub(crate) fn solve(
     mass: &Mass,
-    contacts: &mut [BlockContact],
+    (contacts, turning): (&mut [BlockContact], &mut Turning),
     (mut v, mut w): (Vec3, Vec3),
     (rounding_m_s, most): (f64, u32),
     sweeps: &mut u64,
 ) -> bool {
-    let alone = contacts.len() <= 1;
+    let alone = contacts.len() <= 1 && !turning.is_on();
     let reach = contacts.iter().map(|contact| contact.lever.norm()).fold(0.0, f64::max);
     for _ in 0..most {
         *sweeps += 1;
@@ -255,6 +290,9 @@ pub(crate) fn solve(
             (v, w) = (v + dv, w + dw);
             scale = scale.max(next.norm());
             contact.impulse = next;
+        }
+        if turning.is_on() {
+            w += turning.turn(&mass.inverse, &w, turning_limit(contacts));
         }
         let moved = (v - before.0).norm() + (w - before.1).norm() * reach;
         if alone || moved <= (SETTLED * scale / mass.mass).max(rounding_m_s) {

@@ -19,6 +19,7 @@ mod dda;
 mod explicit;
 mod history;
 mod newton;
+mod rolling;
 mod stage;
 
 use super::solve::{BlockContact, GivingWay, Mass};
@@ -37,6 +38,7 @@ use crate::solver::tableau::STAGES;
 use explicit::ImpactEnergy;
 pub(crate) use history::BlockHistory;
 use nalgebra::{Rotation3, Unit};
+use rolling::RollingSpring;
 
 /// Contacts no further ahead than so many times the way of a stage take part in it (–).
 const AHEAD: f64 = 2.0;
@@ -52,6 +54,8 @@ struct BlockRates {
     momentum: Vec3,
     /// Of the shear springs (m/s), history by history.
     shear: Vec<Vec3>,
+    /// Of the rolling spring (rad/s).
+    rolled: Vec3,
     /// Power that goes into contacts (W).
     loss: Loss,
 }
@@ -87,6 +91,8 @@ pub(crate) struct Springs {
     contacts: Vec<SpringContact>,
     /// Those that were solved before others came up.
     solved: Vec<SpringContact>,
+    /// What rolling friction remembers.
+    rolling: RollingSpring,
     /// Memories at the step's start.
     known: usize,
     rates: [BlockRates; STAGES],
@@ -166,7 +172,7 @@ impl Springs {
     /// Energy in the springs of the contacts as they were placed (J).
     fn placed_j(&self) -> f64 {
         let stored = |contact: &SpringContact| contact.holds_j(contact.penetration, &contact.shear);
-        self.contacts.iter().map(stored).sum()
+        self.contacts.iter().map(stored).sum::<f64>() + self.rolling.holds_j()
     }
 
     /// Notes the fastest approach of the impacts that go on.
@@ -192,6 +198,7 @@ impl SpringContact {
         let springs = GivingWay { compliance: stage.compliance, surface_m_s: self.penetration / b };
         let slides = (self.law.friction_coefficient(), self.triangle);
         BlockContact::on_springs(mass, (self.n, self.lever), slides, (goal, springs))
+            .rolling(self.law.limits())
     }
 
     /// Takes the forces from an impulse that has acted for `a` (s).
@@ -274,6 +281,7 @@ impl Footing {
         (block, moving): (&Block, &Moving),
     ) {
         self.springs.histories.clear();
+        self.springs.rolling = RollingSpring::default();
         self.touches.held.clear();
         (self.springs.impact_m_s, self.springs.energy) = (0.0, None);
         self.look_at_all(world, (block, &moving.pose), TOUCH * block.radius_m);
@@ -306,6 +314,7 @@ impl Footing {
             let damping = law.stored_j(penetration, history.shear.norm_squared(), 0.0);
             stored.add(&Loss { damping, ..Loss::default() }.on(world, history.triangle), 1.0);
         }
+        stored.rolling += self.springs.rolling.holds_j();
         stored
     }
 
@@ -342,6 +351,9 @@ impl Footing {
         let slipped_m = 0.5 * done.dt * (slip_m_s + self.slip_m_s(block, moving));
         let on = self.touching(block).next().map(|touch| world.ground_of(touch.triangle));
         self.slip.grow(slipped_m, on);
+        if done.is_free {
+            self.springs.rolling = RollingSpring::default();
+        }
         Ok((done, rejected))
     }
 

@@ -4,6 +4,7 @@
 //! take; when that is what was left of the stem, the stem is gone and the block goes on. A blow that would take more ends there
 //! ([`BlockContact::yielding`](super::solve::BlockContact)).
 
+use super::rolling::Turning;
 use super::{Footing, Moving};
 use crate::body::Block;
 use crate::random::RandomStream;
@@ -58,7 +59,7 @@ impl Footing {
             }
             let mut contact = self.contact(world, (&mass, touch), 0.0, Vec3::zeros());
             contact.impulse = contact.yielding(&u, left_j)?;
-            moving.take(&[contact], block.mass_kg);
+            moving.take(&[contact], &Turning::NONE, block.mass_kg);
             Some((stem, left_j))
         });
         self.aside = touching;

@@ -2,6 +2,7 @@ use super::*;
 
 mod cases;
 mod limit;
+mod rolling;
 mod slip;
 mod springs;
 mod yielding;
@@ -60,6 +61,7 @@ struct BlockRun {
     /// The step of a scheme with springs; `None` = `rigid`.
     springs: Option<Settings>,
     lost: Loss,
+    /// Impacts; with springs, episodes of contact that are over.
     impacts: usize,
     steps: usize,
 }
@@ -144,6 +146,7 @@ impl BlockRun {
                     now += done.dt;
                     see(now, moving);
                     if done.is_free {
+                        self.impacts += 1;
                         break;
                     }
                     continue;

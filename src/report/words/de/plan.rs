@@ -8,6 +8,7 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ("[version]", "Version"),
     ("[releases]", "Ablösungen"),
     ("[radius]", "Radius"),
+    ("[sizes of table]", "Größen der Tabelle"),
     ("[terrain]", "Gelände"),
     ("[input file]", "Eingabedatei"),
     ("[ground zones]", "Bodenzonen"),
@@ -226,6 +227,18 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     (
         "{k} of {n} left out: {a} between edges that rise and edges that fall, {b} in flat ground; an edge or a face is always nearer",
         "{k} von {n} weggelassen: {a} zwischen steigenden und fallenden Kanten, {b} in ebenem Boden; eine Kante oder Fläche ist immer näher",
+    ),
+    (
+        "{k} of {n} rows of {file} have a mass_kg that is not that of their radius_m, line {line} the most: {m} kg, but {r} m at {d} kg/m³ weigh {own} kg; {used} is used",
+        "{k} von {n} Zeilen von {file} haben eine mass_kg, die nicht die ihres radius_m ist, am meisten Zeile {line}: {m} kg, aber {r} m mit {d} kg/m³ wiegen {own} kg; {used} gilt",
+    ),
+    (
+        "{said}, write [release] size_from = \"mass_kg\" to use the mass, \"radius_m\" to keep the radius",
+        "{said}, [release] size_from = \"mass_kg\" nimmt die Masse, \"radius_m\" behält den Radius",
+    ),
+    (
+        "[grounds.{name}] rolling_friction acts on blocks beside their shape, which already holds them back as they roll: keep only what soft ground takes; a value that was fitted to spheres counts the shape twice",
+        "[grounds.{name}] rolling_friction wirkt auf Blöcke neben ihrer Form, die sie beim Rollen schon bremst: nur angeben, was weicher Boden nimmt; ein an Kugeln angepasster Wert zählt die Form doppelt",
     ),
     ("computed", "gerechnet"),
     (

@@ -8,6 +8,7 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ("[version]", "version"),
     ("[releases]", "départs"),
     ("[radius]", "rayon"),
+    ("[sizes of table]", "tailles du tableau"),
     ("[terrain]", "terrain"),
     ("[input file]", "fichier lu"),
     ("[ground zones]", "zones de sol"),
@@ -232,6 +233,18 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     (
         "{k} of {n} left out: {a} between edges that rise and edges that fall, {b} in flat ground; an edge or a face is always nearer",
         "{k} sur {n} laissés de côté\u{a0}: {a} entre des arêtes qui montent et d’autres qui descendent, {b} en sol plan\u{a0}; une arête ou une face est toujours plus proche",
+    ),
+    (
+        "{k} of {n} rows of {file} have a mass_kg that is not that of their radius_m, line {line} the most: {m} kg, but {r} m at {d} kg/m³ weigh {own} kg; {used} is used",
+        "{k} des {n} lignes de {file} ont un mass_kg qui n’est pas celui de leur radius_m, surtout la ligne {line} : {m} kg, mais {r} m à {d} kg/m³ pèsent {own} kg ; {used} est retenu",
+    ),
+    (
+        "{said}, write [release] size_from = \"mass_kg\" to use the mass, \"radius_m\" to keep the radius",
+        "{said}, [release] size_from = \"mass_kg\" retient la masse, \"radius_m\" garde le rayon",
+    ),
+    (
+        "[grounds.{name}] rolling_friction acts on blocks beside their shape, which already holds them back as they roll: keep only what soft ground takes; a value that was fitted to spheres counts the shape twice",
+        "[grounds.{name}] rolling_friction agit sur les blocs en plus de leur forme, qui les freine déjà quand ils roulent : n’indiquer que ce que prend un sol mou ; une valeur ajustée à des sphères compte la forme deux fois",
     ),
     ("computed", "calculé"),
     (

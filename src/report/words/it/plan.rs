@@ -8,6 +8,7 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ("[version]", "versione"),
     ("[releases]", "distacchi"),
     ("[radius]", "raggio"),
+    ("[sizes of table]", "dimensioni tabella"),
     ("[terrain]", "terreno"),
     ("[input file]", "file letto"),
     ("[ground zones]", "zone di suolo"),
@@ -229,6 +230,18 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     (
         "{k} of {n} left out: {a} between edges that rise and edges that fall, {b} in flat ground; an edge or a face is always nearer",
         "{k} su {n} tralasciati: {a} tra spigoli che salgono e spigoli che scendono, {b} in suolo piano; uno spigolo o una faccia è sempre più vicino",
+    ),
+    (
+        "{k} of {n} rows of {file} have a mass_kg that is not that of their radius_m, line {line} the most: {m} kg, but {r} m at {d} kg/m³ weigh {own} kg; {used} is used",
+        "{k} di {n} righe di {file} hanno una mass_kg che non è quella del loro radius_m, soprattutto la riga {line}: {m} kg, ma {r} m a {d} kg/m³ pesano {own} kg; vale {used}",
+    ),
+    (
+        "{said}, write [release] size_from = \"mass_kg\" to use the mass, \"radius_m\" to keep the radius",
+        "{said}, [release] size_from = \"mass_kg\" usa la massa, \"radius_m\" tiene il raggio",
+    ),
+    (
+        "[grounds.{name}] rolling_friction acts on blocks beside their shape, which already holds them back as they roll: keep only what soft ground takes; a value that was fitted to spheres counts the shape twice",
+        "[grounds.{name}] rolling_friction agisce sui blocchi oltre alla loro forma, che già li frena quando rotolano: indicare solo ciò che assorbe un suolo molle; un valore adattato a sfere conta la forma due volte",
     ),
     ("computed", "calcolato"),
     (

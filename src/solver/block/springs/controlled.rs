@@ -87,6 +87,7 @@ impl BlockTrial<'_, '_> {
             off(|rate| rate.turned).norm() * reach * omega,
             off(|rate| rate.v).norm(),
             spin.norm() * reach,
+            off(|rate| rate.rolled).norm() * reach * omega,
             stretch.fold(0.0, f64::max) * omega,
         ];
         dt * worst.into_iter().fold(0.0, f64::max) / self.allowed
@@ -120,7 +121,7 @@ impl Footing {
             let pen = contact.pen_at(&end.at(block, &contact.lever), way_s);
             contact.holds_j(pen, &contact.stretch(way_s))
         });
-        stored.sum()
+        stored.sum::<f64>() + self.springs.rolling.will_hold_j(way_s)
     }
 
     /// Longest step (s) in which no point of the block goes further than `corner_way` of its balls, and the block turns no further than a
@@ -238,6 +239,7 @@ impl Footing {
                 (contact.offset_m, contact.pen_at(&u, way_s).max(0.0));
             history.closed = contact.normal_force > 0.0 || history.pressed_m > 0.0;
         }
+        springs.rolling.keep(way_s);
         let mut kept = 0;
         for k in 0..springs.histories.len() {
             if springs.histories[k].closed {

@@ -48,7 +48,8 @@ impl Footing {
         };
         self.place(world, (block, &start, &start), 0.0, &shear_of);
         let had_j = start.motion_j(block) + self.springs.placed_j();
-        let base = BlockEnd { moving: start.clone(), turned: Vec3::zeros() };
+        let rolled = if memory { self.springs.rolling.stretch } else { Vec3::zeros() };
+        let base = BlockEnd { moving: start.clone(), turned: Vec3::zeros(), rolled };
         let stage = StageBase { start: &start, base, times_s: (0.5 * dt, dt) };
         let mean = self.mean_motion(world, block, &stage, &shear_of);
         let weight = world.body.gravity * dt;
@@ -68,6 +69,8 @@ impl Footing {
             let shear_rate = (contact.stretch(dt) - contact.shear) / dt;
             done.loss.add(&contact.power(world, &u, &shear_rate), dt);
         }
+        let springs = &self.springs;
+        done.loss.add(&springs.rolling.power(world, &springs.contacts, &mean.spin(block)), dt);
         self.keep((block, &mean), dt);
         self.look_at_all(world, (block, &moving.pose), TOUCH * block.radius_m);
         self.check_depth(block)?;

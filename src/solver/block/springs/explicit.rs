@@ -65,6 +65,8 @@ impl Footing {
         let springs = &self.springs;
         let least_m_s = world.least_impact_m_s();
         control.impact_kernels
+            // rolling friction of blocks is in the implicit stages alone
+            && world.laws.iter().all(|law| !law.rolling.is_on())
             && springs.histories.len() <= MOST_PRESS
             && springs.histories.iter().any(|one| {
                 one.closed

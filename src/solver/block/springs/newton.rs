@@ -4,6 +4,7 @@
 //! `M (V − V_free) = Σ Tᵀ P(T V)`: six equations, however many contacts a face has. Newton's method on pieces: contacts open, stick or slip.
 //! Where it does not settle – a dashpot that alone would keep the block out has no closed form – contacts are swept instead.
 
+use super::super::rolling::Turning;
 use super::super::solve::{BlockContact, Mass};
 use crate::rock::Vec3;
 use nalgebra::{Matrix3, Matrix6, Vector6};
@@ -50,6 +51,7 @@ struct Equations<'c> {
     mass: &'c Mass,
     inertia: Matrix3<f64>,
     contacts: &'c mut [BlockContact],
+    turning: &'c mut Turning,
     free: (Vec3, Vec3),
 }
 
@@ -61,6 +63,8 @@ impl Equations<'_> {
         let mut slope = Matrix6::zeros();
         slope.fixed_view_mut::<3, 3>(0, 0).fill_diagonal(self.mass.mass);
         slope.fixed_view_mut::<3, 3>(3, 3).copy_from(&self.inertia);
+        // what rolling friction bears, and how that changes with the motion
+        let (mut limit, mut limit_slope) = (0.0, [Vec3::zeros(); 2]);
         for contact in self.contacts.iter_mut() {
             let (impulse, rate) = contact.answer_at(&Mass::at(&contact.lever, (v, w)))?;
             contact.impulse = impulse;
@@ -77,6 +81,19 @@ impl Equations<'_> {
             block -= both;
             let mut block = slope.fixed_view_mut::<3, 3>(3, 3);
             block += arm * right;
+            if contact.has_rolling() {
+                limit += contact.turning_limit();
+                let push_slope = rate.tr_mul(&contact.n) * contact.turning_limit_of(1.0);
+                limit_slope[0] += push_slope;
+                limit_slope[1] -= arm.tr_mul(&push_slope);
+            }
+        }
+        if let Some((taken, rate, way)) = self.turning.answer_at(w, limit) {
+            turn += taken;
+            let mut block = slope.fixed_view_mut::<3, 3>(3, 0);
+            block += way * limit_slope[0].transpose();
+            let mut block = slope.fixed_view_mut::<3, 3>(3, 3);
+            block += rate + way * limit_slope[1].transpose();
         }
         Some((Vector6::new(push.x, push.y, push.z, turn.x, turn.y, turn.z), slope))
     }
@@ -92,13 +109,13 @@ impl Equations<'_> {
 /// Solves for the impulses of contacts that give way, from the motion without impulses and a first guess; whether it has settled.
 pub(super) fn solve_springs(
     mass: &Mass,
-    contacts: &mut [BlockContact],
+    (contacts, turning): (&mut [BlockContact], &mut Turning),
     (free, guess): ((Vec3, Vec3), (Vec3, Vec3)),
     rounding_m_s: f64,
 ) -> bool {
     let reach = contacts.iter().map(|contact| contact.lever.norm()).fold(0.0, f64::max);
     let Some(inertia) = mass.inverse.try_inverse() else { return false };
-    let mut equations = Equations { mass, inertia, contacts, free };
+    let mut equations = Equations { mass, inertia, contacts, turning, free };
     let (mut v, mut w) = guess;
     let Some((mut left, mut slope)) = equations.at((&v, &w)) else { return false };
     let mut size = equations.size(&left, reach);

@@ -11,7 +11,8 @@ use crate::body::Block;
 use crate::contact::block::{BlockTouch, Pose};
 use crate::contact::history::carry;
 use crate::rock::Vec3;
-use crate::solver::block::solve::{Mass, SWEEPS, solve};
+use crate::solver::block::rolling::Turning;
+use crate::solver::block::solve::{BlockContact, Mass, SWEEPS, solve};
 use crate::solver::environment::ContactEnvironment;
 use crate::solver::loss::Loss;
 use crate::solver::stage::{AGREED, PASSES};
@@ -29,6 +30,8 @@ pub(super) struct BlockEnd {
     pub(super) moving: Moving,
     /// Rotation vector from the step's start (rad).
     pub(super) turned: Vec3,
+    /// Stretch of the rolling spring at the base of the stage (rad).
+    pub(super) rolled: Vec3,
 }
 
 /// What a stage starts from.
@@ -51,19 +54,21 @@ impl StageBase<'_> {
             centre: self.base.moving.pose.centre + v * b,
             attitude: orthonormal(&(turn_by(&turned) * self.start.pose.attitude)),
         };
-        BlockEnd { moving: Moving { pose, v, momentum }, turned }
+        BlockEnd { moving: Moving { pose, v, momentum }, turned, rolled: self.base.rolled }
     }
 }
 
 impl Footing {
     /// The base of implicit stage `i` of a step of length `h` (s) from `start`.
     pub(super) fn base(&self, start: &Moving, tableau: &Tableau, (i, h): (usize, f64)) -> BlockEnd {
-        let mut base = BlockEnd { moving: start.clone(), turned: Vec3::zeros() };
+        let rolled = self.springs.rolling.stretch;
+        let mut base = BlockEnd { moving: start.clone(), turned: Vec3::zeros(), rolled };
         for (rate, a) in self.springs.rates.iter().zip(tableau.a[i]) {
             base.moving.pose.centre += rate.centre * (h * a);
             base.moving.v += rate.v * (h * a);
             base.moving.momentum += rate.momentum * (h * a);
             base.turned += rate.turned * (h * a);
+            base.rolled += rate.rolled * (h * a);
         }
         base
     }
@@ -155,7 +160,13 @@ impl Footing {
                 shear_force: Vec3::zeros(),
             });
         }
+        self.springs.rolling.take_up(&contacts);
         self.springs.contacts = contacts;
+    }
+
+    /// What a stage is solved for: its contacts, and the rolling friction that they bear.
+    fn asked(&mut self) -> (&mut [BlockContact], &mut Turning) {
+        (&mut self.contacts, &mut self.turning)
     }
 
     /// Velocity and momentum at the stage's end with the contacts as they are; the block turned as in `guess`.
@@ -174,21 +185,26 @@ impl Footing {
             soft.impulse = self.springs.histories[contact.history].impulse;
             self.contacts.push(soft);
         }
-        pushed.take(&self.contacts, block.mass_kg);
+        let began = self.springs.rolling.over(&stage.base.rolled, stage.times_s);
+        self.turning = began;
+        pushed.take(&self.contacts, &began, block.mass_kg);
         let rounding_m_s = ROUNDING_OF_SPEED * (free_v.norm() + guess.v.norm());
         let free = (free_v, mass.inverse * stage.base.moving.momentum);
         let from = (pushed.v, mass.inverse * pushed.momentum);
         // one or two contacts are swept faster, if they settle at all
-        let quick = (rounding_m_s, QUICK);
-        let settled = self.contacts.len() <= FEW
-            && solve(&mass, &mut self.contacts, from, quick, &mut self.sweeps);
-        self.sweeps += u64::from(!settled);
-        if !settled && !solve_springs(&mass, &mut self.contacts, (free, from), rounding_m_s) {
+        let (quick, mut sweeps) = ((rounding_m_s, QUICK), 0);
+        let settled =
+            self.contacts.len() <= FEW && solve(&mass, self.asked(), from, quick, &mut sweeps);
+        sweeps += u64::from(!settled);
+        if !settled && !solve_springs(&mass, self.asked(), (free, from), rounding_m_s) {
+            self.turning = began;
             for (contact, own) in self.contacts.iter_mut().zip(&self.springs.contacts) {
                 contact.impulse = self.springs.histories[own.history].impulse;
             }
-            solve(&mass, &mut self.contacts, from, (rounding_m_s, SWEEPS), &mut self.sweeps);
+            solve(&mass, self.asked(), from, (rounding_m_s, SWEEPS), &mut sweeps);
         }
+        self.sweeps += sweeps;
+        self.springs.rolling.take(&self.turning, act_s);
         for (contact, solved) in self.springs.contacts.iter_mut().zip(&self.contacts) {
             contact.take(&solved.impulse, act_s);
             // a try that went astray must not be where the next begins
@@ -197,7 +213,7 @@ impl Footing {
             self.springs.histories[contact.history].impulse = impulse;
         }
         let mut end = Moving { v: free_v, ..stage.base.moving.clone() };
-        end.take(&self.contacts, block.mass_kg);
+        end.take(&self.contacts, &self.turning, block.mass_kg);
         (end.v, end.momentum)
     }
 
@@ -224,6 +240,9 @@ impl Footing {
             let u = end.moving.at(block, &contact.lever);
             rate.loss.add(&contact.power(world, &u, &shear_rate), 1.0);
         }
+        rate.rolled = springs.rolling.turned(way_s).rate;
+        let spin = end.moving.spin(block);
+        rate.loss.add(&springs.rolling.power(world, &springs.contacts, &spin), 1.0);
     }
 
     /// Rates at the present state, for the explicit first stage.
@@ -253,6 +272,10 @@ impl Footing {
             rate.shear[contact.history] = carry(shear_rate, &n, back);
             rate.loss.add(&contact.power(world, &u, &shear_rate), 1.0);
         }
+        let rolling = springs.rolling.press(&springs.contacts, &rate.turned);
+        rate.momentum -= rolling.moment;
+        rate.rolled = rolling.rate;
+        rate.loss.add(&springs.rolling.power(world, &springs.contacts, &rate.turned), 1.0);
         springs.rates[0] = rate;
         springs.fresh = true;
     }

@@ -1,6 +1,6 @@
 //! The exact cases with springs: `adaptive`, `reference` and `dda` come to what the rigid limit does as their springs get stiff.
 
-use super::cases::balls;
+use super::cases::{balls, elastic_box, run_backwards};
 use super::*;
 use crate::solver::Scheme;
 use nalgebra::Unit;
@@ -187,6 +187,12 @@ fn a_capsule_rolls_on_springs() {
         let spin = moving.spin(&case.block);
         assert!(spin.x.abs() + spin.z.abs() < 1e-6 && moving.v.y.abs() < 1e-6, "{scheme:?} {spin}");
     }
+}
+
+/// Elastic bounces backwards on springs of the finest scheme, whose local error is 1e-9 of an impact.
+#[test]
+fn elastic_bounces_on_springs_run_backwards() {
+    run_backwards(on_springs(elastic_box(), Scheme::Reference, 1e9), &[2, 5], 1e-7);
 }
 
 /// A mesh of blunt folds: a grid of `cells` a side of 0.3 m with heights up to `most_m`.

@@ -1,0 +1,117 @@
+//! Rolling friction of a block: one moment against its spin.
+//!
+//! As of a sphere it is a spring and a dashpot in series with a slider that bears `ρ R N`, `R` the radius of the sphere of equal volume. All
+//! contacts turn the same body, so their moments are one, and it bears what all of them bear together. Over a stage in which it acts
+//! for `a` and the block turns for `b` (s) the moment `M = k θ + (k b + c) ω` takes the impulse `T = a M` of turning from the body:
+//!
+//! ```text
+//! (s + I⁻¹) T = ω₀ + k θ/(k b + c),   s = 1/(a (k b + c)),   |T| ≤ a ρ R N
+//! ```
+//!
+//! with `ω₀` the spin without it. Where the slider gives way `s` is the larger one with which `T` is just at its limit, so that it acts
+//! against the spin, and only takes energy. In the rigid limit `s = 0` and `θ = 0`.
+
+use crate::ground::FrictionElement;
+use crate::rock::Vec3;
+use nalgebra::Matrix3;
+
+/// Newton's steps for `s`, at most: three are enough unless the moments of inertia are very unlike.
+const STEPS: u32 = 40;
+/// Relative distance from the limit at which it is met (–).
+const AT_LIMIT: f64 = 1e-13;
+
+/// Rolling friction of a body over a stage, and its impulse.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Turning {
+    /// `s` (1/(kg m²)); `None` = no rolling friction.
+    compliance: Option<f64>,
+    /// Spin that the spring would give back (rad/s): `k θ/(k b + c)`.
+    wound: Vec3,
+    /// Impulse of turning on the body (N m s).
+    pub(crate) impulse: Vec3,
+}
+
+impl Default for Turning {
+    fn default() -> Self {
+        Self::NONE
+    }
+}
+
+impl Turning {
+    /// None.
+    pub(crate) const NONE: Self = Self {
+        compliance: None,
+        wound: Vec3::new(0.0, 0.0, 0.0),
+        impulse: Vec3::new(0.0, 0.0, 0.0),
+    };
+
+    /// In the rigid limit.
+    pub(crate) const RIGID: Self = Self { compliance: Some(0.0), ..Self::NONE };
+
+    /// Over a stage in which it acts for `a` and the block turns for `b` (s), from a stretch of its spring (rad).
+    pub(super) fn over(element: &FrictionElement, stretch: &Vec3, (a, b): (f64, f64)) -> Self {
+        let answer = element.over(b);
+        let wound = element.held(*stretch) / answer;
+        Self { compliance: Some(1.0 / (a * answer)), wound, ..Self::NONE }
+    }
+
+    /// The same with an impulse where the solve begins (N m s).
+    pub(super) fn guessed(self, impulse: Vec3) -> Self {
+        Self { impulse, ..self }
+    }
+
+    /// Whether there is any.
+    #[inline]
+    pub(crate) fn is_on(&self) -> bool {
+        self.compliance.is_some()
+    }
+
+    /// Takes up the impulse that contacts which bear `limit` (N m s) let it have at the spin `w` (rad/s) of a body with an inverse inertia
+    /// (1/(kg m²)); the change of the spin.
+    pub(crate) fn turn(&mut self, inverse: &Matrix3<f64>, w: &Vec3, limit: f64) -> Vec3 {
+        let Some(compliance) = self.compliance else { return Vec3::zeros() };
+        let own = inverse * self.impulse;
+        let next = -taken(inverse, &(w - own + self.wound), (compliance, limit));
+        self.impulse = next;
+        inverse * next - own
+    }
+
+    /// The impulse that it takes from a body that turns with `w` at the stage's end, under contacts that bear `limit` (N m s), with its
+    /// change by the spin and by the limit.
+    pub(super) fn answer_at(&mut self, w: &Vec3, limit: f64) -> Option<(Vec3, Matrix3<f64>, Vec3)> {
+        let stiffness = 1.0 / self.compliance?;
+        let asked = w + self.wound;
+        let size = asked.norm();
+        let found = if size * stiffness <= limit {
+            (asked * stiffness, Matrix3::identity() * stiffness, Vec3::zeros())
+        } else {
+            let way = asked / size;
+            let across = Matrix3::identity() - way * way.transpose();
+            (way * limit, across * (limit / size), way)
+        };
+        self.impulse = -found.0;
+        Some(found)
+    }
+}
+
+/// `T` of a body with an inverse inertia (1/(kg m²)) for a spin to take (rad/s), from the least `s` and the limit (N m s). The size of
+/// `(s + I⁻¹)⁻¹ ω` falls with `s`; Newton's method on its reciprocal, which is nearly a line, comes from below and does not overshoot.
+fn taken(inverse: &Matrix3<f64>, spin: &Vec3, (least, limit): (f64, f64)) -> Vec3 {
+    if limit <= 0.0 {
+        return Vec3::zeros();
+    }
+    let whole = |s: f64| (inverse + Matrix3::identity() * s).try_inverse();
+    let mut s = least;
+    let Some(mut soft) = whole(s) else { return Vec3::zeros() };
+    let mut taken = soft * spin;
+    for _ in 0..STEPS {
+        let beyond = taken.norm() - limit;
+        if beyond <= AT_LIMIT * limit {
+            return taken;
+        }
+        s += taken.norm_squared() / taken.dot(&(soft * taken)) * beyond / limit;
+        let Some(next) = whole(s) else { break };
+        (soft, taken) = (next, next * spin);
+    }
+    crate::solver::law::within(taken, limit)
+}

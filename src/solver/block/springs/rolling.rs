@@ -1,0 +1,126 @@
+//! The rolling spring of a block: one for all its contacts, as they turn one body.
+//!
+//! Spring and dashpot are those of the first ground with rolling friction that the block has met in an episode of contact; what the
+//! slider bears is that of each contact.
+
+use super::SpringContact;
+use crate::ground::FrictionElement;
+use crate::rock::Vec3;
+use crate::solver::block::rolling::Turning;
+use crate::solver::environment::ContactEnvironment;
+use crate::solver::law::within;
+use crate::solver::loss::Loss;
+
+/// The rolling spring of a block, and its moment.
+#[derive(Debug, Default)]
+pub(super) struct RollingSpring {
+    /// Spring and dashpot; none as long as no ground has rolling friction.
+    element: Option<FrictionElement>,
+    /// Its stretch at the step's start, and at the base of the stage in hand (rad).
+    pub(super) stretch: Vec3,
+    base: Vec3,
+    /// The moment that it takes from the block (N m).
+    moment: Vec3,
+    /// Impulse on the block of the last solve (N m s): where the next begins.
+    impulse: Vec3,
+}
+
+impl RollingSpring {
+    /// Takes up the element of the first of these contacts that has one.
+    pub(super) fn take_up(&mut self, contacts: &[SpringContact]) {
+        if self.element.is_none() {
+            let elements = contacts.iter().map(|contact| contact.law.rolling);
+            self.element = elements.into_iter().find(FrictionElement::is_on);
+        }
+    }
+
+    /// It over a stage in which it acts for `a` and the block turns for `b` (s), from a stretch at its base (rad).
+    pub(super) fn over(&mut self, base: &Vec3, times_s: (f64, f64)) -> Turning {
+        self.base = *base;
+        match &self.element {
+            Some(element) => Turning::over(element, base, times_s).guessed(self.impulse),
+            None => Turning::NONE,
+        }
+    }
+
+    /// Takes the moment from an impulse that has acted for `a` (s).
+    pub(super) fn take(&mut self, turning: &Turning, a: f64) {
+        self.moment = turning.impulse / -a;
+        // a try that went astray must not be where the next begins
+        let is_known = turning.impulse.iter().all(|x| x.is_finite());
+        self.impulse = if is_known { turning.impulse } else { Vec3::zeros() };
+    }
+
+    /// Takes the moment that it has where the block turns with `w` (rad/s), pressed as its contacts are.
+    pub(super) fn press(&mut self, contacts: &[SpringContact], w: &Vec3) -> RollingRate {
+        self.base = self.stretch;
+        let Some(element) = &self.element else { return RollingRate::default() };
+        let held = element.held(self.stretch);
+        self.moment = within(held + element.damped(*w), limit_n_m(contacts));
+        RollingRate { moment: self.moment, rate: element.relaxing(self.moment, held) }
+    }
+
+    /// Moment, and rate of the stretch in the mean of a stage in which the block has turned for `b` (s).
+    pub(super) fn turned(&self, b: f64) -> RollingRate {
+        let rate = (self.stretch_after(b) - self.base) / b;
+        RollingRate { moment: self.moment, rate }
+    }
+
+    /// Stretch after the block has turned for `b` (s) (rad).
+    fn stretch_after(&self, b: f64) -> Vec3 {
+        let after = |element: &FrictionElement| element.stretch_after(&self.moment, &self.base, b);
+        self.element.as_ref().map_or_else(Vec3::zeros, after)
+    }
+
+    /// Keeps the stretch of the end of a stage.
+    pub(super) fn keep(&mut self, b: f64) {
+        self.stretch = self.stretch_after(b);
+    }
+
+    /// Energy in it at the step's start (J).
+    pub(super) fn holds_j(&self) -> f64 {
+        self.stored_j(&self.stretch)
+    }
+
+    /// Energy in it at the end of a stage (J).
+    pub(super) fn will_hold_j(&self, b: f64) -> f64 {
+        self.stored_j(&self.stretch_after(b))
+    }
+
+    fn stored_j(&self, stretch: &Vec3) -> f64 {
+        self.element.as_ref().map_or(0.0, |element| 0.5 * element.held(*stretch).dot(stretch))
+    }
+
+    /// Power that goes into it (W) at a spin (rad/s), what it stores counted in, by the contacts that bear it.
+    pub(super) fn power(
+        &self,
+        world: &ContactEnvironment,
+        contacts: &[SpringContact],
+        w: &Vec3,
+    ) -> Loss {
+        let (mut loss, all_n_m) = (Loss::default(), limit_n_m(contacts));
+        if self.element.is_none() || all_n_m <= 0.0 {
+            return loss;
+        }
+        let rolling = self.moment.dot(w) / all_n_m;
+        for contact in contacts {
+            let own = Loss { rolling, ..Loss::default() }.on(world, contact.triangle);
+            loss.add(&own, contact.law.rolling.cap(contact.normal_force));
+        }
+        loss
+    }
+}
+
+/// What rolling friction does at a motion.
+#[derive(Debug, Default)]
+pub(super) struct RollingRate {
+    /// The moment that it takes from the block (N m).
+    pub(super) moment: Vec3,
+    /// Rate of its stretch (rad/s).
+    pub(super) rate: Vec3,
+}
+
+/// Largest moment that contacts bear together (N m).
+fn limit_n_m(contacts: &[SpringContact]) -> f64 {
+    contacts.iter().map(|contact| contact.law.rolling.cap(contact.normal_force)).sum()
+}
