@@ -149,8 +149,7 @@ impl Elliptic {
         let halves = (0.5 * u / self.quarter).round();
         let rest = u - 2.0 * halves * self.quarter;
         let near = self.mc < NEAR_SEPARATRIX;
-        let (sn, cn) =
-            if near { sn_cn(rest, self.mc) } else { sin_cos(amplitude(rest, self.mc)) };
+        let (sn, cn) = if near { sn_cn(rest, self.mc) } else { sin_cos(amplitude(rest, self.mc)) };
         Jacobi { halves, sn, cn }
     }
 
