@@ -4,6 +4,11 @@ use super::{atan2, sin, sin_cos};
 
 /// Terms of the arithmetic-geometric mean kept at most: it converges quadratically.
 const MEANS: usize = 16;
+/// Where `1 − m` is less than this, cn is worked out relative to its own size (–): as the cosine of an angle near π/2 it would have no
+/// digits left where the body turns about its middle axis.
+const NEAR_SEPARATRIX: f64 = 1e-8;
+/// Spread of two means below which the next is exact to rounding (–): it is the square.
+const MEANS_AGREE: f64 = 1e-8;
 /// Relative spread of arguments below which Carlson's series is exact to rounding (–).
 const SPREAD: f64 = 2e-3;
 
@@ -57,7 +62,7 @@ pub fn rj(mut x: f64, mut y: f64, mut z: f64, mut p: f64) -> f64 {
     }
 }
 
-/// Jacobi's amplitude, sn, cn and dn of `u` for the complementary parameter `mc = 1 − m`, `0 < mc ≤ 1`; `u` within a
+/// Jacobi's amplitude of `u` for the complementary parameter `mc = 1 − m`, `0 < mc ≤ 1`; `u` within a
 /// quarter period on either side of 0. By Gauss' descending transformation.
 fn amplitude(u: f64, mc: f64) -> f64 {
     let (mut a, mut b) = (1.0_f64, mc.sqrt());
@@ -76,6 +81,48 @@ fn amplitude(u: f64, mc: f64) -> f64 {
         phi = 0.5 * (phi + super::asin(ratios[k] * sin(phi)));
     }
     phi
+}
+
+/// Jacobi's sn and cn of `u`, within a quarter period on either side of 0, both to rounding of their own size however near `m` is to 1.
+///
+/// The same transformation in `cs = cn/sn` (Bulirsch 1965): sums of positive terms only, so nothing cancels.
+fn sn_cn(u: f64, mc: f64) -> (f64, f64) {
+    let mut means = [(1.0, 1.0); MEANS];
+    let ((mut a, mut b), mut count) = ((1.0_f64, mc.sqrt()), 0);
+    while count < MEANS {
+        means[count] = (a, b);
+        count += 1;
+        let agree = (a - b).abs() <= MEANS_AGREE * a;
+        (a, b) = (0.5 * (a + b), (a * b).sqrt());
+        if agree {
+            break;
+        }
+    }
+    let (sin, cos) = sin_cos(a * u);
+    if sin == 0.0 {
+        return (0.0, 1.0);
+    }
+    let (mut ratio, mut dn) = (cos / sin, 1.0);
+    let mut cs = a * ratio;
+    for (mean, root) in means[..count].iter().rev() {
+        let square = ratio * cs;
+        cs *= dn;
+        dn = (root + square) / (mean + square);
+        ratio = cs / mean;
+    }
+    let sn = sin.signum() / super::hypot(1.0, cs);
+    (sn, cs * sn)
+}
+
+/// Jacobi's functions of a time: whole half turns of the amplitude, and sine and cosine of what is left of it (−π/2..π/2).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Jacobi {
+    /// Half turns (–).
+    pub halves: f64,
+    /// Sine of the rest (–): `sn` but for the sign of odd half turns.
+    pub sn: f64,
+    /// Cosine of the rest (–), `cn` but for the same sign.
+    pub cn: f64,
 }
 
 /// An elliptic modulus with its quarter period.
@@ -97,11 +144,13 @@ impl Elliptic {
         self.quarter
     }
 
-    /// The amplitude of `u` as half turns and the angle left over (rad, −π/2..π/2).
-    pub fn amplitude(&self, u: f64) -> (f64, f64) {
+    /// The functions of `u`.
+    pub fn functions(&self, u: f64) -> Jacobi {
         let halves = (0.5 * u / self.quarter).round();
         let rest = u - 2.0 * halves * self.quarter;
-        (halves, amplitude(rest, self.mc))
+        let near = self.mc < NEAR_SEPARATRIX;
+        let (sn, cn) = if near { sn_cn(rest, self.mc) } else { sin_cos(amplitude(rest, self.mc)) };
+        Jacobi { halves, sn, cn }
     }
 
     /// `dn` where the sine and cosine of the amplitude are these.
@@ -116,11 +165,11 @@ impl Elliptic {
         2.0 * halves * self.quarter + sin * rf(cos * cos, delta, 1.0)
     }
 
-    /// `Π(n; φ, m) = ∫₀^φ dθ/((1 − n sin²θ)√(1 − m sin²θ))` for `n ≤ 0` and φ = half turns · π + `rest` (rad, −π/2..π/2).
-    pub fn third_kind(&self, n: f64, (halves, rest): (f64, f64)) -> f64 {
+    /// `Π(n; φ, m) = ∫₀^φ dθ/((1 − n sin²θ)√(1 − m sin²θ))` for `n ≤ 0` up to the amplitude of some functions.
+    pub fn third_kind(&self, n: f64, at: &Jacobi) -> f64 {
+        let halves = at.halves;
         let whole = if halves == 0.0 { 0.0 } else { 2.0 * halves * self.third_of(n, 1.0, 0.0) };
-        let (sin, cos) = sin_cos(rest);
-        whole + self.third_of(n, sin, cos)
+        whole + self.third_of(n, at.sn, at.cn)
     }
 
     fn third_of(&self, n: f64, s: f64, c: f64) -> f64 {
@@ -156,19 +205,50 @@ mod tests {
         close(Elliptic::of_complement(0.5).quarter_period(), 1.854_074_677_301_371_9);
     }
 
-    /// The amplitude inverts the integral of the first kind, from m = 0 to within 1e-9 of the separatrix.
+    /// The functions invert the integral of the first kind, from m = 0 to the separatrix, wherever they are told from rest.
     #[test]
-    fn the_amplitude_inverts_the_integral() {
-        for mc in [1.0, 0.9, 0.5, 0.03, 1e-4, 7.5e-9] {
+    fn the_functions_invert_the_integral() {
+        for mc in [1.0, 0.9, 0.5, 0.03, 1e-4, 7.5e-9, 1e-16, 1e-30, 1e-200, f64::MIN_POSITIVE] {
             let of = Elliptic::of_complement(mc);
             for k in -40..=40 {
                 let u = 0.0491 * f64::from(k) * of.quarter_period();
-                let (halves, rest) = of.amplitude(u);
-                let (sn, cn) = sin_cos(rest);
+                let Jacobi { halves, sn, cn } = of.functions(u);
                 let back = 2.0 * halves * of.quarter_period() + of.first_kind((sn, cn));
-                // near the separatrix an angle at rest tells little of the time
-                let allowed = 2e-15 * (1.0 + u.abs()) / of.dn(sn, cn);
+                // an angle near a right one tells little of the time; cn and dn themselves do
+                let near = mc < NEAR_SEPARATRIX;
+                let told = if near { 1.0 } else { of.dn(sn, cn) };
+                let allowed = 2e-15 * (1.0 + u.abs()) / told;
                 assert!((back - u).abs() < allowed, "{mc} {u} {back}");
+                assert!((sn * sn + cn * cn - 1.0).abs() < 1e-15 && cn >= 0.0);
+            }
+        }
+    }
+
+    /// Both ways to the functions agree where the angle has its digits.
+    #[test]
+    fn both_ways_to_the_functions_agree() {
+        for mc in [0.9, 0.03, 1e-4, 1e-7] {
+            let quarter = Elliptic::of_complement(mc).quarter_period();
+            for k in -9..=9 {
+                let u = 0.1 * f64::from(k) * quarter;
+                let ((sn, cn), (sin, cos)) = (sn_cn(u, mc), sin_cos(amplitude(u, mc)));
+                assert!((sn - sin).abs() < 4e-15 && (cn - cos).abs() < 4e-15, "{mc} {u}");
+            }
+        }
+    }
+
+    /// At the separatrix they are hyperbolic: cn = 1/cosh u far from the quarter period, √(1−m) sinh(K−u) near it.
+    #[test]
+    fn at_the_separatrix_the_functions_are_hyperbolic() {
+        for mc in [1e-24_f64, 1e-30, 1e-60, 1e-200] {
+            let of = Elliptic::of_complement(mc);
+            for u in [0.5_f64, 2.0, 7.0, 11.0] {
+                let cosh = 0.5 * (crate::math::exp(u) + crate::math::exp(-u));
+                assert!((of.functions(u).cn * cosh - 1.0).abs() < 1e-13, "{mc} {u}");
+                let sinh = 0.5 * (crate::math::exp(u) - crate::math::exp(-u));
+                let late = of.functions(of.quarter_period() - u).cn / (mc.sqrt() * sinh);
+                // the time itself is known to its rounding
+                assert!((late - 1.0).abs() < 1e-15 * of.quarter_period() / u.min(1.0) + 1e-13);
             }
         }
     }

@@ -45,6 +45,11 @@ impl Tableau {
         if k + 1 == self.stages { self.diagonal } else { self.a[self.stages - 1][k] }
     }
 
+    /// When stage `k` is, over the step (–).
+    pub(crate) fn node(&self, k: usize) -> f64 {
+        self.a[k].iter().sum::<f64>() + if k > 0 { self.diagonal } else { 0.0 }
+    }
+
     /// Weight of stage `k` in the work done over the step: that of the finer of the two methods.
     ///
     /// The power that goes into contacts is one more component of the motion. Summed with the weights of the finer method

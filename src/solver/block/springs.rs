@@ -20,6 +20,7 @@ mod explicit;
 mod history;
 mod newton;
 mod rolling;
+mod onset;
 mod stage;
 
 use super::solve::{BlockContact, GivingWay, Mass};
@@ -69,6 +70,8 @@ struct SpringContact {
     law: Law,
     /// Whether it came in too slowly to rebound.
     captured: bool,
+    /// Whether it has come up in this step, which is cut where it begins: it presses nothing.
+    waits: bool,
     /// Triangle whose ground answers.
     triangle: u32,
     /// Unit normal from the mesh to the block, and lever (m).
@@ -93,8 +96,9 @@ pub(crate) struct Springs {
     solved: Vec<SpringContact>,
     /// What rolling friction remembers.
     rolling: RollingSpring,
-    /// Memories at the step's start.
+    /// Memories at the step's start, and whether impacts that come up after it wait until a step begins with them.
     known: usize,
+    new_wait: bool,
     rates: [BlockRates; STAGES],
     /// Whether the first rate belongs to the present state.
     fresh: bool,

@@ -18,6 +18,8 @@ pub(crate) enum TryOutcome {
     /// Accurate, but with more energy than before: it has met a kink of the law in an unlucky place, and a shorter one
     /// does not.
     Gains,
+    /// Something begins at this share of it (–, 0..1), where it has to end: that is no error.
+    Cut(f64),
     /// A stage did not settle.
     Unsettled,
     /// The rock has left where the trial holds.
@@ -73,6 +75,7 @@ pub(crate) fn settle(
             }
             TryOutcome::Error(error) if error.is_finite() => grown(control, 1.0, error),
             TryOutcome::Gains => 0.4,
+            TryOutcome::Cut(share) => share,
             TryOutcome::Elsewhere => return Err(StepFailure::Elsewhere),
             _ => 0.25,
         };

@@ -193,18 +193,14 @@ pub(super) fn fast(way: &SchemeSetting, notes: &mut Notes) {
     }
 }
 
-/// Friction from 0 to 89° and restitution from 0 to 1 under a tilted plate that skids: nothing gains, whatever the pair, also
-/// where rigid slip has no solution (Painlevé). Left out with springs: a corner that jams may sink in by half its ball, with all three
-/// schemes (`docs/exact_blocks.md`).
+/// Friction from 0 to 89° and restitution from 0 to 1 under a tilted plate that skids: nothing gains or sinks in, whatever the pair, also
+/// where rigid slip has no solution (Painlevé).
 pub(super) fn friction(way: &SchemeSetting, notes: &mut Notes) {
-    if sprung(way) {
-        return;
-    }
-    let floor = floor();
+    let (floor, sides_m) = (floor(), [1.0, 0.5, 0.1]);
     for friction in [0.0, 30.0, 60.0, 89.0f64] {
         for e in [0.0, 0.5, 1.0] {
             for lean in [0.3, 1.0, 1.5] {
-                let flat = boxed([1.0, 0.5, 0.1], 0.0);
+                let flat = boxed(sides_m, 0.0);
                 let attitude: Rotation3<f64> = math::turn(&Vec3::y_axis(), lean);
                 let block = flat.block.map(|block| MadeBlock { attitude, ..block });
                 let setup = Setup {
@@ -216,10 +212,14 @@ pub(super) fn friction(way: &SchemeSetting, notes: &mut Notes) {
                     },
                     velocity_m_s: Vec3::new(8.0, 0.0, -1.0),
                     longest_s: 1.0,
+                    path_step_s: Some(0.01),
                     ..flat
                 };
+                let (way, setup) = &followed(way, &setup, 8.0);
                 let setting = format!("friction {friction}°, e {e}, leaning {lean} rad");
-                notes.follow(way, &setting, &setup, &floor);
+                let journey = notes.follow(way, &setting, setup, &floor);
+                let sunk = (0.5 * sides_m[2] - lowest(&journey, &floor)) / sides_m[2];
+                notes.hold(way, &setting, "sinks in, over the shortest side", sunk, 0.1 * BALL);
             }
         }
     }

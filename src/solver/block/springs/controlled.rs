@@ -1,6 +1,7 @@
 //! Schemes `adaptive` and `reference` for blocks: a diagonally implicit tableau with error control.
 
 use super::super::{Footing, Moving, Stepped, TURN};
+use super::onset::Onsets;
 use super::stage::{BlockEnd, StageBase};
 use super::{BlockHistory, BlockRates};
 use crate::body::Block;
@@ -24,7 +25,16 @@ struct BlockTrial<'a, 'w> {
     omega: f64,
     /// Local error allowed (m/s).
     allowed: f64,
+    onsets: Onsets,
     end: Option<BlockEnd>,
+}
+
+/// What the stages of a try came to.
+enum Tried {
+    /// Where the step ends and its error relative to the one allowed.
+    Whole(BlockEnd, f64),
+    /// An impact begins at this share of it (–).
+    Cut(f64),
 }
 
 impl TrialStep for BlockTrial<'_, '_> {
@@ -43,7 +53,16 @@ impl TrialStep for BlockTrial<'_, '_> {
     fn try_step(&mut self, dt: f64) -> TryOutcome {
         let springs = &mut self.footing.springs;
         springs.histories.truncate(springs.known);
-        let Some((end, error)) = self.attempt(dt) else { return TryOutcome::Unsettled };
+        springs.new_wait = !self.onsets.press;
+        let tried = self.attempt(dt);
+        self.footing.springs.new_wait = false;
+        let (end, error) = match tried {
+            None => return TryOutcome::Unsettled,
+            Some(Tried::Cut(share)) => {
+                return TryOutcome::Cut(self.onsets.cut(share, dt * self.omega));
+            }
+            Some(Tried::Whole(end, error)) => (end, error),
+        };
         let gains = error <= 1.0 && dt * self.omega > RESOLVED && self.gains(&end, dt);
         self.end = Some(end);
         if gains { TryOutcome::Gains } else { TryOutcome::Error(error) }
@@ -51,8 +70,8 @@ impl TrialStep for BlockTrial<'_, '_> {
 }
 
 impl BlockTrial<'_, '_> {
-    /// One step: where it ends and its error relative to the one allowed.
-    fn attempt(&mut self, dt: f64) -> Option<(BlockEnd, f64)> {
+    /// The stages of one step.
+    fn attempt(&mut self, dt: f64) -> Option<Tried> {
         let tableau = self.control.tableau;
         let way_s = tableau.diagonal * dt;
         // friction that grows with slip is that of the middle of the step
@@ -63,10 +82,18 @@ impl BlockTrial<'_, '_> {
             let stage = StageBase { start: self.start, base, times_s: (way_s, way_s) };
             let shear = |footing: &Footing, k: usize| footing.stretch_at_base(k, tableau, (i, dt));
             let ends = self.footing.stage(self.world, self.block, &stage, shear)?;
+            let begins_s = self.onsets.first(
+                &self.footing.springs,
+                (self.block, &ends.moving, way_s),
+                tableau.node(i) * dt,
+            );
+            if let Some(begins_s) = begins_s {
+                return Some(Tried::Cut(begins_s / dt));
+            }
             self.footing.store(self.world, (self.block, &stage), (i, &ends));
             end = Some(ends);
         }
-        end.map(|end| (end, self.error(dt)))
+        end.map(|end| Tried::Whole(end, self.error(dt)))
     }
 
     /// Local error of the step over the one allowed (–): ways by the stiffest contact's frequency, turns by the largest radius.
@@ -180,15 +207,17 @@ impl Footing {
             limit,
             omega,
             allowed,
+            onsets: Onsets::new(&control, (omega, block.radius_m)),
             end: None,
         };
         let dt = settle(&mut trial, &control, most_s, &mut rejected)?;
         let (next_h, end) = (trial.h, trial.end.ok_or(StepError::Unsettled)?);
         self.springs.h = next_h;
         *moving = end.moving;
+        self.springs.grow_old(dt);
         let mut done = self.accept((block, moving), (&control, dt));
         done.loss.damping += beyond_j;
-        self.springs.grow_old(dt);
+        self.begin_late(world);
         self.check_depth(block)?;
         Ok((done, rejected))
     }
@@ -229,6 +258,9 @@ impl Footing {
             *rate = carry(*rate, &history.n, &contact.n);
             if let Some(touch) = self.touches.found.get(k) {
                 history.follow(touch, &moving.pose.centre);
+            }
+            if contact.waits {
+                history.gone_rad = 0.0;
             }
             history.shear = contact.stretch(way_s);
             history.normal_force = contact.normal_force;

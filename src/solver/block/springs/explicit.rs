@@ -15,20 +15,22 @@ use crate::body::Block;
 use crate::contact::block::{BlockTouch, BlockTouches};
 use crate::ground::Law;
 use crate::solver::environment::ContactEnvironment;
-use crate::solver::explicit_impact::{BALANCED, FIRST, LONGEST_RAD, SHORTEST_RAD, judge};
+pub(super) use crate::solver::explicit_impact::SHORTEST_RAD;
+use crate::solver::explicit_impact::{BALANCED, FIRST, LONGEST_RAD, judge};
 use crate::solver::impact::LOCAL;
 use crate::solver::impact::dormand_prince::{Attempt, Stages};
 use crate::solver::impact_progress::LASTS;
 use crate::solver::loss::Loss;
 use crate::solver::step_control::{Control, StepError};
+pub(super) use flow::POPPED;
 use flow::{BlockFlow, ErrorScale, SUMS};
 
 /// A contact that lets go is left behind in this times the time that its speed takes (–).
 const LETS_GO: f64 = 1.2;
 /// Penetration that is rounding of places (–, relative to the radius of the sphere of equal volume).
-const ROUNDING_OF_PLACE: f64 = 1e-11;
+pub(super) const ROUNDING_OF_PLACE: f64 = 1e-11;
 /// Tries that are cut where a contact begins, at most; after them it presses from where it is found.
-const ONSETS: u32 = 6;
+pub(super) const ONSETS: u32 = 6;
 /// Contacts with room of their own: the usual case, and the most that are followed here.
 const FEW_PRESS: usize = 2;
 const MOST_PRESS: usize = 6;

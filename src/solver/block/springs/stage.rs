@@ -149,6 +149,10 @@ impl Footing {
                 offset_m,
                 law,
                 captured: memory.captured,
+                waits: self.springs.new_wait
+                    && history >= self.springs.known
+                    && !memory.captured
+                    && memory.approach_m_s > 0.0,
                 triangle: touch.triangle,
                 n: touch.normal,
                 lever: touch.lever,
@@ -180,7 +184,8 @@ impl Footing {
         let (mass, act_s) = (guess.mass(block), stage.times_s.0);
         let mut pushed = Moving { v: free_v, ..stage.base.moving.clone() };
         self.contacts.clear();
-        for contact in &self.springs.contacts {
+        let pressing = |contact: &&SpringContact| !contact.waits;
+        for contact in self.springs.contacts.iter().filter(pressing) {
             let mut soft = contact.giving_way(&mass, stage.times_s);
             soft.impulse = self.springs.histories[contact.history].impulse;
             self.contacts.push(soft);
@@ -198,14 +203,16 @@ impl Footing {
         sweeps += u64::from(!settled);
         if !settled && !solve_springs(&mass, self.asked(), (free, from), rounding_m_s) {
             self.turning = began;
-            for (contact, own) in self.contacts.iter_mut().zip(&self.springs.contacts) {
+            let known = self.springs.contacts.iter().filter(pressing);
+            for (contact, own) in self.contacts.iter_mut().zip(known) {
                 contact.impulse = self.springs.histories[own.history].impulse;
             }
             solve(&mass, self.asked(), from, (rounding_m_s, SWEEPS), &mut sweeps);
         }
         self.sweeps += sweeps;
         self.springs.rolling.take(&self.turning, act_s);
-        for (contact, solved) in self.springs.contacts.iter_mut().zip(&self.contacts) {
+        let known = self.springs.contacts.iter_mut().filter(|contact| !contact.waits);
+        for (contact, solved) in known.zip(&self.contacts) {
             contact.take(&solved.impulse, act_s);
             // a try that went astray must not be where the next begins
             let is_known = solved.impulse.iter().all(|x| x.is_finite());

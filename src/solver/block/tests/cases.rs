@@ -99,7 +99,7 @@ pub(super) fn run_backwards(mut case: BlockRun, bounces: &[usize], near: f64) {
 }
 
 /// A slope of so many rows of small triangles, each cell halved one way or the other.
-fn finely(angle: f64, rows: u32) -> Terrain {
+pub(super) fn finely(angle: f64, rows: u32) -> Terrain {
     let (along, size) = (axes(angle).0, 0.37);
     let at = |i: u32, j: u32| {
         along * (size * (f64::from(i) - 20.0)) + Vec3::y() * (size * (f64::from(j) - 10.0))
@@ -137,13 +137,12 @@ fn a_face_slides_over_any_triangulation() {
     );
 }
 
-/// Leine (2014, 5.2): a box of 2.5 x 3 x 1 m rolls down 27° with rough friction, e = 0; within 60 s the axis of largest inertia carries
-/// more than 95 % of the energy of its spin.
-#[test]
-fn a_slab_comes_to_roll_as_a_wheel() {
+/// When (s) the axis of largest inertia first carries 95 % of the energy of the spin of a slab of 2.5 x 3 x 1 m that rolls down 27° with
+/// rough friction, e = 0 (Leine 2014, 5.2), as `made` for a scheme.
+pub(super) fn rolling_slab(made: impl Fn(BlockRun) -> BlockRun) -> Option<f64> {
     let angle = 27_f64.to_radians();
     let body = block(&box_surface([2.5, 3.0, 1.0]), 0.05);
-    let mut case = BlockRun::new(slope(angle, 4e3), body, (10.0, 0.0));
+    let mut case = made(BlockRun::new(slope(angle, 4e3), body, (10.0, 0.0)));
     let (along, up) = axes(angle);
     let start = [up * 2.5 - along * 3000.0, along * 28.0, Vec3::y() * 20.8];
     let mut moving = case.start(tilted(angle) * turn(&Vec3::x_axis(), 0.2), start);
@@ -151,15 +150,27 @@ fn a_slab_comes_to_roll_as_a_wheel() {
     let widest =
         (0..3).max_by(|&i, &j| own.inertia_kg_m2[i].total_cmp(&own.inertia_kg_m2[j])).unwrap();
     let mut first = None;
-    case.follow(&mut moving, 60.0, |now, moving| {
-        let spin = moving.pose.attitude.inverse_transform_vector(&moving.spin(&own));
-        let parts: Vec<f64> = (0..3).map(|k| own.inertia_kg_m2[k] * spin[k] * spin[k]).collect();
-        if parts[widest] > 0.95 * parts.iter().sum::<f64>() {
-            first.get_or_insert(now);
+    for begun_s in [0.0, 10.0, 20.0, 30.0, 40.0, 50.0] {
+        case.follow(&mut moving, 10.0, |now, moving| {
+            let spin = moving.pose.attitude.inverse_transform_vector(&moving.spin(&own));
+            let parts: Vec<f64> =
+                (0..3).map(|k| own.inertia_kg_m2[k] * spin[k] * spin[k]).collect();
+            if parts[widest] > 0.95 * parts.iter().sum::<f64>() {
+                first.get_or_insert(begun_s + now);
+            }
+        });
+        if first.is_some() {
+            break;
         }
-    });
+    }
     println!("after {first:?} s; {} steps, {} impacts", case.steps, case.impacts);
-    assert!(first.is_some());
+    first
+}
+
+/// S16: within 60 s the slab rolls as a wheel.
+#[test]
+fn a_slab_comes_to_roll_as_a_wheel() {
+    assert!(rolling_slab(|case| case).is_some());
 }
 
 /// Half of the restitution is left at the ground's half speed: a cube that falls flat on its face.
@@ -178,24 +189,27 @@ fn restitution_of_a_block_falls_with_speed() {
 }
 
 /// A ridge along y through the origin, both sides at 45°.
-fn ridge() -> Terrain {
+pub(super) fn ridge() -> Terrain {
     let (a, b) = (Vec3::y() * -5.0, Vec3::y() * 5.0);
     let [p, q, r, s] =
         [(-5.0, -5.0), (-5.0, 5.0), (5.0, 5.0), (5.0, -5.0)].map(|(x, y)| Vec3::new(x, y, -5.0));
     terrain(vec![[a, b, q], [a, q, p], [a, s, r], [a, r, b]])
 }
 
+/// A blunt peak in the origin.
+pub(super) fn peak() -> Terrain {
+    let tip = Vec3::zeros();
+    let [a, b, c] = [(-3.0, -2.0), (3.0, -2.0), (0.0, 4.0)].map(|(x, y)| Vec3::new(x, y, -4.0));
+    terrain(vec![[tip, a, b], [tip, b, c], [tip, c, a]])
+}
+
 /// An edge of a block across a ridge: one contact, and a plate over a peak: one contact, pushing with the weight.
 #[test]
 fn edges_and_faces_meet_edges_and_peaks() {
-    let tip = Vec3::new(0.0, 0.0, 0.0);
-    let feet = [(-3.0, -2.0), (3.0, -2.0), (0.0, 4.0)].map(|(x, y)| Vec3::new(x, y, -4.0));
-    let peak =
-        terrain(vec![[tip, feet[0], feet[1]], [tip, feet[1], feet[2]], [tip, feet[2], feet[0]]]);
     // on its edge across the ridge; its face over the peak
     let on_edge = turn(&Vec3::x_axis(), std::f64::consts::FRAC_PI_4);
     for (mesh, sides, attitude) in
-        [(ridge(), [2.0, 1.0, 1.0], on_edge), (peak, [2.0, 2.0, 0.5], Rotation3::identity())]
+        [(ridge(), [2.0, 1.0, 1.0], on_edge), (peak(), [2.0, 2.0, 0.5], Rotation3::identity())]
     {
         let body = block(&box_surface(sides), 0.05);
         let height = body.support_m(&(attitude.inverse() * -Vec3::z()));

@@ -1,6 +1,6 @@
 //! Friction that grows with slip.
 
-use super::springs::{on_springs, schemes_that_tip, with_long_steps};
+use super::springs::{every_scheme, on_springs, with_long_steps};
 use super::*;
 use crate::ground::SlipFriction;
 
@@ -20,7 +20,7 @@ fn friction_that_grows_with_slip_tips_a_block() {
     assert!((soil.at(0.2, 3.128_135_09) - 1.0).abs() < 1e-9);
     assert!((exact(3.128_135_09) - 3.491_762_05).abs() < 1e-8);
     let (along, up) = axes(angle);
-    for scheme in schemes_that_tip() {
+    for scheme in every_scheme() {
         let body = block(&box_surface([1.0; 3]), 0.02);
         let mut case = BlockRun::new(slope(angle, 100.0), body, (0.2, 0.0));
         if scheme.has_springs() {

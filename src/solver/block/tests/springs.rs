@@ -31,11 +31,6 @@ pub(super) fn every_scheme() -> [Scheme; 4] {
     Scheme::ALL
 }
 
-/// Without `reference`, which finds no step where the rear corners of a tipping block let go (`docs/exact_blocks.md`).
-pub(super) fn schemes_that_tip() -> impl Iterator<Item = Scheme> {
-    every_scheme().into_iter().filter(|scheme| *scheme != Scheme::Reference)
-}
-
 /// Length of a fixed step over `√(p_N/m)` where a case lasts long (rad).
 const LONG_PHASE: f64 = 0.1;
 

@@ -30,7 +30,7 @@ const SPRINGS: usize = 12;
 /// What is summed up: losses by friction, damping and to trees, and what normal springs of slope and trees take up.
 pub(super) const SUMS: usize = 5;
 /// A contact that seems to have begun so near to the step's start has not come up by the way: it popped up, and presses at once (–).
-const POPPED: f64 = 0.02;
+pub(in super::super) const POPPED: f64 = 0.02;
 
 /// What errors are measured by.
 #[derive(Debug, Clone, Copy)]

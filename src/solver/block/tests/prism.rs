@@ -1,0 +1,86 @@
+//! A hexagonal prism that rolls down with plastic slaps.
+
+use super::*;
+
+/// Spin of a hexagonal prism of side 1 m that rolls down, as `made` for a scheme: before its last slap, and where it was slowest after it;
+/// and what it is before a slap in its limit cycle.
+pub(super) fn rolling_prism(
+    degrees: f64,
+    made: impl Fn(BlockRun) -> BlockRun,
+) -> ((f64, f64), f64) {
+    let angle = degrees.to_radians();
+    let mut case = made(prism_run(angle));
+    let mut moving = prism_start(&case, angle);
+    // a slap takes a third of the spin, and the way up over the edge some more
+    let (mut slap, mut fastest, mut slowest, mut fell) = ((0.0, 0.0), 0.0, f64::INFINITY, None);
+    let own = case.block.clone();
+    case.follow(&mut moving, 12.0, |now, moving| {
+        let spin = moving.spin(&own).y;
+        match fell {
+            None if spin < 0.9 * fastest => fell = Some(now),
+            None => fastest = spin.max(fastest),
+            Some(_) if spin > 1.5 * slowest => {
+                slap = (fastest, slowest);
+                (fastest, slowest, fell) = (spin, f64::INFINITY, None);
+            }
+            // what springs do to the spin in the slap itself is over soon
+            Some(begun) => slowest = if now > begun + 0.05 { spin.min(slowest) } else { slowest },
+        }
+    });
+    (slap, prism_cycle(angle).0)
+}
+
+/// Radius of its balls (m).
+const PRISM_BALL_M: f64 = 0.01;
+
+fn prism_run(angle: f64) -> BlockRun {
+    let body = block(&prism_on_its_side(6), PRISM_BALL_M);
+    BlockRun::new(slope(angle, 200.0), body, (1.0, 0.0))
+}
+
+/// It turns about its rear edge with 1.7 rad/s.
+fn prism_start(case: &BlockRun, angle: f64) -> Moving {
+    let (along, up) = axes(angle);
+    let (height, spin) = (0.75_f64.sqrt(), Vec3::y() * 1.7);
+    let arm = up * height - along * 0.5;
+    case.start(tilted(angle), [up * (height + 1e-7) - along * 100.0, spin.cross(&arm), spin])
+}
+
+/// Spin before a slap in its limit cycle (rad/s), and the share that a slap leaves (–): edges a little inside, and arcs between them.
+fn prism_cycle(angle: f64) -> (f64, f64) {
+    // half a face, height, what a slap keeps and how far it takes the prism
+    let s = 0.5 - PRISM_BALL_M * crate::math::tan(std::f64::consts::FRAC_PI_6);
+    let (h2, inertia) = (0.75, 5.0 / 12.0);
+    let eta = (inertia + h2 - s * s) / (inertia + h2 + s * s);
+    let way = 2.0 * s + PRISM_BALL_M * std::f64::consts::FRAC_PI_3;
+    let square = 2.0 * G * way * sin(angle) / ((inertia + h2 + s * s) * (1.0 - eta * eta));
+    (square.sqrt(), eta)
+}
+
+/// A hexagonal prism of side 1 m rolls down with plastic slaps: its spin settles where a slap takes what a sixth of a turn gives.
+#[test]
+fn a_hexagonal_prism_rolls_into_its_limit_cycle() {
+    for (degrees, before, after) in
+        [(10_f64, 2.033_972_418_3, 1.316_099_800_1), (15.0, 2.483_179_187_8, 1.606_763_003_9)]
+    {
+        let angle = degrees.to_radians();
+        let mut case = prism_run(angle);
+        let mut moving = prism_start(&case, angle);
+        // the last slap: the spin before and after it
+        let (mut slap, mut known) = ((0.0, 0.0), 1.7);
+        let own = case.block.clone();
+        case.follow(&mut moving, 12.0, |_, moving| {
+            let spin = moving.spin(&own).y;
+            if spin < 0.9 * known {
+                slap = (known, spin);
+            }
+            known = spin;
+        });
+        let (cycle, eta) = prism_cycle(angle);
+        assert!((slap.0 / cycle - 1.0).abs() < 5e-4, "{degrees}: {slap:?} {cycle}");
+        assert!((slap.1 / slap.0 / eta - 1.0).abs() < 5e-4, "{degrees}: {slap:?} {eta}");
+        // and near the sharp prism's digits
+        assert!((slap.0 / before - 1.0).abs() < 0.015, "{degrees}: {slap:?} {before}");
+        assert!((slap.1 / after - 1.0).abs() < 0.03, "{degrees}: {slap:?} {after}");
+    }
+}
