@@ -30,7 +30,7 @@ struct BlockTrial<'a, 'w> {
 }
 
 /// What the stages of a try came to.
-enum Tried {
+enum StagesOutcome {
     /// Where the step ends and its error relative to the one allowed.
     Whole(BlockEnd, f64),
     /// An impact begins at this share of it (–).
@@ -58,10 +58,10 @@ impl TrialStep for BlockTrial<'_, '_> {
         self.footing.springs.new_wait = false;
         let (end, error) = match tried {
             None => return TryOutcome::Unsettled,
-            Some(Tried::Cut(share)) => {
+            Some(StagesOutcome::Cut(share)) => {
                 return TryOutcome::Cut(self.onsets.cut(share, dt * self.omega));
             }
-            Some(Tried::Whole(end, error)) => (end, error),
+            Some(StagesOutcome::Whole(end, error)) => (end, error),
         };
         let gains = error <= 1.0 && dt * self.omega > RESOLVED && self.gains(&end, dt);
         self.end = Some(end);
@@ -71,7 +71,7 @@ impl TrialStep for BlockTrial<'_, '_> {
 
 impl BlockTrial<'_, '_> {
     /// The stages of one step.
-    fn attempt(&mut self, dt: f64) -> Option<Tried> {
+    fn attempt(&mut self, dt: f64) -> Option<StagesOutcome> {
         let tableau = self.control.tableau;
         let way_s = tableau.diagonal * dt;
         // friction that grows with slip is that of the middle of the step
@@ -88,12 +88,12 @@ impl BlockTrial<'_, '_> {
                 tableau.node(i) * dt,
             );
             if let Some(begins_s) = begins_s {
-                return Some(Tried::Cut(begins_s / dt));
+                return Some(StagesOutcome::Cut(begins_s / dt));
             }
             self.footing.store(self.world, (self.block, &stage), (i, &ends));
             end = Some(ends);
         }
-        end.map(|end| Tried::Whole(end, self.error(dt)))
+        end.map(|end| StagesOutcome::Whole(end, self.error(dt)))
     }
 
     /// Local error of the step over the one allowed (–): ways by the stiffest contact's frequency, turns by the largest radius.
