@@ -31,47 +31,11 @@
 //! SI units and `f64` throughout; z points up. The library prints nothing.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
-// words
 #[doc(hidden)]
-pub mod error;
-#[doc(hidden)]
-pub mod math;
-#[doc(hidden)]
-pub mod file;
-#[doc(hidden)]
-pub mod stopwatch;
-#[doc(hidden)]
-pub mod random;
-#[doc(hidden)]
-pub mod rock;
-#[doc(hidden)]
-pub mod body;
-#[doc(hidden)]
-pub mod frequency;
-// world
-#[doc(hidden)]
-pub mod gis;
-#[doc(hidden)]
-pub mod ground;
-#[doc(hidden)]
-pub mod terrain;
-// physics
-#[doc(hidden)]
-pub mod contact;
-#[doc(hidden)]
-pub mod flight;
-#[doc(hidden)]
-pub mod solver;
-// question
-#[doc(hidden)]
-pub mod scene;
-#[doc(hidden)]
-pub mod release;
-#[doc(hidden)]
-pub mod plan;
-// run
-#[doc(hidden)]
-pub mod simulation;
+pub use rockfall_engine::{
+    body, contact, error, file, flight, frequency, gis, ground, math, plan, random, release, rock,
+    scene, simulation, solver, stopwatch, terrain,
+};
 #[doc(hidden)]
 pub mod ensemble;
 // answer
