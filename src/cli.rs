@@ -136,7 +136,6 @@ struct RunArgs {
 }
 
 /// Reads the command line, does what it asks and answers with the exit status.
-/// What the program does: reads its arguments, obeys, and says how it ended.
 pub fn main() -> ExitCode {
     signals::outlive_file_limits();
     let done = match CommandLine::parse().command {
