@@ -21,6 +21,9 @@ pub struct RocksArgs {
     pub scheme: Option<String>,
     /// Tolerance (m/s) or step (s), whichever the scheme goes by
     pub fineness: Option<f64>,
+    /// Rolling friction of the ground (–): 0.5 unless given, 0 lets rocks run out fast
+    #[arg(long, conflicts_with = "shape")]
+    pub rolling_friction: Option<f64>,
     /// Blocks of this shape instead of spheres, without rolling friction
     #[arg(long)]
     pub shape: Option<BenchShape>,
@@ -42,7 +45,8 @@ impl RocksArgs {
 /// Follows the rocks one after the other and says what they did and what they cost.
 pub fn follow(asked: &RocksArgs) -> String {
     let way = asked.way();
-    let slope = Slope::of(asked.triangles);
+    let mut slope = Slope::of(asked.triangles);
+    slope.ground.rolling_friction = asked.rolling_friction.unwrap_or(slope.ground.rolling_friction);
     let welded = format!("weld {:.3} s, index {:.3} s", slope.weld_s, slope.index_s);
     let mut scratch = Scratch::default();
     let step = step_of(way);

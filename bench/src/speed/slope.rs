@@ -61,6 +61,8 @@ pub fn facets(triangles: usize) -> Vec<Facet> {
 pub struct Slope {
     /// The slope.
     pub terrain: Terrain,
+    /// What it is covered with.
+    pub ground: Ground,
     /// Time to weld its facets (s).
     pub weld_s: f64,
     /// Time to index it and to find what can be touched (s).
@@ -83,7 +85,7 @@ impl Slope {
         let sheets = vec![Sheet { path: "made".into(), ground: 0, is_tree: false }];
         let terrain = Terrain::new(welded, sheets);
         let index_s = begun.elapsed().as_secs_f64();
-        Self { terrain, weld_s, index_s }
+        Self { terrain, ground: GROUND, weld_s, index_s }
     }
 
     /// Release number `index`: anywhere in the area, 1 m above the ground, at rest.
@@ -101,7 +103,7 @@ impl Slope {
             velocity_m_s: Vec3::zeros(),
             spin_rad_s: Vec3::zeros(),
         };
-        Release { rock: ROCK, motion, grounds: vec![GROUND] }
+        Release { rock: ROCK, motion, grounds: vec![self.ground] }
     }
 
     /// What all rocks have in common.

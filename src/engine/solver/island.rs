@@ -16,6 +16,7 @@
 mod accept;
 mod pair_contact;
 mod block_factor;
+mod contact_queue;
 mod dda_step;
 mod dda_system;
 pub mod broad_phase;

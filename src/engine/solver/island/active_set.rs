@@ -1,22 +1,26 @@
 //! Which contacts of an island must be solved again.
 //!
-//! Most contacts of a large heap have settled after a few sweeps. Each rock carries a count of how
-//! often it was set in another motion; a contact compares the counts of its rocks with those it
-//! last saw, and is passed over where they agree.
+//! Most contacts of a large heap have settled after a few sweeps. A contact is asked again where one
+//! of its rocks was set in another motion since it was solved; all others are not even looked at.
+
+use super::contact_queue::{ContactQueue, lay};
 
 /// Part of that below which a change counts as settled however fast changes die out (–).
 pub(super) const SETTLED_AT_ONCE: f64 = 1e-4;
+/// In an island of no more rocks than this all contacts are asked in every sweep: little would be saved, and every digit counts.
+const SMALL: usize = 4;
 
-/// Which rocks have been stirred, and what every contact has seen of that.
+/// Which rocks have been stirred, and which contacts must be asked for that. A rock's contacts with the mesh are asked together and
+/// have its number; the contacts of two rocks follow.
 #[derive(Debug, Default)]
 pub(super) struct ActiveSet {
-    /// How often each rock was set in another motion.
-    pub(super) times: Vec<u32>,
-    /// The count at which each rock's contacts with the mesh were solved …
-    pub(super) contacts: Vec<u32>,
-    /// … and each contact of two rocks: its rocks and their counts then. Kept here in a few bytes, because most contacts are only
-    /// passed over.
-    pairs: Vec<([u32; 2], [u32; 2])>,
+    asked: ContactQueue,
+    /// How many there are.
+    count: usize,
+    /// Contacts with others of every rock: where its list begins, and the lists.
+    first: Vec<u32>,
+    links: Vec<u32>,
+    ends: Vec<[usize; 2]>,
     /// Rocks whose forces changed in the last sweep.
     pub(super) lately: Vec<bool>,
     /// Largest change in the current sweep and in the two before, relative to what is allowed.
@@ -26,21 +30,39 @@ pub(super) struct ActiveSet {
 impl ActiveSet {
     /// Nothing has been solved yet.
     pub(super) fn begin(&mut self, rocks: usize, pairs: impl Iterator<Item = [usize; 2]>) {
-        self.times.clear();
-        self.times.resize(rocks, 1);
-        self.contacts.clear();
-        self.contacts.resize(rocks, 0);
-        self.pairs.clear();
-        self.pairs.extend(pairs.map(|ends| (ends.map(|end| end as u32), [0; 2])));
         self.lately.clear();
         self.lately.resize(rocks, true);
         self.changes = [f64::INFINITY; 3];
+        self.ends.clear();
+        self.ends.extend(pairs);
+        self.count = rocks + self.ends.len();
+        self.asked.all(self.count);
+        if !self.is_small() {
+            lay(&self.ends, rocks, (&mut self.first, &mut self.links));
+        }
+    }
+
+    fn is_small(&self) -> bool {
+        self.lately.len() <= SMALL
     }
 
     /// Begins another sweep.
     pub(super) fn begin_sweep(&mut self) {
         self.lately.fill(false);
         self.changes = [0.0, self.changes[0], self.changes[1]];
+        if self.is_small() {
+            self.asked.all(self.count);
+        }
+    }
+
+    /// The next contact to ask after `last`, or the first of a sweep.
+    pub(super) fn next(&self, last: Option<usize>, backwards: bool) -> Option<usize> {
+        match (last, backwards) {
+            (None, false) => self.asked.from(0),
+            (None, true) => self.asked.last(),
+            (Some(k), false) => self.asked.from(k + 1),
+            (Some(k), true) => self.asked.below(k),
+        }
     }
 
     /// Notes a change, relative to what is allowed.
@@ -60,22 +82,21 @@ impl ActiveSet {
         now <= SETTLED_AT_ONCE || knows && now <= 1.0 && now * share <= 1.0 - share
     }
 
-    /// Whether neither rock of pair `k` was set in another motion since its contact was solved.
-    pub(super) fn is_pair_settled(&self, k: usize) -> bool {
-        let (ends, seen) = self.pairs[k];
-        seen == ends.map(|end| self.times[end as usize])
-    }
-
-    /// The contact of pair `k` is solved for the motions of its rocks.
-    pub(super) fn see_pair(&mut self, k: usize) {
-        let (ends, seen) = &mut self.pairs[k];
-        *seen = ends.map(|end| self.times[end as usize]);
+    /// Contact `k` is solved for the motions of its rocks.
+    pub(super) fn see(&mut self, k: usize) {
+        self.asked.remove(k);
     }
 
     /// Rock `k` has another motion: all its contacts must be asked again.
     pub(super) fn stir(&mut self, k: usize) {
-        self.times[k] += 1;
         self.lately[k] = true;
+        if self.is_small() {
+            return;
+        }
+        self.asked.add(k);
+        for contact in &self.links[self.first[k] as usize..self.first[k + 1] as usize] {
+            self.asked.add(self.lately.len() + *contact as usize);
+        }
     }
 }
 
@@ -83,18 +104,27 @@ impl ActiveSet {
 mod tests {
     use super::ActiveSet;
 
-    /// A contact is looked at again exactly when one of its rocks was stirred after it had been solved.
+    /// A contact is asked again exactly when one of its rocks was stirred after it had been solved.
     #[test]
     fn what_is_stirred_is_solved_again() {
         let mut stirred = ActiveSet::default();
+        stirred.begin(6, [[0, 1], [1, 5]].into_iter());
+        let asked = |set: &ActiveSet| -> Vec<usize> {
+            std::iter::successors(set.next(None, false), |k| set.next(Some(*k), false)).collect()
+        };
+        assert_eq!(asked(&stirred), [0, 1, 2, 3, 4, 5, 6, 7]);
+        (0..8).for_each(|k| stirred.see(k));
+        assert!(asked(&stirred).is_empty());
+        stirred.stir(5);
+        assert_eq!(asked(&stirred), [5, 7]);
+        assert_eq!(stirred.next(Some(7), true), Some(5));
+        stirred.see(7);
+        stirred.begin_sweep();
+        assert_eq!(asked(&stirred), [5]);
+        // a small island is swept as a whole
         stirred.begin(2, [[0, 1]].into_iter());
-        assert!(!stirred.is_pair_settled(0));
-        stirred.see_pair(0);
-        assert!(stirred.is_pair_settled(0));
-        stirred.stir(1);
-        assert!(!stirred.is_pair_settled(0));
-        stirred.see_pair(0);
-        stirred.begin(2, [[0, 1]].into_iter());
-        assert!(!stirred.is_pair_settled(0));
+        (0..3).for_each(|k| stirred.see(k));
+        stirred.begin_sweep();
+        assert_eq!(asked(&stirred), [0, 1, 2]);
     }
 }

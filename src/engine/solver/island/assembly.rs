@@ -8,7 +8,7 @@ use super::active_set::ActiveSet;
 use super::body::{BodySlot, IslandBody};
 use super::dda_system::Global;
 use super::outcome::Done;
-use super::pair_contact::PairContact;
+use super::pair_contact::{PairContact, Twist};
 use super::rigid::RigidIsland;
 use crate::contact::pair::{PairHistory, between};
 use crate::ground::Law;
@@ -40,6 +40,9 @@ pub struct Island<'a> {
     /// Whether the first rates belong to the present state.
     pub fresh: bool,
     pub(super) pairs: Vec<PairContact>,
+    /// Velocity and spin of every rock at the stage's end, with the forces found so far. They stand apart from the rocks because
+    /// sweeps ask for little else.
+    pub(super) motions: Vec<Twist>,
     pub(super) stirred: ActiveSet,
     pub(super) tolerance: f64,
     /// Rates of the shear springs at each stage.
@@ -74,6 +77,7 @@ impl<'a> Island<'a> {
             jumps: 0,
             fresh: false,
             pairs: Vec::new(),
+            motions: Vec::new(),
             stirred: ActiveSet::default(),
             tolerance: 0.0,
             pair_rates: vec![[Vec3::zeros(); STAGES]; pair_histories.len()],

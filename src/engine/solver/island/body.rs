@@ -48,10 +48,8 @@ pub struct IslandBody {
     /// The stage's base `x* = x + h Σ a_ij f_j`, and the guess of the centre at its end (m).
     pub(super) base: End,
     pub(super) guess: Vec3,
-    /// Velocity and spin at the stage's end without contact forces …
+    /// Velocity and spin at the stage's end without contact forces.
     pub(super) free: Twist,
-    /// … and with them.
-    pub(super) now: Twist,
     /// Where the stage ended; after the last stage, the step.
     pub(super) end: End,
     /// Forces of the last solution, to start the next from.
@@ -132,7 +130,6 @@ impl IslandBody {
             base: end,
             guess: c,
             free: zero,
-            now: zero,
             end,
             kept: Vec::new(),
             given: [Given::default(); STAGES],
@@ -267,11 +264,11 @@ impl IslandBody {
         }
     }
 
-    /// Keeps the solution of stage `i` as rates, and its forces for the next start.
-    pub(super) fn store(&mut self, terrain: &Terrain, (i, hh): (usize, f64)) {
+    /// Keeps the solution of stage `i`, velocity and spin with its forces, as rates, and the forces for the next start.
+    pub(super) fn store(&mut self, terrain: &Terrain, (v, w): Twist, (i, hh): (usize, f64)) {
         let world = ContactEnvironment { terrain, body: self.body, laws: &self.laws };
-        let c = self.base.c + self.now.0 * hh;
-        self.end = End { c, v: self.now.0, w: self.now.1 };
+        let c = self.base.c + v * hh;
+        self.end = End { c, v, w };
         let (base, end) = (self.base, self.end);
         self.state.store(&world, &base, &end, (i, hh));
         self.kept.clear();

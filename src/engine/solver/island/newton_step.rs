@@ -56,7 +56,7 @@ struct NewtonSystem {
 /// `takes_part` lets a jump be local: rocks that have settled keep their motion and enter as moving
 /// supports.
 pub(super) fn jump(
-    members: &[BodySlot],
+    (members, motions): (&[BodySlot], &[Twist]),
     pairs: &[PairContact],
     takes_part: &[bool],
     h: f64,
@@ -72,26 +72,26 @@ pub(super) fn jump(
     // rows are numbered over the rocks that take part only; others enter through the load
     let (diagonal, load) = (vec![Mat6::zeros(); rocks], vec![0.0; 6 * rocks]);
     let mut system = NewtonSystem { diagonal, joined: Vec::with_capacity(pairs.len()), load };
-    for (member, place) in members.iter().zip(&place) {
+    for ((member, motion), place) in members.iter().zip(motions).zip(&place) {
         let Some(k) = *place else { continue };
         system.add_inertia(k, member, h);
         for contact in member.contacts().iter().filter(|contact| contact.normal_force > 0.0) {
-            system.add_contact_force(k, member, contact, h);
+            system.add_contact_force((k, motion), member, contact, h);
         }
     }
     for pair in pairs.iter().filter(|pair| pair.normal_force > 0.0 || pair.bond.is_some()) {
         if pair.ends.iter().any(|&end| place[end].is_some()) {
-            system.add(&Linear::of_pair(pair, members, &place, h));
+            system.add(&Linear::of_pair(pair, motions, &place, h));
         }
     }
-    let motions = system.solve()?;
-    Some(place.iter().map(|place| place.map(|k| motions[k])).collect())
+    let solved = system.solve()?;
+    Some(place.iter().map(|place| place.map(|k| solved[k])).collect())
 }
 
 impl Linear {
     /// The contact of two rocks, or their bond. A bond pulls as well as pushes and has no friction cap.
-    fn of_pair(pair: &PairContact, members: &[BodySlot], place: &[Option<usize>], h: f64) -> Self {
-        let ends = pair.ends.map(|k| &members[k].now);
+    fn of_pair(pair: &PairContact, motions: &[Twist], place: &[Option<usize>], h: f64) -> Self {
+        let ends = pair.ends.map(|k| &motions[k]);
         let (law, speed, trial) = (&pair.law, pair.speed(ends), pair.trial(ends, h));
         let (normal, slider) = if pair.bond.is_some() {
             (pair.normal.bond(pair.penetration, h).into(), law.shear.bonded(h))
@@ -131,8 +131,14 @@ impl NewtonSystem {
     }
 
     /// A contact of rock `k` with the mesh; the mesh is an end that does not move, so only `K_kk` changes.
-    fn add_contact_force(&mut self, k: usize, member: &IslandBody, contact: &StageContact, h: f64) {
-        let (body, law, (v, w)) = (&member.body, &contact.law, &member.now);
+    fn add_contact_force(
+        &mut self,
+        (k, (v, w)): (usize, &Twist),
+        member: &IslandBody,
+        contact: &StageContact,
+        h: f64,
+    ) {
+        let (body, law) = (&member.body, &contact.law);
         let normal = contact.line(body, h);
         let speed = contact.n.dot(v);
         let (stick, wound) = contact.trials(body, v, w, h);

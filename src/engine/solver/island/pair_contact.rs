@@ -39,6 +39,8 @@ pub(super) struct PairContact {
     pub(super) normal_force: f64,
     /// Shear force: the first rock feels `−q`, the second `q` (N).
     pub(super) shear_force: Vec3,
+    /// Masses (kg) and moments of inertia (kg m²) of the two rocks.
+    pub(super) inertia: [(f64, f64); 2],
     /// `1/m_a + 1/m_b` (1/kg).
     pub(super) inv_m: f64,
     /// The same for the touched point along the surface, `+ L_a²/I_a + L_b²/I_b` (1/kg).
@@ -75,6 +77,7 @@ impl PairContact {
             levers,
             normal_force: pair_history.normal_force,
             shear_force: Vec3::zeros(),
+            inertia: bodies.map(|body| (body.mass, body.inertia)),
             inv_m,
             inv_t: inv_m + turning[0] + turning[1],
         })
@@ -154,6 +157,7 @@ impl PairContact {
     }
 
     /// Force and moment on end `k` (N, N m).
+    #[inline]
     pub(super) fn load(&self, k: usize) -> Twist {
         let force = self.n * self.normal_force - self.shear_force;
         let torque = self.n.cross(&self.shear_force) * self.levers[k];
@@ -161,10 +165,12 @@ impl PairContact {
     }
 
     /// Adds `times` the effect over `h` on end `k` to its motion.
-    pub(super) fn act(&self, k: usize, body: &Body, times_h: f64, (v, w): &mut Twist) {
+    #[inline]
+    pub(super) fn act(&self, k: usize, times_h: f64, (v, w): &mut Twist) {
         let (force, torque) = self.load(k);
-        *v += force * (times_h / body.mass);
-        *w += torque * (times_h / body.inertia);
+        let (mass, inertia) = self.inertia[k];
+        *v += force * (times_h / mass);
+        *w += torque * (times_h / inertia);
     }
 
     /// Stretch of the shear spring at the stage's end: `ξ' = (h q + c_s ξ*)/(h p_s + c_s)`.

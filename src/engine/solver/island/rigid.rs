@@ -19,6 +19,7 @@ mod resting_contacts;
 mod sweeps;
 
 use super::body::{BodySlot, IslandBody};
+use super::contact_queue::ContactQueue;
 use super::outcome::{Done, Given, Hit};
 use crate::contact::pair::{PairHistory, between};
 use crate::rock::Vec3;
@@ -31,7 +32,7 @@ use crate::terrain::Terrain;
 use contacts::{BallContact, GroundContact, StepBody};
 use impacts::{ImpactScene, PendingImpact};
 use std::collections::BinaryHeap;
-use sweeps::{ContactQueue, Leaning};
+use sweeps::Leaning;
 
 /// Longest way of a rock in one step (–, relative to its radius). Impacts on the way are found wherever they are; a
 /// contact that is slid over meanwhile is off by the square of half of this.
@@ -168,31 +169,6 @@ impl RigidIsland {
             for k in [pair_history.a, pair_history.b] {
                 members[k as usize].flying = false;
             }
-        }
-    }
-}
-
-/// Lists for every rock the numbers of what joins it to another, or to itself alone.
-/// Counting sort: two passes, no allocation but the lists themselves.
-fn lay(ends: &[[usize; 2]], rocks: usize, (first, links): (&mut Vec<u32>, &mut Vec<u32>)) {
-    let of = |[a, b]: [usize; 2]| [Some(a), Some(b).filter(|b| *b != a)].into_iter().flatten();
-    first.clear();
-    first.resize(rocks + 1, 0);
-    for &ends in ends {
-        of(ends).for_each(|k| first[k] += 1);
-    }
-    let mut sum = 0;
-    for first in first.iter_mut() {
-        sum += *first;
-        *first = sum;
-    }
-    links.clear();
-    links.resize(sum as usize, 0);
-    // filled from behind, so that each list is in order and its beginning is left where it belongs
-    for place in (0..ends.len()).rev() {
-        for k in of(ends[place]) {
-            first[k] -= 1;
-            links[first[k] as usize] = place as u32;
         }
     }
 }

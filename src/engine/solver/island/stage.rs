@@ -53,9 +53,9 @@ impl Island<'_> {
                 return None;
             }
             let mut agreed = true;
-            for member in &mut self.members {
+            for (member, motion) in self.members.iter_mut().zip(&self.motions) {
                 // the stage's end with the forces just found
-                let c = member.base.c + member.now.0 * hh;
+                let c = member.base.c + motion.0 * hh;
                 // every rock must agree: a contact of one decides the forces on its neighbours
                 let allowed = AGREED * member.body.radius;
                 agreed &= (c - member.guess).norm() <= allowed;
@@ -127,7 +127,7 @@ impl Island<'_> {
             self.pair_rates[pair.pair_history][i] = carry(rate, &pair.n, &from);
             self.pair_forces[pair.pair_history] = (pair.normal_force, pair.shear_force);
             let power = |k: usize| {
-                let (v, w) = &self.members[pair.ends[k]].now;
+                let (v, w) = &self.motions[pair.ends[k]];
                 let (force, rolling_moment) = pair.load(k);
                 -force.dot(v) - rolling_moment.dot(w)
             };
@@ -135,8 +135,8 @@ impl Island<'_> {
                 self.members[end].given[i].add(&given, 1.0);
             }
         }
-        for member in &mut self.members {
-            member.store(self.terrain, (i, hh));
+        for (member, motion) in self.members.iter_mut().zip(&self.motions) {
+            member.store(self.terrain, *motion, (i, hh));
         }
     }
 

@@ -25,8 +25,6 @@ const JUMPS: usize = 10;
 const SETTLED: f64 = 1e-2;
 /// Part of that from which a change stirs the rocks: what is passed over adds up (–).
 const STIRS: f64 = 1e-4;
-/// An island of no more rocks than this is swept as a whole.
-const SMALL: usize = 4;
 /// Change of a force, relative to itself, that is rounding (–).
 const ROUNDING: f64 = 1e-11;
 
@@ -75,7 +73,9 @@ impl Island<'_> {
     /// Solves what was stirred lately at once.
     fn jump_on(&mut self, h: f64) {
         self.grow_stirred();
-        if let Some(motions) = jump(&self.members, &self.pairs, &self.stirred.lately, h) {
+        if let Some(motions) =
+            jump((&self.members, &self.motions), &self.pairs, &self.stirred.lately, h)
+        {
             self.act_on(&motions, h);
             self.drive(h);
             self.stirred.begin(self.members.len(), self.pairs.iter().map(|pair| pair.ends));
@@ -94,47 +94,42 @@ impl Island<'_> {
 
     /// Motions from all forces together.
     fn drive(&mut self, h: f64) {
-        for member in &mut self.members {
-            let IslandBody { state, body, free, now, .. } = &mut **member;
-            *now = *free;
+        self.motions.clear();
+        for member in &self.members {
+            let IslandBody { state, body, free, .. } = &**member;
+            let mut now = *free;
             for contact in &state.contacts[..state.contact_count] {
                 let (dv, dw) = contact.effect(body, h);
                 now.0 += dv;
                 now.1 += dw;
             }
+            self.motions.push(now);
         }
         for pair in self.pairs.iter().filter(|pair| pair.acts()) {
             for k in 0..2 {
-                let IslandBody { body, now, .. } = &mut *self.members[pair.ends[k]];
-                pair.act(k, body, h, now);
+                pair.act(k, h, &mut self.motions[pair.ends[k]]);
             }
         }
     }
 
-    /// One pass over the contacts, onwards or backwards.
+    /// One pass over the contacts that are asked, onwards or backwards.
     /// To and fro, so that a load is handed up and down a pile alike.
     fn sweep(&mut self, h: f64, backwards: bool) {
-        let (contacts, pairs) = (self.members.len(), self.pairs.len());
-        for k in 0..contacts + pairs {
-            let k = if backwards { contacts + pairs - 1 - k } else { k };
-            if k < contacts {
+        let rocks = self.members.len();
+        let mut at = self.stirred.next(None, backwards);
+        while let Some(k) = at {
+            if k < rocks {
                 self.sweep_ground_contacts(k, h);
             } else {
-                self.sweep_pair(k - contacts, h);
+                self.sweep_pair(k - rocks, h);
             }
+            at = self.stirred.next(at, backwards);
         }
-    }
-
-    /// Whether contacts at rest are passed over: in a small island little is saved, and every digit counts.
-    fn passes_over(&self) -> bool {
-        self.members.len() > SMALL
     }
 
     fn sweep_ground_contacts(&mut self, k: usize, h: f64) {
-        if self.passes_over() && self.stirred.contacts[k] == self.stirred.times[k] {
-            return;
-        }
-        let IslandBody { state, body, now, .. } = &mut *self.members[k];
+        let IslandBody { state, body, .. } = &mut *self.members[k];
+        let now = &mut self.motions[k];
         let count = state.contact_count;
         let mut worst = 0.0f64;
         for contact in &mut state.contacts[..count] {
@@ -154,35 +149,33 @@ impl Island<'_> {
                 worst.max(change / allowed.max(ROUNDING / SETTLED_AT_ONCE * contact.normal_force));
         }
         self.stirred.note(worst);
-        let seen = self.stirred.times[k];
-        if worst > STIRS {
+        let stirs = worst > STIRS;
+        if stirs {
             self.stirred.stir(k);
         }
         // One contact alone is solved exactly; several must see each other's change.
-        self.stirred.contacts[k] = if count > 1 { seen } else { self.stirred.times[k] };
+        if count <= 1 || !stirs {
+            self.stirred.see(k);
+        }
     }
 
     /// Takes the pair's own forces off both rocks, solves it, and puts the new ones on.
     fn sweep_pair(&mut self, k: usize, h: f64) {
-        if self.passes_over() && self.stirred.is_pair_settled(k) {
-            return;
-        }
         let pair = &mut self.pairs[k];
         let ends = pair.ends;
         let before = (pair.normal_force, pair.shear_force);
-        let mut motions: [Twist; 2] = ends.map(|end| self.members[end].now);
+        let mut motions: [Twist; 2] = ends.map(|end| self.motions[end]);
         if pair.acts() {
             for k in 0..2 {
-                pair.act(k, &self.members[ends[k]].body, -h, &mut motions[k]);
+                pair.act(k, -h, &mut motions[k]);
             }
         }
         pair.solve([&motions[0], &motions[1]], h);
         let change = (pair.normal_force - before.0).abs().max((pair.shear_force - before.1).norm());
         if pair.acts() || change > 0.0 {
             for (k, motion) in motions.iter_mut().enumerate() {
-                let member = &mut *self.members[ends[k]];
-                pair.act(k, &member.body, h, motion);
-                member.now = *motion;
+                pair.act(k, h, motion);
+                self.motions[ends[k]] = *motion;
             }
         }
         let allowed = SETTLED * self.tolerance / (h * pair.inv_m);
@@ -194,7 +187,7 @@ impl Island<'_> {
                 self.stirred.stir(end);
             }
         }
-        self.stirred.see_pair(k);
+        self.stirred.see(self.members.len() + k);
     }
 
     /// Sets every force of rocks that jumped to what its law gives at their new motions.
@@ -202,9 +195,9 @@ impl Island<'_> {
     /// The linear system knows neither cones nor that a contact cannot pull: the law is asked once
     /// more.
     fn act_on(&mut self, motions: &[Option<Twist>], h: f64) {
-        for (member, motion) in self.members.iter_mut().zip(motions) {
+        for ((member, now), motion) in self.members.iter_mut().zip(&mut self.motions).zip(motions) {
             let Some((v, w)) = motion else { continue };
-            let IslandBody { state, body, now, .. } = &mut **member;
+            let IslandBody { state, body, .. } = &mut **member;
             *now = (*v, *w);
             for contact in &mut state.contacts[..state.contact_count] {
                 let law = contact.law;
@@ -218,7 +211,7 @@ impl Island<'_> {
             if pair.ends.iter().all(|&k| motions[k].is_none()) {
                 continue;
             }
-            let ends = pair.ends.map(|k| &self.members[k].now);
+            let ends = pair.ends.map(|k| &self.motions[k]);
             let (law, speed, stick) = (pair.law, pair.speed(ends), pair.trial(ends, h));
             if pair.bond.is_some() {
                 pair.normal_force = pair.normal.bond_force(pair.penetration, speed, h);

@@ -13,6 +13,7 @@ use crate::contact::pair::PairHistory;
 use crate::rock::Vec3;
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
 use crate::solver::island::body::{BodySlot, IslandBody};
+use crate::solver::island::contact_queue::lay;
 use crate::solver::island::outcome::{Given, Hit};
 use crate::solver::island::pair_contact::TOUCH;
 use crate::solver::law::capture_m_s;
@@ -89,7 +90,7 @@ impl RigidIsland {
             .iter()
             .map(|pair_history| [pair_history.a as usize, pair_history.b as usize])
             .collect();
-        super::lay(&ends, self.balls.len(), (&mut self.first, &mut self.links));
+        lay(&ends, self.balls.len(), (&mut self.first, &mut self.links));
     }
 
     /// Looks for the blows that follow from one on these rocks.

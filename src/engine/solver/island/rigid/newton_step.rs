@@ -13,6 +13,7 @@ use super::contacts::{BallContact, GroundContact, StepBody};
 use crate::contact::pair::{PairHistory, PairImpact};
 use crate::ground::Law;
 use crate::rock::Vec3;
+use crate::solver::body::Body;
 use crate::solver::island::body::BodySlot;
 use crate::solver::island::newton_step::jump;
 use crate::solver::island::pair_contact::{PairContact, Twist};
@@ -44,10 +45,13 @@ impl RigidIsland {
         let stiffness = HOLD_BY_SPEED * heaviest;
         self.hand_over(members, stiffness);
         let pair = |ball_contact: &BallContact| {
-            ball_contact.bridge(&pair_histories[ball_contact.pair_history], stiffness)
+            let ends = ball_contact.ends.map(|k| &self.balls[k].body);
+            ball_contact.bridge(&pair_histories[ball_contact.pair_history], ends, stiffness)
         };
         let pairs: Vec<PairContact> = self.ball_contacts.iter().map(pair).collect();
-        let Some(motions) = jump(members, &pairs, &takes_part, 1.0) else { return false };
+        let now: Vec<Twist> = self.balls.iter().map(|ball| (ball.v, ball.w)).collect();
+        let jumped = jump((&*members, &now), &pairs, &takes_part, 1.0);
+        let Some(motions) = jumped else { return false };
         self.act_on(&motions, stiffness);
         self.drive();
         true
@@ -73,13 +77,12 @@ impl RigidIsland {
         grown
     }
 
-    /// Motions and contacts with the mesh as the linear system wants them: a stage of length one, impulses for forces.
+    /// Free motions and contacts with the mesh as the linear system wants them: a stage of length one, impulses for forces.
     fn hand_over(&self, members: &mut [BodySlot], stiffness: f64) {
         for (member, ball) in members.iter_mut().zip(&self.balls) {
             let member = &mut **member;
             // free motion of the step: velocity at its start plus weight, without impulses
             member.free = (ball.before.0 + self.gain(ball), ball.before.1);
-            member.now = (ball.v, ball.w);
             member.state.contact_count = 0;
         }
         for ground_contact in &self.ground_contacts {
@@ -172,7 +175,12 @@ impl GroundContact {
 
 impl BallContact {
     /// The same for two rocks.
-    fn bridge(&self, pair_history: &PairHistory, stiffness: f64) -> PairContact {
+    fn bridge(
+        &self,
+        pair_history: &PairHistory,
+        bodies: [&Body; 2],
+        stiffness: f64,
+    ) -> PairContact {
         let law = Law::stiff(stiffness, self.limits, 1.0);
         PairContact {
             pair_history: self.pair_history,
@@ -188,6 +196,7 @@ impl BallContact {
             levers: self.levers,
             normal_force: self.normal_force,
             shear_force: self.shear_force,
+            inertia: bodies.map(|body| (body.mass, body.inertia)),
             inv_m: self.inv.0,
             inv_t: self.inv.1,
         }

@@ -13,6 +13,7 @@ use super::contacts::Impulses;
 use crate::contact::pair::PairHistory;
 use crate::rock::Rock;
 use crate::solver::island::body::BodySlot;
+use crate::solver::island::contact_queue::lay;
 
 /// Sweeps over the contacts before a jump, at most, and after the last. They cost little: a few contacts creep while all
 /// others have settled and are passed over.
@@ -219,7 +220,7 @@ impl RigidIsland {
         let ends: Vec<[usize; 2]> = ground_contacts
             .chain(self.ball_contacts.iter().map(|ball_contact| ball_contact.ends))
             .collect();
-        super::lay(&ends, self.balls.len(), (&mut self.first, &mut self.links));
+        lay(&ends, self.balls.len(), (&mut self.first, &mut self.links));
     }
 
     /// Asks the contacts of a rock that was stirred: all others have seen their rocks as they are, and a sweep costs what
@@ -304,78 +305,5 @@ impl Leaning {
             (one.begun, one.start) = (self.map, start);
             self.list.push(k as u32);
         }
-    }
-}
-
-/// A set of contacts, a bit for each.
-/// Found again in ascending or descending order by counting zeros of words: no heap, no sorting.
-#[derive(Debug, Default)]
-pub(super) struct ContactQueue(Vec<u64>);
-
-impl ContactQueue {
-    /// Every number below `count`.
-    fn all(&mut self, count: usize) {
-        self.0.clear();
-        self.0.resize(count.div_ceil(64), u64::MAX);
-        let over = 64 * self.0.len() - count;
-        if let Some(last) = self.0.last_mut() {
-            *last >>= over;
-        }
-    }
-
-    fn add(&mut self, k: usize) {
-        self.0[k / 64] |= 1 << (k % 64);
-    }
-
-    fn remove(&mut self, k: usize) {
-        self.0[k / 64] &= !(1 << (k % 64));
-    }
-
-    /// The first at or after `k`.
-    fn from(&self, k: usize) -> Option<usize> {
-        let first = *self.0.get(k / 64)? & (u64::MAX << (k % 64));
-        let rest = self.0.iter().zip(0..).skip(k / 64 + 1).map(|(word, at)| (at, *word));
-        let mut words = std::iter::once((k / 64, first)).chain(rest);
-        words
-            .find(|(_, word)| *word != 0)
-            .map(|(at, word)| 64 * at + word.trailing_zeros() as usize)
-    }
-
-    /// The last before `k`.
-    fn below(&self, k: usize) -> Option<usize> {
-        let first = self.0.get(k / 64).map_or(0, |word| word & !(u64::MAX << (k % 64)));
-        let rest = (0..k / 64).rev().map(|at| (at, self.0[at]));
-        let mut words = std::iter::once((k / 64, first)).chain(rest);
-        words
-            .find(|(_, word)| *word != 0)
-            .map(|(at, word)| 64 * at + 63 - word.leading_zeros() as usize)
-    }
-
-    fn last(&self) -> Option<usize> {
-        self.below(64 * self.0.len())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::ContactQueue;
-
-    /// Onwards and backwards give the same numbers, and none that was not put in.
-    #[test]
-    fn a_set_gives_back_its_numbers_in_order() {
-        let mut set = ContactQueue::default();
-        set.all(130);
-        assert_eq!((set.from(0), set.last()), (Some(0), Some(129)));
-        (0..130).filter(|k| k % 7 != 3).for_each(|k| set.remove(k));
-        set.add(64);
-        let onwards: Vec<usize> = std::iter::successors(set.from(0), |k| set.from(k + 1)).collect();
-        let mut backwards: Vec<usize> =
-            std::iter::successors(set.last(), |k| set.below(*k)).collect();
-        backwards.reverse();
-        let expected: Vec<usize> = (0..130).filter(|k| k % 7 == 3 || *k == 64).collect();
-        assert_eq!(onwards, expected);
-        assert_eq!(backwards, expected);
-        set.all(0);
-        assert_eq!((set.from(0), set.last()), (None, None));
     }
 }
