@@ -16,7 +16,16 @@ const CHANGES: [&str; 2] = ["rolling friction", "roughness of 10°"];
 fn product() -> PathBuf {
     let root = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
     let built = Command::new(env!("CARGO"))
-        .args(["build", "--locked", "--package", "rockfall", "--bin", "rockfall", "--test", "house"])
+        .args([
+            "build",
+            "--locked",
+            "--package",
+            "rockfall",
+            "--bin",
+            "rockfall",
+            "--test",
+            "house",
+        ])
         .current_dir(root)
         .status();
     assert!(built.expect("cargo can be started").success(), "the product is not built");
