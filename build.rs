@@ -1,18 +1,19 @@
-//! Takes the fingerprint of the sources, so that results say which build they come from.
+//! Takes the fingerprint of the sources, so that results say which build they come from: of both packages, as seen from `src/engine`,
+//! which is built first.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 fn main() {
-    let mut files = vec![PathBuf::from("Cargo.lock")];
-    collect(Path::new("src"), &mut files);
+    let mut files = vec![PathBuf::from("../../Cargo.lock")];
+    collect(Path::new(".."), &mut files);
     files.sort();
     let hash = files.iter().filter_map(|file| fs::read(file).ok()).fold(OFFSET, |hash, bytes| {
         // line ends are not the same in every checkout
         bytes.iter().filter(|byte| **byte != b'\r').fold(hash, |hash, byte| mixed(hash, *byte))
     });
     println!("cargo:rustc-env=ROCKFALL_BUILD={hash:016x}");
-    for watched in ["src", "Cargo.lock", "build.rs"] {
+    for watched in ["..", "../../Cargo.lock", "../../build.rs"] {
         println!("cargo:rerun-if-changed={watched}");
     }
 }

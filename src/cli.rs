@@ -10,16 +10,16 @@ mod study_files;
 mod terminal;
 mod words;
 
+use crate::error::{Error, Result};
+use crate::output::{self, Mode, Results};
+use crate::plan::Plan;
+use crate::report::{self, format::significant};
+use crate::run::{RunEnd, RunOptions, Selection, read_measured, run_observed};
+use crate::scene::Scene;
+use crate::study::target_precision::TargetPrecision;
+use crate::study::verify::Verification;
 use clap::{Args, Parser, Subcommand};
 use indicatif::ProgressBar;
-use rockfall::error::{Error, Result};
-use rockfall::output::{self, Mode, Results};
-use rockfall::plan::Plan;
-use rockfall::report::{self, format::significant};
-use rockfall::run::{RunEnd, RunOptions, Selection, read_measured, run_observed};
-use rockfall::scene::Scene;
-use rockfall::study::target_precision::TargetPrecision;
-use rockfall::study::verify::Verification;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
@@ -136,7 +136,7 @@ struct RunArgs {
 }
 
 /// Reads the command line, does what it asks and answers with the exit status.
-pub(crate) fn main() -> ExitCode {
+pub fn main() -> ExitCode {
     signals::outlive_file_limits();
     let done = match CommandLine::parse().command {
         Command::Init(args) => init::init(&args),
@@ -146,7 +146,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Draw { dir } => report::draw_again(&dir).map(|()| ExitCode::SUCCESS),
         Command::Compare(args) => compare::compare(&args),
         Command::Verify { out } => verify(&out),
-        Command::Grounds => Ok(say(rockfall::scene::catalogue())),
+        Command::Grounds => Ok(say(crate::scene::catalogue())),
         Command::Calibrate(args) => calibrate::calibrate(&args),
         Command::Study(command) => study::study(&command),
         Command::Mesh(command) => mesh::mesh(command),

@@ -28,50 +28,14 @@
 //!
 //! Only the names on this page are the public face. The hidden modules behind it are listed so that each uses only modules
 //! above it in the list; their contents may change from one version to the next.
-//! SI units and `f64` throughout; z points up. The library prints nothing.
+//! SI units and `f64` throughout; z points up. Nothing prints but the command, `cli`.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
-// words
 #[doc(hidden)]
-pub mod error;
-#[doc(hidden)]
-pub mod math;
-#[doc(hidden)]
-pub mod file;
-#[doc(hidden)]
-pub mod stopwatch;
-#[doc(hidden)]
-pub mod random;
-#[doc(hidden)]
-pub mod rock;
-#[doc(hidden)]
-pub mod body;
-#[doc(hidden)]
-pub mod frequency;
-// world
-#[doc(hidden)]
-pub mod gis;
-#[doc(hidden)]
-pub mod ground;
-#[doc(hidden)]
-pub mod terrain;
-// physics
-#[doc(hidden)]
-pub mod contact;
-#[doc(hidden)]
-pub mod flight;
-#[doc(hidden)]
-pub mod solver;
-// question
-#[doc(hidden)]
-pub mod scene;
-#[doc(hidden)]
-pub mod release;
-#[doc(hidden)]
-pub mod plan;
-// run
-#[doc(hidden)]
-pub mod simulation;
+pub use rockfall_engine::{
+    body, contact, error, file, flight, frequency, gis, ground, math, plan, random, release, rock,
+    scene, simulation, solver, stopwatch, terrain,
+};
 #[doc(hidden)]
 pub mod ensemble;
 // answer
@@ -87,8 +51,12 @@ pub mod report;
 pub mod study;
 #[doc(hidden)]
 pub mod run;
+// command
+#[doc(hidden)]
+pub mod cli;
 
 pub use ensemble::Ensemble;
+#[doc(inline)]
 pub use error::{Error, Result};
 pub use hazard::{
     Annual, Barrier, BarrierSummary, CrossingRow, Hazard, Layer, Line, LineInfo, LineQuantity,
@@ -96,17 +64,27 @@ pub use hazard::{
     StopKind,
 };
 pub use output::{ImpactRow, Mode, PathRow, Results, Summary};
+#[doc(inline)]
 pub use plan::{EvaluationLine, MapGrid, Part, Plan};
+#[doc(inline)]
 pub use random::Distribution;
 pub use report::{answers, draw_again, headline};
+#[doc(inline)]
 pub use rock::{Motion, Rock, Vec3};
 pub use run::{RunEnd, RunOptions, Selection, run, run_observed};
+#[doc(inline)]
 pub use scene::Scene;
+#[doc(inline)]
 pub use simulation::{
     CellPassage, Crossing, Effort, Impact, PathPoint, PathState, Scratch, Stop, Trajectory,
     simulate_release,
 };
 pub use study::target_precision::TargetPrecision;
+#[doc(inline)]
 pub use terrain::Terrain;
+#[doc(inline)]
+#[doc(inline)]
 pub use terrain::grid::Grid;
+#[doc(inline)]
+#[doc(inline)]
 pub use terrain::health::Health;

@@ -2,12 +2,12 @@
 
 use super::terminal::{bar, say};
 use super::words::{of_a_trial, threads};
+use crate::calibrate::{self, CalibrationTrial, Ends};
+use crate::ensemble::Ensemble;
+use crate::error::Result;
+use crate::output;
+use crate::scene::Scene;
 use clap::Args;
-use rockfall::calibrate::{self, CalibrationTrial, Ends};
-use rockfall::ensemble::Ensemble;
-use rockfall::error::Result;
-use rockfall::output;
-use rockfall::scene::Scene;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -33,7 +33,7 @@ pub(super) fn calibrate(args: &CalibrateArgs) -> Result<ExitCode> {
     let scenes = scenes.collect::<Result<Vec<_>>>()?;
     let name = args.scenes[0].file_stem().unwrap_or_default();
     let out = args.out.clone().unwrap_or_else(|| Path::new("reports").join(name));
-    let bar = bar(rockfall::calibrate::planned(&scenes[0]), "trials");
+    let bar = bar(crate::calibrate::planned(&scenes[0]), "trials");
     let said = fit(&scenes, (args.releases, args.threads), &out, || bar.inc(1))?;
     bar.finish_and_clear();
     Ok(say(said))

@@ -1,9 +1,9 @@
 //! `rockfall compare`.
 
 use super::terminal::say;
+use crate::error::Result;
+use crate::report::compare::Comparison;
 use clap::Args;
-use rockfall::error::Result;
-use rockfall::report::compare::Comparison;
 use std::path::PathBuf;
 use std::process::ExitCode;
 

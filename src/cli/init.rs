@@ -2,10 +2,10 @@
 
 use super::terminal::{say, say_bytes};
 use super::{CommandLine, words};
+use crate::error::{Error, Result};
+use crate::{file, scene};
 use clap::{Args, CommandFactory as _};
 use clap_complete::Shell;
-use rockfall::error::{Error, Result};
-use rockfall::{file, scene};
 use std::path::PathBuf;
 use std::process::ExitCode;
 

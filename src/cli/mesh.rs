@@ -2,15 +2,15 @@
 
 use super::terminal::say;
 use super::words::up;
+use crate::error::{Error, Result};
+use crate::file;
+use crate::rock::Vec3;
+use crate::terrain::formats;
+use crate::terrain::read::MeshSource;
+use crate::terrain::stl::write_binary;
+use crate::terrain::weld::Up;
+use crate::terrain::{Sheet, Terrain, make};
 use clap::Subcommand;
-use rockfall::error::{Error, Result};
-use rockfall::file;
-use rockfall::rock::Vec3;
-use rockfall::terrain::formats;
-use rockfall::terrain::read::MeshSource;
-use rockfall::terrain::stl::write_binary;
-use rockfall::terrain::weld::Up;
-use rockfall::terrain::{Sheet, Terrain, make};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 

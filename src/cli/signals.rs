@@ -1,7 +1,7 @@
 //! The signals that end a run in good order.
 
 use super::INTERRUPTED;
-use rockfall::error::{Error, Result};
+use crate::error::{Error, Result};
 use signal_hook::consts::{SIGINT, SIGTERM};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;

@@ -4,9 +4,9 @@ use super::CHECK_FAILED;
 use super::study_files::{self as files, StudyOptions};
 use super::terminal::say;
 use super::words::at_least_1;
+use crate::error::Result;
+use crate::study::target_precision::TargetPrecision;
 use clap::{Args, Subcommand};
-use rockfall::error::Result;
-use rockfall::study::target_precision::TargetPrecision;
 use std::path::PathBuf;
 use std::process::ExitCode;
 

@@ -1,13 +1,13 @@
 //! Studies: from the command line to the study floor and to files.
 
-use rockfall::ensemble::Ensemble;
-use rockfall::error::{Error, Result};
-use rockfall::plan::Plan;
-use rockfall::scene::Scene;
-use rockfall::study::scene::{Of, PERCENTS, QUANTITIES, SceneStudy};
-use rockfall::study::stability::{self, CaseOutcome, Map};
-use rockfall::study::target_precision::TargetPrecision;
-use rockfall::study::{self, Wish, conserve, exact, exact_values, order, scene};
+use crate::ensemble::Ensemble;
+use crate::error::{Error, Result};
+use crate::plan::Plan;
+use crate::scene::Scene;
+use crate::study::scene::{Of, PERCENTS, QUANTITIES, SceneStudy};
+use crate::study::stability::{self, CaseOutcome, Map};
+use crate::study::target_precision::TargetPrecision;
+use crate::study::{self, Wish, conserve, exact, exact_values, order, scene};
 use std::cell::Cell;
 use std::path::{Path, PathBuf};
 

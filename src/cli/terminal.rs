@@ -1,10 +1,10 @@
 //! What the program prints: in colour where a terminal reads it, plain everywhere else (`NO_COLOR` is honoured).
 
 use super::WRONG_INPUT;
+use crate::report::format::significant;
 use anstream::{AutoStream, stderr, stdout};
 use anstyle::{AnsiColor, Style};
 use indicatif::{ProgressBar, ProgressState, ProgressStyle};
-use rockfall::report::format::significant;
 use std::fmt::Display;
 use std::io::Write as _;
 use std::process::ExitCode;

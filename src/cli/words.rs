@@ -1,8 +1,8 @@
 //! Words of the command line: those that are numbers, and how one is written again.
 
-use rockfall::run::Selection;
-use rockfall::scene::MOST_RELEASES;
-use rockfall::terrain::weld::Up;
+use crate::run::Selection;
+use crate::scene::MOST_RELEASES;
+use crate::terrain::weld::Up;
 
 /// Most releases of one trial of a calibration: the ends of all trials are kept.
 const MOST_OF_A_TRIAL: usize = 100_000;

@@ -7,9 +7,13 @@ use crate::program;
 use made::{fall, info};
 use program::{message, rockfall, same_results};
 use proptest::prelude::*;
+use proptest::test_runner::TestRunner;
+use rockfall::Hazard;
 use rockfall::output::{self, Mode, Output, RunInfo};
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::thread;
 
 const RELEASES: usize = 60;
 
@@ -39,14 +43,17 @@ fn write_parts(ends: &[usize], dir: &Path) -> Vec<PathBuf> {
     starts.zip(ends).map(one).collect()
 }
 
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(24))]
-    /// Whatever the cuts and the order of the folders; sums of energy included, which plain addition would spoil.
-    #[test]
-    fn merged_parts_are_the_whole_run(cuts in prop::collection::btree_set(1..RELEASES, 0..8), turn in 0_usize..8) {
+/// Cuts of a run: whatever their places and the order of the folders, the parts are the whole; sums of energy included, which
+/// plain addition would spoil.
+fn merge_cuts(whole: &Path, hazard: &Hazard, cases: u32) {
+    let cuts = prop::collection::btree_set(1..RELEASES, 0..8);
+    let config = ProptestConfig {
+        source_file: Some(file!()),
+        test_name: Some(concat!(module_path!(), "::merged_parts_are_the_whole_run")),
+        ..ProptestConfig::with_cases(cases)
+    };
+    let is_whole = |(cuts, turn): (BTreeSet<usize>, usize)| {
         let dir = tempfile::tempdir().unwrap();
-        let whole = dir.path().join("whole");
-        write(info(RELEASES), &whole);
         let ends: Vec<usize> = cuts.into_iter().chain([RELEASES]).collect();
         prop_assume!(ends.len() > 1);
         let mut parts = write_parts(&ends, dir.path());
@@ -54,9 +61,25 @@ proptest! {
         parts.rotate_left(middle);
         let merged = dir.path().join("merged");
         let results = output::merge(&parts, &merged, Mode::Fresh).unwrap();
-        same_results(&whole, &merged);
-        prop_assert_eq!(results.hazard, output::read(&whole).unwrap().hazard);
-    }
+        same_results(whole, &merged);
+        prop_assert_eq!(&results.hazard, hazard);
+        Ok(())
+    };
+    TestRunner::new(config).run(&(cuts, 0_usize..8), is_whole).unwrap();
+}
+
+/// The cases wait for the disk most of the time: four of them do so at once.
+#[test]
+fn merged_parts_are_the_whole_run() {
+    let dir = tempfile::tempdir().unwrap();
+    let whole = dir.path().join("whole");
+    write(info(RELEASES), &whole);
+    let hazard = output::read(&whole).unwrap().hazard;
+    thread::scope(|scope| {
+        for _ in 0..4 {
+            scope.spawn(|| merge_cuts(&whole, &hazard, 6));
+        }
+    });
 }
 
 /// What cannot be a whole run is refused, with the folder or the releases that are wrong.

@@ -49,7 +49,7 @@ fn the_law_alone_reads_stiffness_damping_and_friction() {
     assert_eq!(named("let f = law.p_n * x - stiff.c_n(0) + p_normal;"), ["p_n", "c_n"]);
     let files = physics();
     assert!(files.len() > 80, "{}", files.len());
-    let law: Vec<PathBuf> = sources(Path::new("src/ground/law"));
+    let law: Vec<PathBuf> = sources(Path::new("src/engine/ground/law"));
     assert!(law.iter().any(|file| !named(&code(file)).is_empty()), "the law is elsewhere");
     for file in files {
         let code = code(&file);
@@ -59,7 +59,7 @@ fn the_law_alone_reads_stiffness_damping_and_friction() {
 
 #[test]
 fn what_follows_from_inertia_is_not_written() {
-    for file in physics().into_iter().chain(sources(Path::new("src/ground"))) {
+    for file in physics().into_iter().chain(sources(Path::new("src/engine/ground"))) {
         let code = code(&file);
         let found: Vec<&&str> = RATIOS.iter().filter(|ratio| code.contains(**ratio)).collect();
         assert!(found.is_empty(), "{}: {found:?}", file.display());

@@ -30,14 +30,24 @@ fn sources(dir: &Path) -> Vec<PathBuf> {
     files
 }
 
+/// Roots of the two packages of which the product is made, the lower one first. The folder of the lower one stands in that of the
+/// upper one, as do its sources.
+const ROOTS: [&str; 2] = [ENGINE, "src"];
+const ENGINE: &str = "src/engine";
+
+/// A source's path inside its package, as the compiler sees it.
+fn in_package(file: &Path) -> &Path {
+    ROOTS.iter().find_map(|root| file.strip_prefix(root).ok()).unwrap_or(file)
+}
+
 /// Floors of the physics.
 const PHYSICS: [&str; 4] = ["contact", "flight", "solver", "simulation"];
 
 /// The files of a floor, its own first, without those of unit tests.
 fn files_of(floor: &str) -> Vec<PathBuf> {
     let is_test = |file: &PathBuf| file.iter().any(|part| part == "tests" || part == "tests.rs");
-    let inside = sources(Path::new(&format!("src/{floor}"))).into_iter();
-    let own = std::iter::once(format!("src/{floor}.rs").into());
+    let inside = sources(Path::new(&format!("{ENGINE}/{floor}"))).into_iter();
+    let own = std::iter::once(format!("{ENGINE}/{floor}.rs").into());
     own.chain(inside.filter(|file| !is_test(file))).collect()
 }
 
@@ -46,18 +56,17 @@ fn without_tests(text: &str) -> &str {
     text.split("#[cfg(test)]\nmod tests {").next().unwrap_or(text)
 }
 
-/// Modules in the order in which `lib.rs` lists them, bottom floor first.
+/// Modules in the order in which the two `lib.rs` list them, bottom floor first.
 fn floors() -> Vec<String> {
-    let lib = fs::read_to_string("src/lib.rs").unwrap();
+    let libs = ROOTS.map(|root| fs::read_to_string(format!("{root}/lib.rs")).unwrap());
     let name = |line: &str| {
         line.strip_prefix("pub mod ").map(|rest| rest.trim_end_matches(';').to_owned())
     };
-    lib.lines().filter_map(name).collect()
+    libs.iter().flat_map(|lib| lib.lines().filter_map(name)).collect()
 }
 
 fn floor_of(file: &Path) -> Option<String> {
-    let inside = file.strip_prefix("src").ok()?;
-    let first = inside.components().next()?.as_os_str().to_str()?;
+    let first = in_package(file).components().next()?.as_os_str().to_str()?;
     Some(first.trim_end_matches(".rs").to_owned())
 }
 
@@ -111,11 +120,12 @@ fn rooms_are_small() {
     assert!(crowded.is_empty(), "{}", crowded.join("\n"));
 }
 
-/// Names that a text re-exports: `pub use a::{B, c::D};` gives B and D.
+/// Names that a text re-exports and does not hide: `pub use a::{B, c::D};` gives B and D.
 fn exported(text: &str) -> Vec<String> {
     let mut names = Vec::new();
-    for place in text.split("\npub use ").skip(1) {
-        let (path, _) = place.split_once(';').unwrap();
+    let places: Vec<&str> = text.split("\npub use ").collect();
+    for two in places.windows(2).filter(|two| !two[0].ends_with("#[doc(hidden)]")) {
+        let (path, _) = two[1].split_once(';').unwrap();
         let list = path.split_once('{').map_or(path, |(_, list)| list.trim_end_matches('}'));
         let last = |part: &str| part.trim().rsplit("::").next().unwrap().to_owned();
         names.extend(list.split(',').map(last).filter(|name| !name.is_empty()));

@@ -166,8 +166,8 @@ impl Island<'_> {
         let before = (pair.normal_force, pair.shear_force);
         let mut motions: [Twist; 2] = ends.map(|end| self.motions[end]);
         if pair.acts() {
-            for k in 0..2 {
-                pair.act(k, -h, &mut motions[k]);
+            for (k, motion) in motions.iter_mut().enumerate() {
+                pair.act(k, -h, motion);
             }
         }
         pair.solve([&motions[0], &motions[1]], h);

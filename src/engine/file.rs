@@ -122,7 +122,7 @@ pub fn keep_inputs(out: &Path, inputs: &[&Path]) -> Result<()> {
 }
 
 /// Ending of a file that is not yet whole.
-pub(crate) const PART: &str = "part";
+pub const PART: &str = "part";
 
 /// Writes a file that the user has named: [whole or not at all](write_atomic), through a link to where it leads; straight
 /// on where something else than a file is named, as a pipe.
@@ -165,7 +165,7 @@ pub fn write_atomic(path: &Path, contents: &[u8]) -> Result<()> {
 }
 
 /// The name of a file until it is whole.
-pub(crate) fn part_of(path: &Path) -> PathBuf {
+pub fn part_of(path: &Path) -> PathBuf {
     let mut name = path.file_name().unwrap_or_default().to_owned();
     name.push(".");
     name.push(PART);

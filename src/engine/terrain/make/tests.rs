@@ -26,7 +26,7 @@ fn nothing_is_wrong(found: &Health) -> bool {
 
 #[test]
 fn the_shipped_files_are_what_the_generator_makes() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("terrain");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../terrain");
     for (name, facets) in shipped() {
         let file = std::fs::read(folder.join(&name)).unwrap();
         assert!(
