@@ -198,7 +198,7 @@ fn a_slab_on_springs_comes_to_roll_as_a_wheel() {
     }
 }
 
-/// S19: an edge across a ridge, and a face over a peak, rest on one contact that bears the weight: it is pressed in by m g/p_N.
+/// S19: an edge across a ridge, and a face over a peak, rest on one contact that bears the weight: it is pressed in by its weight over `p_N`.
 #[test]
 fn one_contact_of_an_edge_or_a_face_bears_the_weight() {
     let on_edge = turn(&Vec3::x_axis(), std::f64::consts::FRAC_PI_4);
