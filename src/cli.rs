@@ -1,4 +1,8 @@
-//! The command line: arguments, messages and the exit status. Only this file prints.
+//! The command line: arguments, messages and the exit status. Nothing else prints.
+#![allow(
+    rustdoc::invalid_html_tags,
+    reason = "the command's help is printed as it stands: <scene name>"
+)]
 
 mod calibrate;
 mod compare;
