@@ -36,6 +36,12 @@ pub const GROUND: Ground = Ground {
     restitution_half_m_s: None,
 };
 
+/// A ground on springs of a normal stiffness (N/m), along the surface a quarter of it, as in the paper's Table 1.
+pub fn with_springs(ground: Ground, normal_stiffness_n_m: f64) -> Ground {
+    let shear_stiffness_n_m = 0.25 * normal_stiffness_n_m;
+    Ground { normal_stiffness_n_m, shear_stiffness_n_m, ..ground }
+}
+
 /// Corners closer than this are one (m): made meshes repeat theirs to rounding.
 const WELD_M: f64 = 1e-9;
 

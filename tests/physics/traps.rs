@@ -7,17 +7,13 @@ use rockfall::ground::Ground;
 use rockfall::rock::Vec3;
 use rockfall::simulation::{Stop, Trajectory};
 use rockfall::solver::Scheme;
+use rockfall::study::bench::with_springs;
 use rockfall::terrain::make;
 
 const REST: [f64; 3] = [0.0; 3];
 
 fn on(stiffness: f64, restitution: f64) -> Case {
-    let ground = Ground {
-        normal_stiffness_n_m: stiffness,
-        shear_stiffness_n_m: 0.25 * stiffness,
-        restitution: Some(restitution),
-        ..GROUND
-    };
+    let ground = Ground { restitution: Some(restitution), ..with_springs(GROUND, stiffness) };
     Case { ground, tolerance_m_s: 0.05, ..CASE }
 }
 

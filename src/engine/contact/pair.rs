@@ -142,8 +142,8 @@ pub struct PairImpact {
     left_rad: f64,
 }
 
-/// After so long (rad) an impact is over, or goes on as lasting contact.
-const LASTS_RAD: f64 = 20.0;
+/// After so long (rad of the contact) an impact, on the mesh or between rocks, is over, or goes on as lasting contact.
+pub(crate) const LASTS_RAD: f64 = 20.0;
 
 impl PairImpact {
     /// One that has just begun with an approach of so much (m/s).

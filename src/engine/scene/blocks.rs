@@ -121,14 +121,13 @@ impl BlockColumns {
 
     /// The column that the scene asks for must be there.
     fn check_size(&self, size_from: Option<SizeFrom>) -> std::result::Result<(), String> {
-        let column = match size_from {
-            Some(SizeFrom::Radius) => self.radius,
-            Some(SizeFrom::Mass) => self.mass,
-            None => return Ok(()),
+        let is_there = |asked: SizeFrom| match asked {
+            SizeFrom::Radius => self.radius.is_some(),
+            SizeFrom::Mass => self.mass.is_some(),
         };
-        let asked = size_from.map_or("", SizeFrom::column);
-        let found = || format!("found no column {asked}, which [release] size_from names");
-        column.map(|_| ()).ok_or_else(found)
+        size_from.filter(|asked| !is_there(*asked)).map_or(Ok(()), |asked| {
+            Err(format!("found no column {}, which [release] size_from names", asked.column()))
+        })
     }
 
     fn block(

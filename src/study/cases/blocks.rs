@@ -7,7 +7,7 @@ use super::{Case, CaseKind, CaseMeasure, STILL};
 use crate::ground::Ground;
 use crate::math;
 use crate::rock::Vec3;
-use crate::study::bench::{BlockForm, MadeBlock, SETUP, Setup};
+use crate::study::bench::{BlockForm, MadeBlock, SETUP, Setup, with_springs};
 use nalgebra::Rotation3;
 use std::f64::consts::{FRAC_PI_3, FRAC_PI_6};
 
@@ -18,11 +18,9 @@ const STIFF_N_M: f64 = 1e13;
 pub(super) fn block(form: BlockForm, ball_m: f64, (friction, restitution): (f64, f64)) -> Setup {
     let block = MadeBlock { form, ball_m, attitude: Rotation3::identity() };
     let ground = Ground {
-        normal_stiffness_n_m: STIFF_N_M,
-        shear_stiffness_n_m: 0.25 * STIFF_N_M,
         friction_angle_rad: math::atan(friction),
         restitution: Some(restitution),
-        ..SETUP.ground
+        ..with_springs(SETUP.ground, STIFF_N_M)
     };
     Setup { rock: form.rock(), block: Some(block), ground, ..SETUP }
 }

@@ -22,19 +22,9 @@ pub(super) fn on_springs(setup: &Setup, angle_rad: f64, t: f64) -> (f64, f64) {
     let h = t / steps;
     let law = PivotLaw::of(setup);
     for _ in 0..steps as usize {
-        let k1 = law.rate(&state);
-        let k2 = law.rate(&after(&state, &k1, 0.5 * h));
-        let k3 = law.rate(&after(&state, &k2, 0.5 * h));
-        let k4 = law.rate(&after(&state, &k3, h));
-        for i in 0..6 {
-            state[i] += h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]);
-        }
+        state = math::runge_kutta_4(&state, h, |state| law.rate(state));
     }
     (state[0] * math::sin(state[1]), state[0] * math::cos(state[1]))
-}
-
-fn after(state: &PivotState, rate: &PivotState, h: f64) -> PivotState {
-    std::array::from_fn(|i| state[i] + h * rate[i])
 }
 
 struct PivotLaw {

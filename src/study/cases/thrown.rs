@@ -4,10 +4,10 @@
 use super::blocks::{block, on_slope};
 use super::meshes::{angle, plane};
 use super::{Case, CaseKind, CaseMeasure};
-use crate::ground::{Damping, Ground};
+use crate::ground::Damping;
 use crate::math;
 use crate::rock::Vec3;
-use crate::study::bench::{BlockForm, Setup};
+use crate::study::bench::{BlockForm, Setup, with_springs};
 
 /// Turn of the box (degrees).
 const TURNED_DEG: f64 = 30.0;
@@ -65,17 +65,9 @@ fn rate(setup: &Setup, [height, turned, up, spin]: BarState) -> BarState {
 /// Speed upwards and spin at the end on springs (m/s, rad/s).
 fn thrown_on_springs(setup: &Setup) -> [f64; 2] {
     let h = OVER_S / f64::from(EXPLICIT_STEPS);
-    let after = |state: &BarState, rate: &BarState, h: f64| -> BarState {
-        std::array::from_fn(|i| state[i] + h * rate[i])
-    };
     let mut state = [setup.centre_m.z, -angle(TURNED_DEG), setup.velocity_m_s.z, 0.0];
     for _ in 0..EXPLICIT_STEPS {
-        let k1 = rate(setup, state);
-        let k2 = rate(setup, after(&state, &k1, 0.5 * h));
-        let k3 = rate(setup, after(&state, &k2, 0.5 * h));
-        let k4 = rate(setup, after(&state, &k3, h));
-        let mean: BarState = std::array::from_fn(|i| (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]) / 6.0);
-        state = after(&state, &mean, h);
+        state = math::runge_kutta_4(&state, h, |state| rate(setup, *state));
     }
     [state[2] - setup.gravity_m_s2 * (setup.longest_s - OVER_S), state[3]]
 }
@@ -90,11 +82,7 @@ pub(super) const THROWN: Case = Case {
     setup: |_| {
         let flat = block(BlockForm::Box(SIDES_M), BALL_M, (0.0, 0.5));
         let turned = on_slope(&flat, TURNED_DEG, 0.0);
-        let ground = Ground {
-            normal_stiffness_n_m: STIFFNESS_N_M,
-            shear_stiffness_n_m: 0.25 * STIFFNESS_N_M,
-            ..turned.ground
-        };
+        let ground = with_springs(turned.ground, STIFFNESS_N_M);
         let centre_m = Vec3::z() * (BALL_M - lowest(-angle(TURNED_DEG)).1);
         Setup { ground, centre_m, velocity_m_s: Vec3::z() * -FALLS_M_S, longest_s: 0.01, ..turned }
     },

@@ -6,7 +6,9 @@ use crate::ground::Ground;
 use crate::math;
 use crate::rock::Vec3;
 use crate::simulation::{Stop, Trajectory};
-use crate::study::bench::{BlockForm, GRAVITY_M_S2, GROUND, MadeBlock, SETUP, Setup, terrain};
+use crate::study::bench::{
+    BlockForm, GRAVITY_M_S2, GROUND, MadeBlock, SETUP, Setup, terrain, with_springs,
+};
 use crate::study::cases::meshes::{bumpy, fold};
 use crate::terrain::Terrain;
 use nalgebra::Rotation3;
@@ -39,9 +41,7 @@ fn followed(way: &SchemeSetting, setup: &Setup, speed_m_s: f64) -> (SchemeSettin
     let ball_m = setup.block.map_or(setup.rock.radius_m, |block| block.ball_m);
     let omega = speed_m_s / (PRESSED * ball_m);
     let normal_stiffness_n_m = setup.rock.mass_kg() * omega * omega;
-    let shear_stiffness_n_m = 0.25 * normal_stiffness_n_m;
-    let ground = Ground { normal_stiffness_n_m, shear_stiffness_n_m, ..setup.ground };
-    let stiff = Setup { ground, ..*setup };
+    let stiff = Setup { ground: with_springs(setup.ground, normal_stiffness_n_m), ..*setup };
     if !way.scheme.has_fixed_step() {
         return (*way, stiff);
     }

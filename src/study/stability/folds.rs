@@ -10,7 +10,9 @@ use crate::simulation::Stop;
 use crate::solver::body::Body;
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
 use crate::solver::{Stepper, advance};
-use crate::study::bench::{GRAVITY_M_S2, GROUND, ROCK, SETUP, Setup, settings, terrain};
+use crate::study::bench::{
+    GRAVITY_M_S2, GROUND, ROCK, SETUP, Setup, settings, terrain, with_springs,
+};
 use crate::study::cases::meshes::{bumpy, fold};
 use crate::terrain::Terrain;
 
@@ -128,13 +130,7 @@ fn conserve(
 }
 
 fn elastic_ground(stiffness: f64) -> Ground {
-    Ground {
-        normal_stiffness_n_m: stiffness,
-        shear_stiffness_n_m: 0.25 * stiffness,
-        friction_angle_rad: 0.0,
-        restitution: Some(1.0),
-        ..GROUND
-    }
+    Ground { friction_angle_rad: 0.0, restitution: Some(1.0), ..with_springs(GROUND, stiffness) }
 }
 
 /// e = 1 without friction on valleys from the bluntest to the sharpest, beside the bottom and in it.

@@ -5,7 +5,7 @@ use crate::ground::{Ground, damping_ratio, normal_impact};
 use crate::math;
 use crate::rock::{Rock, Vec3};
 use crate::simulation::Trajectory;
-use crate::study::bench::{GRAVITY_M_S2, GROUND, ROCK, SETUP, Setup, terrain};
+use crate::study::bench::{GRAVITY_M_S2, GROUND, ROCK, SETUP, Setup, terrain, with_springs};
 use crate::terrain::Terrain;
 use crate::terrain::make;
 
@@ -41,8 +41,7 @@ fn one_impact(
     [stiffness, radius, speed]: [f64; 3],
 ) {
     let rock = Rock { radius_m: radius, ..ROCK };
-    let ground =
-        Ground { normal_stiffness_n_m: stiffness, shear_stiffness_n_m: 0.25 * stiffness, ..GROUND };
+    let ground = with_springs(GROUND, stiffness);
     let (mass, omega) = (rock.mass_kg(), (stiffness / rock.mass_kg()).sqrt());
     let depth = 0.5f64.sqrt() * speed / omega + mass * GRAVITY_M_S2 / stiffness;
     // the plan refuses springs that soft, and the rigid limit has none

@@ -2,11 +2,11 @@
 
 use super::RISE;
 use super::impacts::rebound_m_s;
-use crate::ground::{Ground, damping_ratio, normal_impact};
+use crate::ground::{damping_ratio, normal_impact};
 use crate::rock::Vec3;
 use crate::simulation::{Scratch, Stop};
 use crate::solver::Scheme;
-use crate::study::bench::{GRAVITY_M_S2, GROUND, SETUP, Setup, settings, terrain};
+use crate::study::bench::{GRAVITY_M_S2, GROUND, SETUP, Setup, settings, terrain, with_springs};
 use crate::terrain::{Terrain, make};
 
 /// Approach speed of the impacts (m/s).
@@ -89,8 +89,7 @@ fn cell(
     scratch: &mut Scratch,
 ) -> StabilityCell {
     let omega = (stiffness / SETUP.rock.mass_kg()).sqrt();
-    let ground =
-        Ground { normal_stiffness_n_m: stiffness, shear_stiffness_n_m: 0.25 * stiffness, ..GROUND };
+    let ground = with_springs(GROUND, stiffness);
     let fixed = if scheme.has_fixed_step() { 2.0 * fineness } else { 0.0 };
     let setup = Setup {
         ground,

@@ -254,6 +254,11 @@ impl BlockContact {
     }
 }
 
+/// The impulse of a solve as the next begins with it: one that went astray must not be where that begins.
+pub(super) fn first_guess(impulse: Vec3) -> Vec3 {
+    if impulse.iter().all(|x| x.is_finite()) { impulse } else { Vec3::zeros() }
+}
+
 /// Largest impulse of turning under the impulses of contacts (N m s).
 pub(super) fn turning_limit(contacts: &[BlockContact]) -> f64 {
     contacts.iter().map(BlockContact::turning_limit).sum()

@@ -68,6 +68,13 @@ struct BlockRun {
     steps: usize,
 }
 
+/// The law of a ground for a block, whose impacts slower than so much (m/s) do not rebound.
+fn law_of(ground: &Ground, block: &Block, capture_m_s: f64) -> Law {
+    let rock = Rock { radius_m: block.radius_m, density_kg_m3: 2700.0 };
+    let capture = Capture { own_m_s: Some(capture_m_s), tolerance_m_s: 0.0, gravity_m_s2: G };
+    Law::new(ground, &Damping::of(ground.restitution), &rock, &capture)
+}
+
 impl BlockRun {
     fn new(terrain: Terrain, block: Block, (friction, e): (f64, f64)) -> Self {
         let ground = Ground {
@@ -82,11 +89,8 @@ impl BlockRun {
             scar: None,
             restitution_half_m_s: None,
         };
-        let rock = Rock { radius_m: block.radius_m, density_kg_m3: 2700.0 };
         // slower than that an elastic block would lose what is captured
-        let own_m_s = Some(if e < 1.0 { 1e-3 } else { 0.0 });
-        let capture = Capture { own_m_s, tolerance_m_s: 0.0, gravity_m_s2: G };
-        let law = Law::new(&ground, &Damping::of(ground.restitution), &rock, &capture);
+        let law = law_of(&ground, &block, if e < 1.0 { 1e-3 } else { 0.0 });
         let lost = Loss::default();
         let springs = None;
         Self { terrain, block, law, ground, step_s: 0.01, springs, lost, impacts: 0, steps: 0 }

@@ -3,7 +3,7 @@
 //! Most contacts of a large heap have settled after a few sweeps. A contact is asked again where one
 //! of its rocks was set in another motion since it was solved; all others are not even looked at.
 
-use super::contact_queue::{ContactQueue, lay};
+use super::contact_queue::{ContactQueue, ContactsOfRocks};
 
 /// Part of that below which a change counts as settled however fast changes die out (–).
 pub(super) const SETTLED_AT_ONCE: f64 = 1e-4;
@@ -17,9 +17,8 @@ pub(super) struct ActiveSet {
     asked: ContactQueue,
     /// How many there are.
     count: usize,
-    /// Contacts with others of every rock: where its list begins, and the lists.
-    first: Vec<u32>,
-    links: Vec<u32>,
+    /// Contacts with others of every rock.
+    of_rocks: ContactsOfRocks,
     ends: Vec<[usize; 2]>,
     /// Rocks whose forces changed in the last sweep.
     pub(super) lately: Vec<bool>,
@@ -38,7 +37,7 @@ impl ActiveSet {
         self.count = rocks + self.ends.len();
         self.asked.all(self.count);
         if !self.is_small() {
-            lay(&self.ends, rocks, (&mut self.first, &mut self.links));
+            self.of_rocks.lay(&self.ends, rocks);
         }
     }
 
@@ -94,8 +93,8 @@ impl ActiveSet {
             return;
         }
         self.asked.add(k);
-        for contact in &self.links[self.first[k] as usize..self.first[k + 1] as usize] {
-            self.asked.add(self.lately.len() + *contact as usize);
+        for contact in self.of_rocks.of(k) {
+            self.asked.add(self.lately.len() + contact);
         }
     }
 }

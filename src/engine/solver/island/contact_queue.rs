@@ -3,6 +3,8 @@
 //! A sweep over a large heap costs what happens in it and not what is there: a contact is asked once more only after one of its
 //! rocks was set in another motion.
 
+use std::ops::Range;
+
 /// A set of contacts, a bit for each.
 /// Found again in ascending or descending order by counting zeros of words: no heap, no sorting.
 #[derive(Debug, Default)]
@@ -52,32 +54,54 @@ impl ContactQueue {
     }
 }
 
-/// Lists for every rock the numbers of what joins it to another, or to itself alone.
-/// Counting sort: two passes, no allocation but the lists themselves.
-pub(super) fn lay(
-    ends: &[[usize; 2]],
-    rocks: usize,
-    (first, links): (&mut Vec<u32>, &mut Vec<u32>),
-) {
-    let of = |[a, b]: [usize; 2]| [Some(a), Some(b).filter(|b| *b != a)].into_iter().flatten();
-    first.clear();
-    first.resize(rocks + 1, 0);
-    for &ends in ends {
-        of(ends).for_each(|k| first[k] += 1);
-    }
-    let mut sum = 0;
-    for first in first.iter_mut() {
-        sum += *first;
-        *first = sum;
-    }
-    links.clear();
-    links.resize(sum as usize, 0);
-    // filled from behind, so that each list is in order and its beginning is left where it belongs
-    for place in (0..ends.len()).rev() {
-        for k in of(ends[place]) {
-            first[k] -= 1;
-            links[first[k] as usize] = place as u32;
+/// The contacts of every rock.
+#[derive(Debug, Default)]
+pub(super) struct ContactsOfRocks {
+    /// Where the list of each rock begins, and the lists, one after the other.
+    first: Vec<u32>,
+    lists: Vec<u32>,
+}
+
+impl ContactsOfRocks {
+    /// Lists for every rock the numbers of what joins it to another, or to itself alone.
+    /// Counting sort: two passes, no allocation but the lists themselves.
+    pub(super) fn lay(&mut self, ends: &[[usize; 2]], rocks: usize) {
+        let Self { first, lists } = self;
+        let of = |[a, b]: [usize; 2]| [Some(a), Some(b).filter(|b| *b != a)].into_iter().flatten();
+        first.clear();
+        first.resize(rocks + 1, 0);
+        for &ends in ends {
+            of(ends).for_each(|k| first[k] += 1);
         }
+        let mut sum = 0;
+        for first in first.iter_mut() {
+            sum += *first;
+            *first = sum;
+        }
+        lists.clear();
+        lists.resize(sum as usize, 0);
+        // filled from behind, so that each list is in order and its beginning is left where it belongs
+        for place in (0..ends.len()).rev() {
+            for k in of(ends[place]) {
+                first[k] -= 1;
+                lists[first[k] as usize] = place as u32;
+            }
+        }
+    }
+
+    /// Places in the lists of the contacts of a rock.
+    pub(super) fn places(&self, rock: usize) -> Range<usize> {
+        self.first[rock] as usize..self.first[rock + 1] as usize
+    }
+
+    /// The contact at a place.
+    pub(super) fn at(&self, place: usize) -> usize {
+        self.lists[place] as usize
+    }
+
+    /// The contacts of a rock, rising.
+    pub(super) fn of(&self, rock: usize) -> impl Iterator<Item = usize> {
+        self.lists[self.places(rock)].iter().map(|contact| *contact as usize)
     }
 }
 

@@ -19,7 +19,7 @@ mod resting_contacts;
 mod sweeps;
 
 use super::body::{BodySlot, IslandBody};
-use super::contact_queue::ContactQueue;
+use super::contact_queue::{ContactQueue, ContactsOfRocks};
 use super::outcome::{Done, Given, Hit};
 use crate::contact::pair::{PairHistory, between};
 use crate::rock::Vec3;
@@ -51,9 +51,8 @@ pub(super) struct RigidIsland {
     due: BinaryHeap<PendingImpact>,
     /// Which pairs had a blow.
     struck: Vec<bool>,
-    /// Ties or contacts of every rock: where its list begins, and the lists.
-    first: Vec<u32>,
-    links: Vec<u32>,
+    /// Pairs or contacts of every rock.
+    of_rocks: ContactsOfRocks,
     /// Contacts that one of their rocks has changed since.
     asked: ContactQueue,
     lean: Leaning,

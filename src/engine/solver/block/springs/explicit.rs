@@ -13,13 +13,13 @@ mod flow;
 use super::super::{Footing, Moving, Stepped, TOUCH, orthonormal};
 use crate::body::Block;
 use crate::contact::block::{BlockTouch, BlockTouches};
+use crate::contact::pair::LASTS_RAD;
 use crate::ground::Law;
 use crate::solver::environment::ContactEnvironment;
 pub(super) use crate::solver::explicit_impact::SHORTEST_RAD;
 use crate::solver::explicit_impact::{BALANCED, FIRST, LONGEST_RAD, judge};
 use crate::solver::impact::LOCAL;
 use crate::solver::impact::dormand_prince::{Attempt, Stages};
-use crate::solver::impact_progress::LASTS;
 use crate::solver::loss::Loss;
 use crate::solver::step_control::{Control, StepError};
 pub(super) use flow::POPPED;
@@ -73,7 +73,7 @@ impl Footing {
             && springs.histories.iter().any(|one| {
                 one.closed
                     && !one.captured
-                    && one.gone_rad < LASTS
+                    && one.gone_rad < LASTS_RAD
                     && one.approach_m_s > least_m_s
             })
             // a shear spring without a dashpot has a stretch, not a rate, of its own

@@ -7,6 +7,7 @@ use super::SpringContact;
 use crate::ground::FrictionElement;
 use crate::rock::Vec3;
 use crate::solver::block::rolling::Turning;
+use crate::solver::block::solve::first_guess;
 use crate::solver::environment::ContactEnvironment;
 use crate::solver::law::within;
 use crate::solver::loss::Loss;
@@ -46,9 +47,7 @@ impl RollingSpring {
     /// Takes the moment from an impulse that has acted for `a` (s).
     pub(super) fn take(&mut self, turning: &Turning, a: f64) {
         self.moment = turning.impulse / -a;
-        // a try that went astray must not be where the next begins
-        let is_known = turning.impulse.iter().all(|x| x.is_finite());
-        self.impulse = if is_known { turning.impulse } else { Vec3::zeros() };
+        self.impulse = first_guess(turning.impulse);
     }
 
     /// Takes the moment that it has where the block turns with `w` (rad/s), pressed as its contacts are.

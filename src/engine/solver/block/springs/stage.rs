@@ -12,7 +12,7 @@ use crate::contact::block::{BlockTouch, Pose};
 use crate::contact::history::carry;
 use crate::rock::Vec3;
 use crate::solver::block::rolling::Turning;
-use crate::solver::block::solve::{BlockContact, Mass, SWEEPS, solve};
+use crate::solver::block::solve::{BlockContact, Mass, SWEEPS, first_guess, solve};
 use crate::solver::environment::ContactEnvironment;
 use crate::solver::loss::Loss;
 use crate::solver::stage::{AGREED, PASSES};
@@ -214,10 +214,7 @@ impl Footing {
         let known = self.springs.contacts.iter_mut().filter(|contact| !contact.waits);
         for (contact, solved) in known.zip(&self.contacts) {
             contact.take(&solved.impulse, act_s);
-            // a try that went astray must not be where the next begins
-            let is_known = solved.impulse.iter().all(|x| x.is_finite());
-            let impulse = if is_known { solved.impulse } else { Vec3::zeros() };
-            self.springs.histories[contact.history].impulse = impulse;
+            self.springs.histories[contact.history].impulse = first_guess(solved.impulse);
         }
         let mut end = Moving { v: free_v, ..stage.base.moving.clone() };
         end.take(&self.contacts, &self.turning, block.mass_kg);

@@ -16,10 +16,7 @@ fn with_rolling(case: BlockRun, scheme: Scheme, rolling_friction: f64) -> BlockR
 
 fn on_ground(mut case: BlockRun, rolling_friction: f64) -> BlockRun {
     case.ground.rolling_friction = rolling_friction;
-    let rock = Rock { radius_m: case.block.radius_m, density_kg_m3: 2700.0 };
-    let own_m_s = Some(case.law.capture_m_s);
-    let capture = Capture { own_m_s, tolerance_m_s: 0.0, gravity_m_s2: G };
-    case.law = Law::new(&case.ground, &Damping::of(case.ground.restitution), &rock, &capture);
+    case.law = law_of(&case.ground, &case.block, case.law.capture_m_s);
     case
 }
 

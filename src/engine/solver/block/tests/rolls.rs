@@ -68,15 +68,8 @@ impl Slap {
         let arm = (self.half, self.height);
         let mut y = [arm.1, -arm.0, 1.0, 0.0, 0.0, 0.0, 0.0];
         let h = 2e-3;
-        let rate = |y: &[f64; 7]| law.rate(y, arm, about_y);
-        let on = |y: &[f64; 7], k: &[f64; 7], h: f64| std::array::from_fn(|i| y[i] + h * k[i]);
         for _ in 0..(rad / h) as u32 {
-            let k1 = rate(&y);
-            let k2 = rate(&on(&y, &k1, 0.5 * h));
-            let k3 = rate(&on(&y, &k2, 0.5 * h));
-            let k4 = rate(&on(&y, &k3, h));
-            let k = std::array::from_fn(|i| (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]) / 6.0);
-            y = on(&y, &k, h);
+            y = crate::math::runge_kutta_4(&y, h, |y| law.rate(y, arm, about_y));
         }
         y[2]
     }

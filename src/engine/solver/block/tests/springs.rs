@@ -11,10 +11,7 @@ pub(super) const SCHEMES: [Scheme; 3] = [Scheme::Adaptive, Scheme::Reference, Sc
 pub(super) fn on_springs(mut case: BlockRun, scheme: Scheme, p_n: f64) -> BlockRun {
     case.ground.normal_stiffness_n_m = p_n;
     case.ground.shear_stiffness_n_m = 0.25 * p_n;
-    let rock = Rock { radius_m: case.block.radius_m, density_kg_m3: 2700.0 };
-    let own_m_s = Some(case.law.capture_m_s);
-    let capture = Capture { own_m_s, tolerance_m_s: 0.0, gravity_m_s2: G };
-    case.law = Law::new(&case.ground, &Damping::of(case.ground.restitution), &rock, &capture);
+    case.law = law_of(&case.ground, &case.block, case.law.capture_m_s);
     case.springs = Some(Settings {
         scheme,
         tolerance_m_s: 1e-3,
@@ -22,7 +19,7 @@ pub(super) fn on_springs(mut case: BlockRun, scheme: Scheme, p_n: f64) -> BlockR
         shear_memory: true,
         impact_kernels: true,
         corner_way: CORNER_WAY,
-        capture_speed_m_s: own_m_s,
+        capture_speed_m_s: Some(case.law.capture_m_s),
     });
     case
 }

@@ -13,7 +13,6 @@ use crate::contact::pair::PairHistory;
 use crate::rock::Vec3;
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
 use crate::solver::island::body::{BodySlot, IslandBody};
-use crate::solver::island::contact_queue::lay;
 use crate::solver::island::outcome::{Given, Hit};
 use crate::solver::island::pair_contact::TOUCH;
 use crate::solver::law::capture_m_s;
@@ -90,16 +89,15 @@ impl RigidIsland {
             .iter()
             .map(|pair_history| [pair_history.a as usize, pair_history.b as usize])
             .collect();
-        lay(&ends, self.balls.len(), (&mut self.first, &mut self.links));
+        self.of_rocks.lay(&ends, self.balls.len());
     }
 
     /// Looks for the blows that follow from one on these rocks.
     fn expect_more(&mut self, scene: &mut ImpactScene, ends: [usize; 2]) {
         let both = if ends[0] == ends[1] { &ends[..1] } else { &ends[..] };
         for &end in both {
-            for at in self.first[end]..self.first[end + 1] {
-                let pair_history = self.links[at as usize] as usize;
-                self.expect_pair(scene, pair_history);
+            for place in self.of_rocks.places(end) {
+                self.expect_pair(scene, self.of_rocks.at(place));
             }
             self.expect_ground(scene, end);
         }

@@ -13,7 +13,6 @@ use super::contacts::Impulses;
 use crate::contact::pair::PairHistory;
 use crate::rock::Rock;
 use crate::solver::island::body::BodySlot;
-use crate::solver::island::contact_queue::lay;
 
 /// Sweeps over the contacts before a jump, at most, and after the last. They cost little: a few contacts creep while all
 /// others have settled and are passed over.
@@ -220,14 +219,14 @@ impl RigidIsland {
         let ends: Vec<[usize; 2]> = ground_contacts
             .chain(self.ball_contacts.iter().map(|ball_contact| ball_contact.ends))
             .collect();
-        lay(&ends, self.balls.len(), (&mut self.first, &mut self.links));
+        self.of_rocks.lay(&ends, self.balls.len());
     }
 
     /// Asks the contacts of a rock that was stirred: all others have seen their rocks as they are, and a sweep costs what
     /// happens and not what is there.
     fn ask(&mut self, ball: usize) {
-        for contact in &self.links[self.first[ball] as usize..self.first[ball + 1] as usize] {
-            self.asked.add(*contact as usize);
+        for contact in self.of_rocks.of(ball) {
+            self.asked.add(contact);
         }
     }
 
