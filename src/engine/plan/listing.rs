@@ -14,7 +14,7 @@ use std::convert::Infallible;
 use std::fmt;
 
 /// Columns before the text of a line.
-const LABEL: usize = 19;
+const LABEL: usize = 21;
 
 impl Plan {
     /// The listing, line by line; `rockfall plan` prints it and every report ends with it.

@@ -32,7 +32,7 @@ pub(super) static WORDS: Words = Words {
     date: "Date",
     question: "How far do rocks from the release zone come, how fast and how high",
     question_lines: ", what arrives at {names}",
-    question_barriers: ", and what do {names} meet and let pass",
+    question_barriers: ", and what reaches and passes {names}",
     read_first: "Read this first",
     ch_where: "Where do they go?",
     ch_how: "How fast and how high?",

@@ -35,7 +35,7 @@ pub(super) static WORDS: Words = Words {
     date: "Date",
     question: "Jusqu’où vont les blocs partis de la zone de départ, à quelle vitesse et à quelle hauteur",
     question_lines: ", qu’est-ce qui atteint {names}",
-    question_barriers: ", et que reçoivent et laissent passer {names}",
+    question_barriers: ", et qu’est-ce qui atteint et franchit {names}",
     read_first: "À lire d’abord",
     ch_where: "Où vont les blocs\u{a0}?",
     ch_how: "À quelle vitesse et à quelle hauteur\u{a0}?",

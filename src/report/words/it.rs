@@ -35,7 +35,7 @@ pub(super) static WORDS: Words = Words {
     date: "Data",
     question: "Fin dove arrivano i massi dalla zona di distacco, con quale velocità e a quale altezza",
     question_lines: ", che cosa arriva a {names}",
-    question_barriers: ", e che cosa incontrano e lasciano passare {names}",
+    question_barriers: ", e che cosa raggiunge e supera {names}",
     read_first: "Da leggere per primo",
     ch_where: "Dove vanno i massi?",
     ch_how: "A quale velocità e a quale altezza?",
