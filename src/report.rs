@@ -195,11 +195,12 @@ pub fn drawings(report: &Report) -> Vec<(Heading, Drawing)> {
         ));
     }
     if let Some(cells) = &report.maps {
-        drawn.push((heading("maps.svg", words.maps_title), maps::draw(report, cells)));
-        let values = maps::draw_values(report, cells);
-        drawn.push((heading("maps_values.svg", words.map_values_title), values));
-        let ends = maps::draw_ends(report, cells);
-        drawn.push((heading("maps_ends.svg", words.map_ends_title), ends));
+        let headings = [
+            heading("maps.svg", words.maps_title),
+            heading("maps_values.svg", words.map_values_title),
+            heading("maps_ends.svg", words.map_ends_title),
+        ];
+        drawn.extend(headings.into_iter().zip(maps::draw(report, cells)));
         let of_year = report.year_maps.as_ref().map(|year| maps::draw_year(report, cells, year));
         let of_year = of_year.map(|year| (heading("maps_year.svg", words.year().maps_title), year));
         drawn.extend(of_year);

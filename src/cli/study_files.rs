@@ -38,7 +38,7 @@ pub(crate) fn exact_cases(out: &Path, done: impl Fn(&str)) -> Result<String> {
 }
 
 /// Runs the stiff and extreme cases; says how many bounds are kept, and whether all are.
-pub(crate) fn stability(out: &Path, done: impl Fn(&str)) -> Result<(String, bool)> {
+pub(crate) fn stability(out: &Path, done: impl Fn(&str) + Sync) -> Result<(String, bool)> {
     let outcomes = stability::study(&done);
     let maps = Map::all();
     done("map of stiffness against step");

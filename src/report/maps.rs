@@ -11,9 +11,8 @@ use super::figure::{Drawing, WIDTH_PX};
 use super::format;
 use super::model::{CellMap, Report, energy_unit};
 use super::panel::{FOOT_PX, Panel};
-use super::plan_view::ground;
+use super::plan_view::ground::Shaded;
 use super::profile::NEEDS;
-use super::raster::GroundRaster;
 use super::site;
 use super::svg::path::{PaperFrame, Spot};
 use super::words::fill;
@@ -112,14 +111,19 @@ fn shade(class: usize) -> RGBColor {
     colour::sequential(class as f64 / (CLASSES - 1) as f64)
 }
 
+/// Draws all maps but those of a year: over one ground, each part of which is shaded once.
+pub(super) fn draw(report: &Report, maps: &CellMap) -> [Drawing; 3] {
+    let ground = report.ground.as_ref().map(Shaded::over);
+    [draw_reach, draw_values, draw_ends].map(|draw| draw(report, maps, ground.as_ref()))
+}
+
 /// Draws reach probability and intensity beside each other.
-pub(super) fn draw(report: &Report, maps: &CellMap) -> Drawing {
+fn draw_reach(report: &Report, maps: &CellMap, ground: Option<&Shaded>) -> Drawing {
     let words = report.words();
     let layers = [
         ClassedMap::of_shares(words.map_reach, &maps.reach),
         ClassedMap::of_intensity(words.map_intensity, &maps.intensity),
     ];
-    let ground = report.ground.as_ref();
     let svg = draw_layers("maps", words.maps_alt, (report, maps, ground), &layers);
     let share = |count: usize| {
         let all: usize = maps.intensity_cells.iter().sum();
@@ -149,26 +153,24 @@ fn few(report: &Report, maps: &CellMap) -> String {
 }
 
 /// Draws energy and height beside each other.
-pub(super) fn draw_values(report: &Report, maps: &CellMap) -> Drawing {
+fn draw_values(report: &Report, maps: &CellMap, ground: Option<&Shaded>) -> Drawing {
     let words = report.words();
     let most_j = maps.energy_j.iter().map(|(_, v)| *v).fold(0.0, f64::max);
     let layers = [
         ClassedMap::of_values(words.map_energy, &maps.energy_j, energy_unit(most_j), &[1.0, 3.0]),
         ClassedMap::of_values(words.map_height, &maps.height_m, ("m", 1.0), &[1.0, 2.0, 5.0]),
     ];
-    let ground = report.ground.as_ref();
     let svg = draw_layers("maps-values", words.map_values_alt, (report, maps, ground), &layers);
     Drawing { svg, caption: words.map_values_caption.to_owned() + &few(report, maps) }
 }
 
 /// Draws deposits and the probability of more than a weak intensity beside each other.
-pub(super) fn draw_ends(report: &Report, maps: &CellMap) -> Drawing {
+fn draw_ends(report: &Report, maps: &CellMap, ground: Option<&Shaded>) -> Drawing {
     let words = report.words();
     let layers = [
         ClassedMap::of_counts(words.map_deposits, &maps.deposits),
         ClassedMap::of_shares(words.map_exceeds, &maps.exceeds),
     ];
-    let ground = report.ground.as_ref();
     let svg = draw_layers("maps-ends", words.map_ends_alt, (report, maps, ground), &layers);
     Drawing { svg, caption: words.map_ends_caption.to_owned() }
 }
@@ -176,7 +178,7 @@ pub(super) fn draw_ends(report: &Report, maps: &CellMap) -> Drawing {
 fn draw_layers(
     name: &str,
     title: &str,
-    (report, maps, ground): (&Report, &CellMap, Option<&GroundRaster>),
+    (report, maps, ground): (&Report, &CellMap, Option<&Shaded>),
     layers: &[ClassedMap],
 ) -> String {
     let (panels, bottom) = panels(report, maps, layers);
@@ -186,8 +188,8 @@ fn draw_layers(
             canvas.text(&Label::new(layer.title.clone(), at).bold().sized(NORMAL));
             let names = site::places(canvas, panel, report, |mark| mark.name.clone());
             canvas.clip(&format!("part{k}"), &panel.frame, || {
-                if let Some(raster) = ground {
-                    ground::shade(canvas, panel, raster);
+                if let Some(shaded) = ground {
+                    shaded.draw(canvas, panel);
                 }
                 for (class, (_, colour)) in layer.classes.iter().enumerate() {
                     cells(canvas, panel, maps, (layer, class), *colour);

@@ -93,10 +93,21 @@ pub fn word(path: &Path) -> &str {
 
 /// Runs a scene; the words under `stop`, row by row.
 pub fn stops(scene: &Path, more: &[&str]) -> Vec<String> {
+    stops_and_words(scene, &[&["--quiet"], more].concat()).0
+}
+
+/// The same, and what the run says.
+pub fn stops_and_words(scene: &Path, more: &[&str]) -> (Vec<String>, String) {
     let out = scene.with_file_name("out");
-    let args = ["run", word(scene), "--quiet", "--overwrite", "--out", word(&out)];
+    let args = ["run", word(scene), "--overwrite", "--out", word(&out)];
     let done = rockfall(&[&args[..], more].concat());
     assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    let said = String::from_utf8_lossy(&done.stdout).into_owned();
+    (ends(&out), said)
+}
+
+/// The words under `stop`, row by row.
+fn ends(out: &Path) -> Vec<String> {
     let rows = fs::read_to_string(out.join("releases.csv")).unwrap();
     rows.lines().skip(1).map(|row| row.split(',').nth(1).unwrap().to_owned()).collect()
 }

@@ -5,10 +5,7 @@
     reason = "a test that cannot run the program has failed"
 )]
 
-use crate::{asked, program};
-
-use asked::{Asked, closed_box, plate, scene, stops, word};
-use program::rockfall;
+use crate::asked::{Asked, closed_box, plate, scene, stops, stops_and_words};
 use std::fs;
 use std::time::Instant;
 
@@ -29,15 +26,12 @@ fn worlds_that_never_rest_end_by_time_or_budget() {
         };
         let scene = scene(dir.path(), &plates, &asked);
         let begun = Instant::now();
-        let ends = stops(&scene, &[]);
+        let (ends, said) = stops_and_words(&scene, &[]);
         println!("{scheme}: {ends:?} in {:?}", begun.elapsed());
         let summary = fs::read_to_string(dir.path().join("out/summary.json")).unwrap();
         if scheme == "rigid" {
             assert_eq!(ends, ["over_budget", "over_budget"]);
             assert!(summary.contains("\"over_budget\": 2"), "counted");
-            let out = dir.path().join("out");
-            let said = rockfall(&["run", word(&scene), "--overwrite", "--out", word(&out)]);
-            let said = String::from_utf8_lossy(&said.stdout).into_owned();
             assert!(
                 said.contains("warning: 2 of 2 rocks were still moving when their budget"),
                 "{said}"

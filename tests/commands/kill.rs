@@ -26,22 +26,26 @@ fn run(out: &Path, more: &[&str]) -> Command {
     command(&[&scene[..], &[out.to_str().unwrap()], more].concat())
 }
 
-fn succeed(mut command: Command) {
+pub(crate) fn succeed(mut command: Command) {
     let done = command.output().unwrap();
     assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
 }
 
 /// Time that the run takes.
-fn timed(command: Command) -> Duration {
+pub(crate) fn timed(command: Command) -> Duration {
     let begun = Instant::now();
     succeed(command);
     begun.elapsed()
 }
 
 /// Starts the run, kills it after so long; whether it was still running.
-fn kill_after(mut command: Command, delay: Duration) -> bool {
+pub(crate) fn kill_after(mut command: Command, delay: Duration) -> bool {
     let mut child = command.stderr(Stdio::piped()).stdout(Stdio::null()).spawn().unwrap();
-    sleep(delay);
+    let begun = Instant::now();
+    // what was resumed near its end has ended before: nothing is left to be waited for
+    while begun.elapsed() < delay && child.try_wait().unwrap().is_none() {
+        sleep(Duration::from_millis(2).min(delay.saturating_sub(begun.elapsed())));
+    }
     child.kill().unwrap(); // SIGKILL: nothing can be done about it
     let ended = child.wait_with_output().unwrap();
     let stderr = String::from_utf8_lossy(&ended.stderr);

@@ -6,15 +6,12 @@
 )]
 #![cfg(unix)]
 
-use crate::program;
-
-use program::{command, same_results};
+use crate::kill::{kill_after, succeed, timed};
+use crate::program::{command, same_results};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::path::Path;
-use std::process::{Command, Stdio};
-use std::thread::sleep;
-use std::time::Instant;
+use std::process::Command;
 
 /// Kills in the test that always runs, and in the one that is asked for.
 const KILLS: [usize; 2] = [12, 100];
@@ -30,11 +27,6 @@ fn run(out: &Path, more: &[&str]) -> Command {
 
 fn until(out: &Path, more: &[&str]) -> Command {
     run(out, &[&["--releases", "60", "--until", AIM], more].concat())
-}
-
-fn succeed(mut command: Command) {
-    let done = command.output().unwrap();
-    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
 }
 
 fn releases(out: &Path) -> usize {
@@ -71,9 +63,7 @@ fn a_hundred_kills_are_resumed_to_the_same_bytes() {
 fn kill_and_resume(wanted: usize) {
     let dir = tempfile::tempdir().unwrap();
     let reference = dir.path().join("reference");
-    let begun = Instant::now();
-    succeed(until(&reference, &[]));
-    let whole = begun.elapsed();
+    let whole = timed(until(&reference, &[]));
     let plain = dir.path().join("plain");
     succeed(run(&plain, &["--releases", &releases(&reference).to_string()]));
     same_results(&plain, &reference);
@@ -83,17 +73,8 @@ fn kill_and_resume(wanted: usize) {
     while kills < wanted {
         let out = dir.path().join(format!("killed_{runs}"));
         for _ in 0..KILLS_OF_ONE_RUN {
-            let mut child = until(&out, &["--resume"])
-                .stderr(Stdio::piped())
-                .stdout(Stdio::null())
-                .spawn()
-                .unwrap();
-            sleep(whole.mul_f64(random.random::<f64>()));
-            child.kill().unwrap();
-            let ended = child.wait_with_output().unwrap();
-            let said = String::from_utf8_lossy(&ended.stderr);
-            assert!(ended.status.success() || ended.status.code().is_none(), "{said}");
-            kills += usize::from(ended.status.code().is_none());
+            let delay = whole.mul_f64(random.random::<f64>());
+            kills += usize::from(kill_after(until(&out, &["--resume"]), delay));
         }
         succeed(until(&out, &["--resume"]));
         same_results(&reference, &out);

@@ -203,24 +203,30 @@ fn hold(name: &str, counts: &Counts) {
     assert!(counts.worst[1] <= 0.05, "{name}: {counts:?}");
 }
 
+fn is_round(shape: Option<&Shape>) -> bool {
+    shape.is_none_or(|shape| shape.core.corners.len() == 1)
+}
+
 /// A ball rolls on until rolling friction stops it; a block needs none.
 fn under(shape: Option<&Shape>, ground: Ground) -> Ground {
-    let is_round = shape.is_none_or(|shape| shape.core.corners.len() == 1);
-    let rolling_friction = if is_round { 0.5 } else { ground.rolling_friction };
+    let rolling_friction = if is_round(shape) { 0.5 } else { ground.rolling_friction };
     Ground { rolling_friction, ..ground }
 }
 
-/// Every shape on hard ground, on soil and with rolling friction: all releases come to an end by themselves, and nothing gains energy.
+/// Every shape on hard ground, on soil and with rolling friction, which round ones have on every ground: all releases come to an end
+/// by themselves, and nothing gains energy.
 #[test]
 fn no_block_is_lost_on_the_natural_slope() {
     let slope = slope(10_000);
     for (name, kind, shape) in shapes() {
-        for ground in [HARD, SOIL, ROLLING] {
-            let ground = under(shape.as_ref(), ground);
+        let grounds = if is_round(shape.as_ref()) { 2 } else { 3 };
+        for ground in &[HARD, SOIL, ROLLING][..grounds] {
+            let ground = under(shape.as_ref(), *ground);
             for (scheme, releases) in [(Scheme::Rigid, 12), (Scheme::Adaptive, 3)] {
                 let series = Series { scheme, kind, shape: shape.as_ref(), ground };
+                let begun = Instant::now();
                 let counts = count(&slope, &series, 0..releases);
-                println!("{name} {scheme:?} {counts:?}");
+                println!("{name} {scheme:?} {counts:?} in {:?}", begun.elapsed());
                 hold(name, &counts);
             }
         }

@@ -11,6 +11,7 @@ use crate::report::panel::Panel;
 use crate::report::raster::GroundRaster;
 use crate::report::svg::path::{PaperFrame, Spot, clipped, thinned};
 use plotters::style::RGBColor;
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 
 /// Distance of the places where heights are taken for contours (px).
@@ -54,16 +55,42 @@ pub(in crate::report) fn draw(
     ground: &GroundRaster,
     avoided: &[Spot],
 ) -> Option<Contours> {
-    canvas.fragment(&hillshade::image(&panel.frame, |x, y| slope(panel, ground, (x, y))));
+    canvas.fragment(&picture(panel, ground));
     let contours = contours((canvas, avoided), panel, ground);
     trees(canvas, panel, ground);
     contours
 }
 
-/// Draws the shape of the ground and its trees, without contours.
-pub(in crate::report) fn shade(canvas: &Canvas<'_>, panel: &Panel, ground: &GroundRaster) {
-    canvas.fragment(&hillshade::image(&panel.frame, |x, y| slope(panel, ground, (x, y))));
-    trees(canvas, panel, ground);
+/// The ground under several maps. Most of them show the same part of it at the same place of their sheets: packing that picture is
+/// most of what a short report costs, and is done once.
+pub(in crate::report) struct Shaded<'g> {
+    ground: &'g GroundRaster,
+    pictures: RefCell<Vec<(Place, String)>>,
+}
+
+/// All that a picture of the ground depends on: its frame on paper, and the ends of both axes.
+type Place = (PaperFrame, [f64; 4]);
+
+impl<'g> Shaded<'g> {
+    pub(in crate::report) fn over(ground: &'g GroundRaster) -> Self {
+        Self { ground, pictures: RefCell::default() }
+    }
+
+    /// Draws the shape of the ground and its trees, without contours.
+    pub(in crate::report) fn draw(&self, canvas: &Canvas<'_>, panel: &Panel) {
+        let place = (panel.frame, [panel.x.low, panel.x.high, panel.y.low, panel.y.high]);
+        let mut pictures = self.pictures.borrow_mut();
+        let at = pictures.iter().position(|(known, _)| *known == place).unwrap_or_else(|| {
+            pictures.push((place, picture(panel, self.ground)));
+            pictures.len() - 1
+        });
+        canvas.fragment(&pictures[at].1);
+        trees(canvas, panel, self.ground);
+    }
+}
+
+fn picture(panel: &Panel, ground: &GroundRaster) -> String {
+    hillshade::image(&panel.frame, |x, y| slope(panel, ground, (x, y)))
 }
 
 /// Map coordinates of a place on the paper (m).
