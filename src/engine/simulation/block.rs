@@ -58,8 +58,7 @@ pub(super) fn follow_block(
 ) -> Trajectory {
     let block = &drawn.block;
     let world = settings.around(Body::of_block(block, settings.gravity_m_s2), laws);
-    footing.near.forget();
-    footing.touches.forget();
+    footing.forget();
     footing.raise_stems(settings.terrain, &random);
     (footing.near.tested, footing.sweeps) = (0, 0);
     footing.facets = RoughFacets::of(random, laws);

@@ -29,7 +29,7 @@ use crate::contact::MOST;
 use crate::contact::block::{BlockTouch, BlockTouches, Pose, keep_widest, touches};
 use crate::contact::neighbours::Neighbours;
 use crate::flight::block::WindowScratch;
-use crate::flight::top::{Top, spin_of};
+use crate::flight::top::{attitude_after, spin_of};
 use crate::rock::{Motion, Vec3};
 use energy::hold_energy;
 use nalgebra::{Matrix3, Rotation3};
@@ -70,6 +70,8 @@ pub(crate) struct Moving {
 pub(crate) struct Footing {
     pub(crate) near: Neighbours,
     pub(crate) touches: BlockTouches,
+    /// From where, and how far, the last look was (m), as long as its touches stand.
+    looked: Option<(Pose, f64)>,
     /// Work space of the search for the end of a flight.
     pub(crate) window: WindowScratch,
     contacts: Vec<BlockContact>,
@@ -136,9 +138,9 @@ impl Moving {
 
     /// Moves on for `t` (s) without any force.
     fn drift(&mut self, block: &Block, t: f64) {
-        let top = Top::new(block.inertia_kg_m2, self.pose.attitude, self.momentum);
+        let turned = attitude_after(block.inertia_kg_m2, self.pose.attitude, &self.momentum, t);
         self.pose.centre += self.v * t;
-        self.pose.attitude = orthonormal(&top.attitude(t));
+        self.pose.attitude = orthonormal(&turned);
     }
 
     /// Takes the impulses of the contacts, and of rolling friction.
@@ -178,6 +180,13 @@ fn orthonormal(turned: &Rotation3<f64>) -> Rotation3<f64> {
 }
 
 impl Footing {
+    /// Forgets all that was seen (before the next block).
+    pub(crate) fn forget(&mut self) {
+        self.near.forget();
+        self.touches.forget();
+        self.looked = None;
+    }
+
     /// Sees to it that the features around a block are known, with room for some looks.
     fn know(&mut self, world: &ContactEnvironment, block: &Block, pose: &Pose) {
         let core = block.bound_m - block.ball_m;
@@ -196,6 +205,10 @@ impl Footing {
         pose: &Pose,
         reach_m: f64,
     ) {
+        // the look that ended a step is the one that the next begins with
+        if self.looked.replace((*pose, reach_m)) == Some((*pose, reach_m)) {
+            return;
+        }
         self.know(world, block, pose);
         touches(&mut self.near, world.terrain, (block, pose), reach_m, &mut self.touches);
         if self.touches.found.len() > MOST {
