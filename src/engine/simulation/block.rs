@@ -241,6 +241,7 @@ impl Roll<'_> {
         if loss.is_none() && broken_j <= 0.0 {
             return false;
         }
+        self.recorder.effort.unsettled += u64::from(loss.is_some() && self.footing.unsettled);
         let mut loss = loss.unwrap_or_default();
         self.footing.bend_stem(&self.world, (block, &mut self.moving), &mut loss);
         self.recorder.pay(&loss, 1.0);

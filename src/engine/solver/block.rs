@@ -92,6 +92,8 @@ pub(crate) struct Footing {
     stem_load: StemLoad,
     /// Passes over the contacts.
     pub(crate) sweeps: u64,
+    /// Whether the impulses of the last solve did not settle.
+    pub(crate) unsettled: bool,
 }
 
 /// What a step has done.
@@ -265,7 +267,7 @@ impl Footing {
             self.contacts.extend(wanted.iter().map(goal));
             self.turning = rigid_turning(&self.contacts);
             let asked = (&mut self.contacts[..], &mut self.turning);
-            solve(&mass, asked, (v, w), (rounding_m_s, SWEEPS), &mut self.sweeps);
+            self.unsettled = !solve(&mass, asked, (v, w), (rounding_m_s, SWEEPS), &mut self.sweeps);
             thrown = moving.clone();
             thrown.take(&self.contacts, &self.turning, block.mass_kg);
             thrown.motion_j(block) <= before_j * (1.0 + ROUNDING)
@@ -296,8 +298,9 @@ impl Footing {
     ) -> Stepped {
         let spin = moving.spin(block);
         let fastest = moving.v.norm() + spin.norm() * block.bound_m;
+        let way_m = self.way_m(block, moving, corner_way);
         let dt = most_s
-            .min(corner_way * block.ball_m / fastest.max(f64::MIN_POSITIVE))
+            .min(way_m / fastest.max(f64::MIN_POSITIVE))
             .min(TURN * corner_way / spin.norm().max(f64::MIN_POSITIVE));
         let (start, before_j) = (moving.clone(), moving.motion_j(block));
         let dt = dt.min(moving.climbs_s((block.mass_kg, &world.body.gravity), before_j));
@@ -319,7 +322,7 @@ impl Footing {
         let free = (v + weight, w);
         self.turning = rigid_turning(&self.contacts);
         let asked = (&mut self.contacts[..], &mut self.turning);
-        let settled = solve(&mass, asked, free, (rounding_m_s, SWEEPS), &mut self.sweeps);
+        self.unsettled = !solve(&mass, asked, free, (rounding_m_s, SWEEPS), &mut self.sweeps);
         moving.v += weight;
         moving.take(&self.contacts, &self.turning, block.mass_kg);
         // the way of the step is that of the mean velocity, so this is just what the weight gives
@@ -337,7 +340,7 @@ impl Footing {
         let on = self.touching(block).next().map(|touch| world.ground_of(touch.triangle));
         self.slip.grow(slipped_m, on);
         let is_free = !self.holds(world, (block, moving), pushed);
-        Stepped { dt, loss, slides, is_free, unsettled: !settled }
+        Stepped { dt, loss, slides, is_free, unsettled: self.unsettled }
     }
 
     /// A contact at a touch, where the block will have slipped `ahead_m` (m) further.

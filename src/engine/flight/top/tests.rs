@@ -149,7 +149,8 @@ fn a_short_turn_is_the_closed_form() {
         }
     }
     println!("{worst:?}");
-    assert!(worst[0] < 1e-14 && worst[1] < 1e-12, "{worst:?}");
+    // rounding of 128 steps
+    assert!(worst[0] < 3e-14 && worst[1] < 1e-12, "{worst:?}");
     // closed forms without elliptic functions are cheap enough
     assert!(top([1.0, 1.0, 2.0], Vec3::x()).short(Rotation3::identity(), 1.0).is_none());
     assert!(top(BOX, Vec3::zeros()).short(Rotation3::identity(), 1.0).is_none());
