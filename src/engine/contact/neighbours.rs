@@ -216,16 +216,6 @@ impl Neighbours {
         self.margin - (centre - self.centre).norm()
     }
 
-    /// How far (m) a foot that moves with `u` (m/s) stays on a face; 0 where it is none of those collected.
-    pub(crate) fn way_over(&self, face: u32, (foot, u): (&Vec3, &Vec3)) -> f64 {
-        let Some(face) = self.faces.iter().find(|near| near.id == face) else { return 0.0 };
-        let leaves_s = (0..3).filter_map(|k| {
-            let speed = face.out[k].dot(u);
-            (speed > 0.0).then(|| (face.rim[k] - face.out[k].dot(foot)).max(0.0) / speed)
-        });
-        leaves_s.fold(f64::INFINITY, f64::min) * u.norm()
-    }
-
     /// The one face that can touch within the margin, if nothing else can: a certificate that geometry is a plane there.
     #[inline]
     pub fn plane(&self) -> Option<u32> {

@@ -10,6 +10,7 @@
 
 mod energy;
 mod facet;
+mod look;
 mod rolling;
 mod slip;
 mod solve;
@@ -25,8 +26,7 @@ use super::roughness::RoughFacets;
 use super::slip::Slip;
 use super::stem_load::StemLoad;
 use crate::body::Block;
-use crate::contact::MOST;
-use crate::contact::block::{BlockTouch, BlockTouches, Pose, keep_widest, touches};
+use crate::contact::block::{BlockTouch, BlockTouches, Pose};
 use crate::contact::neighbours::Neighbours;
 use crate::flight::block::WindowScratch;
 use crate::flight::top::{attitude_after, spin_of};
@@ -39,10 +39,6 @@ use springs::Springs;
 
 /// Gaps no wider than this touch (–, relative to the radius of the sphere of equal volume).
 pub(crate) const TOUCH: f64 = 1e-8;
-/// Features are collected for a way of the centre (–, relative to the radius of the sphere of equal volume) …
-const WAY: f64 = 0.5;
-/// … and so far from the balls (–, relative to their radius): a corner that far from all need not be asked for a while.
-const SEES: f64 = 3.0;
 /// Contacts this far ahead take part in a step (–, relative to the balls' radius).
 const AHEAD: f64 = 1.0;
 /// A block turns no further in one step (rad) than this share of the longest way of a corner over the balls' radius.
@@ -182,42 +178,6 @@ fn orthonormal(turned: &Rotation3<f64>) -> Rotation3<f64> {
 }
 
 impl Footing {
-    /// Forgets all that was seen (before the next block).
-    pub(crate) fn forget(&mut self) {
-        self.near.forget();
-        self.touches.forget();
-        self.looked = None;
-    }
-
-    /// Sees to it that the features around a block are known, with room for some looks.
-    fn know(&mut self, world: &ContactEnvironment, block: &Block, pose: &Pose) {
-        let core = block.bound_m - block.ball_m;
-        if !self.near.covers_around(&pose.centre, core) {
-            let margin = core + WAY * block.radius_m;
-            let slack = SEES * block.ball_m;
-            self.near.collect(world.terrain, &pose.centre, block.ball_m, margin, slack);
-        }
-    }
-
-    /// Looks for the contacts of a block that are no wider apart than `reach_m`.
-    pub(crate) fn look(
-        &mut self,
-        world: &ContactEnvironment,
-        block: &Block,
-        pose: &Pose,
-        reach_m: f64,
-    ) {
-        // the look that ended a step is the one that the next begins with
-        if self.looked.replace((*pose, reach_m)) == Some((*pose, reach_m)) {
-            return;
-        }
-        self.know(world, block, pose);
-        touches(&mut self.near, world.terrain, (block, pose), reach_m, &mut self.touches);
-        if self.touches.found.len() > MOST {
-            keep_widest(&mut self.touches.found, MOST);
-        }
-    }
-
     /// Contacts that hold the block or strike it: those of the last look that touch.
     pub(crate) fn touching(&self, block: &Block) -> impl Iterator<Item = &BlockTouch> {
         let most = TOUCH * block.radius_m;

@@ -317,7 +317,7 @@ pub(super) fn rigid_turning(contacts: &[BlockContact]) -> Turning {
 /// What must settle is the motion of the body, not each impulse. Where there are more contacts than a rigid body can tell apart, what one asks
 /// may contradict what another asks, by rounding or by the little that a turn within the step moves two sticking points towards each other; the
 /// sweeps then shift impulse between them without end, and the body does not feel it. Where a third contact slides meanwhile it feels a little, some
-/// 1e-7 m/s a sweep, until one of both begins to slip: [`Mixing`] leaps there. What does not settle for all that is counted. Goals are known to `rounding_m_s` (m/s) only, and
+/// 1e-7 m/s, until one of both begins to slip: those are the few solves that do not settle, and are counted. Goals are known to `rounding_m_s` (m/s) only, and
 /// there are at most so many sweeps.
 pub(crate) fn solve(
     mass: &Mass,

@@ -5,10 +5,6 @@
 //! combination is taken that would have left least of it, and the next sweep begins with the same combination of `g`. As
 //! long as every contact keeps sticking or sliding, few unknowns of the body are left, and few sweeps. What a sweep makes of an impulse
 //! is not changed, nor when it has settled.
-//!
-//! Where two points that stick are asked for what no rigid body can do, sweeps press them against each other by the same `f` each time, until
-//! one begins to slip, after thousands of them. There the next sweep begins where the first contact comes to the rim of its cone, or
-//! lets go.
 
 use super::{BlockContact, Mass};
 use crate::contact::MOST;
@@ -22,18 +18,13 @@ const BEFORE: u32 = 2;
 const NOTHING_NEW: f64 = 1e-7;
 /// What is left may grow this much (–) before the differences are forgotten: contacts have changed from sticking to sliding …
 const GROWS: f64 = 2.0;
-/// … and this, and leaps, may happen so often before sweeps go on alone.
+/// … and so often before sweeps go on alone.
 const SETBACKS: u32 = 6;
 
-/// Sweeps that change the same but for so much (–) only drift.
-const DRIFTS: f64 = 0.05;
-/// On the rim of its cone, or without a push, is an impulse this near to it (–, relative to the push).
-const AT_RIM: f64 = 1e-9;
-
 /// The impulses of all contacts.
-type Impulses = [Vec3; MOST];
+type ContactImpulses = [Vec3; MOST];
 
-const NONE: Impulses = [Vec3::new(0.0, 0.0, 0.0); MOST];
+const NONE: ContactImpulses = [Vec3::new(0.0, 0.0, 0.0); MOST];
 
 /// What the last sweeps have done.
 #[derive(Debug)]
@@ -44,22 +35,22 @@ pub(super) struct Mixing {
     sweeps: u32,
     setbacks: u32,
     /// Impulses with which the sweep began.
-    began: Impulses,
+    began: ContactImpulses,
     /// What the sweep before changed, where it ended, and the size of what it changed squared.
-    last: (Impulses, Impulses, f64),
+    last: (ContactImpulses, ContactImpulses, f64),
     has_last: bool,
     /// Differences of what sweeps changed, made square to each other, with the differences of their ends that belong to them.
-    known: [(Impulses, Impulses); KEPT],
+    known: [(ContactImpulses, ContactImpulses); KEPT],
     /// How many of them, and where the next goes.
     len: usize,
 }
 
-fn dot(one: &Impulses, other: &Impulses, count: usize) -> f64 {
+fn dot(one: &ContactImpulses, other: &ContactImpulses, count: usize) -> f64 {
     one[..count].iter().zip(&other[..count]).map(|(a, b)| a.dot(b)).sum()
 }
 
 /// `to − from`.
-fn less(to: &Impulses, from: &Impulses, count: usize) -> Impulses {
+fn less(to: &ContactImpulses, from: &ContactImpulses, count: usize) -> ContactImpulses {
     let mut off = NONE;
     for k in 0..count {
         off[k] = to[k] - from[k];
@@ -68,34 +59,10 @@ fn less(to: &Impulses, from: &Impulses, count: usize) -> Impulses {
 }
 
 /// Takes a share of the one from the other.
-fn take(from: &mut Impulses, one: &Impulses, share: f64, count: usize) {
+fn take(from: &mut ContactImpulses, one: &ContactImpulses, share: f64, count: usize) {
     for k in 0..count {
         from[k] -= one[k] * share;
     }
-}
-
-/// Sweeps of the same changes after which the first contact comes to the rim of its cone or lets go; `None` if none does.
-fn leap(contacts: &[BlockContact], left: &Impulses) -> Option<f64> {
-    let first = |(contact, change): (&BlockContact, &Vec3)| {
-        let (n, friction2) = (&contact.n, contact.friction * contact.friction);
-        let (push, grows) = (n.dot(&contact.impulse), n.dot(change));
-        let (drag, turns) = (contact.impulse - n * push, change - n * grows);
-        // |drag + k turns|² = μ² (push + k grows)²
-        let inside = drag.norm_squared() - friction2 * push * push;
-        if inside >= -AT_RIM * friction2 * push * push {
-            return if grows < 0.0 { -push / grows } else { f64::INFINITY };
-        }
-        let (half, whole) = (
-            drag.dot(&turns) - friction2 * push * grows,
-            turns.norm_squared() - friction2 * grows * grows,
-        );
-        let root = (half * half - whole * inside).max(0.0).sqrt();
-        let far = -(half + root.copysign(half));
-        let roots = [far / whole, inside / far].into_iter();
-        roots.filter(|k| *k > 0.0).fold(f64::INFINITY, f64::min)
-    };
-    let sweeps = contacts.iter().zip(left).map(first).fold(f64::INFINITY, f64::min);
-    (sweeps.is_finite() && sweeps > 0.0).then_some(sweeps)
 }
 
 impl Mixing {
@@ -114,14 +81,14 @@ impl Mixing {
 
     /// Whether so many contacts are mixed, and sweeps do not go on alone.
     fn is_on(&self) -> bool {
-        self.count <= MOST && self.setbacks < SETBACKS && self.sweeps > BEFORE
+        self.count <= MOST && self.setbacks < SETBACKS
     }
 
     /// A sweep begins with these contacts.
     #[inline]
     pub(super) fn begin(&mut self, contacts: &[BlockContact]) {
         self.sweeps += 1;
-        if self.is_on() {
+        if self.is_on() && self.sweeps > BEFORE {
             for (began, contact) in self.began.iter_mut().zip(contacts) {
                 *began = contact.impulse;
             }
@@ -131,7 +98,7 @@ impl Mixing {
     /// After a sweep that has not settled: the contacts take the impulses that the next begins with; the change of velocity and spin.
     pub(super) fn mix(&mut self, mass: &Mass, contacts: &mut [BlockContact]) -> (Vec3, Vec3) {
         let mut change = (Vec3::zeros(), Vec3::zeros());
-        if !self.is_on() {
+        if !self.is_on() || self.sweeps <= BEFORE {
             return change;
         }
         let Some(next) = self.next(contacts) else { return change };
@@ -148,7 +115,7 @@ impl Mixing {
     }
 
     /// The impulses with which the next sweep begins; `None` = those with which this one ended.
-    fn next(&mut self, contacts: &[BlockContact]) -> Option<Impulses> {
+    fn next(&mut self, contacts: &[BlockContact]) -> Option<ContactImpulses> {
         let count = self.count;
         let mut ended = NONE;
         for (ended, contact) in ended.iter_mut().zip(contacts) {
@@ -161,18 +128,11 @@ impl Mixing {
         if !std::mem::replace(&mut self.has_last, true) {
             return None;
         }
-        let drift = less(&left, &last_left, count);
-        if dot(&drift, &drift, count) <= DRIFTS * DRIFTS * size2 {
-            (self.len, self.has_last, self.setbacks) = (0, false, self.setbacks + 1);
-            let sweeps = leap(contacts, &left)?;
-            take(&mut ended, &left, -sweeps, count);
-            return Some(ended);
-        }
         if size2 > GROWS * GROWS * last_size2 {
             (self.len, self.setbacks) = (0, self.setbacks + 1);
             return None;
         }
-        self.learn(drift, less(&ended, &last_ended, count));
+        self.learn(less(&left, &last_left, count), less(&ended, &last_ended, count));
         let (mut rest, mut next) = (left, ended);
         for (own, end) in &self.known[..self.len] {
             let share = dot(own, &rest, count);
@@ -183,7 +143,7 @@ impl Mixing {
     }
 
     /// Learns a difference of what sweeps changed, and of where they ended.
-    fn learn(&mut self, mut own: Impulses, mut end: Impulses) {
+    fn learn(&mut self, mut own: ContactImpulses, mut end: ContactImpulses) {
         let count = self.count;
         if self.len == KEPT {
             // the oldest belongs to other directions of friction; those after it are square to it, so what is lost is its part alone
