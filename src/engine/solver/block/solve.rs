@@ -62,7 +62,7 @@ pub(crate) struct BlockContact {
     /// `G + C` and its inverse.
     whole: Inverted,
     /// `G + C` along the normal and two directions of the surface.
-    rim: Rim,
+    rim: SlidingAnswer,
     /// How it gives way; `None` in the rigid limit.
     springs: Option<GivingWay>,
 }
@@ -76,7 +76,7 @@ struct Inverted {
 
 /// What a contact that slides is solved with: a matrix (1/kg) in the frame of the normal.
 #[derive(Debug, Clone, Copy)]
-struct Rim {
+struct SlidingAnswer {
     /// Directions along the surface.
     first: Vec3,
     second: Vec3,
@@ -87,7 +87,7 @@ struct Rim {
     across: Matrix2<f64>,
 }
 
-impl Rim {
+impl SlidingAnswer {
     fn of(n: &Vec3, whole: &Matrix3<f64>) -> Self {
         let frame = ContactFrame::of(n);
         let (first, second) = (frame.out_along([1.0, 0.0]), frame.out_along([0.0, 1.0]));
@@ -152,7 +152,7 @@ impl BlockContact {
     ) -> Self {
         let answer = mass.answer(&lever);
         let (impulse, whole) = (Vec3::zeros(), Inverted::of(answer, mass.mass));
-        let (limits, springs, rim) = (FrictionLimits::NONE, None, Rim::of(&n, &answer));
+        let (limits, springs, rim) = (FrictionLimits::NONE, None, SlidingAnswer::of(&n, &answer));
         Self { n, lever, friction, goal, triangle, impulse, limits, answer, whole, rim, springs }
     }
 
@@ -167,7 +167,7 @@ impl BlockContact {
         let soft = normal * along + (Matrix3::identity() - normal) * across;
         let hard = Self::new(mass, (n, lever), (friction, triangle), goal);
         let whole = Inverted::of(hard.answer + soft, mass.mass);
-        let rim = Rim::of(&n, &whole.matrix);
+        let rim = SlidingAnswer::of(&n, &whole.matrix);
         Self { whole, rim, springs: Some(springs), ..hard }
     }
 
@@ -216,11 +216,14 @@ impl BlockContact {
         let hard = self.whole.matrix - normal * springs.compliance[0];
         let mass_kg = self.whole.inverse.trace() / 3.0;
         let goal = self.goal + self.n * (springs.surface_m_s - self.n.dot(&self.goal));
-        self.answering(&(u - goal), (&Inverted::of(hard, mass_kg), &Rim::of(&self.n, &hard)))
+        self.answering(
+            &(u - goal),
+            (&Inverted::of(hard, mass_kg), &SlidingAnswer::of(&self.n, &hard)),
+        )
     }
 
     /// Its impulse where the point would move by `u` beyond its goal without it, and answers an impulse by `whole`.
-    fn answering(&self, u: &Vec3, (whole, rim): (&Inverted, &Rim)) -> Vec3 {
+    fn answering(&self, u: &Vec3, (whole, rim): (&Inverted, &SlidingAnswer)) -> Vec3 {
         let up = self.n.dot(u);
         if up >= 0.0 {
             return Vec3::zeros();
@@ -245,7 +248,7 @@ impl BlockContact {
         &self,
         (up, slip): (f64, Vector2<f64>),
         mut d: Vector2<f64>,
-        rim: &Rim,
+        rim: &SlidingAnswer,
     ) -> Option<Vec3> {
         let friction = self.friction;
         for _ in 0..TURNS {
