@@ -66,6 +66,7 @@ pub struct Settings {
     /// if not, step by step like any other, and by implicit stages (`adaptive`, `reference`).
     pub impact_kernels: bool,
     /// Blocks: longest way of a corner in one step over the radius of its rounding (–); a block turns no further than a tenth of it (rad).
+    /// In the rigid limit three times as far while every corner skids over one triangle.
     pub corner_way: f64,
     /// Impacts slower than this do not rebound (m/s); `None` = the speed that numerics and ground ask for.
     pub capture_speed_m_s: Option<f64>,

@@ -19,7 +19,7 @@
 
 mod window;
 
-use super::top::Top;
+use super::top::{ShortTurn, Top};
 use super::{FlightEnd, Parabola, time_of_impact_past};
 use crate::body::Block;
 use crate::contact::block::Pose;
@@ -92,8 +92,19 @@ impl Tumble<'_> {
         Pose { centre: self.path.centre(t), attitude: self.top.attitude(t) }
     }
 
-    fn moment(&self, t: f64) -> Moment {
-        let pose = self.pose(t);
+    /// The flight at `t` (s); `near` is a short turn that begins at its time, renewed where it reaches no further than `t`. Nothing is
+    /// asked later than `ends` (s).
+    fn moment(&self, t: f64, ends: f64, near: &mut Option<(f64, ShortTurn)>) -> Moment {
+        let centre = self.path.centre(t);
+        let known = near.as_ref().filter(|(from, turn)| t - from <= turn.holds_s);
+        let attitude = if let Some((from, turn)) = known {
+            turn.attitude(t - from)
+        } else {
+            let attitude = self.top.attitude(t);
+            *near = self.top.short(attitude, ends - t).map(|turn| (t, turn));
+            attitude
+        };
+        let pose = Pose { centre, attitude };
         let spin = self.top.spin(&pose.attitude);
         Moment { pose, velocity: self.path.velocity(t), spin }
     }
@@ -219,15 +230,16 @@ fn advance(
     };
     scratch.planes.extend(near.triangles().iter().map(plane));
     let bend = tumble.bend();
-    let mut search = WindowSearch { terrain, tumble, near, bend, moment: tumble.moment(begins) };
+    let mut short = None;
+    let moment = tumble.moment(begins, ends, &mut short);
+    let mut search = WindowSearch { terrain, tumble, near, bend, moment };
     let mut now = begins;
     while let Some(Reverse((bits, part))) = scratch.dues.pop() {
         let time = f64::from_bits(bits);
-        // the attitude is a closed form, but dear (elliptic functions): once a moment, for all
-        // parts due then
+        // the attitude is worked out once a moment, for all parts due then
         if time > now {
             now = time;
-            search.moment = tumble.moment(now);
+            search.moment = tumble.moment(now, ends, &mut short);
         }
         let step = search.safe_step(scratch.parts[part as usize], ends - now, scratch);
         if step < SHORTEST_S {

@@ -48,18 +48,30 @@ pub(super) fn check_size(scene: &Scene, terrain: &Terrain) -> Result<()> {
     Err(Error::input(&scene.file, "[[terrain]] scale", found, remedy))
 }
 
-/// The steepest slope on which each ground stops a rolling sphere: `tan θ` = rolling friction.
+/// The steepest slope on which each ground stops a rolling sphere, `tan θ` = rolling friction, and keeps a block that lies on a face,
+/// `tan θ` = friction: where a block stops rolling is a matter of its shape.
 pub(super) fn rolling_stops(scene: &Scene) -> Vec<String> {
-    let stops = |(name, ground): (&String, &GroundTable)| {
+    let up_to = |[least, middle, most]: [f64; 3]| {
+        let spread =
+            if most > least { format!(" ({least:.1}° to {most:.1}°)") } else { String::new() };
+        format!("on slopes of up to {middle:.1}°{spread}")
+    };
+    let spheres = |(name, ground): (&String, &GroundTable)| {
         let Some(rolling) = ground.rolling_friction.as_ref() else {
             return format!("{name}: on no slope, it has no rolling friction");
         };
-        let [least, middle, most] = rolling.reckoned().map(|value| math::atan(value).to_degrees());
-        let spread =
-            if most > least { format!(" ({least:.1}° to {most:.1}°)") } else { String::new() };
-        format!("{name}: on slopes of up to {middle:.1}°{spread}")
+        let slopes = up_to(rolling.reckoned().map(|value| math::atan(value).to_degrees()));
+        format!("{name}: {slopes}")
     };
-    scene.grounds.iter().map(stops).collect()
+    let blocks = |(name, ground): (&String, &GroundTable)| {
+        let slopes = up_to(ground.friction_angle_deg.reckoned());
+        format!(
+            "{name}: a block by its shape; on a face, if it does not tip, it stays {slopes}, the friction angle"
+        )
+    };
+    let of_spheres = scene.grounds.iter().filter(|_| scene.has_spheres()).map(spheres);
+    let of_blocks = scene.grounds.iter().filter(|_| scene.has_blocks()).map(blocks);
+    of_spheres.chain(of_blocks).collect()
 }
 
 /// What each ground gives back of the slip of an impact that sticks, at its median values.

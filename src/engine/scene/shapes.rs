@@ -153,6 +153,12 @@ impl Scene {
         self.rocks.shapes.iter().any(|shape| shape.kind != ShapeKind::Sphere)
     }
 
+    /// Whether some rocks are spheres.
+    pub(crate) fn has_spheres(&self) -> bool {
+        let shapes = &self.rocks.shapes;
+        shapes.is_empty() || shapes.iter().any(|shape| shape.kind == ShapeKind::Sphere)
+    }
+
     /// Corner radius of the sharpest blocks over `radius_m` (–); `None` where all rocks are spheres.
     pub fn sharpest(&self) -> Option<f64> {
         let blocks = self.rocks.shapes.iter().filter(|shape| shape.kind != ShapeKind::Sphere);

@@ -58,8 +58,7 @@ pub(super) fn follow_block(
 ) -> Trajectory {
     let block = &drawn.block;
     let world = settings.around(Body::of_block(block, settings.gravity_m_s2), laws);
-    footing.near.forget();
-    footing.touches.forget();
+    footing.forget();
     footing.raise_stems(settings.terrain, &random);
     (footing.near.tested, footing.sweeps) = (0, 0);
     footing.facets = RoughFacets::of(random, laws);
@@ -242,6 +241,7 @@ impl Roll<'_> {
         if loss.is_none() && broken_j <= 0.0 {
             return false;
         }
+        self.recorder.effort.unsettled += u64::from(loss.is_some() && self.footing.unsettled);
         let mut loss = loss.unwrap_or_default();
         self.footing.bend_stem(&self.world, (block, &mut self.moving), &mut loss);
         self.recorder.pay(&loss, 1.0);

@@ -10,6 +10,7 @@
 
 mod energy;
 mod facet;
+mod look;
 mod rolling;
 mod slip;
 mod solve;
@@ -25,11 +26,10 @@ use super::roughness::RoughFacets;
 use super::slip::Slip;
 use super::stem_load::StemLoad;
 use crate::body::Block;
-use crate::contact::MOST;
-use crate::contact::block::{BlockTouch, BlockTouches, Pose, keep_widest, touches};
+use crate::contact::block::{BlockTouch, BlockTouches, Pose};
 use crate::contact::neighbours::Neighbours;
 use crate::flight::block::WindowScratch;
-use crate::flight::top::{Top, spin_of};
+use crate::flight::top::{attitude_after, spin_of};
 use crate::rock::{Motion, Vec3};
 use energy::hold_energy;
 use nalgebra::{Matrix3, Rotation3};
@@ -39,10 +39,6 @@ use springs::Springs;
 
 /// Gaps no wider than this touch (–, relative to the radius of the sphere of equal volume).
 pub(crate) const TOUCH: f64 = 1e-8;
-/// Features are collected for a way of the centre (–, relative to the radius of the sphere of equal volume) …
-const WAY: f64 = 0.5;
-/// … and so far from the balls (–, relative to their radius): a corner that far from all need not be asked for a while.
-const SEES: f64 = 3.0;
 /// Contacts this far ahead take part in a step (–, relative to the balls' radius).
 const AHEAD: f64 = 1.0;
 /// A block turns no further in one step (rad) than this share of the longest way of a corner over the balls' radius.
@@ -70,6 +66,8 @@ pub(crate) struct Moving {
 pub(crate) struct Footing {
     pub(crate) near: Neighbours,
     pub(crate) touches: BlockTouches,
+    /// From where, and how far, the last look was (m), as long as its touches stand.
+    looked: Option<(Pose, f64)>,
     /// Work space of the search for the end of a flight.
     pub(crate) window: WindowScratch,
     contacts: Vec<BlockContact>,
@@ -90,6 +88,8 @@ pub(crate) struct Footing {
     stem_load: StemLoad,
     /// Passes over the contacts.
     pub(crate) sweeps: u64,
+    /// Whether the impulses of the last solve did not settle.
+    pub(crate) unsettled: bool,
 }
 
 /// What a step has done.
@@ -136,9 +136,9 @@ impl Moving {
 
     /// Moves on for `t` (s) without any force.
     fn drift(&mut self, block: &Block, t: f64) {
-        let top = Top::new(block.inertia_kg_m2, self.pose.attitude, self.momentum);
+        let turned = attitude_after(block.inertia_kg_m2, self.pose.attitude, &self.momentum, t);
         self.pose.centre += self.v * t;
-        self.pose.attitude = orthonormal(&top.attitude(t));
+        self.pose.attitude = orthonormal(&turned);
     }
 
     /// Takes the impulses of the contacts, and of rolling friction.
@@ -178,31 +178,6 @@ fn orthonormal(turned: &Rotation3<f64>) -> Rotation3<f64> {
 }
 
 impl Footing {
-    /// Sees to it that the features around a block are known, with room for some looks.
-    fn know(&mut self, world: &ContactEnvironment, block: &Block, pose: &Pose) {
-        let core = block.bound_m - block.ball_m;
-        if !self.near.covers_around(&pose.centre, core) {
-            let margin = core + WAY * block.radius_m;
-            let slack = SEES * block.ball_m;
-            self.near.collect(world.terrain, &pose.centre, block.ball_m, margin, slack);
-        }
-    }
-
-    /// Looks for the contacts of a block that are no wider apart than `reach_m`.
-    pub(crate) fn look(
-        &mut self,
-        world: &ContactEnvironment,
-        block: &Block,
-        pose: &Pose,
-        reach_m: f64,
-    ) {
-        self.know(world, block, pose);
-        touches(&mut self.near, world.terrain, (block, pose), reach_m, &mut self.touches);
-        if self.touches.found.len() > MOST {
-            keep_widest(&mut self.touches.found, MOST);
-        }
-    }
-
     /// Contacts that hold the block or strike it: those of the last look that touch.
     pub(crate) fn touching(&self, block: &Block) -> impl Iterator<Item = &BlockTouch> {
         let most = TOUCH * block.radius_m;
@@ -252,7 +227,7 @@ impl Footing {
             self.contacts.extend(wanted.iter().map(goal));
             self.turning = rigid_turning(&self.contacts);
             let asked = (&mut self.contacts[..], &mut self.turning);
-            solve(&mass, asked, (v, w), (rounding_m_s, SWEEPS), &mut self.sweeps);
+            self.unsettled = !solve(&mass, asked, (v, w), (rounding_m_s, SWEEPS), &mut self.sweeps);
             thrown = moving.clone();
             thrown.take(&self.contacts, &self.turning, block.mass_kg);
             thrown.motion_j(block) <= before_j * (1.0 + ROUNDING)
@@ -283,8 +258,9 @@ impl Footing {
     ) -> Stepped {
         let spin = moving.spin(block);
         let fastest = moving.v.norm() + spin.norm() * block.bound_m;
+        let way_m = self.way_m(block, moving, corner_way);
         let dt = most_s
-            .min(corner_way * block.ball_m / fastest.max(f64::MIN_POSITIVE))
+            .min(way_m / fastest.max(f64::MIN_POSITIVE))
             .min(TURN * corner_way / spin.norm().max(f64::MIN_POSITIVE));
         let (start, before_j) = (moving.clone(), moving.motion_j(block));
         let dt = dt.min(moving.climbs_s((block.mass_kg, &world.body.gravity), before_j));
@@ -306,7 +282,7 @@ impl Footing {
         let free = (v + weight, w);
         self.turning = rigid_turning(&self.contacts);
         let asked = (&mut self.contacts[..], &mut self.turning);
-        let settled = solve(&mass, asked, free, (rounding_m_s, SWEEPS), &mut self.sweeps);
+        self.unsettled = !solve(&mass, asked, free, (rounding_m_s, SWEEPS), &mut self.sweeps);
         moving.v += weight;
         moving.take(&self.contacts, &self.turning, block.mass_kg);
         // the way of the step is that of the mean velocity, so this is just what the weight gives
@@ -324,7 +300,7 @@ impl Footing {
         let on = self.touching(block).next().map(|touch| world.ground_of(touch.triangle));
         self.slip.grow(slipped_m, on);
         let is_free = !self.holds(world, (block, moving), pushed);
-        Stepped { dt, loss, slides, is_free, unsettled: !settled }
+        Stepped { dt, loss, slides, is_free, unsettled: self.unsettled }
     }
 
     /// A contact at a touch, where the block will have slipped `ahead_m` (m) further.

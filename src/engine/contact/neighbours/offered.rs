@@ -35,6 +35,16 @@ pub(crate) struct Peak<'a> {
 }
 
 impl Neighbours {
+    /// How far (m) a foot that moves with `u` (m/s) stays on a face; 0 where it is none of those collected.
+    pub(crate) fn way_over(&self, face: u32, (foot, u): (&Vec3, &Vec3)) -> f64 {
+        let Some(face) = self.faces.iter().find(|near| near.id == face) else { return 0.0 };
+        let leaves_s = (0..3).filter_map(|k| {
+            let speed = face.out[k].dot(u);
+            (speed > 0.0).then(|| (face.rim[k] - face.out[k].dot(foot)).max(0.0) / speed)
+        });
+        leaves_s.fold(f64::INFINITY, f64::min) * u.norm()
+    }
+
     /// The edges that can be touched from where the centre is, with unit directions out of their triangles.
     pub(crate) fn sharp_edges(&self) -> impl Iterator<Item = SharpEdge<'_>> {
         self.edges.iter().map(|edge| SharpEdge {

@@ -129,3 +129,29 @@ fn a_wheel_keeps_its_axis() {
         assert!((top.attitude(f64::from(k)) * Vec3::z() - axis).norm() < 1e-12);
     }
 }
+
+/// The series of a short turn, as far as it reaches, about every axis: fine steps of Runge and Kutta to rounding, and the closed form to that of
+/// its own.
+#[test]
+fn a_short_turn_is_the_closed_form() {
+    let mut worst = [0.0f64; 2];
+    for spin in [[3.0, -4.0, 5.0], [1e-3, 10.0, 1e-3], [0.2, 0.1, -9.0], [7.0, 1e-9, 1e-3]] {
+        for inertia in [BOX, [1.0, 40.0, 40.5]] {
+            let top = top(inertia, Vec3::from(spin));
+            let short = top.short(top.start, 1e9).unwrap();
+            for share in [1e-6, 0.1, 0.5, 1.0] {
+                let t = share * short.holds_s;
+                let found = short.attitude(t);
+                worst[0] = worst[0].max((found.matrix() - integrated(&top, t, 128)).norm());
+                worst[1] = worst[1].max((found.matrix() - top.attitude(t).matrix()).norm());
+            }
+            assert!(short.holds_s > 0.1 * 0.99 / (41.0 * Vec3::from(spin).norm()));
+        }
+    }
+    println!("{worst:?}");
+    // rounding of 128 steps
+    assert!(worst[0] < 3e-14 && worst[1] < 1e-12, "{worst:?}");
+    // closed forms without elliptic functions are cheap enough
+    assert!(top([1.0, 1.0, 2.0], Vec3::x()).short(Rotation3::identity(), 1.0).is_none());
+    assert!(top(BOX, Vec3::zeros()).short(Rotation3::identity(), 1.0).is_none());
+}

@@ -1,8 +1,14 @@
-//! How fast a block slips.
+//! How fast a block slips, and how far a step may take it.
 
-use super::{Footing, Moving};
+use super::{AHEAD, Footing, HELD, Moving};
 use crate::body::Block;
+use crate::contact::FeatureKind;
 use crate::contact::block::BlockTouch;
+
+/// Corners that all skid over one triangle each may go this much further in a step (–): while they do, nothing of the contact changes.
+const SKIDS: f64 = 3.0;
+/// They skid where each of them is at least so fast (–, relative to what any point of the block can be): the block hardly turns.
+const SKIDS_AT: f64 = 0.7;
 
 impl Footing {
     /// Fastest slip of the contacts that touch (m/s).
@@ -12,6 +18,25 @@ impl Footing {
             (u - touch.normal * touch.normal.dot(&u)).norm()
         };
         self.touching(block).map(slip).fold(0.0, f64::max)
+    }
+
+    /// How far the fastest point of a block may go in a step (m): `corner_way` of the balls, and further where every corner that is held skids over
+    /// one triangle until it comes to the edge of that. No further than what touches is known.
+    pub(super) fn way_m(&self, block: &Block, moving: &Moving, corner_way: f64) -> f64 {
+        let short_m = corner_way * block.ball_m;
+        let long_m = (SKIDS * corner_way).min(AHEAD) * block.ball_m;
+        let fastest = moving.v.norm() + moving.spin(block).norm() * block.bound_m;
+        let held = self.touches.found.iter().filter(|touch| touch.gap_m <= HELD * block.radius_m);
+        let ways = held.map(|touch| {
+            let u = moving.at(block, &touch.lever);
+            let skids = block.core.is_corner(touch.part)
+                && touch.feature.kind == FeatureKind::Face
+                && u.norm() >= SKIDS_AT * fastest;
+            let foot = moving.pose.centre + touch.lever;
+            if skids { self.near.way_over(touch.feature.id, (&foot, &u)) } else { 0.0 }
+        });
+        let way_m = ways.reduce(f64::min).unwrap_or(0.0);
+        way_m.clamp(short_m, long_m.max(short_m))
     }
 
     /// Whether a contact that touches slides.

@@ -7,10 +7,14 @@
 //! (projected Gauss–Seidel), each solved for its three unknowns at once. In the rigid limit a contact gives way to nothing, `C = 0`. A spring
 //! and dashpot over an implicit step is the same contact with a compliance and a goal of its own ([`GivingWay`]): one solver serves both.
 
+mod mixing;
+
 use super::rolling::Turning;
 use crate::ground::FrictionLimits;
 use crate::rock::Vec3;
+use crate::solver::friction_rolling::ContactFrame;
 use crate::solver::law::within;
+use mixing::Mixing;
 use nalgebra::{Matrix2, Matrix3, Vector2};
 
 /// Sweeps over the contacts, at most.
@@ -20,6 +24,8 @@ const SETTLED: f64 = 1e-11;
 /// Turns of the direction of friction, at most, and the widest of them (rad).
 const TURNS: u32 = 20;
 const WIDEST_TURN: f64 = 0.8;
+/// A turn (rad) no wider than this is the last: its square is below rounding.
+const LAST_TURN: f64 = 1e-8;
 /// Passes over the impulse of one contact that slides, at most.
 const PASSES: u32 = 100;
 /// Change of it below which they have settled (–).
@@ -55,6 +61,8 @@ pub(crate) struct BlockContact {
     pub(super) answer: Matrix3<f64>,
     /// `G + C` and its inverse.
     whole: Inverted,
+    /// `G + C` along the normal and two directions of the surface.
+    rim: SlidingAnswer,
     /// How it gives way; `None` in the rigid limit.
     springs: Option<GivingWay>,
 }
@@ -64,6 +72,34 @@ pub(crate) struct BlockContact {
 struct Inverted {
     matrix: Matrix3<f64>,
     inverse: Matrix3<f64>,
+}
+
+/// What a contact that slides is solved with: a matrix (1/kg) in the frame of the normal.
+#[derive(Debug, Clone, Copy)]
+struct SlidingAnswer {
+    /// Directions along the surface.
+    first: Vec3,
+    second: Vec3,
+    /// Along the normal for a push along it, and along the surface for the same; the same along the normal for a drag.
+    own: f64,
+    lift: Vector2<f64>,
+    /// Along the surface for a drag.
+    across: Matrix2<f64>,
+}
+
+impl SlidingAnswer {
+    fn of(n: &Vec3, whole: &Matrix3<f64>) -> Self {
+        let frame = ContactFrame::of(n);
+        let (first, second) = (frame.out_along([1.0, 0.0]), frame.out_along([0.0, 1.0]));
+        let flat = |x: &Vec3| Vector2::new(first.dot(x), second.dot(x));
+        let to_n = whole * n;
+        let across = Matrix2::from_columns(&[flat(&(whole * first)), flat(&(whole * second))]);
+        Self { first, second, own: n.dot(&to_n), lift: flat(&to_n), across }
+    }
+
+    fn flat(&self, x: &Vec3) -> Vector2<f64> {
+        Vector2::new(self.first.dot(x), self.second.dot(x))
+    }
 }
 
 impl Inverted {
@@ -116,8 +152,8 @@ impl BlockContact {
     ) -> Self {
         let answer = mass.answer(&lever);
         let (impulse, whole) = (Vec3::zeros(), Inverted::of(answer, mass.mass));
-        let (limits, springs) = (FrictionLimits::NONE, None);
-        Self { n, lever, friction, goal, triangle, impulse, limits, answer, whole, springs }
+        let (limits, springs, rim) = (FrictionLimits::NONE, None, SlidingAnswer::of(&n, &answer));
+        Self { n, lever, friction, goal, triangle, impulse, limits, answer, whole, rim, springs }
     }
 
     /// The same with springs.
@@ -131,7 +167,8 @@ impl BlockContact {
         let soft = normal * along + (Matrix3::identity() - normal) * across;
         let hard = Self::new(mass, (n, lever), (friction, triangle), goal);
         let whole = Inverted::of(hard.answer + soft, mass.mass);
-        Self { whole, springs: Some(springs), ..hard }
+        let rim = SlidingAnswer::of(&n, &whole.matrix);
+        Self { whole, rim, springs: Some(springs), ..hard }
     }
 
     /// The same with what its sliders bear.
@@ -167,7 +204,7 @@ impl BlockContact {
 
     /// Its impulse where the point would move by `u` without it.
     fn own_impulse(&self, u: &Vec3) -> Vec3 {
-        let impulse = self.answering(&(u - self.goal), &self.whole);
+        let impulse = self.answering(&(u - self.goal), (&self.whole, &self.rim));
         let Some(springs) = self.springs.filter(|_| impulse != Vec3::zeros()) else {
             return impulse;
         };
@@ -179,11 +216,14 @@ impl BlockContact {
         let hard = self.whole.matrix - normal * springs.compliance[0];
         let mass_kg = self.whole.inverse.trace() / 3.0;
         let goal = self.goal + self.n * (springs.surface_m_s - self.n.dot(&self.goal));
-        self.answering(&(u - goal), &Inverted::of(hard, mass_kg))
+        self.answering(
+            &(u - goal),
+            (&Inverted::of(hard, mass_kg), &SlidingAnswer::of(&self.n, &hard)),
+        )
     }
 
     /// Its impulse where the point would move by `u` beyond its goal without it, and answers an impulse by `whole`.
-    fn answering(&self, u: &Vec3, whole: &Inverted) -> Vec3 {
+    fn answering(&self, u: &Vec3, (whole, rim): (&Inverted, &SlidingAnswer)) -> Vec3 {
         let up = self.n.dot(u);
         if up >= 0.0 {
             return Vec3::zeros();
@@ -194,38 +234,43 @@ impl BlockContact {
         if push > 0.0 && drag.norm_squared() <= (self.friction * push).powi(2) {
             return stick;
         }
-        self.on_rim(u, (&drag, &whole.matrix))
-            .unwrap_or_else(|| self.sliding(u, (drag, &whole.matrix)))
+        // in a sweep it goes on sliding as it did in the one before
+        let begins = [rim.flat(&self.impulse), rim.flat(&drag)];
+        let mut slides = begins.iter().filter_map(|drag| drag.try_normalize(0.0));
+        let on_rim = slides.find_map(|d| self.on_rim((up, rim.flat(u)), d, rim));
+        on_rim.unwrap_or_else(|| self.sliding(u, (drag, &whole.matrix)))
     }
 
     /// The impulse on the rim of Coulomb's cone, `p (n + μ d)` with a direction `d` along the surface against the slip that it leaves: one
-    /// equation for the angle of `d`, by Newton's method from that of `drag`. `None` where it does not settle on a slip that friction
+    /// equation for the angle of `d`, by Newton's method from a first guess. `None` where it does not settle on a slip that friction
     /// opposes.
-    fn on_rim(&self, u: &Vec3, (drag, whole): (&Vec3, &Matrix3<f64>)) -> Option<Vec3> {
-        let n = &self.n;
-        let first = drag.try_normalize(0.0)?;
-        let second = n.cross(&first);
-        let (to_n, to_first, to_second) = (whole * n, whole * first, whole * second);
-        let flat = |x: &Vec3| Vector2::new(first.dot(x), second.dot(x));
-        let (up, slip, lift) = (n.dot(u), flat(u), flat(&to_n));
-        let across = Matrix2::from_columns(&[flat(&to_first), flat(&to_second)]) * self.friction;
-        let mut d = Vector2::new(1.0, 0.0);
+    fn on_rim(
+        &self,
+        (up, slip): (f64, Vector2<f64>),
+        mut d: Vector2<f64>,
+        rim: &SlidingAnswer,
+    ) -> Option<Vec3> {
+        let friction = self.friction;
         for _ in 0..TURNS {
             let aside = Vector2::new(-d.y, d.x);
-            let own = n.dot(&to_n) + self.friction * lift.dot(&d);
+            let own = rim.own + friction * rim.lift.dot(&d);
             let push = -up / own;
-            let answer = lift + across * d;
+            let answer = rim.lift + rim.across * d * friction;
             let left = slip + answer * push;
-            let push_turns = -push * self.friction * lift.dot(&aside) / own;
-            let turns = aside.dot(&(answer * push_turns + across * aside * push)) - d.dot(&left);
+            let push_turns = -push * friction * rim.lift.dot(&aside) / own;
+            let turns = aside.dot(&(answer * push_turns + rim.across * aside * (friction * push)))
+                - d.dot(&left);
             let turn = -aside.dot(&left) / turns;
             if own <= 0.0 || !turn.is_finite() {
                 return None;
             }
             d = (d + aside * turn.clamp(-WIDEST_TURN, WIDEST_TURN)).normalize();
-            if turn.abs() <= NEAR {
-                let opposes = d.dot(&left) <= 0.0;
-                return opposes.then(|| (n + (first * d.x + second * d.y) * self.friction) * push);
+            // Newton's method squares what is left to turn
+            if turn.abs() <= LAST_TURN {
+                let push = -up / (rim.own + friction * rim.lift.dot(&d));
+                let opposes = d.dot(&left) <= 0.0 && push > 0.0;
+                let drag = rim.first * d.x + rim.second * d.y;
+                return opposes.then(|| (self.n + drag * friction) * push);
             }
         }
         None
@@ -274,7 +319,8 @@ pub(super) fn rigid_turning(contacts: &[BlockContact]) -> Turning {
 ///
 /// What must settle is the motion of the body, not each impulse. Where there are more contacts than a rigid body can tell apart, what one asks
 /// may contradict what another asks, by rounding or by the little that a turn within the step moves two sticking points towards each other; the
-/// sweeps then shift impulse between them without end, and the body does not feel it. Goals are known to `rounding_m_s` (m/s) only, and
+/// sweeps then shift impulse between them without end, and the body does not feel it. Where a third contact slides meanwhile it feels a little, some
+/// 1e-7 m/s, until one of both begins to slip: those are the few solves that do not settle, and are counted. Goals are known to `rounding_m_s` (m/s) only, and
 /// there are at most so many sweeps.
 pub(crate) fn solve(
     mass: &Mass,
@@ -285,8 +331,10 @@ pub(crate) fn solve(
 ) -> bool {
     let alone = contacts.len() <= 1 && !turning.is_on();
     let reach = contacts.iter().map(|contact| contact.lever.norm()).fold(0.0, f64::max);
+    let mut mixing = Mixing::of(if turning.is_on() { usize::MAX } else { contacts.len() });
     for _ in 0..most {
         *sweeps += 1;
+        mixing.begin(contacts);
         let (before, mut scale) = ((v, w), f64::MIN_POSITIVE);
         for contact in contacts.iter_mut() {
             let u = Mass::at(&contact.lever, (&v, &w)) - contact.answer * contact.impulse;
@@ -303,6 +351,8 @@ pub(crate) fn solve(
         if alone || moved <= (SETTLED * scale / mass.mass).max(rounding_m_s) {
             return true;
         }
+        let (dv, dw) = mixing.mix(mass, contacts);
+        (v, w) = (v + dv, w + dw);
     }
     false
 }

@@ -93,6 +93,7 @@ impl Footing {
     fn fell(&mut self, stem: u32) {
         self.near.gone.push(stem);
         self.near.forget();
+        self.looked = None;
         self.springs.forget_look();
     }
 }

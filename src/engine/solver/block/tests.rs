@@ -11,6 +11,7 @@ mod yielding;
 
 use crate::body::{Shape, Solid, Surface, box_surface, prism_surface};
 use crate::flight::block::{Tumble, first_touch};
+use crate::flight::top::Top;
 use crate::flight::{FlightEnd, Parabola};
 use crate::ground::{Capture, Damping, Ground, Law};
 use crate::math::{atan, cos, sin, turn};

@@ -242,6 +242,14 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ),
     ("computed", "gerechnet"),
     (
+        "{name}: a block by its shape; on a face, if it does not tip, it stays on slopes of up to {x}° ({a}° to {b}°), the friction angle",
+        "{name}: ein Block durch seine Form; auf einer Fläche bleibt er, wenn er nicht kippt, an Hängen bis {x}° ({a}° bis {b}°) liegen, dem Reibungswinkel",
+    ),
+    (
+        "{name}: a block by its shape; on a face, if it does not tip, it stays on slopes of up to {x}°, the friction angle",
+        "{name}: ein Block durch seine Form; auf einer Fläche bleibt er, wenn er nicht kippt, an Hängen bis {x}° liegen, dem Reibungswinkel",
+    ),
+    (
         "{name}: on no slope, it has no rolling friction",
         "{name}: an keinem Hang, er hat keine Rollreibung",
     ),

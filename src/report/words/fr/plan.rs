@@ -248,6 +248,14 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ),
     ("computed", "calculé"),
     (
+        "{name}: a block by its shape; on a face, if it does not tip, it stays on slopes of up to {x}° ({a}° to {b}°), the friction angle",
+        "{name}\u{a0}: un bloc selon sa forme\u{a0}; posé sur une face, s’il ne bascule pas, il reste sur des pentes jusqu’à {x}° ({a}° à {b}°), l’angle de frottement",
+    ),
+    (
+        "{name}: a block by its shape; on a face, if it does not tip, it stays on slopes of up to {x}°, the friction angle",
+        "{name}\u{a0}: un bloc selon sa forme\u{a0}; posé sur une face, s’il ne bascule pas, il reste sur des pentes jusqu’à {x}°, l’angle de frottement",
+    ),
+    (
         "{name}: on no slope, it has no rolling friction",
         "{name}\u{a0}: sur aucune pente, sans frottement de roulement",
     ),

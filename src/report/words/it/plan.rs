@@ -245,6 +245,14 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ),
     ("computed", "calcolato"),
     (
+        "{name}: a block by its shape; on a face, if it does not tip, it stays on slopes of up to {x}° ({a}° to {b}°), the friction angle",
+        "{name}: un masso secondo la sua forma; su una faccia, se non si ribalta, resta su pendii fino a {x}° (da {a}° a {b}°), l’angolo d’attrito",
+    ),
+    (
+        "{name}: a block by its shape; on a face, if it does not tip, it stays on slopes of up to {x}°, the friction angle",
+        "{name}: un masso secondo la sua forma; su una faccia, se non si ribalta, resta su pendii fino a {x}°, l’angolo d’attrito",
+    ),
+    (
         "{name}: on no slope, it has no rolling friction",
         "{name}: su nessun pendio, non ha attrito volvente",
     ),

@@ -26,6 +26,8 @@ struct BlockTrial<'a, 'w> {
     /// Local error allowed (m/s).
     allowed: f64,
     onsets: Onsets,
+    /// Whether the impulses of a stage did not settle.
+    unsettled: bool,
     end: Option<BlockEnd>,
 }
 
@@ -77,11 +79,13 @@ impl BlockTrial<'_, '_> {
         // friction that grows with slip is that of the middle of the step
         self.footing.springs.ahead_m = 0.5 * dt * self.footing.springs.slip_m_s;
         let mut end = None;
+        self.unsettled = false;
         for i in 1..tableau.stages {
             let base = self.footing.base(self.start, tableau, (i, dt));
             let stage = StageBase { start: self.start, base, times_s: (way_s, way_s) };
             let shear = |footing: &Footing, k: usize| footing.stretch_at_base(k, tableau, (i, dt));
             let ends = self.footing.stage(self.world, self.block, &stage, shear)?;
+            self.unsettled |= self.footing.unsettled;
             let begins_s = self.onsets.first(
                 &self.footing.springs,
                 (self.block, &ends.moving, way_s),
@@ -208,15 +212,18 @@ impl Footing {
             omega,
             allowed,
             onsets: Onsets::new(&control, (omega, block.radius_m)),
+            unsettled: false,
             end: None,
         };
         let dt = settle(&mut trial, &control, most_s, &mut rejected)?;
-        let (next_h, end) = (trial.h, trial.end.ok_or(StepError::Unsettled)?);
+        let (next_h, unsettled) = (trial.h, trial.unsettled);
+        let end = trial.end.ok_or(StepError::Unsettled)?;
         self.springs.h = next_h;
         *moving = end.moving;
         self.springs.grow_old(dt);
         let mut done = self.accept((block, moving), (&control, dt));
         done.loss.damping += beyond_j;
+        done.unsettled = unsettled;
         self.begin_late(world);
         self.check_depth(block)?;
         Ok((done, rejected))

@@ -63,7 +63,7 @@ impl Footing {
         if !moving.v.iter().chain(moving.momentum.iter()).all(|x| x.is_finite()) {
             return Err(StepError::NotFinite);
         }
-        let mut done = Stepped { dt, ..Stepped::default() };
+        let mut done = Stepped { dt, unsettled: self.unsettled, ..Stepped::default() };
         for contact in &self.springs.contacts {
             let u = mean.at(block, &contact.lever);
             let shear_rate = (contact.stretch(dt) - contact.shear) / dt;

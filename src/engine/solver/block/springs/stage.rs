@@ -198,6 +198,7 @@ impl Footing {
         let from = (pushed.v, mass.inverse * pushed.momentum);
         // one or two contacts are swept faster, if they settle at all
         let (quick, mut sweeps) = ((rounding_m_s, QUICK), 0);
+        self.unsettled = false;
         let settled =
             self.contacts.len() <= FEW && solve(&mass, self.asked(), from, quick, &mut sweeps);
         sweeps += u64::from(!settled);
@@ -207,7 +208,7 @@ impl Footing {
             for (contact, own) in self.contacts.iter_mut().zip(known) {
                 contact.impulse = self.springs.histories[own.history].impulse;
             }
-            solve(&mass, self.asked(), from, (rounding_m_s, SWEEPS), &mut sweeps);
+            self.unsettled = !solve(&mass, self.asked(), from, (rounding_m_s, SWEEPS), &mut sweeps);
         }
         self.sweeps += sweeps;
         self.springs.rolling.take(&self.turning, act_s);

@@ -1,0 +1,50 @@
+//! What a block can touch where it is.
+
+use super::Footing;
+use crate::body::Block;
+use crate::contact::MOST;
+use crate::contact::block::{Pose, keep_widest, touches};
+use crate::solver::environment::ContactEnvironment;
+
+/// Features are collected for a way of the centre (–, relative to the radius of the sphere of equal volume) …
+const WAY: f64 = 0.5;
+/// … and so far from the balls (–, relative to their radius): a corner that far from all need not be asked for a while.
+const SEES: f64 = 3.0;
+
+impl Footing {
+    /// Forgets all that was seen (before the next block).
+    pub(crate) fn forget(&mut self) {
+        self.near.forget();
+        self.touches.forget();
+        self.looked = None;
+    }
+
+    /// Sees to it that the features around a block are known, with room for some looks.
+    pub(super) fn know(&mut self, world: &ContactEnvironment, block: &Block, pose: &Pose) {
+        let core = block.bound_m - block.ball_m;
+        if !self.near.covers_around(&pose.centre, core) {
+            let margin = core + WAY * block.radius_m;
+            let slack = SEES * block.ball_m;
+            self.near.collect(world.terrain, &pose.centre, block.ball_m, margin, slack);
+        }
+    }
+
+    /// Looks for the contacts of a block that are no wider apart than `reach_m`.
+    pub(crate) fn look(
+        &mut self,
+        world: &ContactEnvironment,
+        block: &Block,
+        pose: &Pose,
+        reach_m: f64,
+    ) {
+        // the look that ended a step is the one that the next begins with
+        if self.looked.replace((*pose, reach_m)) == Some((*pose, reach_m)) {
+            return;
+        }
+        self.know(world, block, pose);
+        touches(&mut self.near, world.terrain, (block, pose), reach_m, &mut self.touches);
+        if self.touches.found.len() > MOST {
+            keep_widest(&mut self.touches.found, MOST);
+        }
+    }
+}

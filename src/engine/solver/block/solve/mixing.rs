@@ -1,0 +1,169 @@
+//! Sweeps that learn from those before them (Anderson 1965; Walker and Ni 2011).
+//!
+//! A sweep turns impulses `x` into `g(x)`; they have settled where `f = g − x` is 0. Sweeps alone come nearer by the same factor each
+//! time, which is near 1 where a face presses on all its corners or friction outweighs the lever. From the last few differences of `f` the
+//! combination is taken that would have left least of it, and the next sweep begins with the same combination of `g`. As
+//! long as every contact keeps sticking or sliding, few unknowns of the body are left, and few sweeps. What a sweep makes of an impulse
+//! is not changed, nor when it has settled.
+
+use super::{BlockContact, Mass};
+use crate::contact::MOST;
+use crate::rock::Vec3;
+
+/// Differences kept (–): a face that slides has three motions to settle, and rounding.
+const KEPT: usize = 4;
+/// Sweeps that go before: most settle at once.
+const BEFORE: u32 = 2;
+/// A difference that adds less than this to those before it tells nothing new (–, relative to its size).
+const NOTHING_NEW: f64 = 1e-7;
+/// What is left may grow this much (–) before the differences are forgotten: contacts have changed from sticking to sliding …
+const GROWS: f64 = 2.0;
+/// … and so often before sweeps go on alone.
+const SETBACKS: u32 = 6;
+
+/// The impulses of all contacts.
+type ContactImpulses = [Vec3; MOST];
+
+const NONE: ContactImpulses = [Vec3::new(0.0, 0.0, 0.0); MOST];
+
+/// What the last sweeps have done.
+#[derive(Debug)]
+pub(super) struct Mixing {
+    /// How many contacts there are.
+    count: usize,
+    /// Sweeps so far.
+    sweeps: u32,
+    setbacks: u32,
+    /// Impulses with which the sweep began.
+    began: ContactImpulses,
+    /// What the sweep before changed, where it ended, and the size of what it changed squared.
+    last: (ContactImpulses, ContactImpulses, f64),
+    has_last: bool,
+    /// Differences of what sweeps changed, made square to each other, with the differences of their ends that belong to them.
+    known: [(ContactImpulses, ContactImpulses); KEPT],
+    /// How many of them, and where the next goes.
+    len: usize,
+}
+
+fn dot(one: &ContactImpulses, other: &ContactImpulses, count: usize) -> f64 {
+    one[..count].iter().zip(&other[..count]).map(|(a, b)| a.dot(b)).sum()
+}
+
+/// `to − from`.
+fn less(to: &ContactImpulses, from: &ContactImpulses, count: usize) -> ContactImpulses {
+    let mut off = NONE;
+    for k in 0..count {
+        off[k] = to[k] - from[k];
+    }
+    off
+}
+
+/// Takes a share of the one from the other.
+fn take(from: &mut ContactImpulses, one: &ContactImpulses, share: f64, count: usize) {
+    for k in 0..count {
+        from[k] -= one[k] * share;
+    }
+}
+
+impl Mixing {
+    pub(super) fn of(count: usize) -> Self {
+        Self {
+            count,
+            sweeps: 0,
+            setbacks: 0,
+            began: NONE,
+            last: (NONE, NONE, f64::INFINITY),
+            has_last: false,
+            known: [(NONE, NONE); KEPT],
+            len: 0,
+        }
+    }
+
+    /// Whether so many contacts are mixed, and sweeps do not go on alone.
+    fn is_on(&self) -> bool {
+        self.count <= MOST && self.setbacks < SETBACKS
+    }
+
+    /// A sweep begins with these contacts.
+    #[inline]
+    pub(super) fn begin(&mut self, contacts: &[BlockContact]) {
+        self.sweeps += 1;
+        if self.is_on() && self.sweeps > BEFORE {
+            for (began, contact) in self.began.iter_mut().zip(contacts) {
+                *began = contact.impulse;
+            }
+        }
+    }
+
+    /// After a sweep that has not settled: the contacts take the impulses that the next begins with; the change of velocity and spin.
+    pub(super) fn mix(&mut self, mass: &Mass, contacts: &mut [BlockContact]) -> (Vec3, Vec3) {
+        let mut change = (Vec3::zeros(), Vec3::zeros());
+        if !self.is_on() || self.sweeps <= BEFORE {
+            return change;
+        }
+        let Some(next) = self.next(contacts) else { return change };
+        for (contact, next) in contacts.iter_mut().zip(&next) {
+            // none pulls
+            if contact.n.dot(next) < 0.0 {
+                continue;
+            }
+            let (dv, dw) = mass.change(contact, &(next - contact.impulse));
+            change = (change.0 + dv, change.1 + dw);
+            contact.impulse = *next;
+        }
+        change
+    }
+
+    /// The impulses with which the next sweep begins; `None` = those with which this one ended.
+    fn next(&mut self, contacts: &[BlockContact]) -> Option<ContactImpulses> {
+        let count = self.count;
+        let mut ended = NONE;
+        for (ended, contact) in ended.iter_mut().zip(contacts) {
+            *ended = contact.impulse;
+        }
+        let left = less(&ended, &self.began, count);
+        let size2 = dot(&left, &left, count);
+        let (last_left, last_ended, last_size2) =
+            std::mem::replace(&mut self.last, (left, ended, size2));
+        if !std::mem::replace(&mut self.has_last, true) {
+            return None;
+        }
+        if size2 > GROWS * GROWS * last_size2 {
+            (self.len, self.setbacks) = (0, self.setbacks + 1);
+            return None;
+        }
+        self.learn(less(&left, &last_left, count), less(&ended, &last_ended, count));
+        let (mut rest, mut next) = (left, ended);
+        for (own, end) in &self.known[..self.len] {
+            let share = dot(own, &rest, count);
+            take(&mut rest, own, share, count);
+            take(&mut next, end, share, count);
+        }
+        Some(next)
+    }
+
+    /// Learns a difference of what sweeps changed, and of where they ended.
+    fn learn(&mut self, mut own: ContactImpulses, mut end: ContactImpulses) {
+        let count = self.count;
+        if self.len == KEPT {
+            // the oldest belongs to other directions of friction; those after it are square to it, so what is lost is its part alone
+            self.known.rotate_left(1);
+            self.len -= 1;
+        }
+        let whole = dot(&own, &own, count).sqrt();
+        for (known, known_end) in &self.known[..self.len] {
+            let share = dot(known, &own, count);
+            take(&mut own, known, share, count);
+            take(&mut end, known_end, share, count);
+        }
+        let size = dot(&own, &own, count).sqrt();
+        if size > NOTHING_NEW * whole && size > 0.0 {
+            for k in 0..count {
+                own[k] /= size;
+                end[k] /= size;
+            }
+            self.known[self.len] = (own, end);
+            self.len += 1;
+        }
+    }
+}
