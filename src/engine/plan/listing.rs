@@ -13,8 +13,8 @@ use serde::{Deserialize, Serialize};
 use std::convert::Infallible;
 use std::fmt;
 
-/// Columns before the text of a line.
-const LABEL: usize = 21;
+/// Columns before the text of a line; a longer label is followed by one blank.
+const LABEL: usize = 19;
 
 impl Plan {
     /// The listing, line by line; `rockfall plan` prints it and every report ends with it.
@@ -222,7 +222,7 @@ pub struct PlanEntry {
 
 impl fmt::Display for PlanEntry {
     fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(to, "{:<LABEL$}{}", self.name, self.said)
+        write!(to, "{:<1$} {2}", self.name, LABEL - 1, self.said)
     }
 }
 
