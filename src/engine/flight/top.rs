@@ -151,9 +151,9 @@ pub(crate) fn attitude_after(
     momentum: &Vec3,
     t: f64,
 ) -> Rotation3<f64> {
-    match ShortTurn::of(inertia, start, momentum, t) {
-        Some(turn) if t <= turn.holds_s => turn.attitude(t),
-        _ => Top::new(inertia, start, *momentum).attitude(t),
+    match ShortTurn::through(inertia, start, momentum, t) {
+        Some(turn) => turn.attitude(t),
+        None => Top::new(inertia, start, *momentum).attitude(t),
     }
 }
 

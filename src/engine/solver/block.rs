@@ -258,7 +258,7 @@ impl Footing {
     ) -> Stepped {
         let spin = moving.spin(block);
         let fastest = moving.v.norm() + spin.norm() * block.bound_m;
-        let way_m = self.way_m(block, moving, corner_way);
+        let way_m = self.way_m((block, moving), corner_way, fastest);
         let dt = most_s
             .min(way_m / fastest.max(f64::MIN_POSITIVE))
             .min(TURN * corner_way / spin.norm().max(f64::MIN_POSITIVE));

@@ -16,6 +16,11 @@ const FAR: f64 = 0.1;
 /// A term no larger than this is below rounding (–).
 const BELOW_ROUNDING: f64 = 1e-17;
 
+/// `Ω`: no spin of a body with this angular momentum is faster (rad/s).
+fn fastest_spin(inertia: [f64; 3], momentum: &Vec3) -> f64 {
+    momentum.norm() / inertia.into_iter().fold(f64::INFINITY, f64::min)
+}
+
 /// A free rotation around one moment.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ShortTurn {
@@ -29,7 +34,7 @@ pub(crate) struct ShortTurn {
 
 impl ShortTurn {
     /// Of a body with three unequal moments (kg m²), turned like this, with a world angular momentum (kg m²/s), for up to `asked_s` (s) or as
-    /// far as the series reaches. `None` where closed form is cheap: two or three equal moments, or no spin.
+    /// far as the series reaches. `None` where the closed form is cheap: two or three equal moments, or no spin.
     pub(crate) fn of(
         inertia: [f64; 3],
         start: Rotation3<f64>,
@@ -39,8 +44,7 @@ impl ShortTurn {
         if !is_wobbling(inertia) {
             return None;
         }
-        let least = inertia.into_iter().fold(f64::INFINITY, f64::min);
-        let fastest = momentum.norm() / least;
+        let fastest = fastest_spin(inertia, momentum);
         let holds_s = asked_s.min(FAR / fastest);
         // also where no spin makes the time endless
         if !(holds_s > 0.0 && fastest > 0.0 && holds_s.is_finite()) {
@@ -49,6 +53,17 @@ impl ShortTurn {
         let mut turn = Self { start, holds_s, terms: [[0.0; 4]; TERMS], count: 1 };
         turn.grow(inertia, &start.inverse_transform_vector(momentum), fastest * holds_s);
         Some(turn)
+    }
+
+    /// Of a turn for all of `t` (s); `None` also where the series does not reach so far.
+    pub(crate) fn through(
+        inertia: [f64; 3],
+        start: Rotation3<f64>,
+        momentum: &Vec3,
+        t: f64,
+    ) -> Option<Self> {
+        let reaches = t <= FAR / fastest_spin(inertia, momentum);
+        reaches.then(|| Self::of(inertia, start, momentum, t)).flatten()
     }
 
     /// Works out the terms for an angular momentum in the body's frame and times up to `reach` over `Ω`.

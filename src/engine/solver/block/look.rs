@@ -20,7 +20,7 @@ impl Footing {
     }
 
     /// Sees to it that the features around a block are known, with room for some looks.
-    pub(super) fn know(&mut self, world: &ContactEnvironment, block: &Block, pose: &Pose) {
+    fn know(&mut self, world: &ContactEnvironment, block: &Block, pose: &Pose) {
         let core = block.bound_m - block.ball_m;
         if !self.near.covers_around(&pose.centre, core) {
             let margin = core + WAY * block.radius_m;
@@ -29,7 +29,19 @@ impl Footing {
         }
     }
 
-    /// Looks for the contacts of a block that are no wider apart than `reach_m`.
+    /// Looks for all contacts of a block that are no wider apart than `reach_m`.
+    pub(super) fn look_at_all(
+        &mut self,
+        world: &ContactEnvironment,
+        (block, pose): (&Block, &Pose),
+        reach_m: f64,
+    ) {
+        self.looked = None;
+        self.know(world, block, pose);
+        touches(&mut self.near, world.terrain, (block, pose), reach_m, &mut self.touches);
+    }
+
+    /// Looks for the contacts of a block that are no wider apart than `reach_m`: the widest give way where there are too many.
     pub(crate) fn look(
         &mut self,
         world: &ContactEnvironment,
@@ -38,11 +50,11 @@ impl Footing {
         reach_m: f64,
     ) {
         // the look that ended a step is the one that the next begins with
-        if self.looked.replace((*pose, reach_m)) == Some((*pose, reach_m)) {
+        if self.looked == Some((*pose, reach_m)) {
             return;
         }
-        self.know(world, block, pose);
-        touches(&mut self.near, world.terrain, (block, pose), reach_m, &mut self.touches);
+        self.look_at_all(world, (block, pose), reach_m);
+        self.looked = Some((*pose, reach_m));
         if self.touches.found.len() > MOST {
             keep_widest(&mut self.touches.found, MOST);
         }

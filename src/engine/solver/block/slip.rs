@@ -20,12 +20,16 @@ impl Footing {
         self.touching(block).map(slip).fold(0.0, f64::max)
     }
 
-    /// How far the fastest point of a block may go in a step (m): `corner_way` of the balls, and further where every corner that is held skids over
-    /// one triangle until it comes to the edge of that. No further than what touches is known.
-    pub(super) fn way_m(&self, block: &Block, moving: &Moving, corner_way: f64) -> f64 {
+    /// How far the fastest point of a block, at `fastest` (m/s), may go in a step (m): `corner_way` of the balls, and further where every corner
+    /// that is held skids over one triangle until it comes to the edge of that. No further than what touches is known.
+    pub(super) fn way_m(
+        &self,
+        (block, moving): (&Block, &Moving),
+        corner_way: f64,
+        fastest: f64,
+    ) -> f64 {
         let short_m = corner_way * block.ball_m;
         let long_m = (SKIDS * corner_way).min(AHEAD) * block.ball_m;
-        let fastest = moving.v.norm() + moving.spin(block).norm() * block.bound_m;
         let held = self.touches.found.iter().filter(|touch| touch.gap_m <= HELD * block.radius_m);
         let ways = held.map(|touch| {
             let u = moving.at(block, &touch.lever);

@@ -10,11 +10,12 @@
 mod mixing;
 
 use super::rolling::Turning;
+use crate::contact::MOST;
 use crate::ground::FrictionLimits;
 use crate::rock::Vec3;
 use crate::solver::friction_rolling::ContactFrame;
 use crate::solver::law::within;
-use mixing::Mixing;
+use mixing::{BEFORE, Mixing};
 use nalgebra::{Matrix2, Matrix3, Vector2};
 
 /// Sweeps over the contacts, at most.
@@ -331,10 +332,13 @@ pub(crate) fn solve(
 ) -> bool {
     let alone = contacts.len() <= 1 && !turning.is_on();
     let reach = contacts.iter().map(|contact| contact.lever.norm()).fold(0.0, f64::max);
-    let mut mixing = Mixing::of(if turning.is_on() { usize::MAX } else { contacts.len() });
-    for _ in 0..most {
+    let mixes = !turning.is_on() && contacts.len() <= MOST;
+    let mut mixing: Option<Mixing> = None;
+    for sweep in 0..most {
         *sweeps += 1;
-        mixing.begin(contacts);
+        if mixes && sweep >= BEFORE {
+            mixing.get_or_insert_with(|| Mixing::of(contacts.len())).begin(contacts);
+        }
         let (before, mut scale) = ((v, w), f64::MIN_POSITIVE);
         for contact in contacts.iter_mut() {
             let u = Mass::at(&contact.lever, (&v, &w)) - contact.answer * contact.impulse;
@@ -351,8 +355,10 @@ pub(crate) fn solve(
         if alone || moved <= (SETTLED * scale / mass.mass).max(rounding_m_s) {
             return true;
         }
-        let (dv, dw) = mixing.mix(mass, contacts);
-        (v, w) = (v + dv, w + dw);
+        if let Some(mixing) = &mut mixing {
+            let (dv, dw) = mixing.mix(mass, contacts);
+            (v, w) = (v + dv, w + dw);
+        }
     }
     false
 }

@@ -26,7 +26,6 @@ mod stage;
 use super::solve::{BlockContact, GivingWay, Mass};
 use super::{Footing, Moving, Stepped, TOUCH};
 use crate::body::Block;
-use crate::contact::block::{Pose, touches};
 use crate::ground::Law;
 use crate::math;
 use crate::rock::Vec3;
@@ -266,17 +265,6 @@ fn turning(turned: &Vec3, w: &Vec3) -> Vec3 {
 }
 
 impl Footing {
-    /// Looks for all contacts of a block that are no wider apart than `reach_m`.
-    fn look_at_all(
-        &mut self,
-        world: &ContactEnvironment,
-        (block, pose): (&Block, &Pose),
-        reach_m: f64,
-    ) {
-        self.know(world, block, pose);
-        touches(&mut self.near, world.terrain, (block, pose), reach_m, &mut self.touches);
-    }
-
     /// Begins an episode of a block that has just touched.
     pub(crate) fn begin_springs(
         &mut self,

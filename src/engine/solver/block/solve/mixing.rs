@@ -13,7 +13,7 @@ use crate::rock::Vec3;
 /// Differences kept (–): a face that slides has three motions to settle, and rounding.
 const KEPT: usize = 4;
 /// Sweeps that go before: most settle at once.
-const BEFORE: u32 = 2;
+pub(super) const BEFORE: u32 = 2;
 /// A difference that adds less than this to those before it tells nothing new (–, relative to its size).
 const NOTHING_NEW: f64 = 1e-7;
 /// What is left may grow this much (–) before the differences are forgotten: contacts have changed from sticking to sliding …
@@ -29,16 +29,13 @@ const NONE: ContactImpulses = [Vec3::new(0.0, 0.0, 0.0); MOST];
 /// What the last sweeps have done.
 #[derive(Debug)]
 pub(super) struct Mixing {
-    /// How many contacts there are.
+    /// How many contacts there are, [`MOST`] at most.
     count: usize,
-    /// Sweeps so far.
-    sweeps: u32,
     setbacks: u32,
     /// Impulses with which the sweep began.
     began: ContactImpulses,
     /// What the sweep before changed, where it ended, and the size of what it changed squared.
-    last: (ContactImpulses, ContactImpulses, f64),
-    has_last: bool,
+    last: Option<(ContactImpulses, ContactImpulses, f64)>,
     /// Differences of what sweeps changed, made square to each other, with the differences of their ends that belong to them.
     known: [(ContactImpulses, ContactImpulses); KEPT],
     /// How many of them, and where the next goes.
@@ -67,38 +64,21 @@ fn take(from: &mut ContactImpulses, one: &ContactImpulses, share: f64, count: us
 
 impl Mixing {
     pub(super) fn of(count: usize) -> Self {
-        Self {
-            count,
-            sweeps: 0,
-            setbacks: 0,
-            began: NONE,
-            last: (NONE, NONE, f64::INFINITY),
-            has_last: false,
-            known: [(NONE, NONE); KEPT],
-            len: 0,
-        }
-    }
-
-    /// Whether so many contacts are mixed, and sweeps do not go on alone.
-    fn is_on(&self) -> bool {
-        self.count <= MOST && self.setbacks < SETBACKS
+        Self { count, setbacks: 0, began: NONE, last: None, known: [(NONE, NONE); KEPT], len: 0 }
     }
 
     /// A sweep begins with these contacts.
     #[inline]
     pub(super) fn begin(&mut self, contacts: &[BlockContact]) {
-        self.sweeps += 1;
-        if self.is_on() && self.sweeps > BEFORE {
-            for (began, contact) in self.began.iter_mut().zip(contacts) {
-                *began = contact.impulse;
-            }
+        for (began, contact) in self.began.iter_mut().zip(contacts) {
+            *began = contact.impulse;
         }
     }
 
     /// After a sweep that has not settled: the contacts take the impulses that the next begins with; the change of velocity and spin.
     pub(super) fn mix(&mut self, mass: &Mass, contacts: &mut [BlockContact]) -> (Vec3, Vec3) {
         let mut change = (Vec3::zeros(), Vec3::zeros());
-        if !self.is_on() || self.sweeps <= BEFORE {
+        if self.setbacks >= SETBACKS {
             return change;
         }
         let Some(next) = self.next(contacts) else { return change };
@@ -123,11 +103,7 @@ impl Mixing {
         }
         let left = less(&ended, &self.began, count);
         let size2 = dot(&left, &left, count);
-        let (last_left, last_ended, last_size2) =
-            std::mem::replace(&mut self.last, (left, ended, size2));
-        if !std::mem::replace(&mut self.has_last, true) {
-            return None;
-        }
+        let (last_left, last_ended, last_size2) = self.last.replace((left, ended, size2))?;
         if size2 > GROWS * GROWS * last_size2 {
             (self.len, self.setbacks) = (0, self.setbacks + 1);
             return None;
