@@ -13,6 +13,9 @@ use crate::solver::step_control::{
     Control, ONSET, PLACE_ROUNDING, RESOLVED, ROUNDING, StepError, TrialStep, TryOutcome, settle,
 };
 
+/// Energy that a step may make by its error, and pays for by its motion (–, relative to that of the speed which its tolerance allows).
+const PAYABLE: f64 = 1e-2;
+
 /// A step of a block among any features.
 struct BlockTrial<'a, 'w> {
     world: &'a ContactEnvironment<'w>,
@@ -28,6 +31,8 @@ struct BlockTrial<'a, 'w> {
     onsets: Onsets,
     /// Whether the impulses of a stage did not settle.
     unsettled: bool,
+    /// Energy that the step has made by its error (J), ≥ 0.
+    made_j: f64,
     end: Option<BlockEnd>,
 }
 
@@ -65,9 +70,11 @@ impl TrialStep for BlockTrial<'_, '_> {
             }
             Some(StagesOutcome::Whole(end, error)) => (end, error),
         };
-        let gains = error <= 1.0 && dt * self.omega > RESOLVED && self.gains(&end, dt);
+        let is_asked = error <= 1.0 && dt * self.omega > RESOLVED;
+        self.made_j = if is_asked { self.made_j(&end, dt) } else { 0.0 };
+        let is_payable = self.made_j <= self.payable_j(&end);
         self.end = Some(end);
-        if gains { TryOutcome::Gains } else { TryOutcome::Error(error) }
+        if is_payable { TryOutcome::Error(error) } else { TryOutcome::Gains }
     }
 }
 
@@ -124,8 +131,8 @@ impl BlockTrial<'_, '_> {
         dt * worst.into_iter().fold(0.0, f64::max) / self.allowed
     }
 
-    /// Whether motion, height and springs together hold more at the step's end than at its start.
-    fn gains(&self, end: &BlockEnd, dt: f64) -> bool {
+    /// How much more motion, height and springs together hold at the step's end than at its start (J); 0 where that is rounding.
+    fn made_j(&self, end: &BlockEnd, dt: f64) -> f64 {
         let (block, body) = (self.block, &self.world.body);
         let lifted_m = end.moving.pose.centre - self.start.pose.centre;
         let lifted = -block.mass_kg * body.gravity.dot(&lifted_m);
@@ -136,7 +143,17 @@ impl BlockTrial<'_, '_> {
         let unknown = ROUNDING * before + PLACE_ROUNDING * block.radius_m * force;
         let pressed =
             self.footing.pressed_j((block, &end.moving), self.control.tableau.diagonal * dt);
-        end.moving.motion_j(block) + lifted + pressed > before + unknown
+        let made_j = end.moving.motion_j(block) + lifted + pressed - before;
+        if made_j > unknown { made_j } else { 0.0 }
+    }
+
+    /// Energy (J) that the motion can pay for without being changed by more than a small part of what the tolerance allows: `m |v| δv`.
+    /// A block that tips over a corner loses nothing, so each step makes or loses a little: to refuse all that make some would
+    /// let its steps be bound by rounding.
+    fn payable_j(&self, end: &BlockEnd) -> f64 {
+        let mass_kg = self.block.mass_kg;
+        let speed_m_s = (2.0 * end.moving.motion_j(self.block) / mass_kg).sqrt();
+        PAYABLE * self.allowed * mass_kg * speed_m_s
     }
 }
 
@@ -213,15 +230,22 @@ impl Footing {
             allowed,
             onsets: Onsets::new(&control, (omega, block.radius_m)),
             unsettled: false,
+            made_j: 0.0,
             end: None,
         };
         let dt = settle(&mut trial, &control, most_s, &mut rejected)?;
-        let (next_h, unsettled) = (trial.h, trial.unsettled);
+        let (next_h, unsettled, made_j) = (trial.h, trial.unsettled, trial.made_j);
         let end = trial.end.ok_or(StepError::Unsettled)?;
         self.springs.h = next_h;
         *moving = end.moving;
         self.springs.grow_old(dt);
         let mut done = self.accept((block, moving), (&control, dt));
+        if made_j > 0.0 {
+            moving.scale_motion((1.0 - made_j / moving.motion_j(block)).max(0.0).sqrt());
+        }
+        let first = &mut self.springs.rates[0];
+        (first.centre, first.turned) = (moving.v, moving.spin(block));
+        self.springs.fresh = true;
         done.loss.damping += beyond_j;
         done.unsettled = unsettled;
         self.begin_late(world);
@@ -245,9 +269,6 @@ impl Footing {
         self.springs.rates.swap(0, tableau.stages - 1);
         self.keep((block, moving), way_s);
         self.springs.forget_look();
-        let first = &mut self.springs.rates[0];
-        (first.centre, first.turned) = (moving.v, moving.spin(block));
-        self.springs.fresh = true;
         done.slides = self.springs.histories.iter().any(|history| history.slides);
         done.is_free = self.springs.is_free();
         done
