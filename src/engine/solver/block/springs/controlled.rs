@@ -149,8 +149,13 @@ impl BlockTrial<'_, '_> {
 
     /// Energy (J) that the motion can pay for without being changed by more than a small part of what the tolerance allows: `m |v| δv`.
     /// A block that tips over a corner loses nothing, so each step makes or loses a little: to refuse all that make some would
-    /// let its steps be bound by rounding.
+    /// let its steps be bound by rounding. Nothing in an impact, nor where one begins: such a step is too long.
     fn payable_j(&self, end: &BlockEnd) -> f64 {
+        let springs = &self.footing.springs;
+        let begins = springs.histories[springs.known..].iter().any(|one| !one.captured);
+        if begins || springs.impact_m_s > 0.0 {
+            return 0.0;
+        }
         let mass_kg = self.block.mass_kg;
         let speed_m_s = (2.0 * end.moving.motion_j(self.block) / mass_kg).sqrt();
         PAYABLE * self.allowed * mass_kg * speed_m_s
