@@ -70,9 +70,9 @@ impl TrialStep for BlockTrial<'_, '_> {
             }
             Some(StagesOutcome::Whole(end, error)) => (end, error),
         };
-        let is_asked = error <= 1.0 && dt * self.omega > RESOLVED;
-        self.made_j = if is_asked { self.made_j(&end, dt) } else { 0.0 };
-        let is_payable = self.made_j <= self.payable_j(&end);
+        self.made_j = if error <= 1.0 { self.made_j(&end, dt) } else { 0.0 };
+        // what comes up pressed in, as one feature takes the place of another, is not brought away by a shorter step
+        let is_payable = dt * self.omega <= RESOLVED || self.made_j <= self.payable_j(&end);
         self.end = Some(end);
         if is_payable { TryOutcome::Error(error) } else { TryOutcome::Gains }
     }
