@@ -205,7 +205,8 @@ impl<'a> BodyWorld<'a> {
             self.take_back(job);
         }
         // islands give back in any order of pairs; the order of numbers makes the next window independent of it
-        self.pair_histories.sort_unstable_by_key(|pair_history| (pair_history.a, pair_history.b));
+        // (each rises by itself, and a stable sort merges what rises)
+        self.pair_histories.sort_by_key(|pair_history| (pair_history.a, pair_history.b));
         self.now_s = end_s;
         self.statistics.windows += 1;
         // where each rock really came to, and by how much its velocity changed on the way
@@ -301,7 +302,14 @@ impl<'a> BodyWorld<'a> {
                 part[k as usize] = (number, place);
             }
         }
-        let mut pair_histories: Vec<Vec<PairHistory>> = lists.iter().map(|_| Vec::new()).collect();
+        let mut counts = vec![0; lists.len()];
+        for &(a, _) in &meetings.pairs {
+            if let Some(count) = counts.get_mut(part[a as usize].0) {
+                *count += 1;
+            }
+        }
+        let mut pair_histories: Vec<Vec<PairHistory>> =
+            counts.into_iter().map(Vec::with_capacity).collect();
         // both lists of pairs rise: one pass over both finds what is known of each pair
         let mut known = 0;
         for &(a, b) in &meetings.pairs {

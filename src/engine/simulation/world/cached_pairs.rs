@@ -15,7 +15,7 @@ use crate::solver::island::broad_phase::{Ball, overlapping};
 const SPARE: f64 = 0.5;
 
 /// Way that each rock may go besides before all are looked for anew (–, relative to its radius).
-const SKIN: f64 = 0.1;
+const SKIN: f64 = 0.25;
 
 /// The pairs that were found last.
 #[derive(Debug, Default)]
@@ -27,6 +27,12 @@ pub(super) struct CachedPairs {
 }
 
 impl CachedPairs {
+    /// Mean way of all rocks since the list was made (m): rocks that fall together keep it.
+    fn common_way(&self, places: &[PredictedRock]) -> Vec3 {
+        let ways = places.iter().zip(&self.centres).map(|(place, centre)| place.centre - centre);
+        ways.fold(Vec3::zeros(), |sum, way| sum + way) / places.len().max(1) as f64
+    }
+
     /// Pairs that overlap or touch if each rock may be anywhere within so far of its centre (m), in ascending order.
     pub(super) fn overlapping(
         &mut self,
@@ -34,10 +40,11 @@ impl CachedPairs {
         reaches: &[f64],
     ) -> Vec<(u32, u32)> {
         // a ball of the reach asked, at the present centre, lies inside the ball that the list was
-        // made for
+        // made for; what all have gone together brings none nearer to another
+        let common = self.common_way(places);
         let fits = |(k, asked): (usize, &f64)| {
             let room = self.reaches[k] - asked;
-            let off = places[k].centre - self.centres[k];
+            let off = places[k].centre - self.centres[k] - common;
             room >= 0.0 && off.norm_squared() <= room * room
         };
         let fits = self.reaches.len() == reaches.len() && reaches.iter().enumerate().all(fits);
@@ -61,6 +68,8 @@ impl CachedPairs {
             let reach = reaches[a] + reaches[b];
             (places[a].centre - places[b].centre).norm_squared() <= reach * reach
         };
-        self.pairs.iter().filter(near).copied().collect()
+        let mut pairs = Vec::with_capacity(self.pairs.len());
+        pairs.extend(self.pairs.iter().filter(near));
+        pairs
     }
 }

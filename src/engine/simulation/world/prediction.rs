@@ -226,7 +226,8 @@ pub(super) fn meetings_in_passing(
     let mut pairs = near(&places.iter().map(reach).collect::<Vec<_>>());
     if !held.is_empty() {
         pairs.extend(held);
-        pairs.sort_unstable();
+        // two lists that rise: a stable sort finds them, and merges
+        pairs.sort();
         pairs.dedup();
     }
     let mut touching = held.iter().peekable();

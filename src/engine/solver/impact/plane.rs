@@ -4,6 +4,8 @@
 //! speed. Frame: two tangents and the normal. Normal motion first, closed and alone; then motion
 //! along the plane under its force; then the free way out of the slab.
 
+mod straight;
+
 use super::ImpactEffort;
 use super::integrate::{ForcedFlow, Span, run};
 use super::normal_motion::{Exit, NormalMotion};
@@ -14,6 +16,8 @@ use crate::rock::Vec3;
 use crate::solver::body::Body;
 use crate::solver::friction_rolling::{Along, ContactFrame, Local};
 use crate::solver::loss::Loss;
+
+pub(crate) use straight::blow_along_a_line;
 
 /// From this tolerance on a shorter series of the force is accurate enough (–).
 const COARSE: f64 = 1e-6;

@@ -107,6 +107,36 @@ impl ForcedFlow<4, 3, 1> for Shear {
     }
 }
 
+/// Shear alone along one line, without gravity.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Straight {
+    pub(super) element: SliderElement,
+    /// Mass over that of the contact point along the surface, `1 + m R²/I` (–).
+    pub(super) lightness: f64,
+}
+
+/// Slip, spring `s`.
+impl ForcedFlow<2, 0, 1> for Straight {
+    #[inline]
+    fn rates(&self, f: f64, y: &[f64; 2], to: &mut Rates<2, 0, 1>) {
+        let SliderElement { damping, rate, cap } = self.element;
+        let (asked, cap) = (y[0] + y[1], cap * f);
+        let p = asked.min(cap).max(-cap);
+        *to = Rates {
+            y: [-self.lightness * damping * p, rate * (p - y[1])],
+            q: [],
+            kinks: [[asked * asked, cap]],
+        };
+    }
+
+    /// As for two directions.
+    #[inline]
+    fn size2(&self, off: &[f64; 2]) -> f64 {
+        let stretch = off[1] / self.element.rate;
+        off[0] * off[0] + stretch * stretch
+    }
+}
+
 /// Shear and rolling.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Both {

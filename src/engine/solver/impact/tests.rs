@@ -3,6 +3,7 @@
 mod frozen;
 mod oracle;
 mod plane;
+mod straight;
 
 use crate::ground::{Capture, Damping, Ground, Law};
 use crate::rock::{Rock, Vec3};

@@ -50,8 +50,24 @@ pub fn overlapping(balls: &[Ball]) -> Vec<(u32, u32)> {
             visit_coarser(&entries, (level, home), |other| add(k, other));
         }
     }
-    pairs.sort_unstable();
-    pairs
+    in_order(&pairs, balls.len())
+}
+
+/// Pairs in ascending order: laid down by their first balls, as these are counted, then the few of each by their second.
+fn in_order(pairs: &[(u32, u32)], balls: usize) -> Vec<(u32, u32)> {
+    let mut ends = vec![0; balls + 1];
+    pairs.iter().for_each(|(a, _)| ends[*a as usize + 1] += 1);
+    for k in 1..ends.len() {
+        ends[k] += ends[k - 1];
+    }
+    let mut sorted = vec![(0, 0); pairs.len()];
+    for pair in pairs {
+        let end = &mut ends[pair.0 as usize];
+        sorted[*end] = *pair;
+        *end += 1;
+    }
+    sorted.chunk_by_mut(|one, two| one.0 == two.0).for_each(<[_]>::sort_unstable);
+    sorted
 }
 
 /// Octave of the cells a ball lies in: they are at least as wide as the ball.

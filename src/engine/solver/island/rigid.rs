@@ -59,6 +59,8 @@ pub(super) struct RigidIsland {
     /// What the normal impulses of sustained contacts took in this step (J).
     taken_j: f64,
     places: Vec<Vec3>,
+    /// Distance of the centres of every pair that is left alone (m).
+    allowed_m: Vec<f64>,
     /// Smallest capture speed (m/s).
     capture_m_s: f64,
     /// Length of the current step (s).

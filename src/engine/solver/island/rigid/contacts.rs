@@ -6,9 +6,9 @@ use crate::ground::{FrictionLimits, Law};
 use crate::rock::Vec3;
 use crate::solver::body::Body;
 use crate::solver::friction_rolling::SlipState;
-use crate::solver::impact::{FrozenContact, throw};
+use crate::solver::impact::{FrozenContact, blow_along_a_line, throw};
 use crate::solver::island::pair_contact::Twist;
-use crate::solver::rigid::{IMPACT, rub};
+use crate::solver::rigid::rub;
 
 /// One rock inside a step.
 #[derive(Debug, Clone, Copy)]
@@ -29,6 +29,8 @@ pub(super) struct StepBody {
     pub(super) blows: u32,
     /// How often it was set in another motion.
     pub(super) times: u32,
+    /// Sweep of the position correction in which it was moved last.
+    pub(super) shifted: u32,
     /// Whether a contact pushed it, and whether it was moved out of something.
     pub(super) pushed: bool,
     pub(super) moved: bool,
@@ -48,6 +50,7 @@ impl StepBody {
             since_s: 0.0,
             blows: 0,
             times: 1,
+            shifted: 0,
             pushed: false,
             moved: false,
         }
@@ -199,19 +202,23 @@ impl BallContact {
     ///
     /// What the two do to each other is what the ground does to one body with their reduced mass `1/(1/m_a + 1/m_b)`, with their
     /// velocity apart and their slip for its velocity, and an inertia that meets friction at the contact point as they do.
-    pub(super) fn impact(&mut self, law: &Law, [a, b]: [&StepBody; 2], captured: bool) {
+    pub(super) fn impact(
+        &mut self,
+        (law, tolerance): (&Law, f64),
+        [a, b]: [&StepBody; 2],
+        captured: bool,
+    ) {
         let (inv_n, inv_t) = self.inv;
         let (mass, radius) = (1.0 / inv_n, a.body.radius.min(b.body.radius));
         let inertia = mass * radius * radius / (inv_t / inv_n - 1.0);
         let body = Body { mass, inertia, radius, gravity: Vec3::zeros() };
+        let (approach, slip) = (-self.speed(a, b), self.slip(a, b));
+        let speeds = [approach, slip.norm()];
         let captured = captured || law.is_plastic();
-        let struck = FrozenContact { normal: self.n, law, stiffness_scale: 1.0, captured };
-        let v = self.n * self.speed(a, b) + self.slip(a, b);
-        let thrown = throw(&body, &[struck], (&v, &Vec3::zeros()), IMPACT);
-        let load = (thrown.velocity_m_s - v) * mass;
-        self.normal_force = self.n.dot(&load).max(0.0);
+        let pushed = blow_along_a_line((&body, law), captured, speeds, tolerance);
+        self.normal_force = mass * pushed[0];
         // followed to a tolerance, the impulse of a rock that slides all the while may be beyond its cap by as much
-        let shear_force = self.n * self.n.dot(&load) - load;
+        let shear_force = slip * (mass * pushed[1] / speeds[1].max(f64::MIN_POSITIVE));
         self.shear_force = self.limits.shear(shear_force, self.normal_force);
     }
 
@@ -314,12 +321,12 @@ impl GroundContact {
     /// Impulses of an impact at velocity `v` and spin `w`: the limit of stiff springs, the same as for a rock alone.
     pub(super) fn impact(
         &mut self,
-        (body, law): (&Body, &Law),
+        (body, law, tolerance): (&Body, &Law, f64),
         (v, w): (&Vec3, &Vec3),
         captured: bool,
     ) {
         let struck = FrozenContact { normal: self.n, law, stiffness_scale: 1.0, captured };
-        let thrown = throw(body, &[struck], (v, w), IMPACT);
+        let thrown = throw(body, &[struck], (v, w), tolerance);
         let load = (thrown.velocity_m_s - v) * body.mass;
         self.normal_force = self.n.dot(&load).max(0.0);
         self.shear_force = load - self.n * self.n.dot(&load);

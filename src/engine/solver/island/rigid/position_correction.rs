@@ -22,12 +22,14 @@ const LAYERS: f64 = 4.0;
 const SWEEPS: u32 = 30;
 
 impl PairHistory {
-    /// Overlap that is left alone (m).
-    fn slack_m(&self, balls: [&StepBody; 2]) -> f64 {
+    /// Distance of two centres that is left alone (m): what weight would press in anyway is left, as without it contacts of a
+    /// heap would open and close from step to step.
+    fn allowed_m(&self, balls: [&StepBody; 2]) -> f64 {
         let weight = |ball: &StepBody| ball.body.mass * ball.body.gravity.norm();
         let radius = balls[0].body.radius.min(balls[1].body.radius);
         let pressed = self.law.pressed_m(LAYERS * (weight(balls[0]) + weight(balls[1])));
-        pressed.clamp(SLACK.0 * radius, SLACK.1 * radius)
+        let slack = pressed.clamp(SLACK.0 * radius, SLACK.1 * radius);
+        balls[0].body.radius + balls[1].body.radius - slack
     }
 }
 
@@ -35,31 +37,21 @@ impl RigidIsland {
     /// Moves apart what overlaps, each by its share of the mass; the height that a rock gains is paid by its motion.
     ///
     /// Gauss–Seidel over pairs and mesh, to and fro between them until nothing moves: each rock out
-    /// of one neighbour may be in another.
+    /// of one neighbour may be in another. What has not been moved since it was seen is passed over: it is where it was.
     pub(super) fn part(&mut self, scene: &mut ImpactScene) {
         self.places.clear();
         self.places.extend(self.balls.iter().map(|ball| ball.c));
-        for _ in 0..SWEEPS {
-            let mut moved = false;
-            for pair_history in scene.pair_histories {
-                let ends = [pair_history.a as usize, pair_history.b as usize];
-                let Ok([a, b]) = self.balls.get_disjoint_mut(ends) else { continue };
-                // what weight would press in anyway is left: without it contacts of a heap would
-                // open and close from step to step
-                let reach = a.body.radius + b.body.radius;
-                let allowed = reach - pair_history.slack_m([a, b]);
-                if (a.c - b.c).norm_squared() >= allowed * allowed {
-                    continue;
-                }
-                let (n, distance) = between(&a.c, &b.c);
-                // each moves by its share of 1/m: the centre of mass of the two stays
-                let way = n * ((allowed - distance) / (a.inv.0 + b.inv.0));
-                a.c += way * a.inv.0;
-                b.c -= way * b.inv.0;
-                moved = true;
-            }
+        self.allowed_m.clear();
+        let balls = &self.balls;
+        self.allowed_m.extend(scene.pair_histories.iter().map(|pair_history| {
+            pair_history.allowed_m([pair_history.a, pair_history.b].map(|k| &balls[k as usize]))
+        }));
+        for sweep in 1..=SWEEPS {
+            let mut moved = self.part_pairs(scene.pair_histories, sweep);
             for k in 0..self.balls.len() {
-                moved |= self.push_out(scene, k);
+                if self.balls[k].is_stirred(sweep) {
+                    moved |= self.push_out(scene, k, sweep);
+                }
             }
             if !moved {
                 break;
@@ -68,8 +60,30 @@ impl RigidIsland {
         self.pay_for_height();
     }
 
+    /// Moves the rocks of every pair apart that overlaps; whether there was one.
+    fn part_pairs(&mut self, pair_histories: &[PairHistory], sweep: u32) -> bool {
+        let mut moved = false;
+        for (pair_history, &allowed) in pair_histories.iter().zip(&self.allowed_m) {
+            let ends = [pair_history.a as usize, pair_history.b as usize];
+            let Ok([a, b]) = self.balls.get_disjoint_mut(ends) else { continue };
+            if !(a.is_stirred(sweep) || b.is_stirred(sweep))
+                || (a.c - b.c).norm_squared() >= allowed * allowed
+            {
+                continue;
+            }
+            let (n, distance) = between(&a.c, &b.c);
+            // each moves by its share of 1/m: the centre of mass of the two stays
+            let way = n * ((allowed - distance) / (a.inv.0 + b.inv.0));
+            a.c += way * a.inv.0;
+            b.c -= way * b.inv.0;
+            (a.shifted, b.shifted) = (sweep, sweep);
+            moved = true;
+        }
+        moved
+    }
+
     /// Moves a rock out of the mesh; whether it was in it.
-    fn push_out(&mut self, scene: &mut ImpactScene, k: usize) -> bool {
+    fn push_out(&mut self, scene: &mut ImpactScene, k: usize, sweep: u32) -> bool {
         let ball = &mut self.balls[k];
         let IslandBody { state, body, laws, .. } = &mut *scene.members[k];
         let world = ContactEnvironment { terrain: scene.terrain, body: *body, laws };
@@ -79,6 +93,9 @@ impl RigidIsland {
             sum + touch.normal * missing.max(0.0)
         });
         ball.c += out;
+        if out != Vec3::zeros() {
+            ball.shifted = sweep;
+        }
         out.norm_squared() > (TOUCH * body.radius).powi(2)
     }
 
@@ -118,6 +135,12 @@ impl RigidIsland {
 }
 
 impl StepBody {
+    /// Whether it was moved in this sweep or in the one before.
+    #[inline]
+    fn is_stirred(&self, sweep: u32) -> bool {
+        self.shifted + 1 >= sweep
+    }
+
     /// Energy in motion (J).
     fn motion_j(&self) -> f64 {
         0.5 * (self.body.mass * self.v.norm_squared() + self.body.inertia * self.w.norm_squared())

@@ -28,7 +28,7 @@ const SETTLED: (f64, f64) = (5e-3, 3e-2);
 /// that just does not (–).
 const SETTLED_FEW: f64 = 1e-3;
 /// Rocks of a small island, at most.
-const FEW: usize = 64;
+pub(super) const FEW: usize = 64;
 /// The same over the capture speed, where there is hardly any weight (–).
 const SETTLED_OF_CAPTURE: f64 = 1e-6;
 /// Part of that from which a change stirs the rocks: what is passed over adds up (–).

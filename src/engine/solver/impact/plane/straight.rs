@@ -1,0 +1,52 @@
+//! A blow without weight and without rolling: what slips keeps its line, and one number of slip and one of the spring tell all.
+//!
+//! Two rocks that strike each other are such a case: their slip is a straight line as long as nothing but the contact acts on it.
+//! The law, its steps and their error are those of [`Plane::follow`]; only the impulses are asked for, neither ways nor losses.
+
+use super::{LOCAL, Plane, Start};
+use crate::ground::Law;
+use crate::rock::Vec3;
+use crate::solver::body::Body;
+use crate::solver::impact::ImpactEffort;
+use crate::solver::impact::sliders::Straight;
+
+/// Impulses over the mass (m/s) of a blow on `body` at a normal speed and a slip, both in m/s and the first positive: along the
+/// normal, and against the slip. `tolerance` is relative to the speed of both (–).
+///
+/// The same as [`throw`](super::super::throw) gives for one contact without rolling, to rounding.
+pub(crate) fn blow_along_a_line(
+    (body, law): (&Body, &Law),
+    captured: bool,
+    [approach, slip]: [f64; 2],
+    tolerance: f64,
+) -> [f64; 2] {
+    let body = Body { gravity: Vec3::zeros(), ..*body };
+    let plane = Plane::of_patch(&body, law, (captured, 1.0), tolerance);
+    // without weight nothing keeps it but a speed too small to be squared
+    let Some(exit) = plane.swing.exit(0.0) else { return [approach, 0.0] };
+    let kept = if captured { 0.0 } else { exit.speed };
+    let against = if slip > 0.0 && plane.shear.is_on() {
+        approach * plane.rubbed(slip / approach, exit.lift)
+    } else {
+        0.0
+    };
+    [approach * (1.0 + kept), against]
+}
+
+impl Plane {
+    /// Impulse against the slip `u` of a blow of so long, in units of mass, approach speed and `1/ω`.
+    fn rubbed(&self, u: f64, length: f64) -> f64 {
+        let flow = Straight { element: self.shear, lightness: 1.0 + self.turns() };
+        let start = Start {
+            v: [u, 0.0],
+            w: [0.0; 3],
+            gravity: [0.0; 2],
+            gamma: 0.0,
+            allowed: LOCAL * self.tolerance * (1.0 + u * u).sqrt(),
+        };
+        let mut effort = ImpactEffort::default();
+        let ([after, _], []) = self.run(&flow, [u, 0.0], &start, length, &mut effort);
+        // the spring gives back no more than it has had, whatever the error of the steps
+        (u - after.min(u).max(-u)) / flow.lightness
+    }
+}
