@@ -103,6 +103,37 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
     ),
     ("Two seeds: nothing pairs.", "Zwei Startwerte: nichts bildet Paare."),
     (
+        "One seed, but other sources or other classes of size: nothing pairs.",
+        "Ein Startwert, aber andere Quellen oder andere Größenklassen: nichts bildet Paare.",
+    ),
+    (
+        "Share of the rocks by frequency that exceed a value: A full, B dashed ({a} and {b} rocks computed). Axes end where one in two hundred exceeds in both.",
+        "Anteil der Blöcke nach Häufigkeit, die einen Wert überschreiten: A voll, B gestrichelt ({a} und {b} gerechnete Blöcke). Achsen enden, wo in beiden einer von zweihundert überschreitet.",
+    ),
+    ("Rocks computed", "Gerechnete Blöcke"),
+    ("Passages", "Durchgänge"),
+    ("Rocks weigh what they stand for", "Blöcke wiegen, wofür sie stehen"),
+    (
+        "Rocks of A weigh what they stand for, those of B all the same",
+        "Blöcke von A wiegen, wofür sie stehen, die von B alle gleich viel",
+    ),
+    (
+        "Rocks of B weigh what they stand for, those of A all the same",
+        "Blöcke von B wiegen, wofür sie stehen, die von A alle gleich viel",
+    ),
+    (
+        "{who}: shares, means and percentiles are those of events, as in the report of each run. Numbers of rocks are of computed ones: rare sizes are computed more often than they come.",
+        "{who}: Anteile, Mittelwerte und Perzentile sind die der Ereignisse, wie im Bericht jedes Laufs. Anzahlen von Blöcken sind die gerechneter: seltene Größen sind öfter gerechnet, als sie vorkommen.",
+    ),
+    (
+        "The runs have other sources or other classes of size: the same release number is another rock in each, nothing pairs, and differences are known no better than both runs apart.",
+        "Die Läufe haben andere Quellen oder andere Größenklassen: dieselbe Nummer einer Ablösung ist in jedem ein anderer Block, nichts bildet Paare, und Differenzen sind nicht besser bekannt als beide Läufe für sich.",
+    ),
+    (
+        "Where rocks weigh what they stand for, each statistic is that of its own run, and the difference is known by what each release moves it by: means by the delta method, percentiles by Woodruff's intervals (1952), shares and passages class by class of size and source, as if one more rock of the heaviest class counted in each run (Fay and Feuer 1997).",
+        "Wo Blöcke wiegen, wofür sie stehen, ist jede Statistik die ihres eigenen Laufs, und das Intervall der Differenz folgt daraus, wie viel jede Ablösung sie bewegt: Mittelwerte nach der Delta-Methode, Perzentile nach den Intervallen von Woodruff (1952), Anteile und Durchgänge Klasse für Klasse von Größe und Quelle, als zählte in jedem Lauf ein Block der schwersten Klasse mehr (Fay und Feuer 1997).",
+    ),
+    (
         "None: scene, meshes, seed, version and releases are the same.",
         "Keine: Szene, Netze, Startwert, Version und Ablösungen sind gleich.",
     ),

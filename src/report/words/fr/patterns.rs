@@ -106,6 +106,37 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
     ),
     ("Two seeds: nothing pairs.", "Deux graines\u{a0}: rien ne forme de paires."),
     (
+        "One seed, but other sources or other classes of size: nothing pairs.",
+        "Une graine, mais d’autres sources ou d’autres classes de taille\u{a0}: rien ne forme de paires.",
+    ),
+    (
+        "Share of the rocks by frequency that exceed a value: A full, B dashed ({a} and {b} rocks computed). Axes end where one in two hundred exceeds in both.",
+        "Part des blocs selon leur fréquence qui dépassent une valeur\u{a0}: A trait plein, B tirets ({a} et {b} blocs calculés). Les axes finissent où un sur deux cents dépasse dans les deux.",
+    ),
+    ("Rocks computed", "Blocs calculés"),
+    ("Passages", "Passages"),
+    ("Rocks weigh what they stand for", "Les blocs pèsent ce qu’ils représentent"),
+    (
+        "Rocks of A weigh what they stand for, those of B all the same",
+        "Les blocs de A pèsent ce qu’ils représentent, ceux de B tous autant",
+    ),
+    (
+        "Rocks of B weigh what they stand for, those of A all the same",
+        "Les blocs de B pèsent ce qu’ils représentent, ceux de A tous autant",
+    ),
+    (
+        "{who}: shares, means and percentiles are those of events, as in the report of each run. Numbers of rocks are of computed ones: rare sizes are computed more often than they come.",
+        "{who}\u{a0}: parts, moyennes et percentiles sont ceux des événements, comme dans le rapport de chaque calcul. Les nombres de blocs sont ceux des blocs calculés\u{a0}: les tailles rares sont calculées plus souvent qu’elles ne surviennent.",
+    ),
+    (
+        "The runs have other sources or other classes of size: the same release number is another rock in each, nothing pairs, and differences are known no better than both runs apart.",
+        "Les calculs ont d’autres sources ou d’autres classes de taille\u{a0}: le même numéro de départ est un autre bloc dans chacun, rien ne forme de paires, et les différences ne sont pas mieux connues que les deux calculs séparément.",
+    ),
+    (
+        "Where rocks weigh what they stand for, each statistic is that of its own run, and the difference is known by what each release moves it by: means by the delta method, percentiles by Woodruff's intervals (1952), shares and passages class by class of size and source, as if one more rock of the heaviest class counted in each run (Fay and Feuer 1997).",
+        "Où les blocs pèsent ce qu’ils représentent, chaque statistique est celle de son propre calcul, et l’intervalle de la différence découle de ce dont chaque départ la déplace\u{a0}: moyennes par la méthode delta, percentiles par les intervalles de Woodruff (1952), parts et passages classe par classe de taille et de source, comme si un bloc de plus de la classe la plus lourde comptait dans chaque calcul (Fay et Feuer 1997).",
+    ),
+    (
         "None: scene, meshes, seed, version and releases are the same.",
         "Aucune\u{a0}: scène, maillages, graine, version et départs sont les mêmes.",
     ),
