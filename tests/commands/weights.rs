@@ -1,4 +1,4 @@
-//! Rocks weigh what they stand for beside another run.
+//! Rocks weigh what they stand for wherever a run is read: beside another run, beside measured ends.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
 use crate::program;
@@ -225,4 +225,30 @@ fn nothing_seen_of_weighted_rocks_is_not_nothing_known() {
     let (low, high) = found.interval.unwrap();
     // the heaviest stands for 0.9/100 of all events; 1.96 √2 of it
     assert!((high - 0.009 * 1.959_964 * 2_f64.sqrt()).abs() < 1e-6 && (low + high).abs() < 1e-15);
+}
+
+/// The table of agreement says the mean runout of the other tables, and a fit of such rocks is refused.
+#[test]
+fn computed_ends_weigh_beside_measured_ones() {
+    let dir = tempfile::tempdir().unwrap();
+    let end = |k: usize| format!("{}.0,4.0,{}.5,{}.0\n", 6 + k % 6, 7 + k % 6, 40 + 2 * k);
+    let ends = "release_x_m,release_y_m,x_m,y_m\n".to_owned();
+    let ends = (0..12).map(end).fold(ends, |all, end| all + &end);
+    fs::write(dir.path().join("ends.csv"), ends).unwrap();
+    let with_ends = |scene: String| {
+        let vary = "[[calibrate.vary]]\nground = \"rock\"\nkey = \"rolling_friction\"\nfrom = 0.1\nto = 0.4\nbefore = 0.25\n";
+        format!("{scene}\n[calibrate]\ndeposits = \"ends.csv\"\n{vary}")
+    };
+    let out = run(dir.path(), "measured", with_ends);
+    let mean = summary(&out)["statistics"]["runout_m"]["mean"]["value"].as_f64().unwrap();
+    let page = fs::read_to_string(out.join("report.html")).unwrap();
+    let said = format!("measured, {mean:.1} m computed");
+    assert!(page.contains(&said), "{said}");
+    assert!(page.contains("Computed rocks weigh what they stand for"));
+    let scene = dir.path().join("measured.toml");
+    let fit = dir.path().join("fit");
+    let said = rockfall(&["calibrate", scene.to_str().unwrap(), "--out", fit.to_str().unwrap()]);
+    let message = String::from_utf8_lossy(&said.stderr);
+    assert_eq!(said.status.code(), Some(2), "{message}");
+    assert!(message.contains("a fit weighs every rock the same"), "{message}");
 }

@@ -225,6 +225,8 @@ pub struct Observed {
     pub measured: Vec<ObservedPath>,
     /// Computed ways, failed rocks left out.
     pub computed: Vec<ObservedPath>,
+    /// What each of these stands for (–); none where all weigh the same.
+    pub weights: Option<Vec<f64>>,
     /// How well they agree.
     pub agreement: Agreement,
 }

@@ -141,7 +141,7 @@ fn observed() -> Observed {
     let (measured, computed): (Vec<ObservedPath>, Vec<ObservedPath>) =
         ((0..40).map(way).collect(), (5..300).map(way).collect());
     let agreement = Agreement::of(&measured, &computed).expect("neither is empty");
-    Observed { measured, computed, agreement }
+    Observed { measured, computed, weights: None, agreement }
 }
 
 /// A site with all of it.

@@ -84,6 +84,10 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "{a} ({b} bis {c} in neun von zehn, {d}) {unit}",
     ),
     ("{a} ({b} to {c} in nine of ten, {d})", "{a} ({b} bis {c} in neun von zehn, {d})"),
+    (
+        "Computed rocks weigh what they stand for, measured ones all the same; the limit is that of as many computed rocks of equal weight as would know as much.",
+        "Gerechnete Blöcke wiegen, wofür sie stehen, gemessene alle gleich viel; die Grenze ist die von so vielen gerechneten Blöcken gleichen Gewichts, wie gleich viel wüssten.",
+    ),
     // Two runs beside each other
     ("Two runs compared", "Zwei Läufe im Vergleich"),
     ("Read this first", "Zuerst lesen"),

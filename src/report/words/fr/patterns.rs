@@ -87,6 +87,10 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "{a} ({b} à {c} neuf fois sur dix, {d}) {unit}",
     ),
     ("{a} ({b} to {c} in nine of ten, {d})", "{a} ({b} à {c} neuf fois sur dix, {d})"),
+    (
+        "Computed rocks weigh what they stand for, measured ones all the same; the limit is that of as many computed rocks of equal weight as would know as much.",
+        "Les blocs calculés pèsent ce qu’ils représentent, les mesurés tous autant\u{a0}; la limite est celle d’autant de blocs calculés de même poids qu’il en faudrait pour en savoir autant.",
+    ),
     // Two runs beside each other
     ("Two runs compared", "Deux calculs comparés"),
     ("Read this first", "À lire d’abord"),

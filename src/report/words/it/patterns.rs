@@ -84,6 +84,10 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "{a} (da {b} a {c} in nove casi su dieci, {d}) {unit}",
     ),
     ("{a} ({b} to {c} in nine of ten, {d})", "{a} (da {b} a {c} in nove casi su dieci, {d})"),
+    (
+        "Computed rocks weigh what they stand for, measured ones all the same; the limit is that of as many computed rocks of equal weight as would know as much.",
+        "I massi calcolati pesano ciò che rappresentano, quelli misurati tutti uguale; il limite è quello di tanti massi calcolati di ugual peso quanti ne saprebbero altrettanto.",
+    ),
     // Two runs beside each other
     ("Two runs compared", "Due calcoli a confronto"),
     ("Read this first", "Da leggere prima"),
