@@ -252,3 +252,38 @@ fn computed_ends_weigh_beside_measured_ones() {
     assert_eq!(said.status.code(), Some(2), "{message}");
     assert!(message.contains("a fit weighs every rock the same"), "{message}");
 }
+
+/// A share by frequency never stands beside counts as if these gave it: on the page, in its figures, in the view and on the terminal.
+#[test]
+fn no_count_gives_a_share_by_frequency() {
+    let dir = tempfile::tempdir().unwrap();
+    let out = run(dir.path(), "road", |scene| scene);
+    let of = summary(&out);
+    let left = &of["stop_shares"]["left_terrain"];
+    let (share, count) = (left["share"].as_f64().unwrap(), left["count"].as_u64().unwrap());
+    // else the test would not tell one from the other
+    assert!((share - count as f64 / 400.0).abs() > 0.02, "{left}");
+    let page = fs::read_to_string(out.join("report.html")).unwrap();
+    let censored = format!("of the rocks by frequency ({count} of 400 computed)");
+    for words in [
+        &censored,
+        "by frequency; of 400 computed rocks",
+        "arriving (computed)",
+        &format!("; {count} computed"),
+        "Shares are by frequency; numbers of rocks are of computed ones.",
+        "Curves and lines are by frequency; bars",
+    ] {
+        assert!(page.contains(words), "{words}");
+    }
+    for words in [" of 400 rocks (", " of 400 releases, reach", &format!("{count} (")] {
+        assert!(!page.contains(words), "{words}");
+    }
+    let view = fs::read_to_string(out.join("view.html")).unwrap();
+    assert!(
+        view.contains("of the rocks by frequency cross") && !view.contains(" of 400 rocks cross")
+    );
+    assert!(view.contains("of those that arrive, by frequency"));
+    let stops = fs::read_to_string(out.join("figures/stops.svg")).unwrap();
+    let faults = crate::boxes::faults(&stops, "stops.svg");
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}

@@ -156,6 +156,8 @@ pub struct ReportLine {
     pub releases: usize,
     /// Share of the releases that cross it.
     pub reach: Estimate,
+    /// Whether that is by frequency, and no quotient of counts.
+    pub is_weighted: bool,
     /// Rocks that cross it more than once.
     pub crossing_again: usize,
     /// First crossings.

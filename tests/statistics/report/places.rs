@@ -63,6 +63,7 @@ fn line(number: usize, name: &str, rocks: usize) -> ReportLine {
         length_m: 60.0,
         releases: 1000,
         reach: Estimate::new(rocks as f64 / 1000.0, 0.0, 0.4),
+        is_weighted: false,
         crossing_again: 1,
         crossings: (0..rocks).map(point).collect(),
         energy_quantiles: marked(3e5),

@@ -208,6 +208,38 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
     ("Version", "Version"),
     ("Seed", "Startwert"),
     ("Releases", "Ablösungen"),
+    // Of rocks that weigh what they stand for
+    (
+        "{share} of the rocks by frequency ({n} of {of} computed)",
+        "{share} der Blöcke nach Häufigkeit ({n} von {of} gerechneten)",
+    ),
+    (
+        "Conditional on release: reach probability {reach} ({interval}) by frequency; of {releases} computed rocks {count} cross it, {again} more than once. Values at the first crossing.",
+        "Bedingt auf die Ablösung: Erreichenswahrscheinlichkeit {reach} ({interval}) nach Häufigkeit; von {releases} gerechneten Blöcken überqueren {count} sie, {again} mehrmals. Werte beim ersten Durchgang.",
+    ),
+    (
+        "Conditional on release: reach probability {reach} ({interval}) by frequency; of {releases} computed rocks {count} hit it. Values at the first touch.",
+        "Bedingt auf die Ablösung: Erreichenswahrscheinlichkeit {reach} ({interval}) nach Häufigkeit; von {releases} gerechneten Blöcken treffen es {count}. Werte bei der ersten Berührung.",
+    ),
+    (
+        "None of {n} computed rocks crosses {what} {name}: by frequency its reach probability is below {share} (95\u{2009}% confidence).",
+        "Keiner von {n} gerechneten Blöcken überquert {what} {name}: nach Häufigkeit liegt die Erreichenswahrscheinlichkeit unter {share} (Vertrauen 95\u{2009}%).",
+    ),
+    ("{share} of the rocks by frequency cross", "{share} der Blöcke nach Häufigkeit queren"),
+    (
+        "{h} m, {e} kJ: stops {share} of those that arrive, by frequency",
+        "{h} m, {e} kJ: hält {share} derer auf, die ankommen, nach Häufigkeit",
+    ),
+    ("{what} (computed)", "{what} (gerechnet)"),
+    ("{n} computed", "{n} gerechnet"),
+    (
+        "Shares are by frequency; numbers of rocks are of computed ones.",
+        "Anteile gelten nach Häufigkeit; Anzahlen von Blöcken sind die gerechneter.",
+    ),
+    (
+        "Curves and lines are by frequency; bars and numbers of rocks are of computed ones.",
+        "Kurven und Linien gelten nach Häufigkeit; Balken und Anzahlen von Blöcken sind die gerechneter.",
+    ),
 ];
 
 /// Texts of the view.

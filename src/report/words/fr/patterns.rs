@@ -211,6 +211,38 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
     ("Version", "Version"),
     ("Seed", "Graine"),
     ("Releases", "Départs"),
+    // Of rocks that weigh what they stand for
+    (
+        "{share} of the rocks by frequency ({n} of {of} computed)",
+        "{share} des blocs selon leur fréquence ({n} sur {of} calculés)",
+    ),
+    (
+        "Conditional on release: reach probability {reach} ({interval}) by frequency; of {releases} computed rocks {count} cross it, {again} more than once. Values at the first crossing.",
+        "Conditionnel au départ\u{a0}: probabilité d’atteinte {reach} ({interval}) selon la fréquence\u{a0}; sur {releases} blocs calculés, {count} la franchissent, {again} plusieurs fois. Valeurs au premier passage.",
+    ),
+    (
+        "Conditional on release: reach probability {reach} ({interval}) by frequency; of {releases} computed rocks {count} hit it. Values at the first touch.",
+        "Conditionnel au départ\u{a0}: probabilité d’atteinte {reach} ({interval}) selon la fréquence\u{a0}; sur {releases} blocs calculés, {count} le touchent. Valeurs au premier contact.",
+    ),
+    (
+        "None of {n} computed rocks crosses {what} {name}: by frequency its reach probability is below {share} (95\u{2009}% confidence).",
+        "Aucun des {n} blocs calculés ne franchit {what} {name}\u{a0}: selon la fréquence sa probabilité d’atteinte est inférieure à {share} (confiance 95\u{2009}%).",
+    ),
+    ("{share} of the rocks by frequency cross", "{share} des blocs passent, selon leur fréquence"),
+    (
+        "{h} m, {e} kJ: stops {share} of those that arrive, by frequency",
+        "{h} m, {e} kJ\u{a0}: arrête {share} de ceux qui arrivent, selon leur fréquence",
+    ),
+    ("{what} (computed)", "{what} (calculés)"),
+    ("{n} computed", "{n} calculés"),
+    (
+        "Shares are by frequency; numbers of rocks are of computed ones.",
+        "Les parts suivent la fréquence\u{a0}; les nombres de blocs sont ceux des blocs calculés.",
+    ),
+    (
+        "Curves and lines are by frequency; bars and numbers of rocks are of computed ones.",
+        "Courbes et traits suivent la fréquence\u{a0}; les barres et les nombres de blocs sont ceux des blocs calculés.",
+    ),
 ];
 
 /// Texts of the view.

@@ -205,6 +205,38 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
     ("Version", "Versione"),
     ("Seed", "Seme"),
     ("Releases", "Distacchi"),
+    // Of rocks that weigh what they stand for
+    (
+        "{share} of the rocks by frequency ({n} of {of} computed)",
+        "{share} dei massi secondo la frequenza ({n} su {of} calcolati)",
+    ),
+    (
+        "Conditional on release: reach probability {reach} ({interval}) by frequency; of {releases} computed rocks {count} cross it, {again} more than once. Values at the first crossing.",
+        "Condizionato al distacco: probabilità di raggiungimento {reach} ({interval}) secondo la frequenza; di {releases} massi calcolati {count} la attraversano, {again} più volte. Valori al primo passaggio.",
+    ),
+    (
+        "Conditional on release: reach probability {reach} ({interval}) by frequency; of {releases} computed rocks {count} hit it. Values at the first touch.",
+        "Condizionato al distacco: probabilità di raggiungimento {reach} ({interval}) secondo la frequenza; di {releases} massi calcolati {count} lo colpiscono. Valori al primo contatto.",
+    ),
+    (
+        "None of {n} computed rocks crosses {what} {name}: by frequency its reach probability is below {share} (95\u{2009}% confidence).",
+        "Nessuno dei {n} massi calcolati attraversa {what} {name}: secondo la frequenza la probabilità di raggiungimento è sotto {share} (confidenza 95\u{2009}%).",
+    ),
+    ("{share} of the rocks by frequency cross", "passa il {share} dei massi secondo la frequenza"),
+    (
+        "{h} m, {e} kJ: stops {share} of those that arrive, by frequency",
+        "{h} m, {e} kJ: ferma il {share} di quelli che arrivano, secondo la frequenza",
+    ),
+    ("{what} (computed)", "{what} (calcolati)"),
+    ("{n} computed", "{n} calcolati"),
+    (
+        "Shares are by frequency; numbers of rocks are of computed ones.",
+        "Le quote seguono la frequenza; i numeri di massi sono quelli dei massi calcolati.",
+    ),
+    (
+        "Curves and lines are by frequency; bars and numbers of rocks are of computed ones.",
+        "Curve e linee seguono la frequenza; barre e numeri di massi sono quelli dei massi calcolati.",
+    ),
 ];
 
 /// Texts of the view.
