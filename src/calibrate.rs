@@ -16,6 +16,7 @@ pub use worth::{SiteMeasure, Told};
 
 use crate::ensemble::Ensemble;
 use crate::error::{Error, Flaw, Result};
+use crate::frequency::Frequency;
 use crate::hazard::Agreement;
 use crate::random::Distribution;
 use crate::scene::{CalibrateTable, GroundTable, Scene, VaryKey, VaryTable};
@@ -144,6 +145,7 @@ fn vary_of(scenes: &[Scene]) -> Result<(&[VaryTable], usize)> {
             let remedy = format!("write [grounds.{lacks}]: the scene before varies it");
             return wrong(scene, "found another set of grounds", remedy);
         }
+        refuse_weights(scene, scene.sources().as_ref())?;
         let refused = |vary: &VaryTable| {
             let found = format!("found that {} is to be varied", vary.name());
             scene.refuses_to_vary(vary).map(|remedy| (found, remedy))
@@ -153,6 +155,25 @@ fn vary_of(scenes: &[Scene]) -> Result<(&[VaryTable], usize)> {
         }
     }
     Ok((vary, first.calibrate.as_ref().map_or(0, CalibrateTable::parts)))
+}
+
+/// Refuses sources whose rocks do not all stand for the same number of events.
+///
+/// A fit draws the measured ends again and keeps the computed ones. Where few of these carry most of the weight, they move the score
+/// by more than the measured ends do, and the interval of a fitted value would not hold what it says. Weighing all alike would fit
+/// the rare large rocks, computed as often as small ones, to ends of rocks as they come.
+fn refuse_weights(scene: &Scene, sources: Option<&Frequency>) -> Result<()> {
+    let weighs = |frequency: &Frequency| -> bool {
+        // one rock of each: numbers of releases that strata do not divide are no weights
+        !frequency.weights(frequency.strata().len()).are_equal()
+    };
+    if !sources.is_some_and(weighs) {
+        return Ok(());
+    }
+    let found = "found rocks that stand for unlike numbers of events a year: a fit weighs every rock the same";
+    let remedy = "write a scene of the rocks that were measured, without [frequency] and frequency_per_year: their sizes in \
+                  [rocks], their places in [release]; the fitted grounds then serve this scene too";
+    Err(Error::input(&scene.file, "[frequency]", found, remedy))
 }
 
 /// Puts values into the grounds and shapes of a scene.

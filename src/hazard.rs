@@ -32,7 +32,7 @@ pub use annual::{
 pub use arrival::Arrival;
 pub use barriers::{Arrivals, AtPlace, Barrier, BarrierSummary, Elsewhere, arrivals, judge};
 pub use design::{Design, Rule};
-pub use difference::{Difference, Reading, Values};
+pub use difference::{Difference, Reading, Values, WeightedCount};
 pub use lines::{CrossingRow, Line, LineInfo, LineQuantity, LineSummary, by_rock};
 pub use maps::{INTENSITY_J, Layer, MapFrame, MapState, Maps};
 pub use observed::{

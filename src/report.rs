@@ -14,6 +14,7 @@ mod annual;
 mod answers;
 pub mod axis;
 mod barriers;
+mod by_frequency;
 pub mod colour;
 pub mod compare;
 pub mod contour;

@@ -1,13 +1,13 @@
 //! One scene of a calibration and what was measured on it.
 
-use super::{Ends, put_all};
+use super::{Ends, put_all, refuse_weights};
 use crate::ensemble::Ensemble;
 use crate::error::{Error, Result};
 use crate::hazard::{
     Agreement, EndDistances, ObservedPath, Row, Weighted, distances, effective, rank, runouts,
 };
 use crate::math;
-use crate::plan::Plan;
+use crate::plan::{Part, Plan};
 use crate::random::{RandomStream, unit};
 use crate::scene::{CalibrationScore, Scene, VaryTable};
 use crate::simulation::{Scratch, simulate_release};
@@ -133,6 +133,10 @@ impl CalibrationSite {
             None => self.scene.read_terrain()?.0,
         };
         let plan = Plan::compile(&self.scene, terrain)?;
+        if let Part::Kept(year) = &plan.year {
+            // of zones that were read meanwhile
+            refuse_weights(&self.scene, Some(&year.frequency))?;
+        }
         let origin_m = plan.terrain.origin_m;
         let mut ways = ObservedWays::new();
         let one =

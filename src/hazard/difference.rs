@@ -10,6 +10,10 @@
 //! adjusted as in Bonett and Price (2012, J. Educ. Behav. Stat. 37, 479–488) for pairs and in Agresti and Caffo
 //! (2000, Am. Stat. 54, 280–288) without: their intervals stay sound where hardly any rock counts.
 
+mod weighted;
+
+pub use weighted::WeightedCount;
+
 use super::proportion::NORMAL_95;
 use super::quantile::{Percentile, between};
 use std::cmp::Ordering;
@@ -97,13 +101,9 @@ fn deviation(sorted: &[f64], p: f64) -> Option<f64> {
 impl Difference {
     /// From one statistic to the other; `paired` where the same release numbers are the same rocks.
     pub fn between(a: &Reading, b: &Reading, paired: bool) -> Self {
-        let squares = |pulls: &Values| pulls.iter().map(|(_, pull)| pull * pull).sum::<f64>();
-        let variance = |one: &Values, other: &Values| {
-            if paired { apart(one, other) } else { squares(one) + squares(other) }
-        };
         let value = b.value - a.value;
         let interval = a.pulls.as_ref().zip(b.pulls.as_ref()).map(|(one, other)| {
-            let half = NORMAL_95 * variance(one, other).sqrt();
+            let half = NORMAL_95 * variance(one, other, paired).sqrt();
             (value - half, value + half)
         });
         Self { a: a.value, b: b.value, value, interval }
@@ -145,6 +145,12 @@ impl Difference {
     pub fn is_clear(&self) -> bool {
         self.interval.is_some_and(|(low, high)| low > 0.0 || high < 0.0)
     }
+}
+
+/// Variance of a difference from the pulls on both statistics.
+fn variance(one: &Values, other: &Values, paired: bool) -> f64 {
+    let squares = |pulls: &Values| pulls.iter().map(|(_, pull)| pull * pull).sum::<f64>();
+    if paired { apart(one, other) } else { squares(one) + squares(other) }
 }
 
 /// Sum of the squared differences of pulls; a release that one run lacks pulls there with nothing.

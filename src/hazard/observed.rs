@@ -7,6 +7,7 @@ pub use apart::EndDistances;
 pub use spread::{EndSpread, effective, rank};
 
 use super::row::Row;
+use super::sample::Sample;
 use crate::error::{Error, Result};
 use crate::file::{self, LONGEST_TEXT};
 use crate::math;
@@ -157,6 +158,15 @@ impl Agreement {
         Self::of_weighted(measured, &computed)
     }
 
+    /// The same where computed ways weigh what they stand for; measured ones stand for one end each. The limit is that of as many
+    /// computed ways of equal weight as would know as much, `(Σ w)² / Σ w²` (Kish 1965).
+    pub fn of_events(measured: &[ObservedPath], computed: &[Weighted]) -> Option<Self> {
+        let found = Self::of_weighted(measured, computed)?;
+        let runouts = runouts(computed).into_iter();
+        let (n, m) = (found.measured as f64, Sample::weighted(runouts).effective_rocks());
+        Some(Self { ks_limit: ks_limit(n, m), ..found })
+    }
+
     /// The same where computed ways weigh unlike (–): those of weight 0 take no part.
     pub fn of_weighted(measured: &[ObservedPath], computed: &[Weighted]) -> Option<Self> {
         let even: Vec<Weighted> = measured.iter().map(|way| (*way, 1.0)).collect();
@@ -176,13 +186,18 @@ impl Agreement {
             measured_mean_m,
             computed_mean_m,
             ks,
-            ks_limit: 1.36 * ((n + m) / (n * m)).sqrt(),
+            ks_limit: ks_limit(n, m),
             area_m,
             measured_side_m: EndSpread::of(&even, along).across_m(),
             computed_side_m: EndSpread::of(computed, along).across_m(),
             ends_m: None,
         })
     }
+}
+
+/// Difference of two distributions of so many values each that equal ones exceed in 5 % of all samples (–).
+fn ks_limit(n: f64, m: f64) -> f64 {
+    1.36 * ((n + m) / (n * m)).sqrt()
 }
 
 /// Runouts (m) and weights, ascending; what weighs nothing or is no number is left out.
@@ -248,6 +263,22 @@ mod tests {
         assert!((found.computed_mean_m - 4.5).abs() < 1e-15);
         assert!(found.computed_side_m.abs() < 1e-12);
         assert!((found.ks_limit - 1.36 * 0.5_f64.sqrt()).abs() < 1e-15);
+    }
+
+    /// By hand: of 10 ends that stand for 9 events and one that stands for 90, the runouts 1 and 5 m have the mean 4.64 m, and
+    /// the 11 ends know what 99²/(10 · 0.81 + 90²) = 1.21 of equal weight would.
+    #[test]
+    fn ends_that_stand_for_more_events_count_for_more() {
+        let computed: Vec<Weighted> = ways(&[[1.0; 10].as_slice(), &[5.0]].concat())
+            .into_iter()
+            .enumerate()
+            .map(|(at, way)| (way, if at < 10 { 0.9 } else { 90.0 }))
+            .collect();
+        let found = Agreement::of_events(&ways(&[1.0, 1.0, 5.0, 5.0]), &computed).unwrap();
+        assert!((found.computed_mean_m - 459.0 / 99.0).abs() < 1e-12);
+        assert!((found.ks - (0.5 - 9.0 / 99.0)).abs() < 1e-12 && found.computed == 11);
+        let worth = 99.0 * 99.0 / (10.0 * 0.81 + 8100.0);
+        assert!((found.ks_limit - 1.36 * (0.25_f64 + 1.0 / worth).sqrt()).abs() < 1e-12);
     }
 
     /// A computed end that weighs twice is two computed ends, and one that weighs nothing is none.

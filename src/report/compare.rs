@@ -12,6 +12,7 @@ mod inputs;
 mod page;
 mod populations;
 mod table;
+mod weighing;
 
 use crate::error::{Error, Result};
 use crate::output::{self, Results, write_atomic};
@@ -30,6 +31,8 @@ pub struct Comparison {
     releases: [usize; 2],
     /// Whether the same release numbers are the same rocks.
     paired: bool,
+    /// Whether both have the same seed.
+    one_seed: bool,
     /// Whether both are one and the same run.
     same_run: bool,
     /// What went in and differs: name, first, second.
@@ -53,7 +56,8 @@ impl Comparison {
         let [one, other] = [&runs[0].summary.identity, &runs[1].summary.identity];
         let common =
             one.range().start.max(other.range().start)..one.range().end.min(other.range().end);
-        let paired = one.seed == other.seed && !common.is_empty();
+        let one_seed = one.seed == other.seed && !common.is_empty();
+        let paired = one_seed && weighing::are_alike(&runs);
         let same_run = one == other;
         let range =
             |run: &Results| if paired { common.clone() } else { run.summary.identity.range() };
@@ -66,20 +70,16 @@ impl Comparison {
                 common.end - 1
             ));
         }
+        notes.extend(weighing::note(populations[0].each_ref().map(|of| of.standing.as_ref())));
         notes.extend(populations::censored(&populations[0]));
-        if !paired {
-            notes.push(
-                "The runs have different seeds: nothing pairs, and differences are known no better than both runs apart. \
-                 With one seed the same rocks would be released."
-                    .to_owned(),
-            );
-        }
+        notes.extend(unpaired(paired, one_seed).map(str::to_owned));
         let groups = populations.iter().map(|pair| table::group(pair, paired, same_run)).collect();
         Ok(Self {
             names: [(a, &runs[0]), (b, &runs[1])]
                 .map(|(dir, run)| (dir.display().to_string(), run.summary.title.clone())),
             releases: ranges.map(|range| range.len()),
             paired,
+            one_seed,
             same_run,
             inputs: inputs::differing(&runs[0].summary, &runs[1].summary),
             notes,
@@ -87,6 +87,11 @@ impl Comparison {
             populations,
             words: Words::of(runs[0].summary.language),
         })
+    }
+
+    /// Whether rocks weigh what they stand for.
+    fn is_weighted(&self) -> bool {
+        self.populations.iter().flatten().any(|of| of.standing.is_some())
     }
 
     /// Writes `differences.csv`, `figures/*.svg` and `compare.html` below `dir`.
@@ -125,5 +130,20 @@ impl Comparison {
             let (low, high) = row.difference.interval.unwrap_or((0.0, 0.0));
             (value.max(row.difference.value.abs()), width.max(high - low))
         })
+    }
+}
+
+/// What it means that releases do not pair; nothing where they do.
+fn unpaired(paired: bool, one_seed: bool) -> Option<&'static str> {
+    match (paired, one_seed) {
+        (true, _) => None,
+        (_, true) => Some(
+            "The runs have other sources or other classes of size: the same release number is another rock in each, nothing pairs, \
+             and differences are known no better than both runs apart.",
+        ),
+        _ => Some(
+            "The runs have different seeds: nothing pairs, and differences are known no better than both runs apart. \
+             With one seed the same rocks would be released.",
+        ),
     }
 }

@@ -1,6 +1,7 @@
 //! Small histograms of speed, energies, bounce height and impacts.
 
 use super::axis::Axis;
+use super::by_frequency;
 use super::canvas::{Canvas, Label, NORMAL, Pen, SMALL, bold_width, fitted, paint, text_width};
 use super::colour::{GREY, INK};
 use super::figure::{Drawing, WIDTH_PX};
@@ -48,7 +49,9 @@ pub(super) fn draw(report: &Report) -> Drawing {
             DistributionPanel::of(report, quantity, frame).draw(canvas, 24.0);
         }
     });
-    Drawing { svg, caption: words.distributions_caption.to_owned() }
+    let note = report.is_weighted.then_some(by_frequency::CURVES);
+    let caption = words.distributions_caption.to_owned();
+    Drawing { svg, caption: by_frequency::noted(caption, note, words) }
 }
 
 /// The values of one quantity, ready to be drawn.

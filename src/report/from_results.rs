@@ -9,6 +9,7 @@ mod measured;
 mod profile;
 mod shapes;
 
+use super::by_frequency;
 use super::model::{
     BandPoint, Check, Estimate, EstimateRow, EstimateTable, Is, Path, Quantile, ReleaseEnd, Report,
     ReportPathPoint, ReportQuantity, StopShare, Text,
@@ -81,6 +82,7 @@ pub fn gather(results: &Results, ground: Option<GroundRaster>) -> Result<Report>
             .collect(),
         shapes,
         lines,
+        is_weighted: hazard.weights().is_some(),
         annual: annual::views(results),
         has_view: false,
         barriers: barriers::views(results, ground.as_ref())?,
@@ -108,11 +110,17 @@ pub(super) fn warnings_first(hazard: &Hazard, words: &Words) -> Vec<String> {
     ];
     let said = |(kind, what, remedy): (StopKind, &str, &str)| {
         let share = hazard.ended(kind);
+        let text = words.censored;
+        // the head of the sentence, up to what the rocks have done
+        let weighted = hazard.weights().and_then(|_| text.split_once(" {what}"));
+        let text = weighted.map_or(text.to_owned(), |(_, rest)| {
+            format!("{} {{what}}{rest}", words.say(by_frequency::SHARE))
+        });
         let count = |n: usize| format::decimal(n as f64, 0);
         let percent = format::percent(share.share, usize::from(share.share < 0.1));
         (share.count > 0).then(|| {
             fill(
-                words.censored,
+                &text,
                 &[
                     ("n", &count(share.count)),
                     ("of", &count(share.of)),

@@ -1,6 +1,7 @@
 //! One evaluation line: where rocks pass, how high with how much energy, and how much is exceeded how often.
 
 use super::axis::Axis;
+use super::by_frequency;
 use super::canvas::{Canvas, Label, NORMAL, Pen, SMALL, fitted, paint, text_width};
 use super::colour::{BLUE, DARK_GREEN, GREEN, GREY, INK, SKY, VERMILLION};
 use super::figure::{Drawing, WIDTH_PX};
@@ -31,8 +32,13 @@ const MARKED: [f64; 2] = [0.50, 0.95];
 pub(super) fn nobody(words: &Words, line: &ReportLine) -> Option<String> {
     let what = if line.is_barrier { words.the_line_of_barrier } else { words.the_line };
     let below = format::percent(line.reach.high, usize::from(line.reach.high < 0.1));
+    let nobody = if line.is_weighted {
+        words.say(by_frequency::NOBODY)
+    } else {
+        words.nobody_line.to_owned()
+    };
     let said = fill(
-        words.nobody_line,
+        &nobody,
         &[
             ("n", &format::decimal(line.releases as f64, 0)),
             ("what", &what),
@@ -103,7 +109,8 @@ fn caption(words: &Words, line: &ReportLine) -> String {
             ("again", &count(line.crossing_again)),
         ],
     );
-    caption + &behind
+    let note = line.is_weighted.then_some(by_frequency::CURVES);
+    by_frequency::noted(caption + &behind, note, words)
 }
 
 fn head(canvas: &Canvas<'_>, panel: &Panel, words: &str) {

@@ -10,13 +10,16 @@ use super::panel::{FOOT_PX, Panel};
 use super::plan_view::ground;
 use super::svg::path::{PaperFrame, Spot};
 use super::words::{Words, fill};
-use crate::hazard::{ObservedPath, Sample};
+use crate::hazard::ObservedPath;
 
 const TOP_PX: f64 = 26.0;
 const CURVE_PX: f64 = 210.0;
 const GAP_PX: f64 = 34.0;
 const TALLEST_PX: f64 = 420.0;
 const LEFT_PX: f64 = 66.0;
+/// What is said more where computed rocks weigh what they stand for.
+const WEIGHED: &str = "Computed rocks weigh what they stand for, measured ones all the same; the limit is that of as many \
+    computed rocks of equal weight as would know as much.";
 /// Pens of both distributions: told apart without colour.
 const COMPUTED: Pen = Pen::full(BLUE, 1.6);
 const MEASURED: Pen = Pen::full(VERMILLION, 1.8).dashed();
@@ -30,8 +33,13 @@ pub(super) fn draw(report: &Report, observed: &Observed) -> Drawing {
     let svg = paint("measured", size, words.measured_title, |canvas| {
         head(canvas, &curves, words.measured_curves);
         curves.grid(canvas);
-        steps(canvas, &curves, (&observed.computed, COMPUTED), words);
-        steps(canvas, &curves, (&observed.measured, MEASURED), words);
+        steps(
+            canvas,
+            &curves,
+            (&shares(&observed.computed, observed.weights.as_ref()), COMPUTED),
+            words,
+        );
+        steps(canvas, &curves, (&shares(&observed.measured, None), MEASURED), words);
         curves.axes(canvas);
         key(canvas, &curves, words);
         head(canvas, &map, words.measured_map);
@@ -63,7 +71,13 @@ pub(super) fn draw(report: &Report, observed: &Observed) -> Drawing {
             ("side_computed", &number(at.computed_side_m)),
         ],
     );
-    Drawing { svg, caption }
+    Drawing { svg, caption: caption + &weighing(observed, words) }
+}
+
+/// What caption and table say more where computed rocks weigh what they stand for; else nothing.
+pub(super) fn weighing(observed: &Observed, words: &Words) -> String {
+    let said = observed.weights.as_ref().map(|_| format!(" {}", words.say(WEIGHED)));
+    said.unwrap_or_default()
 }
 
 fn head(canvas: &Canvas<'_>, panel: &Panel, words: &str) {
@@ -94,12 +108,31 @@ fn curve_panel(observed: &Observed, words: &Words) -> Panel {
     Panel::new(frame, x, Axis::linear(0.0, 1.0, words.share_of_rocks))
 }
 
+/// Runouts in ascending order (m), each with the shares of all weight before it and with it.
+fn shares(ways: &[ObservedPath], weights: Option<&Vec<f64>>) -> Vec<(f64, [f64; 2])> {
+    let weight = |at: usize| weights.map_or(1.0, |all| all[at]);
+    let runouts = ways.iter().enumerate().map(|(at, way)| (way.runout_m(), weight(at)));
+    let mut sorted: Vec<(f64, f64)> = runouts.filter(|(x, _)| x.is_finite()).collect();
+    sorted.sort_by(|one, other| one.0.total_cmp(&other.0).then(one.1.total_cmp(&other.1)));
+    let all: f64 = sorted.iter().map(|(_, weight)| weight).sum();
+    let mut below = 0.0;
+    let step = |(x, weight): (f64, f64)| {
+        let before = below;
+        below += weight;
+        (x, [before / all, below / all])
+    };
+    sorted.into_iter().map(step).collect()
+}
+
 /// The empirical distribution as the steps it consists of.
-fn steps(canvas: &Canvas<'_>, panel: &Panel, (ways, pen): (&[ObservedPath], Pen), words: &Words) {
-    let sample = Sample::of(ways.iter().map(ObservedPath::runout_m));
-    let n = sample.values().len() as f64;
-    let corners = |(k, x): (usize, &f64)| [(*x, k as f64 / n), (*x, (k + 1) as f64 / n)];
-    let line: Vec<(f64, f64)> = sample.values().iter().enumerate().flat_map(corners).collect();
+fn steps(
+    canvas: &Canvas<'_>,
+    panel: &Panel,
+    (shares, pen): (&[(f64, [f64; 2])], Pen),
+    words: &Words,
+) {
+    let corners = |&(x, [before, with]): &(f64, [f64; 2])| [(x, before), (x, with)];
+    let line: Vec<(f64, f64)> = shares.iter().flat_map(corners).collect();
     panel.line(canvas, &line, pen);
     if line.is_empty() {
         panel.nothing(canvas, words.no_rock);

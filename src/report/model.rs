@@ -34,6 +34,8 @@ pub struct Report {
     pub quantiles: BTreeMap<ReportQuantity, Vec<Quantile>>,
     /// Count and share of each stop reason.
     pub stops: Vec<StopShare>,
+    /// Whether rocks weigh what they stand for: then shares are by frequency, and no quotients of counts.
+    pub is_weighted: bool,
     /// Headline numbers.
     pub headline: Vec<EstimateRow>,
     /// What arrives at lines and barriers, a row each: the first tables of the page.

@@ -1,6 +1,7 @@
 //! How far the rocks ran: exceedance with its band above, histogram below.
 
 use super::axis::Axis;
+use super::by_frequency;
 use super::canvas::{Canvas, Label, Pen, SMALL, paint};
 use super::colour::{BLUE, INK, SKY, VERMILLION};
 use super::figure::{Drawing, WIDTH_PX};
@@ -101,9 +102,10 @@ fn caption(report: &Report, bins: &EqualBins) -> String {
         words.runout_caption,
         &[("n", &count(report.releases.len())), ("width", &format::plain(bins.width))],
     );
-    caption
+    let caption = caption
         + &said(open_rocks(report), words.runout_open)
-        + &said(bins.left_out, words.runout_left_out)
+        + &said(bins.left_out, words.runout_left_out);
+    by_frequency::noted(caption, report.is_weighted.then_some(by_frequency::CURVES), words)
 }
 
 fn panels(report: &Report, bins: &EqualBins, count: usize) -> (Panel, Panel) {

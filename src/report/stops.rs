@@ -1,6 +1,7 @@
 //! Why the rocks ended, as counts and shares.
 
 use super::axis::Axis;
+use super::by_frequency;
 use super::canvas::{Canvas, Label, Pen, SMALL, paint, text_width};
 use super::colour::{INK, SKY};
 use super::figure::{Drawing, WIDTH_PX};
@@ -8,7 +9,7 @@ use super::format;
 use super::model::{Report, StopShare};
 use super::panel::{FOOT_PX, Panel};
 use super::svg::path::PaperFrame;
-use super::words::Words;
+use super::words::{Words, fill};
 use crate::math;
 use crate::simulation::Stop;
 
@@ -34,7 +35,7 @@ pub(super) fn draw(report: &Report) -> Drawing {
     let svg = paint("stops", (WIDTH_PX, bottom + FOOT_PX), words.stops_alt, |canvas| {
         panel.grid_upright(canvas);
         for (line, share) in report.stops.iter().enumerate() {
-            bar(canvas, &panel, (line, share), words);
+            bar(canvas, &panel, (line, share, report.is_weighted), words);
         }
         if report.stops.is_empty() {
             panel.nothing(canvas, words.no_release);
@@ -42,7 +43,8 @@ pub(super) fn draw(report: &Report) -> Drawing {
         panel.x_axis(canvas);
         canvas.outline(&frame, Pen::full(INK, 0.8));
     });
-    Drawing { svg, caption: words.stops_caption.to_owned() }
+    let note = report.is_weighted.then_some(by_frequency::SHARES);
+    Drawing { svg, caption: by_frequency::noted(words.stops_caption.to_owned(), note, words) }
 }
 
 /// Name of a stop reason in a table or on an axis.
@@ -57,7 +59,12 @@ fn name(stop: &Stop, words: &Words) -> &'static str {
     }
 }
 
-fn bar(canvas: &Canvas<'_>, panel: &Panel, (line, share): (usize, &StopShare), words: &Words) {
+fn bar(
+    canvas: &Canvas<'_>,
+    panel: &Panel,
+    (line, share, is_weighted): (usize, &StopShare, bool),
+    words: &Words,
+) {
     let y = panel.frame.top + (line as f64 + 0.5) * LINE_PX;
     let at = |share: f64| panel.at((100.0 * share).clamp(0.0, panel.x.high), 0.0).0;
     let percent = share.share;
@@ -77,10 +84,17 @@ fn bar(canvas: &Canvas<'_>, panel: &Panel, (line, share): (usize, &StopShare), w
     canvas.text(&Label::new(name(&share.stop, words), (panel.frame.left - 8.0, y)).right());
     let count = format::decimal(share.count as f64, 0);
     let decimals = decimals_for(percent.high - percent.low);
-    let head = format!("{count} ({})", format::percent(percent.value, decimals));
-    let x = panel.frame.right + 10.0;
     let bound = |share: f64| format::percent(share, decimals);
     let interval = words.interval(&bound(percent.low), &bound(percent.high));
+    let share = bound(percent.value);
+    let computed = fill(&words.say(by_frequency::COUNT), &[("n", &count)]);
+    // a weighted share is not that of the count
+    let (head, interval) = if is_weighted {
+        (share, format!("{interval}; {computed}"))
+    } else {
+        (format!("{count} ({share})"), interval)
+    };
+    let x = panel.frame.right + 10.0;
     canvas.text(&Label::new(head, (x, y)).followed_by(interval));
 }
 

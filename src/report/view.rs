@@ -75,7 +75,9 @@ impl Shown {
         let words = Words::of(results.summary.language);
         let mut walls = walls::of(results, ground);
         for wall in &mut walls {
-            wall.words = words.of_view(&wall.words);
+            let said = words.of_view(&wall.words);
+            // shares by frequency stand with what is recorded
+            wall.words = if said == wall.words { words.say(&said) } else { said };
         }
         let mut hulls = BlockHulls::default();
         Ok(Self {

@@ -45,6 +45,7 @@ mod stem_lists;
 mod tiles;
 mod until;
 mod view;
+mod weights;
 mod year;
 mod year_extremes;
 mod zone_sources;

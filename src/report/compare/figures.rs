@@ -22,6 +22,9 @@ const CHANGES_CAPTION: &str = "Change of each statistic over its value in A, wit
     interval leaves out zero. One in twenty intervals misses by chance.";
 const CURVES_CAPTION: &str = "Share of the rocks that exceed a value: A full, B dashed ({a} and {b} rocks). Axes end where one in \
     two hundred exceeds in both.";
+/// The same where rocks weigh what they stand for.
+const WEIGHTED_CAPTION: &str = "Share of the rocks by frequency that exceed a value: A full, B dashed ({a} and {b} rocks computed). Axes \
+    end where one in two hundred exceeds in both.";
 const HEAD_PX: f64 = 30.0;
 /// Room for the key above the panels (px).
 const KEY_PX: f64 = 20.0;
@@ -136,12 +139,16 @@ fn exceedance(
             let top = KEY_PX + band * (k / 2) as f64 + HEAD_PX;
             let left = half * (k % 2) as f64;
             let frame = PaperFrame { left, top, right: left + half - 14.0, bottom: top + CURVE_PX };
-            one_panel(canvas, frame, (*measure, *values), words);
+            let (_, _, size) = measure.words();
+            let samples = [0, 1].map(|k| pair[k].sample(values[k], size));
+            one_panel(canvas, frame, (*measure, samples), words);
         }
     });
     let count =
         |k: usize| format::decimal(pair[k].values.first().map_or(0, |(_, v)| v.len()) as f64, 0);
-    let caption = fill(&words.say(CURVES_CAPTION), &[("a", &count(0)), ("b", &count(1))]);
+    let weighted = pair.iter().any(|of| of.standing.is_some());
+    let caption = if weighted { WEIGHTED_CAPTION } else { CURVES_CAPTION };
+    let caption = fill(&words.say(caption), &[("a", &count(0)), ("b", &count(1))]);
     Drawing { svg, caption }
 }
 
@@ -157,12 +164,11 @@ fn key(canvas: &Canvas<'_>) {
 fn one_panel(
     canvas: &Canvas<'_>,
     frame: PaperFrame,
-    (measure, values): (ComparedQuantity, [&Values; 2]),
+    (measure, samples): (ComparedQuantity, [Sample; 2]),
     words: &Words,
 ) {
-    let (name, unit, size) = measure.words();
+    let (name, unit, _) = measure.words();
     let name = words.say(name);
-    let samples = values.map(|values| Sample::of(values.iter().map(|(_, x)| x / size)));
     let far = samples.iter().filter_map(|sample| Some(sample.percentile(1.0 - BEYOND)?.value));
     let x = Axis::from_zero(far, format!("{name} ({unit})"));
     let rocks = samples.iter().map(|sample| sample.values().len()).max().unwrap_or(0);

@@ -15,6 +15,11 @@ const METHOD: &str = "Percentiles differ by their order statistics: the spread o
     sample only, not how well ground values and terrain are known. Of twenty statistics that do not differ, one is \
     expected to be called clear.";
 
+/// The same where rocks weigh what they stand for.
+const WEIGHTED: &str = "Where rocks weigh what they stand for, each statistic is that of its own run, and the difference is known by what each \
+    release moves it by: means by the delta method, percentiles by Woodruff's intervals (1952), shares and passages class by class \
+    of size and source, as if one more rock of the heaviest class counted in each run (Fay and Feuer 1997).";
+
 /// The page with the figures inlined.
 pub(super) fn page(comparison: &Comparison, figures: &[(Heading, Drawing)]) -> String {
     let words = comparison.words;
@@ -31,9 +36,12 @@ pub(super) fn page(comparison: &Comparison, figures: &[(Heading, Drawing)]) -> S
     page.push_str(&section(&words.say("Inputs that differ"), &inputs(comparison)));
     page.push_str(&figure_section(figures, words));
     for group in comparison.groups.iter().filter(|group| !group.rows.is_empty()) {
-        page.push_str(&section(&words.say(&group.name), &table(group, words)));
+        page.push_str(&section(&words.say(&group.name), &table(group, comparison)));
     }
-    let method = format!("<p>{}</p>\n", escape(&words.say(METHOD)));
+    let mut method = format!("<p>{}</p>\n", escape(&words.say(METHOD)));
+    if comparison.is_weighted() {
+        let _ = writeln!(method, "<p>{}</p>", escape(&words.say(WEIGHTED)));
+    }
     page.push_str(&section(&words.say("How it was compared"), &method));
     page.push_str("</main>\n</body>\n</html>\n");
     page
@@ -55,6 +63,9 @@ fn heading(comparison: &Comparison) -> String {
         (true, _) => "Both are one and the same run: every difference is zero.",
         (_, true) => {
             "One seed: the same rocks are released in both, and differences are taken pair by pair."
+        }
+        _ if comparison.one_seed => {
+            "One seed, but other sources or other classes of size: nothing pairs."
         }
         _ => "Two seeds: nothing pairs.",
     };
@@ -93,12 +104,15 @@ fn inputs(comparison: &Comparison) -> String {
     )
 }
 
-fn table(group: &Group, words: &Words) -> String {
+fn table(group: &Group, comparison: &Comparison) -> String {
+    let words = comparison.words;
     let mut rows = String::new();
     for row in &group.rows {
         let _ = writeln!(rows, "{}", table_row(row, words));
     }
-    let heads = ["Rocks", "A", "B", "B − A", "95 % interval", "of A"];
+    // beside shares by frequency nobody shall divide counts
+    let counts = if comparison.is_weighted() { "Rocks computed" } else { "Rocks" };
+    let heads = [counts, "A", "B", "B − A", "95 % interval", "of A"];
     let heads = heads.map(|head| format!("<th class=\"number\">{}</th>", escape(&words.say(head))));
     format!(
         "<div class=\"wide\"><table class=\"dense\">\n<thead><tr><th></th>{}<th></th></tr></thead>\n\

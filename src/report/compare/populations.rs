@@ -1,7 +1,10 @@
 //! Whose values are compared: all releases, and those that come to each line and barrier that both runs have.
 
+use super::weighing::{self, RunWeights};
 use crate::error::Result;
-use crate::hazard::{self, Barrier, CrossingRow, Quantity, Row, StopKind, Values};
+use crate::hazard::{
+    self, Barrier, CrossingRow, Quantity, Reading, Row, Sample, StopKind, Values, WeightedCount,
+};
 use crate::output::Results;
 use crate::report::format;
 use std::ops::Range;
@@ -12,11 +15,61 @@ pub(super) struct Population {
     /// What they are: a heading.
     pub(super) name: String,
     /// Releases that they are among.
-    pub(super) among: usize,
+    pub(super) among: Range<usize>,
+    /// What these stand for; none where all of both runs weigh the same.
+    pub(super) standing: Option<RunWeights>,
     /// Shares: name, and the releases that count.
     pub(super) shares: Vec<(String, Vec<usize>)>,
     /// Quantities: what, and its value for each release that has one.
     pub(super) values: Vec<(ComparedQuantity, Values)>,
+}
+
+impl Population {
+    /// Releases that count, with what they stand for; none where all weigh the same.
+    pub(super) fn weighted<'a>(&'a self, releases: &'a [usize]) -> Option<WeightedCount<'a>> {
+        let weights = &self.standing.as_ref()?.weights;
+        Some(WeightedCount { releases, among: self.among.clone(), weights })
+    }
+
+    /// The same of those that come to a place, where they stand for events a year.
+    pub(super) fn in_a_year<'a>(&'a self, releases: &'a [usize]) -> Option<WeightedCount<'a>> {
+        let is_a_year = self.standing.as_ref()?.is_a_year;
+        let come = !matches!(self.values.first(), Some((ComparedQuantity::Whole(_), _)));
+        self.weighted(releases).filter(|_| is_a_year && come)
+    }
+
+    /// Share of all that some of its releases are (–).
+    fn share(&self, releases: &[usize]) -> f64 {
+        match &self.standing {
+            None => releases.len() as f64 / self.among.len().max(1) as f64,
+            Some(of) => hazard::share_of(&of.weights, releases.iter().copied()).share,
+        }
+    }
+
+    pub(super) fn mean(&self, values: &Values) -> Option<Reading> {
+        match &self.standing {
+            None => Reading::mean(values),
+            Some(of) => Reading::weighted_mean(values, &of.weights),
+        }
+    }
+
+    pub(super) fn percentile(&self, values: &Values, p: f64) -> Option<Reading> {
+        match &self.standing {
+            None => Reading::percentile(values, p),
+            Some(of) => Reading::weighted_percentile(values, &of.weights, p),
+        }
+    }
+
+    /// The values in another unit, sorted.
+    pub(super) fn sample(&self, values: &Values, size: f64) -> Sample {
+        match &self.standing {
+            None => Sample::of(values.iter().map(|(_, x)| x / size)),
+            Some(of) => {
+                let weight = |release: usize| of.weights.of_release(release);
+                Sample::weighted(values.iter().map(|&(release, x)| (x / size, weight(release))))
+            }
+        }
+    }
 }
 
 /// A quantity that is compared.
@@ -78,7 +131,9 @@ pub(super) fn of(
     runs: &[Results; 2],
     ranges: &[Range<usize>; 2],
 ) -> Result<(Vec<[Population; 2]>, Vec<String>)> {
-    let mut pairs = vec![[all(&runs[0], &ranges[0])?, all(&runs[1], &ranges[1])?]];
+    let standing = weighing::of(runs, ranges);
+    let [one, other] = [0, 1].map(|k| all(&runs[k], &ranges[k], standing[k].as_ref()));
+    let mut pairs = vec![[one?, other?]];
     let mut notes = Vec::new();
     let lines = |run: &Results| -> Vec<String> {
         let own = run.lines.iter().filter(|line| !line.info.of_barrier);
@@ -93,8 +148,9 @@ pub(super) fn of(
         }
     }
     let both: Vec<String> = one.into_iter().filter(|name| other.contains(name)).collect();
-    let one = at_lines(&runs[0], &both, &ranges[0])?;
-    let other = at_lines(&runs[1], &both, &ranges[1])?;
+    let [one, other] =
+        [0, 1].map(|k| at_lines(&runs[k], &both, (&ranges[k], standing[k].as_ref())));
+    let (one, other) = (one?, other?);
     for (a, b) in one.into_iter().zip(other) {
         let stops = a.barriers_stop || b.barriers_stop;
         pairs.push([a.crossing, b.crossing]);
@@ -120,7 +176,7 @@ pub(super) fn censored(pair: &[Population; 2]) -> Option<String> {
     let left = |of: &Population| {
         let name = ended(StopKind::LeftTerrain);
         let found = of.shares.iter().find(|(share, _)| share == name);
-        found.map_or(0.0, |(_, releases)| releases.len() as f64 / of.among.max(1) as f64)
+        found.map_or(0.0, |(_, releases)| of.share(releases))
     };
     let [a, b] = [left(&pair[0]), left(&pair[1])];
     (a.max(b) > MANY_LEFT).then(|| {
@@ -134,10 +190,11 @@ pub(super) fn censored(pair: &[Population; 2]) -> Option<String> {
 }
 
 /// All releases of a run.
-fn all(run: &Results, range: &Range<usize>) -> Result<Population> {
+fn all(run: &Results, range: &Range<usize>, standing: Option<&RunWeights>) -> Result<Population> {
     let mut found = Population {
         name: "All releases".to_owned(),
-        among: range.len(),
+        among: range.clone(),
+        standing: standing.cloned(),
         shares: StopKind::ALL.map(|stop| (ended(stop).to_owned(), Vec::new())).into(),
         values: WHOLE.map(|quantity| (ComparedQuantity::Whole(quantity), Values::new())).into(),
     };
@@ -171,7 +228,11 @@ fn ended(stop: StopKind) -> &'static str {
 
 /// The rocks that come to each of some lines: all that cross, and where there are barriers those that the barriers
 /// before have let through.
-fn at_lines(run: &Results, names: &[String], range: &Range<usize>) -> Result<Vec<AtLine>> {
+fn at_lines(
+    run: &Results,
+    names: &[String],
+    (range, standing): (&Range<usize>, Option<&RunWeights>),
+) -> Result<Vec<AtLine>> {
     let rows: Vec<CrossingRow> = run
         .crossings()?
         .filter(|row| row.as_ref().map_or(true, |row| range.contains(&row.index)))
@@ -181,36 +242,34 @@ fn at_lines(run: &Results, names: &[String], range: &Range<usize>) -> Result<Vec
     let arrived = arrived(&barriers, names, &rows)?;
     let mut found = Vec::new();
     for (name, arrived) in names.iter().zip(arrived) {
-        let crossing = crossing(name, &rows, range.len());
+        let mut crossing = crossing(name, &rows);
         let is_barrier = barriers.iter().any(|barrier| barrier.name == *name);
         let barriers_stop = is_barrier || arrived.len() < crossing.shares[0].1.len();
-        let arriving = arriving(name, &barriers, &arrived, range.len());
+        let mut arriving = arriving(name, &barriers, &arrived);
+        for population in [&mut crossing, &mut arriving] {
+            (population.among, population.standing) = (range.clone(), standing.cloned());
+        }
         found.push(AtLine { crossing, arriving, barriers_stop });
     }
     Ok(found)
 }
 
-fn crossing(name: &str, rows: &[CrossingRow], among: usize) -> Population {
+fn crossing(name: &str, rows: &[CrossingRow]) -> Population {
     let own = || rows.iter().filter(|row| row.line == name);
     let values = |of: fn(&CrossingRow) -> f64| own().map(|row| (row.index, of(row))).collect();
     Population {
         name: format!("Line “{name}”, barriers left aside"),
-        among,
         shares: vec![("Cross it".to_owned(), own().map(|row| row.index).collect())],
         values: vec![
             (ComparedQuantity::Energy, values(CrossingRow::total_j)),
             (ComparedQuantity::Height, values(|row| row.height_m)),
             (ComparedQuantity::Speed, values(|row| row.speed_m_s)),
         ],
+        ..Population::default()
     }
 }
 
-fn arriving(
-    name: &str,
-    barriers: &[Barrier],
-    arrived: &[hazard::Arrival],
-    among: usize,
-) -> Population {
+fn arriving(name: &str, barriers: &[Barrier], arrived: &[hazard::Arrival]) -> Population {
     let releases = |keep: &dyn Fn(&hazard::Arrival) -> bool| {
         arrived.iter().filter(|rock| keep(rock)).map(|rock| rock.release).collect()
     };
@@ -225,12 +284,12 @@ fn arriving(
     };
     Population {
         name: format!("“{name}”, behind the barriers of each run"),
-        among,
         shares,
         values: vec![
             (ComparedQuantity::Energy, values(|rock| rock.total_j)),
             (ComparedQuantity::Top, values(|rock| rock.top_m)),
         ],
+        ..Population::default()
     }
 }
 

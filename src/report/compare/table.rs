@@ -47,19 +47,23 @@ impl ComparedStatistic {
 pub(super) fn group([a, b]: &[Population; 2], paired: bool, same_run: bool) -> Group {
     let settled = |one: Difference| if same_run { one.of_one_run() } else { one };
     let mut rows = Vec::new();
-    for ((name, one), (_, other)) in a.shares.iter().zip(&b.shares) {
-        let difference = Difference::of_shares((one, a.among), (other, b.among), paired);
-        rows.push(ComparedStatistic {
-            name: name.clone(),
-            unit: "%",
-            rocks: [one.len(), other.len()],
-            difference: scaled(settled(difference), 0.01),
+    for (at, ((name, one), (_, other))) in a.shares.iter().zip(&b.shares).enumerate() {
+        let (one, other) = ((a, &one[..]), (b, &other[..]));
+        let row = |name: &str, unit: &'static str, difference: Difference| ComparedStatistic {
+            name: name.to_owned(),
+            unit,
+            rocks: [one.1.len(), other.1.len()],
+            difference: settled(difference),
             is_headline: true,
-        });
+        };
+        let share = of_shares(one, other, paired);
+        let per_year = passages(one, other, paired).filter(|_| at == 0);
+        rows.push(row(name, "%", scaled(share, 0.01)));
+        rows.extend(per_year.map(|rate| row("Passages", "1/year", rate)));
     }
     for ((measure, one), (_, other)) in a.values.iter().zip(&b.values) {
         rows.extend(
-            of_measure(*measure, [one, other], paired)
+            of_measure(*measure, [(a, one), (b, other)], paired)
                 .into_iter()
                 .map(|row| ComparedStatistic { difference: settled(row.difference), ..row }),
         );
@@ -67,6 +71,24 @@ pub(super) fn group([a, b]: &[Population; 2], paired: bool, same_run: bool) -> G
     // what neither run has seen is no news
     rows.retain(|row| row.rocks != [0, 0]);
     Group { name: a.name.clone(), rows }
+}
+
+/// A population, and the releases of it that count.
+type Counted<'a> = (&'a Population, &'a [usize]);
+
+/// How their share changes (–).
+fn of_shares(one: Counted<'_>, other: Counted<'_>, paired: bool) -> Difference {
+    if let [Some(a), Some(b)] = [one, other].map(|(of, releases)| of.weighted(releases)) {
+        return Difference::of_weighted_shares(&a, &b, paired);
+    }
+    let [a, b] = [one, other].map(|(of, releases)| (releases, of.among.len()));
+    Difference::of_shares(a, b, paired)
+}
+
+/// How their number a year changes (1/year).
+fn passages(one: Counted<'_>, other: Counted<'_>, paired: bool) -> Option<Difference> {
+    let [a, b] = [one, other].map(|(of, releases)| of.in_a_year(releases));
+    Some(Difference::of_rates(&a?, &b?, paired))
 }
 
 fn scaled(one: Difference, size: f64) -> Difference {
@@ -81,12 +103,14 @@ fn scaled(one: Difference, size: f64) -> Difference {
 /// Mean and percentiles of one quantity.
 fn of_measure(
     measure: ComparedQuantity,
-    values: [&Values; 2],
+    values: [(&Population, &Values); 2],
     paired: bool,
 ) -> Vec<ComparedStatistic> {
     let (name, unit, size) = measure.words();
-    let row = |what: String, is_headline: bool, read: &dyn Fn(&Values) -> Option<Reading>| {
-        let [a, b] = values.map(read);
+    let row = |what: String,
+               is_headline: bool,
+               read: &dyn Fn(&Population, &Values) -> Option<Reading>| {
+        let [a, b] = values.map(|(of, values)| read(of, values));
         let (a, b) = (a?.times(1.0 / size), b?.times(1.0 / size));
         Some(ComparedStatistic {
             name: format!("{name}, {what}"),
@@ -96,10 +120,10 @@ fn of_measure(
             is_headline,
         })
     };
-    let mean = row("mean".to_owned(), measure.is_count(), &|values| Reading::mean(values));
+    let mean = row("mean".to_owned(), measure.is_count(), &|of, values| of.mean(values));
     let percents = PERCENTS.iter().filter(|_| !measure.is_count()).filter_map(|&percent| {
         let p = f64::from(percent) / 100.0;
-        row(format!("P{percent}"), percent == 95, &|values| Reading::percentile(values, p))
+        row(format!("P{percent}"), percent == 95, &|of, values| of.percentile(values, p))
     });
     mean.into_iter().chain(percents).collect()
 }

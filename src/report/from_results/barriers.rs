@@ -1,5 +1,6 @@
 //! What barriers stop and what their rule asks for, from the summary and the crossings.
 
+use super::super::by_frequency;
 use super::super::format;
 use super::super::model::{
     About, BarrierView, DesignView, Estimate, EstimateTable, PlaceView, ReportQuantity, RockView,
@@ -108,7 +109,25 @@ pub(super) fn tables(
         let left_is_uphill = left_is_uphill(results, one, ground);
         [arriving(one, words), sensitivity(one, words, left_is_uphill)]
     });
-    [counts(barriers, words)].into_iter().chain(each).collect()
+    let mut tables: Vec<EstimateTable> =
+        [counts(barriers, words)].into_iter().chain(each).collect();
+    if results.hazard.weights().is_some() {
+        for table in &mut tables {
+            say_by_frequency(table, words);
+        }
+    }
+    tables
+}
+
+/// Says of a table which numbers are shares of events, and which of computed rocks.
+fn say_by_frequency(table: &mut EstimateTable, words: &Words) {
+    for column in &mut table.columns {
+        if [words.col_arriving, words.col_over, words.col_through].contains(&column.as_str()) {
+            *column = fill(&words.say(by_frequency::COMPUTED), &[("what", column)]);
+        }
+    }
+    let note = std::mem::take(&mut table.note);
+    table.note = by_frequency::noted(note, Some(by_frequency::SHARES), words);
 }
 
 fn counts(barriers: &[BarrierSummary], words: &Words) -> EstimateTable {

@@ -1,5 +1,6 @@
 //! Lines of the report, gathered from the summary and the crossings.
 
+use super::super::by_frequency;
 use super::super::format;
 use super::super::model::{
     About, BandPoint, Behind, Estimate, EstimateTable, LinePoint, MapMark, Quantile, ReportLine,
@@ -71,7 +72,11 @@ pub(super) fn lines(results: &Results, ground: Option<&GroundRaster>) -> Result<
             ..empty(line, releases)
         })
         .collect();
-    let weights = results.hazard.weights().unwrap_or_else(|| Weights::equal(releases));
+    let weights = results.hazard.weights();
+    for line in &mut lines {
+        line.is_weighted = weights.is_some();
+    }
+    let weights = weights.unwrap_or_else(|| Weights::equal(releases));
     let barriers: Vec<Barrier> =
         results.summary.barriers.iter().map(|one| one.barrier.clone()).collect();
     hazard::by_rock(results.crossings()?, |rock| take(&barriers, rock, &mut lines))?;
@@ -169,6 +174,7 @@ fn empty(line: &hazard::Line, releases: usize) -> ReportLine {
         length_m: line.info.length_m,
         releases,
         reach: of_share(&line.reach(releases)),
+        is_weighted: false,
         crossing_again: line.crossing_again(),
         crossings: Vec::new(),
         energy_quantiles: quantiles(&energy),
@@ -191,17 +197,19 @@ fn quantiles(sample: &Sample) -> Vec<Quantile> {
 /// One table a line that rocks cross.
 pub(super) fn tables(results: &Results, words: &Words) -> Vec<EstimateTable> {
     let releases = results.hazard.rocks();
+    let is_weighted = results.hazard.weights().is_some();
     let table = |(_, line): (usize, &hazard::Line)| {
         let reach = line.reach(releases);
         let percent = |share: f64| format::percent(share, 2);
         let count = |n: usize| format::decimal(n as f64, 0);
-        let (title, note) = if is_object(results, &line.info.name) {
-            (words.object_table, words.object_note)
+        let (title, plain, weighted) = if is_object(results, &line.info.name) {
+            (words.object_table, words.object_note, by_frequency::OBJECT)
         } else {
-            (words.line_table, words.line_note)
+            (words.line_table, words.line_note, by_frequency::LINE)
         };
+        let note = if is_weighted { words.say(weighted) } else { plain.to_owned() };
         let note = fill(
-            note,
+            &note,
             &[
                 ("count", &count(reach.count)),
                 ("releases", &count(releases)),

@@ -1,6 +1,7 @@
 //! Measured ends and calibration, gathered from summary, releases and `calibration.json`.
 
 use super::super::format;
+use super::super::measured::weighing;
 use super::super::model::{About, Estimate, EstimateTable, Observed};
 use super::super::words::{Words, fill};
 use super::estimate;
@@ -29,28 +30,38 @@ pub(super) fn observed(results: &Results) -> Result<Option<Observed>> {
     if measured.is_empty() {
         return Ok(None);
     }
-    let mut computed = Vec::new();
+    let standing = results.hazard.weights();
+    let (mut computed, mut weights) = (Vec::new(), Vec::new());
     for row in results.rows()? {
-        computed.extend(ObservedPath::of(&row?));
+        let row = row?;
+        computed.extend(ObservedPath::of(&row));
+        let counts = standing.as_ref().filter(|_| row.stop.counts());
+        weights.extend(counts.map(|all| all.of_release(row.index)));
     }
-    let agreement = Agreement::of(&measured, &computed);
-    Ok(agreement.map(|agreement| Observed { measured, computed, agreement }))
+    let weights = standing.is_some().then_some(weights);
+    let agreement = match &weights {
+        None => Agreement::of(&measured, &computed),
+        Some(weights) => {
+            let weighted = computed.iter().copied().zip(weights.iter().copied());
+            Agreement::of_events(&measured, &weighted.collect::<Vec<_>>())
+        }
+    };
+    Ok(agreement.map(|agreement| Observed { measured, computed, weights, agreement }))
 }
 
 /// How well this run and the calibration agree with what was measured.
 pub(super) fn tables(results: &Results, words: &Words) -> Result<Vec<EstimateTable>> {
     let mut tables = Vec::new();
     if let Some(observed) = observed(results)? {
+        let agreement = &observed.agreement;
+        let note = fill(
+            words.agreement_note,
+            &[("measured", &agreement.measured), ("computed", &agreement.computed)],
+        );
         tables.push(EstimateTable {
             about: About::Measured,
             title: words.agreement_title.to_owned(),
-            note: fill(
-                words.agreement_note,
-                &[
-                    ("measured", &observed.agreement.measured),
-                    ("computed", &observed.agreement.computed),
-                ],
-            ),
+            note: note + &weighing(&observed, words),
             columns: columns(words),
             rows: vec![(words.this_run.to_owned(), cells(&observed.agreement))],
             ..EstimateTable::default()

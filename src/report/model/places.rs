@@ -156,6 +156,8 @@ pub struct ReportLine {
     pub releases: usize,
     /// Share of the releases that cross it.
     pub reach: Estimate,
+    /// Whether that is by frequency, and no quotient of counts.
+    pub is_weighted: bool,
     /// Rocks that cross it more than once.
     pub crossing_again: usize,
     /// First crossings.
@@ -225,6 +227,8 @@ pub struct Observed {
     pub measured: Vec<ObservedPath>,
     /// Computed ways, failed rocks left out.
     pub computed: Vec<ObservedPath>,
+    /// What each of these stands for (–); none where all weigh the same.
+    pub weights: Option<Vec<f64>>,
     /// How well they agree.
     pub agreement: Agreement,
 }

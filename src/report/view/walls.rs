@@ -1,10 +1,13 @@
 //! Evaluation lines and barriers on the ground.
 
-use crate::hazard::{BarrierSummary, LineSummary};
+use crate::hazard::{BarrierSummary, LineSummary, Proportion};
 use crate::math;
 use crate::output::Results;
 use crate::report::raster::GroundRaster;
+use crate::report::words::fill;
+use crate::report::{by_frequency, format};
 use serde::Serialize;
+use std::fmt::Display;
 
 /// Most pieces that a line is cut into to follow the ground.
 const MOST_PIECES: f64 = 400.0;
@@ -25,14 +28,30 @@ pub(super) struct Wall {
 pub(super) fn of(results: &Results, ground: Option<&GroundRaster>) -> Vec<Wall> {
     let Some(ground) = ground else { return Vec::new() };
     let shown = results.summary.lines.iter().filter(|line| !line.info.of_barrier);
-    shown.map(|line| wall(line, &results.summary.barriers, ground)).collect()
+    let is_weighted = results.hazard.weights().is_some();
+    shown.map(|line| wall((line, is_weighted), &results.summary.barriers, ground)).collect()
 }
 
-fn wall(line: &LineSummary, barriers: &[BarrierSummary], ground: &GroundRaster) -> Wall {
+fn wall(
+    (line, is_weighted): (&LineSummary, bool),
+    barriers: &[BarrierSummary],
+    ground: &GroundRaster,
+) -> Wall {
     let barrier = barriers.iter().find(|one| one.barrier.name == line.info.name);
-    let reached = format!("{} of {} rocks cross", line.reach.count, line.reach.of);
-    let words = barrier.map_or(reached.clone(), |one| {
+    let percent = |share: &Proportion| format::percent(share.share, 1);
+    let reached = if is_weighted {
+        fill(by_frequency::WALL, &[("share", &percent(&line.reach))])
+    } else {
+        format!("{} of {} rocks cross", line.reach.count, line.reach.of)
+    };
+    let words = barrier.map_or(reached, |one| {
         let (height_m, capacity_kj) = (one.barrier.height_m, one.barrier.capacity_j / 1e3);
+        if is_weighted {
+            let stopped = percent(&one.stopped);
+            let found: [(&str, &dyn Display); 3] =
+                [("h", &height_m), ("e", &capacity_kj), ("share", &stopped)];
+            return fill(by_frequency::BARRIER, &found);
+        }
         format!(
             "{height_m} m, {capacity_kj} kJ: stops {} of the {} that arrive",
             one.stopped.count, one.stopped.of

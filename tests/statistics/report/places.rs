@@ -63,6 +63,7 @@ fn line(number: usize, name: &str, rocks: usize) -> ReportLine {
         length_m: 60.0,
         releases: 1000,
         reach: Estimate::new(rocks as f64 / 1000.0, 0.0, 0.4),
+        is_weighted: false,
         crossing_again: 1,
         crossings: (0..rocks).map(point).collect(),
         energy_quantiles: marked(3e5),
@@ -141,7 +142,7 @@ fn observed() -> Observed {
     let (measured, computed): (Vec<ObservedPath>, Vec<ObservedPath>) =
         ((0..40).map(way).collect(), (5..300).map(way).collect());
     let agreement = Agreement::of(&measured, &computed).expect("neither is empty");
-    Observed { measured, computed, agreement }
+    Observed { measured, computed, weights: None, agreement }
 }
 
 /// A site with all of it.

@@ -84,6 +84,10 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "{a} ({b} bis {c} in neun von zehn, {d}) {unit}",
     ),
     ("{a} ({b} to {c} in nine of ten, {d})", "{a} ({b} bis {c} in neun von zehn, {d})"),
+    (
+        "Computed rocks weigh what they stand for, measured ones all the same; the limit is that of as many computed rocks of equal weight as would know as much.",
+        "Gerechnete Blöcke wiegen, wofür sie stehen, gemessene alle gleich viel; die Grenze ist die von so vielen gerechneten Blöcken gleichen Gewichts, wie gleich viel wüssten.",
+    ),
     // Two runs beside each other
     ("Two runs compared", "Zwei Läufe im Vergleich"),
     ("Read this first", "Zuerst lesen"),
@@ -102,6 +106,37 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "Ein Startwert: in beiden lösen sich dieselben Blöcke, und Differenzen gelten Paar für Paar.",
     ),
     ("Two seeds: nothing pairs.", "Zwei Startwerte: nichts bildet Paare."),
+    (
+        "One seed, but other sources or other classes of size: nothing pairs.",
+        "Ein Startwert, aber andere Quellen oder andere Größenklassen: nichts bildet Paare.",
+    ),
+    (
+        "Share of the rocks by frequency that exceed a value: A full, B dashed ({a} and {b} rocks computed). Axes end where one in two hundred exceeds in both.",
+        "Anteil der Blöcke nach Häufigkeit, die einen Wert überschreiten: A voll, B gestrichelt ({a} und {b} gerechnete Blöcke). Achsen enden, wo in beiden einer von zweihundert überschreitet.",
+    ),
+    ("Rocks computed", "Gerechnete Blöcke"),
+    ("Passages", "Durchgänge"),
+    ("Rocks weigh what they stand for", "Blöcke wiegen, wofür sie stehen"),
+    (
+        "Rocks of A weigh what they stand for, those of B all the same",
+        "Blöcke von A wiegen, wofür sie stehen, die von B alle gleich viel",
+    ),
+    (
+        "Rocks of B weigh what they stand for, those of A all the same",
+        "Blöcke von B wiegen, wofür sie stehen, die von A alle gleich viel",
+    ),
+    (
+        "{who}: shares, means and percentiles are those of events, as in the report of each run. Numbers of rocks are of computed ones: rare sizes are computed more often than they come.",
+        "{who}: Anteile, Mittelwerte und Perzentile sind die der Ereignisse, wie im Bericht jedes Laufs. Anzahlen von Blöcken sind die gerechneter: seltene Größen sind öfter gerechnet, als sie vorkommen.",
+    ),
+    (
+        "The runs have other sources or other classes of size: the same release number is another rock in each, nothing pairs, and differences are known no better than both runs apart.",
+        "Die Läufe haben andere Quellen oder andere Größenklassen: dieselbe Nummer einer Ablösung ist in jedem ein anderer Block, nichts bildet Paare, und Differenzen sind nicht besser bekannt als beide Läufe für sich.",
+    ),
+    (
+        "Where rocks weigh what they stand for, each statistic is that of its own run, and the difference is known by what each release moves it by: means by the delta method, percentiles by Woodruff's intervals (1952), shares and passages class by class of size and source, as if one more rock of the heaviest class counted in each run (Fay and Feuer 1997).",
+        "Wo Blöcke wiegen, wofür sie stehen, ist jede Statistik die ihres eigenen Laufs, und das Intervall der Differenz folgt daraus, wie viel jede Ablösung sie bewegt: Mittelwerte nach der Delta-Methode, Perzentile nach den Intervallen von Woodruff (1952), Anteile und Durchgänge Klasse für Klasse von Größe und Quelle, als zählte in jedem Lauf ein Block der schwersten Klasse mehr (Fay und Feuer 1997).",
+    ),
     (
         "None: scene, meshes, seed, version and releases are the same.",
         "Keine: Szene, Netze, Startwert, Version und Ablösungen sind gleich.",
@@ -173,6 +208,38 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
     ("Version", "Version"),
     ("Seed", "Startwert"),
     ("Releases", "Ablösungen"),
+    // Of rocks that weigh what they stand for
+    (
+        "{share} of the rocks by frequency ({n} of {of} computed)",
+        "{share} der Blöcke nach Häufigkeit ({n} von {of} gerechneten)",
+    ),
+    (
+        "Conditional on release: reach probability {reach} ({interval}) by frequency; of {releases} computed rocks {count} cross it, {again} more than once. Values at the first crossing.",
+        "Bedingt auf die Ablösung: Erreichenswahrscheinlichkeit {reach} ({interval}) nach Häufigkeit; von {releases} gerechneten Blöcken überqueren {count} sie, {again} mehrmals. Werte beim ersten Durchgang.",
+    ),
+    (
+        "Conditional on release: reach probability {reach} ({interval}) by frequency; of {releases} computed rocks {count} hit it. Values at the first touch.",
+        "Bedingt auf die Ablösung: Erreichenswahrscheinlichkeit {reach} ({interval}) nach Häufigkeit; von {releases} gerechneten Blöcken treffen es {count}. Werte bei der ersten Berührung.",
+    ),
+    (
+        "None of {n} computed rocks crosses {what} {name}: by frequency its reach probability is below {share} (95\u{2009}% confidence).",
+        "Keiner von {n} gerechneten Blöcken überquert {what} {name}: nach Häufigkeit liegt die Erreichenswahrscheinlichkeit unter {share} (Vertrauen 95\u{2009}%).",
+    ),
+    ("{share} of the rocks by frequency cross", "{share} der Blöcke nach Häufigkeit queren"),
+    (
+        "{h} m, {e} kJ: stops {share} of those that arrive, by frequency",
+        "{h} m, {e} kJ: hält {share} derer auf, die ankommen, nach Häufigkeit",
+    ),
+    ("{what} (computed)", "{what} (gerechnet)"),
+    ("{n} computed", "{n} gerechnet"),
+    (
+        "Shares are by frequency; numbers of rocks are of computed ones.",
+        "Anteile gelten nach Häufigkeit; Anzahlen von Blöcken sind die gerechneter.",
+    ),
+    (
+        "Curves and lines are by frequency; bars and numbers of rocks are of computed ones.",
+        "Kurven und Linien gelten nach Häufigkeit; Balken und Anzahlen von Blöcken sind die gerechneter.",
+    ),
 ];
 
 /// Texts of the view.

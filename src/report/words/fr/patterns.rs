@@ -87,6 +87,10 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "{a} ({b} à {c} neuf fois sur dix, {d}) {unit}",
     ),
     ("{a} ({b} to {c} in nine of ten, {d})", "{a} ({b} à {c} neuf fois sur dix, {d})"),
+    (
+        "Computed rocks weigh what they stand for, measured ones all the same; the limit is that of as many computed rocks of equal weight as would know as much.",
+        "Les blocs calculés pèsent ce qu’ils représentent, les mesurés tous autant\u{a0}; la limite est celle d’autant de blocs calculés de même poids qu’il en faudrait pour en savoir autant.",
+    ),
     // Two runs beside each other
     ("Two runs compared", "Deux calculs comparés"),
     ("Read this first", "À lire d’abord"),
@@ -105,6 +109,37 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "Une seule graine\u{a0}: les mêmes blocs partent dans les deux, et les différences sont prises paire par paire.",
     ),
     ("Two seeds: nothing pairs.", "Deux graines\u{a0}: rien ne forme de paires."),
+    (
+        "One seed, but other sources or other classes of size: nothing pairs.",
+        "Une graine, mais d’autres sources ou d’autres classes de taille\u{a0}: rien ne forme de paires.",
+    ),
+    (
+        "Share of the rocks by frequency that exceed a value: A full, B dashed ({a} and {b} rocks computed). Axes end where one in two hundred exceeds in both.",
+        "Part des blocs selon leur fréquence qui dépassent une valeur\u{a0}: A trait plein, B tirets ({a} et {b} blocs calculés). Les axes finissent où un sur deux cents dépasse dans les deux.",
+    ),
+    ("Rocks computed", "Blocs calculés"),
+    ("Passages", "Passages"),
+    ("Rocks weigh what they stand for", "Les blocs pèsent ce qu’ils représentent"),
+    (
+        "Rocks of A weigh what they stand for, those of B all the same",
+        "Les blocs de A pèsent ce qu’ils représentent, ceux de B tous autant",
+    ),
+    (
+        "Rocks of B weigh what they stand for, those of A all the same",
+        "Les blocs de B pèsent ce qu’ils représentent, ceux de A tous autant",
+    ),
+    (
+        "{who}: shares, means and percentiles are those of events, as in the report of each run. Numbers of rocks are of computed ones: rare sizes are computed more often than they come.",
+        "{who}\u{a0}: parts, moyennes et percentiles sont ceux des événements, comme dans le rapport de chaque calcul. Les nombres de blocs sont ceux des blocs calculés\u{a0}: les tailles rares sont calculées plus souvent qu’elles ne surviennent.",
+    ),
+    (
+        "The runs have other sources or other classes of size: the same release number is another rock in each, nothing pairs, and differences are known no better than both runs apart.",
+        "Les calculs ont d’autres sources ou d’autres classes de taille\u{a0}: le même numéro de départ est un autre bloc dans chacun, rien ne forme de paires, et les différences ne sont pas mieux connues que les deux calculs séparément.",
+    ),
+    (
+        "Where rocks weigh what they stand for, each statistic is that of its own run, and the difference is known by what each release moves it by: means by the delta method, percentiles by Woodruff's intervals (1952), shares and passages class by class of size and source, as if one more rock of the heaviest class counted in each run (Fay and Feuer 1997).",
+        "Où les blocs pèsent ce qu’ils représentent, chaque statistique est celle de son propre calcul, et l’intervalle de la différence découle de ce dont chaque départ la déplace\u{a0}: moyennes par la méthode delta, percentiles par les intervalles de Woodruff (1952), parts et passages classe par classe de taille et de source, comme si un bloc de plus de la classe la plus lourde comptait dans chaque calcul (Fay et Feuer 1997).",
+    ),
     (
         "None: scene, meshes, seed, version and releases are the same.",
         "Aucune\u{a0}: scène, maillages, graine, version et départs sont les mêmes.",
@@ -176,6 +211,38 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
     ("Version", "Version"),
     ("Seed", "Graine"),
     ("Releases", "Départs"),
+    // Of rocks that weigh what they stand for
+    (
+        "{share} of the rocks by frequency ({n} of {of} computed)",
+        "{share} des blocs selon leur fréquence ({n} sur {of} calculés)",
+    ),
+    (
+        "Conditional on release: reach probability {reach} ({interval}) by frequency; of {releases} computed rocks {count} cross it, {again} more than once. Values at the first crossing.",
+        "Conditionnel au départ\u{a0}: probabilité d’atteinte {reach} ({interval}) selon la fréquence\u{a0}; sur {releases} blocs calculés, {count} la franchissent, {again} plusieurs fois. Valeurs au premier passage.",
+    ),
+    (
+        "Conditional on release: reach probability {reach} ({interval}) by frequency; of {releases} computed rocks {count} hit it. Values at the first touch.",
+        "Conditionnel au départ\u{a0}: probabilité d’atteinte {reach} ({interval}) selon la fréquence\u{a0}; sur {releases} blocs calculés, {count} le touchent. Valeurs au premier contact.",
+    ),
+    (
+        "None of {n} computed rocks crosses {what} {name}: by frequency its reach probability is below {share} (95\u{2009}% confidence).",
+        "Aucun des {n} blocs calculés ne franchit {what} {name}\u{a0}: selon la fréquence sa probabilité d’atteinte est inférieure à {share} (confiance 95\u{2009}%).",
+    ),
+    ("{share} of the rocks by frequency cross", "{share} des blocs passent, selon leur fréquence"),
+    (
+        "{h} m, {e} kJ: stops {share} of those that arrive, by frequency",
+        "{h} m, {e} kJ\u{a0}: arrête {share} de ceux qui arrivent, selon leur fréquence",
+    ),
+    ("{what} (computed)", "{what} (calculés)"),
+    ("{n} computed", "{n} calculés"),
+    (
+        "Shares are by frequency; numbers of rocks are of computed ones.",
+        "Les parts suivent la fréquence\u{a0}; les nombres de blocs sont ceux des blocs calculés.",
+    ),
+    (
+        "Curves and lines are by frequency; bars and numbers of rocks are of computed ones.",
+        "Courbes et traits suivent la fréquence\u{a0}; les barres et les nombres de blocs sont ceux des blocs calculés.",
+    ),
 ];
 
 /// Texts of the view.

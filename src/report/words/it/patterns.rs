@@ -84,6 +84,10 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "{a} (da {b} a {c} in nove casi su dieci, {d}) {unit}",
     ),
     ("{a} ({b} to {c} in nine of ten, {d})", "{a} (da {b} a {c} in nove casi su dieci, {d})"),
+    (
+        "Computed rocks weigh what they stand for, measured ones all the same; the limit is that of as many computed rocks of equal weight as would know as much.",
+        "I massi calcolati pesano ciò che rappresentano, quelli misurati tutti uguale; il limite è quello di tanti massi calcolati di ugual peso quanti ne saprebbero altrettanto.",
+    ),
     // Two runs beside each other
     ("Two runs compared", "Due calcoli a confronto"),
     ("Read this first", "Da leggere prima"),
@@ -102,6 +106,37 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "Un solo seme: in entrambi si staccano gli stessi massi, e le differenze sono prese coppia per coppia.",
     ),
     ("Two seeds: nothing pairs.", "Due semi: nulla forma coppie."),
+    (
+        "One seed, but other sources or other classes of size: nothing pairs.",
+        "Un seme, ma altre sorgenti o altre classi di grandezza: nulla forma coppie.",
+    ),
+    (
+        "Share of the rocks by frequency that exceed a value: A full, B dashed ({a} and {b} rocks computed). Axes end where one in two hundred exceeds in both.",
+        "Quota dei massi secondo la frequenza che superano un valore: A continuo, B tratteggiato ({a} e {b} massi calcolati). Gli assi finiscono dove in entrambi uno su duecento supera.",
+    ),
+    ("Rocks computed", "Massi calcolati"),
+    ("Passages", "Passaggi"),
+    ("Rocks weigh what they stand for", "I massi pesano ciò che rappresentano"),
+    (
+        "Rocks of A weigh what they stand for, those of B all the same",
+        "I massi di A pesano ciò che rappresentano, quelli di B tutti uguale",
+    ),
+    (
+        "Rocks of B weigh what they stand for, those of A all the same",
+        "I massi di B pesano ciò che rappresentano, quelli di A tutti uguale",
+    ),
+    (
+        "{who}: shares, means and percentiles are those of events, as in the report of each run. Numbers of rocks are of computed ones: rare sizes are computed more often than they come.",
+        "{who}: quote, medie e percentili sono quelli degli eventi, come nel rapporto di ogni calcolo. I numeri di massi sono quelli dei massi calcolati: le grandezze rare sono calcolate più spesso di quanto accadano.",
+    ),
+    (
+        "The runs have other sources or other classes of size: the same release number is another rock in each, nothing pairs, and differences are known no better than both runs apart.",
+        "I calcoli hanno altre sorgenti o altre classi di grandezza: lo stesso numero di distacco è un altro masso in ciascuno, nulla forma coppie, e le differenze non sono note meglio dei due calcoli separati.",
+    ),
+    (
+        "Where rocks weigh what they stand for, each statistic is that of its own run, and the difference is known by what each release moves it by: means by the delta method, percentiles by Woodruff's intervals (1952), shares and passages class by class of size and source, as if one more rock of the heaviest class counted in each run (Fay and Feuer 1997).",
+        "Dove i massi pesano ciò che rappresentano, ogni statistica è quella del proprio calcolo, e l’intervallo della differenza segue da quanto ogni distacco la sposta: medie con il metodo delta, percentili con gli intervalli di Woodruff (1952), quote e passaggi classe per classe di grandezza e sorgente, come se in ogni calcolo contasse un masso in più della classe più pesante (Fay e Feuer 1997).",
+    ),
     (
         "None: scene, meshes, seed, version and releases are the same.",
         "Nessuno: scena, mesh, seme, versione e distacchi sono gli stessi.",
@@ -170,6 +205,38 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
     ("Version", "Versione"),
     ("Seed", "Seme"),
     ("Releases", "Distacchi"),
+    // Of rocks that weigh what they stand for
+    (
+        "{share} of the rocks by frequency ({n} of {of} computed)",
+        "{share} dei massi secondo la frequenza ({n} su {of} calcolati)",
+    ),
+    (
+        "Conditional on release: reach probability {reach} ({interval}) by frequency; of {releases} computed rocks {count} cross it, {again} more than once. Values at the first crossing.",
+        "Condizionato al distacco: probabilità di raggiungimento {reach} ({interval}) secondo la frequenza; di {releases} massi calcolati {count} la attraversano, {again} più volte. Valori al primo passaggio.",
+    ),
+    (
+        "Conditional on release: reach probability {reach} ({interval}) by frequency; of {releases} computed rocks {count} hit it. Values at the first touch.",
+        "Condizionato al distacco: probabilità di raggiungimento {reach} ({interval}) secondo la frequenza; di {releases} massi calcolati {count} lo colpiscono. Valori al primo contatto.",
+    ),
+    (
+        "None of {n} computed rocks crosses {what} {name}: by frequency its reach probability is below {share} (95\u{2009}% confidence).",
+        "Nessuno dei {n} massi calcolati attraversa {what} {name}: secondo la frequenza la probabilità di raggiungimento è sotto {share} (confidenza 95\u{2009}%).",
+    ),
+    ("{share} of the rocks by frequency cross", "passa il {share} dei massi secondo la frequenza"),
+    (
+        "{h} m, {e} kJ: stops {share} of those that arrive, by frequency",
+        "{h} m, {e} kJ: ferma il {share} di quelli che arrivano, secondo la frequenza",
+    ),
+    ("{what} (computed)", "{what} (calcolati)"),
+    ("{n} computed", "{n} calcolati"),
+    (
+        "Shares are by frequency; numbers of rocks are of computed ones.",
+        "Le quote seguono la frequenza; i numeri di massi sono quelli dei massi calcolati.",
+    ),
+    (
+        "Curves and lines are by frequency; bars and numbers of rocks are of computed ones.",
+        "Curve e linee seguono la frequenza; barre e numeri di massi sono quelli dei massi calcolati.",
+    ),
 ];
 
 /// Texts of the view.

@@ -1,0 +1,120 @@
+//! Differences between runs whose rocks weigh what they stand for.
+//!
+//! Values are those of [`Sample::weighted`] and of shares of events, and pulls are what their intervals are made of: of a
+//! mean `w (x − mean)/Σw` (delta method), of a percentile `w (1{x > q} − (1 − p))/Σw` with the spread of Woodruff's interval
+//! (1952), of a share `w (1 − k_j/n_j)` of a rock of stratum `j` that counts and `−w k_j/n_j` of one that does not. So each
+//! statistic is that of its own run, and with equal weights the intervals are those of [`super`].
+
+use super::super::proportion::NORMAL_95;
+use super::super::rate::share_of;
+use super::super::sample::Sample;
+use super::{Difference, Reading, Values, variance};
+use crate::frequency::Weights;
+use std::ops::Range;
+
+/// Releases that count, among which, and what they stand for.
+#[derive(Debug, Clone)]
+pub struct WeightedCount<'a> {
+    /// Those that count, by rising number.
+    pub releases: &'a [usize],
+    /// All that could.
+    pub among: Range<usize>,
+    /// What each of them stands for.
+    pub weights: &'a Weights,
+}
+
+impl Reading {
+    /// The weighted mean of the finite ones; none of nothing.
+    pub fn weighted_mean(values: &[(usize, f64)], weights: &Weights) -> Option<Self> {
+        let weighed = weighed(values, weights);
+        let value = sample(&weighed).mean()?.value;
+        let all: f64 = weighed.iter().map(|(.., weight)| weight).sum();
+        let pull =
+            |&(release, x, weight): &(usize, f64, f64)| (release, weight * (x - value) / all);
+        let pulls = (weighed.len() > 1).then(|| weighed.iter().map(pull).collect());
+        Some(Self { value, rocks: weighed.len(), pulls })
+    }
+
+    /// The weighted percentile `p` (0 < p < 1) of the finite ones; none of nothing.
+    pub fn weighted_percentile(values: &[(usize, f64)], weights: &Weights, p: f64) -> Option<Self> {
+        let weighed = weighed(values, weights);
+        let found = sample(&weighed).percentile(p)?;
+        let side =
+            |x: f64, weight: f64| weight * (f64::from(u8::from(x > found.value)) - (1.0 - p));
+        let pulls = found.low_95.zip(found.high_95).map(|(low, high)| {
+            let squares: f64 = weighed.iter().map(|(_, x, weight)| side(*x, *weight).powi(2)).sum();
+            let deviation = (high - low) / (2.0 * NORMAL_95);
+            let scale = if squares > 0.0 { deviation / squares.sqrt() } else { 0.0 };
+            let pull =
+                |&(release, x, weight): &(usize, f64, f64)| (release, side(x, weight) * scale);
+            weighed.iter().map(pull).collect()
+        });
+        Some(Self { value: found.value, rocks: weighed.len(), pulls })
+    }
+}
+
+/// Release, value and weight of the finite ones.
+fn weighed(values: &[(usize, f64)], weights: &Weights) -> Vec<(usize, f64, f64)> {
+    let finite = values.iter().filter(|(_, x)| x.is_finite());
+    finite.map(|&(release, x)| (release, x, weights.of_release(release))).collect()
+}
+
+fn sample(weighed: &[(usize, f64, f64)]) -> Sample {
+    Sample::weighted(weighed.iter().map(|&(_, x, weight)| (x, weight)))
+}
+
+impl WeightedCount<'_> {
+    /// How much each release moves the part that counts of so much in all.
+    fn pulls(&self, most: f64) -> Values {
+        let weights = self.weights;
+        let mut counted = vec![0_usize; weights.strata()];
+        self.releases.iter().for_each(|release| counted[weights.stratum_of(*release)] += 1);
+        let each = most / weights.total_per_year();
+        let mut next = self.releases.iter().copied().peekable();
+        let pull = |release: usize| {
+            let stratum = weights.stratum_of(release);
+            let rocks = (weights.rocks(stratum) as f64).max(1.0);
+            let own = f64::from(u8::from(next.next_if_eq(&release).is_some()));
+            // the variance of a sample is over one less
+            let few = (rocks / (rocks - 1.0).max(1.0)).sqrt();
+            let pull = (own - counted[stratum] as f64 / rocks) * few;
+            (release, pull * weights.of_stratum(stratum) * each)
+        };
+        self.among.clone().map(pull).collect()
+    }
+}
+
+impl Difference {
+    /// Between two shares of all events (–); paired, both must be of the same releases.
+    ///
+    /// One more rock of the heaviest stratum of each run is added to the variance (Fay and Feuer 1997), as in the intervals of
+    /// the shares themselves: with equal weights that is the one that [`Self::of_shares`] adds.
+    pub fn of_weighted_shares(a: &WeightedCount, b: &WeightedCount, paired: bool) -> Self {
+        between([a, b], [1.0, 1.0], paired)
+    }
+
+    /// The same between two numbers of events a year (1/year).
+    pub fn of_rates(a: &WeightedCount, b: &WeightedCount, paired: bool) -> Self {
+        between([a, b], [a, b].map(|of| of.weights.total_per_year()), paired)
+    }
+}
+
+/// The difference of what counts of so much in all.
+fn between(of: [&WeightedCount; 2], most: [f64; 2], paired: bool) -> Difference {
+    let one = |k: usize| {
+        let WeightedCount { releases, weights, .. } = of[k];
+        let share = share_of(weights, releases.iter().copied()).share;
+        let heaviest = weights.heaviest() / weights.total_per_year();
+        (most[k] * share, (most[k] * heaviest).powi(2))
+    };
+    let ((a, more_a), (b, more_b)) = (one(0), one(1));
+    let pulls = [0, 1].map(|k| of[k].pulls(most[k]));
+    let half = NORMAL_95 * (variance(&pulls[0], &pulls[1], paired) + more_a + more_b).sqrt();
+    let inside = |end: f64| end.clamp(-most[0], most[1]);
+    let value = b - a;
+    let interval = of
+        .iter()
+        .all(|of| !of.among.is_empty())
+        .then(|| (inside(value - half), inside(value + half)));
+    Difference { a, b, value, interval }
+}
