@@ -227,7 +227,7 @@ pub(super) fn meetings_in_passing(
     if !held.is_empty() {
         pairs.extend(held);
         // two lists that rise: a stable sort finds them, and merges
-        pairs.sort();
+        pairs.sort_by(Ord::cmp);
         pairs.dedup();
     }
     let mut touching = held.iter().peekable();

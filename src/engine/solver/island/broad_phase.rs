@@ -56,7 +56,9 @@ pub fn overlapping(balls: &[Ball]) -> Vec<(u32, u32)> {
 /// Pairs in ascending order: laid down by their first balls, as these are counted, then the few of each by their second.
 fn in_order(pairs: &[(u32, u32)], balls: usize) -> Vec<(u32, u32)> {
     let mut ends = vec![0; balls + 1];
-    pairs.iter().for_each(|(a, _)| ends[*a as usize + 1] += 1);
+    for (a, _) in pairs {
+        ends[*a as usize + 1] += 1;
+    }
     for k in 1..ends.len() {
         ends[k] += ends[k - 1];
     }
