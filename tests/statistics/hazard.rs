@@ -373,7 +373,7 @@ fn rocks_that_were_not_released_count_in_no_share() {
     assert!((reach.share - 0.75).abs() < 1e-12, "{reach:?}");
     assert!(hazard.missing_events().is_empty());
     // without sources the three are simply of five
-    let plain = Line { ..line }.weighing(None).reach(5);
+    let plain = line.clone().weighing(None).reach(5);
     assert_eq!(plain, Proportion::new(3, 5));
 }
 
