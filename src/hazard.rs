@@ -13,6 +13,7 @@ mod difference;
 mod lines;
 mod maps;
 mod observed;
+mod open;
 mod profile;
 mod proportion;
 mod quantile;
@@ -30,7 +31,9 @@ pub use annual::{
     year_maps,
 };
 pub use arrival::Arrival;
-pub use barriers::{Arrivals, AtPlace, Barrier, BarrierSummary, Elsewhere, arrivals, judge};
+pub use barriers::{
+    Arrivals, AtPlace, Barrier, BarrierSummary, Elsewhere, arrivals, judge, stopping,
+};
 pub use design::{Design, Rule};
 pub use difference::{Difference, Reading, Values, WeightedCount};
 pub use lines::{CrossingRow, Line, LineInfo, LineQuantity, LineSummary, by_rock};
@@ -38,18 +41,19 @@ pub use maps::{INTENSITY_J, Layer, MapFrame, MapState, Maps};
 pub use observed::{
     Agreement, EndDistances, EndSpread, ObservedPath, Weighted, distances, effective, rank, runouts,
 };
+pub use open::{OpenRock, OpenRocks};
 pub use profile::{Profile, ProfilePoint, StretchStatistic};
 pub use proportion::Proportion;
 pub use quantile::{Open, Percentile, Ranks};
 pub use quantity::Quantity;
-pub use rate::{EventRate, share_of};
+pub use rate::{EventRate, share_of, share_up_to};
 pub use residual::{Passing, Residual, residual, unstopped};
 pub use row::{Row, StopKind};
 pub use sample::{Exceedance, Histogram, Mean, Sample};
 pub use sum::Sum;
 pub use totals::{Largest, LedgerSums, Totals};
 
-use crate::frequency::{Frequency, Weights};
+use crate::frequency::{Frequency, RockSource, Weights};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -67,6 +71,7 @@ pub struct Hazard {
     values: [Vec<f64>; Quantity::ALL.len()],
     /// Whether each rock would have gone on, in the order of the values.
     is_open: Vec<bool>,
+    open: Vec<OpenRock>,
     largest: [Option<Largest>; Quantity::ALL.len()],
     largest_balance_error: Option<Largest>,
     frequency: Option<Frequency>,
@@ -126,8 +131,53 @@ impl Hazard {
 
     /// What each rock stands for; none where all weigh the same.
     pub fn weights(&self) -> Option<Weights> {
-        let weights = self.frequency.as_ref().map(|one| one.weights(self.rocks()));
-        weights.filter(|weights| !weights.are_equal())
+        self.year_weights().filter(|weights| !weights.are_equal())
+    }
+
+    /// The same, one event for all where they weigh the same.
+    pub fn weights_or_equal(&self) -> Weights {
+        self.weights().unwrap_or_else(|| Weights::equal(self.released()))
+    }
+
+    /// Events a year that the rocks of each stratum stand for; none without sources. Those that were released
+    /// share them: a rock without a place to start from says nothing of how far rocks come.
+    pub fn year_weights(&self) -> Option<Weights> {
+        self.frequency.as_ref().map(|one| one.weights_of(self.by_stratum(StopKind::is_released)))
+    }
+
+    /// Rocks of each stratum that ended in some ways.
+    fn by_stratum(&self, is_one: impl Fn(StopKind) -> bool) -> Vec<usize> {
+        let mut rocks = Vec::new();
+        for (_, ended) in self.stops.iter().filter(|(stop, _)| is_one(**stop)) {
+            rocks.resize(rocks.len().max(ended.0.len()), 0);
+            for (all, count) in rocks.iter_mut().zip(&ended.0) {
+                *all += count;
+            }
+        }
+        rocks
+    }
+
+    /// Sources with events of which no rock was released: they are missing in all numbers.
+    pub fn missing_events(&self) -> Vec<String> {
+        let Some(frequency) = &self.frequency else { return Vec::new() };
+        let [all, released] = [self.by_stratum(|_| true), self.by_stratum(StopKind::is_released)];
+        let is_missing = |at: usize| {
+            let rocks = |of: &[usize]| of.get(at).copied().unwrap_or(0);
+            rocks(&all) > 0 && rocks(&released) == 0
+        };
+        let said = |(number, source): (usize, &RockSource)| {
+            let strata = frequency.strata().iter().enumerate();
+            let lost = strata.filter(|(at, one)| one.source == number && is_missing(*at));
+            let missing: f64 = lost.map(|(_, one)| one.per_year).sum();
+            (missing > 0.0).then(|| {
+                format!(
+                    "source “{}”: no rock of {missing:.3e} of its {:.3e} events a year was released: they are missing in every number",
+                    source.name,
+                    source.law.per_year()
+                )
+            })
+        };
+        frequency.sources().iter().enumerate().filter_map(said).collect()
     }
 
     /// Adds one rock. Its failure reason, ledger and effort go into [`Self::totals`].
@@ -135,6 +185,7 @@ impl Hazard {
         let stratum = self.frequency.as_ref().map_or(0, |one| one.stratum_of(row.index));
         self.stops.entry(row.stop).or_default().add(stratum);
         self.first.get_or_insert(row.index);
+        self.open.extend(OpenRock::of(row));
         Largest::update(&mut self.largest_balance_error, row.index, row.energy_balance_error);
         if !row.stop.counts() {
             self.failed.push(row.index);
@@ -153,10 +204,21 @@ impl Hazard {
         self.stops.values().map(EndCounts::count).sum()
     }
 
-    /// Rocks that ended so, as a share of all.
+    /// Rocks that would have gone on, by rising release.
+    pub fn open_rocks(&self) -> &[OpenRock] {
+        &self.open
+    }
+
+    /// Rocks that were released: shares of rocks are of these.
+    pub fn released(&self) -> usize {
+        self.rocks() - self.stops.get(&StopKind::NotReleased).map_or(0, EndCounts::count)
+    }
+
+    /// Rocks that ended so, as a share of all releases.
     pub fn ended(&self, stop: StopKind) -> Proportion {
         let count = self.stops.get(&stop).map_or(0, EndCounts::count);
-        match self.weights() {
+        let weights = self.frequency.as_ref().map(|one| one.weights(self.rocks()));
+        match weights.filter(|weights| !weights.are_equal()) {
             None => Proportion::new(count, self.rocks()),
             Some(weights) => {
                 let strata = self.stops.get(&stop).map_or(&[][..], |ended| &ended.0);

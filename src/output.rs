@@ -307,18 +307,23 @@ impl Output {
         let is_part = self.info.is_shard || self.info.identity.is_part();
         self.lock.keep();
         let bytes = self.lengths()?;
-        let done = self.hazard.rocks();
-        if let Some(maps) = &self.maps {
-            // of a part of a run no number a year can be told
-            maps::write(&self.dir, maps, (&self.info.asked, done), is_part)?;
-        }
-        let weights = self.hazard.weights().unwrap_or_else(|| Weights::equal(done));
-        let crossings = read::crossings(&self.dir)?;
-        let barriers = hazard::judge(&self.info.barriers, crossings, &weights)?;
-        let crossings = read::crossings(&self.dir)?;
+        let year_weights = self.hazard.year_weights();
         let (nets, lines) = (&self.info.barriers, &self.info.lines);
-        let residual = hazard::residual(nets, lines, crossings, &weights)?;
-        let annual = self.annual(done)?;
+        let open = read::tell_lines(&self.dir, &self.hazard, &mut self.lines, (lines, nets))?;
+        let weights = self.hazard.weights_or_equal();
+        if let Some(maps) = &self.maps {
+            let weights = year_weights.as_ref().unwrap_or(&weights);
+            // of a part of a run no number a year can be told
+            maps::write(&self.dir, maps, (&self.info.asked, weights), is_part)?;
+        }
+        let crossings = read::crossings(&self.dir)?;
+        let barriers = hazard::judge(nets, crossings, (&weights, &open))?;
+        let crossings = read::crossings(&self.dir)?;
+        let residual = hazard::residual(nets, lines, crossings, (&weights, &open))?;
+        if let Some(year) = &mut self.year {
+            year.leave_open(&open);
+        }
+        let annual = self.annual(year_weights)?;
         let mut summary = Summary::new(self.info, (&self.hazard, &self.lines), seconds);
         (summary.barriers, summary.residual, summary.annual) = (barriers, residual, annual);
         summary.bytes = bytes;
@@ -329,6 +334,7 @@ impl Output {
             summary,
             hazard: self.hazard,
             lines: self.lines,
+            open,
             lock: Some(self.lock),
         };
         if results.summary.maps.is_some() {
@@ -343,9 +349,9 @@ impl Output {
         Ok(results)
     }
 
-    /// What a year brings, of all releases.
-    fn annual(&self, releases: usize) -> Result<Option<Annual>> {
-        let annual = self.year.as_ref().map(|year| year.said(releases));
+    /// What a year brings, of all rocks that were released.
+    fn annual(&self, weights: Option<Weights>) -> Result<Option<Annual>> {
+        let annual = self.year.as_ref().zip(weights).map(|(year, weights)| year.said(weights));
         annual.as_ref().map_or(Ok(()), |annual| annual::write(&self.dir, annual))?;
         Ok(annual)
     }

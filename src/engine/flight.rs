@@ -65,7 +65,7 @@ impl Parabola {
 pub enum FlightEnd {
     /// Touches the mesh after so many seconds.
     Touch(f64),
-    /// Has left the box of the mesh after so many seconds and will not touch it again.
+    /// Has left the box of the mesh after so many seconds, or gone under the slope, and will not touch it again.
     Leaves(f64),
     /// Is still flying at the end of the time allowed.
     Flies,
@@ -101,9 +101,36 @@ pub fn time_of_impact_past(
     let limit = longest_s.min(leaves);
     match first_touch(terrain, flight, limit, (gone, tested)) {
         Some(t) => FlightEnd::Touch(t),
-        None if leaves <= longest_s => FlightEnd::Leaves(leaves),
+        None if leaves <= longest_s => {
+            FlightEnd::Leaves(under_slope_after(terrain, flight, leaves))
+        }
         None => FlightEnd::Flies,
     }
+}
+
+/// Places of a last flight at which is looked whether the ball is under the slope.
+const LOOKS: u32 = 64;
+/// Halvings of the time between two of them: 2⁻⁴⁰ of a flight is less than its rounding on a map.
+const HALVINGS: u32 = 40;
+
+/// When a ball that touches nothing any more goes under the slope (s), at the latest when it `leaves` its box: it has fallen
+/// through a hole of the mesh, and where it flies on under it no rock would.
+///
+/// Asked once in the life of a rock: what leaves over the edge of the terrain has no slope above it.
+fn under_slope_after(terrain: &Terrain, flight: &Parabola, leaves: f64) -> f64 {
+    let is_under = |t: f64| terrain.is_under_slope(&flight.centre(t));
+    let look = |k: u32| leaves * f64::from(k) / f64::from(LOOKS);
+    let Some(first) = (0..=LOOKS).find(|k| is_under(look(*k))) else { return leaves };
+    let (mut over, mut under) = (look(first.saturating_sub(1)), look(first));
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (over + under);
+        if is_under(middle) {
+            under = middle;
+        } else {
+            over = middle;
+        }
+    }
+    under
 }
 
 /// When the ball is outside the mesh's box for good (s): beside it, or below it; without gravity also above it.

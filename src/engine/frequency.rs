@@ -133,6 +133,12 @@ impl Frequency {
     pub fn weights(&self, releases: usize) -> Weights {
         Weights::of(self, releases)
     }
+
+    /// The same by the rocks of each stratum that count: a stratum's events are shared by those that were released, as a
+    /// place without room for a rock says nothing of how far rocks come.
+    pub fn weights_of(&self, rocks: Vec<usize>) -> Weights {
+        Weights::of_rocks(self, rocks)
+    }
 }
 
 /// Radius (m) of a sphere of a volume (m³).

@@ -308,8 +308,7 @@ impl Releases {
             rock.mass_kg() * self.gravity_m_s2 / stiffness.fold(f64::INFINITY, f64::min);
         let depth_m = around_m - distance_m(terrain, centre, around_m);
         // beyond the edge there is no ground to be under
-        let buried = terrain.ground_under(centre.x, centre.y, centre.z).is_none()
-            && terrain.ground_below(centre.x, centre.y).is_some();
+        let buried = terrain.is_under_slope(centre);
         let caged = is_inside_tree(terrain, centre);
         let is_deep = depth_m > 2.0 * pressed_m + TYPED_DEPTH * around_m;
         if !(is_deep || buried || caged) {

@@ -173,6 +173,12 @@ impl Terrain {
         self.ground_under(x_m, y_m, f64::INFINITY)
     }
 
+    /// Whether a place (m, local) is under the slope: there is some above it and none below. So are rocks that have fallen
+    /// through a hole; beside the terrain, and over a hole, there is none above either.
+    pub fn is_under_slope(&self, at: &Vec3) -> bool {
+        self.ground_under(at.x, at.y, at.z).is_none() && self.ground_below(at.x, at.y).is_some()
+    }
+
     /// The highest slope surface at (x, y) that is not above `under_m` (m, local).
     pub fn ground_under(&self, x_m: f64, y_m: f64, under_m: f64) -> Option<f64> {
         self.slope_under(x_m, y_m, under_m).map(|(height_m, _)| height_m)

@@ -8,6 +8,7 @@ mod weighted;
 use super::arrival::{Arrival, sample};
 use super::design::{Design, Rule};
 use super::lines::{CrossingRow, by_rock};
+use super::open::OpenRocks;
 use super::proportion::Proportion;
 use super::totals::Largest;
 use super::{Statistic, statistic};
@@ -98,18 +99,34 @@ impl AtPlace {
 /// Rocks that arrive at each place of a barrier, its own first.
 pub type Arrivals = Vec<Vec<Arrival>>;
 
-/// Judges all barriers; `rows` are first crossings, release by release, and every rock weighs what it stands for.
+/// Judges all barriers; `rows` are first crossings, release by release, and every rock weighs what it stands for;
+/// `open` may still come.
 ///
 /// # Errors
 /// Passes on what reading a row says.
 pub fn judge<E>(
     barriers: &[Barrier],
     rows: impl Iterator<Item = Result<CrossingRow, E>>,
-    weights: &Weights,
+    (weights, open): (&Weights, &OpenRocks),
 ) -> Result<Vec<BarrierSummary>, E> {
     let (arrivals, crossing) = follow(barriers, rows)?;
-    let all = barriers.iter().zip(&arrivals).zip(crossing);
-    Ok(all.map(|((barrier, places), n)| summary(barrier, places, (n, weights))).collect())
+    let all = barriers.iter().zip(&arrivals).zip(crossing).enumerate();
+    let said = |(which, ((barrier, places), n)): (usize, ((&Barrier, &Arrivals), usize))| {
+        let lines = iter::once(&barrier.name).chain(barrier.elsewhere.iter().map(|at| &at.line));
+        let open: Vec<Vec<usize>> =
+            lines.map(|line| open.free_at(line, Some(which)).collect()).collect();
+        summary(barrier, (places, &open), (n, weights))
+    };
+    Ok(all.map(said).collect())
+}
+
+/// Says of a crossing which barrier stops the rock there, by its number.
+pub fn stopping(barriers: &[Barrier]) -> impl Fn(&CrossingRow) -> Option<usize> {
+    |row| {
+        let which = barriers.iter().position(|barrier| barrier.name == row.line)?;
+        let (height_m, capacity_j) = (barriers[which].height_m, barriers[which].capacity_j);
+        Arrival::of(row).is_stopped(height_m, capacity_j).then_some(which)
+    }
 }
 
 /// The rocks that arrive at each barrier, at its own place and elsewhere.
@@ -193,7 +210,7 @@ impl Arrival {
 
 fn summary(
     barrier: &Barrier,
-    places: &Arrivals,
+    (places, open): (&Arrivals, &[Vec<usize>]),
     (crossing, weights): (usize, &Weights),
 ) -> BarrierSummary {
     let rocks = &places[0];
@@ -207,9 +224,9 @@ fn summary(
         statistic(&sample(rocks, weights, of), largest)
     };
     let offsets = iter::once(0.0).chain(barrier.elsewhere.iter().map(|place| place.offset_m));
-    let at_place = |(offset_m, rocks): (f64, &Vec<Arrival>)| AtPlace {
+    let at_place = |((offset_m, rocks), open): ((f64, &Vec<Arrival>), &Vec<usize>)| AtPlace {
         offset_m,
-        arriving: arriving(rocks, weights),
+        arriving: arriving((rocks, open), weights),
         by_height: HEIGHTS
             .map(|share| share * barrier.height_m)
             .map(|height_m| (height_m, stopped_at(barrier, (rocks, weights), height_m)))
@@ -220,7 +237,7 @@ fn summary(
     BarrierSummary {
         barrier: barrier.clone(),
         crossing,
-        arriving: arriving(rocks, weights),
+        arriving: arriving((rocks, &open[0]), weights),
         stopped,
         over,
         through: rocks.len() - stopped.count - over,
@@ -228,7 +245,7 @@ fn summary(
         top_m: statistic(|rock| rock.top_m),
         design_lacks: asked.as_ref().and_then(|asked| asked.as_ref().err().copied()).unwrap_or(0),
         design_values: asked.and_then(Result::ok),
-        by_place: offsets.zip(places).map(at_place).collect(),
+        by_place: offsets.zip(places).zip(open).map(at_place).collect(),
     }
 }
 
@@ -273,8 +290,8 @@ mod tests {
             row(4, "lower", 1.0, 0.5, 50.0),
             row(4, "upper -5 m", 1.5, 0.0, 10.0),
         ];
-        let found = judge(&barriers, rows.into_iter().map(Ok::<_, Infallible>), &Weights::equal(8))
-            .unwrap();
+        let rows = rows.into_iter().map(Ok::<_, Infallible>);
+        let found = judge(&barriers, rows, (&Weights::equal(8), &OpenRocks::default())).unwrap();
         let counts = |k: usize| {
             let at: &BarrierSummary = &found[k];
             [at.arriving.count, at.stopped.count, at.over, at.through]

@@ -1,7 +1,7 @@
 //! What all rocks say at one evaluation line.
 
 use super::proportion::Proportion;
-use super::rate::proportion;
+use super::rate::share_up_to;
 use super::sample::Sample;
 use super::totals::Largest;
 use super::{Statistic, statistic};
@@ -214,9 +214,11 @@ pub struct Line {
     repeated: usize,
     values: [Vec<f64>; LineQuantity::ALL.len()],
     largest: [Option<Largest>; LineQuantity::ALL.len()],
-    /// Release numbers, in the order of the values; kept only where rocks weigh differently.
+    /// Release numbers, in the order of the values; kept only where rocks may weigh differently.
     releases: Vec<u32>,
     weights: Option<Weights>,
+    /// Release numbers of the rocks that may still come to it.
+    open: Vec<usize>,
 }
 
 /// What `summary.json` says of a line.
@@ -225,7 +227,7 @@ pub struct LineSummary {
     /// The line.
     #[serde(flatten)]
     pub info: LineInfo,
-    /// Rocks that cross it, as a share of all releases.
+    /// Rocks that cross it, as a share of all that were released.
     pub reach: Proportion,
     /// Rocks that cross it more than once; only their first crossing counts in the statistics.
     pub crossing_again: usize,
@@ -244,13 +246,24 @@ impl Line {
             largest: Default::default(),
             releases: Vec::new(),
             weights: None,
+            open: Vec::new(),
         }
     }
 
-    /// The same, of rocks that weigh what they stand for.
+    /// Says which rocks may still come to it.
+    pub fn leave_open(&mut self, open: impl Iterator<Item = usize>) {
+        self.open = open.collect();
+    }
+
+    /// The same, of rocks that weigh what they stand for; how much is known when all have [come](Self::weigh).
     #[must_use]
     pub fn weighing(self, weights: Option<Weights>) -> Self {
-        Self { weights: weights.filter(|weights| !weights.are_equal()), ..self }
+        Self { weights: weights.filter(|weights| weights.strata() > 1), ..self }
+    }
+
+    /// Says what rocks stand for, now that all have come: only those that were released count.
+    pub fn weigh(&mut self, weights: Option<&Weights>) {
+        self.weights = self.weights.take().and(weights.cloned());
     }
 
     /// Adds the first crossing of a rock.
@@ -267,13 +280,17 @@ impl Line {
         }
     }
 
-    /// Rocks that cross it, as a share of `releases`; where rocks weigh differently, of all events.
-    pub fn reach(&self, releases: usize) -> Proportion {
-        if let Some(weights) = &self.weights {
-            let strata = self.releases.iter().map(|at| weights.stratum_of(*at as usize) as u16);
-            return proportion(weights, strata.map(|stratum| (stratum, 1)));
+    /// Rocks that cross it, as a share of so many released; where rocks weigh differently, of all events.
+    pub fn reach(&self, released: usize) -> Proportion {
+        if let Some(weights) = self.weights.as_ref().filter(|weights| !weights.are_equal()) {
+            let crossed = self.releases.iter().map(|at| *at as usize);
+            return share_up_to(weights, crossed, self.open.iter().copied());
         }
-        Proportion::new(self.crossings, releases)
+        let seen = Proportion::new(self.crossings, released);
+        if self.open.is_empty() {
+            return seen;
+        }
+        seen.up_to(&Proportion::new((self.crossings + self.open.len()).min(released), released))
     }
 
     /// Rocks that cross it more than once.
@@ -298,12 +315,12 @@ impl Line {
         statistic(&self.sample(quantity), self.largest[quantity as usize])
     }
 
-    /// All of it, among so many releases.
-    pub fn summary(&self, releases: usize) -> LineSummary {
+    /// All of it, among so many rocks released.
+    pub fn summary(&self, released: usize) -> LineSummary {
         let of = |quantity: LineQuantity| (quantity.column().to_owned(), self.statistic(quantity));
         LineSummary {
             info: self.info.clone(),
-            reach: self.reach(releases),
+            reach: self.reach(released),
             crossing_again: self.repeated,
             statistics: LineQuantity::ALL.into_iter().map(of).collect(),
         }

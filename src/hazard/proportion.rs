@@ -20,8 +20,11 @@ pub struct Proportion {
     pub share: f64,
     /// Lower end of the 95 % interval (–), 0..1.
     pub low_95: f64,
-    /// Upper end of the 95 % interval (–), 0..1.
+    /// Upper end of the 95 % interval (–), 0..1; rocks that would have gone on counted, where they may still belong.
     pub high_95: f64,
+    /// Whether such rocks decide the share more than chance does: then it is only a lower bound.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub censored: bool,
 }
 
 impl Proportion {
@@ -34,7 +37,7 @@ impl Proportion {
             all if all == of => (1.0 - rule_of_three(of), 1.0),
             _ => wilson(share, of as f64),
         };
-        Self { count, of, share, low_95, high_95 }
+        Self { count, of, share, low_95, high_95, censored: false }
     }
 }
 
@@ -47,7 +50,16 @@ impl Proportion {
             all if all == of => ((1.0 - 3.0 / rocks).max(0.0), 1.0),
             _ => wilson(share, rocks),
         };
-        Self { count, of, share, low_95, high_95 }
+        Self { count, of, share, low_95, high_95, censored: false }
+    }
+}
+
+impl Proportion {
+    /// The same where some rocks may still belong: `far` counts them all. The truth lies between the two.
+    #[must_use]
+    pub(super) fn up_to(self, far: &Self) -> Self {
+        let censored = far.share > self.high_95;
+        Self { high_95: self.high_95.max(far.high_95), censored, ..self }
     }
 }
 

@@ -17,8 +17,12 @@ pub struct EventRate {
     pub per_year: f64,
     /// Lower end of the 95 % interval (1/year).
     pub low_95: f64,
-    /// Upper end of the 95 % interval (1/year); where no rock counts, a one-sided 95 % bound.
+    /// Upper end of the 95 % interval (1/year); where no rock counts, a one-sided 95 % bound. Rocks that would have gone on
+    /// are taken as if they counted.
     pub high_95: f64,
+    /// Whether such rocks decide the rate more than chance does: then it is only a lower bound.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub censored: bool,
     /// Change with the logarithm of all rates (1/year): 10 % more rocks make it 10 % of this more.
     pub by_log_rate: f64,
     /// Change with the exponents of all power laws (1/year), their events of 1 m³ or more kept; none without power law.
@@ -44,6 +48,7 @@ impl EventRate {
             per_year: share * self.per_year,
             low_95: share * self.low_95,
             high_95: share * self.high_95,
+            censored: self.censored,
             by_log_rate: share * self.by_log_rate,
             by_exponent: self.by_exponent.map(|slope| share * slope),
         }
@@ -138,7 +143,12 @@ impl Limits {
         };
         let mut sparse: Vec<(usize, f64)> = strata.clone().filter(few).map(unseen).collect();
         sparse.sort_by(|one, other| other.1.total_cmp(&one.1));
-        let heaviest = strata.clone().map(|at| most(at) * weights.of_stratum(at));
+        // of a stratum without rocks all events may belong to what none was seen to do
+        let heaviest_of = |at: usize| match weights.rocks(at) {
+            0 => weights.per_year(at),
+            _ => weights.of_stratum(at),
+        };
+        let heaviest = strata.clone().map(|at| most(at) * heaviest_of(at));
         Self {
             most: strata.map(|at| most(at) * weights.per_year(at)).sum(),
             heaviest: heaviest.fold(0.0, f64::max),
@@ -153,6 +163,8 @@ pub(super) struct Running<'a> {
     weights: &'a Weights,
     strata: Vec<Sums>,
     touched: Vec<u16>,
+    /// Rocks that may still count: they move the upper end.
+    open: Vec<(u16, Sums)>,
     value: f64,
     score: f64,
     variance: f64,
@@ -162,7 +174,32 @@ impl<'a> Running<'a> {
     /// Without rocks.
     pub(super) fn new(weights: &'a Weights) -> Self {
         let strata = vec![Sums::default(); weights.strata()];
-        Self { weights, strata, touched: Vec::new(), value: 0.0, score: 0.0, variance: 0.0 }
+        let (touched, open) = (Vec::new(), Vec::new());
+        Self { weights, strata, touched, open, value: 0.0, score: 0.0, variance: 0.0 }
+    }
+
+    /// Without rocks, where some may still count.
+    pub(super) fn with_open<'b>(
+        weights: &'a Weights,
+        open: impl IntoIterator<Item = (&'b u16, &'b Sums)>,
+    ) -> Self {
+        let open = open.into_iter().map(|(stratum, sums)| (*stratum, *sums)).collect();
+        Self { open, ..Self::new(weights) }
+    }
+
+    /// The rate were all rocks to count that may; none where there are none.
+    fn far(&self) -> Option<Self> {
+        if self.open.is_empty() {
+            return None;
+        }
+        let mut far = Self::new(self.weights);
+        for stratum in &self.touched {
+            far.add(*stratum, &self.strata[usize::from(*stratum)]);
+        }
+        for (stratum, sums) in &self.open {
+            far.add(*stratum, sums);
+        }
+        Some(far)
     }
 
     /// Adds rocks of a stratum. Sums depend on the order in their last bits: callers add in a fixed one.
@@ -212,6 +249,13 @@ impl<'a> Running<'a> {
 
     /// Value, and lower and upper end of the interval.
     pub(super) fn estimate(&self, limits: &Limits) -> [f64; 3] {
+        let [value, low, high] = self.by_chance(limits);
+        let far = self.far().map_or(high, |far| far.by_chance(limits)[2]);
+        [value, low, high.max(far)]
+    }
+
+    /// The same of the rocks that count.
+    fn by_chance(&self, limits: &Limits) -> [f64; 3] {
         let [low, high] = interval(self.value, self.variance.max(0.0), limits);
         let unseen = limits.sparse.iter().find(|(stratum, _)| self.strata[*stratum].rocks == 0);
         let open = unseen.map_or(0.0, |(_, open)| (self.value + open).min(limits.most));
@@ -226,7 +270,9 @@ impl<'a> Running<'a> {
     /// All of it; `has_exponent` where a source has one.
     pub(super) fn rate(&self, limits: &Limits, has_exponent: bool) -> EventRate {
         let [per_year, low_95, high_95] = self.estimate(limits);
+        let by_chance = self.by_chance(limits)[2];
         EventRate {
+            censored: self.far().is_some_and(|far| far.value.min(limits.most) > by_chance),
             rocks: self.strata.iter().map(|sums| sums.rocks as usize).sum(),
             per_year,
             low_95,
@@ -265,6 +311,19 @@ pub fn share_of(weights: &Weights, releases: impl Iterator<Item = usize>) -> Pro
         return Proportion::new(releases.count(), weights.all_rocks());
     }
     proportion(weights, releases.map(|release| (weights.stratum_of(release) as u16, 1)))
+}
+
+/// The same, where `open` rocks may still do what the others did.
+pub fn share_up_to(
+    weights: &Weights,
+    releases: impl Iterator<Item = usize> + Clone,
+    open: impl Iterator<Item = usize> + Clone,
+) -> Proportion {
+    let seen = share_of(weights, releases.clone());
+    if open.clone().next().is_none() {
+        return seen;
+    }
+    seen.up_to(&share_of(weights, releases.chain(open)))
 }
 
 /// Share of all events that some rocks stand for, given by their number in each stratum.

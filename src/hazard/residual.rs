@@ -3,8 +3,9 @@
 use super::arrival::Arrival;
 use super::barriers::Barrier;
 use super::lines::{CrossingRow, LineInfo, LineQuantity, by_rock};
+use super::open::OpenRocks;
 use super::proportion::Proportion;
-use super::rate::share_of;
+use super::rate::share_up_to;
 use super::sample::Sample;
 use super::totals::Largest;
 use super::{Statistic, statistic};
@@ -66,7 +67,7 @@ struct LinePassages {
 }
 
 /// Every line of the scene that is no barrier's, without and with barriers; `rows` are first crossings, release by
-/// release, each rock with what it stands for. Empty where no barrier stands.
+/// release, each rock with what it stands for; `open` may still come. Empty where no barrier stands.
 ///
 /// # Errors
 /// Passes on what reading a row says.
@@ -74,7 +75,7 @@ pub fn residual<E>(
     barriers: &[Barrier],
     lines: &[LineInfo],
     rows: impl Iterator<Item = Result<CrossingRow, E>>,
-    weights: &Weights,
+    (weights, open): (&Weights, &OpenRocks),
 ) -> Result<Vec<Residual>, E> {
     let is_plain = |line: &&LineInfo| {
         !line.of_barrier && barriers.iter().all(|barrier| barrier.name != line.name)
@@ -88,8 +89,8 @@ pub fn residual<E>(
     let said = |(line, seen): (&&LineInfo, LinePassages)| Residual {
         line: line.name.clone(),
         behind: seen.behind.iter().map(|&which| barriers[which].name.clone()).collect(),
-        without: seen.passing(|_| true, weights),
-        with: seen.passing(|at| seen.passes[at], weights),
+        without: seen.passing(|_| true, (weights, open.at(&line.name))),
+        with: seen.passing(|at| seen.passes[at], (weights, open.behind_barriers(&line.name))),
     };
     Ok(lines.iter().zip(seen).map(said).collect())
 }
@@ -116,7 +117,11 @@ fn take(
 
 impl LinePassages {
     /// Statistics of some of them, by their place in the lists.
-    fn passing(&self, is_one: impl Fn(usize) -> bool, weights: &Weights) -> Passing {
+    fn passing(
+        &self,
+        is_one: impl Fn(usize) -> bool,
+        (weights, open): (&Weights, impl Iterator<Item = usize> + Clone),
+    ) -> Passing {
         let release = |at: usize| self.releases[at] as usize;
         let some = || (0..self.releases.len()).filter(|at| is_one(*at));
         let of = |values: &[f64]| {
@@ -128,7 +133,7 @@ impl LinePassages {
             statistic(&Sample::weighted(each), largest)
         };
         Passing {
-            reach: share_of(weights, some().map(release)),
+            reach: share_up_to(weights, some().map(release).collect::<Vec<_>>().into_iter(), open),
             energy_j: of(&self.energies_j),
             height_m: of(&self.heights_m),
         }
@@ -170,7 +175,8 @@ mod tests {
         ];
         let lines = [line("path"), line("road"), line("net")];
         let rows = rows.into_iter().map(Ok::<_, Infallible>);
-        let found = residual(&[net], &lines, rows, &Weights::equal(8)).unwrap();
+        let found =
+            residual(&[net], &lines, rows, (&Weights::equal(8), &OpenRocks::default())).unwrap();
         assert_eq!(found.len(), 2, "a barrier's own line is none of them");
         let counts = |at: &Residual| (at.without.reach.count, at.with.reach.count);
         assert_eq!((counts(&found[0]), counts(&found[1])), ((1, 1), (4, 3)));

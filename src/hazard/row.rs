@@ -109,6 +109,11 @@ impl StopKind {
         !matches!(self, Self::Failed | Self::NotReleased)
     }
 
+    /// Whether the rock began: only then it has its part of what a source releases.
+    pub fn is_released(self) -> bool {
+        self != Self::NotReleased
+    }
+
     /// Whether no sound run ends a rock so: what never happened then needs no line in a table.
     pub fn is_unusual(self) -> bool {
         matches!(self, Self::OverBudget | Self::NotReleased)

@@ -22,20 +22,16 @@ const STATE: &str = "state";
 pub(super) fn write(
     dir: &Path,
     maps: &Maps,
-    (asked, releases): (&AnnualRequest, usize),
+    (asked, weights): (&AnnualRequest, &Weights),
     is_part: bool,
 ) -> Result<()> {
-    let weights = match &asked.frequency {
-        Some(frequency) => frequency.weights(releases),
-        None => Weights::equal(releases),
-    };
     let folder = dir.join(FOLDER);
     fs::create_dir_all(&folder).map_err(Error::file("create", &folder))?;
     for layer in Layer::ALL {
-        let cells = raster(&maps.frame, maps.values(layer, &weights));
+        let cells = raster(&maps.frame, maps.values(layer, weights));
         write_raster(&folder.join(layer.file()), layer.in_words(), (&maps.frame, &cells), true)?;
     }
-    let layers = if is_part { Vec::new() } else { year_maps(maps, asked, releases) };
+    let layers = if is_part { Vec::new() } else { year_maps(maps, asked, weights) };
     for layer in layers {
         let cells = raster(&maps.frame, layer.values.into_iter());
         let path = folder.join(&layer.file);

@@ -8,8 +8,8 @@ use super::vector;
 use super::{CROSSINGS, IMPACTS, PATHS, RELEASES, table};
 use crate::error::{Error, Result};
 use crate::hazard::{
-    AnnualRequest, BarrierSummary, CrossingRow, Hazard, Layer, Line, LineInfo, Quantity, Row,
-    Statistic, YearSums, by_rock,
+    AnnualRequest, Barrier, BarrierSummary, CrossingRow, Hazard, Layer, Line, LineInfo, OpenRocks,
+    Quantity, Row, Statistic, YearSums, by_rock, stopping,
 };
 use crate::terrain::geotiff;
 use crate::terrain::grid::Grid;
@@ -27,6 +27,8 @@ pub struct Results {
     pub hazard: Hazard,
     /// All first crossings line by line, from `crossings.csv`.
     pub lines: Vec<Line>,
+    /// Rocks that would have gone on, and the lines that they may still come to.
+    pub open: OpenRocks,
     /// Keeps other processes away as long as the run that wrote them goes on.
     #[expect(dead_code, reason = "held until it is dropped")]
     pub(super) lock: Option<FolderLock>,
@@ -65,8 +67,10 @@ pub fn read(dir: &Path) -> Result<Results> {
     let infos: Vec<LineInfo> = summary.lines.iter().map(|line| line.info.clone()).collect();
     let mut lines = self::lines(&infos, asked, summary.identity.releases);
     recall_lines(dir, &mut lines, None)?;
+    let nets: Vec<Barrier> = summary.barriers.iter().map(|one| one.barrier.clone()).collect();
+    let open = tell_lines(dir, &hazard, &mut lines, (&infos, &nets))?;
     check_lengths(dir, &summary.bytes)?;
-    Ok(Results { dir: dir.to_owned(), summary, hazard, lines, lock: None })
+    Ok(Results { dir: dir.to_owned(), summary, hazard, lines, open, lock: None })
 }
 
 impl Results {
@@ -215,6 +219,23 @@ pub(super) fn recall_lines(
     let Some(line) = unknown else { return Ok(()) };
     let remedy = format!("it must agree with {SUMMARY}: restore it, or run again with --overwrite");
     Err(Error::input(&dir.join(CROSSINGS), "rows", format!("the line {line}"), remedy))
+}
+
+/// Tells all lines, now that all rocks have come, what each stands for and which may still come to them.
+pub(super) fn tell_lines(
+    dir: &Path,
+    hazard: &Hazard,
+    lines: &mut [Line],
+    (infos, nets): (&[LineInfo], &[Barrier]),
+) -> Result<OpenRocks> {
+    let weights = hazard.year_weights();
+    let rocks = hazard.open_rocks().to_vec();
+    let open = OpenRocks::find(rocks, (infos, stopping(nets)), crossings(dir)?)?;
+    for line in lines {
+        line.weigh(weights.as_ref());
+        line.leave_open(open.at(&line.info.name));
+    }
+    Ok(open)
 }
 
 /// Adds the rocks of all `done` rows, which must be the first releases asked for, in order, and no more.

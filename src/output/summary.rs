@@ -34,7 +34,7 @@ const DEFINITIONS: [(&str, &str); 13] = [
     ),
     (
         "censored",
-        "the value is a bound only: rocks that left the terrain or ran out of time decide it. Runout, drop and time are then at least, reach angle at most what is written; the interval is open on that side; censored counts those rocks",
+        "the value is a bound only: rocks that left the terrain or ran out of time decide it. Runout, drop and time are then at least, reach angle at most what is written, and shares and numbers a year of rocks that come to a line at least, where such rocks may still come to it; the interval is open on that side, or its upper end takes those rocks as arriving; censored counts those rocks",
     ),
     (
         "energy_balance_error",
@@ -46,7 +46,7 @@ const DEFINITIONS: [(&str, &str); 13] = [
     ),
     (
         "lines",
-        "over rocks, of the value at the first crossing, which is interpolated on the parabola of a flight or the cubic of a step; reach = rocks that cross / releases; height_m vertical, height_normal_m along the normal of the triangle below",
+        "over rocks, of the value at the first crossing, which is interpolated on the parabola of a flight or the cubic of a step; reach = rocks that cross / rocks released; height_m vertical, height_normal_m along the normal of the triangle below",
     ),
     (
         "maps",
@@ -159,7 +159,7 @@ impl Summary {
             stops: by_stop(|stop| hazard.ended(stop).count),
             stop_shares: by_stop(|stop| hazard.ended(stop)),
             statistics: statistics(hazard),
-            lines: lines.iter().map(|line| line.summary(hazard.rocks())).collect(),
+            lines: lines.iter().map(|line| line.summary(hazard.released())).collect(),
             barriers: Vec::new(),
             asked: info.asked,
             annual: None,

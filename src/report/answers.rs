@@ -1,6 +1,7 @@
 //! The answer at each line and barrier, a sentence each: what a run says last.
 
-use super::format::{NO_NUMBER, counted, decimal, percent, significant};
+use super::bound::Is;
+use super::format::{NO_NUMBER, counted, decimal, percent, sign, significant};
 use super::model::energy_unit;
 use super::words::Words;
 use crate::hazard::{
@@ -29,7 +30,8 @@ fn in_a_year(place: &AnnualPlace) -> Option<String> {
     let said = |rate: &EventRate| {
         let [value, low, high] =
             [rate.per_year, rate.low_95, rate.high_95].map(|one| significant(one, 2));
-        format!("{value} times a year ({})", interval(&low, &high))
+        let sign = at_least(rate.censored);
+        format!("{sign}{value} times a year ({})", interval(&low, &high))
     };
     let barriers = with
         .map_or(String::new(), |with| format!(" without barriers, {} with them", said(&with.rate)));
@@ -41,7 +43,7 @@ fn in_a_year(place: &AnnualPlace) -> Option<String> {
 
 fn line(of: &LineSummary) -> String {
     let name = &of.info.name;
-    if of.reach.count == 0 {
+    if of.reach.count == 0 && !of.reach.censored {
         return format!("line \"{name}\": no rock crosses it {}", share_interval(&of.reach));
     }
     let p95 = |column: &str, said: fn(&Percentile) -> String| {
@@ -59,7 +61,7 @@ fn line(of: &LineSummary) -> String {
 
 fn barrier(of: &BarrierSummary) -> String {
     let name = &of.barrier.name;
-    if of.arriving.count == 0 {
+    if of.arriving.count == 0 && !of.arriving.censored {
         return format!("barrier \"{name}\": no rock arrives {}", share_interval(&of.arriving));
     }
     let design = match (&of.design_values, &of.barrier.design) {
@@ -115,7 +117,12 @@ fn with_interval(p95: &Percentile, size: f64, unit: &str) -> String {
 }
 
 fn share(of: &Proportion) -> String {
-    percent(of.share, digits(of.share))
+    at_least(of.censored).to_owned() + &percent(of.share, digits(of.share))
+}
+
+/// Stands before what is only a lower bound.
+fn at_least(is_bound: bool) -> &'static str {
+    sign(if is_bound { Is::AtLeast } else { Is::Value })
 }
 
 fn share_interval(of: &Proportion) -> String {

@@ -101,7 +101,7 @@ pub fn gather(results: &Results, ground: Option<GroundRaster>) -> Result<Report>
     Ok(report)
 }
 
-/// What rocks that left the terrain do to the numbers, before anything else.
+/// What sources without a rock and rocks that left the terrain do to the numbers, before anything else.
 pub(super) fn warnings_first(hazard: &Hazard, words: &Words) -> Vec<String> {
     let kinds = [
         (StopKind::LeftTerrain, words.have_left, words.remedy_left),
@@ -131,7 +131,9 @@ pub(super) fn warnings_first(hazard: &Hazard, words: &Words) -> Vec<String> {
             )
         })
     };
-    kinds.into_iter().filter_map(said).collect()
+    let missing = hazard.missing_events();
+    let missing = missing.iter().map(|warning| words.say(warning));
+    missing.chain(kinds.into_iter().filter_map(said)).collect()
 }
 
 /// The exceedance curve with its band upright: the intervals of the percentiles lie along x, figures want them along y.
@@ -272,8 +274,10 @@ fn table(hazard: &Hazard, words: &Words) -> EstimateTable {
     let rows =
         TABLED.map(|(here, there)| (here.name(words), here, hazard.sample(there), there.open()));
     let how = if hazard.weights().is_some() { words.woodruff } else { words.order_statistics };
-    let note =
-        fill(words.all_statistics_note, &[("rocks", &words.rocks(hazard.rocks())), ("how", &how)]);
+    let note = fill(
+        words.all_statistics_note,
+        &[("rocks", &words.rocks(hazard.released())), ("how", &how)],
+    );
     statistics_table(words, words.all_statistics.to_owned(), note, &rows)
 }
 

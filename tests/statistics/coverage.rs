@@ -4,7 +4,9 @@
 use crate::yearly;
 
 use rockfall::frequency::{Class, Frequency, FrequencyLaw, RockSource};
-use rockfall::hazard::{Barrier, CrossingRow, EventRate, Object, Sample, Vehicles, judge};
+use rockfall::hazard::{
+    Barrier, CrossingRow, EventRate, Object, OpenRocks, Sample, Vehicles, judge,
+};
 use rockfall::random::{Purpose, stream, unit};
 use std::convert::Infallible;
 use yearly::{REACH, asked, covers, crossings, near, power_law, road, row};
@@ -50,6 +52,7 @@ fn the_closed_case_lies_in_its_interval() {
         per_year: RATE,
         low_95: 0.0,
         high_95: 1.0,
+        censored: false,
         by_log_rate: 0.0,
         by_exponent: None,
     };
@@ -170,6 +173,7 @@ fn shares_that_a_net_stops_are_covered() {
         elsewhere: vec![],
     }];
     let rates = [1.0, 0.3, 0.1].map(|rate: f64| rate / 1.4);
+    let open = OpenRocks::default();
     for chances in [[0.3; 3], [0.1, 0.6, 0.9], [0.15, 0.0, 0.0]] {
         let truth: f64 = rates.iter().zip(chances).map(|(rate, chance)| rate * chance).sum();
         let inside = (0..RUNS).filter(|seed| {
@@ -179,7 +183,7 @@ fn shares_that_a_net_stops_are_covered() {
                 let energy_j = if unit(&mut random) < chances[index % 3] { 1e5 } else { 1e6 };
                 arrives.then(|| Ok::<_, Infallible>(row(index, "net", 1.0, energy_j)))
             };
-            let found = judge(&net, (0..900).filter_map(one), &weights).unwrap();
+            let found = judge(&net, (0..900).filter_map(one), (&weights, &open)).unwrap();
             (found[0].stopped.low_95..=found[0].stopped.high_95).contains(&truth)
         });
         let inside = inside.count();

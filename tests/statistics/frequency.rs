@@ -1,15 +1,18 @@
 //! Frequencies a year against closed forms and against numbers found by hand.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+use crate::made;
 use crate::yearly;
 
-use rockfall::frequency::{Class, Frequency, FrequencyLaw, RockSource, radius_of_m3};
+use rockfall::frequency::{Class, Frequency, FrequencyLaw, RockSource, Weights, radius_of_m3};
 use rockfall::hazard::{
-    AnnualPlace, Barrier, CrossingRow, MapFrame, MapState, Maps, Object, RiskKind, StopKind,
-    Vehicles, year_maps,
+    AnnualPlace, Barrier, CrossingRow, MapFrame, MapState, Maps, Object, OpenRock, OpenRocks,
+    RiskKind, Row, StopKind, Vehicles, YearSums, year_maps,
 };
+use rockfall::rock::Vec3;
 use rockfall::simulation::CellPassage;
-use yearly::{REACH, asked, crossings, near, power_law, road, row, year};
+use std::convert::Infallible;
+use yearly::{REACH, asked, crossings, line, near, power_law, road, row, year};
 
 /// Derivatives against closed forms: λ = p a (V₀^−b − V₁^−b), ∂λ/∂b = p a (V₁^−b ln V₁ − V₀^−b ln V₀), a ∂λ/∂a = λ. The
 /// energy of T follows from `V_T = (1/(T p a) + V₁^−b)^(−1/b)`, `e = 540 kJ/m³ · V_T`. 200 000 rocks know them to 2 %.
@@ -51,7 +54,7 @@ fn maps_carry_the_derivatives_of_the_closed_case() {
         let stratum = u16::try_from(frequency.stratum_of(row.index)).unwrap();
         maps.add(stratum, &[passage], (StopKind::LeftTerrain, [9.0; 3]));
     }
-    let layers = year_maps(&maps, &asked, releases);
+    let layers = year_maps(&maps, &asked, &frequency.weights(releases));
     let value = |file: &str| layers.iter().find(|layer| layer.file == file).unwrap().values[0].1;
     let slope = |low: f64| REACH * 0.1 * (100_f64.ln() / 100_f64.sqrt() - low.ln() / low.sqrt());
     near(value("frequency_per_year_by_exponent"), slope(0.1), 0.02);
@@ -70,7 +73,9 @@ fn maps_carry_the_derivatives_of_the_closed_case() {
     let plain = self::asked(vec![RockSource { name: "wall".to_owned(), law }]);
     let maps = Maps::new(frame, MapState::default());
     assert!(
-        year_maps(&maps, &plain, releases).iter().all(|one| !one.file.ends_with("by_exponent"))
+        year_maps(&maps, &plain, &Weights::equal(releases))
+            .iter()
+            .all(|one| !one.file.ends_with("by_exponent"))
     );
 }
 
@@ -345,4 +350,39 @@ fn strata_together_are_the_law() {
         near(found, 0.1 * (least.powf(-0.7) - 100_f64.powf(-0.7)), 1e-3);
     }
     assert!(weights.effective_rocks() < releases as f64);
+}
+
+/// 200 rocks of 0.3 events a year none of which has come, as their time was up: between none and all of them would. With any
+/// energy that their class can have; beyond it none.
+#[test]
+fn rocks_still_on_their_way_leave_the_year_open() {
+    let law = FrequencyLaw::Events { per_year: 0.3 };
+    let mut asked = self::asked(vec![RockSource { name: "wall".to_owned(), law }]);
+    asked.most_j = vec![1e5];
+    let row = row(0, "road", 1.0, 1.0);
+    let way = |index: usize| Row {
+        index,
+        stop: StopKind::TimeUp,
+        end_m: row.position_m,
+        ..Row::of(&made::fall(1), Vec3::zeros())
+    };
+    let lines = [line("road")];
+    let rocks = |some: std::ops::Range<usize>| some.filter_map(|k| OpenRock::of(&way(k))).collect();
+    let found = |some: std::ops::Range<usize>| {
+        let none = std::iter::empty::<Result<CrossingRow, Infallible>>();
+        let open = OpenRocks::find(rocks(some), (&lines, |_: &CrossingRow| None), none).unwrap();
+        let mut year = YearSums::new(&asked, &lines, &[]).unwrap();
+        year.leave_open(&open);
+        let weights = asked.frequency.as_ref().unwrap().weights(200);
+        year.said(weights).places.remove(0).without_barriers
+    };
+    let (closed, open) = (found(0..0), found(0..200));
+    near(closed.passages.high_95, 0.3 * 3.0 / 200.0, 1e-12);
+    near(open.passages.high_95, 0.3, 1e-12);
+    assert!(open.passages.per_year == 0.0 && open.passages.censored && !closed.passages.censored);
+    // the last energy asked for is more than such a rock can have
+    let above = open.above.last().unwrap();
+    assert!(above.energy_j > 1e5 && above.rate.high_95 == 0.0, "{above:?}");
+    assert!(open.returns.iter().any(|one| one.high_95.is_some_and(|joule| joule > 9e4)));
+    assert!(closed.returns.iter().all(|one| one.high_95 <= Some(1e5)));
 }

@@ -165,3 +165,75 @@ fn a_rock_that_comes_back_crosses_twice_and_counts_once() {
     assert!((crossing.motion.time_s - 0.625).abs() < 1e-12);
     assert!((crossing.along_m - 18.0).abs() < 1e-12 && crossing.motion.velocity_m_s.y < 0.0);
 }
+
+/// A plane that falls 0.4 to the south, with a hole across it. Rocks that fall through the hole fly on under the plane: they
+/// cross no line and pass no cell behind it, while rocks that leap the hole are seen at both.
+#[test]
+fn a_rock_under_the_mesh_crosses_nothing() {
+    let dir = tempfile::tempdir().unwrap();
+    let mut grid = String::from(
+        "ncols 21\nnrows 101\nxllcorner 0\nyllcorner 0\ncellsize 2\nNODATA_value -9999\n",
+    );
+    for row in 0..101 {
+        let y = 2.0 * f64::from(100 - row) + 1.0;
+        let height = if (120.0..150.0).contains(&y) { -9999.0 } else { 0.4 * y };
+        grid += &format!("{}\n", vec![height.to_string(); 21].join(" "));
+    }
+    std::fs::write(dir.path().join("hole.asc"), grid).unwrap();
+    let text = r#"
+title = "hole"
+seed = 3
+[[terrain]]
+file = "hole.asc"
+ground = "g"
+[grounds.g]
+normal_stiffness_n_m = 1e8
+tangential_ratio = 0.25
+friction_angle_deg = 32.0
+restitution = 0.5
+rolling_friction = 0.1
+roughness_deg = 15.0
+[rocks]
+density_kg_m3 = 2700.0
+radius_m = 0.4
+[release]
+count = 60
+height_m = 1.0
+velocity_m_s = [0.0, -6.0, { uniform = [0.0, 12.0] }]
+spin_rad_s = [0.0, 0.0, 0.0]
+line_m = [[10.0, 190.0], [30.0, 190.0]]
+[solver]
+scheme = "rigid"
+[[lines]]
+name = "behind"
+points_m = [[1.0, 110.0], [41.0, 110.0]]
+[[lines]]
+name = "far behind"
+points_m = [[1.0, 90.0], [41.0, 90.0]]
+[maps]
+cell_m = 2.0
+"#;
+    let scene = Scene::parse(text, &dir.path().join("scene.toml")).unwrap();
+    let (terrain, _) = scene.read_terrain().unwrap();
+    let plan = Plan::compile(&scene, terrain).unwrap();
+    let Part::Kept(cells) = plan.maps else { panic!("the maps are asked for") };
+    let mut fallen = 0;
+    for fall in falls(&plan, 60) {
+        for crossing in &fall.crossings {
+            assert!(crossing.height_m > -0.1, "rock {}: {crossing:?}", fall.index);
+        }
+        let end = fall.end.position_m;
+        // through the hole: it left below the plane, behind the upper edge of the hole
+        let is_under = fall.stop == Stop::LeftTerrain && plan.terrain.is_under_slope(&end);
+        if is_under && fall.crossings.is_empty() {
+            fallen += 1;
+            let origin_m = plan.terrain.origin_m;
+            // and ended there, not where it would have left the box below
+            assert!((115.0..121.0).contains(&(end.y + origin_m.y)), "rock {} at {end}", fall.index);
+            let south = |cell: u32| cells.south_m + 2.0 * f64::from(cell / cells.columns);
+            let behind = |cell: u32| south(cell) + origin_m.y < 116.0;
+            assert!(!fall.passages.iter().any(|one| behind(one.cell)), "rock {}", fall.index);
+        }
+    }
+    assert!(fallen > 5, "{fallen}");
+}

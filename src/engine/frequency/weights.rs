@@ -15,10 +15,13 @@ impl Weights {
     pub(super) fn of(frequency: &Frequency, releases: usize) -> Self {
         let count = frequency.strata.len();
         let rocks = |stratum| releases / count + usize::from(stratum < releases % count);
-        Self {
-            per_year: frequency.strata.iter().map(|stratum| stratum.per_year).collect(),
-            rocks: (0..count).map(rocks).collect(),
-        }
+        Self::of_rocks(frequency, (0..count).map(rocks).collect())
+    }
+
+    pub(super) fn of_rocks(frequency: &Frequency, mut rocks: Vec<usize>) -> Self {
+        rocks.resize(frequency.strata.len(), 0);
+        let per_year = frequency.strata.iter().map(|stratum| stratum.per_year).collect();
+        Self { per_year, rocks }
     }
 
     /// All alike: one event, whatever the time.

@@ -59,20 +59,32 @@ impl<'a> CellPassages<'a> {
         let height_m = |t: f64| {
             let centre = flight.centre(t);
             let ground = terrain.ground_under(centre.x, centre.y, centre.z);
-            ground.map_or(0.0, |ground| (centre.z - form.below_m(&at(t)) - ground).max(0.0))
+            ground.map(|ground| (centre.z - form.below_m(&at(t)) - ground).max(0.0))
         };
         let end = flight.centre(dt);
         // in plan view the flight is straight and even, so a share of the way is the same share of
         // the time
         walk(cells, [&from.position_m, &end], |cell, s0, s1| {
             let (t0, t1) = (s0 * dt, s1 * dt);
-            let height_m = [t0, 0.5 * (t0 + t1), t1].map(height_m).into_iter().fold(0.0, f64::max);
+            let middle = 0.5 * (t0 + t1);
+            let heights_m = [t0, middle, t1].map(height_m);
+            // fallen through a hole of the mesh, it passes no cell any more
+            let has_ground = heights_m.iter().any(Option::is_some);
+            if !has_ground && terrain.is_under_slope(&flight.centre(middle)) {
+                return;
+            }
+            let height_m = heights_m.into_iter().flatten().fold(0.0, f64::max);
             self.found.add(CellPassage { cell, total_j: total_j(t0).max(total_j(t1)), height_m });
         });
     }
 
     /// Notes the cells of a step in contact, which are shorter than cells: its ends hold what it has.
-    pub(super) fn step(&mut self, form: &Form, [from, to]: [&Motion; 2], turned: Option<Turned>) {
+    pub(super) fn step(
+        &mut self,
+        (terrain, form): (&Terrain, &Form),
+        [from, to]: [&Motion; 2],
+        turned: Option<Turned>,
+    ) {
         let Some(cells) = self.cells else { return };
         // velocity linear within the step: its square has no largest value inside either
         let total_j = |s: f64| {
@@ -81,6 +93,11 @@ impl<'a> CellPassages<'a> {
             motion.translational_j(&form.rock) + rotational_j
         };
         walk(cells, [&from.position_m, &to.position_m], |cell, s0, s1| {
+            // looked for once a cell, where the step comes into it: from below the mesh holds a rock too
+            let is_new = self.found.last().is_none_or(|last| last.cell != cell);
+            if is_new && terrain.is_under_slope(&between(from, to, s1).position_m) {
+                return;
+            }
             let total_j = total_j(s0).max(total_j(s1));
             self.found.add(CellPassage { cell, total_j, height_m: 0.0 });
         });

@@ -206,6 +206,8 @@ impl<'a> Crossings<'a> {
     }
 
     /// Records a crossing, or counts it where the rock has crossed this line before: only the first is kept in full.
+    ///
+    /// A rock that has fallen through a hole of the mesh and is under the slope has left the terrain: it crosses nothing.
     fn note(
         &mut self,
         (terrain, form): (&Terrain, &Form),
@@ -213,13 +215,16 @@ impl<'a> Crossings<'a> {
         (instant, along_m): (RockInstant, f64),
         times: u32,
     ) {
+        let centre = instant.motion.position_m;
         if let Some(known) = self.found.iter_mut().find(|crossing| crossing.line == line) {
-            known.times += times;
+            known.times += if terrain.is_under_slope(&centre) { 0 } else { times };
             return;
         }
-        let centre = instant.motion.position_m;
         // the slope without trees: bounce height is a height above the ground
         let below = terrain.slope_under(centre.x, centre.y, centre.z);
+        if below.is_none() && terrain.is_under_slope(&centre) {
+            return;
+        }
         // Vertical height of the lowest point; along the slope's normal the centre's height times
         // cos of the slope, less how far the rock reaches towards the slope. For a sphere on a
         // steep slope the second is the clearance a net must have.

@@ -224,7 +224,7 @@ impl<'a> Recorder<'a> {
         let from = std::mem::replace(&mut self.now, to);
         // a step in contact is noted from where it began to where it ended
         self.crossings.step((self.terrain, &self.form), [&from, &to], self.turned);
-        self.passages.step(&self.form, [&from, &to], self.turned);
+        self.passages.step((self.terrain, &self.form), [&from, &to], self.turned);
         let dt = to.time_s - from.time_s;
         while self.next_point_s <= to.time_s {
             let s = if dt > 0.0 { (self.next_point_s - from.time_s) / dt } else { 1.0 };

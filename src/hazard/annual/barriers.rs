@@ -30,6 +30,8 @@ pub(super) struct Met {
     stopped: StratumSums,
     over: StratumSums,
     through: StratumSums,
+    /// Rocks that may still arrive.
+    open: StratumSums,
 }
 
 impl Met {
@@ -57,13 +59,25 @@ impl Met {
         is_stopped
     }
 
+    /// Notes rocks that may still arrive, by their releases.
+    pub(super) fn leave_open(
+        &mut self,
+        releases: impl Iterator<Item = usize>,
+        frequency: &Frequency,
+    ) {
+        for release in releases {
+            let stratum = frequency.stratum_of(release) as u16;
+            self.open.entry(stratum).or_default().join(&Sums::one(1.0, 0.0));
+        }
+    }
+
     pub(super) fn said(&self, barrier: &Barrier, all: &All<'_>) -> AnnualBarrier {
         AnnualBarrier {
             name: barrier.name.clone(),
-            arriving: all.rate_of_any(&self.arriving),
-            stopped: all.rate_of_any(&self.stopped),
-            over: all.rate_of_any(&self.over),
-            through: all.rate_of_any(&self.through),
+            arriving: all.rate_of_any(&self.arriving, &self.open),
+            stopped: all.rate_of_any(&self.stopped, &self.open),
+            over: all.rate_of_any(&self.over, &self.open),
+            through: all.rate_of_any(&self.through, &self.open),
         }
     }
 }

@@ -5,7 +5,7 @@ use super::super::maps::Maps;
 use super::super::rate::{Limits, Running, Sums};
 use super::curve::{Ceilings, curve, return_energy};
 use super::{AnnualRequest, Matrix};
-use crate::frequency::{Frequency, Stratum};
+use crate::frequency::{Frequency, Stratum, Weights};
 
 /// A map of something a year, where rocks came.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,21 +28,20 @@ pub struct YearMap {
 ///
 /// Above an energy inside a class of counts (ratio 1.05) rocks are taken as even in the logarithm over that class; of the
 /// sizes in a stratum (a factor of 2.2 in volume) the derivative by the exponent takes the mean.
-pub fn year_maps(maps: &Maps, asked: &AnnualRequest, releases: usize) -> Vec<YearMap> {
+pub fn year_maps(maps: &Maps, asked: &AnnualRequest, weights: &Weights) -> Vec<YearMap> {
     let Some(frequency) = &asked.frequency else { return Vec::new() };
-    let weights = frequency.weights(releases);
     let scores: Vec<Option<f64>> = frequency.strata().iter().map(Stratum::mean_score).collect();
     let has_exponent = scores.iter().any(Option::is_some);
     let (energies, periods) = (frequency.energies_j(), frequency.return_periods_years());
-    let ceilings = Ceilings::of(&weights, &asked.most_j);
+    let ceilings = Ceilings::of(weights, &asked.most_j);
     let least = || [0.0].iter().chain(energies);
     let limits: Vec<Limits> =
-        least().map(|joule| Limits::above(&weights, &asked.most_j, *joule)).collect();
+        least().map(|joule| Limits::above(weights, &asked.most_j, *joule)).collect();
     let sums = |stratum: u16, sums: Sums| match scores[usize::from(stratum)] {
         Some(mean) => sums.scoring(mean),
         None => sums,
     };
-    let mut running = Running::new(&weights);
+    let mut running = Running::new(weights);
     let mut layers = Layers::of(frequency, has_exponent);
     let mut levels = Vec::new();
     for (cell, counts) in maps.energies() {

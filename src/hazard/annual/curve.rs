@@ -51,9 +51,13 @@ const MOST_J: f64 = 1e15;
 impl Ceilings {
     /// Of strata that can have so much energy each (J).
     pub(super) fn of(weights: &Weights, most_j: &[f64]) -> Self {
+        Self::beside(&Running::new(weights), (weights, most_j))
+    }
+
+    /// The same, where `nothing` has happened but may.
+    pub(super) fn beside(nothing: &Running<'_>, (weights, most_j): (&Weights, &[f64])) -> Self {
         let above = |class: u16| Limits::above(weights, most_j, lower_end_of(class));
         let limits: Vec<Limits> = (0..=class_of(MOST_J)).map(above).collect();
-        let nothing = Running::new(weights);
         let unseen = limits.iter().map(|limits| nothing.estimate(limits)[2]).collect();
         Self { limits, unseen }
     }

@@ -3,6 +3,7 @@
 use super::super::barriers::Barrier;
 use super::super::classes::class_of;
 use super::super::lines::{CrossingRow, LineInfo, by_rock};
+use super::super::open::{OpenRock, OpenRocks};
 use super::super::proportion::Proportion;
 use super::super::rate::{EventRate, Limits, Running, Sums, proportion};
 use super::AnnualRequest;
@@ -10,7 +11,7 @@ use super::barriers::{AnnualBarrier, Met};
 use super::curve::{Ceilings, ExceedancePoint, ReturnEnergy, curve, return_energy};
 use super::risk::{Object, Risk};
 use super::strata::{All, StratumSums, stratum_of};
-use crate::frequency::Frequency;
+use crate::frequency::{Frequency, Weights};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -19,7 +20,7 @@ use std::collections::BTreeMap;
 pub struct Annual {
     /// Events a year of all sources (1/year).
     pub events_per_year: f64,
-    /// Rocks computed.
+    /// Rocks computed: those that were released.
     pub rocks: usize,
     /// Number of equally weighted rocks that would give the same precision (–).
     pub effective_rocks: f64,
@@ -95,6 +96,9 @@ struct PassageTally {
     /// Metres of road blocked.
     blocked: StratumSums,
     classes: BTreeMap<(u16, u16), Sums>,
+    /// Rocks that may still pass, and the metres of road that they would block.
+    open: StratumSums,
+    open_blocked: StratumSums,
 }
 
 /// One passage.
@@ -119,10 +123,17 @@ impl PassageTally {
         self.classes.entry((class_of(total_j), stratum)).or_default().join(&one);
     }
 
+    /// Notes a rock that may still pass.
+    fn leave_open(&mut self, stratum: u16, blocked_m: f64) {
+        self.open.entry(stratum).or_default().join(&Sums::one(1.0, 0.0));
+        self.open_blocked.entry(stratum).or_default().join(&Sums::one(blocked_m, 0.0));
+    }
+
     fn rate(&self, level: usize, all: &All<'_>) -> EventRate {
         let energies = all.frequency.energies_j();
         let least_j = level.checked_sub(1).map_or(0.0, |k| energies[k]);
-        all.rate(self.above.get(level), &Limits::above(&all.weights, &all.asked.most_j, least_j))
+        let limits = Limits::above(&all.weights, &all.asked.most_j, least_j);
+        all.rate((self.above.get(level), &self.open), &limits)
     }
 
     fn above(&self, all: &All<'_>) -> Vec<Above> {
@@ -133,8 +144,12 @@ impl PassageTally {
     fn figures(&self, object: Option<&Object>, all: &All<'_>) -> AnnualFigures {
         let passages = self.rate(0, all);
         let falling = self.classes.iter().rev().map(|(&(class, at), sums)| (class, at, *sums));
-        let curve = curve(falling, &mut Running::new(&all.weights), &all.ceilings);
-        let energy = |years: &f64| return_energy(&curve, &all.ceilings, *years, all.has_exponent);
+        let mut running = Running::with_open(&all.weights, &self.open);
+        let own = (!self.open.is_empty())
+            .then(|| Ceilings::beside(&running, (&all.weights, &all.asked.most_j)));
+        let ceilings = own.as_ref().unwrap_or(&all.ceilings);
+        let curve = curve(falling, &mut running, ceilings);
+        let energy = |years: &f64| return_energy(&curve, ceilings, *years, all.has_exponent);
         let returns = all.frequency.return_periods_years().iter().map(energy).collect();
         let risks = self.risks(object, all);
         AnnualFigures { passages, above: self.above(all), returns, risks, curve }
@@ -146,7 +161,10 @@ impl PassageTally {
         // no rock of a stratum blocks more than its largest, seen or not
         let longest_m = |stratum: usize| object.blocked_m(2.0 * all.asked.largest_m(stratum));
         let limits = Limits::weighing(&all.weights, longest_m);
-        object.risks(&self.rate(0, all), &all.rate(Some(&self.blocked), &limits))
+        object.risks(
+            &self.rate(0, all),
+            &all.rate((Some(&self.blocked), &self.open_blocked), &limits),
+        )
     }
 }
 
@@ -200,16 +218,29 @@ impl YearSums {
         }
     }
 
-    /// What they say of a run of so many releases.
-    pub fn said(&self, releases: usize) -> Annual {
+    /// Notes the rocks that may still come to lines, objects and barriers.
+    pub fn leave_open(&mut self, open: &OpenRocks) {
+        let Self { frequency, barriers, places, nets, .. } = self;
+        for (which, (barrier, net)) in barriers.iter().zip(nets).enumerate() {
+            net.leave_open(open.free_at(&barrier.name, Some(which)), frequency);
+        }
+        for place in places {
+            let own = barriers.iter().position(|barrier| barrier.name == place.name);
+            for rock in open.rocks_at(&place.name) {
+                place.leave_open(rock, own, frequency);
+            }
+        }
+    }
+
+    /// What they say where rocks stand for so much.
+    pub fn said(&self, weights: Weights) -> Annual {
         let Self { asked, frequency, barriers, places, nets } = self;
         let has_exponent = frequency.strata().iter().any(|stratum| stratum.exponent.is_some());
-        let weights = frequency.weights(releases);
         let ceilings = Ceilings::of(&weights, &asked.most_j);
         let all = All { asked, frequency, weights, ceilings, has_exponent, barriers };
         Annual {
             events_per_year: frequency.per_year(),
-            rocks: releases,
+            rocks: all.weights.all_rocks(),
             effective_rocks: all.weights.effective_rocks(),
             strata: frequency.strata().len(),
             places: places.iter().map(|place| place.said(&all)).collect(),
@@ -218,7 +249,7 @@ impl YearSums {
     }
 }
 
-/// What a year brings, from first crossings that come release by release; none without sources.
+/// What a year brings, from first crossings that come release by release, all of which were released; none without sources.
 ///
 /// # Errors
 /// Passes on what reading a row says.
@@ -230,7 +261,8 @@ pub fn annual<E>(
 ) -> Result<Option<Annual>, E> {
     let Some(mut year) = YearSums::new(asked, lines, barriers) else { return Ok(None) };
     by_rock(rows, |rock| year.add(rock))?;
-    Ok(Some(year.said(releases)))
+    let weights = year.frequency.weights(releases);
+    Ok(Some(year.said(weights)))
 }
 
 impl PlaceSums {
@@ -257,6 +289,21 @@ impl PlaceSums {
         }
     }
 
+    /// Notes a rock that may still come: a barrier that has stopped it, or one further on, may keep it away.
+    fn leave_open(&mut self, rock: &OpenRock, own: Option<usize>, frequency: &Frequency) {
+        let stratum = frequency.stratum_of(rock.release) as u16;
+        let blocked_m =
+            self.object.as_ref().map_or(0.0, |object| object.blocked_m(2.0 * rock.radius_m));
+        self.all.leave_open(stratum, blocked_m);
+        match rock.stopped_by(own) {
+            Some(which) => self.saved[which].leave_open(stratum, blocked_m),
+            None => {
+                self.unstopped.leave_open(stratum, blocked_m);
+                self.saved.iter_mut().for_each(|saved| saved.leave_open(stratum, blocked_m));
+            }
+        }
+    }
+
     fn said(&self, all: &All<'_>) -> AnnualPlace {
         let rocks = |sums: &Sums| sums.rocks();
         let reach = self.all.above.first().into_iter().flatten();
@@ -267,13 +314,17 @@ impl PlaceSums {
             risks: tally.risks(self.object.as_ref(), all),
         };
         let judged = !all.barriers.is_empty();
+        let share = |sums: &mut dyn Iterator<Item = (&u16, &Sums)>| {
+            proportion(&all.weights, sums.map(|(stratum, sums)| (*stratum, rocks(sums))))
+        };
+        let seen = share(&mut reach.clone());
+        let open = &self.all.open;
+        let conditional =
+            if open.is_empty() { seen } else { seen.up_to(&share(&mut reach.chain(open))) };
         AnnualPlace {
             name: self.name.clone(),
             is_object: self.object.is_some(),
-            conditional_on_release: proportion(
-                &all.weights,
-                reach.map(|(stratum, sums)| (*stratum, rocks(sums))),
-            ),
+            conditional_on_release: conditional,
             without_barriers: self.all.figures(self.object.as_ref(), all),
             with_barriers: judged.then(|| self.unstopped.figures(self.object.as_ref(), all)),
             saved: all.barriers.iter().zip(&self.saved).map(saved).collect(),

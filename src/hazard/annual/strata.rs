@@ -22,13 +22,17 @@ pub(super) struct All<'a> {
 }
 
 impl All<'_> {
-    /// How often a year rocks do something that every rock might do.
-    pub(super) fn rate_of_any(&self, strata: &StratumSums) -> EventRate {
-        self.rate(Some(strata), &Limits::above(&self.weights, &[], 0.0))
+    /// How often a year rocks do something that every rock might do, and that `open` ones may still do.
+    pub(super) fn rate_of_any(&self, strata: &StratumSums, open: &StratumSums) -> EventRate {
+        self.rate((Some(strata), open), &Limits::above(&self.weights, &[], 0.0))
     }
 
-    pub(super) fn rate(&self, strata: Option<&StratumSums>, limits: &Limits) -> EventRate {
-        let mut running = Running::new(&self.weights);
+    pub(super) fn rate(
+        &self,
+        (strata, open): (Option<&StratumSums>, &StratumSums),
+        limits: &Limits,
+    ) -> EventRate {
+        let mut running = Running::with_open(&self.weights, open);
         for (stratum, sums) in strata.into_iter().flatten() {
             running.add(*stratum, sums);
         }

@@ -2,7 +2,7 @@
 
 use super::super::arrival::Arrival;
 use super::super::proportion::Proportion;
-use super::super::rate::share_of;
+use super::super::rate::share_up_to;
 use super::Barrier;
 use crate::frequency::Weights;
 
@@ -32,7 +32,7 @@ pub(super) fn stopped_at(
     Proportion::effective(count, rocks.len(), share, effective)
 }
 
-/// Share of all releases, by what they stand for, that arrive.
-pub(super) fn arriving(rocks: &[Arrival], weights: &Weights) -> Proportion {
-    share_of(weights, rocks.iter().map(|rock| rock.release))
+/// Share of all that were released, by what they stand for, that arrive; the `open` ones may.
+pub(super) fn arriving((rocks, open): (&[Arrival], &[usize]), weights: &Weights) -> Proportion {
+    share_up_to(weights, rocks.iter().map(|rock| rock.release), open.iter().copied())
 }

@@ -1,7 +1,7 @@
 //! What a year brings, from the summary: tables and curves. Every title says that its numbers are a year.
 
 use super::super::format;
-use super::super::model::{About, AnnualView, BandPoint, Estimate, EstimateTable};
+use super::super::model::{About, AnnualView, BandPoint, Estimate, EstimateTable, Is};
 use super::super::words::{Words, fill};
 use super::estimate;
 use crate::hazard::{
@@ -175,12 +175,16 @@ fn passages(annual: &Annual, place: &AnnualPlace, words: &Words) -> EstimateTabl
 }
 
 fn of(rate: &EventRate, map: impl Fn(f64) -> f64) -> Estimate {
-    estimate(map(rate.per_year), Some(map(rate.low_95)), Some(map(rate.high_95)))
+    let is = if rate.censored { Is::AtLeast } else { Is::Value };
+    let found = estimate(map(rate.per_year), Some(map(rate.low_95)), Some(map(rate.high_95)));
+    Estimate { is, ..found }
 }
 
 fn cells(rate: &EventRate, annual: &Annual) -> Vec<Option<Estimate>> {
     let period = |per_year: f64| if per_year > 0.0 { 1.0 / per_year } else { f64::NAN };
     let years = Estimate::new(period(rate.per_year), period(rate.high_95), period(rate.low_95));
+    let is = if rate.censored { Is::AtMost } else { Is::Value };
+    let years = Estimate { is, ..years };
     vec![
         Some(of(rate, |x| x)),
         Some(years),
@@ -192,10 +196,13 @@ fn cells(rate: &EventRate, annual: &Annual) -> Vec<Option<Estimate>> {
 }
 
 fn returns(place: &AnnualPlace, words: &Words) -> EstimateTable {
-    let row = |(which, one): (&str, &ReturnEnergy)| {
+    let row = |(which, is, one): (&str, Is, &ReturnEnergy)| {
         let kilo = |joule: f64| joule / 1e3;
         let energy = match one.energy_j {
-            Some(joule) => estimate(kilo(joule), Some(kilo(one.low_95)), one.high_95.map(kilo)),
+            Some(joule) => Estimate {
+                is,
+                ..estimate(kilo(joule), Some(kilo(one.low_95)), one.high_95.map(kilo))
+            },
             // more seldom than that, but perhaps not by much
             None => estimate(f64::NAN, None, one.high_95.filter(|high| *high > 0.0).map(kilo)),
         };
@@ -203,8 +210,10 @@ fn returns(place: &AnnualPlace, words: &Words) -> EstimateTable {
         let name = fill(words.years, &[("n", &format::plain(one.years))]) + which;
         (name, vec![Some(energy), slope(one.by_log_rate), slope(one.by_exponent)])
     };
-    let all = both(place, words)
-        .flat_map(|(which, figures)| figures.returns.iter().map(move |r| (which, r)));
+    let all = both(place, words).flat_map(|(which, figures)| {
+        let is = of(&figures.passages, |x| x).is;
+        figures.returns.iter().map(move |r| (which, is, r))
+    });
     let by = |text: &str| fill(text, &[("unit", &"kJ")]);
     let columns = [words.energy_axis, words.col_by_rate, words.col_by_exponent].map(by);
     EstimateTable {

@@ -30,7 +30,7 @@ fn percent(share: Estimate) -> Estimate {
 }
 
 fn lines(results: &Results, words: &Words, order: &[String]) -> Option<EstimateTable> {
-    let releases = results.hazard.rocks();
+    let releases = results.hazard.released();
     let is_barrier =
         |name: &str| results.summary.barriers.iter().any(|one| one.barrier.name == name);
     let mut own: Vec<_> = shown(results).filter(|(_, line)| !is_barrier(&line.info.name)).collect();

@@ -7,6 +7,7 @@ use super::super::model::{
 };
 use super::super::raster::GroundRaster;
 use super::super::words::{Words, fill};
+use super::lines::of_share;
 use super::{estimate, of_percentile, statistics};
 use crate::error::Result;
 use crate::frequency::Weights;
@@ -160,7 +161,8 @@ fn plain(value: f64) -> Estimate {
 
 fn percent(share: &Proportion) -> Option<Estimate> {
     let [value, low, high] = [share.share, share.low_95, share.high_95].map(|x| 100.0 * x);
-    (share.of > 0).then(|| estimate(value, Some(low), Some(high)))
+    let is = of_share(share).is;
+    (share.of > 0).then(|| Estimate { is, ..estimate(value, Some(low), Some(high)) })
 }
 
 fn cells(one: &BarrierSummary) -> Vec<Option<Estimate>> {

@@ -3,8 +3,8 @@
 use super::super::by_frequency;
 use super::super::format;
 use super::super::model::{
-    About, BandPoint, Behind, Estimate, EstimateTable, LinePoint, MapMark, Quantile, ReportLine,
-    ReportQuantity,
+    About, BandPoint, Behind, Estimate, EstimateTable, Is, LinePoint, MapMark, Quantile,
+    ReportLine, ReportQuantity,
 };
 use super::super::raster::GroundRaster;
 use super::super::words::{Words, fill};
@@ -61,7 +61,7 @@ pub(super) fn marks(results: &Results) -> Vec<MapMark> {
 
 /// All lines with their first crossings, in downslope order.
 pub(super) fn lines(results: &Results, ground: Option<&GroundRaster>) -> Result<Vec<ReportLine>> {
-    let releases = results.hazard.rocks();
+    let releases = results.hazard.released();
     let elevation = |corners: &[[f64; 2]]| ground.map_or(f64::NAN, |g| mean_height(g, corners));
     let mut lines: Vec<ReportLine> = shown(results)
         .filter(|(_, line)| !is_object(results, &line.info.name))
@@ -72,21 +72,23 @@ pub(super) fn lines(results: &Results, ground: Option<&GroundRaster>) -> Result<
             ..empty(line, releases)
         })
         .collect();
-    let weights = results.hazard.weights();
+    let is_weighted = results.hazard.weights().is_some();
     for line in &mut lines {
-        line.is_weighted = weights.is_some();
+        line.is_weighted = is_weighted;
     }
-    let weights = weights.unwrap_or_else(|| Weights::equal(releases));
+    let weights = results.hazard.weights_or_equal();
     let barriers: Vec<Barrier> =
         results.summary.barriers.iter().map(|one| one.barrier.clone()).collect();
     hazard::by_rock(results.crossings()?, |rock| take(&barriers, rock, &mut lines))?;
     for line in &mut lines {
         let residual = results.summary.residual.iter().find(|at| at.line == line.name);
-        line.behind =
-            residual.filter(|at| !at.behind.is_empty()).map(|at| behind(line, at, &weights));
+        line.behind = residual
+            .filter(|at| !at.behind.is_empty())
+            .map(|at| behind(line, at, (&weights, results)));
         let all = || line.crossings.iter();
-        line.energy_exceedance = exceedance(all().map(energy), &weights);
-        line.height_exceedance = exceedance(all().map(height), &weights);
+        let open: Vec<usize> = results.open.at(&line.name).collect();
+        line.energy_exceedance = exceedance(all().map(energy), (&weights, &open));
+        line.height_exceedance = exceedance(all().map(height), (&weights, &open));
     }
     // stable: lines without ground keep the order of the scene, behind the others
     let key = |line: &ReportLine| {
@@ -121,13 +123,14 @@ fn height(at: &LinePoint) -> (usize, f64) {
     (at.release, if at.height_m < 0.0 { 0.0 } else { at.height_m })
 }
 
-fn behind(line: &ReportLine, at: &Residual, weights: &Weights) -> Behind {
+fn behind(line: &ReportLine, at: &Residual, (weights, results): (&Weights, &Results)) -> Behind {
+    let open: Vec<usize> = results.open.behind_barriers(&line.name).collect();
     let passing = || line.crossings.iter().filter(|at| at.passes);
     Behind {
         barriers: at.behind.clone(),
         reach: of_share(&at.with.reach),
-        energy_exceedance: exceedance(passing().map(energy), weights),
-        height_exceedance: exceedance(passing().map(height), weights),
+        energy_exceedance: exceedance(passing().map(energy), (weights, &open)),
+        height_exceedance: exceedance(passing().map(height), (weights, &open)),
     }
 }
 
@@ -144,15 +147,20 @@ fn mean_height(ground: &GroundRaster, corners: &[[f64; 2]]) -> f64 {
     heights.iter().sum::<f64>() / heights.len() as f64
 }
 
-/// Share of all releases above each of some values, by what each stands for, with Wilson's interval.
-fn exceedance(values: impl Iterator<Item = (usize, f64)>, weights: &Weights) -> Vec<BandPoint> {
+/// Share of all releases above each of some values, by what each stands for, with Wilson's interval; of rocks that may still
+/// come, nobody knows how high.
+fn exceedance(
+    values: impl Iterator<Item = (usize, f64)>,
+    (weights, open): (&Weights, &[usize]),
+) -> Vec<BandPoint> {
     let mut sorted: Vec<(usize, f64)> = values.filter(|(_, value)| value.is_finite()).collect();
     sorted.sort_by(|one, other| one.1.total_cmp(&other.1));
     let stride = sorted.len().div_ceil(POINTS).max(1);
     let last = sorted.len().checked_sub(1);
     let ranks = (0..sorted.len()).step_by(stride).chain(last);
     let share = |above: &[(usize, f64)]| {
-        of_share(&hazard::share_of(weights, above.iter().map(|(release, _)| *release)))
+        let above = above.iter().map(|(release, _)| *release);
+        of_share(&hazard::share_up_to(weights, above, open.iter().copied()))
     };
     let point = |rank: usize| BandPoint { x: sorted[rank].1, y: share(&sorted[rank + 1..]) };
     let first = sorted.first().map(|_| BandPoint { x: 0.0, y: share(&sorted) });
@@ -161,7 +169,8 @@ fn exceedance(values: impl Iterator<Item = (usize, f64)>, weights: &Weights) -> 
 
 /// A share with its interval.
 pub(super) fn of_share(share: &Proportion) -> Estimate {
-    estimate(share.share, Some(share.low_95), Some(share.high_95))
+    let found = estimate(share.share, Some(share.low_95), Some(share.high_95));
+    if share.censored { Estimate { is: Is::AtLeast, ..found } } else { found }
 }
 
 fn empty(line: &hazard::Line, releases: usize) -> ReportLine {
@@ -196,7 +205,7 @@ fn quantiles(sample: &Sample) -> Vec<Quantile> {
 
 /// One table a line that rocks cross.
 pub(super) fn tables(results: &Results, words: &Words) -> Vec<EstimateTable> {
-    let releases = results.hazard.rocks();
+    let releases = results.hazard.released();
     let is_weighted = results.hazard.weights().is_some();
     let table = |(_, line): (usize, &hazard::Line)| {
         let reach = line.reach(releases);
@@ -213,7 +222,10 @@ pub(super) fn tables(results: &Results, words: &Words) -> Vec<EstimateTable> {
             &[
                 ("count", &count(reach.count)),
                 ("releases", &count(releases)),
-                ("reach", &percent(reach.share)),
+                (
+                    "reach",
+                    &format!("{}{}", format::sign(of_share(&reach).is), percent(reach.share)),
+                ),
                 ("interval", &words.interval(&percent(reach.low_95), &percent(reach.high_95))),
                 ("again", &count(line.crossing_again())),
             ],

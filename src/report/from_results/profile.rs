@@ -3,7 +3,6 @@
 use super::super::model::{MapMark, ProfileStretch, ProfileView, ReleaseEnd, ReportStretch};
 use super::{lines, of_percentile};
 use crate::error::Result;
-use crate::frequency::Weights;
 use crate::hazard;
 use crate::math;
 use crate::output::Results;
@@ -15,8 +14,7 @@ pub(super) fn view(results: &Results, releases: &[ReleaseEnd]) -> Result<Option<
     if profile.is_empty() {
         return Ok(None);
     }
-    let weights = results.hazard.weights();
-    let weights = weights.unwrap_or_else(|| Weights::equal(results.hazard.rocks()));
+    let weights = results.hazard.weights_or_equal();
     let of = |found: &hazard::StretchStatistic, rocks: usize| ReportStretch {
         median: found.median.value,
         p95: of_percentile(&found.p95, (rocks, None)),

@@ -320,7 +320,7 @@ pub(super) static WORDS: Words = Words {
     ends_note: "Gerechnet minus gemessen mit 95-%-Intervall, aus erneut gezogenen gemessenen Endpunkten.",
     difference: "Unterschied",
     // What rocks that did not come to rest do to the numbers
-    censored: "{n} von {of} Blöcken ({share}) {what}: ihre Auslaufstrecke ist eine untere und ihr Pauschalgefälle eine obere Schranke, ebenso jedes Perzentil, das von ihnen abhängt (≥, ≤; kein Intervall auf dieser Seite). {remedy}",
+    censored: "{n} von {of} Blöcken ({share}) {what}: ihre Auslaufstrecke ist eine untere und ihr Pauschalgefälle eine obere Schranke, ebenso jedes Perzentil, das von ihnen abhängt (≥, ≤; kein Intervall auf dieser Seite). Auch Anteile und Häufigkeiten an Linien, zu denen sie noch kommen können, sind untere Schranken; die oberen Enden der Intervalle zählen diese Blöcke als angekommen. {remedy}",
     have_left: "haben das Gelände verlassen",
     remedy_left: "Weiter reichendes Gelände angeben, falls sie zählen.",
     have_no_time: "bewegten sich noch, als ihre Zeit abgelaufen war",

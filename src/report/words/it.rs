@@ -320,7 +320,7 @@ pub(super) static WORDS: Words = Words {
     ends_note: "Calcolato meno misurato con intervallo al 95 %, da ricampionamento degli arresti misurati.",
     difference: "differenza",
     // What rocks that did not come to rest do to the numbers
-    censored: "{n} massi su {of} ({share}) {what}: la loro distanza è un limite inferiore e il loro angolo un limite superiore, come ogni percentile che ne dipende (≥, ≤; nessun intervallo da quel lato). {remedy}",
+    censored: "{n} massi su {of} ({share}) {what}: la loro distanza è un limite inferiore e il loro angolo un limite superiore, come ogni percentile che ne dipende (≥, ≤; nessun intervallo da quel lato). Anche quote e frequenze alle linee che possono ancora raggiungere sono limiti inferiori; l’estremo superiore dei loro intervalli conta questi massi come arrivati. {remedy}",
     have_left: "sono usciti dal terreno",
     remedy_left: "Fornire un terreno più esteso se contano.",
     have_no_time: "erano ancora in moto allo scadere del tempo",

@@ -28,6 +28,10 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "{a} von {b} Blöcken sind fehlgeschlagen: gezählt, aber in keiner Statistik; `--only` zeigt einen noch einmal",
     ),
     (
+        "source “{a}”: no rock of {b} of its {c} events a year was released: they are missing in every number",
+        "Quelle “{a}”: von {b} ihrer {c} Ereignisse im Jahr wurde kein Block abgelöst: sie fehlen in jeder Zahl",
+    ),
+    (
         "{a} of {b} rocks were not released, {why}: they are counted, but in no statistic; the first is release {c}",
         "{a} von {b} Blöcken wurden nicht abgelöst, {why}: gezählt, aber in keiner Statistik; der erste ist Ablösung {c}",
     ),

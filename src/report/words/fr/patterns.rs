@@ -28,6 +28,10 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "{a} blocs sur {b} ont échoué\u{a0}: comptés, mais dans aucune statistique\u{a0}; `--only` en remontre un",
     ),
     (
+        "source “{a}”: no rock of {b} of its {c} events a year was released: they are missing in every number",
+        "source “{a}” : aucun bloc n’est parti pour {b} de ses {c} événements par an : ils manquent dans tous les nombres",
+    ),
+    (
         "{a} of {b} rocks were not released, {why}: they are counted, but in no statistic; the first is release {c}",
         "{a} blocs sur {b} ne sont pas partis, {why}\u{a0}: comptés, mais dans aucune statistique\u{a0}; le premier est le départ {c}",
     ),

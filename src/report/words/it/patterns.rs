@@ -28,6 +28,10 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "{a} massi su {b} sono falliti: contati, ma in nessuna statistica; `--only` ne mostra uno di nuovo",
     ),
     (
+        "source “{a}”: no rock of {b} of its {c} events a year was released: they are missing in every number",
+        "sorgente “{a}”: per {b} dei suoi {c} eventi all’anno nessun masso è partito: mancano in ogni numero",
+    ),
+    (
         "{a} of {b} rocks were not released, {why}: they are counted, but in no statistic; the first is release {c}",
         "{a} massi su {b} non si sono staccati, {why}: contati, ma in nessuna statistica; il primo è il distacco {c}",
     ),

@@ -1,0 +1,138 @@
+//! Rocks that would have gone on, and the lines that they may still come to.
+//!
+//! A rock whose time or work was up, or that failed, may still come to every line that it has not crossed. One that left the
+//! terrain may come to those that do not lie behind it: it would have to turn back to a line of which every corner lies
+//! behind the vertical plane through its end, across its velocity there. Shares and rates take none of them as
+//! arriving, and the upper ends of their intervals all (worst-case bounds, Manski 1990).
+
+use super::lines::{CrossingRow, LineInfo, by_rock};
+use super::row::{Row, StopKind};
+use std::collections::BTreeMap;
+
+/// A rock that would have gone on.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OpenRock {
+    /// Release number.
+    pub release: usize,
+    /// Its radius (m).
+    pub radius_m: f64,
+    /// Where it ended on the map (m), and how fast it moved there (m/s).
+    end_m: [f64; 2],
+    velocity_m_s: [f64; 2],
+    has_left: bool,
+    /// Lines that it has crossed, and barriers that have stopped it, by their numbers.
+    crossed: Vec<usize>,
+    stopped_by: Vec<usize>,
+}
+
+impl OpenRock {
+    /// Of a rock that would have gone on; none of one at rest or never released.
+    pub fn of(row: &Row) -> Option<Self> {
+        let ([x, y, _], [vx, vy, _]) = (row.end_m, row.end_velocity_m_s);
+        (row.stop.is_open() || row.stop == StopKind::Failed).then(|| Self {
+            release: row.index,
+            radius_m: row.radius_m,
+            end_m: [x, y],
+            velocity_m_s: [vx, vy],
+            has_left: row.stop == StopKind::LeftTerrain,
+            crossed: Vec::new(),
+            stopped_by: Vec::new(),
+        })
+    }
+
+    /// Whether it need not turn back to come to a line.
+    fn may_come(&self, line: &LineInfo) -> bool {
+        let [vx, vy] = self.velocity_m_s;
+        let is_ahead =
+            |[x, y]: &[f64; 2]| (x - self.end_m[0]) * vx + (y - self.end_m[1]) * vy >= 0.0;
+        !self.has_left || line.corners_m.iter().any(is_ahead)
+    }
+
+    /// The first barrier that stops it, but for one.
+    pub(super) fn stopped_by(&self, but_for: Option<usize>) -> Option<usize> {
+        self.stopped_by.iter().copied().find(|which| Some(*which) != but_for)
+    }
+}
+
+/// All of them, and which may come to each line.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct OpenRocks {
+    rocks: Vec<OpenRock>,
+    at: BTreeMap<String, Vec<usize>>,
+}
+
+impl OpenRocks {
+    /// Finds the lines that rocks, by rising release, may still come to; `rows` are first crossings, release by release, and
+    /// `stops` gives the number of the barrier that stops a rock there.
+    ///
+    /// # Errors
+    /// Passes on what reading a row says.
+    pub fn find<E>(
+        mut rocks: Vec<OpenRock>,
+        (lines, stops): (&[LineInfo], impl Fn(&CrossingRow) -> Option<usize>),
+        rows: impl Iterator<Item = Result<CrossingRow, E>>,
+    ) -> Result<Self, E> {
+        if rocks.is_empty() || lines.is_empty() {
+            return Ok(Self::default());
+        }
+        by_rock(rows, |way| {
+            let known = rocks.binary_search_by_key(&way[0].index, |rock| rock.release);
+            if let Ok(at) = known {
+                way.sort_by(|one, other| one.time_s.total_cmp(&other.time_s));
+                rocks[at].take(way, (lines, &stops));
+            }
+        })?;
+        let may_come = |number: usize, line: &LineInfo| {
+            let is_one = |rock: &OpenRock| !rock.crossed.contains(&number) && rock.may_come(line);
+            (0..rocks.len()).filter(|at| is_one(&rocks[*at])).collect()
+        };
+        let at = lines.iter().enumerate();
+        let at = at.map(|(number, line)| (line.name.clone(), may_come(number, line))).collect();
+        Ok(Self { rocks, at })
+    }
+
+    /// Those that may come to a line.
+    pub(super) fn rocks_at<'a>(
+        &'a self,
+        line: &str,
+    ) -> impl Iterator<Item = &'a OpenRock> + Clone + use<'a> {
+        self.at.get(line).into_iter().flatten().map(|at| &self.rocks[*at])
+    }
+
+    /// Release numbers of those that may come to a line.
+    pub fn at<'a>(&'a self, line: &str) -> impl Iterator<Item = usize> + Clone + use<'a> {
+        self.rocks_at(line).map(|rock| rock.release)
+    }
+
+    /// The same, without those that a barrier has stopped before.
+    pub fn behind_barriers<'a>(
+        &'a self,
+        line: &str,
+    ) -> impl Iterator<Item = usize> + Clone + use<'a> {
+        self.free_at(line, None)
+    }
+
+    /// The same, where one barrier is the line's own.
+    pub(super) fn free_at<'a>(
+        &'a self,
+        line: &str,
+        own: Option<usize>,
+    ) -> impl Iterator<Item = usize> + Clone + use<'a> {
+        let free = self.rocks_at(line).filter(move |rock| rock.stopped_by(own).is_none());
+        free.map(|rock| rock.release)
+    }
+}
+
+impl OpenRock {
+    /// Notes what it has crossed on its way, in the order of time.
+    fn take(
+        &mut self,
+        way: &[CrossingRow],
+        (lines, stops): (&[LineInfo], &impl Fn(&CrossingRow) -> Option<usize>),
+    ) {
+        for row in way {
+            self.crossed.extend(lines.iter().position(|line| line.name == row.line));
+            self.stopped_by.extend(stops(row));
+        }
+    }
+}
