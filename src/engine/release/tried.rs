@@ -1,6 +1,6 @@
 //! The first releases, tried out before a run.
 
-use super::{Releases, Where};
+use super::{Frequency, Releases, Where};
 use crate::error::{Error, Result};
 use crate::terrain::Terrain;
 
