@@ -37,6 +37,16 @@ pub(super) fn observed(results: &Results) -> Result<Option<Observed>> {
     Ok(agreement.map(|agreement| Observed { measured, computed, agreement }))
 }
 
+/// What must be known before anything else where the computed ends are not those that were measured.
+pub(super) fn off(observed: &Observed, words: &Words) -> Option<String> {
+    let at = &observed.agreement;
+    let said = format!(
+        "the computed ends are not distributed like the measured ones: KS distance {:.3}, 5 % limit {:.3}. The ground values do not hold for this slope",
+        at.ks, at.ks_limit
+    );
+    (at.ks > at.ks_limit).then(|| words.say(&said))
+}
+
 /// How well this run and the calibration agree with what was measured.
 pub(super) fn tables(results: &Results, words: &Words) -> Result<Vec<EstimateTable>> {
     let mut tables = Vec::new();

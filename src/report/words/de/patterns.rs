@@ -284,4 +284,16 @@ pub(super) const VIEW: &[(&str, &str)] = &[
         "{h} m, {e} kJ: stops {a} of the {b} that arrive",
         "{h} m, {e} kJ: hält {a} der {b} auf, die ankommen",
     ),
+    (
+        "calibrated on measured ends ([calibrate] fitted of the scene)",
+        "an gemessenen Endpunkten kalibriert ([calibrate] fitted der Szene)",
+    ),
+    (
+        "written in the scene; measured ends ([calibrate]) stand beside it and are not fitted",
+        "in der Szene geschrieben; gemessene Endpunkte ([calibrate]) stehen daneben, angepasst ist nichts",
+    ),
+    (
+        "the computed ends are not distributed like the measured ones: KS distance {ks}, 5 % limit {limit}. The ground values do not hold for this slope",
+        "Die gerechneten Endpunkte sind nicht verteilt wie die gemessenen: KS-Abstand {ks}, Grenze bei 5 % {limit}. Die Bodenkennwerte gelten für diesen Hang nicht",
+    ),
 ];

@@ -287,4 +287,16 @@ pub(super) const VIEW: &[(&str, &str)] = &[
         "{h} m, {e} kJ: stops {a} of the {b} that arrive",
         "{h} m, {e} kJ\u{a0}: arrête {a} des {b} qui arrivent",
     ),
+    (
+        "calibrated on measured ends ([calibrate] fitted of the scene)",
+        "calées sur des arrêts mesurés ([calibrate] fitted de la scène)",
+    ),
+    (
+        "written in the scene; measured ends ([calibrate]) stand beside it and are not fitted",
+        "écrites dans la scène\u{a0}; des arrêts mesurés ([calibrate]) figurent à côté, rien n’est calé sur eux",
+    ),
+    (
+        "the computed ends are not distributed like the measured ones: KS distance {ks}, 5 % limit {limit}. The ground values do not hold for this slope",
+        "Les arrêts calculés ne sont pas distribués comme les arrêts mesurés\u{a0}: distance KS {ks}, limite à 5 % {limit}. Les valeurs des sols ne sont pas valables pour ce versant",
+    ),
 ];

@@ -281,4 +281,16 @@ pub(super) const VIEW: &[(&str, &str)] = &[
         "{h} m, {e} kJ: stops {a} of the {b} that arrive",
         "{h} m, {e} kJ: ferma {a} dei {b} che arrivano",
     ),
+    (
+        "calibrated on measured ends ([calibrate] fitted of the scene)",
+        "calibrati su arresti misurati ([calibrate] fitted della scena)",
+    ),
+    (
+        "written in the scene; measured ends ([calibrate]) stand beside it and are not fitted",
+        "scritti nella scena; gli arresti misurati ([calibrate]) vi stanno accanto, nulla è calibrato su di essi",
+    ),
+    (
+        "the computed ends are not distributed like the measured ones: KS distance {ks}, 5 % limit {limit}. The ground values do not hold for this slope",
+        "Gli arresti calcolati non sono distribuiti come quelli misurati: distanza KS {ks}, limite al 5 % {limit}. I valori del terreno non valgono per questo versante",
+    ),
 ];
