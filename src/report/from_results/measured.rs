@@ -129,11 +129,8 @@ fn told(found: &Calibration, words: &Words) -> EstimateTable {
 /// Where the ends of the fit lie and how they spread.
 fn spread(found: &Calibration, words: &Words) -> EstimateTable {
     let row = |measure: &SiteMeasure| {
-        let difference = estimate(
-            measure.computed - measure.measured,
-            Some(measure.low_95),
-            Some(measure.high_95),
-        );
+        let difference =
+            estimate(measure.computed - measure.measured, measure.low_95, measure.high_95);
         let plain = |value: f64| Some(estimate(value, None, None));
         let cells = vec![plain(measure.measured), plain(measure.computed), Some(difference)];
         (format!("{}: {}", measure.scene, measure.what), cells)
