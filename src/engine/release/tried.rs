@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::terrain::Terrain;
 
 /// Releases tried out.
-const TRIED: usize = 1000;
+pub(crate) const TRIED: usize = 1000;
 
 impl Releases {
     /// Tries the first releases out before a run: says which share of the zone has no ground or no room.
