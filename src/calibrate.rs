@@ -59,7 +59,7 @@ pub struct Calibration {
     pub names: Vec<String>,
     /// Releases of each trial and scene.
     pub releases: usize,
-    /// Number of trials of each search.
+    /// Number of trials of the fit to all ends; fits to parts of them take about as many.
     pub trials: usize,
     /// With the values that would stand there without calibration.
     pub before: CalibrationTrial,
@@ -81,7 +81,7 @@ pub struct Calibration {
     pub ends: (usize, f64),
 }
 
-/// Number of trials of a calibration, for a bar of progress.
+/// Number of trials of a calibration, at least, for a bar of progress.
 pub fn planned(scene: &Scene) -> usize {
     let Some(table) = &scene.calibrate else { return 0 };
     (table.parts() + 1) * search::trials(table.vary.len())
@@ -102,12 +102,13 @@ pub fn calibrate(
     let mut search = ParameterSearch::new(scenes, vary, ensemble, (releases, parts.max(1)))?;
     let before: Vec<f64> = vary.iter().map(|vary| vary.before).collect();
     let before = search.trial(&before, Ends::All)?;
+    // first, so that the interval is that of the grids of this fit
+    let (whole, trials) = search.best(Ends::All, tried)?;
+    let (told, measures, ends) = search.worth(&whole.values, scenes[0].seed)?;
     let mut held_out = Vec::new();
     for part in 0..parts {
         held_out.push(search.best(Ends::Without(part), tried)?.0);
     }
-    let (whole, trials) = search.best(Ends::All, tried)?;
-    let (told, measures, ends) = search.worth(&whole.values, scenes[0].seed)?;
     Ok(Calibration {
         names: vary.iter().map(VaryTable::name).collect(),
         releases,
@@ -240,7 +241,7 @@ fn soil_value(ground: &mut GroundTable, key: VaryKey) -> Option<&mut f64> {
 
 impl fmt::Display for Calibration {
     fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(to, "{} trials of {} releases for each fit", self.trials, self.releases)?;
+        writeln!(to, "{} trials of {} releases for the fit on all", self.trials, self.releases)?;
         self.shapes.iter().try_for_each(|shape| writeln!(to, "shape: {shape}"))?;
         self.write_trial(to, "before", &self.before)?;
         for (part, trial) in self.held_out.iter().enumerate() {

@@ -1,4 +1,7 @@
-//! The search: grids that narrow round the best values, even points where there are many values.
+//! The search: grids that narrow to what the measured ends leave open, even points where there are many values.
+//!
+//! A grid that ends on a spacing wider than that tells the grid's interval and not that of the ends. So the ends are drawn
+//! again after every grid, and the next one spans the values that fit them best, until it has several steps there.
 
 use super::site::{CalibrationSite, Computed};
 use super::{CalibrationTrial, Ends};
@@ -7,21 +10,35 @@ use crate::error::{Error, Result};
 use crate::hazard::Agreement;
 use crate::scene::{Scene, VaryTable};
 
-/// Values tried of each quantity in the first grid, and in each refinement: of one or two quantities, and of three.
-const GRID: [[usize; 3]; 2] = [[6, 5, 5], [5, 4, 4]];
+/// Values tried of each quantity in the first grid, and in each refinement: of one, two and three quantities.
+const GRID: [[usize; 2]; 3] = [[6, 9], [6, 5], [5, 4]];
 /// Most quantities that a grid can be afforded for.
-const MOST_IN_A_GRID: usize = 3;
+const MOST_IN_A_GRID: usize = GRID.len();
+/// Grids of a search: at least, and at most.
+const GRIDS: [usize; 2] = [3, 7];
+/// Steps of the last grid in the interval of a value. The step adds to the variance what a rounding does, a twelfth of its
+/// square: with four of them to an interval of four standard deviations 4 % of the deviation.
+const STEPS_INSIDE: f64 = 4.0;
+/// A step that is fine enough, whatever the ends say: share of the range (–).
+const FINEST: f64 = 0.002;
+/// How often the ends are drawn again to place the next grid: its ends need no more than that.
+const REDRAWS: usize = 50;
 /// Of more quantities: even points in each stage, and the share of the range that they lie in.
 const POINTS: [(usize, f64); 3] = [(200, 1.0), (80, 0.35), (80, 0.12)];
 /// Bases of the even points (Halton's sequence).
 const BASES: [usize; 6] = [2, 3, 5, 7, 11, 13];
 
-/// Trials of one search for so many values.
+/// Trials of one search for so many values, at least.
 pub(super) fn trials(values: usize) -> usize {
     if values > MOST_IN_A_GRID {
         return POINTS.iter().map(|(points, _)| points).sum();
     }
-    GRID[usize::from(values > 2)].iter().map(|steps| steps.pow(values as u32)).sum()
+    (0..GRIDS[0]).map(|stage| steps(values, stage).pow(values as u32)).sum()
+}
+
+/// Values of each quantity in a grid of so many quantities.
+fn steps(values: usize, stage: usize) -> usize {
+    GRID[values - 1][stage.min(1)]
 }
 
 /// The search over one set of ends after the other.
@@ -31,6 +48,8 @@ pub(super) struct ParameterSearch<'a> {
     ensemble: &'a Ensemble,
     /// Ends of the values tried so far, site by site: all searches begin with the same points.
     pub(super) known: Vec<(Vec<f64>, Vec<Computed>)>,
+    /// Step of the last grid, value by value.
+    pub(super) step: Vec<f64>,
 }
 
 impl<'a> ParameterSearch<'a> {
@@ -44,7 +63,13 @@ impl<'a> ParameterSearch<'a> {
         let asked = (releases, parts);
         let sites = scenes.iter();
         let sites = sites.map(|scene| CalibrationSite::of(scene, asked, score.unwrap_or_default()));
-        Ok(Self { sites: sites.collect::<Result<_>>()?, vary, ensemble, known: Vec::new() })
+        Ok(Self {
+            sites: sites.collect::<Result<_>>()?,
+            vary,
+            ensemble,
+            known: Vec::new(),
+            step: Vec::new(),
+        })
     }
 
     /// The values that bring the computed ends nearest the measured ones.
@@ -54,14 +79,10 @@ impl<'a> ParameterSearch<'a> {
         tried: &mut dyn FnMut(Ends, &CalibrationTrial),
     ) -> Result<(CalibrationTrial, usize)> {
         let mut ranges: Vec<[f64; 2]> = self.vary.iter().map(|vary| [vary.from, vary.to]).collect();
-        let in_grid = ranges.len() <= MOST_IN_A_GRID;
         let mut best: Option<CalibrationTrial> = None;
-        let mut count = 0;
-        for stage in 0..3 {
-            let steps = GRID[usize::from(ranges.len() > 2)][stage];
-            let points =
-                if in_grid { grid(&ranges, steps) } else { even(&ranges, POINTS[stage].0) };
-            for values in points {
+        let (mut count, mut stage) = (0, 0);
+        loop {
+            for values in self.points(&ranges, stage) {
                 let trial = self.trial(&values, ends)?;
                 tried(ends, &trial);
                 count += 1;
@@ -69,15 +90,47 @@ impl<'a> ParameterSearch<'a> {
                     best = Some(trial);
                 }
             }
-            if let (Some(best), true) = (&best, stage < 2) {
-                ranges = if in_grid {
-                    nearer(&ranges, &best.values, steps, self.vary)
-                } else {
-                    around(&best.values, POINTS[stage + 1].1, self.vary)
-                };
+            self.step = step(&ranges, stage);
+            let best = best.as_ref().ok_or_else(|| self.nothing())?;
+            stage += 1;
+            match self.next(&ranges, &best.values, (stage, ends)) {
+                Some(next) => ranges = next,
+                None => return Ok((best.clone(), count)),
             }
         }
-        best.map(|best| (best, count)).ok_or_else(|| self.nothing())
+    }
+
+    fn points(&self, ranges: &[[f64; 2]], stage: usize) -> Vec<Vec<f64>> {
+        let values = ranges.len();
+        if values > MOST_IN_A_GRID {
+            return even(ranges, POINTS[stage].0);
+        }
+        grid(ranges, steps(values, stage))
+    }
+
+    /// The ranges of the next stage; none after the last one.
+    fn next(
+        &self,
+        ranges: &[[f64; 2]],
+        best: &[f64],
+        (stage, ends): (usize, Ends),
+    ) -> Option<Vec<[f64; 2]>> {
+        if ranges.len() > MOST_IN_A_GRID {
+            let (_, share) = POINTS.get(stage)?;
+            return Some(around(best, *share, self.vary));
+        }
+        if stage == 1 {
+            return Some(widened(best.iter().map(|best| [*best; 2]), &self.step, self.vary));
+        }
+        let open = self.left_open(ends, REDRAWS);
+        let mut axes = ranges.iter().zip(&open).zip(&self.step).zip(self.vary);
+        let is_resolved = axes.all(|(((range, open), step), vary)| {
+            let is_inside = range[0] <= open[0] && open[1] <= range[1];
+            let is_fine = STEPS_INSIDE * step <= open[1] - open[0];
+            is_inside && (is_fine || *step <= FINEST * (vary.to - vary.from))
+        });
+        let is_last = stage >= GRIDS[1] || (stage >= GRIDS[0] && is_resolved);
+        (!is_last).then(|| widened(open.into_iter(), &self.step, self.vary))
     }
 
     /// Shapes of the rocks of all scenes, each once.
@@ -147,13 +200,27 @@ fn grid(ranges: &[[f64; 2]], steps: usize) -> Vec<Vec<f64>> {
     })
 }
 
-/// Ranges of one step of the grid to both sides of the best values, inside what the scene allows.
-fn nearer(ranges: &[[f64; 2]], best: &[f64], steps: usize, allowed: &[VaryTable]) -> Vec<[f64; 2]> {
-    let range = |((range, best), allowed): ((&[f64; 2], &f64), &VaryTable)| {
-        let step = (range[1] - range[0]) / (steps - 1) as f64;
-        [(best - step).max(allowed.from), (best + step).min(allowed.to)]
+/// Step of the points of a stage, value by value; of even points that of as many on a grid.
+fn step(ranges: &[[f64; 2]], stage: usize) -> Vec<f64> {
+    let values = ranges.len();
+    let gaps = if values > MOST_IN_A_GRID {
+        (POINTS[stage].0 as f64).powf(1.0 / values as f64) - 1.0
+    } else {
+        steps(values, stage) as f64 - 1.0
     };
-    ranges.iter().zip(best).zip(allowed).map(range).collect()
+    ranges.iter().map(|[from, to]| (to - from) / gaps).collect()
+}
+
+/// Ranges with a step to both sides, inside what the scene allows.
+fn widened(
+    ranges: impl Iterator<Item = [f64; 2]>,
+    steps: &[f64],
+    allowed: &[VaryTable],
+) -> Vec<[f64; 2]> {
+    let range = |(([low, high], step), allowed): (([f64; 2], &f64), &VaryTable)| {
+        [(low - step).max(allowed.from), (high + step).min(allowed.to)]
+    };
+    ranges.zip(steps).zip(allowed).map(range).collect()
 }
 
 /// Points spread evenly over the ranges (Halton 1960): any number of them, in any number of dimensions up to six.
@@ -202,7 +269,8 @@ mod tests {
             before: from,
         };
         let allowed = [vary(0.0, 1.0), vary(10.0, 20.0)];
-        let next = nearer(&[[0.0, 1.0], [10.0, 20.0]], &[0.0, 15.0], 3, &allowed);
+        let best = [[0.0; 2], [15.0; 2]].into_iter();
+        let next = widened(best, &[0.5, 5.0], &allowed);
         assert_eq!(next, [[0.0, 0.5], [10.0, 20.0]]);
     }
 

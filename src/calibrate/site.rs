@@ -103,6 +103,10 @@ impl CalibrationSite {
         self.scene.title.clone()
     }
 
+    pub(super) fn seed(&self) -> u64 {
+        self.scene.seed
+    }
+
     pub(super) fn file(&self) -> &Path {
         &self.scene.file
     }
@@ -164,14 +168,19 @@ impl CalibrationSite {
 
     /// Compares some of the ends; none where there is none of them.
     pub(super) fn compare(&self, computed: &Computed, of: Ends) -> Option<Agreement> {
+        let rows = self.rows(of);
+        let found = Agreement::of_weighted(&self.ends(&rows), &self.weighted(computed, &rows))?;
+        Some(Agreement { ends_m: self.ends_m(computed, &rows), ..found })
+    }
+
+    /// Rows of some of the ends.
+    fn rows(&self, of: Ends) -> Vec<usize> {
         let wanted = |row: &usize| match of {
             Ends::Without(part) => self.part[*row] != part,
             Ends::Only(part) => self.part[*row] == part,
             Ends::All => true,
         };
-        let rows: Vec<usize> = (0..self.measured.len()).filter(wanted).collect();
-        let found = Agreement::of_weighted(&self.ends(&rows), &self.weighted(computed, &rows))?;
-        Some(Agreement { ends_m: self.ends_m(computed, &rows), ..found })
+        (0..self.measured.len()).filter(wanted).collect()
     }
 
     /// Measured ends of some rows.
@@ -241,11 +250,15 @@ impl CalibrationSite {
         effective(&runouts, &self.blocks)
     }
 
-    /// As many measured ends as they are worth, drawn from them with replacement: their rows.
-    pub(super) fn redraw(&self, random: &mut RandomStream) -> Vec<usize> {
-        let count = (self.effective().round() as usize).max(2);
-        let rows = self.measured.len();
-        (0..count).map(|_| ((unit(random) * rows as f64) as usize).min(rows - 1)).collect()
+    /// As many of these measured ends as they are worth, drawn from them with replacement: their rows.
+    pub(super) fn redraw(&self, of: Ends, random: &mut RandomStream) -> Vec<usize> {
+        let rows = self.rows(of);
+        let share = rows.len() as f64 / self.measured.len() as f64;
+        let count = ((share * self.effective()).round() as usize).max(2);
+        let one = |random: &mut _| {
+            rows[((unit(random) * rows.len() as f64) as usize).min(rows.len() - 1)]
+        };
+        (0..count).map(|_| one(random)).collect()
     }
 }
 

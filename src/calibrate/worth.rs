@@ -1,10 +1,13 @@
 //! What a fit is worth: how far the measured ends tell the values, and how far computed ends lie from them.
 
+use super::Ends;
 use super::search::ParameterSearch;
 use super::site::{CalibrationSite, Computed};
 use crate::error::Result;
 use crate::hazard::EndSpread;
+use crate::math;
 use crate::random::{Purpose, stream, unit};
+use crate::scene::VaryTable;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -12,6 +15,11 @@ use std::fmt;
 const REDRAWS: usize = 200;
 /// Share of a value's range above which its interval tells nothing (–).
 const UNTOLD: f64 = 0.6;
+
+/// How far the ranks of measured ends are from even ones.
+const UNEVEN: &str = "largest distance of these ranks from even ones (–)";
+/// That distance times √n, which even ranks exceed in 5 % of all samples (Kolmogorov 1933).
+const KOLMOGOROV: f64 = 1.36;
 
 /// Most blocks that are told one by one.
 const MOST_BLOCKS: usize = 12;
@@ -23,7 +31,7 @@ pub struct Told {
     pub name: String,
     /// The value that fits all ends best.
     pub value: f64,
-    /// Lower end of the 95 % interval: of the values tried, those that fit ends drawn again best.
+    /// Lower end of the 95 % interval: where the values lie that fit ends drawn again best.
     pub low_95: f64,
     /// Its upper end.
     pub high_95: f64,
@@ -42,10 +50,11 @@ pub struct SiteMeasure {
     pub measured: f64,
     /// Of the computed ends.
     pub computed: f64,
-    /// 95 % interval of computed less measured, from measured ends drawn again: lower end.
-    pub low_95: f64,
+    /// 95 % interval of computed less measured, from measured ends drawn again: lower end. None of what cannot be below 0:
+    /// its words say what chance alone comes to.
+    pub low_95: Option<f64>,
     /// Its upper end.
-    pub high_95: f64,
+    pub high_95: Option<f64>,
 }
 
 /// Values, figures, and the number of ends with what they are worth.
@@ -60,15 +69,29 @@ impl ParameterSearch<'_> {
             ends += site.measured().len();
             worth += site.effective();
         }
-        Ok((self.told(values, seed), self.measures(place, seed), (ends, worth)))
+        Ok((self.told(values), self.measures(place, seed), (ends, worth)))
     }
 
-    /// The values that fit best when the measured ends are drawn again.
-    fn told(&self, values: &[f64], seed: u64) -> Vec<Told> {
+    /// How far the measured ends tell each value. A value tried stands for half a step to either side.
+    fn told(&self, values: &[f64]) -> Vec<Told> {
+        let open = self.left_open(Ends::All, REDRAWS);
+        let one = |(at, vary): (usize, &VaryTable)| {
+            let half = 0.5 * self.step[at];
+            let low_95 = (open[at][0] - half).max(vary.from);
+            let high_95 = (open[at][1] + half).min(vary.to);
+            let is_told = high_95 - low_95 < UNTOLD * (vary.to - vary.from);
+            Told { name: vary.name(), value: values[at], low_95, high_95, is_told }
+        };
+        self.vary.iter().enumerate().map(one).collect()
+    }
+
+    /// Where the middle 95 % of the values lie that fit best, of those tried, when the measured ends are drawn again.
+    pub(super) fn left_open(&self, ends: Ends, redraws: usize) -> Vec<[f64; 2]> {
+        let seed = self.sites[0].seed();
         let best = |redraw: usize| {
             let mut random = stream(seed, Purpose::Redraw, redraw);
             let drawn: Vec<Vec<usize>> =
-                self.sites.iter().map(|site| site.redraw(&mut random)).collect();
+                self.sites.iter().map(|site| site.redraw(ends, &mut random)).collect();
             let distance = |computed: &[Computed]| -> f64 {
                 let each = self.sites.iter().zip(&drawn).zip(computed);
                 each.map(|((site, rows), computed)| site.distance(computed, rows)).sum()
@@ -81,20 +104,15 @@ impl ParameterSearch<'_> {
                 self.known.iter().zip(distances).filter(move |(_, distance)| *distance <= least);
             ties.map(|((values, _), _)| values.clone()).collect::<Vec<_>>()
         };
-        let best: Vec<Vec<Vec<f64>>> = (0..REDRAWS).map(best).collect();
-        let ends = |at: usize| {
-            let extremes = |ties: &Vec<Vec<f64>>| {
+        let best: Vec<Vec<Vec<f64>>> = (0..redraws).map(best).collect();
+        let extremes = |at: usize| {
+            let of = move |ties: &Vec<Vec<f64>>| {
                 let values = || ties.iter().map(|values| values[at]);
                 [values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max)]
             };
-            best.iter().flat_map(extremes).collect()
+            best.iter().flat_map(of).collect()
         };
-        let one = |(at, vary): (usize, &crate::scene::VaryTable)| {
-            let [low_95, high_95] = middle_95(ends(at));
-            let is_told = high_95 - low_95 < UNTOLD * (vary.to - vary.from);
-            Told { name: vary.name(), value: values[at], low_95, high_95, is_told }
-        };
-        self.vary.iter().enumerate().map(one).collect()
+        (0..self.vary.len()).map(|at| middle_95(extremes(at))).collect()
     }
 
     fn measures(&self, place: usize, seed: u64) -> Vec<SiteMeasure> {
@@ -102,17 +120,21 @@ impl ParameterSearch<'_> {
         let of_site = |(site, computed): (&CalibrationSite, &Computed)| {
             let all: Vec<usize> = (0..site.measured().len()).collect();
             let found = site.figures(computed, &all);
-            let again: Vec<_> = (0..REDRAWS)
-                .map(|redraw| {
-                    let mut random = stream(seed, Purpose::Redraw, redraw);
-                    site.figures(computed, &site.redraw(&mut random))
-                })
-                .collect();
-            let one = |(at, (what, measured, computed)): (usize, (&'static str, f64, f64))| {
+            let drawn =
+                |redraw: usize| site.redraw(Ends::All, &mut stream(seed, Purpose::Redraw, redraw));
+            let drawn: Vec<Vec<usize>> = (0..REDRAWS).map(drawn).collect();
+            let again: Vec<_> = drawn.iter().map(|rows| site.figures(computed, rows)).collect();
+            let one = |(at, (what, measured, own)): (usize, (&'static str, f64, f64))| {
+                let scene = site.title();
+                if let Some(most) = site.by_chance(what, computed, &drawn) {
+                    let what = what.replace(" (", &format!(", by chance up to {most:.2} ("));
+                    let (low_95, high_95) = (None, None);
+                    return SiteMeasure { scene, what, measured, computed: own, low_95, high_95 };
+                }
                 let differences = again.iter().map(|figures| figures[at].2 - figures[at].1);
-                let [low_95, high_95] = middle_95(differences.collect());
-                let (scene, what) = (site.title(), what.to_owned());
-                SiteMeasure { scene, what, measured, computed, low_95, high_95 }
+                let [low_95, high_95] = middle_95(differences.collect()).map(Some);
+                let what = what.to_owned();
+                SiteMeasure { scene, what, measured, computed: own, low_95, high_95 }
             };
             let of_all = found.into_iter().enumerate().map(one);
             of_all.chain(site.measures_of_blocks(computed, seed)).collect::<Vec<_>>()
@@ -122,12 +144,35 @@ impl ParameterSearch<'_> {
 }
 
 impl CalibrationSite {
+    /// What a figure that cannot be below 0 comes to by chance, in 95 % of all samples of ends that are alike; none of other
+    /// figures. `drawn` are rows of measured ends drawn again.
+    fn by_chance(&self, what: &str, computed: &Computed, drawn: &[Vec<usize>]) -> Option<f64> {
+        let n = self.effective();
+        match what {
+            EndSpread::OFFSET => {
+                let off = |rows: &[usize]| {
+                    EndSpread::offset_m(&self.ends(rows), &self.weighted(computed, rows))
+                };
+                let all: Vec<usize> = (0..self.measured().len()).collect();
+                let own = off(&all);
+                let moved = |[x, y]: [f64; 2]| math::hypot(x - own[0], y - own[1]);
+                let mut by: Vec<f64> = drawn.iter().map(|rows| moved(off(rows))).collect();
+                by.sort_by(f64::total_cmp);
+                by.get((0.95 * by.len() as f64) as usize).copied()
+            }
+            // all n measured ends lie below a quantile q of the computed ones with probability qⁿ
+            EndSpread::BEYOND => Some(1.0 - 0.05_f64.powf(1.0 / n)),
+            UNEVEN => Some((KOLMOGOROV / n.sqrt()).min(1.0)),
+            _ => None,
+        }
+    }
+
     /// Figures of some measured ends and of what was computed beside them: what, measured, computed.
     fn figures(&self, computed: &Computed, rows: &[usize]) -> Vec<(&'static str, f64, f64)> {
         let mut figures = EndSpread::figures(&self.ends(rows), &self.weighted(computed, rows));
         if let Some([mean, off]) = self.ranks(computed, rows) {
             figures.push(("mean rank among computed ends of the same place (–)", mean, 0.5));
-            figures.push(("largest distance of these ranks from even ones (–)", off, 0.0));
+            figures.push((UNEVEN, off, 0.0));
         }
         figures
     }
@@ -159,7 +204,8 @@ impl CalibrationSite {
         let measure = |what: String, of: &dyn Fn(&[[f64; 2]]) -> [f64; 2]| {
             let off =
                 again.iter().map(|means| of(means)).map(|[measured, computed]| computed - measured);
-            let ([low_95, high_95], [measured, computed]) = (middle_95(off.collect()), of(&found));
+            let [low_95, high_95] = middle_95(off.collect()).map(Some);
+            let [measured, computed] = of(&found);
             SiteMeasure { scene: self.title(), what, measured, computed, low_95, high_95 }
         };
         let first = blocks[0].0;
@@ -198,9 +244,17 @@ impl fmt::Display for Told {
 impl fmt::Display for SiteMeasure {
     fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { scene, what, measured, computed, low_95, high_95 } = self;
-        write!(
-            to,
-            "{scene}: {what} measured {measured:.2}, computed {computed:.2} (difference, 95 %: {low_95:.2} to {high_95:.2})"
-        )
+        let [measured, computed] = [measured, computed].map(|value| plain(*value));
+        write!(to, "{scene}: {what} measured {measured}, computed {computed}")?;
+        if let (Some(low), Some(high)) = (low_95, high_95) {
+            write!(to, " (difference, 95 %: {} to {})", plain(*low), plain(*high))?;
+        }
+        Ok(())
     }
+}
+
+/// A number with two decimals, without a sign before nothing.
+fn plain(value: f64) -> String {
+    let said = format!("{value:.2}");
+    if said == "-0.00" { "0.00".to_owned() } else { said }
 }

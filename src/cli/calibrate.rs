@@ -34,7 +34,13 @@ pub(super) fn calibrate(args: &CalibrateArgs) -> Result<ExitCode> {
     let name = args.scenes[0].file_stem().unwrap_or_default();
     let out = args.out.clone().unwrap_or_else(|| Path::new("reports").join(name));
     let bar = bar(crate::calibrate::planned(&scenes[0]), "trials");
-    let said = fit(&scenes, (args.releases, args.threads), &out, || bar.inc(1))?;
+    let said = fit(&scenes, (args.releases, args.threads), &out, || {
+        // a search goes on until its steps are finer than what the ends leave open
+        if bar.length() == Some(bar.position()) {
+            bar.inc_length(1);
+        }
+        bar.inc(1);
+    })?;
     bar.finish_and_clear();
     Ok(say(said))
 }

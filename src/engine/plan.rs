@@ -217,6 +217,8 @@ impl Plan {
         stiffness::flutter(&step, &mut warnings);
         let year = annual::year(scene, &terrain, &mut warnings)?;
         let objects = annual::objects(scene, &mut warnings);
+        let lines = evaluation_lines(scene, &terrain)?;
+        annual::over_release((&releases, &terrain), lines.as_deref(), &mut warnings);
         let longest_s = scene.solver.longest_s.unwrap_or(LONGEST_S);
         stiffness::too_short(&step, longest_s, &mut warnings);
         let values = || scene.grounds.values();
@@ -273,7 +275,7 @@ impl Plan {
                 scene.record.impacts.unwrap_or(false).then_some(()),
                 "not asked for, [record] impacts = true keeps them",
             ),
-            lines: Part::when(evaluation_lines(scene, &terrain)?, "the scene has none"),
+            lines: Part::when(lines, "the scene has none"),
             barriers: Part::when(
                 Some(scene.barriers.clone()).filter(|all| !all.is_empty()),
                 "the scene has none",

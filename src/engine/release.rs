@@ -5,6 +5,8 @@ mod shapes;
 mod sources;
 mod tried;
 
+pub(crate) use tried::TRIED;
+
 use crate::error::{Error, Result};
 use crate::frequency::Frequency;
 use crate::ground::Ground;

@@ -97,7 +97,9 @@ pub fn gather(results: &Results, ground: Option<GroundRaster>) -> Result<Report>
         |check: &Check| fill(words.check_failed, &[("name", &check.name), ("found", &check.found)]);
     let failed = report.checks.iter().filter(|check| !check.passes);
     let failed: Vec<String> = failed.map(said).collect();
-    report.text.warnings = [warnings_first(hazard, words), report.text.warnings, failed].concat();
+    let off = report.observed.as_ref().and_then(|found| measured::off(found, words));
+    let first = off.into_iter().chain(warnings_first(hazard, words)).collect();
+    report.text.warnings = [first, report.text.warnings, failed].concat();
     Ok(report)
 }
 

@@ -32,6 +32,7 @@ mod compare;
 mod data_in;
 mod edges;
 mod first_steps;
+mod fitted;
 mod full_disk;
 mod kill;
 mod language;

@@ -262,3 +262,20 @@ fn the_plan_says_what_the_year_needs() {
     let said = String::from_utf8(rockfall(&["plan", "examples/quick.toml"]).stdout).unwrap();
     assert!(said.contains("frequency          left out: the scene has no [frequency]"), "{said}");
 }
+
+/// A house under the release is hit before a rock has moved; the plan says so, and of one below the slope nothing.
+#[test]
+fn an_object_over_the_release_is_told() {
+    let dir = crate::site::Folder::new();
+    dir.slope();
+    let house = |south: f64| {
+        let [low, high] = [south, south + 6.0].map(|y| 1_200_000.0 + y);
+        let corners = [[5.5, low], [55.5, low], [55.5, high], [5.5, high]];
+        let corners = corners.map(|[x, y]| format!("[{}, {y}]", 2_600_000.0 + x)).join(", ");
+        format!("[[objects]]\nname = \"house\"\npolygon_m = [{corners}]\n")
+    };
+    let told = "1000 of 1000 releases tried out lie over the object “house” before they move";
+    let plan = |south: f64| dir.plan(&crate::site::scene("file = \"dem.tif\"", &house(south)));
+    let [over, below] = [plan(87.25), plan(40.25)];
+    assert!(over.contains(told) && !below.contains("before they move"), "{over}\n{below}");
+}

@@ -221,3 +221,32 @@ fn terrain_is_cut_around_sources() {
     };
     assert_eq!(triangles(&source), triangles(&format!("{alone}[frequency]\n{law}")));
 }
+
+/// A point beside an area: without weights their sizes have no common measure, with a frequency each none is needed.
+#[test]
+fn zones_of_mixed_geometry_are_sources_without_weights() {
+    let dir = Folder::new();
+    let text = over_zones(&dir, ["\"weight\":1", "\"weight\":1"], "");
+    let mixed = |one: &str, two: &str| {
+        let feature = |geometry: &str, properties: &str| {
+            format!(
+                "{{\"type\":\"Feature\",\"properties\":{{{properties}}},\"geometry\":{{{geometry}}}}}"
+            )
+        };
+        let point = "\"type\":\"Point\",\"coordinates\":[2600014.5,1200083.25]";
+        let line = "\"type\":\"LineString\",\"coordinates\":[[2600040.5,1200080.25],[2600050.5,1200080.25]]";
+        let features = [feature(point, one), feature(line, two)].join(",");
+        dir.put(
+            "zones.geojson",
+            format!("{{\"type\":\"FeatureCollection\",\"features\":[{features}]}}"),
+        );
+    };
+    mixed("\"frequency_per_year\":0.3", "\"frequency_per_year\":0.1");
+    let file = dir.put("scene.toml", &text);
+    let read = Scene::read(&file).unwrap();
+    let zones = read.release.zone_list.as_ref().unwrap();
+    assert!((zones.share(0) - 0.75).abs() < 1e-12, "as often as they release rocks");
+    assert!(!dir.plan(&text).contains("are not used"));
+    mixed("\"frequency_per_year\":0.3", "");
+    assert!(dir.refusal(&text).contains("or frequency_per_year"));
+}

@@ -105,14 +105,27 @@ pub(super) fn title_block(report: &ReportTable) -> Vec<(String, String)> {
         .collect()
 }
 
-/// Where ground values come from: what the scene says, else what can be told from it.
+/// Where ground values come from: what the scene says, else what can be told from it. Measured ends beside a scene do not
+/// make its values calibrated; only a fit does.
 pub(super) fn ground_source(scene: &Scene, catalogued: &[String]) -> String {
-    match (&scene.report.ground_source, catalogued, &scene.calibrate) {
-        (Some(source), ..) => source.clone(),
-        (None, [], Some(table)) if !table.vary.is_empty() => {
-            "calibrated on measured ends ([calibrate] of the scene)".to_owned()
-        }
-        (None, [], _) => "written in the scene; [report] ground_source names no source".to_owned(),
-        (None, list, _) => list.join(". "),
+    if let Some(source) = &scene.report.ground_source {
+        return source.clone();
+    }
+    let fit = match &scene.calibrate {
+        Some(_) if scene.is_fitted() => Some(FITTED),
+        Some(_) => Some(NOT_FITTED),
+        None => None,
+    };
+    match (catalogued, fit) {
+        ([], Some(fit)) => fit.to_owned(),
+        ([], None) => "written in the scene; [report] ground_source names no source".to_owned(),
+        (list, Some(fit)) => format!("{}. {fit}", list.join(". ")),
+        (list, None) => list.join(". "),
     }
 }
+
+/// Of the scene that a calibration has written.
+const FITTED: &str = "calibrated on measured ends ([calibrate] fitted of the scene)";
+/// Of a scene with measured ends beside values that were not fitted to them, or not to these.
+const NOT_FITTED: &str =
+    "written in the scene; measured ends ([calibrate]) stand beside it and are not fitted";

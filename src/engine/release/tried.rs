@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 use crate::terrain::Terrain;
 
 /// Releases tried out.
-const TRIED: usize = 1000;
+pub(crate) const TRIED: usize = 1000;
 /// Releases of a source that must be tried before it is refused: large rocks may find no room where smaller ones do.
 const FEWEST_OF_SOURCE: usize = 20;
 

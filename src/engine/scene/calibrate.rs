@@ -1,9 +1,10 @@
 //! `[calibrate]`: measured ends, and which ground values may be fitted to them.
 
-use super::Scene;
 use super::check::{Allowed, Checked, Complaint, number, optional, suggest};
 use super::grounds::{STRENGTH, TANGENTIAL};
 use super::shapes::CORNER_RADIUS;
+use super::{GroundTable, Scene};
+use crate::random::Distribution;
 use serde::Deserialize;
 use std::path::PathBuf;
 
@@ -23,6 +24,21 @@ pub struct CalibrateTable {
     /// The values that `rockfall calibrate` searches; may be none.
     #[serde(default)]
     pub vary: Vec<VaryTable>,
+    /// What `rockfall calibrate` has fitted, as it notes it in the fitted scene; empty elsewhere.
+    #[serde(default)]
+    pub fitted: Vec<FittedValue>,
+}
+
+/// One fitted value.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table { ground, key, value }")]
+pub struct FittedValue {
+    /// Name under `[grounds]`; none for a value of the shapes.
+    pub ground: Option<String>,
+    /// Which of its values.
+    pub key: VaryKey,
+    /// What the fit has made of it.
+    pub value: Distribution,
 }
 
 /// What the computed ends are brought near to the measured ones in.
@@ -157,6 +173,26 @@ impl Scene {
         })
     }
 
+    /// Whether the values that were fitted to measured ends are those in force: a note in the file does not make a value
+    /// fitted that was changed after it.
+    pub fn is_fitted(&self) -> bool {
+        let fitted = self.calibrate.as_ref().map_or(&[][..], |table| &table.fitted);
+        let is_in_force = |one: &FittedValue| {
+            let found = match &one.ground {
+                Some(name) => self.grounds.get(name).and_then(|ground| ground.value_of(one.key)),
+                None => self.corner_radius(),
+            };
+            found.as_ref() == Some(&one.value)
+        };
+        !fitted.is_empty() && fitted.iter().all(is_in_force)
+    }
+
+    /// Radius of the corners of the first shape that has some; a fit gives the same one to all.
+    pub fn corner_radius(&self) -> Option<Distribution> {
+        let radius = self.rocks.shapes.iter().find_map(|shape| shape.corner_radius)?;
+        Distribution::fixed(radius).ok()
+    }
+
     /// The table, and whether its values can be varied here.
     pub(super) fn check_calibrate(&self) -> Checked {
         let Some(table) = &self.calibrate else { return Ok(()) };
@@ -168,6 +204,31 @@ impl Scene {
             return Err(about.in_entry(index).inside("vary"));
         }
         Ok(())
+    }
+}
+
+impl GroundTable {
+    /// What a fit may have set; none where the ground leaves it out, or lacks the soil.
+    pub fn value_of(&self, key: VaryKey) -> Option<Distribution> {
+        let (slip, scar) = (self.slip_friction.as_ref(), self.scar.as_ref());
+        let of_soil = match key {
+            VaryKey::FrictionAngleDeg => return Some(self.friction_angle_deg.clone()),
+            VaryKey::Restitution => return self.restitution.clone(),
+            VaryKey::RestitutionHalfSpeedMS => return self.restitution_half_speed_m_s.clone(),
+            VaryKey::TangentialRatio => return self.tangential_ratio.clone(),
+            VaryKey::RollingFriction | VaryKey::RollingFrictionSpread => {
+                return self.rolling_friction.clone();
+            }
+            VaryKey::RoughnessDeg => return self.roughness_deg.clone(),
+            VaryKey::RoughnessLengthM => return self.roughness_length_m.clone(),
+            VaryKey::SlipFrictionMax => slip.map(|slip| slip.most),
+            VaryKey::SlipFrictionKappaPerM => slip.map(|slip| slip.kappa_per_m),
+            VaryKey::SlipFrictionBetaPerS => slip.map(|slip| slip.beta_per_s),
+            VaryKey::ScarStrengthKnM2 => scar.map(|scar| scar.strength_kn_m2),
+            VaryKey::ScarDrag => scar.map(|scar| scar.drag),
+            VaryKey::CornerRadius => None,
+        };
+        Distribution::fixed(of_soil?).ok()
     }
 }
 

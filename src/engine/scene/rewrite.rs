@@ -17,7 +17,7 @@ pub(super) type NewValue = (Option<String>, &'static str, String);
 /// Bytes of a text, and what stands there instead.
 type Replacement = (Range<usize>, String);
 
-/// The text of a scene file with other values. Paths are written in full, so that the text may stand in another folder.
+/// The text of a scene file with other values, which `[calibrate]` notes as fitted. Paths are written in full, so that the text may stand in another folder.
 ///
 /// # Errors
 /// A file that cannot be read, or a ground that is not there.
@@ -36,12 +36,13 @@ pub fn rewritten(scene: &Path, values: &[NewValue]) -> Result<String> {
         };
         changes.push(change);
     }
+    changes.extend(note_of_fit(&lookup, &text, values));
     let folder = scene.parent().unwrap_or(Path::new(""));
     for range in lookup.paths() {
         let path: Option<String> =
             text[range.clone()].parse::<toml::Value>().ok().and_then(|path| {
                 let path = folder.join(path.as_str()?);
-                let full = path.canonicalize().unwrap_or(path);
+                let full = path.canonicalize().or_else(|_| std::path::absolute(&path)).ok()?;
                 Some(toml::Value::String(full.to_str()?.to_owned()).to_string())
             });
         changes.extend(path.map(|path| (range, path)));
@@ -79,6 +80,30 @@ fn of_ground(
             Some((header.end..header.end, format!("\n{key} = {value}")))
         }
     }
+}
+
+/// What was fitted, in the line before the measured ends: results of the scene may then be called calibrated as long as
+/// these values stand there. None without `[calibrate]`.
+fn note_of_fit(lookup: &Lookup, text: &str, values: &[NewValue]) -> Option<Replacement> {
+    let trail = |key: &str| ["calibrate", key].map(|key| TrailStep::Key(key.to_owned()));
+    let one = |(ground, key, value): &NewValue| {
+        let ground = ground.as_ref().map_or_else(String::new, |name| {
+            format!("ground = {}, ", toml::Value::String(name.clone()))
+        });
+        format!("{{ {ground}key = \"{key}\", value = {value} }}")
+    };
+    let list = values.iter().map(one).collect::<Vec<_>>().join(", ");
+    if let Some(before) = lookup.value_at(&trail("fitted")) {
+        return Some((before, format!("[{list}]")));
+    }
+    let key = lookup.key_at(&trail("deposits"))?;
+    let line = text[..key.start].rfind('\n').map_or(0, |end| end + 1);
+    // an inline table has all on one line, `calibrate.deposits` its table before the key
+    let indent = &text[line..key.start];
+    Some(match indent.contains('{') {
+        true => (key.start..key.start, format!("fitted = [{list}], ")),
+        false => (line..line, format!("{indent}fitted = [{list}]\n")),
+    })
 }
 
 /// A value of every shape that has it; spheres among them have none.

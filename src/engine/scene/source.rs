@@ -20,6 +20,21 @@ pub(super) struct Lookup<'a> {
 /// Tables that every scene must have.
 const TABLES: [&str; 3] = ["grounds", "rocks", "release"];
 
+/// Keys that name a file, whichever entry of a list they stand in: those that `settle_paths` knows.
+const FILES: [&str; 11] = [
+    "terrain.mesh",
+    "terrain.file",
+    "trees.mesh",
+    "trees.file",
+    "lines.file",
+    "barriers.file",
+    "ground_zones.file",
+    "release.zones",
+    "release.table",
+    "rocks.shapes.mesh",
+    "calibrate.deposits",
+];
+
 /// Tables of which a scene may have several.
 const LISTS: [&str; 6] = ["terrain", "trees", "lines", "barriers", "objects", "ground_zones"];
 
@@ -50,23 +65,19 @@ impl<'a> Lookup<'a> {
         self.node(trail).map(|node| node.value.clone())
     }
 
+    /// Where the key at the end of a trail stands.
+    pub(super) fn key_at(&self, trail: &[TrailStep]) -> Option<Range<usize>> {
+        self.node(trail).map(|node| node.key.clone())
+    }
+
     /// Where paths of files stand.
     pub(super) fn paths(&self) -> impl Iterator<Item = Range<usize>> {
-        self.values(|trail| match trail {
-            [TrailStep::Key(table), TrailStep::Entry(_), TrailStep::Key(key)] => {
-                ["terrain", "trees"].contains(&table.as_str()) && key == "mesh"
-            }
-            [
-                TrailStep::Key(rocks),
-                TrailStep::Key(_),
-                TrailStep::Entry(_),
-                TrailStep::Key(key),
-            ] => rocks == "rocks" && key == "mesh",
-            [TrailStep::Key(table), TrailStep::Key(key)] => {
-                [("calibrate", "deposits"), ("release", "table")]
-                    .contains(&(table.as_str(), key.as_str()))
-            }
-            _ => false,
+        self.values(|trail| {
+            let keys = trail.iter().filter_map(|step| match step {
+                TrailStep::Key(key) => Some(key.as_str()),
+                TrailStep::Entry(_) => None,
+            });
+            FILES.iter().any(|file| file.split('.').eq(keys.clone()))
         })
     }
 

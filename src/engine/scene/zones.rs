@@ -179,7 +179,7 @@ fn zone(feature: &GisFeature, file: &Path) -> Result<Zone> {
     Err(feature.wrong(file, "found no point", "draw a point, a line or a polygon"))
 }
 
-/// By what the releases are shared: weights, or the size of the zones.
+/// By what the releases are shared: weights, or the size of the zones, or their rates where sizes have no common measure.
 fn sizes(list: &[Zone], file: &Path) -> Result<Vec<f64>> {
     let weights: Vec<f64> = list.iter().filter_map(|zone| zone.weight).collect();
     if weights.len() == list.len() {
@@ -197,8 +197,15 @@ fn sizes(list: &[Zone], file: &Path) -> Result<Vec<f64>> {
         );
     }
     let kind = |zone: &Zone| std::mem::discriminant(&zone.place);
+    // what says how often it releases rocks has a measure in common with others that say the same
+    for often in [|zone: &Zone| zone.frequency_per_year, |zone: &Zone| zone.per_year_at_1m3] {
+        let rates: Vec<f64> = list.iter().filter_map(often).collect();
+        if rates.len() == list.len() && list.iter().any(|zone| kind(zone) != kind(&list[0])) {
+            return Ok(rates);
+        }
+    }
     if let Some(other) = list.iter().find(|zone| kind(zone) != kind(&list[0])) {
-        let remedy = "write the property weight for every zone: points, metres and square metres cannot be compared";
+        let remedy = "write the property weight for every zone, or frequency_per_year: points, metres and square metres cannot be compared";
         return refused(
             other,
             "found another kind of geometry than before, without weight",

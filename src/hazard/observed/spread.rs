@@ -13,6 +13,11 @@ pub struct EndSpread {
 }
 
 impl EndSpread {
+    /// Distance between the middles of measured and computed ends.
+    pub const OFFSET: &str = "offset of the centroid (m)";
+    /// How much of the computed lies farther than all that was measured.
+    pub const BEYOND: &str = "share past the farthest measured (–)";
+
     /// Figures of measured and computed ways: what, of the measured, of the computed.
     pub fn figures(
         measured: &[ObservedPath],
@@ -22,7 +27,8 @@ impl EndSpread {
         let measured: Vec<Weighted> = measured.iter().map(|way| (*way, 1.0)).collect();
         let [one, two] = [&measured, computed].map(|ways| Self::of(ways, along));
         let [near, far] = [&measured, computed].map(runouts);
-        let total = |runouts: &[(f64, f64)]| runouts.iter().map(|(_, weight)| weight).sum::<f64>();
+        let total =
+            |runouts: &[(f64, f64)]| runouts.iter().fold(0.0, |sum, (_, weight)| sum + weight);
         let mean = |runouts: &[(f64, f64)]| {
             runouts.iter().map(|(runout, weight)| runout * weight).sum::<f64>() / total(runouts)
         };
@@ -31,11 +37,18 @@ impl EndSpread {
         let beyond = &far[far.partition_point(|(runout, _)| *runout <= farthest_m)..];
         vec![
             ("mean runout (m)", mean(&near), mean(&far)),
-            ("offset of the centroid (m)", 0.0, offset_m),
+            (Self::OFFSET, 0.0, offset_m),
             ("standard deviation along (m)", one.sd_m[0], two.sd_m[0]),
             ("standard deviation across (m)", one.sd_m[1], two.sd_m[1]),
-            ("share past the farthest measured (–)", 0.0, total(beyond) / total(&far)),
+            (Self::BEYOND, 0.0, total(beyond) / total(&far)),
         ]
+    }
+
+    /// From the middle of measured ends to that of computed ones, on the map (m).
+    pub fn offset_m(measured: &[ObservedPath], computed: &[Weighted]) -> [f64; 2] {
+        let measured: Vec<Weighted> = measured.iter().map(|way| (*way, 1.0)).collect();
+        let [one, two] = [&measured, computed].map(|ways| Self::of(ways, [1.0, 0.0]).mean_m);
+        [two[0] - one[0], two[1] - one[1]]
     }
 
     /// Where weighted ends lie along and across a direction.

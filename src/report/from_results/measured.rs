@@ -49,6 +49,16 @@ pub(super) fn observed(results: &Results) -> Result<Option<Observed>> {
     Ok(agreement.map(|agreement| Observed { measured, computed, weights, agreement }))
 }
 
+/// What must be known before anything else where the computed ends are not those that were measured.
+pub(super) fn off(observed: &Observed, words: &Words) -> Option<String> {
+    let at = &observed.agreement;
+    let said = format!(
+        "the computed ends are not distributed like the measured ones: KS distance {:.3}, 5 % limit {:.3}. The ground values do not hold for this slope",
+        at.ks, at.ks_limit
+    );
+    (at.ks > at.ks_limit).then(|| words.say(&said))
+}
+
 /// How well this run and the calibration agree with what was measured.
 pub(super) fn tables(results: &Results, words: &Words) -> Result<Vec<EstimateTable>> {
     let mut tables = Vec::new();
@@ -130,11 +140,8 @@ fn told(found: &Calibration, words: &Words) -> EstimateTable {
 /// Where the ends of the fit lie and how they spread.
 fn spread(found: &Calibration, words: &Words) -> EstimateTable {
     let row = |measure: &SiteMeasure| {
-        let difference = estimate(
-            measure.computed - measure.measured,
-            Some(measure.low_95),
-            Some(measure.high_95),
-        );
+        let difference =
+            estimate(measure.computed - measure.measured, measure.low_95, measure.high_95);
         let plain = |value: f64| Some(estimate(value, None, None));
         let cells = vec![plain(measure.measured), plain(measure.computed), Some(difference)];
         (format!("{}: {}", measure.scene, measure.what), cells)

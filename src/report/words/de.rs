@@ -369,7 +369,7 @@ pub(super) static WORDS: Words = Words {
     returns_title: "Energie der Wiederkehrperioden: {name}",
     returns_note: "Im Mittel einmal in so vielen Jahren mit mindestens dieser Energie durchquert; keine Zahl, wo Blöcke seltener kommen. Das 95-%-Intervall ist das der Häufigkeit, entlang der Energie abgelesen; wo zu wenige Blöcke es begrenzen, ist es offen.",
     risk_title: "Risiko pro Jahr: {name}",
-    barrier_weighted: " Punkte sind Blöcke wie gerechnet, grosse häufiger als sie kommen; Anteile sind zurückgewichtet.",
+    barrier_weighted: " Punkte sind Blöcke wie gerechnet, große häufiger als sie kommen; Anteile sind zurückgewichtet.",
     barrier_year_title: "Wie oft im Jahr: Schutznetz {name}",
     barrier_year_note: "Anzahl im Jahr, wo die Spalte nichts anderes sagt, mit 95-%-Intervallen; wo keiner gesehen wurde, eine einseitige Schranke. Was ein Werk davor aufgehalten hat, kommt nicht an.",
     rocks_arrive: "Ankommende Blöcke",

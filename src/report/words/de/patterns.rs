@@ -244,6 +244,30 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "Curves and lines are by frequency; bars and numbers of rocks are of computed ones.",
         "Kurven und Linien gelten nach Häufigkeit; Balken und Anzahlen von Blöcken sind die gerechneter.",
     ),
+    (
+        "calibrated on measured ends ([calibrate] fitted of the scene)",
+        "an gemessenen Endpunkten kalibriert ([calibrate] fitted der Szene)",
+    ),
+    (
+        "written in the scene; measured ends ([calibrate]) stand beside it and are not fitted",
+        "in der Szene geschrieben; gemessene Endpunkte ([calibrate]) stehen daneben, angepasst ist nichts",
+    ),
+    (
+        "the computed ends are not distributed like the measured ones: KS distance {ks}, 5 % limit {limit}. The ground values do not hold for this slope",
+        "Die gerechneten Endpunkte sind nicht verteilt wie die gemessenen: KS-Abstand {ks}, Grenze bei 5 % {limit}. Die Bodenkennwerte gelten für diesen Hang nicht",
+    ),
+    (
+        "the weights of {file} are not used: every class of size and source gets the same number of rocks, and each rock stands for its part of the frequency of its zone",
+        "Die Gewichte von {file} werden nicht verwendet: Jede Größenklasse jeder Quelle bekommt gleich viele Blöcke, und jeder Block steht für seinen Teil der Häufigkeit seiner Zone",
+    ),
+    (
+        "written in the scene; [report] ground_source names no source",
+        "in der Szene geschrieben; [report] ground_source nennt keine Quelle",
+    ),
+    (
+        "{n} of {tried} releases tried out lie over the object “{name}” before they move: they hit it at once, with the energy of the release. Draw the object or the release elsewhere",
+        "{n} von {tried} versuchten Ablösungen liegen schon vor der Bewegung über dem Objekt „{name}“: Sie treffen es sofort, mit der Energie der Ablösung. Objekt oder Ablösung anderswo zeichnen",
+    ),
 ];
 
 /// Texts of the view.

@@ -247,6 +247,30 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "Curves and lines are by frequency; bars and numbers of rocks are of computed ones.",
         "Courbes et traits suivent la fréquence\u{a0}; les barres et les nombres de blocs sont ceux des blocs calculés.",
     ),
+    (
+        "calibrated on measured ends ([calibrate] fitted of the scene)",
+        "calées sur des arrêts mesurés ([calibrate] fitted de la scène)",
+    ),
+    (
+        "written in the scene; measured ends ([calibrate]) stand beside it and are not fitted",
+        "écrites dans la scène\u{a0}; des arrêts mesurés ([calibrate]) figurent à côté, rien n’est calé sur eux",
+    ),
+    (
+        "the computed ends are not distributed like the measured ones: KS distance {ks}, 5 % limit {limit}. The ground values do not hold for this slope",
+        "Les arrêts calculés ne sont pas distribués comme les arrêts mesurés\u{a0}: distance KS {ks}, limite à 5 % {limit}. Les valeurs des sols ne sont pas valables pour ce versant",
+    ),
+    (
+        "the weights of {file} are not used: every class of size and source gets the same number of rocks, and each rock stands for its part of the frequency of its zone",
+        "Les poids de {file} ne sont pas utilisés\u{a0}: chaque classe de taille de chaque source reçoit autant de blocs, et chaque bloc représente sa part de la fréquence de sa zone",
+    ),
+    (
+        "written in the scene; [report] ground_source names no source",
+        "écrites dans la scène\u{a0}; [report] ground_source ne nomme pas de source",
+    ),
+    (
+        "{n} of {tried} releases tried out lie over the object “{name}” before they move: they hit it at once, with the energy of the release. Draw the object or the release elsewhere",
+        "{n} départs sur {tried} essayés se trouvent au-dessus de l’objet «\u{a0}{name}\u{a0}» avant tout mouvement\u{a0}: ils l’atteignent aussitôt, avec l’énergie du départ. Dessiner l’objet ou le départ ailleurs",
+    ),
 ];
 
 /// Texts of the view.

@@ -241,6 +241,30 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "Curves and lines are by frequency; bars and numbers of rocks are of computed ones.",
         "Curve e linee seguono la frequenza; barre e numeri di massi sono quelli dei massi calcolati.",
     ),
+    (
+        "calibrated on measured ends ([calibrate] fitted of the scene)",
+        "calibrati su arresti misurati ([calibrate] fitted della scena)",
+    ),
+    (
+        "written in the scene; measured ends ([calibrate]) stand beside it and are not fitted",
+        "scritti nella scena; gli arresti misurati ([calibrate]) vi stanno accanto, nulla è calibrato su di essi",
+    ),
+    (
+        "the computed ends are not distributed like the measured ones: KS distance {ks}, 5 % limit {limit}. The ground values do not hold for this slope",
+        "Gli arresti calcolati non sono distribuiti come quelli misurati: distanza KS {ks}, limite al 5 % {limit}. I valori del terreno non valgono per questo versante",
+    ),
+    (
+        "the weights of {file} are not used: every class of size and source gets the same number of rocks, and each rock stands for its part of the frequency of its zone",
+        "I pesi di {file} non sono usati: ogni classe di dimensione di ogni sorgente riceve lo stesso numero di massi, e ogni masso rappresenta la sua parte della frequenza della sua zona",
+    ),
+    (
+        "written in the scene; [report] ground_source names no source",
+        "scritti nella scena; [report] ground_source non nomina alcuna fonte",
+    ),
+    (
+        "{n} of {tried} releases tried out lie over the object “{name}” before they move: they hit it at once, with the energy of the release. Draw the object or the release elsewhere",
+        "{n} distacchi su {tried} provati si trovano sopra l’oggetto «{name}» prima di ogni movimento: lo colpiscono subito, con l’energia del distacco. Disegnare altrove l’oggetto o il distacco",
+    ),
 ];
 
 /// Texts of the view.
