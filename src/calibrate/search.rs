@@ -8,6 +8,7 @@ use super::{CalibrationTrial, Ends};
 use crate::ensemble::Ensemble;
 use crate::error::{Error, Result};
 use crate::hazard::Agreement;
+use crate::math;
 use crate::scene::{Scene, VaryTable};
 
 /// Values tried of each quantity in the first grid, and in each refinement: of one, two and three quantities.
@@ -82,7 +83,7 @@ impl<'a> ParameterSearch<'a> {
         let mut best: Option<CalibrationTrial> = None;
         let (mut count, mut stage) = (0, 0);
         loop {
-            for values in self.points(&ranges, stage) {
+            for values in points(&ranges, stage) {
                 let trial = self.trial(&values, ends)?;
                 tried(ends, &trial);
                 count += 1;
@@ -98,14 +99,6 @@ impl<'a> ParameterSearch<'a> {
                 None => return Ok((best.clone(), count)),
             }
         }
-    }
-
-    fn points(&self, ranges: &[[f64; 2]], stage: usize) -> Vec<Vec<f64>> {
-        let values = ranges.len();
-        if values > MOST_IN_A_GRID {
-            return even(ranges, POINTS[stage].0);
-        }
-        grid(ranges, steps(values, stage))
     }
 
     /// The ranges of the next stage; none after the last one.
@@ -200,11 +193,20 @@ fn grid(ranges: &[[f64; 2]], steps: usize) -> Vec<Vec<f64>> {
     })
 }
 
+/// Points of a stage within ranges of values.
+fn points(ranges: &[[f64; 2]], stage: usize) -> Vec<Vec<f64>> {
+    let values = ranges.len();
+    if values > MOST_IN_A_GRID {
+        return even(ranges, POINTS[stage].0);
+    }
+    grid(ranges, steps(values, stage))
+}
+
 /// Step of the points of a stage, value by value; of even points that of as many on a grid.
 fn step(ranges: &[[f64; 2]], stage: usize) -> Vec<f64> {
     let values = ranges.len();
     let gaps = if values > MOST_IN_A_GRID {
-        (POINTS[stage].0 as f64).powf(1.0 / values as f64) - 1.0
+        math::pow(POINTS[stage].0 as f64, 1.0 / values as f64) - 1.0
     } else {
         steps(values, stage) as f64 - 1.0
     };

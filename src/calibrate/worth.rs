@@ -161,7 +161,7 @@ impl CalibrationSite {
                 by.get((0.95 * by.len() as f64) as usize).copied()
             }
             // all n measured ends lie below a quantile q of the computed ones with probability qⁿ
-            EndSpread::BEYOND => Some(1.0 - 0.05_f64.powf(1.0 / n)),
+            EndSpread::BEYOND => Some(1.0 - math::pow(0.05, 1.0 / n)),
             UNEVEN => Some((KOLMOGOROV / n.sqrt()).min(1.0)),
             _ => None,
         }

@@ -177,7 +177,8 @@ fn a_rock_under_the_mesh_crosses_nothing() {
     for row in 0..101 {
         let y = 2.0 * f64::from(100 - row) + 1.0;
         let height = if (120.0..150.0).contains(&y) { -9999.0 } else { 0.4 * y };
-        grid += &format!("{}\n", vec![height.to_string(); 21].join(" "));
+        grid += &vec![height.to_string(); 21].join(" ");
+        grid.push('\n');
     }
     std::fs::write(dir.path().join("hole.asc"), grid).unwrap();
     let text = r#"

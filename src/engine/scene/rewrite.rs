@@ -100,9 +100,10 @@ fn note_of_fit(lookup: &Lookup, text: &str, values: &[NewValue]) -> Option<Repla
     let line = text[..key.start].rfind('\n').map_or(0, |end| end + 1);
     // an inline table has all on one line, `calibrate.deposits` its table before the key
     let indent = &text[line..key.start];
-    Some(match indent.contains('{') {
-        true => (key.start..key.start, format!("fitted = [{list}], ")),
-        false => (line..line, format!("{indent}fitted = [{list}]\n")),
+    Some(if indent.contains('{') {
+        (key.start..key.start, format!("fitted = [{list}], "))
+    } else {
+        (line..line, format!("{indent}fitted = [{list}]\n"))
     })
 }
 

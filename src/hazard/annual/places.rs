@@ -295,12 +295,11 @@ impl PlaceSums {
         let blocked_m =
             self.object.as_ref().map_or(0.0, |object| object.blocked_m(2.0 * rock.radius_m));
         self.all.leave_open(stratum, blocked_m);
-        match rock.stopped_by(own) {
-            Some(which) => self.saved[which].leave_open(stratum, blocked_m),
-            None => {
-                self.unstopped.leave_open(stratum, blocked_m);
-                self.saved.iter_mut().for_each(|saved| saved.leave_open(stratum, blocked_m));
-            }
+        if let Some(which) = rock.stopped_by(own) {
+            self.saved[which].leave_open(stratum, blocked_m);
+        } else {
+            self.unstopped.leave_open(stratum, blocked_m);
+            self.saved.iter_mut().for_each(|saved| saved.leave_open(stratum, blocked_m));
         }
     }
 
