@@ -16,10 +16,8 @@ pub struct OpenRock {
     pub release: usize,
     /// Its radius (m).
     pub radius_m: f64,
-    /// Where it ended on the map (m), and how fast it moved there (m/s).
-    end_m: [f64; 2],
-    velocity_m_s: [f64; 2],
-    has_left: bool,
+    /// Where it has left the terrain on the map (m), and its velocity there (m/s); none of one that ended within.
+    left: Option<[[f64; 2]; 2]>,
     /// Lines that it has crossed, and barriers that have stopped it, by their numbers.
     crossed: Vec<usize>,
     stopped_by: Vec<usize>,
@@ -32,9 +30,7 @@ impl OpenRock {
         (row.stop.is_open() || row.stop == StopKind::Failed).then(|| Self {
             release: row.index,
             radius_m: row.radius_m,
-            end_m: [x, y],
-            velocity_m_s: [vx, vy],
-            has_left: row.stop == StopKind::LeftTerrain,
+            left: (row.stop == StopKind::LeftTerrain).then_some([[x, y], [vx, vy]]),
             crossed: Vec::new(),
             stopped_by: Vec::new(),
         })
@@ -42,10 +38,10 @@ impl OpenRock {
 
     /// Whether it need not turn back to come to a line.
     fn may_come(&self, line: &LineInfo) -> bool {
-        let [vx, vy] = self.velocity_m_s;
-        let is_ahead =
-            |[x, y]: &[f64; 2]| (x - self.end_m[0]) * vx + (y - self.end_m[1]) * vy >= 0.0;
-        !self.has_left || line.corners_m.iter().any(is_ahead)
+        self.left.is_none_or(|[end, way]| {
+            let is_ahead = |[x, y]: &[f64; 2]| (x - end[0]) * way[0] + (y - end[1]) * way[1] >= 0.0;
+            line.corners_m.iter().any(is_ahead)
+        })
     }
 
     /// The first barrier that stops it, but for one.

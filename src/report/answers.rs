@@ -43,8 +43,12 @@ fn in_a_year(place: &AnnualPlace) -> Option<String> {
 
 fn line(of: &LineSummary) -> String {
     let name = &of.info.name;
-    if of.reach.count == 0 && !of.reach.censored {
-        return format!("line \"{name}\": no rock crosses it {}", share_interval(&of.reach));
+    if of.reach.count == 0 {
+        let may_come = but_may_come(of.reach.censored);
+        return format!(
+            "line \"{name}\": no rock crosses it{may_come} {}",
+            share_interval(&of.reach)
+        );
     }
     let p95 = |column: &str, said: fn(&Percentile) -> String| {
         let found = of.statistics.get(column).and_then(known_p95);
@@ -61,8 +65,12 @@ fn line(of: &LineSummary) -> String {
 
 fn barrier(of: &BarrierSummary) -> String {
     let name = &of.barrier.name;
-    if of.arriving.count == 0 && !of.arriving.censored {
-        return format!("barrier \"{name}\": no rock arrives {}", share_interval(&of.arriving));
+    if of.arriving.count == 0 {
+        let may_come = but_may_come(of.arriving.censored);
+        return format!(
+            "barrier \"{name}\": no rock arrives{may_come} {}",
+            share_interval(&of.arriving)
+        );
     }
     let design = match (&of.design_values, &of.barrier.design) {
         (Some(design), _) => {
@@ -118,6 +126,11 @@ fn with_interval(p95: &Percentile, size: f64, unit: &str) -> String {
 
 fn share(of: &Proportion) -> String {
     at_least(of.censored).to_owned() + &percent(of.share, digits(of.share))
+}
+
+/// Stands behind none that is only a lower bound.
+fn but_may_come(is_bound: bool) -> &'static str {
+    if is_bound { ", some may still come" } else { "" }
 }
 
 /// Stands before what is only a lower bound.

@@ -87,7 +87,9 @@ fn a_run_ends_with_its_answers_and_its_report() {
     assert_eq!(last[1], format!("results in {}", out.display()));
     assert!(last[2].starts_with("200 releases in ") && last[2].ends_with(" a second)"), "{stdout}");
     assert!(last[3].starts_with("barrier \"net\": ") && last[3].contains("it stops"), "{stdout}");
-    assert!(last[4].starts_with("line \"far\": no rock crosses it (0"), "{stdout}");
+    // rocks that have left the terrain may still come to it
+    let far = "line \"far\": no rock crosses it, some may still come (0";
+    assert!(last[4].starts_with(far), "{stdout}");
     assert!(last[5].starts_with("line \"meadow\": "), "{stdout}");
     assert!(
         last[6].starts_with("line \"foot of the face\": ") && last[6].contains("P95 of energy")

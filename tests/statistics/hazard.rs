@@ -5,13 +5,9 @@ use crate::made;
 use made::{fall, info};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use rockfall::frequency::{Frequency, FrequencyLaw, RockSource};
 use rockfall::hazard::{
-    CrossingRow, Hazard, Line, LineInfo, Open, OpenRock, OpenRocks, Proportion, Quantity, Ranks,
-    Row, Sample, StopKind, Totals,
+    CrossingRow, Hazard, Line, Open, Proportion, Quantity, Ranks, Row, Sample, StopKind, Totals,
 };
-use rockfall::rock::Vec3;
-use std::convert::Infallible;
 
 fn ranks(n: usize, p: f64) -> (Option<usize>, Option<usize>, Option<usize>) {
     let Ranks { low, high, upper } = Ranks::of(n, p);
@@ -341,101 +337,4 @@ fn a_line_by_hand() {
         assert_eq!(of.max.map(|most| most.release), Some(100));
         near(of.max.unwrap().value, 100.0);
     }
-}
-
-/// By hand: of four releases of each of two sources with 0.3 events a year, three of the second find no place to start
-/// from. Its one rock stands for all 0.3, and those of the first for a quarter each: a line that this one and two of the
-/// first cross is reached by (0.3 + 2/4 · 0.3)/0.6 of the events.
-#[test]
-fn rocks_that_were_not_released_count_in_no_share() {
-    let source = |name: &str| RockSource {
-        name: name.to_owned(),
-        law: FrequencyLaw::Events { per_year: 0.3 },
-    };
-    let frequency = Frequency::new(vec![source("wide"), source("steep")], vec![], vec![]);
-    let mut hazard = Hazard::default().weighing(Some(frequency.clone()));
-    let mut line = Line::new(info(1).lines[0].clone()).weighing(Some(frequency.weights(8)));
-    for index in 0..8 {
-        let stop =
-            if [3, 5, 7].contains(&index) { StopKind::NotReleased } else { StopKind::AtRest };
-        hazard.add(&Row { index, stop, ..Row::of(&fall(1), Vec3::zeros()) });
-        if [0, 1, 2].contains(&index) {
-            let way = &fall(1);
-            let row = CrossingRow::of((index, &way.rock), &way.crossings[0], "road", Vec3::zeros());
-            line.add(&row);
-        }
-    }
-    let weights = hazard.year_weights().unwrap();
-    assert_eq!((hazard.released(), weights.rocks(0), weights.rocks(1)), (5, 4, 1));
-    line.weigh(Some(&weights));
-    let reach = line.reach(hazard.released());
-    assert_eq!((reach.count, reach.of), (3, 5));
-    assert!((reach.share - 0.75).abs() < 1e-12, "{reach:?}");
-    assert!(hazard.missing_events().is_empty());
-    // without sources the three are simply of five
-    let plain = line.clone().weighing(None).reach(5);
-    assert_eq!(plain, Proportion::new(3, 5));
-}
-
-/// A source of which nothing is released is said first: its events are in no number.
-#[test]
-fn a_source_that_releases_nothing_is_said() {
-    let source = |name: &str| RockSource {
-        name: name.to_owned(),
-        law: FrequencyLaw::Events { per_year: 0.3 },
-    };
-    let frequency = Frequency::new(vec![source("wide"), source("steep")], vec![], vec![]);
-    let mut hazard = Hazard::default().weighing(Some(frequency));
-    for index in 0..8 {
-        let stop = if index % 2 == 1 { StopKind::NotReleased } else { StopKind::AtRest };
-        hazard.add(&Row { index, stop, ..Row::of(&fall(1), Vec3::zeros()) });
-    }
-    let missing = hazard.missing_events();
-    assert!(missing.len() == 1 && missing[0].contains("“steep”"), "{missing:?}");
-    assert!(rockfall::report::headline(&hazard).iter().any(|line| line.contains(&missing[0])));
-}
-
-/// By hand, with a line across the way to the south at y = 0: what has not crossed it may still come when its time was up, and
-/// when it left the terrain towards the line; not at rest, and not when the line lies behind it. 10 of 100 rocks cross, 40
-/// may: the share is 0.1 or more, and its upper end is that of 50 of 100.
-#[test]
-fn rocks_that_may_still_come_move_the_upper_end() {
-    let info = LineInfo {
-        name: "road".to_owned(),
-        length_m: 40.0,
-        corners_m: vec![[0.0, 0.0], [40.0, 0.0]],
-        of_barrier: false,
-    };
-    let (south, up) = ([0.0, -5.0, -1.0], [20.0, 30.0, 0.0]);
-    let ends = [
-        (StopKind::AtRest, up, [0.0; 3], false),
-        (StopKind::TimeUp, up, [0.0, 5.0, 0.0], true),
-        (StopKind::LeftTerrain, up, south, true),
-        (StopKind::LeftTerrain, [20.0, -30.0, 0.0], south, false),
-        (StopKind::LeftTerrain, up, [0.0, 0.0, -9.0], true),
-        (StopKind::NotReleased, up, south, false),
-    ];
-    for (stop, end_m, end_velocity_m_s, expected) in ends {
-        let row =
-            Row { index: 7, stop, end_m, end_velocity_m_s, ..Row::of(&fall(1), Vec3::zeros()) };
-        let rocks = OpenRock::of(&row).into_iter().collect();
-        let lines = std::slice::from_ref(&info);
-        let none = std::iter::empty::<Result<CrossingRow, Infallible>>();
-        let open = OpenRocks::find(rocks, (lines, |_: &CrossingRow| None), none).unwrap();
-        assert_eq!(open.at("road").count() == 1, expected, "{stop:?} {end_velocity_m_s:?}");
-    }
-    let mut line = Line::new(info);
-    for index in 0..10 {
-        let way = &fall(1);
-        line.add(&CrossingRow::of((index, &way.rock), &way.crossings[0], "road", Vec3::zeros()));
-    }
-    let seen = line.reach(100);
-    line.leave_open(10..50);
-    let reach = line.reach(100);
-    let far = Proportion::new(50, 100);
-    assert_eq!((reach.count, reach.low_95, reach.high_95), (10, seen.low_95, far.high_95));
-    assert!(!seen.censored && reach.censored);
-    // one more rock than chance knows of is no reason for a mark
-    line.leave_open(10..11);
-    assert!(!line.reach(100).censored && line.reach(100).high_95 > seen.high_95);
 }

@@ -17,6 +17,7 @@ mod gis;
 mod hazard;
 mod lines;
 mod meshes;
+mod open;
 mod report;
 mod results;
 mod scene_doc;
