@@ -1,5 +1,5 @@
-//! Takes the fingerprint of the sources, so that results say which build they come from: of both packages, as seen from `src/engine`,
-//! which is built first.
+//! Takes the fingerprint of the sources, so that results say which build they come from: of all packages, as seen from `src/engine`,
+//! whose plan says it.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -202,41 +202,25 @@ fn put(ground: &mut GroundTable, key: VaryKey, value: f64) -> Result<()> {
     let fixed = Distribution::fixed(value).map_err(refuse)?;
     match key {
         VaryKey::FrictionAngleDeg => ground.friction_angle_deg = fixed,
-        VaryKey::Restitution => ground.restitution = Some(fixed),
-        VaryKey::RestitutionHalfSpeedMS => ground.restitution_half_speed_m_s = Some(fixed),
-        VaryKey::TangentialRatio => {
-            (ground.tangential_ratio, ground.shear_stiffness_n_m) = (Some(fixed), None);
-        }
-        VaryKey::RollingFriction => ground.rolling_friction = Some(fixed),
         VaryKey::RollingFrictionSpread if value > 0.0 => {
             let low = ground.rolling_friction.as_ref().map_or(0.0, |rolling| rolling.support().0);
             let above = Distribution::triangular([low, low, low + value]).map_err(refuse)?;
             ground.rolling_friction = Some(above);
         }
         VaryKey::RollingFrictionSpread => {}
-        VaryKey::RoughnessDeg => ground.roughness_deg = Some(fixed),
-        VaryKey::RoughnessLengthM => ground.roughness_length_m = Some(fixed),
-        // of soil numbers, not distributions; a scene without soil was refused, and shapes are no ground
         _ => {
-            if let Some(place) = soil_value(ground, key) {
-                *place = value;
+            if key == VaryKey::TangentialRatio {
+                ground.shear_stiffness_n_m = None;
+            }
+            // a scene without the soil was refused, and shapes are no ground
+            if let Some(drawn) = ground.drawn(key) {
+                *drawn = Some(fixed);
+            } else if let Some(number) = ground.of_soil(key) {
+                *number = value;
             }
         }
     }
     Ok(())
-}
-
-/// A value of the soil of a ground; none without that soil.
-fn soil_value(ground: &mut GroundTable, key: VaryKey) -> Option<&mut f64> {
-    let (slip, scar) = (ground.slip_friction.as_mut(), ground.scar.as_mut());
-    match key {
-        VaryKey::SlipFrictionMax => slip.map(|slip| &mut slip.most),
-        VaryKey::SlipFrictionKappaPerM => slip.map(|slip| &mut slip.kappa_per_m),
-        VaryKey::SlipFrictionBetaPerS => slip.map(|slip| &mut slip.beta_per_s),
-        VaryKey::ScarStrengthKnM2 => scar.map(|scar| &mut scar.strength_kn_m2),
-        VaryKey::ScarDrag => scar.map(|scar| &mut scar.drag),
-        _ => None,
-    }
 }
 
 impl fmt::Display for Calibration {

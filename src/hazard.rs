@@ -39,7 +39,8 @@ pub use difference::{Difference, Reading, Values, WeightedCount};
 pub use lines::{CrossingRow, Line, LineInfo, LineQuantity, LineSummary, by_rock};
 pub use maps::{INTENSITY_J, Layer, MapFrame, MapState, Maps};
 pub use observed::{
-    Agreement, EndDistances, EndSpread, ObservedPath, Weighted, distances, effective, rank, runouts,
+    Agreement, EndDistances, EndSpread, KOLMOGOROV_95, ObservedPath, Weighted, distances,
+    effective, rank, runouts,
 };
 pub use open::{OpenRock, OpenRocks};
 pub use profile::{Profile, ProfilePoint, StretchStatistic};
@@ -71,6 +72,7 @@ pub struct Hazard {
     values: [Vec<f64>; Quantity::ALL.len()],
     /// Whether each rock would have gone on, in the order of the values.
     is_open: Vec<bool>,
+    /// Those that would have gone on, by rising release.
     open: Vec<OpenRock>,
     largest: [Option<Largest>; Quantity::ALL.len()],
     largest_balance_error: Option<Largest>,

@@ -261,15 +261,14 @@ fn boxes(size: f64) -> Vec<rockfall::terrain::stl::Facet> {
 /// Spheres in a grid above the ridge, each moved by up to a millimetre: columns of spheres exactly above each other
 /// would balance.
 fn heap(spheres: usize, size: f64, origin_m: Vec3) -> Vec<Release> {
-    use rand::RngExt as _;
-    use rockfall::random::{Purpose, stream};
+    use rockfall::random::{Purpose, stream, unit};
     let wide = (4.0 * size).ceil() as usize;
     let middle = 0.5 * (wide as f64 - 1.0);
     let mut random = stream(1, Purpose::Impacts, 0);
     let release = |k: usize| {
         let cell = [(k % wide) as f64 - middle, (k / wide % wide) as f64 - middle];
         let grid = Vec3::new(cell[0], cell[1], (k / (wide * wide)) as f64) * SPACING_M;
-        let off = Vec3::from_fn(|_, _| random.random_range(-1e-3..1e-3));
+        let off = Vec3::from_fn(|_, _| 1e-3 * (2.0 * unit(&mut random) - 1.0));
         let position_m = grid + off + Vec3::z() * 0.875 - origin_m;
         let still = Vec3::zeros();
         let motion = Motion { time_s: 0.0, position_m, velocity_m_s: still, spin_rad_s: still };

@@ -4,7 +4,7 @@ use super::Ends;
 use super::search::ParameterSearch;
 use super::site::{CalibrationSite, Computed};
 use crate::error::Result;
-use crate::hazard::EndSpread;
+use crate::hazard::{EndSpread, KOLMOGOROV_95};
 use crate::math;
 use crate::random::{Purpose, stream, unit};
 use crate::scene::VaryTable;
@@ -18,8 +18,6 @@ const UNTOLD: f64 = 0.6;
 
 /// How far the ranks of measured ends are from even ones.
 const UNEVEN: &str = "largest distance of these ranks from even ones (–)";
-/// That distance times √n, which even ranks exceed in 5 % of all samples (Kolmogorov 1933).
-const KOLMOGOROV: f64 = 1.36;
 
 /// Most blocks that are told one by one.
 const MOST_BLOCKS: usize = 12;
@@ -162,7 +160,7 @@ impl CalibrationSite {
             }
             // all n measured ends lie below a quantile q of the computed ones with probability qⁿ
             EndSpread::BEYOND => Some(1.0 - math::pow(0.05, 1.0 / n)),
-            UNEVEN => Some((KOLMOGOROV / n.sqrt()).min(1.0)),
+            UNEVEN => Some((KOLMOGOROV_95 / n.sqrt()).min(1.0)),
             _ => None,
         }
     }

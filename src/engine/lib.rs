@@ -4,19 +4,12 @@
 //! from one version to the next. SI units and `f64` throughout; z points up. The library prints nothing.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
-// words
-pub mod error;
-pub mod math;
-pub mod file;
-pub mod stopwatch;
-pub mod random;
-pub mod rock;
+// words and terrain
+pub use rockfall_base::{error, file, frequency, gis, math, random, rock, stopwatch, terrain};
+
+// bodies and grounds
 pub mod body;
-pub mod frequency;
-// world
-pub mod gis;
 pub mod ground;
-pub mod terrain;
 // physics
 pub mod contact;
 pub mod flight;

@@ -211,14 +211,14 @@ impl Plan {
         let mut warnings = [slips::of(scene), grounds::unused(scene, &terrain)].concat();
         let table_sizes = sizes::of_table(scene, &mut warnings);
         let mut fast_warnings = Vec::new();
-        releases.try_out(&terrain, &mut warnings)?;
+        let tried = releases.try_out(&terrain, &mut warnings)?;
         stiffness::check(scene, &terrain, &mut fast_warnings)?;
         let own_dissipation = stiffness::own_dissipation(scene, step.step_s, &mut warnings);
         stiffness::flutter(&step, &mut warnings);
         let year = annual::year(scene, &terrain, &mut warnings)?;
         let objects = annual::objects(scene, &mut warnings);
         let lines = evaluation_lines(scene, &terrain)?;
-        annual::over_release((&releases, &terrain), lines.as_deref(), &mut warnings);
+        annual::over_release(&tried, lines.as_deref(), &mut warnings);
         let longest_s = scene.solver.longest_s.unwrap_or(LONGEST_S);
         stiffness::too_short(&step, longest_s, &mut warnings);
         let values = || scene.grounds.values();

@@ -5,8 +5,6 @@ mod shapes;
 mod sources;
 mod tried;
 
-pub(crate) use tried::TRIED;
-
 use crate::error::{Error, Result};
 use crate::frequency::Frequency;
 use crate::ground::Ground;

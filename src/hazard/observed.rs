@@ -195,9 +195,13 @@ impl Agreement {
     }
 }
 
+/// Largest difference of one distribution from its own sample, times √n, which is exceeded in 5 % of all samples (Kolmogorov
+/// 1933).
+pub const KOLMOGOROV_95: f64 = 1.36;
+
 /// Difference of two distributions of so many values each that equal ones exceed in 5 % of all samples (–).
 fn ks_limit(n: f64, m: f64) -> f64 {
-    1.36 * ((n + m) / (n * m)).sqrt()
+    KOLMOGOROV_95 * ((n + m) / (n * m)).sqrt()
 }
 
 /// Runouts (m) and weights, ascending; what weighs nothing or is no number is left out.

@@ -48,6 +48,18 @@ impl OpenRock {
     pub(super) fn stopped_by(&self, but_for: Option<usize>) -> Option<usize> {
         self.stopped_by.iter().copied().find(|which| Some(*which) != but_for)
     }
+
+    /// Notes what it has crossed on its way, in the order of time.
+    fn take(
+        &mut self,
+        way: &[CrossingRow],
+        (lines, stops): (&[LineInfo], &impl Fn(&CrossingRow) -> Option<usize>),
+    ) {
+        for row in way {
+            self.crossed.extend(lines.iter().position(|line| line.name == row.line));
+            self.stopped_by.extend(stops(row));
+        }
+    }
 }
 
 /// All of them, and which may come to each line.
@@ -116,19 +128,5 @@ impl OpenRocks {
     ) -> impl Iterator<Item = usize> + Clone + use<'a> {
         let free = self.rocks_at(line).filter(move |rock| rock.stopped_by(own).is_none());
         free.map(|rock| rock.release)
-    }
-}
-
-impl OpenRock {
-    /// Notes what it has crossed on its way, in the order of time.
-    fn take(
-        &mut self,
-        way: &[CrossingRow],
-        (lines, stops): (&[LineInfo], &impl Fn(&CrossingRow) -> Option<usize>),
-    ) {
-        for row in way {
-            self.crossed.extend(lines.iter().position(|line| line.name == row.line));
-            self.stopped_by.extend(stops(row));
-        }
     }
 }

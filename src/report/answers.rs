@@ -1,7 +1,7 @@
 //! The answer at each line and barrier, a sentence each: what a run says last.
 
 use super::bound::Is;
-use super::format::{NO_NUMBER, counted, decimal, percent, sign, significant};
+use super::format::{NO_NUMBER, counted, decimal, percents, sign, significant};
 use super::model::energy_unit;
 use super::words::Words;
 use crate::hazard::{
@@ -30,7 +30,7 @@ fn in_a_year(place: &AnnualPlace) -> Option<String> {
     let said = |rate: &EventRate| {
         let [value, low, high] =
             [rate.per_year, rate.low_95, rate.high_95].map(|one| significant(one, 2));
-        let sign = at_least(rate.censored);
+        let sign = sign(Is::at_least_if(rate.censored));
         format!("{sign}{value} times a year ({})", interval(&low, &high))
     };
     let barriers = with
@@ -125,7 +125,8 @@ fn with_interval(p95: &Percentile, size: f64, unit: &str) -> String {
 }
 
 fn share(of: &Proportion) -> String {
-    at_least(of.censored).to_owned() + &percent(of.share, digits(of.share))
+    let [share, ..] = shares(of);
+    sign(Is::at_least_if(of.censored)).to_owned() + &share
 }
 
 /// Stands behind none that is only a lower bound.
@@ -133,19 +134,34 @@ fn but_may_come(is_bound: bool) -> &'static str {
     if is_bound { ", some may still come" } else { "" }
 }
 
-/// Stands before what is only a lower bound.
-fn at_least(is_bound: bool) -> &'static str {
-    sign(if is_bound { Is::AtLeast } else { Is::Value })
+fn share_interval(of: &Proportion) -> String {
+    let [_, low, high] = shares(of);
+    format!("({})", interval(&low, &high))
 }
 
-fn share_interval(of: &Proportion) -> String {
-    format!(
-        "({})",
-        interval(&percent(of.low_95, digits(of.low_95)), &percent(of.high_95, digits(of.high_95)))
-    )
+/// A share and the ends of its interval.
+fn shares(of: &Proportion) -> [String; 3] {
+    percents([of.share, of.low_95, of.high_95], digits)
 }
 
 /// One decimal below a tenth, where a full per cent would be coarse.
 fn digits(share: f64) -> usize {
     usize::from(share < 0.1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of a million rocks the interval of a share is narrower than a per cent: then it has the digit that shows it.
+    #[test]
+    fn a_narrow_interval_of_a_share_is_seen() {
+        let said = |count: usize, of: usize| {
+            let found = Proportion::new(count, of);
+            format!("{} {}", share(&found), share_interval(&found)).replace('\u{2009}', " ")
+        };
+        assert_eq!(said(940_000, 1_000_000), "94.00 % (93.95 % to 94.05 %)");
+        assert_eq!(said(940, 1000), "94 % (92 % to 95 %)");
+        assert_eq!(said(0, 1_000_000), "0.0000 % (0.0000 % to 0.0003 %)");
+    }
 }

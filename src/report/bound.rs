@@ -13,3 +13,10 @@ pub enum Is {
     /// Nothing: so many rocks are missing.
     Lacking(usize),
 }
+
+impl Is {
+    /// What comes to a place: a lower bound where rocks that would have gone on decide it.
+    pub(super) fn at_least_if(is_bound: bool) -> Self {
+        if is_bound { Self::AtLeast } else { Self::Value }
+    }
+}

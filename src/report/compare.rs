@@ -62,7 +62,7 @@ impl Comparison {
         let range =
             |run: &Results| if paired { common.clone() } else { run.summary.identity.range() };
         let ranges = [range(&runs[0]), range(&runs[1])];
-        let (populations, mut notes) = populations::of(&runs, &ranges)?;
+        let (populations, mut notes) = populations::of(&runs, &ranges, paired)?;
         if paired && (one.range() != common || other.range() != common) {
             notes.push(format!(
                 "Only the releases {} to {} are in both runs: the others are left out.",
@@ -70,7 +70,8 @@ impl Comparison {
                 common.end - 1
             ));
         }
-        notes.extend(weighing::note(populations[0].each_ref().map(|of| of.standing.as_ref())));
+        notes
+            .extend(weighing::note(populations[0].each_ref().map(|of| of.among.standing.as_ref())));
         notes.extend(populations::censored(&populations[0]));
         notes.extend(unpaired(paired, one_seed).map(str::to_owned));
         let groups = populations.iter().map(|pair| table::group(pair, paired, same_run)).collect();
@@ -91,7 +92,7 @@ impl Comparison {
 
     /// Whether rocks weigh what they stand for.
     fn is_weighted(&self) -> bool {
-        self.populations.iter().flatten().any(|of| of.standing.is_some())
+        self.populations.iter().flatten().any(|of| of.among.standing.is_some())
     }
 
     /// Writes `differences.csv`, `figures/*.svg` and `compare.html` below `dir`.

@@ -6,7 +6,7 @@ use super::canvas::{Canvas, Label, NORMAL, Pen, SMALL, bold_width, fitted, paint
 use super::colour::{GREY, INK};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
-use super::histogram::{EqualBins, percent_of};
+use super::histogram::EqualBins;
 use super::model::{Report, ReportQuantity, kilo};
 use super::panel::{FOOT_PX, Panel};
 use super::svg::path::PaperFrame;
@@ -68,19 +68,19 @@ pub(super) struct DistributionPanel<'a> {
 
 impl<'a> DistributionPanel<'a> {
     pub(super) fn of(report: &'a Report, quantity: ReportQuantity, frame: PaperFrame) -> Self {
-        let si: Vec<f64> = report.releases.iter().map(|fall| quantity.of(fall)).collect();
-        let finite = si.iter().copied().filter(|v| v.is_finite());
+        let si = report.weighed(|fall| quantity.of(fall));
+        let finite = si.iter().map(|(v, _)| *v).filter(|v| v.is_finite());
         let largest = finite.reduce(f64::max).unwrap_or(0.0);
         let (unit, unit_size) =
             if quantity.is_energy() { kilo(largest) } else { quantity.unit(largest) };
-        let values: Vec<f64> = si.iter().map(|v| v / unit_size).collect();
+        let values: Vec<(f64, f64)> =
+            si.iter().map(|(v, weight)| (v / unit_size, *weight)).collect();
         let bins = match quantity {
             _ if quantity.is_energy() => EqualBins::of_ratios(&values),
             _ => EqualBins::clipped(&values),
         };
         let words = report.words();
-        let tallest = percent_of(bins.largest(), si.len());
-        let y = Axis::from_zero([1.02 * tallest], words.releases_percent);
+        let y = Axis::from_zero([1.02 * bins.tallest()], words.releases_percent);
         let panel = Panel::new(frame, bins.axis(&titled(quantity.name(words), unit)), y);
         Self { report, quantity, bins, panel, largest, unit_size }
     }
@@ -90,7 +90,7 @@ impl<'a> DistributionPanel<'a> {
         let said = self.report.words();
         let total = self.report.releases.len();
         self.panel.grid(canvas);
-        self.bins.bars(canvas, &self.panel, total);
+        self.bins.bars(canvas, &self.panel);
         let mut words = self.percentiles(canvas);
         if total > 0 {
             words.push(format!("{} {}", said.max, format::short(self.largest / self.unit_size)));
@@ -101,7 +101,7 @@ impl<'a> DistributionPanel<'a> {
         }
         let above = PaperFrame { top: self.panel.frame.top - head_px, ..self.panel.frame };
         head(canvas, &above, self.quantity.name(said), &words.join(" · "));
-        if self.bins.counts.is_empty() {
+        if self.bins.is_empty() {
             self.panel.nothing(canvas, if total == 0 { said.no_release } else { said.no_finite });
         }
     }

@@ -119,6 +119,24 @@ pub fn percent(share: f64, decimals: usize) -> String {
     format!("{}{THIN_SPACE}%", decimal(100.0 * share, decimals))
 }
 
+/// Digits that a number may get beyond its own before its interval is seen: a share of 10⁻⁸ still is.
+const MOST_MORE: usize = 6;
+
+/// A number and the ends of its interval, as `write` writes each with so many digits more: none, but where rounding makes all three
+/// the same and the ends differ, as many as tell them apart.
+pub(super) fn told_apart(all: [f64; 3], write: impl Fn(f64, usize) -> String) -> [String; 3] {
+    let with = |more: usize| all.map(|number| write(number, more));
+    let [_, low, high] = all;
+    let most = if low < high { MOST_MORE } else { 0 };
+    let is_seen = |[value, low, high]: &[String; 3]| value != low || low != high;
+    (0..=most).map(with).find(is_seen).unwrap_or_else(|| with(0))
+}
+
+/// A share (0..1) and the ends of its interval in per cent, [told apart](told_apart).
+pub(super) fn percents(all: [f64; 3], decimals: impl Fn(f64) -> usize) -> [String; 3] {
+    told_apart(all, |share, more| percent(share, decimals(share) + more))
+}
+
 /// Text that may stand inside an element or a quoted attribute of SVG and HTML.
 pub fn escape(text: &str) -> String {
     let mut safe = String::with_capacity(text.len());
@@ -163,6 +181,19 @@ mod tests {
         assert_eq!(power_of_ten(12), "10¹²");
         assert_eq!(percent(0.9996, 1), "100.0\u{2009}%");
         assert_eq!([2.5, 10.0, 0.025, 1e4].map(plain), ["2.5", "10", "0.025", "10\u{2009}000"]);
+    }
+
+    /// Only where rounding hides the interval there are more digits, and an interval without width has none to show.
+    #[test]
+    fn an_interval_is_seen_where_it_has_a_width() {
+        let said = |all: [f64; 3]| percents(all, |share| usize::from(share < 0.1)).join(" ");
+        let written = |said: &str| said.replace('%', "\u{2009}%");
+        assert_eq!(said([0.9400, 0.9396, 0.9404]), written("94.00% 93.96% 94.04%"));
+        assert_eq!(said([0.94, 0.93, 0.95]), written("94% 93% 95%"));
+        assert_eq!(said([0.0, 0.0, 0.0003]), written("0.00% 0.00% 0.03%"));
+        assert_eq!(said([0.0, 0.0, 0.0]), written("0.0% 0.0% 0.0%"));
+        assert_eq!(said([1.0, 1.0, 1.0]), written("100% 100% 100%"));
+        assert_eq!(said([0.5, f64::NAN, f64::NAN]), written("50% – –"));
     }
 
     #[test]

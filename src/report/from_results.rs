@@ -45,8 +45,9 @@ pub fn gather(results: &Results, ground: Option<GroundRaster>) -> Result<Report>
     let hazard = &results.hazard;
     let language = results.summary.language;
     let words = Words::of(language);
+    let weight = by_frequency::weighing(hazard);
     let releases: Vec<ReleaseEnd> =
-        results.rows()?.map(|row| row.map(|row| fall_of(&row))).collect::<Result<_>>()?;
+        results.rows()?.map(|row| row.map(|row| fall_of(&row, &weight))).collect::<Result<_>>()?;
     let lines = lines::lines(results, ground.as_ref())?;
     let order: Vec<String> = lines.iter().map(|line| line.name.clone()).collect();
     let profile = profile::view(results, &releases)?;
@@ -110,28 +111,17 @@ pub(super) fn warnings_first(hazard: &Hazard, words: &Words) -> Vec<String> {
         (StopKind::TimeUp, words.have_no_time, words.remedy_time),
         (StopKind::OverBudget, words.have_no_budget, words.remedy_budget),
     ];
+    let weighted = hazard.weights().map(|_| words.say(by_frequency::SHARE));
+    let some_rocks = weighted.unwrap_or_else(|| words.some_rocks.to_owned());
     let said = |(kind, what, remedy): (StopKind, &str, &str)| {
         let share = hazard.ended(kind);
-        let text = words.censored;
-        // the head of the sentence, up to what the rocks have done
-        let weighted = hazard.weights().and_then(|_| text.split_once(" {what}"));
-        let text = weighted.map_or(text.to_owned(), |(_, rest)| {
-            format!("{} {{what}}{rest}", words.say(by_frequency::SHARE))
-        });
         let count = |n: usize| format::decimal(n as f64, 0);
         let percent = format::percent(share.share, usize::from(share.share < 0.1));
-        (share.count > 0).then(|| {
-            fill(
-                &text,
-                &[
-                    ("n", &count(share.count)),
-                    ("of", &count(share.of)),
-                    ("share", &percent),
-                    ("what", &what),
-                    ("remedy", &remedy),
-                ],
-            )
-        })
+        let (n, of) = (count(share.count), count(share.of));
+        let rocks = fill(&some_rocks, &[("n", &n), ("of", &of), ("share", &percent)]);
+        let said =
+            || fill(words.censored, &[("rocks", &rocks), ("what", &what), ("remedy", &remedy)]);
+        (share.count > 0).then(said)
     };
     let missing = hazard.missing_events();
     let missing = missing.iter().map(|warning| words.say(warning));
@@ -196,7 +186,7 @@ fn stop_of(kind: StopKind) -> Stop {
     }
 }
 
-fn fall_of(row: &hazard::Row) -> ReleaseEnd {
+fn fall_of(row: &hazard::Row, weight: impl Fn(usize) -> f64) -> ReleaseEnd {
     ReleaseEnd {
         stop: stop_of(row.stop),
         runout_m: row.runout_m,
@@ -211,6 +201,7 @@ fn fall_of(row: &hazard::Row) -> ReleaseEnd {
         tree_impacts: row.tree_impacts,
         start_m: row.start_m,
         end_m: row.end_m,
+        weight: if row.stop.is_released() { weight(row.index) } else { 0.0 },
     }
 }
 

@@ -1,4 +1,4 @@
-//! Counting values into bins of round width, for display only.
+//! Weighing values in bins of round width, for display only.
 
 use super::axis::{Axis, nice_step};
 use super::canvas::Canvas;
@@ -10,92 +10,101 @@ use crate::math;
 const MOST_BINS: f64 = 40.0;
 const LEAST_BINS: f64 = 8.0;
 
-/// Counts of values in bins of equal width.
+/// What values weigh in bins of equal width; all the same where they are counted.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct EqualBins {
     /// Lower end of the first bin, a multiple of the width.
     pub(super) from: f64,
     /// Width of a bin.
     pub(super) width: f64,
-    /// Values in each bin; a value on a boundary counts in the upper one.
-    pub(super) counts: Vec<usize>,
-    /// Values that are not finite and in no bin.
+    /// What the values in each bin weigh; a value on a boundary counts in the upper one.
+    weights: Vec<f64>,
+    /// What all weigh of which the bars are shares.
+    pub(super) all: f64,
+    /// Number of values that are not finite and in no bin.
     pub(super) left_out: usize,
-    /// Values beyond the last bin.
+    /// Number of values beyond the last bin.
     pub(super) beyond: usize,
     /// Whether `from` and `width` are powers of ten.
     is_log: bool,
 }
 
-/// Share of the values that a clipped histogram shows.
+/// Share of all weight that a clipped histogram shows.
 const SHOWN: f64 = 0.995;
 /// A histogram is clipped where the largest value lies farther out than this many times what is shown.
 const FAR: f64 = 1.3;
 
 impl EqualBins {
-    /// Bins of round width, about √n of them.
-    pub(super) fn of(values: &[f64]) -> Self {
-        let finite: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
-        let left_out = values.len() - finite.len();
-        let Some((low, high)) = range(&finite) else {
-            return Self {
-                from: 0.0,
-                width: 1.0,
-                counts: Vec::new(),
-                left_out,
-                beyond: 0,
-                is_log: false,
-            };
+    /// Bins of round width, about √n of them, of values with what each weighs.
+    pub(super) fn of(values: &[(f64, f64)]) -> Self {
+        let finite = finite(values);
+        let none = Self {
+            from: 0.0,
+            width: 1.0,
+            weights: Vec::new(),
+            all: weight(values),
+            left_out: values.len() - finite.len(),
+            beyond: 0,
+            is_log: false,
         };
+        let Some((low, high)) = range(&finite) else { return none };
         let bins = (finite.len() as f64).sqrt().clamp(LEAST_BINS, MOST_BINS);
         let width = nice_step(spread(low, high) / bins);
         let from = (low / width).floor() * width;
         let bin = |v: f64| ((v - from) / width + 1e-9).floor().max(0.0) as usize;
-        let mut counts = vec![0; bin(high) + 1];
-        for &v in &finite {
-            counts[bin(v)] += 1;
+        let mut weights = vec![0.0; bin(high) + 1];
+        for &(v, weight) in &finite {
+            weights[bin(v)] += weight;
         }
-        Self { from, width, counts, left_out, beyond: 0, is_log: false }
+        Self { from, width, weights, ..none }
     }
 
     /// Bins up to the 99.5th percentile where the rest lies far out; how many lie beyond is counted.
-    pub(super) fn clipped(values: &[f64]) -> Self {
-        let mut sorted: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
-        sorted.sort_by(f64::total_cmp);
-        let shown = ((SHOWN * sorted.len() as f64).ceil() as usize).min(sorted.len());
-        let (Some(&last), Some(&most)) =
-            (shown.checked_sub(1).and_then(|k| sorted.get(k)), sorted.last())
-        else {
+    pub(super) fn clipped(values: &[(f64, f64)]) -> Self {
+        let finite = finite(values);
+        let (Some(last), Some((_, most))) = (at_share(&finite, SHOWN), range(&finite)) else {
             return Self::of(values);
         };
         if last <= 0.0 || most < FAR * last {
             return Self::of(values);
         }
-        let beyond = sorted.iter().filter(|v| **v > last).count();
-        let shown: Vec<f64> = values.iter().copied().filter(|v| *v <= last).collect();
-        let left_out = values.iter().filter(|v| !v.is_finite()).count();
-        Self { left_out, beyond, ..Self::of(&shown) }
+        let (shown, beyond): (Vec<_>, Vec<_>) = finite.iter().partition(|(v, _)| *v <= last);
+        let left_out = values.len() - finite.len();
+        Self { all: weight(values), left_out, beyond: beyond.len(), ..Self::of(&shown) }
     }
 
     /// Bins of equal ratio over the values above 0, from the half per cent on; the few smaller ones count in the first.
-    pub(super) fn of_ratios(values: &[f64]) -> Self {
-        let mut logs: Vec<f64> =
-            values.iter().filter(|v| v.is_finite() && **v > 0.0).map(|v| math::log10(*v)).collect();
-        logs.sort_by(f64::total_cmp);
-        let least = logs.get(((1.0 - SHOWN) * logs.len() as f64) as usize).copied();
-        let raised: Vec<f64> = logs.iter().map(|&v| v.max(least.unwrap_or(v))).collect();
+    pub(super) fn of_ratios(values: &[(f64, f64)]) -> Self {
+        let positive = values.iter().filter(|(v, _)| v.is_finite() && *v > 0.0);
+        let mut logs: Vec<(f64, f64)> =
+            positive.map(|(v, weight)| (math::log10(*v), *weight)).collect();
         let left_out = values.len() - logs.len();
-        Self { left_out, is_log: true, ..Self::of(&raised) }
+        let least = at_share(&logs, 1.0 - SHOWN);
+        for (v, _) in &mut logs {
+            *v = v.max(least.unwrap_or(*v));
+        }
+        Self { all: weight(values), left_out, is_log: true, ..Self::of(&logs) }
     }
 
     /// Upper end of the last bin.
     pub(super) fn to(&self) -> f64 {
-        self.from + self.width * self.counts.len() as f64
+        self.from + self.width * self.weights.len() as f64
     }
 
-    /// The fullest bin.
-    pub(super) fn largest(&self) -> usize {
-        self.counts.iter().copied().max().unwrap_or(0)
+    /// Whether no value is in a bin.
+    pub(super) fn is_empty(&self) -> bool {
+        self.weights.is_empty()
+    }
+
+    /// The tallest bar (per cent).
+    pub(super) fn tallest(&self) -> f64 {
+        self.percents().fold(0.0, f64::max)
+    }
+
+    /// The bars (per cent), from left to right; 0 where nothing weighs anything.
+    fn percents(&self) -> impl Iterator<Item = f64> {
+        let all = if self.all > 0.0 { self.all } else { 1.0 };
+        self.weights.iter().map(move |weight| 100.0 * weight / all)
     }
 
     /// An axis on which all bins and some paper around them fit.
@@ -112,25 +121,39 @@ impl EqualBins {
         Axis::linear(low, to + margin, title)
     }
 
-    /// The bars, as shares of `total` in per cent.
-    pub(super) fn bars(&self, canvas: &Canvas<'_>, panel: &Panel, total: usize) {
-        for (i, &count) in self.counts.iter().enumerate() {
+    /// Draws the bars.
+    pub(super) fn bars(&self, canvas: &Canvas<'_>, panel: &Panel) {
+        for (i, percent) in self.percents().enumerate() {
             let ends = [i, i + 1].map(|k| self.from + k as f64 * self.width);
             let [from, to] = if self.is_log { ends.map(|end| math::pow(10.0, end)) } else { ends };
-            panel.bar(canvas, (from, to), percent_of(count, total), SKY);
+            panel.bar(canvas, (from, to), percent, SKY);
         }
     }
 }
 
-/// A share in per cent; 0 of nothing.
-pub(super) fn percent_of(count: usize, total: usize) -> f64 {
-    100.0 * count as f64 / total.max(1) as f64
+fn finite(values: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    values.iter().copied().filter(|(v, _)| v.is_finite()).collect()
 }
 
-fn range(values: &[f64]) -> Option<(f64, f64)> {
-    let low = values.iter().copied().reduce(f64::min)?;
-    let high = values.iter().copied().reduce(f64::max)?;
-    Some((low, high))
+fn weight(values: &[(f64, f64)]) -> f64 {
+    values.iter().map(|(_, weight)| weight).sum()
+}
+
+/// The smallest value that at least a share of all weight does not exceed; none of nothing.
+fn at_share(values: &[(f64, f64)], share: f64) -> Option<f64> {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(|one, other| one.0.total_cmp(&other.0));
+    let (all, mut below) = (weight(&sorted), 0.0);
+    let at = sorted.iter().find(|(_, weight)| {
+        below += weight;
+        below >= share * all
+    });
+    at.or(sorted.last()).map(|(v, _)| *v)
+}
+
+fn range(values: &[(f64, f64)]) -> Option<(f64, f64)> {
+    let values = || values.iter().map(|(v, _)| *v);
+    Some((values().reduce(f64::min)?, values().reduce(f64::max)?))
 }
 
 /// Extent of the values, or a tenth of their size when they are all the same (to rounding).
@@ -149,6 +172,10 @@ fn spread(low: f64, high: f64) -> f64 {
 mod tests {
     use super::*;
 
+    fn alike(values: &[f64]) -> Vec<(f64, f64)> {
+        values.iter().map(|v| (*v, 1.0)).collect()
+    }
+
     #[test]
     fn every_value_is_in_one_bin() {
         let cases: [&[f64]; 6] = [
@@ -160,23 +187,41 @@ mod tests {
             &[2_600_000.0, 2_600_000.1],
         ];
         for values in cases {
-            let bins = EqualBins::of(values);
-            let counted: usize = bins.counts.iter().sum();
-            assert_eq!(counted + bins.left_out, values.len(), "{values:?}");
-            for bins in [EqualBins::clipped(values), EqualBins::of_ratios(values)] {
-                let counted: usize = bins.counts.iter().sum();
+            let values = alike(values);
+            for bins in
+                [EqualBins::of(&values), EqualBins::clipped(&values), EqualBins::of_ratios(&values)]
+            {
+                let counted = bins.weights.iter().sum::<f64>() as usize;
                 assert_eq!(counted + bins.left_out + bins.beyond, values.len(), "{values:?}");
+                assert!(bins.weights.len() < 200, "{} for {values:?}", bins.weights.len());
+                assert!(bins.width > 0.0 && bins.from.is_finite());
+                assert!((bins.all - values.len() as f64).abs() < 1e-12);
             }
-            assert!(bins.counts.len() < 200, "{} bins for {values:?}", bins.counts.len());
-            assert!(bins.width > 0.0 && bins.from.is_finite());
         }
+    }
+
+    /// A rock that stands for three is as tall as three, and the few heavy ones are not the rest that is clipped.
+    #[test]
+    fn a_bar_is_as_tall_as_what_its_rocks_stand_for() {
+        let mut values = vec![(0.5, 1.0); 60];
+        values.extend(vec![(9.5, 3.0); 20]);
+        for bins in [EqualBins::of(&values), EqualBins::clipped(&values)] {
+            let bars: Vec<f64> = bins.percents().filter(|bar| *bar > 0.0).collect();
+            assert!((bars[0] - 50.0).abs() < 1e-12 && (bars[1] - 50.0).abs() < 1e-12, "{bars:?}");
+        }
+        // a tenth of the rocks, a thousandth of what all stand for
+        values.extend(vec![(100.0, 0.015); 8]);
+        assert_eq!(EqualBins::clipped(&values).beyond, 8);
+        let counted: Vec<f64> = values.iter().map(|(v, _)| *v).collect();
+        assert_eq!(EqualBins::clipped(&alike(&counted)).beyond, 0);
     }
 
     /// 0.3 / 0.1 is just below 3 in floating point; a value on a boundary still counts in the upper bin.
     #[test]
     fn a_value_on_a_boundary_counts_above_it() {
         let values: Vec<f64> = (0..80).map(|i| f64::from(i) * 0.1).collect();
-        let bins = EqualBins::of(&values);
-        assert!(bins.counts.iter().all(|&c| c == bins.counts[0]), "{bins:?}");
+        let bins = EqualBins::of(&alike(&values));
+        let first = bins.weights[0];
+        assert!(bins.weights.iter().all(|weight| (weight - first).abs() < 1e-12), "{bins:?}");
     }
 }

@@ -6,7 +6,7 @@ use super::canvas::{Canvas, Label, NORMAL, Pen, SMALL, fitted, paint, text_width
 use super::colour::{BLUE, DARK_GREEN, GREEN, GREY, INK, SKY, VERMILLION};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
-use super::histogram::{EqualBins, percent_of};
+use super::histogram::EqualBins;
 use super::model::{BandPoint, ReportLine, kilo};
 use super::panel::MANY;
 use super::panel::{FOOT_PX, Panel, align};
@@ -53,8 +53,9 @@ pub(super) fn nobody(words: &Words, line: &ReportLine) -> Option<String> {
 pub(super) fn draw(words: &Words, line: &ReportLine) -> Drawing {
     let largest_j = line.crossings.iter().map(|at| at.total_j).fold(0.0, f64::max);
     let (unit, size) = kilo(largest_j);
-    let alongs: Vec<f64> = line.crossings.iter().map(|at| at.along_m).collect();
-    let bins = EqualBins::of(&alongs);
+    let alongs: Vec<_> = line.crossings.iter().map(|at| (at.along_m, at.weight)).collect();
+    let mut bins = EqualBins::of(&alongs);
+    bins.all = line.releases as f64;
     let (along, cloud) = upper_panels(words, line, &bins, (unit, size));
     let key_px = if line.behind.is_some() { KEY_PX } else { 0.0 };
     let top = cloud.frame.bottom + FOOT_PX + GAP_PX + key_px;
@@ -64,7 +65,7 @@ pub(super) fn draw(words: &Words, line: &ReportLine) -> Drawing {
     let svg = paint(&format!("line-{}", line.number), (WIDTH_PX, bottom), &title, |canvas| {
         head(canvas, &along, words.where_pass);
         along.grid(canvas);
-        bins.bars(canvas, &along, line.releases);
+        bins.bars(canvas, &along);
         along.axes(canvas);
         head(canvas, &cloud, words.first_crossing);
         draw_cloud(canvas, &cloud, line, size);
@@ -87,15 +88,16 @@ pub(super) fn draw(words: &Words, line: &ReportLine) -> Drawing {
 
 fn caption(words: &Words, line: &ReportLine) -> String {
     let count = |n: usize| format::decimal(n as f64, 0);
-    let percent = |share: f64| format::percent(share, 2);
     let behind = line.behind.as_ref().map_or(String::new(), |behind| {
+        let at = behind.reach;
+        let [reach, low, high] = format::percents([at.value, at.low, at.high], |_| 2);
         fill(
             words.line_behind,
             &[
                 ("barriers", &behind.barriers.join(", ")),
-                ("reach", &percent(behind.reach.value)),
-                ("low", &percent(behind.reach.low)),
-                ("high", &percent(behind.reach.high)),
+                ("reach", &reach),
+                ("low", &low),
+                ("high", &high),
             ],
         )
     });
@@ -124,8 +126,7 @@ fn upper_panels(
     bins: &EqualBins,
     (unit, size): (&str, f64),
 ) -> (Panel, Panel) {
-    let tallest = percent_of(bins.largest(), line.releases);
-    let shares = Axis::from_zero([1.05 * tallest], words.releases_percent);
+    let shares = Axis::from_zero([1.05 * bins.tallest()], words.releases_percent);
     let frame = |top: f64, height: f64| PaperFrame {
         left: 0.0,
         top,

@@ -10,7 +10,7 @@ use super::panel::{FOOT_PX, Panel};
 use super::plan_view::ground;
 use super::svg::path::{PaperFrame, Spot};
 use super::words::{Words, fill};
-use crate::hazard::ObservedPath;
+use crate::hazard::{ObservedPath, Weighted, runouts};
 
 const TOP_PX: f64 = 26.0;
 const CURVE_PX: f64 = 210.0;
@@ -111,9 +111,9 @@ fn curve_panel(observed: &Observed, words: &Words) -> Panel {
 /// Runouts in ascending order (m), each with the shares of all weight before it and with it.
 fn shares(ways: &[ObservedPath], weights: Option<&Vec<f64>>) -> Vec<(f64, [f64; 2])> {
     let weight = |at: usize| weights.map_or(1.0, |all| all[at]);
-    let runouts = ways.iter().enumerate().map(|(at, way)| (way.runout_m(), weight(at)));
-    let mut sorted: Vec<(f64, f64)> = runouts.filter(|(x, _)| x.is_finite()).collect();
-    sorted.sort_by(|one, other| one.0.total_cmp(&other.0).then(one.1.total_cmp(&other.1)));
+    let weighted: Vec<Weighted> =
+        ways.iter().enumerate().map(|(at, way)| (*way, weight(at))).collect();
+    let sorted = runouts(&weighted);
     let all: f64 = sorted.iter().map(|(_, weight)| weight).sum();
     let mut below = 0.0;
     let step = |(x, weight): (f64, f64)| {

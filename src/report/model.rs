@@ -71,6 +71,12 @@ pub struct Report {
 }
 
 impl Report {
+    /// A value of every rock that was released, with what the rock weighs.
+    pub(super) fn weighed(&self, value: impl Fn(&ReleaseEnd) -> f64) -> Vec<(f64, f64)> {
+        let released = self.releases.iter().filter(|fall| fall.weight > 0.0);
+        released.map(|fall| (value(fall), fall.weight)).collect()
+    }
+
     /// The words of its language.
     pub(super) fn words(&self) -> &'static Words {
         Words::of(self.language)
@@ -141,6 +147,8 @@ pub struct ReleaseEnd {
     pub start_m: [f64; 3],
     /// Centre at the end, map coordinates (m).
     pub end_m: [f64; 3],
+    /// As many of equal weight would stand for what it does (–): 1 where all weigh the same, 0 where it was not released.
+    pub weight: f64,
 }
 
 /// One kept path.

@@ -1,10 +1,11 @@
 //! Whether the whole looks like rockfall: what was looked at, what was found, what is known from the field.
 
-use super::format;
-use super::model::{Check, Is, Report};
+use super::model::{Check, Is, ReleaseEnd, Report};
 use super::raster::GroundRaster;
 use super::reach_angle;
 use super::words::fill;
+use super::{by_frequency, format};
+use crate::hazard::Sample;
 use crate::output::Results;
 use crate::simulation::Stop;
 use std::cmp::Reverse;
@@ -12,11 +13,11 @@ use std::collections::{BTreeMap, BinaryHeap};
 
 /// Speed that single blocks seldom pass (m/s).
 const FAST_M_S: f64 = 40.0;
-/// Share of the rocks that may be faster (–): a few wild ones in a large sample are no sign of a wrong model.
+/// Share of the rocks, by what they stand for, that may be faster (–): a few wild ones in a large sample are no sign of a wrong model.
 const FEW: f64 = 0.001;
 /// Depth of a closed hollow of the ground from which it holds a rock (m).
 const HOLLOW_M: f64 = 0.2;
-/// Share of the rocks at rest that may lie in closed hollows (–).
+/// Share of the rocks at rest, by what they stand for, that may lie in closed hollows (–).
 const IN_HOLLOWS: f64 = 0.25;
 /// Edge of the triangles over the diameter of the rocks (–) from which the ground is smooth for them.
 const COARSE: f64 = 5.0;
@@ -54,45 +55,59 @@ fn reach(report: &Report) -> Option<Check> {
 }
 
 fn speed(report: &Report) -> Option<Check> {
-    let speeds = report.releases.iter().map(|fall| fall.max_speed_m_s).filter(|v| v.is_finite());
-    let fast = speeds.clone().filter(|speed| *speed > FAST_M_S).count();
-    let fastest = speeds.reduce(f64::max)?;
-    let all = report.releases.len();
+    let is_fast =
+        |fall: &&ReleaseEnd| fall.max_speed_m_s.is_finite() && fall.max_speed_m_s > FAST_M_S;
+    let fast: Vec<&ReleaseEnd> = report.releases.iter().filter(is_fast).collect();
+    let speeds = report.releases.iter().map(|fall| fall.max_speed_m_s);
+    let fastest = speeds.filter(|v| v.is_finite()).reduce(f64::max)?;
+    let share = weight(fast.iter().copied()) / weight(&report.releases);
     let words = report.words();
     let count = |n: usize| format::decimal(n as f64, 0);
-    let text = if fast == 0 { words.check_speed_found } else { words.check_fast_found };
+    let text = match fast.len() {
+        0 => words.check_speed_found.to_owned(),
+        _ => worded(report, words.check_fast_found, by_frequency::FAST),
+    };
     let found = fill(
-        text,
+        &text,
         &[
             ("v", &format::significant(fastest, 3)),
-            ("n", &count(fast)),
-            ("of", &count(all)),
+            ("n", &count(fast.len())),
+            ("of", &count(report.releases.len())),
+            ("share", &format!("{}\u{2009}%", format::significant(100.0 * share, 2))),
             ("limit", &FAST_M_S),
         ],
     );
-    Some(check(words.check_speed, found, fast as f64 <= FEW * all as f64))
+    Some(check(words.check_speed, found, fast.is_empty() || share <= FEW))
+}
+
+/// What rocks weigh together.
+fn weight<'a>(rocks: impl IntoIterator<Item = &'a ReleaseEnd>) -> f64 {
+    rocks.into_iter().map(|fall| fall.weight).sum()
+}
+
+/// The text of a check: as it is, or where rocks weigh what they stand for.
+fn worded(report: &Report, counted: &str, weighed: &str) -> String {
+    if report.is_weighted { report.words().say(weighed) } else { counted.to_owned() }
 }
 
 fn hollows(report: &Report, ground: &GroundRaster) -> Option<Check> {
     let depth = depths(ground);
-    let at_rest: Vec<[f64; 3]> = report
-        .releases
-        .iter()
-        .filter(|fall| fall.stop == Stop::AtRest)
-        .map(|fall| fall.end_m)
-        .collect();
+    let at_rest: Vec<&ReleaseEnd> =
+        report.releases.iter().filter(|fall| fall.stop == Stop::AtRest).collect();
     if at_rest.len() < ENOUGH {
         return None;
     }
-    let held = at_rest.iter().filter(|end| depth.at(ground, end) > HOLLOW_M).count();
-    let share = held as f64 / at_rest.len() as f64;
+    let is_held = |fall: &&&ReleaseEnd| depth.at(ground, &fall.end_m) > HOLLOW_M;
+    let held: Vec<&ReleaseEnd> = at_rest.iter().filter(is_held).copied().collect();
+    let share = weight(held.iter().copied()) / weight(at_rest.iter().copied());
+    // by number: a few rocks that weigh much always lie on few cells
     let (half_m2, all_m2) = areas_m2(ground, &at_rest);
     let number = |value: f64| format::significant(value, 2);
     let words = report.words();
     let mut found = fill(
-        words.check_deposits_found,
+        &worded(report, words.check_deposits_found, by_frequency::DEPOSITS),
         &[
-            ("n", &format::decimal(held as f64, 0)),
+            ("n", &format::decimal(held.len() as f64, 0)),
             ("of", &format::decimal(at_rest.len() as f64, 0)),
             ("share", &format::percent(share, 0)),
             ("depth", &HOLLOW_M),
@@ -109,17 +124,17 @@ fn hollows(report: &Report, ground: &GroundRaster) -> Option<Check> {
 }
 
 /// Area of the fewest cells that hold half of the rocks, and of all cells that hold one (m²).
-fn areas_m2(ground: &GroundRaster, ends: &[[f64; 3]]) -> (f64, f64) {
+fn areas_m2(ground: &GroundRaster, rocks: &[&ReleaseEnd]) -> (f64, f64) {
     let mut counts: BTreeMap<(i64, i64), usize> = BTreeMap::new();
-    for end in ends {
-        let cell = [end[0] / ground.cell_m, end[1] / ground.cell_m].map(|x| x.floor() as i64);
-        *counts.entry((cell[0], cell[1])).or_default() += 1;
+    for rock in rocks {
+        let [x, y, _] = rock.end_m.map(|x| (x / ground.cell_m).floor() as i64);
+        *counts.entry((x, y)).or_default() += 1;
     }
     let mut sizes: Vec<usize> = counts.into_values().collect();
     sizes.sort_unstable_by_key(|count| Reverse(*count));
     let mut held = 0;
     let half = sizes.iter().take_while(|count| {
-        let is_open = 2 * held < ends.len();
+        let is_open = 2 * held < rocks.len();
         held += **count;
         is_open
     });
@@ -183,14 +198,14 @@ fn mesh(report: &Report, results: &Results) -> Option<Check> {
     let edges = results.summary.mesh_health.get("edge_quantiles_m")?;
     let median_m = edges.get(2)?.as_f64()?;
     let radii = results.rows().ok()?.filter_map(Result::ok).map(|row| row.radius_m);
-    let mut radii: Vec<f64> = radii.filter(|radius| radius.is_finite()).collect();
-    radii.sort_by(f64::total_cmp);
-    let diameter_m = 2.0 * *radii.get(radii.len() / 2)?;
+    let released = radii.zip(&report.releases).filter(|(_, fall)| fall.weight > 0.0);
+    let sample = Sample::weighted(released.map(|(radius, fall)| (radius, fall.weight)));
+    let diameter_m = 2.0 * sample.percentile(0.5)?.value;
     let times = median_m / diameter_m;
     let words = report.words();
     let number = |value: f64| format::significant(value, 2);
     let mut found = fill(
-        words.check_mesh_found,
+        &worded(report, words.check_mesh_found, by_frequency::MESH),
         &[
             ("edge", &number(median_m)),
             ("times", &number(times)),

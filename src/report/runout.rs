@@ -6,7 +6,7 @@ use super::canvas::{Canvas, Label, Pen, SMALL, paint};
 use super::colour::{BLUE, INK, SKY, VERMILLION};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
-use super::histogram::{EqualBins, percent_of};
+use super::histogram::EqualBins;
 use super::model::{Is, Quantile, ReleaseEnd, Report, ReportQuantity};
 use super::panel::{FOOT_PX, Panel, align};
 use super::svg::path::PaperFrame;
@@ -23,16 +23,15 @@ const MANY: usize = 100;
 /// Draws both panels over one x axis.
 pub(super) fn draw(report: &Report) -> Drawing {
     let words = report.words();
-    let runouts: Vec<f64> = report.releases.iter().map(|fall| fall.runout_m).collect();
-    let bins = EqualBins::of(&runouts);
-    let (upper, lower) = panels(report, &bins, runouts.len());
+    let bins = EqualBins::of(&report.weighed(|fall| fall.runout_m));
+    let (upper, lower) = panels(report, &bins);
     let quantiles = report.quantiles.get(&ReportQuantity::Runout).map_or(&[][..], Vec::as_slice);
     let height = lower.frame.bottom + FOOT_PX;
     let svg = paint("runout", (WIDTH_PX, height), words.runout, |canvas| {
         upper.grid(canvas);
         lower.grid(canvas);
         exceedance(canvas, &upper, report);
-        bins.bars(canvas, &lower, runouts.len());
+        bins.bars(canvas, &lower);
         for quantile in quantiles {
             let pen = Pen::full(INK, 0.7).dotted();
             upper.upright(canvas, quantile.at.value, pen);
@@ -43,7 +42,7 @@ pub(super) fn draw(report: &Report) -> Drawing {
         open_end(canvas, &upper, report);
         upper.axes_above_another(canvas);
         lower.axes(canvas);
-        if runouts.is_empty() {
+        if report.releases.is_empty() {
             lower.nothing(canvas, words.no_release);
         }
     });
@@ -108,7 +107,7 @@ fn caption(report: &Report, bins: &EqualBins) -> String {
     by_frequency::noted(caption, report.is_weighted.then_some(by_frequency::CURVES), words)
 }
 
-fn panels(report: &Report, bins: &EqualBins, count: usize) -> (Panel, Panel) {
+fn panels(report: &Report, bins: &EqualBins) -> (Panel, Panel) {
     let words = report.words();
     let mut x = bins.axis(words.runout_axis);
     // bins far from 0 still show how far that is
@@ -116,7 +115,7 @@ fn panels(report: &Report, bins: &EqualBins, count: usize) -> (Panel, Panel) {
         x.low = 0.0;
     }
     let least = report.runout_exceedance.iter().map(|p| p.y.value).filter(|&y| y > 0.0);
-    let y = if count >= MANY {
+    let y = if report.releases.len() >= MANY {
         let marked = report.quantiles.get(&ReportQuantity::Runout).into_iter().flatten();
         let marked = marked.map(|quantile| 0.999 * (1.0 - quantile.probability));
         let least = least.chain(marked).fold(0.1, f64::min).max(1e-4);
@@ -124,8 +123,7 @@ fn panels(report: &Report, bins: &EqualBins, count: usize) -> (Panel, Panel) {
     } else {
         Axis::linear(0.0, 1.0, words.share_farther)
     };
-    let tallest = percent_of(bins.largest(), count);
-    let shares = Axis::from_zero([1.05 * tallest], words.releases_percent);
+    let shares = Axis::from_zero([1.05 * bins.tallest()], words.releases_percent);
     let (top, bottom) = (TOP_PX, TOP_PX + UPPER_PX);
     let right = WIDTH_PX - 16.0;
     let mut upper = Panel::new(PaperFrame { left: 0.0, top, right, bottom }, x.clone(), y);

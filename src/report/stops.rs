@@ -84,9 +84,9 @@ fn bar(
     canvas.text(&Label::new(name(&share.stop, words), (panel.frame.left - 8.0, y)).right());
     let count = format::decimal(share.count as f64, 0);
     let decimals = decimals_for(percent.high - percent.low);
-    let bound = |share: f64| format::percent(share, decimals);
-    let interval = words.interval(&bound(percent.low), &bound(percent.high));
-    let share = bound(percent.value);
+    let [share, low, high] =
+        format::percents([percent.value, percent.low, percent.high], |_| decimals);
+    let interval = words.interval(&low, &high);
     let computed = fill(&words.say(by_frequency::COUNT), &[("n", &count)]);
     // a weighted share is not that of the count
     let (head, interval) = if is_weighted {

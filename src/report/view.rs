@@ -75,9 +75,7 @@ impl Shown {
         let words = Words::of(results.summary.language);
         let mut walls = walls::of(results, ground);
         for wall in &mut walls {
-            let said = words.of_view(&wall.words);
-            // shares by frequency stand with what is recorded
-            wall.words = if said == wall.words { words.say(&said) } else { said };
+            wall.words = words.of_view(&wall.words);
         }
         let mut hulls = BlockHulls::default();
         Ok(Self {

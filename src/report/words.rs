@@ -2,7 +2,8 @@
 //!
 //! A text may have places for what is found, written `{name}`; `fill` puts it in. Names of lines, scenes and sources are
 //! the user's and stay as they are. What the program records of a run in English (plan, inputs, warnings) is said by patterns.
-//! Health of the meshes and what no pattern knows stay as they were recorded.
+//! Health of the meshes and what no pattern knows stay as they were recorded. Numbers have a decimal point in every language, as
+//! Switzerland writes them: one number never stands in two ways on a page.
 
 mod de;
 mod en;
@@ -92,9 +93,9 @@ words! {
     measured_title, measured_curves, measured_map, measured, computed, share_of_rocks, no_rock,
     measured_caption, col_mean_measured, col_computed, col_ks, col_ks_limit, col_area,
     col_side_measured, col_side_computed, agreement_title, agreement_note, this_run,
-    calibration_title, calibration_note, blocks_held_out, uncalibrated, fitted_without, held_out,
+    calibration_title, calibration_note, calibration_note_one, blocks_held_out, uncalibrated, fitted_without, held_out,
     fitted_all, hardly_told, told_title, told_note, fitted, ends_title, ends_note, difference,
-    censored, have_left, remedy_left, have_no_time, remedy_time, have_no_budget, remedy_budget,
+    some_rocks, censored, have_left, remedy_left, have_no_time, remedy_time, have_no_budget, remedy_budget,
     check_failed, check_reach, check_reach_found, check_speed, check_speed_found, check_fast_found,
     check_deposits, check_deposits_found, check_pits, check_mesh, check_mesh_found, check_coarse,
     year_title, year_axis, year_energy_axis, years, nobody_year, hits_of, passages_of,
@@ -231,6 +232,24 @@ mod tests {
                     let is_sentence = text.split(' ').count() > 4 && *name != "percentile_of";
                     assert!(!is_sentence || text != same, "{name}: {text}");
                 }
+            }
+        }
+    }
+
+    /// What is filled in and what stands on an axis has a decimal point in every language: so has what stands in a sentence.
+    #[test]
+    fn numbers_in_sentences_have_a_point_as_those_of_tables_and_figures() {
+        for language in Language::ALL {
+            let words = Words::of(language);
+            let said = words.said.iter().copied().flatten().map(|(_, said)| *said);
+            let texts = words.texts().into_iter().map(|(_, text)| text).chain(words.method);
+            let terms = words.glossary.iter().map(|(_, meaning)| *meaning);
+            let view = words.view.iter().map(|(_, said)| *said);
+            for text in texts.chain(said).chain(terms).chain(view) {
+                let is_comma = |three: &[u8]| {
+                    three[1] == b',' && three[0].is_ascii_digit() && three[2].is_ascii_digit()
+                };
+                assert!(!text.as_bytes().windows(3).any(is_comma), "{language:?}: {text}");
             }
         }
     }

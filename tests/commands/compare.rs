@@ -247,3 +247,59 @@ fn other_seeds_do_not_pair_and_results_stay_as_they_are() {
     let message = program::message(Comparison::of(&one, &out));
     assert!(message.contains("holds no results"), "{message}");
 }
+
+/// Walls over the release line between which only small rocks find room, as trees of the quick example.
+fn walls(dir: &Path) -> String {
+    let quad = |k: i32| {
+        let x = 0.55 * f64::from(k);
+        let corner = |y: f64, z: f64| format!("vertex {x} {y} {z}\n");
+        let [a, b, c, d] =
+            [(2.0, -10.0), (6.0, -10.0), (6.0, 40.0), (2.0, 40.0)].map(|(y, z)| corner(y, z));
+        let facet = |p: &str, q: &str, r: &str| {
+            format!("facet normal 0 0 0\nouter loop\n{p}{q}{r}endloop\nendfacet\n")
+        };
+        facet(&a, &b, &c) + &facet(&a, &c, &d)
+    };
+    let facets: String = (5..68).map(quad).collect();
+    let path = dir.join("walls.stl");
+    std::fs::write(&path, format!("solid walls\n{facets}endsolid walls\n")).unwrap();
+    format!("\n[[trees]]\nmesh = \"{}\"\nground = \"trunk\"\n", path.display())
+}
+
+/// Rocks that found no place count in no share at a line, as in the report of their run; of pairs neither rock counts.
+#[test]
+fn rocks_that_were_not_released_count_in_no_share() {
+    let dir = tempfile::tempdir().unwrap();
+    let walls = walls(dir.path());
+    let free = run(dir.path(), "free", "150", |scene| scene);
+    let tight = run(dir.path(), "tight", "150", |scene| scene + &walls);
+    let other =
+        run(dir.path(), "other", "150", |scene| scene.replace("seed = 1", "seed = 2") + &walls);
+    let reach = |out: &Path| -> f64 {
+        let summary = std::fs::read_to_string(out.join("summary.json")).unwrap();
+        let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
+        let lost = summary["stops"]["not_released"].as_u64().unwrap_or(0);
+        assert_eq!(lost > 20 && lost < 130, out != free, "{lost}");
+        100.0 * summary["lines"][1]["reach"]["share"].as_f64().unwrap()
+    };
+    let compared = |one: &Path, other: &Path| -> ([f64; 2], String) {
+        let out = dir.path().join("out");
+        Comparison::of(one, other).unwrap().write(&out).unwrap();
+        let table = std::fs::read_to_string(out.join("differences.csv")).unwrap();
+        let row =
+            table.lines().find(|row| row.contains("meadow") && row.contains("Cross it")).unwrap();
+        let cells: Vec<&str> = row.rsplit(',').collect();
+        let page = std::fs::read_to_string(out.join("compare.html")).unwrap();
+        ([cells[5], cells[4]].map(|cell| cell.parse().unwrap()), page)
+    };
+    let close = |found: f64, own: f64| (found - own).abs() < 1e-9;
+    // nothing pairs: each run's own share
+    let ([a, b], page) = compared(&tight, &other);
+    assert!(close(a, reach(&tight)) && close(b, reach(&other)), "{a} {b}");
+    assert!(page.contains("were not released"));
+    // pairs: of the small rocks alone, which the walls have let be released
+    let ([a, b], page) = compared(&free, &tight);
+    assert!(close(b, reach(&tight)) && !close(a, reach(&free)) && a > 0.0, "{a} {b}");
+    let lost = page.split("rocks of A and ").next().unwrap().rsplit(['>', ' ']).nth(1).unwrap();
+    assert!((21..130).contains(&lost.parse().unwrap()), "{lost}");
+}

@@ -4,9 +4,9 @@
 
 use crate::program;
 
+use chacha20::ChaCha8Rng;
 use program::{command, rockfall, same_results};
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::thread::sleep;

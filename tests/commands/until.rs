@@ -8,8 +8,8 @@
 
 use crate::kill::{kill_after, succeed, timed};
 use crate::program::{command, same_results};
+use chacha20::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use std::path::Path;
 use std::process::Command;
 

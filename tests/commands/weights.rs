@@ -159,13 +159,14 @@ fn intervals_of_weighted_differences_hold_the_truth() {
         ("mean", 0.2 * mean),
         ("median", 0.2 * median),
     ];
+    let all: Vec<usize> = (0..ROCKS).collect();
     for paired in [true, false] {
         let mut inside = [0_u32; 4];
         for seed in 0..PAIRS {
             let runs = [0, 1].map(|run| made(&frequencies[run], seed, run, paired));
             let counts = [0, 1].map(|run| WeightedCount {
                 releases: &runs[run].0,
-                among: 0..ROCKS,
+                among: &all,
                 weights: &weights[run],
             });
             let read = |of: &dyn Fn(&Values, &Weights) -> Option<Reading>| {
@@ -220,7 +221,8 @@ fn nothing_seen_of_weighted_rocks_is_not_nothing_known() {
     let law = FrequencyLaw::Classes(vec![class(0.1, 0.9), class(10.0, 0.1)]);
     let sources = vec![RockSource { name: "wall".to_owned(), law }];
     let weights = Frequency::new(sources, vec![], vec![]).weights(200);
-    let none = WeightedCount { releases: &[], among: 0..200, weights: &weights };
+    let all: Vec<usize> = (0..200).collect();
+    let none = WeightedCount { releases: &[], among: &all, weights: &weights };
     let found = Difference::of_weighted_shares(&none, &none, true);
     let (low, high) = found.interval.unwrap();
     // the heaviest stands for 0.9/100 of all events; 1.96 √2 of it
@@ -271,7 +273,10 @@ fn no_count_gives_a_share_by_frequency() {
         "arriving (computed)",
         &format!("; {count} computed"),
         "Shares are by frequency; numbers of rocks are of computed ones.",
-        "Curves and lines are by frequency; bars",
+        "Curves, lines and bars are by frequency;",
+        "by frequency (",
+        "half of all computed ones lie",
+        "median rock by frequency",
     ] {
         assert!(page.contains(words), "{words}");
     }
@@ -286,4 +291,34 @@ fn no_count_gives_a_share_by_frequency() {
     let stops = fs::read_to_string(out.join("figures/stops.svg")).unwrap();
     let faults = crate::boxes::faults(&stops, "stops.svg");
     assert!(faults.is_empty(), "{}", faults.join("\n"));
+    half_of_the_bars_lie_before_the_median(&out);
+}
+
+/// Bars and percentiles of a figure are of the same rocks, weighed alike: half of all that the bars show lies before the median.
+fn half_of_the_bars_lie_before_the_median(out: &Path) {
+    let drawing = fs::read_to_string(out.join("figures/runout.svg")).unwrap();
+    let number = |text: &str| text.parse::<f64>().unwrap();
+    let of = |tag: &str, key: &str| {
+        let value = tag.split_once(&format!(" {key}=\"")).unwrap().1;
+        number(value.split_once('"').unwrap().0)
+    };
+    let is_bar = |tag: &&str| tag.starts_with("<rect") && tag.contains("#56b4e9");
+    let bars: Vec<[f64; 3]> = drawing
+        .split_inclusive('>')
+        .map(str::trim_start)
+        .filter(is_bar)
+        .map(|tag| ["x", "width", "height"].map(|key| of(tag, key)))
+        .collect();
+    // percentiles go up from the foot of the bars, the median first
+    let foot = "3600l0-1100\"";
+    let line = drawing.split("<path d=\"M").filter(|path| path.contains(foot));
+    let median = line.map(|path| number(path.split_once(' ').unwrap().0)).reduce(f64::min).unwrap();
+    let all: f64 = bars.iter().map(|[.., height]| height).sum();
+    let before = |is_before: &dyn Fn(&[f64; 3]) -> bool| -> f64 {
+        bars.iter().filter(|bar| is_before(bar)).map(|[.., height]| height).sum::<f64>() / all
+    };
+    let least = before(&|[x, width, _]| x + width < median);
+    let most = before(&|[x, ..]| *x <= median);
+    // a bar is drawn to a tenth of a pixel
+    assert!(least <= 0.505 && most >= 0.495, "{least} {most}: {bars:?}, median {median}");
 }

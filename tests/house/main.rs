@@ -30,9 +30,9 @@ fn sources(dir: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// Roots of the two packages of which the product is made, the lower one first. The folder of the lower one stands in that of the
-/// upper one, as do its sources.
-const ROOTS: [&str; 2] = [ENGINE, "src"];
+/// Roots of the packages of which the product is made, the lowest first. The folders of the lower ones stand in that of the
+/// uppermost, as do their sources.
+const ROOTS: [&str; 3] = ["src/base", ENGINE, "src"];
 const ENGINE: &str = "src/engine";
 
 /// A source's path inside its package, as the compiler sees it.
@@ -56,7 +56,7 @@ fn without_tests(text: &str) -> &str {
     text.split("#[cfg(test)]\nmod tests {").next().unwrap_or(text)
 }
 
-/// Modules in the order in which the two `lib.rs` list them, bottom floor first.
+/// Modules in the order in which the `lib.rs` of all list them, bottom floor first.
 fn floors() -> Vec<String> {
     let libs = ROOTS.map(|root| fs::read_to_string(format!("{root}/lib.rs")).unwrap());
     let name = |line: &str| {

@@ -2,8 +2,8 @@
 
 #![allow(missing_docs, dead_code, unreachable_pub)]
 
+use chacha20::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use rockfall::hazard::{AnnualRequest, LineInfo, MapFrame};
 use rockfall::output::{Identity, ReleaseZone, RunInfo, Site};
 use rockfall::plan::PlanEntry;

@@ -2,9 +2,9 @@
 
 use crate::made;
 
+use chacha20::ChaCha8Rng;
 use made::{fall, info};
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use rockfall::hazard::{
     CrossingRow, Hazard, Line, Open, Proportion, Quantity, Ranks, Row, Sample, StopKind, Totals,
 };

@@ -77,6 +77,7 @@ fn still() -> ReleaseEnd {
         tree_impacts: 0,
         start_m: [2_600_000.0, 1_200_000.0, 500.0],
         end_m: [2_600_000.0, 1_200_000.0, 500.0],
+        weight: 1.0,
     }
 }
 

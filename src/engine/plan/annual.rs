@@ -4,7 +4,7 @@ use super::{EvaluationLine, Part};
 use crate::error::{Error, Result};
 use crate::frequency::{Frequency, Stratum, radius_of_m3};
 use crate::random::Distribution;
-use crate::release::{self, Release, Releases, TRIED};
+use crate::release::{self, Release};
 use crate::rock::Rock;
 use crate::scene::{MatrixTable, ObjectTable, Scene, Zone};
 use crate::terrain::Terrain;
@@ -164,25 +164,21 @@ pub(super) fn evaluation_lines(scene: &Scene, terrain: &Terrain) -> Result<Vec<E
 /// Says which objects the first releases lie over before they have moved: such a rock hits at once, with next to no energy,
 /// and a hazard that is none stands in every number of the object.
 pub(super) fn over_release(
-    (releases, terrain): (&Releases, &Terrain),
+    tried: &[Release],
     lines: Option<&[EvaluationLine]>,
     warnings: &mut Vec<String>,
 ) {
-    let objects = lines.unwrap_or_default().iter();
-    let objects: Vec<_> = objects.filter_map(|line| Some((line, line.footprint?))).collect();
-    let tried = if objects.is_empty() { 0 } else { TRIED };
-    let started = |index: usize| releases.try_release(terrain, index).ok();
-    let started: Vec<Release> = (0..tried).filter_map(started).collect();
-    for (object, footprint) in objects {
+    let lines = lines.unwrap_or_default().iter();
+    for (object, footprint) in lines.filter_map(|line| Some((line, line.footprint?))) {
         let is_over = |release: &&Release| {
             let at = release.motion.position_m;
             object.gap_m(footprint, [at.x, at.y]).0 < release.rock.radius_m
         };
-        let over = started.iter().filter(is_over).count();
+        let over = tried.iter().filter(is_over).count();
         if over > 0 {
             warnings.push(format!(
                 "{over} of {} releases tried out lie over the object “{}” before they move: they hit it at once, with the energy of the release. Draw the object or the release elsewhere",
-                started.len(), object.name
+                tried.len(), object.name
             ));
         }
     }

@@ -1,21 +1,21 @@
 //! The first releases, tried out before a run.
 
-use super::{Frequency, Releases, Where};
+use super::{Frequency, Release, Releases, Where};
 use crate::error::{Error, Result};
 use crate::terrain::Terrain;
 
 /// Releases tried out.
-pub(crate) const TRIED: usize = 1000;
+const TRIED: usize = 1000;
 /// Releases of a source that must be tried before it is refused: large rocks may find no room where smaller ones do.
 const FEWEST_OF_SOURCE: usize = 20;
 
 impl Releases {
-    /// Tries the first releases out before a run: says which share of the zone has no ground or no room.
+    /// Tries the first releases out before a run: says which share of the zone has no ground or no room. Those that were made.
     ///
     /// # Errors
     /// If none of them can be made, or none of a source that has a frequency: its events would be missing.
-    pub fn try_out(&self, terrain: &Terrain, warnings: &mut Vec<String>) -> Result<()> {
-        let (mut places, mut made, mut first) = (0, 0, None);
+    pub fn try_out(&self, terrain: &Terrain, warnings: &mut Vec<String>) -> Result<Vec<Release>> {
+        let (mut places, mut made, mut first) = (0, Vec::new(), None);
         let sources = self.frequency.as_ref().map_or(&[][..], |frequency| frequency.sources());
         let mut of_source = vec![[0; 2]; sources.len()];
         for index in 0..TRIED {
@@ -26,18 +26,16 @@ impl Releases {
                 (*tried, *released) = (*tried + 1, *released + usize::from(release.is_ok()));
             }
             match release {
-                Ok(_) => made += 1,
+                Ok(release) => made.push(release),
                 Err(lost) => _ = first.get_or_insert(lost),
             }
         }
-        if made > 0 {
-            self.check_sources(&of_source)?;
+        if let (true, Some(lost)) = (made.is_empty(), first) {
+            return Err(lost.error);
         }
-        let Some(lost) = first.filter(|_| made == 0) else {
-            warnings.extend(self.lost_places((places, made)));
-            return Ok(());
-        };
-        Err(lost.error)
+        self.check_sources(&of_source)?;
+        warnings.extend(self.lost_places((places, made.len())));
+        Ok(made)
     }
 
     /// Refuses a source of which no release tried out could be made; `of_source`: how many were tried, and how many made.

@@ -210,25 +210,42 @@ impl Scene {
 impl GroundTable {
     /// What a fit may have set; none where the ground leaves it out, or lacks the soil.
     pub fn value_of(&self, key: VaryKey) -> Option<Distribution> {
-        let (slip, scar) = (self.slip_friction.as_ref(), self.scar.as_ref());
-        let of_soil = match key {
-            VaryKey::FrictionAngleDeg => return Some(self.friction_angle_deg.clone()),
-            VaryKey::Restitution => return self.restitution.clone(),
-            VaryKey::RestitutionHalfSpeedMS => return self.restitution_half_speed_m_s.clone(),
-            VaryKey::TangentialRatio => return self.tangential_ratio.clone(),
+        if key == VaryKey::FrictionAngleDeg {
+            return Some(self.friction_angle_deg.clone());
+        }
+        let mut own = self.clone();
+        match own.drawn(key) {
+            Some(drawn) => drawn.clone(),
+            None => Distribution::fixed(*own.of_soil(key)?).ok(),
+        }
+    }
+
+    /// Where a value stands that is drawn for each rock and that a ground may leave out; none of other values.
+    pub fn drawn(&mut self, key: VaryKey) -> Option<&mut Option<Distribution>> {
+        match key {
+            VaryKey::Restitution => Some(&mut self.restitution),
+            VaryKey::RestitutionHalfSpeedMS => Some(&mut self.restitution_half_speed_m_s),
+            VaryKey::TangentialRatio => Some(&mut self.tangential_ratio),
             VaryKey::RollingFriction | VaryKey::RollingFrictionSpread => {
-                return self.rolling_friction.clone();
+                Some(&mut self.rolling_friction)
             }
-            VaryKey::RoughnessDeg => return self.roughness_deg.clone(),
-            VaryKey::RoughnessLengthM => return self.roughness_length_m.clone(),
-            VaryKey::SlipFrictionMax => slip.map(|slip| slip.most),
-            VaryKey::SlipFrictionKappaPerM => slip.map(|slip| slip.kappa_per_m),
-            VaryKey::SlipFrictionBetaPerS => slip.map(|slip| slip.beta_per_s),
-            VaryKey::ScarStrengthKnM2 => scar.map(|scar| scar.strength_kn_m2),
-            VaryKey::ScarDrag => scar.map(|scar| scar.drag),
-            VaryKey::CornerRadius => None,
-        };
-        Distribution::fixed(of_soil?).ok()
+            VaryKey::RoughnessDeg => Some(&mut self.roughness_deg),
+            VaryKey::RoughnessLengthM => Some(&mut self.roughness_length_m),
+            _ => None,
+        }
+    }
+
+    /// Where a value of the soil stands, a number; none of other values, nor without that soil.
+    pub fn of_soil(&mut self, key: VaryKey) -> Option<&mut f64> {
+        let (slip, scar) = (self.slip_friction.as_mut(), self.scar.as_mut());
+        match key {
+            VaryKey::SlipFrictionMax => slip.map(|slip| &mut slip.most),
+            VaryKey::SlipFrictionKappaPerM => slip.map(|slip| &mut slip.kappa_per_m),
+            VaryKey::SlipFrictionBetaPerS => slip.map(|slip| &mut slip.beta_per_s),
+            VaryKey::ScarStrengthKnM2 => scar.map(|scar| &mut scar.strength_kn_m2),
+            VaryKey::ScarDrag => scar.map(|scar| &mut scar.drag),
+            _ => None,
+        }
     }
 }
 

@@ -17,7 +17,8 @@ pub(super) type NewValue = (Option<String>, &'static str, String);
 /// Bytes of a text, and what stands there instead.
 type Replacement = (Range<usize>, String);
 
-/// The text of a scene file with other values, which `[calibrate]` notes as fitted. Paths are written in full, so that the text may stand in another folder.
+/// The text of a scene file with other values, which `[calibrate]` notes as fitted. Paths are written in full, so that the
+/// text may stand in another folder.
 ///
 /// # Errors
 /// A file that cannot be read, or a ground that is not there.

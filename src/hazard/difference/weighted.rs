@@ -10,15 +10,14 @@ use super::super::rate::share_of;
 use super::super::sample::Sample;
 use super::{Difference, Reading, Values, variance};
 use crate::frequency::Weights;
-use std::ops::Range;
 
 /// Releases that count, among which, and what they stand for.
 #[derive(Debug, Clone)]
 pub struct WeightedCount<'a> {
     /// Those that count, by rising number.
     pub releases: &'a [usize],
-    /// All that could.
-    pub among: Range<usize>,
+    /// All that could, by rising number.
+    pub among: &'a [usize],
     /// What each of them stands for.
     pub weights: &'a Weights,
 }
@@ -80,7 +79,7 @@ impl WeightedCount<'_> {
             let pull = (own - counted[stratum] as f64 / rocks) * few;
             (release, pull * weights.of_stratum(stratum) * each)
         };
-        self.among.clone().map(pull).collect()
+        self.among.iter().copied().map(pull).collect()
     }
 }
 

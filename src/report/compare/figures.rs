@@ -146,7 +146,7 @@ fn exceedance(
     });
     let count =
         |k: usize| format::decimal(pair[k].values.first().map_or(0, |(_, v)| v.len()) as f64, 0);
-    let weighted = pair.iter().any(|of| of.standing.is_some());
+    let weighted = pair.iter().any(|of| of.among.standing.is_some());
     let caption = if weighted { WEIGHTED_CAPTION } else { CURVES_CAPTION };
     let caption = fill(&words.say(caption), &[("a", &count(0)), ("b", &count(1))]);
     Drawing { svg, caption }

@@ -1,6 +1,6 @@
 //! Whose values are compared: all releases, and those that come to each line and barrier that both runs have.
 
-use super::weighing::{self, RunWeights};
+use super::weighing::{self, CountedReleases};
 use crate::error::Result;
 use crate::hazard::{
     self, Barrier, CrossingRow, Quantity, Reading, Row, Sample, StopKind, Values, WeightedCount,
@@ -8,53 +8,64 @@ use crate::hazard::{
 use crate::output::Results;
 use crate::report::format;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Some rocks of one run.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Population {
     /// What they are: a heading.
     pub(super) name: String,
-    /// Releases that they are among.
-    pub(super) among: Range<usize>,
-    /// What these stand for; none where all of both runs weigh the same.
-    pub(super) standing: Option<RunWeights>,
-    /// Shares: name, and the releases that count.
-    pub(super) shares: Vec<(String, Vec<usize>)>,
+    /// Released rocks that they are among.
+    pub(super) among: Arc<CountedReleases>,
+    pub(super) shares: Vec<CountedShare>,
     /// Quantities: what, and its value for each release that has one.
     pub(super) values: Vec<(ComparedQuantity, Values)>,
 }
 
-impl Population {
-    /// Releases that count, with what they stand for; none where all weigh the same.
-    pub(super) fn weighted<'a>(&'a self, releases: &'a [usize]) -> Option<WeightedCount<'a>> {
-        let weights = &self.standing.as_ref()?.weights;
-        Some(WeightedCount { releases, among: self.among.clone(), weights })
+/// A share of some releases of a run.
+#[derive(Debug, Clone)]
+pub(super) struct CountedShare {
+    pub(super) name: String,
+    /// Those that count, by rising number.
+    pub(super) releases: Vec<usize>,
+    /// All that could.
+    pub(super) among: Arc<CountedReleases>,
+    /// Whether they come to a place, so that their number a year is asked for too.
+    pub(super) come: bool,
+}
+
+impl CountedShare {
+    /// With what they stand for; none where all weigh the same.
+    pub(super) fn weighted(&self) -> Option<WeightedCount<'_>> {
+        let weights = &self.among.standing.as_ref()?.weights;
+        Some(WeightedCount { releases: &self.releases, among: &self.among.releases, weights })
     }
 
     /// The same of those that come to a place, where they stand for events a year.
-    pub(super) fn in_a_year<'a>(&'a self, releases: &'a [usize]) -> Option<WeightedCount<'a>> {
-        let is_a_year = self.standing.as_ref()?.is_a_year;
-        let come = !matches!(self.values.first(), Some((ComparedQuantity::Whole(_), _)));
-        self.weighted(releases).filter(|_| is_a_year && come)
+    pub(super) fn in_a_year(&self) -> Option<WeightedCount<'_>> {
+        let is_a_year = self.among.standing.as_ref()?.is_a_year;
+        self.weighted().filter(|_| is_a_year && self.come)
     }
 
-    /// Share of all that some of its releases are (–).
-    fn share(&self, releases: &[usize]) -> f64 {
-        match &self.standing {
-            None => releases.len() as f64 / self.among.len().max(1) as f64,
-            Some(of) => hazard::share_of(&of.weights, releases.iter().copied()).share,
+    /// Of all that could (–).
+    fn share(&self) -> f64 {
+        match &self.among.standing {
+            None => self.releases.len() as f64 / self.among.releases.len().max(1) as f64,
+            Some(of) => hazard::share_of(&of.weights, self.releases.iter().copied()).share,
         }
     }
+}
 
+impl Population {
     pub(super) fn mean(&self, values: &Values) -> Option<Reading> {
-        match &self.standing {
+        match &self.among.standing {
             None => Reading::mean(values),
             Some(of) => Reading::weighted_mean(values, &of.weights),
         }
     }
 
     pub(super) fn percentile(&self, values: &Values, p: f64) -> Option<Reading> {
-        match &self.standing {
+        match &self.among.standing {
             None => Reading::percentile(values, p),
             Some(of) => Reading::weighted_percentile(values, &of.weights, p),
         }
@@ -62,7 +73,7 @@ impl Population {
 
     /// The values in another unit, sorted.
     pub(super) fn sample(&self, values: &Values, size: f64) -> Sample {
-        match &self.standing {
+        match &self.among.standing {
             None => Sample::of(values.iter().map(|(_, x)| x / size)),
             Some(of) => {
                 let weight = |release: usize| of.weights.of_release(release);
@@ -130,11 +141,14 @@ const WHOLE: [Quantity; 7] = [
 pub(super) fn of(
     runs: &[Results; 2],
     ranges: &[Range<usize>; 2],
+    paired: bool,
 ) -> Result<(Vec<[Population; 2]>, Vec<String>)> {
-    let standing = weighing::of(runs, ranges);
-    let [one, other] = [0, 1].map(|k| all(&runs[k], &ranges[k], standing[k].as_ref()));
+    let whole = CountedReleases::of(runs, ranges.clone().map(Iterator::collect));
+    let among = CountedReleases::of(runs, weighing::released(runs, ranges, paired)?);
+    let [one, other] = [0, 1].map(|k| all(&runs[k], (&whole[k], &among[k])));
     let mut pairs = vec![[one?, other?]];
     let mut notes = Vec::new();
+    notes.extend(not_released(&whole, &among));
     let lines = |run: &Results| -> Vec<String> {
         let own = run.lines.iter().filter(|line| !line.info.of_barrier);
         own.map(|line| line.info.name.clone()).collect()
@@ -148,8 +162,7 @@ pub(super) fn of(
         }
     }
     let both: Vec<String> = one.into_iter().filter(|name| other.contains(name)).collect();
-    let [one, other] =
-        [0, 1].map(|k| at_lines(&runs[k], &both, (&ranges[k], standing[k].as_ref())));
+    let [one, other] = [0, 1].map(|k| at_lines(&runs[k], &both, &among[k]));
     let (one, other) = (one?, other?);
     for (a, b) in one.into_iter().zip(other) {
         let stops = a.barriers_stop || b.barriers_stop;
@@ -171,12 +184,25 @@ struct AtLine {
 /// Share of rocks that left the terrain from which on it must be said what that does (–).
 const MANY_LEFT: f64 = 0.01;
 
+/// What is said of rocks that one of the runs did not release; nothing where there are none.
+fn not_released(
+    whole: &[Arc<CountedReleases>; 2],
+    among: &[Arc<CountedReleases>; 2],
+) -> Option<String> {
+    let [a, b] = [0, 1].map(|k| whole[k].releases.len() - among[k].releases.len());
+    (a + b > 0).then(|| {
+        format!(
+            "{a} rocks of A and {b} of B count only among the ways in which rocks end: they were not released, or the same rock \
+             of the other run was not."
+        )
+    })
+}
+
 /// What rocks that left the terrain do to the numbers, where there are some.
 pub(super) fn censored(pair: &[Population; 2]) -> Option<String> {
     let left = |of: &Population| {
         let name = ended(StopKind::LeftTerrain);
-        let found = of.shares.iter().find(|(share, _)| share == name);
-        found.map_or(0.0, |(_, releases)| of.share(releases))
+        of.shares.iter().find(|share| share.name == name).map_or(0.0, CountedShare::share)
     };
     let [a, b] = [left(&pair[0]), left(&pair[1])];
     (a.max(b) > MANY_LEFT).then(|| {
@@ -189,24 +215,32 @@ pub(super) fn censored(pair: &[Population; 2]) -> Option<String> {
     })
 }
 
-/// All releases of a run.
-fn all(run: &Results, range: &Range<usize>, standing: Option<&RunWeights>) -> Result<Population> {
+/// All releases of a run: `whole` end in some way, `among` are the released ones that have values.
+fn all(
+    run: &Results,
+    (whole, among): (&Arc<CountedReleases>, &Arc<CountedReleases>),
+) -> Result<Population> {
+    let share = |stop: StopKind| CountedShare {
+        name: ended(stop).to_owned(),
+        releases: Vec::new(),
+        among: Arc::clone(whole),
+        come: false,
+    };
     let mut found = Population {
         name: "All releases".to_owned(),
-        among: range.clone(),
-        standing: standing.cloned(),
-        shares: StopKind::ALL.map(|stop| (ended(stop).to_owned(), Vec::new())).into(),
+        among: Arc::clone(among),
+        shares: StopKind::ALL.map(share).into(),
         values: WHOLE.map(|quantity| (ComparedQuantity::Whole(quantity), Values::new())).into(),
     };
     for row in run.rows()? {
         let row: Row = row?;
-        if !range.contains(&row.index) {
+        if !whole.contains(row.index) {
             continue;
         }
         let stop = StopKind::ALL.iter().position(|stop| *stop == row.stop).unwrap_or(0);
-        found.shares[stop].1.push(row.index);
+        found.shares[stop].releases.push(row.index);
         // as in every other table: where a failed rock stopped is where the computation did
-        if row.stop.counts() {
+        if row.stop.counts() && among.contains(row.index) {
             for ((_, values), quantity) in found.values.iter_mut().zip(WHOLE) {
                 values.push((row.index, quantity.of(&row)));
             }
@@ -228,68 +262,75 @@ fn ended(stop: StopKind) -> &'static str {
 
 /// The rocks that come to each of some lines: all that cross, and where there are barriers those that the barriers
 /// before have let through.
-fn at_lines(
-    run: &Results,
-    names: &[String],
-    (range, standing): (&Range<usize>, Option<&RunWeights>),
-) -> Result<Vec<AtLine>> {
+fn at_lines(run: &Results, names: &[String], among: &Arc<CountedReleases>) -> Result<Vec<AtLine>> {
     let rows: Vec<CrossingRow> = run
         .crossings()?
-        .filter(|row| row.as_ref().map_or(true, |row| range.contains(&row.index)))
+        .filter(|row| row.as_ref().map_or(true, |row| among.contains(row.index)))
         .collect::<Result<_>>()?;
     let barriers: Vec<Barrier> =
         run.summary.barriers.iter().map(|one| one.barrier.clone()).collect();
     let arrived = arrived(&barriers, names, &rows)?;
     let mut found = Vec::new();
     for (name, arrived) in names.iter().zip(arrived) {
-        let mut crossing = crossing(name, &rows);
+        let crossing = crossing(name, &rows, among);
         let is_barrier = barriers.iter().any(|barrier| barrier.name == *name);
-        let barriers_stop = is_barrier || arrived.len() < crossing.shares[0].1.len();
-        let mut arriving = arriving(name, &barriers, &arrived);
-        for population in [&mut crossing, &mut arriving] {
-            (population.among, population.standing) = (range.clone(), standing.cloned());
-        }
+        let barriers_stop = is_barrier || arrived.len() < crossing.shares[0].releases.len();
+        let arriving = arriving(name, (&barriers, &arrived), among);
         found.push(AtLine { crossing, arriving, barriers_stop });
     }
     Ok(found)
 }
 
-fn crossing(name: &str, rows: &[CrossingRow]) -> Population {
+/// A share of the released rocks at a place.
+fn at_place(
+    name: &str,
+    releases: Vec<usize>,
+    (among, come): (&Arc<CountedReleases>, bool),
+) -> CountedShare {
+    CountedShare { name: name.to_owned(), releases, among: Arc::clone(among), come }
+}
+
+fn crossing(name: &str, rows: &[CrossingRow], among: &Arc<CountedReleases>) -> Population {
     let own = || rows.iter().filter(|row| row.line == name);
     let values = |of: fn(&CrossingRow) -> f64| own().map(|row| (row.index, of(row))).collect();
+    let cross = own().map(|row| row.index).collect();
     Population {
         name: format!("Line “{name}”, barriers left aside"),
-        shares: vec![("Cross it".to_owned(), own().map(|row| row.index).collect())],
+        among: Arc::clone(among),
+        shares: vec![at_place("Cross it", cross, (among, true))],
         values: vec![
             (ComparedQuantity::Energy, values(CrossingRow::total_j)),
             (ComparedQuantity::Height, values(|row| row.height_m)),
             (ComparedQuantity::Speed, values(|row| row.speed_m_s)),
         ],
-        ..Population::default()
     }
 }
 
-fn arriving(name: &str, barriers: &[Barrier], arrived: &[hazard::Arrival]) -> Population {
+fn arriving(
+    name: &str,
+    (barriers, arrived): (&[Barrier], &[hazard::Arrival]),
+    among: &Arc<CountedReleases>,
+) -> Population {
     let releases = |keep: &dyn Fn(&hazard::Arrival) -> bool| {
         arrived.iter().filter(|rock| keep(rock)).map(|rock| rock.release).collect()
     };
-    let mut shares = vec![("Arrive".to_owned(), releases(&|_| true))];
+    let mut shares = vec![at_place("Arrive", releases(&|_| true), (among, true))];
     if let Some(barrier) = barriers.iter().find(|barrier| barrier.name == name) {
         let passes =
             |rock: &hazard::Arrival| !rock.is_stopped(barrier.height_m, barrier.capacity_j);
-        shares.push(("Pass it".to_owned(), releases(&passes)));
+        shares.push(at_place("Pass it", releases(&passes), (among, false)));
     }
     let values = |of: fn(&hazard::Arrival) -> f64| {
         arrived.iter().map(|rock| (rock.release, of(rock))).collect()
     };
     Population {
         name: format!("“{name}”, behind the barriers of each run"),
+        among: Arc::clone(among),
         shares,
         values: vec![
             (ComparedQuantity::Energy, values(|rock| rock.total_j)),
             (ComparedQuantity::Top, values(|rock| rock.top_m)),
         ],
-        ..Population::default()
     }
 }
 

@@ -1,6 +1,6 @@
 //! Statistics of both runs and their differences, row by row.
 
-use super::populations::{ComparedQuantity, Population};
+use super::populations::{ComparedQuantity, CountedShare, Population};
 use crate::hazard::{Difference, Reading, Values};
 use crate::math;
 use crate::report::format;
@@ -47,18 +47,16 @@ impl ComparedStatistic {
 pub(super) fn group([a, b]: &[Population; 2], paired: bool, same_run: bool) -> Group {
     let settled = |one: Difference| if same_run { one.of_one_run() } else { one };
     let mut rows = Vec::new();
-    for (at, ((name, one), (_, other))) in a.shares.iter().zip(&b.shares).enumerate() {
-        let (one, other) = ((a, &one[..]), (b, &other[..]));
+    for (one, other) in a.shares.iter().zip(&b.shares) {
         let row = |name: &str, unit: &'static str, difference: Difference| ComparedStatistic {
             name: name.to_owned(),
             unit,
-            rocks: [one.1.len(), other.1.len()],
+            rocks: [one.releases.len(), other.releases.len()],
             difference: settled(difference),
             is_headline: true,
         };
-        let share = of_shares(one, other, paired);
-        let per_year = passages(one, other, paired).filter(|_| at == 0);
-        rows.push(row(name, "%", scaled(share, 0.01)));
+        rows.push(row(&one.name, "%", scaled(of_shares(one, other, paired), 0.01)));
+        let per_year = passages(one, other, paired);
         rows.extend(per_year.map(|rate| row("Passages", "1/year", rate)));
     }
     for ((measure, one), (_, other)) in a.values.iter().zip(&b.values) {
@@ -73,22 +71,18 @@ pub(super) fn group([a, b]: &[Population; 2], paired: bool, same_run: bool) -> G
     Group { name: a.name.clone(), rows }
 }
 
-/// A population, and the releases of it that count.
-type Counted<'a> = (&'a Population, &'a [usize]);
-
-/// How their share changes (–).
-fn of_shares(one: Counted<'_>, other: Counted<'_>, paired: bool) -> Difference {
-    if let [Some(a), Some(b)] = [one, other].map(|(of, releases)| of.weighted(releases)) {
+/// How a share changes (–).
+fn of_shares(one: &CountedShare, other: &CountedShare, paired: bool) -> Difference {
+    if let (Some(a), Some(b)) = (one.weighted(), other.weighted()) {
         return Difference::of_weighted_shares(&a, &b, paired);
     }
-    let [a, b] = [one, other].map(|(of, releases)| (releases, of.among.len()));
+    let [a, b] = [one, other].map(|of| (&of.releases[..], of.among.releases.len()));
     Difference::of_shares(a, b, paired)
 }
 
 /// How their number a year changes (1/year).
-fn passages(one: Counted<'_>, other: Counted<'_>, paired: bool) -> Option<Difference> {
-    let [a, b] = [one, other].map(|(of, releases)| of.in_a_year(releases));
-    Some(Difference::of_rates(&a?, &b?, paired))
+fn passages(one: &CountedShare, other: &CountedShare, paired: bool) -> Option<Difference> {
+    Some(Difference::of_rates(&one.in_a_year()?, &other.in_a_year()?, paired))
 }
 
 fn scaled(one: Difference, size: f64) -> Difference {

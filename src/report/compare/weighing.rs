@@ -1,8 +1,11 @@
 //! What the releases of both runs stand for, where they do not all weigh the same.
 
+use crate::error::Result;
 use crate::frequency::{Frequency, Weights};
+use crate::hazard::Row;
 use crate::output::Results;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// What the releases of a run stand for.
 #[derive(Debug, Clone)]
@@ -12,22 +15,69 @@ pub(super) struct RunWeights {
     pub(super) is_a_year: bool,
 }
 
-/// What some releases of each run stand for; none where all of both runs weigh the same.
-pub(super) fn of(runs: &[Results; 2], ranges: &[Range<usize>; 2]) -> [Option<RunWeights>; 2] {
-    let [a, b] = [0, 1].map(|k| {
-        let rocks = ranges[k].len();
-        let frequency = runs[k].summary.asked.frequency.as_ref();
-        let weights = frequency.map_or_else(|| Weights::equal(rocks), |one| one.weights(rocks));
-        RunWeights { weights, is_a_year: frequency.is_some() }
-    });
-    let are_equal = a.weights.are_equal() && b.weights.are_equal();
-    if are_equal { [None, None] } else { [Some(a), Some(b)] }
+/// Releases of a run that something is counted among, by rising number, and what they stand for.
+#[derive(Debug, Clone, Default)]
+pub(super) struct CountedReleases {
+    pub(super) releases: Vec<usize>,
+    /// None where all of both runs weigh the same.
+    pub(super) standing: Option<RunWeights>,
+}
+
+impl CountedReleases {
+    /// Some releases of each run.
+    pub(super) fn of(runs: &[Results; 2], releases: [Vec<usize>; 2]) -> [Arc<Self>; 2] {
+        let both = [0, 1].map(|k| weights(&runs[k], &releases[k]));
+        let are_equal = both.iter().all(|one| one.weights.are_equal());
+        let with = |releases: Vec<usize>, standing: RunWeights| {
+            Arc::new(Self { releases, standing: (!are_equal).then_some(standing) })
+        };
+        let ([a, b], [of_a, of_b]) = (releases, both);
+        [with(a, of_a), with(b, of_b)]
+    }
+
+    pub(super) fn contains(&self, release: usize) -> bool {
+        self.releases.binary_search(&release).is_ok()
+    }
+}
+
+/// What some releases of a run stand for.
+fn weights(run: &Results, releases: &[usize]) -> RunWeights {
+    let Some(frequency) = &run.summary.asked.frequency else {
+        return RunWeights { weights: Weights::equal(releases.len()), is_a_year: false };
+    };
+    let mut rocks = vec![0; frequency.strata().len()];
+    for release in releases {
+        rocks[frequency.stratum_of(*release)] += 1;
+    }
+    RunWeights { weights: frequency.weights_of(rocks), is_a_year: true }
+}
+
+/// Those of each run that were released: of pairs, in both runs.
+///
+/// # Errors
+/// Rows that cannot be read.
+pub(super) fn released(
+    runs: &[Results; 2],
+    ranges: &[Range<usize>; 2],
+    paired: bool,
+) -> Result<[Vec<usize>; 2]> {
+    let of = |k: usize| -> Result<Vec<usize>> {
+        let is_one = |row: &Row| ranges[k].contains(&row.index) && row.stop.is_released();
+        let rows = runs[k].rows()?.filter(|row| row.as_ref().map_or(true, is_one));
+        rows.map(|row| row.map(|row| row.index)).collect()
+    };
+    let [mut one, mut other] = [of(0)?, of(1)?];
+    if paired {
+        one.retain(|release| other.binary_search(release).is_ok());
+        other.clone_from(&one);
+    }
+    Ok([one, other])
 }
 
 /// Whether the same release number means a rock of the same source and class in both: else they are different rocks.
 pub(super) fn are_alike(runs: &[Results; 2]) -> bool {
-    let whole = [0, 1].map(|k| runs[k].summary.identity.range());
-    if of(runs, &whole)[0].is_none() {
+    let all = |run: &Results| run.summary.identity.range().collect::<Vec<_>>();
+    if runs.iter().all(|run| weights(run, &all(run)).weights.are_equal()) {
         return true;
     }
     let sources = |run: &Results| -> Vec<usize> {

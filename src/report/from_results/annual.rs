@@ -175,7 +175,7 @@ fn passages(annual: &Annual, place: &AnnualPlace, words: &Words) -> EstimateTabl
 }
 
 fn of(rate: &EventRate, map: impl Fn(f64) -> f64) -> Estimate {
-    let is = if rate.censored { Is::AtLeast } else { Is::Value };
+    let is = Is::at_least_if(rate.censored);
     let found = estimate(map(rate.per_year), Some(map(rate.low_95)), Some(map(rate.high_95)));
     Estimate { is, ..found }
 }
@@ -211,7 +211,7 @@ fn returns(place: &AnnualPlace, words: &Words) -> EstimateTable {
         (name, vec![Some(energy), slope(one.by_log_rate), slope(one.by_exponent)])
     };
     let all = both(place, words).flat_map(|(which, figures)| {
-        let is = of(&figures.passages, |x| x).is;
+        let is = Is::at_least_if(figures.passages.censored);
         figures.returns.iter().map(move |r| (which, is, r))
     });
     let by = |text: &str| fill(text, &[("unit", &"kJ")]);

@@ -3,11 +3,11 @@
 use super::super::by_frequency;
 use super::super::format;
 use super::super::model::{
-    About, BarrierView, DesignView, Estimate, EstimateTable, PlaceView, ReportQuantity, RockView,
+    About, BarrierView, DesignView, Estimate, EstimateTable, Is, PlaceView, ReportQuantity,
+    RockView,
 };
 use super::super::raster::GroundRaster;
 use super::super::words::{Words, fill};
-use super::lines::of_share;
 use super::{estimate, of_percentile, statistics};
 use crate::error::Result;
 use crate::frequency::Weights;
@@ -161,7 +161,7 @@ fn plain(value: f64) -> Estimate {
 
 fn percent(share: &Proportion) -> Option<Estimate> {
     let [value, low, high] = [share.share, share.low_95, share.high_95].map(|x| 100.0 * x);
-    let is = of_share(share).is;
+    let is = Is::at_least_if(share.censored);
     (share.of > 0).then(|| Estimate { is, ..estimate(value, Some(low), Some(high)) })
 }
 

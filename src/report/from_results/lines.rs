@@ -62,6 +62,7 @@ pub(super) fn marks(results: &Results) -> Vec<MapMark> {
 /// All lines with their first crossings, in downslope order.
 pub(super) fn lines(results: &Results, ground: Option<&GroundRaster>) -> Result<Vec<ReportLine>> {
     let releases = results.hazard.released();
+    let is_weighted = results.hazard.weights().is_some();
     let elevation = |corners: &[[f64; 2]]| ground.map_or(f64::NAN, |g| mean_height(g, corners));
     let mut lines: Vec<ReportLine> = shown(results)
         .filter(|(_, line)| !is_object(results, &line.info.name))
@@ -69,17 +70,15 @@ pub(super) fn lines(results: &Results, ground: Option<&GroundRaster>) -> Result<
             number,
             is_barrier: barrier_on(results, &line.info.name).is_some(),
             elevation_m: elevation(&line.info.corners_m),
+            is_weighted,
             ..empty(line, releases)
         })
         .collect();
-    let is_weighted = results.hazard.weights().is_some();
-    for line in &mut lines {
-        line.is_weighted = is_weighted;
-    }
     let weights = results.hazard.weights_or_equal();
     let barriers: Vec<Barrier> =
         results.summary.barriers.iter().map(|one| one.barrier.clone()).collect();
-    hazard::by_rock(results.crossings()?, |rock| take(&barriers, rock, &mut lines))?;
+    let weight = by_frequency::weighing(&results.hazard);
+    hazard::by_rock(results.crossings()?, |rock| take(&barriers, (rock, &weight), &mut lines))?;
     for line in &mut lines {
         let residual = results.summary.residual.iter().find(|at| at.line == line.name);
         line.behind = residual
@@ -98,7 +97,12 @@ pub(super) fn lines(results: &Results, ground: Option<&GroundRaster>) -> Result<
     Ok(lines)
 }
 
-fn take(barriers: &[Barrier], rock: &[CrossingRow], lines: &mut [ReportLine]) {
+/// Crossings of a rock at their lines; `weight` says what a release weighs.
+fn take(
+    barriers: &[Barrier],
+    (rock, weight): (&[CrossingRow], impl Fn(usize) -> f64),
+    lines: &mut [ReportLine],
+) {
     let passes = hazard::unstopped(barriers, rock);
     for (row, passes) in rock.iter().zip(passes) {
         if let Some(line) = lines.iter_mut().find(|line| line.name == row.line) {
@@ -108,6 +112,7 @@ fn take(barriers: &[Barrier], rock: &[CrossingRow], lines: &mut [ReportLine]) {
                 height_m: row.height_m,
                 total_j: row.total_j(),
                 passes,
+                weight: weight(row.index),
             });
         }
     }
@@ -169,8 +174,8 @@ fn exceedance(
 
 /// A share with its interval.
 pub(super) fn of_share(share: &Proportion) -> Estimate {
-    let found = estimate(share.share, Some(share.low_95), Some(share.high_95));
-    if share.censored { Estimate { is: Is::AtLeast, ..found } } else { found }
+    let is = Is::at_least_if(share.censored);
+    Estimate { is, ..estimate(share.share, Some(share.low_95), Some(share.high_95)) }
 }
 
 fn empty(line: &hazard::Line, releases: usize) -> ReportLine {
@@ -209,7 +214,8 @@ pub(super) fn tables(results: &Results, words: &Words) -> Vec<EstimateTable> {
     let is_weighted = results.hazard.weights().is_some();
     let table = |(_, line): (usize, &hazard::Line)| {
         let reach = line.reach(releases);
-        let percent = |share: f64| format::percent(share, 2);
+        let [share, low, high] =
+            format::percents([reach.share, reach.low_95, reach.high_95], |_| 2);
         let count = |n: usize| format::decimal(n as f64, 0);
         let (title, plain, weighted) = if is_object(results, &line.info.name) {
             (words.object_table, words.object_note, by_frequency::OBJECT)
@@ -222,11 +228,8 @@ pub(super) fn tables(results: &Results, words: &Words) -> Vec<EstimateTable> {
             &[
                 ("count", &count(reach.count)),
                 ("releases", &count(releases)),
-                (
-                    "reach",
-                    &format!("{}{}", format::sign(of_share(&reach).is), percent(reach.share)),
-                ),
-                ("interval", &words.interval(&percent(reach.low_95), &percent(reach.high_95))),
+                ("reach", &(format::sign(Is::at_least_if(reach.censored)).to_owned() + &share)),
+                ("interval", &words.interval(&low, &high)),
                 ("again", &count(line.crossing_again())),
             ],
         );

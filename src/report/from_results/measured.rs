@@ -91,7 +91,6 @@ fn calibration(found: &Calibration, words: &Words) -> EstimateTable {
             values.map(|(name, value)| format!("{name} = {value:.3}")).collect();
         (format!("{who}: {}", values.join(", ")), cells(of))
     };
-    let blocks = if found.by_block { words.blocks_held_out } else { "" };
     let mut rows = vec![row(words.uncalibrated, &found.before, &found.before.all)];
     for (part, trial) in found.held_out.iter().enumerate() {
         let part = part + 1;
@@ -103,14 +102,22 @@ fn calibration(found: &Calibration, words: &Words) -> EstimateTable {
     EstimateTable {
         about: About::Measured,
         title: words.calibration_title.to_owned(),
-        note: fill(
-            words.calibration_note,
-            &[("trials", &found.trials), ("releases", &found.releases), ("blocks", &blocks)],
-        ),
+        note: effort(found, words),
         columns: columns(words),
         rows,
         ..EstimateTable::default()
     }
+}
+
+/// How many trials there were, and which ends say how good a value is.
+fn effort(found: &Calibration, words: &Words) -> String {
+    let (fits, text) = match found.held_out.len() {
+        0 => (1, words.calibration_note_one),
+        parts => (parts + 1, words.calibration_note),
+    };
+    let blocks = if found.by_block { words.blocks_held_out } else { "" };
+    let (trials, releases) = (&found.trials, &found.releases);
+    fill(text, &[("trials", trials), ("releases", releases), ("fits", &fits), ("blocks", &blocks)])
 }
 
 /// How far the measured ends tell each value.
@@ -167,4 +174,32 @@ fn cells(of: &Agreement) -> Vec<Option<Estimate>> {
         of.computed_side_m,
     ];
     numbers.map(|value| Some(Estimate::plain(value))).into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Language;
+    use std::path::Path;
+
+    /// Where no ends are held out there is one fit, and no ends that it was not fitted to.
+    #[test]
+    fn the_note_of_a_calibration_knows_how_many_fits_there_were() {
+        let recorded = read_calibration(Path::new("reports/tschamut")).ok().flatten();
+        let mut found = recorded.expect("a calibration is recorded there");
+        let note = |found: &Calibration, language| calibration(found, Words::of(language)).note;
+        let fits = found.held_out.len() + 1;
+        assert!(fits > 1);
+        for language in Language::ALL {
+            let said = note(&found, language);
+            assert!(said.contains(&format!(" {fits} ")), "{language:?}: {said}");
+        }
+        found.held_out.clear();
+        assert!(note(&found, Language::En).contains("releases for the fit; no ends were held out"));
+        for language in Language::ALL {
+            let said = note(&found, language);
+            let is_of_several = said.contains(" 1 ") || said.contains(&format!(" {fits} "));
+            assert!(!is_of_several && !said.contains('{'), "{language:?}: {said}");
+        }
+    }
 }

@@ -90,8 +90,11 @@ fn in_words(estimate: &Estimate, words: &Words) -> (String, String) {
         // alone: a maximum is read as it is, a small derivative or a bound only for its size
         if estimate.value.abs() >= 0.1 { 4 } else { 3 }
     };
-    let bound = like(estimate.value, digits);
-    (format!("{sign}{}", bound(estimate.value)), one_sided(estimate, words, bound))
+    let [value, low, high] =
+        format::told_apart([estimate.value, estimate.low, estimate.high], |number, more| {
+            like(estimate.value, digits + more)(number)
+        });
+    (format!("{sign}{value}"), words.interval(&low, &high))
 }
 
 /// Writes numbers to the last place that a value of so many digits has: its interval ends where it ends.
@@ -151,4 +154,22 @@ fn table_cell(estimate: Option<&Estimate>, words: &Words) -> String {
         format!("<br><small>{interval}</small>")
     };
     format!("<td class=\"number\">{value}{below}</td>")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Language;
+
+    /// Five digits tell most intervals; of a share that is nearly whole they would leave none.
+    #[test]
+    fn the_interval_of_a_share_that_is_nearly_whole_is_seen() {
+        let said = |value: f64, low: f64, high: f64| {
+            in_words(&Estimate::new(value, low, high), Words::of(Language::En))
+        };
+        let pair = |value: &str, interval: &str| (value.to_owned(), interval.to_owned());
+        assert_eq!(said(99.9992, 99.9990, 99.9994), pair("99.9992", "99.9990 to 99.9994"));
+        assert_eq!(said(94.0, 93.9, 94.1), pair("94.00", "93.90 to 94.10"));
+        assert_eq!(said(100.0, 100.0, 100.0), pair("100.0", "100.0 to 100.0"));
+    }
 }

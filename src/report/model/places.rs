@@ -218,6 +218,8 @@ pub struct LinePoint {
     pub total_j: f64,
     /// Whether no barrier has stopped the rock before.
     pub passes: bool,
+    /// As many releases of equal weight would stand for what it does (–): 1 where all weigh the same.
+    pub weight: f64,
 }
 
 /// Measured ends beside the computed ones.

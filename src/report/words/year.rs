@@ -56,7 +56,7 @@ const EN: YearWords = YearWords {
 
 const DE: YearWords = YearWords {
     head_title: "Wie oft pro Jahr",
-    head_note: "Pro Jahr, nicht bedingt auf die Ablösung. Kleine Zahlen: 95-%-Intervalle des Zufalls der Stichprobe; sie sagen nicht, wie gut Rate und Exponent bekannt sind. 10 % mehr Ereignisse pro Jahr an den Quellen ändern eine Zahl um 0,1 ihrer Änderung mit ln(Rate), ein um 0,1 größerer Exponent um 0,1 ihrer Änderung mit dem Exponenten. Alle Energien, Risiken und was jedes Schutzbauwerk fernhält, stehen im Kapitel des Jahres.",
+    head_note: "Pro Jahr, nicht bedingt auf die Ablösung. Kleine Zahlen: 95-%-Intervalle des Zufalls der Stichprobe; sie sagen nicht, wie gut Rate und Exponent bekannt sind. 10 % mehr Ereignisse pro Jahr an den Quellen ändern eine Zahl um 0.1 ihrer Änderung mit ln(Rate), ein um 0.1 größerer Exponent um 0.1 ihrer Änderung mit dem Exponenten. Alle Energien, Risiken und was jedes Schutzbauwerk fernhält, stehen im Kapitel des Jahres.",
     head_row: "{name}: {energy} kJ oder mehr{barriers}",
     maps_title: "Das Jahr auf der Karte",
     maps_alt: "Karten von Wiederkehrperiode und Energie",
@@ -65,13 +65,13 @@ const DE: YearWords = YearWords {
     map_by_exponent: "Änderung von ln(Häufigkeit) mit Exponent",
     map_level: "Stufe: {name}",
     maps_caption: "Pro Jahr, nicht bedingt auf die Ablösung, Zelle für Zelle und ohne Schutzbauwerke: Wiederkehrperiode der Durchgänge mit {energy} kJ oder mehr, und die Energie, die einmal in {years} Jahren überschritten wird (ohne Farbe: Blöcke kommen seltener). 10 % mehr Ereignisse pro Jahr an den Quellen machen alle Häufigkeiten 10 % größer.{exponent}{level} Intervalle und Ableitungen aller Ebenen liegen in maps/ als GeoTIFF.",
-    maps_by_exponent: " Änderung mit dem Exponenten: 2 heißt 20 % mehr Durchgänge, wenn die Exponenten aller Potenzgesetze um 0,1 größer sind und die Ereignisse ab 1 m³ bleiben.",
+    maps_by_exponent: " Änderung mit dem Exponenten: 2 heißt 20 % mehr Durchgänge, wenn die Exponenten aller Potenzgesetze um 0.1 größer sind und die Ereignisse ab 1 m³ bleiben.",
     maps_level: " Stufen nach der Tabelle der Szene; ihre Quelle: {source}.",
 };
 
 const FR: YearWords = YearWords {
     head_title: "Combien de fois par an",
-    head_note: "Par an, non conditionnel au départ. Petits chiffres\u{a0}: intervalles à 95 % de l’aléa de l’échantillon\u{a0}; ils ne disent pas si taux et exposant sont bien connus. 10 % d’événements en plus par an aux sources changent un nombre de 0,1 de sa variation avec ln(taux), un exposant plus grand de 0,1 de 0,1 de sa variation avec l’exposant. Toutes les énergies, les risques et ce que chaque ouvrage évite sont au chapitre de l’année.",
+    head_note: "Par an, non conditionnel au départ. Petits chiffres\u{a0}: intervalles à 95 % de l’aléa de l’échantillon\u{a0}; ils ne disent pas si taux et exposant sont bien connus. 10 % d’événements en plus par an aux sources changent un nombre de 0.1 de sa variation avec ln(taux), un exposant plus grand de 0.1 de 0.1 de sa variation avec l’exposant. Toutes les énergies, les risques et ce que chaque ouvrage évite sont au chapitre de l’année.",
     head_row: "{name}\u{a0}: {energy} kJ ou plus{barriers}",
     maps_title: "L’année sur la carte",
     maps_alt: "Cartes de période de retour et d’énergie",
@@ -80,13 +80,13 @@ const FR: YearWords = YearWords {
     map_by_exponent: "Variation de ln(fréquence) avec l’exposant",
     map_level: "Degré\u{a0}: {name}",
     maps_caption: "Par an, non conditionnel au départ, maille par maille et sans ouvrages\u{a0}: période de retour des passages avec {energy} kJ ou plus, et énergie dépassée une fois en {years} ans (sans couleur\u{a0}: les blocs viennent plus rarement). 10 % d’événements en plus par an aux sources augmentent toutes les fréquences de 10 %.{exponent}{level} Intervalles et dérivées de toutes les couches sont dans maps/ en GeoTIFF.",
-    maps_by_exponent: " Variation avec l’exposant\u{a0}: 2 veut dire 20 % de passages en plus si les exposants de toutes les lois de puissance sont plus grands de 0,1, leurs événements dès 1 m³ gardés.",
+    maps_by_exponent: " Variation avec l’exposant\u{a0}: 2 veut dire 20 % de passages en plus si les exposants de toutes les lois de puissance sont plus grands de 0.1, leurs événements dès 1 m³ gardés.",
     maps_level: " Degrés selon la table de la scène\u{a0}; sa source\u{a0}: {source}.",
 };
 
 const IT: YearWords = YearWords {
     head_title: "Quante volte all’anno",
-    head_note: "All’anno, non condizionato al distacco. Cifre piccole: intervalli al 95 % del caso nel campione; non dicono quanto bene siano noti tasso ed esponente. Il 10 % di eventi in più all’anno alle sorgenti cambia un numero di 0,1 della sua variazione con ln(tasso), un esponente maggiore di 0,1 di 0,1 della sua variazione con l’esponente. Tutte le energie, i rischi e ciò che ogni barriera evita sono nel capitolo dell’anno.",
+    head_note: "All’anno, non condizionato al distacco. Cifre piccole: intervalli al 95 % del caso nel campione; non dicono quanto bene siano noti tasso ed esponente. Il 10 % di eventi in più all’anno alle sorgenti cambia un numero di 0.1 della sua variazione con ln(tasso), un esponente maggiore di 0.1 di 0.1 della sua variazione con l’esponente. Tutte le energie, i rischi e ciò che ogni barriera evita sono nel capitolo dell’anno.",
     head_row: "{name}: {energy} kJ o più{barriers}",
     maps_title: "L’anno sulla mappa",
     maps_alt: "Mappe di tempo di ritorno ed energia",
@@ -95,6 +95,6 @@ const IT: YearWords = YearWords {
     map_by_exponent: "Variazione di ln(frequenza) con l’esponente",
     map_level: "Grado: {name}",
     maps_caption: "All’anno, non condizionato al distacco, cella per cella e senza barriere: tempo di ritorno dei passaggi con {energy} kJ o più, ed energia superata una volta in {years} anni (senza colore: i massi arrivano più di rado). Il 10 % di eventi in più all’anno alle sorgenti rende tutte le frequenze maggiori del 10 %.{exponent}{level} Intervalli e derivate di tutti gli strati sono in maps/ come GeoTIFF.",
-    maps_by_exponent: " Variazione con l’esponente: 2 vuol dire il 20 % di passaggi in più se gli esponenti di tutte le leggi di potenza sono maggiori di 0,1, mantenuti i loro eventi da 1 m³ in su.",
+    maps_by_exponent: " Variazione con l’esponente: 2 vuol dire il 20 % di passaggi in più se gli esponenti di tutte le leggi di potenza sono maggiori di 0.1, mantenuti i loro eventi da 1 m³ in su.",
     maps_level: " Gradi secondo la tabella della scena; la sua fonte: {source}.",
 };

@@ -47,6 +47,7 @@ fn line(number: usize, name: &str, rocks: usize) -> ReportLine {
         height_m: 0.02 * (k % 90) as f64 - 0.01,
         total_j: energy(k),
         passes: !k.is_multiple_of(3),
+        weight: 1.0,
     };
     let share = |k: usize| Estimate::new(1.0 / (k + 2) as f64, 0.5 / (k + 2) as f64, 0.9);
     let curve = |size: f64| -> Vec<BandPoint> {
@@ -166,4 +167,23 @@ pub(crate) fn site() -> Report {
         observed: Some(observed()),
         ..slope::report(700, 60)
     }
+}
+
+/// Bars along a line show what its rocks stand for: where they stand for nothing there is none.
+#[test]
+fn bars_along_a_line_weigh_its_rocks() {
+    let bars = |of_right: f64| {
+        let mut report = site();
+        for at in report.lines.iter_mut().flat_map(|line| &mut line.crossings) {
+            at.weight = if at.along_m < 30.0 { 1.0 } else { of_right };
+        }
+        let drawn = rockfall::report::drawings(&report);
+        let line = drawn.iter().find(|(heading, _)| heading.file == "line_2.svg");
+        let (_, drawing) = line.expect("rocks cross it");
+        let sky = rockfall::report::colour::hex(rockfall::report::colour::SKY);
+        let is_bar = |tag: &&str| tag.starts_with("rect") && tag.contains(&sky);
+        drawing.svg.split('<').filter(is_bar).count()
+    };
+    // twelve of 5 m
+    assert_eq!((bars(1.0), bars(0.0)), (12, 6));
 }

@@ -2,8 +2,8 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on has failed")]
 
+use chacha20::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use rockfall::report::model::{
     About, BandPoint, Estimate, EstimateRow, EstimateTable, Path, Quantile, ReleaseEnd, Report,
     ReportPathPoint, ReportQuantity, StopShare, Text,
@@ -160,6 +160,7 @@ fn summary(points: &[ReportPathPoint], random: f64) -> ReleaseEnd {
         tree_impacts: 0,
         start_m: points[0].place_m,
         end_m: points[0].place_m,
+        weight: 1.0,
     }
 }
 

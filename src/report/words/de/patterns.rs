@@ -9,11 +9,11 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
     ),
     (
         "{where} normal_stiffness_n_m = {k} lets a rock of {r} m sink in by more than 0.1 of its radius in impacts above {v} m/s; {need} would hold it up to {most} m/s",
-        "{where} normal_stiffness_n_m = {k} lässt einen Block von {r} m bei Aufprallen über {v} m/s um mehr als 0,1 seines Radius einsinken; {need} hielte ihn bis {most} m/s",
+        "{where} normal_stiffness_n_m = {k} lässt einen Block von {r} m bei Aufprallen über {v} m/s um mehr als 0.1 seines Radius einsinken; {need} hielte ihn bis {most} m/s",
     ),
     (
         "{where} normal_stiffness_n_m = {k} lets a rock of {r} m sink in by more than 0.3 of its corners' radius in impacts above {v} m/s; {need} would hold it up to {most} m/s",
-        "{where} normal_stiffness_n_m = {k} lässt einen Block von {r} m bei Aufprallen über {v} m/s um mehr als 0,3 des Radius seiner Ecken einsinken; {need} hielte ihn bis {most} m/s",
+        "{where} normal_stiffness_n_m = {k} lässt einen Block von {r} m bei Aufprallen über {v} m/s um mehr als 0.3 des Radius seiner Ecken einsinken; {need} hielte ihn bis {most} m/s",
     ),
     (
         "{file} says how often its zones release rocks, and the scene asks for nothing a year: write the table [frequency], and each zone is a source",
@@ -229,11 +229,6 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "None of {n} computed rocks crosses {what} {name}: by frequency its reach probability is below {share} (95\u{2009}% confidence).",
         "Keiner von {n} gerechneten Blöcken überquert {what} {name}: nach Häufigkeit liegt die Erreichenswahrscheinlichkeit unter {share} (Vertrauen 95\u{2009}%).",
     ),
-    ("{share} of the rocks by frequency cross", "{share} der Blöcke nach Häufigkeit queren"),
-    (
-        "{h} m, {e} kJ: stops {share} of those that arrive, by frequency",
-        "{h} m, {e} kJ: hält {share} derer auf, die ankommen, nach Häufigkeit",
-    ),
     ("{what} (computed)", "{what} (gerechnet)"),
     ("{n} computed", "{n} gerechnet"),
     (
@@ -241,8 +236,20 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "Anteile gelten nach Häufigkeit; Anzahlen von Blöcken sind die gerechneter.",
     ),
     (
-        "Curves and lines are by frequency; bars and numbers of rocks are of computed ones.",
-        "Kurven und Linien gelten nach Häufigkeit; Balken und Anzahlen von Blöcken sind die gerechneter.",
+        "Curves, lines and bars are by frequency; numbers of rocks are of computed ones.",
+        "Kurven, Linien und Balken gelten nach Häufigkeit; Anzahlen von Blöcken sind die gerechneter.",
+    ),
+    (
+        "fastest {v} m/s; {share} of the rocks by frequency ({n} of {of} computed) above {limit} m/s, which single blocks seldom pass",
+        "schnellster {v} m/s; {share} der Blöcke nach Häufigkeit ({n} von {of} gerechneten) über {limit} m/s, was Einzelblöcke selten überschreiten",
+    ),
+    (
+        "{share} of the rocks at rest by frequency ({n} of {of} computed) lie in hollows of the mesh without an outlet, deeper than {depth} m; half of all computed ones lie on {half} of the {all} m² that hold them all",
+        "{share} der ruhenden Blöcke nach Häufigkeit ({n} von {of} gerechneten) liegen in abflusslosen Mulden des Dreiecksnetzes, tiefer als {depth} m; die Hälfte aller gerechneten liegt auf {half} der {all} m², die alle aufnehmen",
+    ),
+    (
+        "median edge of the triangles {edge} m, {times} times the diameter of the median rock by frequency ({diameter} m)",
+        "mittlere Kantenlänge der Dreiecke {edge} m, das {times}-Fache des Durchmessers des nach Häufigkeit mittleren Blocks ({diameter} m)",
     ),
     (
         "calibrated on measured ends ([calibrate] fitted of the scene)",
@@ -378,5 +385,10 @@ pub(super) const VIEW: &[(&str, &str)] = &[
     (
         "{h} m, {e} kJ: stops {a} of the {b} that arrive",
         "{h} m, {e} kJ: hält {a} der {b} auf, die ankommen",
+    ),
+    ("{share} of the rocks by frequency cross", "{share} der Blöcke nach Häufigkeit queren"),
+    (
+        "{h} m, {e} kJ: stops {share} of those that arrive, by frequency",
+        "{h} m, {e} kJ: hält {share} derer auf, die ankommen, nach Häufigkeit",
     ),
 ];

@@ -9,11 +9,11 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
     ),
     (
         "{where} normal_stiffness_n_m = {k} lets a rock of {r} m sink in by more than 0.1 of its radius in impacts above {v} m/s; {need} would hold it up to {most} m/s",
-        "{where} normal_stiffness_n_m = {k} laisse un bloc de {r} m s’enfoncer de plus de 0,1 de son rayon dans les chocs au-dessus de {v} m/s\u{a0}; {need} le tiendrait jusqu’à {most} m/s",
+        "{where} normal_stiffness_n_m = {k} laisse un bloc de {r} m s’enfoncer de plus de 0.1 de son rayon dans les chocs au-dessus de {v} m/s\u{a0}; {need} le tiendrait jusqu’à {most} m/s",
     ),
     (
         "{where} normal_stiffness_n_m = {k} lets a rock of {r} m sink in by more than 0.3 of its corners' radius in impacts above {v} m/s; {need} would hold it up to {most} m/s",
-        "{where} normal_stiffness_n_m = {k} laisse un bloc de {r} m s’enfoncer de plus de 0,3 du rayon de ses coins dans les chocs au-dessus de {v} m/s\u{a0}; {need} le tiendrait jusqu’à {most} m/s",
+        "{where} normal_stiffness_n_m = {k} laisse un bloc de {r} m s’enfoncer de plus de 0.3 du rayon de ses coins dans les chocs au-dessus de {v} m/s\u{a0}; {need} le tiendrait jusqu’à {most} m/s",
     ),
     (
         "{file} says how often its zones release rocks, and the scene asks for nothing a year: write the table [frequency], and each zone is a source",
@@ -232,11 +232,6 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "None of {n} computed rocks crosses {what} {name}: by frequency its reach probability is below {share} (95\u{2009}% confidence).",
         "Aucun des {n} blocs calculés ne franchit {what} {name}\u{a0}: selon la fréquence sa probabilité d’atteinte est inférieure à {share} (confiance 95\u{2009}%).",
     ),
-    ("{share} of the rocks by frequency cross", "{share} des blocs passent, selon leur fréquence"),
-    (
-        "{h} m, {e} kJ: stops {share} of those that arrive, by frequency",
-        "{h} m, {e} kJ\u{a0}: arrête {share} de ceux qui arrivent, selon leur fréquence",
-    ),
     ("{what} (computed)", "{what} (calculés)"),
     ("{n} computed", "{n} calculés"),
     (
@@ -244,8 +239,20 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "Les parts suivent la fréquence\u{a0}; les nombres de blocs sont ceux des blocs calculés.",
     ),
     (
-        "Curves and lines are by frequency; bars and numbers of rocks are of computed ones.",
-        "Courbes et traits suivent la fréquence\u{a0}; les barres et les nombres de blocs sont ceux des blocs calculés.",
+        "Curves, lines and bars are by frequency; numbers of rocks are of computed ones.",
+        "Courbes, traits et barres suivent la fréquence\u{a0}; les nombres de blocs sont ceux des blocs calculés.",
+    ),
+    (
+        "fastest {v} m/s; {share} of the rocks by frequency ({n} of {of} computed) above {limit} m/s, which single blocks seldom pass",
+        "le plus rapide {v} m/s\u{a0}; {share} des blocs selon leur fréquence ({n} sur {of} calculés) au-dessus de {limit} m/s, que des blocs isolés dépassent rarement",
+    ),
+    (
+        "{share} of the rocks at rest by frequency ({n} of {of} computed) lie in hollows of the mesh without an outlet, deeper than {depth} m; half of all computed ones lie on {half} of the {all} m² that hold them all",
+        "{share} des blocs arrêtés selon leur fréquence ({n} sur {of} calculés) gisent dans des creux du maillage sans exutoire, de plus de {depth} m\u{a0}; la moitié des blocs calculés gît sur {half} des {all} m² qui les contiennent tous",
+    ),
+    (
+        "median edge of the triangles {edge} m, {times} times the diameter of the median rock by frequency ({diameter} m)",
+        "arête médiane des triangles {edge} m, {times} fois le diamètre du bloc médian selon la fréquence ({diameter} m)",
     ),
     (
         "calibrated on measured ends ([calibrate] fitted of the scene)",
@@ -381,5 +388,10 @@ pub(super) const VIEW: &[(&str, &str)] = &[
     (
         "{h} m, {e} kJ: stops {a} of the {b} that arrive",
         "{h} m, {e} kJ\u{a0}: arrête {a} des {b} qui arrivent",
+    ),
+    ("{share} of the rocks by frequency cross", "{share} des blocs passent, selon leur fréquence"),
+    (
+        "{h} m, {e} kJ: stops {share} of those that arrive, by frequency",
+        "{h} m, {e} kJ\u{a0}: arrête {share} de ceux qui arrivent, selon leur fréquence",
     ),
 ];

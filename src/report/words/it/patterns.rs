@@ -9,11 +9,11 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
     ),
     (
         "{where} normal_stiffness_n_m = {k} lets a rock of {r} m sink in by more than 0.1 of its radius in impacts above {v} m/s; {need} would hold it up to {most} m/s",
-        "{where} normal_stiffness_n_m = {k} lascia affondare un masso di {r} m di oltre 0,1 del suo raggio negli urti sopra {v} m/s; {need} lo terrebbe fino a {most} m/s",
+        "{where} normal_stiffness_n_m = {k} lascia affondare un masso di {r} m di oltre 0.1 del suo raggio negli urti sopra {v} m/s; {need} lo terrebbe fino a {most} m/s",
     ),
     (
         "{where} normal_stiffness_n_m = {k} lets a rock of {r} m sink in by more than 0.3 of its corners' radius in impacts above {v} m/s; {need} would hold it up to {most} m/s",
-        "{where} normal_stiffness_n_m = {k} lascia affondare un masso di {r} m di oltre 0,3 del raggio dei suoi spigoli negli urti sopra {v} m/s; {need} lo terrebbe fino a {most} m/s",
+        "{where} normal_stiffness_n_m = {k} lascia affondare un masso di {r} m di oltre 0.3 del raggio dei suoi spigoli negli urti sopra {v} m/s; {need} lo terrebbe fino a {most} m/s",
     ),
     (
         "{file} says how often its zones release rocks, and the scene asks for nothing a year: write the table [frequency], and each zone is a source",
@@ -226,11 +226,6 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "None of {n} computed rocks crosses {what} {name}: by frequency its reach probability is below {share} (95\u{2009}% confidence).",
         "Nessuno dei {n} massi calcolati attraversa {what} {name}: secondo la frequenza la probabilità di raggiungimento è sotto {share} (confidenza 95\u{2009}%).",
     ),
-    ("{share} of the rocks by frequency cross", "passa il {share} dei massi secondo la frequenza"),
-    (
-        "{h} m, {e} kJ: stops {share} of those that arrive, by frequency",
-        "{h} m, {e} kJ: ferma il {share} di quelli che arrivano, secondo la frequenza",
-    ),
     ("{what} (computed)", "{what} (calcolati)"),
     ("{n} computed", "{n} calcolati"),
     (
@@ -238,8 +233,20 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "Le quote seguono la frequenza; i numeri di massi sono quelli dei massi calcolati.",
     ),
     (
-        "Curves and lines are by frequency; bars and numbers of rocks are of computed ones.",
-        "Curve e linee seguono la frequenza; barre e numeri di massi sono quelli dei massi calcolati.",
+        "Curves, lines and bars are by frequency; numbers of rocks are of computed ones.",
+        "Curve, linee e barre seguono la frequenza; i numeri di massi sono quelli dei massi calcolati.",
+    ),
+    (
+        "fastest {v} m/s; {share} of the rocks by frequency ({n} of {of} computed) above {limit} m/s, which single blocks seldom pass",
+        "il più veloce {v} m/s; {share} dei massi secondo la frequenza ({n} su {of} calcolati) oltre {limit} m/s, che singoli massi raramente superano",
+    ),
+    (
+        "{share} of the rocks at rest by frequency ({n} of {of} computed) lie in hollows of the mesh without an outlet, deeper than {depth} m; half of all computed ones lie on {half} of the {all} m² that hold them all",
+        "{share} dei massi fermi secondo la frequenza ({n} su {of} calcolati) giacciono in conche della maglia senza sbocco, più profonde di {depth} m; la metà dei massi calcolati giace su {half} dei {all} m² che li contengono tutti",
+    ),
+    (
+        "median edge of the triangles {edge} m, {times} times the diameter of the median rock by frequency ({diameter} m)",
+        "spigolo mediano dei triangoli {edge} m, {times} volte il diametro del masso mediano secondo la frequenza ({diameter} m)",
     ),
     (
         "calibrated on measured ends ([calibrate] fitted of the scene)",
@@ -375,5 +382,10 @@ pub(super) const VIEW: &[(&str, &str)] = &[
     (
         "{h} m, {e} kJ: stops {a} of the {b} that arrive",
         "{h} m, {e} kJ: ferma {a} dei {b} che arrivano",
+    ),
+    ("{share} of the rocks by frequency cross", "passa il {share} dei massi secondo la frequenza"),
+    (
+        "{h} m, {e} kJ: stops {share} of those that arrive, by frequency",
+        "{h} m, {e} kJ: ferma il {share} di quelli che arrivano, secondo la frequenza",
     ),
 ];

@@ -3,7 +3,7 @@
 use super::super::{Footing, Moving, Stepped, TURN};
 use super::onset::Onsets;
 use super::stage::{BlockEnd, StageBase};
-use super::{BlockHistory, BlockRates};
+use super::{BlockHistory, BlockRates, Springs};
 use crate::body::Block;
 use crate::contact::history::carry;
 use crate::rock::Vec3;
@@ -162,6 +162,18 @@ impl BlockTrial<'_, '_> {
     }
 }
 
+impl Springs {
+    /// Takes the energy that an accepted step has made by its error (J) off the motion, with which the next one begins.
+    fn pay(&mut self, (block, moving): (&Block, &mut Moving), made_j: f64) {
+        if made_j > 0.0 {
+            moving.scale_motion((1.0 - made_j / moving.motion_j(block)).max(0.0).sqrt());
+        }
+        let first = &mut self.rates[0];
+        (first.centre, first.turned) = (moving.v, moving.spin(block));
+        self.fresh = true;
+    }
+}
+
 impl Footing {
     /// First step after a touch (s).
     pub(super) fn first_step_s(&self, world: &ContactEnvironment) -> f64 {
@@ -245,12 +257,7 @@ impl Footing {
         *moving = end.moving;
         self.springs.grow_old(dt);
         let mut done = self.accept((block, moving), (&control, dt));
-        if made_j > 0.0 {
-            moving.scale_motion((1.0 - made_j / moving.motion_j(block)).max(0.0).sqrt());
-        }
-        let first = &mut self.springs.rates[0];
-        (first.centre, first.turned) = (moving.v, moving.spin(block));
-        self.springs.fresh = true;
+        self.springs.pay((block, moving), made_j);
         done.loss.damping += beyond_j;
         done.unsettled = unsettled;
         self.begin_late(world);

@@ -21,7 +21,7 @@ mod merge;
 mod options;
 pub mod read;
 pub mod patches;
-pub(crate) mod seen;
+pub mod seen;
 pub mod stems;
 pub mod stl;
 pub mod t_junctions;
@@ -163,6 +163,7 @@ impl Terrain {
     }
 
     /// Corners of a triangle (m, local).
+    #[inline]
     pub fn corners_m(&self, triangle: u32) -> [Vec3; 3] {
         self.mesh().corners_m(triangle)
     }

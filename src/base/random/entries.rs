@@ -5,7 +5,7 @@ use serde::{Deserialize, Deserializer};
 
 /// A list of exactly `N` entries. Arrays read by `serde` alone forget what stands behind the last entry.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Entries<T, const N: usize>(pub(crate) [T; N]);
+pub struct Entries<T, const N: usize>(pub [T; N]);
 
 impl<'de, T: Deserialize<'de>, const N: usize> Deserialize<'de> for Entries<T, N> {
     fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
@@ -18,7 +18,10 @@ impl<'de, T: Deserialize<'de>, const N: usize> Deserialize<'de> for Entries<T, N
 }
 
 /// For `#[serde(deserialize_with)]` on an array.
-pub(crate) fn entries<'de, D, T, const N: usize>(from: D) -> Result<[T; N], D::Error>
+///
+/// # Errors
+/// What stands there is not a list of exactly `N` entries, or an entry is not a `T`; the message is the reader's.
+pub fn entries<'de, D, T, const N: usize>(from: D) -> Result<[T; N], D::Error>
 where
     D: Deserializer<'de>,
     T: Deserialize<'de>,

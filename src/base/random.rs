@@ -10,13 +10,31 @@ mod normal;
 mod written;
 
 pub use distribution::{Distribution, LARGEST};
-pub(crate) use entries::{Entries, entries};
+pub use entries::{Entries, entries};
 
-use rand::{Rng, SeedableRng};
-use rand_chacha::ChaCha8Rng;
+use chacha20::ChaCha8Rng;
+use chacha20::rand_core::{Rng, SeedableRng};
 
-/// A stream of random words. `ChaCha8` is counter-based and documented as value-stable.
-pub type RandomStream = ChaCha8Rng;
+/// A stream of random words. `ChaCha8` is counter-based and specified to the bit.
+#[derive(Debug)]
+pub struct RandomStream(ChaCha8Rng);
+
+impl RandomStream {
+    fn of(key: [u8; 32], number: u64) -> Self {
+        let mut words = ChaCha8Rng::from_seed(key);
+        words.set_stream(number);
+        Self(words)
+    }
+}
+
+/// The same stream from the same word on: a rock that is followed anew meets what it met.
+impl Clone for RandomStream {
+    fn clone(&self) -> Self {
+        let mut copy = Self::of(self.0.get_seed(), self.0.get_stream());
+        copy.0.set_word_pos(self.0.get_word_pos());
+        copy
+    }
+}
 
 /// What a stream is for. Two purposes never share a word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -45,18 +63,14 @@ pub fn stream(seed: u64, purpose: Purpose, index: usize) -> RandomStream {
     let mut key = *b"________-rockfall random stream-";
     key[..8].copy_from_slice(&seed.to_le_bytes());
     key[8] = purpose as u8;
-    let mut random = RandomStream::from_seed(key);
-    random.set_stream(index as u64);
-    random
+    RandomStream::of(key, index as u64)
 }
 
 /// The stream of another purpose of the same release.
 pub fn beside(random: &RandomStream, purpose: Purpose) -> RandomStream {
-    let mut key = random.get_seed();
+    let mut key = random.0.get_seed();
     key[8] = purpose as u8;
-    let mut beside = RandomStream::from_seed(key);
-    beside.set_stream(random.get_stream());
-    beside
+    RandomStream::of(key, random.0.get_stream())
 }
 
 /// A number drawn evenly from the open interval (0, 1), never 0 or 1, symmetric about 1/2 (–).
@@ -64,7 +78,7 @@ pub fn beside(random: &RandomStream, purpose: Purpose) -> RandomStream {
 /// `(k + 1/2) 2⁻⁵²` with `k` the upper 52 bits of one word: exact in `f64`.
 pub fn unit(random: &mut RandomStream) -> f64 {
     const STEP: f64 = 1.0 / (1_u64 << 52) as f64;
-    ((random.next_u64() >> 12) as f64 + 0.5) * STEP
+    ((random.0.next_u64() >> 12) as f64 + 0.5) * STEP
 }
 
 #[cfg(test)]
@@ -73,7 +87,7 @@ mod tests {
 
     fn first_words(seed: u64, purpose: Purpose, index: usize) -> [u64; 4] {
         let mut random = stream(seed, purpose, index);
-        std::array::from_fn(|_| random.next_u64())
+        std::array::from_fn(|_| random.0.next_u64())
     }
 
     /// A stream is a function of its name alone, and no two names share it.
@@ -103,6 +117,17 @@ mod tests {
         let product: f64 = draws.windows(2).map(|pair| pair[0] * pair[1]).sum();
         let correlation = product * 12.0 / n as f64;
         assert!(correlation.abs() < 5.0 / (n as f64).sqrt(), "{correlation}");
+    }
+
+    /// A rock that is stepped anew from a state kept before must meet the facets that it met.
+    #[test]
+    #[expect(clippy::float_cmp, reason = "the same stream must give the same bits")]
+    fn a_copy_goes_on_where_the_stream_was() {
+        let mut random = stream(2017, Purpose::Impacts, 1_000_000);
+        for drawn in 0..70 {
+            let mut copy = random.clone();
+            assert_eq!(unit(&mut copy), unit(&mut random), "after {drawn}");
+        }
     }
 
     /// `ChaCha8` is specified to the bit and `unit` is exact: a published run can be repeated only while

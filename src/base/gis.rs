@@ -215,7 +215,7 @@ fn as_geojson(path: &Path) -> String {
 
 /// The command that brings a file into the system of an EPSG code; `from` is the code of its own system, or empty where the
 /// file names it.
-pub(crate) fn transformed(file: &Path, epsg: Option<u32>, from: &str) -> String {
+pub fn transformed(file: &Path, epsg: Option<u32>, from: &str) -> String {
     let code = epsg.map_or_else(|| "CODE".to_owned(), |code| code.to_string());
     let from = if from.is_empty() { String::new() } else { format!("-s_srs EPSG:{from} ") };
     format!("ogr2ogr {from}-t_srs EPSG:{code} {} {}", out(file), file.display())

@@ -172,13 +172,15 @@ impl Index {
 }
 
 /// Largest `f32` not above `x`.
-pub(crate) fn below(x: f64) -> f32 {
+#[inline]
+pub fn below(x: f64) -> f32 {
     let near = x as f32;
     if f64::from(near) > x { near.next_down() } else { near }
 }
 
 /// Smallest `f32` not below `x`.
-pub(crate) fn above(x: f64) -> f32 {
+#[inline]
+pub fn above(x: f64) -> f32 {
     let near = x as f32;
     if f64::from(near) < x { near.next_up() } else { near }
 }

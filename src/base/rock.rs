@@ -23,11 +23,13 @@ impl Rock {
     pub const ROLLING_INERTIA: f64 = 1.0 + Self::INERTIA;
 
     /// Mass `ρ 4/3 π R³` (kg).
+    #[inline]
     pub fn mass_kg(&self) -> f64 {
         self.density_kg_m3 * 4.0 / 3.0 * PI * self.radius_m.powi(3)
     }
 
     /// Moment of inertia of a solid sphere about any axis, `2/5 m R²` (kg m²).
+    #[inline]
     pub fn inertia_kg_m2(&self) -> f64 {
         Self::INERTIA * self.mass_kg() * self.radius_m * self.radius_m
     }
@@ -48,11 +50,13 @@ pub struct Motion {
 
 impl Motion {
     /// `m v²/2` (J).
+    #[inline]
     pub fn translational_j(&self, rock: &Rock) -> f64 {
         0.5 * rock.mass_kg() * self.velocity_m_s.norm_squared()
     }
 
     /// `I ω²/2` (J).
+    #[inline]
     pub fn rotational_j(&self, rock: &Rock) -> f64 {
         0.5 * rock.inertia_kg_m2() * self.spin_rad_s.norm_squared()
     }

@@ -75,6 +75,7 @@ impl Face {
     }
 
     /// Unit vector in the plane of the triangle, normal to its edge between `ends_m` (m), pointing out of the triangle.
+    #[inline]
     pub fn outward(&self, [a, b]: &[Vec3; 2]) -> Vec3 {
         let middle = self.a + (self.e1 + self.e2) / 3.0;
         let m = self.n.cross(&(b - a)).normalize();

@@ -4,7 +4,8 @@ use super::faces::Face;
 use crate::rock::Vec3;
 
 /// Where a centre stands to the sides of a triangle. Side `k` runs from corner `k` to the next.
-pub(crate) struct Seen<'a> {
+#[derive(Debug)]
+pub struct Seen<'a> {
     face: &'a Face,
     /// From the first corner to the centre (m).
     to: Vec3,
@@ -22,7 +23,7 @@ const SQUARE_ROUNDING: f64 = 1e-9;
 impl<'a> Seen<'a> {
     /// `None` if the foot of a centre at `height` is more than `beside` (both m) beyond a side.
     #[inline]
-    pub(crate) fn of(face: &'a Face, to: Vec3, (height, beside): (f64, f64)) -> Option<Self> {
+    pub fn of(face: &'a Face, to: Vec3, (height, beside): (f64, f64)) -> Option<Self> {
         let most2 = beside * beside * (1.0 + SQUARE_ROUNDING);
         let is_out = |beyond: f64, length2: f64| beyond > 0.0 && beyond * beyond > most2 * length2;
         // (side × n) · to, with one cross product for the two sides at the first corner
@@ -47,7 +48,7 @@ impl<'a> Seen<'a> {
 
     /// Whether the foot is nowhere more than `near` (m) beyond a side.
     #[inline]
-    pub(crate) fn is_within(&self, near: f64) -> bool {
+    pub fn is_within(&self, near: f64) -> bool {
         let near2 = near * near * (1.0 + SQUARE_ROUNDING);
         (0..3).all(|k| self.beyond[k] <= 0.0 || self.beyond[k].powi(2) <= near2 * self.length2[k])
     }
@@ -66,7 +67,7 @@ impl<'a> Seen<'a> {
     /// Whether the centre, moved by up to `near`, can be abreast of side `k`, outside of the triangle and no further than
     /// `reach` (m) from it.
     #[inline]
-    pub(crate) fn may_meet_edge(&self, k: usize, (near, reach): (f64, f64)) -> bool {
+    pub fn may_meet_edge(&self, k: usize, (near, reach): (f64, f64)) -> bool {
         let (beyond, length2) = (self.beyond[k], self.length2[k]);
         let past = {
             let along = self.along(k);
@@ -82,7 +83,7 @@ impl<'a> Seen<'a> {
     /// Whether the centre, moved by up to `near`, can be abreast of side `k`, inside of the triangle and no further than
     /// `reach` (m) from it.
     #[inline]
-    pub(crate) fn may_press_edge(&self, k: usize, (near, reach): (f64, f64)) -> bool {
+    pub fn may_press_edge(&self, k: usize, (near, reach): (f64, f64)) -> bool {
         let (beyond, length2) = (self.beyond[k], self.length2[k]);
         let near2 = near * near * length2 * (1.0 + SQUARE_ROUNDING);
         let far2 = (reach * reach * (1.0 + SQUARE_ROUNDING) - self.height * self.height) * length2;
@@ -93,7 +94,7 @@ impl<'a> Seen<'a> {
     /// Whether the centre, moved by up to `near`, can be behind both sides at corner `k` and no further than `reach` (m)
     /// from the corner along either.
     #[inline]
-    pub(crate) fn may_meet_corner(&self, k: usize, (near, reach): (f64, f64)) -> bool {
+    pub fn may_meet_corner(&self, k: usize, (near, reach): (f64, f64)) -> bool {
         let before = (k + 2) % 3;
         let sides = [(k, self.along(k)), (before, self.length2[before] - self.along(before))];
         sides.into_iter().all(|(side, ahead)| {
