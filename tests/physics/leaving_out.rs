@@ -3,7 +3,7 @@
 
 use crate::common;
 use common::zoo::{KINDS, between, dice, point, zoo};
-use rockfall::contact::neighbours::Neighbours;
+use rockfall::contact::neighbours::{Neighbours, PressedPath};
 use rockfall::contact::{ContactPoint, ContactPoints};
 use rockfall::flight::{FlightEnd, Parabola, time_of_impact};
 use rockfall::plan::Plan;
@@ -134,4 +134,54 @@ fn features_left_out_are_never_touched() {
     }
     assert!(left_out > 1000 && touched > 5000 && landed > 4000, "{left_out} {touched} {landed}");
     assert!(out_of_sight > 1000, "{out_of_sight}");
+}
+
+/// A way of which it is said that it stays on one plane touches nothing but that plane, wherever in its enclosure the rock is: all of
+/// an impact is then followed at once. On every kind of mesh, rocks a twentieth to twice as large as its cells.
+#[test]
+fn a_way_on_one_plane_touches_nothing_else() {
+    let (mut said, mut crossing) = (0, 0);
+    for (kind, mesh) in (0..KINDS.len()).flat_map(|kind| (0..8).map(move |mesh| (kind, mesh))) {
+        let terrain = zoo(kind, mesh);
+        for index in 0..300 {
+            let random = &mut dice(800, index + 1000 * mesh);
+            let radius = 0.05 * 20f64.powf(between(random, 0.0, 1.0));
+            let face = between(random, 0.0, terrain.triangles.len() as f64) as u32;
+            let [a, b, c] = terrain.corners_m(face);
+            let n = terrain.face(face).n;
+            let (s, t) = (between(random, 0.0, 1.0), between(random, 0.0, 1.0));
+            let foot = a + (b - a) * (s * (1.0 - t)) + (c - a) * t * (1.0 - s);
+            let along = point(random, 1.0).cross(&n) * between(random, 0.0, 0.15 * radius);
+            let passage = PressedPath {
+                start: foot + n * radius,
+                along,
+                into: n * -between(random, 0.0, 0.02 * radius),
+                off_m: between(random, 0.0, 0.01 * radius),
+                way_m: 0.3 * radius, // more than any of them gets
+            };
+            let mut near = Neighbours::default();
+            near.collect(&terrain, &passage.start, radius, 0.35 * radius, 0.1 * radius);
+            if !near.is_plane_on(face, &passage) {
+                crossing += 1;
+                continue;
+            }
+            said += 1;
+            for _ in 0..30 {
+                let aside = point(random, 1.0).cross(&n).normalize();
+                let centre = passage.start
+                    + along * between(random, 0.0, 1.0)
+                    + passage.into * between(random, 0.0, 1.0)
+                    + aside * between(random, 0.0, passage.off_m);
+                let height = n.dot(&(centre - a));
+                let is_own = |touch: &ContactPoint| {
+                    touch.normal.dot(&n).abs() > 1.0 - 1e-9
+                        && (touch.distance_m - height.abs()).abs() < 1e-6 * radius
+                };
+                let found = touches(&terrain, &centre, radius);
+                assert!(found.iter().all(is_own), "{} {mesh} {index}: {found:?}", KINDS[kind]);
+            }
+        }
+    }
+    println!("{said} ways on one plane, {crossing} that may meet more");
+    assert!(said > 2000 && crossing > 2000);
 }

@@ -155,6 +155,7 @@ impl ContactState {
         flow.state.accept_meetings(world.least_impact_m_s());
         let before = flow.stored_j();
         let known = flow.state.histories.len();
+        let mut kept = 0.0;
         loop {
             flow.state.histories.truncate(known);
             flow.begin_try();
@@ -170,11 +171,13 @@ impl ContactState {
                 Attempt::Whole(tried) => tried,
                 Attempt::Cut(share) => {
                     flow.state.impact.h = dt * share;
+                    // beyond a kink the law is as smooth as before it: the step before is taken up again
+                    kept = dt.max(kept);
                     continue;
                 }
             };
             let (accepted, next_h) = judge((dt, wished), (tried.error2, flow.is_smooth), is_short)?;
-            flow.state.impact.h = next_h;
+            flow.state.impact.h = if accepted { next_h.max(kept) } else { next_h };
             if accepted {
                 done.rejected -= 1;
                 let (end, after) = (flow.end(&tried.y), flow.stored_j());
@@ -182,6 +185,7 @@ impl ContactState {
                 let stored = before.zip(after);
                 return Ok(Some(Accepted { end, dt, sums: tried.q, stored }));
             }
+            kept = 0.0;
         }
     }
 

@@ -75,13 +75,14 @@ impl Neighbours {
             let rays = rays_of(rays);
             rays.len() > 1 && rays.iter().all(|ray| own.n.dot(ray).abs() <= SLACK)
         };
-        // Whether the centre, `off` from an edge, may come to stand outside (or inside) of all faces on it.
-        let may_stand = |rays: (u32, u32), off: &Vec3, side: f64| {
-            rays_of(rays).iter().all(|ray| side * ray.dot(off) >= -passage.way_m)
-        };
-        let from_start = |a: &Vec3, along: &Vec3, length: f64| {
-            let to = passage.start - a;
-            to - along * along.dot(&to).clamp(0.0, length)
+        // Whether the centre may come to stand outside (or inside) of all faces on an edge through `a`: `rays` point out of them
+        // and are square to the edge, so any of its points will do.
+        let beyond = passage.off_m + SLACK * self.radius;
+        let may_stand = |rays: (u32, u32), a: &Vec3, outside: bool| {
+            rays_of(rays).iter().all(|ray| {
+                let (low, high) = passage.range(ray, ray.dot(&(passage.start - a)));
+                if outside { high >= -beyond } else { low <= beyond }
+            })
         };
         let reach = self.radius;
         // a face is harmless if it lies in the same plane (either winding), is never near, or never
@@ -95,7 +96,7 @@ impl Neighbours {
             // an edge: never near, never with the centre outside of all its faces, or flat in the
             // plane itself
             !passage.comes_nearer((&edge.a, &(edge.along * edge.length)), reach)
-                || !may_stand(edge.rays, &from_start(&edge.a, &edge.along, edge.length), 1.0)
+                || !may_stand(edge.rays, &edge.a, true)
                 || !edge.at_border && lies_flat(edge.rays) && in_plane(&edge.a)
         }) && self.corners.iter().all(|corner| {
             !passage.comes_nearer((&corner.p, &Vec3::zeros()), reach)
@@ -103,7 +104,7 @@ impl Neighbours {
         }) && self.saddles.iter().all(|saddle| match saddle {
             NearSaddle::Edge { a, along, length, rays } => {
                 !passage.comes_nearer((a, &(along * *length)), reach)
-                    || rays.0 < rays.1 && !may_stand(*rays, &from_start(a, along, *length), -1.0)
+                    || rays.0 < rays.1 && !may_stand(*rays, a, false)
                     || lies_flat(*rays) && in_plane(a)
             }
             // a vertex that can be a saddle is only harmless out of reach: its sectors are not
