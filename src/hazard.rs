@@ -63,9 +63,8 @@ pub const PERCENTS: [u8; 5] = [50, 90, 95, 98, 99];
 
 /// Statistics over all rocks computed so far.
 ///
-/// The statistics are over all rocks but the failed and the never released: these have a row and are counted, but
-/// where they stopped is where the computation did. A rock that left the terrain or ran out of time or work counts with what it
-/// had done until then; its runout is a lower bound, and so is every percentile of runout that such rocks decide.
+/// The statistics are over all rocks that were released. One that left the terrain, ran out of time or work, or failed counts
+/// with what it had done until then; its runout is a lower bound, and so is every percentile of runout that such rocks decide.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Hazard {
     stops: BTreeMap<StopKind, EndCounts>,
@@ -77,9 +76,9 @@ pub struct Hazard {
     largest: [Option<Largest>; Quantity::ALL.len()],
     largest_balance_error: Option<Largest>,
     frequency: Option<Frequency>,
-    /// The first release added, and those that failed.
+    /// The first release added, and those that were never released.
     first: Option<usize>,
-    failed: Vec<usize>,
+    not_released: Vec<usize>,
     /// Effort, ledger and failures: what the rows do not hold.
     pub totals: Totals,
 }
@@ -104,7 +103,7 @@ impl EndCounts {
 /// Statistics of one quantity.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Statistic {
-    /// Rocks with a value: all that did not fail.
+    /// Rocks with a value: all that were released, but for failed ones that left no number.
     pub rocks: usize,
     /// Mean with its normal interval.
     pub mean: Option<Mean>,
@@ -112,7 +111,7 @@ pub struct Statistic {
     pub percentiles: BTreeMap<String, Percentile>,
     /// The largest value and the release it belongs to.
     pub max: Option<Largest>,
-    /// Rocks whose own value is only a bound: they left the terrain or ran out of time.
+    /// Rocks whose own value is only a bound: they left the terrain, ran out of time or failed.
     #[serde(default, skip_serializing_if = "is_0")]
     pub censored: usize,
     /// Which percentiles have no upper bound because there are too few rocks; empty when all have.
@@ -189,19 +188,20 @@ impl Hazard {
         self.first.get_or_insert(row.index);
         self.open.extend(OpenRock::of(row));
         Largest::update(&mut self.largest_balance_error, row.index, row.energy_balance_error);
-        if !row.stop.counts() {
-            self.failed.push(row.index);
+        if !row.stop.is_released() {
+            self.not_released.push(row.index);
             return;
         }
         self.is_open.push(row.stop.is_open());
         for (slot, quantity) in Quantity::ALL.into_iter().enumerate() {
             let value = quantity.of(row);
-            self.values[slot].push(value);
+            // a failed rock may have left no number; infinite, two equal runs stay equal
+            self.values[slot].push(if value.is_nan() { f64::INFINITY } else { value });
             Largest::update(&mut self.largest[slot], row.index, value);
         }
     }
 
-    /// Rocks added so far, failed and never released ones included.
+    /// Rocks added so far, never released ones included.
     pub fn rocks(&self) -> usize {
         self.stops.values().map(EndCounts::count).sum()
     }
@@ -209,6 +209,13 @@ impl Hazard {
     /// Rocks that would have gone on, by rising release.
     pub fn open_rocks(&self) -> &[OpenRock] {
         &self.open
+    }
+
+    /// Rocks that ended on the map and would have gone on: they are missing in its cells further on. None of none.
+    pub fn open_on(&self, map: &MapFrame) -> Option<Proportion> {
+        let open = self.open.iter().filter(|rock| rock.ended_on(map)).map(|rock| rock.release);
+        let found = share_of(&self.weights_or_equal(), open);
+        (found.count > 0).then_some(found)
     }
 
     /// Rocks that were released: shares of rocks are of these.
@@ -230,7 +237,7 @@ impl Hazard {
         }
     }
 
-    /// Largest energy balance error of one rock (–); a failed rock counts too if it has a number.
+    /// Largest energy balance error of one rock (–).
     pub fn largest_balance_error(&self) -> Option<Largest> {
         self.largest_balance_error
     }
@@ -263,13 +270,14 @@ impl Hazard {
         weights: Option<&'a Weights>,
     ) -> impl Iterator<Item = (f64, f64)> + 'a {
         let first = self.first.unwrap_or(0);
-        let ended =
-            (first..first + self.rocks()).filter(|at| self.failed.binary_search(at).is_err());
+        let is_released = |at: &usize| self.not_released.binary_search(at).is_err();
+        let released = (first..first + self.rocks()).filter(is_released);
         let weighs = move |release| weights.map_or(1.0, |all| all.of_release(release));
-        self.values(quantity).iter().copied().zip(ended.map(weighs))
+        self.values(quantity).iter().copied().zip(released.map(weighs))
     }
 
-    /// The values of one quantity in the order of releases (failed rocks have none).
+    /// The values of one quantity in the order of releases (rocks that were never released have none); infinite where a
+    /// failed rock left no number.
     pub fn values(&self, quantity: Quantity) -> &[f64] {
         &self.values[quantity as usize]
     }

@@ -254,7 +254,7 @@ impl Output {
             }
             self.hazard.add(&row);
             self.hazard.totals.add(fall);
-            if row.stop.counts() {
+            if row.stop.is_released() {
                 let profile = &mut self.hazard.totals.profile;
                 profile.add(self.info.profile_step_m, stratum, &fall.stretches);
             }

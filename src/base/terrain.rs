@@ -25,6 +25,7 @@ pub mod seen;
 pub mod stems;
 pub mod stl;
 pub mod t_junctions;
+pub mod walls;
 pub mod weld;
 
 use crate::rock::Vec3;
@@ -32,6 +33,8 @@ use faces::{Face, Mesh};
 use features::Features;
 use floor::Floor;
 use index::Index;
+use parry3d_f64::query::PointQuery;
+use parry3d_f64::shape::Triangle;
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use std::path::PathBuf;
 use stems::Stems;
@@ -183,6 +186,20 @@ impl Terrain {
     /// The highest slope surface at (x, y) that is not above `under_m` (m, local).
     pub fn ground_under(&self, x_m: f64, y_m: f64, under_m: f64) -> Option<f64> {
         self.slope_under(x_m, y_m, under_m).map(|(height_m, _)| height_m)
+    }
+
+    /// Distance from a point to the nearest triangle (m), or `reach_m` when none is nearer.
+    pub fn distance_m(&self, point: &Vec3, reach_m: f64) -> f64 {
+        let mut nearest = reach_m;
+        self.index.near(point, reach_m, |start, count| {
+            for triangle in start..start + count {
+                let [a, b, c] = self.corners_m(triangle).map(Into::into);
+                let distance =
+                    Triangle::new(a, b, c).distance_to_local_point((*point).into(), true);
+                nearest = nearest.min(distance);
+            }
+        });
+        nearest
     }
 
     /// The highest slope surface at (x, y) that is not above `under_m`, and its unit normal (m, local).

@@ -96,6 +96,8 @@ pub struct Plan {
     pub radii_m: [f64; 3],
     /// Masses of the release table that are not those of its radii, where the scene says which count.
     pub table_sizes: Option<String>,
+    /// How many releases are lifted off steep ground, in words; none where none is.
+    pub lifted: Option<String>,
     /// The meshes.
     pub terrain: Terrain,
     /// Health of the meshes; none where the terrain was given and not read from files.
@@ -218,7 +220,7 @@ impl Plan {
         let year = annual::year(scene, &terrain, &mut warnings)?;
         let objects = annual::objects(scene, &mut warnings);
         let lines = evaluation_lines(scene, &terrain)?;
-        annual::over_release(&tried, lines.as_deref(), &mut warnings);
+        annual::over_release(&tried.made, lines.as_deref(), &mut warnings);
         let longest_s = scene.solver.longest_s.unwrap_or(LONGEST_S);
         stiffness::too_short(&step, longest_s, &mut warnings);
         let values = || scene.grounds.values();
@@ -237,6 +239,7 @@ impl Plan {
             releases,
             radii_m: scene.rocks.radius_m().reckoned(),
             table_sizes,
+            lifted: tried.lifted,
             mesh_health: None,
             input_files: scene.inputs.clone(),
             ground_zones: Part::when(terrain.patched.clone(), "every file has one ground"),

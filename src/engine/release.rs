@@ -12,7 +12,7 @@ use crate::random::{Distribution, Purpose, RandomStream, stream, unit};
 use crate::rock::{Motion, Rock, Vec3};
 use crate::scene::{Area, Corner, GroundTable, Polyline, ReleasePoint, Scene, SourceTable, Zones};
 use crate::terrain::Terrain;
-use clear::{clear_of, distance_m, is_inside_tree};
+use clear::{clear_of, is_inside_tree};
 pub use shapes::DrawnShape;
 use shapes::Shapes;
 use std::path::PathBuf;
@@ -66,6 +66,15 @@ pub enum Where {
     Area(Area),
     /// Over zones, each with its share.
     Zones(Zones),
+}
+
+/// A release tried at one place after the other.
+struct TriedPlace {
+    release: std::result::Result<Release, Box<Lost>>,
+    /// Places drawn for it.
+    drawn: usize,
+    /// How far it was lifted off steep ground (m).
+    lift_m: f64,
 }
 
 /// All releases of a scene; draws any of them, in any order.
@@ -182,16 +191,12 @@ impl Releases {
         terrain: &Terrain,
         index: usize,
     ) -> std::result::Result<Release, Box<Lost>> {
-        self.place_rock(terrain, index).0
+        self.place_rock(terrain, index).release
     }
 
     /// Draws a rock and a place for it. On a line or in an area a place without ground, or without room for the rock,
     /// is drawn again: rocks are released uniformly over what is left. Says how many places were drawn.
-    fn place_rock(
-        &self,
-        terrain: &Terrain,
-        index: usize,
-    ) -> (std::result::Result<Release, Box<Lost>>, usize) {
+    fn place_rock(&self, terrain: &Terrain, index: usize) -> TriedPlace {
         let mut release = self.unplaced(index);
         let mut random = stream(self.seed, Purpose::Place, index);
         let is_fixed = matches!(self.place_of(index).0, Where::Points(_));
@@ -202,10 +207,10 @@ impl Releases {
         for drawn in 1..=draws {
             let at_m = self.draw_place(&mut random, (index, zone));
             let why = match self.centre(terrain, (at_m, around_m), &mut random, index) {
-                Ok(centre) => {
+                Ok((centre, lift_m)) => {
                     release.motion.position_m = centre;
                     match self.check_clear(terrain, (index, around_m), &release) {
-                        Ok(()) => return (Ok(release), drawn),
+                        Ok(()) => return TriedPlace { release: Ok(release), drawn, lift_m },
                         Err(error) => (IN_GROUND, error),
                     }
                 }
@@ -219,7 +224,7 @@ impl Releases {
             lost.get_or_insert(Box::new(Lost { rock, start, why: why.0, error: why.1 }));
         }
         // at least one place was drawn
-        (lost.map_or(Ok(release), Err), draws)
+        TriedPlace { release: lost.map_or(Ok(release), Err), drawn: draws, lift_m: 0.0 }
     }
 
     /// Everything of a release but its place.
@@ -252,23 +257,25 @@ impl Releases {
         }
     }
 
-    /// The centre of a rock over a place (m, local).
+    /// The centre of a rock over a place (m, local), and how far it is lifted off steep ground for it (m).
     fn centre(
         &self,
         terrain: &Terrain,
         ((at_m, fixed_m), radius_m): ((Corner, Option<f64>), f64),
         random: &mut RandomStream,
         index: usize,
-    ) -> Result<Vec3> {
+    ) -> Result<(Vec3, f64)> {
         let [x, y] = local(terrain, at_m);
         if let Some(z) = fixed_m.map(|z| z - terrain.origin_m.z) {
             let centre = Vec3::new(x, y, z);
             self.check_held(terrain, (centre, radius_m), at_m, &release_name(index))?;
-            return Ok(centre);
+            return Ok((centre, 0.0));
         }
         let ground_m = self.ground_m(terrain, at_m, &release_name(index))?;
         let gap_m = self.height_m.as_ref().map_or(0.0, |height| height.draw(random));
-        Ok(clear_of(terrain, Vec3::new(x, y, ground_m + gap_m + radius_m), radius_m))
+        let asked = Vec3::new(x, y, ground_m + gap_m + radius_m);
+        let centre = clear_of(terrain, asked, radius_m);
+        Ok((centre, centre.z - asked.z))
     }
 
     /// A centre given with its height may hang beyond the edge of the terrain where the rock touches it.
@@ -280,7 +287,7 @@ impl Releases {
         who: &str,
     ) -> Result<()> {
         let reach_m = radius_m * (1.0 + TYPED_DEPTH);
-        if distance_m(terrain, &centre, reach_m) < reach_m {
+        if terrain.distance_m(&centre, reach_m) < reach_m {
             return Ok(());
         }
         self.ground_m(terrain, at_m, who).map(|_| ())
@@ -306,7 +313,7 @@ impl Releases {
         let stiffness = grounds.iter().map(|ground| ground.normal_stiffness_n_m);
         let pressed_m =
             rock.mass_kg() * self.gravity_m_s2 / stiffness.fold(f64::INFINITY, f64::min);
-        let depth_m = around_m - distance_m(terrain, centre, around_m);
+        let depth_m = around_m - terrain.distance_m(centre, around_m);
         // beyond the edge there is no ground to be under
         let buried = terrain.is_under_slope(centre);
         let caged = is_inside_tree(terrain, centre);

@@ -10,6 +10,7 @@ use super::design::{Design, Rule};
 use super::lines::{CrossingRow, by_rock};
 use super::open::OpenRocks;
 use super::proportion::Proportion;
+use super::rate::share_of;
 use super::totals::Largest;
 use super::{Statistic, statistic};
 use crate::frequency::Weights;
@@ -52,6 +53,9 @@ pub struct BarrierSummary {
     pub crossing: usize,
     /// Rocks that arrive, those stopped before left out, as a share of all releases.
     pub arriving: Proportion,
+    /// Rocks that may still arrive, with any energy: what is missing in energies and heights. None of none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub may_still_come: Option<Proportion>,
     /// Rocks stopped, as a share of those that arrive.
     pub stopped: Proportion,
     /// Rocks that reach above its upper edge.
@@ -238,6 +242,7 @@ fn summary(
         barrier: barrier.clone(),
         crossing,
         arriving: arriving((rocks, &open[0]), weights),
+        may_still_come: (!open[0].is_empty()).then(|| share_of(weights, open[0].iter().copied())),
         stopped,
         over,
         through: rocks.len() - stopped.count - over,

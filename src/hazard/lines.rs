@@ -1,7 +1,7 @@
 //! What all rocks say at one evaluation line.
 
 use super::proportion::Proportion;
-use super::rate::share_up_to;
+use super::rate::{share_of, share_up_to};
 use super::sample::Sample;
 use super::totals::Largest;
 use super::{Statistic, statistic};
@@ -229,6 +229,9 @@ pub struct LineSummary {
     pub info: LineInfo,
     /// Rocks that cross it, as a share of all that were released.
     pub reach: Proportion,
+    /// Rocks that have not crossed it and may still come, with any energy: what is missing in the statistics. None of none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub may_still_come: Option<Proportion>,
     /// Rocks that cross it more than once; only their first crossing counts in the statistics.
     pub crossing_again: usize,
     /// Statistics by quantity, over first crossings.
@@ -293,6 +296,12 @@ impl Line {
         seen.up_to(&Proportion::new((self.crossings + self.open.len()).min(released), released))
     }
 
+    /// Rocks that have not crossed it and may still come, as a share of so many released; none where there are none.
+    pub fn may_still_come(&self, released: usize) -> Option<Proportion> {
+        let weights = self.weights.clone().unwrap_or_else(|| Weights::equal(released));
+        (!self.open.is_empty()).then(|| share_of(&weights, self.open.iter().copied()))
+    }
+
     /// Rocks that cross it more than once.
     pub fn crossing_again(&self) -> usize {
         self.repeated
@@ -321,6 +330,7 @@ impl Line {
         LineSummary {
             info: self.info.clone(),
             reach: self.reach(released),
+            may_still_come: self.may_still_come(released),
             crossing_again: self.repeated,
             statistics: LineQuantity::ALL.into_iter().map(of).collect(),
         }

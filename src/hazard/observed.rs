@@ -6,7 +6,7 @@ mod spread;
 pub use apart::EndDistances;
 pub use spread::{EndSpread, effective, rank};
 
-use super::row::Row;
+use super::row::{Row, StopKind};
 use super::sample::Sample;
 use crate::error::{Error, Result};
 use crate::file::{self, LONGEST_TEXT};
@@ -73,10 +73,11 @@ impl ObservedPath {
         [self.end_m[0] - self.start_m[0], self.end_m[1] - self.start_m[1]]
     }
 
-    /// The way of a computed rock; a failed one has none.
+    /// The way of a computed rock; one that failed has no end to compare.
     pub fn of(row: &Row) -> Option<Self> {
         let flat = |[x, y, _]: [f64; 3]| [x, y];
-        row.stop.counts().then(|| Self { start_m: flat(row.start_m), end_m: flat(row.end_m) })
+        let has_end = row.stop.is_released() && row.stop != StopKind::Failed;
+        has_end.then(|| Self { start_m: flat(row.start_m), end_m: flat(row.end_m) })
     }
 
     /// Reads measured ways from a CSV file with the columns `release_x_m`, `release_y_m`, `x_m`, `y_m`.

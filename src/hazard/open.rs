@@ -6,6 +6,7 @@
 //! arriving, and the upper ends of their intervals all (worst-case bounds, Manski 1990).
 
 use super::lines::{CrossingRow, LineInfo, by_rock};
+use super::maps::MapFrame;
 use super::row::{Row, StopKind};
 use std::collections::BTreeMap;
 
@@ -27,7 +28,7 @@ impl OpenRock {
     /// Of a rock that would have gone on; none of one at rest or never released.
     pub fn of(row: &Row) -> Option<Self> {
         let ([x, y, _], [vx, vy, _]) = (row.end_m, row.end_velocity_m_s);
-        (row.stop.is_open() || row.stop == StopKind::Failed).then(|| Self {
+        row.stop.is_open().then(|| Self {
             release: row.index,
             radius_m: row.radius_m,
             left: (row.stop == StopKind::LeftTerrain).then_some([[x, y], [vx, vy]]),
@@ -41,6 +42,18 @@ impl OpenRock {
         self.left.is_none_or(|[end, way]| {
             let is_ahead = |[x, y]: &[f64; 2]| (x - end[0]) * way[0] + (y - end[1]) * way[1] >= 0.0;
             line.corners_m.iter().any(is_ahead)
+        })
+    }
+
+    /// Whether it ended on the map: time or work up, failed, or out of the terrain farther than a cell from the edge, through a
+    /// hole or where the terrain fills no rectangle. What leaves over the edge of the map is missing in no cell.
+    pub fn ended_on(&self, map: &MapFrame) -> bool {
+        let cells = |at: f64, edge: f64| (at - edge) / map.cell_m;
+        self.left.is_none_or(|[[x, y], _]| {
+            let (column, row) = (cells(x, map.west_m), cells(y, map.south_m));
+            column.min(row) > 1.0
+                && column < f64::from(map.columns) - 1.0
+                && row < f64::from(map.rows) - 1.0
         })
     }
 

@@ -63,7 +63,7 @@ impl Quantity {
         }
     }
 
-    /// Where the true value of a rock lies that left the terrain or ran out of time; none where its way so far gives
+    /// Where the true value of a rock lies that left the terrain, ran out of time or failed; none where its way so far gives
     /// the value: a largest speed is that on the terrain given.
     pub fn open(self) -> Option<Open> {
         match self {

@@ -104,11 +104,6 @@ impl StopKind {
         Self::NotReleased,
     ];
 
-    /// Whether the rock's way says something of rocks: it began, and was computed as far as it was followed.
-    pub fn counts(self) -> bool {
-        !matches!(self, Self::Failed | Self::NotReleased)
-    }
-
     /// Whether the rock began: only then it has its part of what a source releases.
     pub fn is_released(self) -> bool {
         self != Self::NotReleased
@@ -119,9 +114,10 @@ impl StopKind {
         matches!(self, Self::OverBudget | Self::NotReleased)
     }
 
-    /// Whether the rock would have gone on: where it ended says only how far it came at least.
+    /// Whether the rock would have gone on: where it ended says only how far it came at least. What a rock had done before
+    /// the step that failed is as sound as before any other end.
     pub fn is_open(self) -> bool {
-        matches!(self, Self::LeftTerrain | Self::TimeUp | Self::OverBudget)
+        matches!(self, Self::LeftTerrain | Self::TimeUp | Self::OverBudget | Self::Failed)
     }
 
     /// Its word in `releases.csv` and `summary.json`.

@@ -84,10 +84,10 @@ impl Sample {
     }
 
     /// Sorts values, each with what it weighs, of which some are only bounds (true): the rock was seen in part. The truth
-    /// lies on the `open` side.
+    /// lies on the `open` side; of a bound that is no number nothing is known, and it counts only there.
     pub fn censored(values: impl IntoIterator<Item = (f64, f64, bool)>, open: Open) -> Self {
-        let seen: Vec<(f64, f64, bool)> =
-            values.into_iter().filter(|(value, ..)| value.is_finite()).collect();
+        let known = |(value, _, is_bound): &(f64, f64, bool)| *is_bound || value.is_finite();
+        let seen: Vec<(f64, f64, bool)> = values.into_iter().filter(known).collect();
         let far_end = match open {
             Open::Above => f64::INFINITY,
             Open::Below => f64::NEG_INFINITY,

@@ -140,9 +140,9 @@ impl Totals {
     pub fn warnings(&self, rocks: usize) -> Vec<String> {
         let mut warnings = Vec::new();
         let failed: usize = self.failures.values().map(Vec::len).sum();
-        if failed > 0 {
+        if let Some(first) = self.failures.values().flatten().min() {
             warnings.push(format!(
-                "{failed} of {rocks} rocks failed: they are counted, but in no statistic; `--only` shows one again"
+                "{failed} of {rocks} rocks failed: they count as far as they came; `--only {first}` shows one again"
             ));
         }
         for (why, releases) in &self.not_released {

@@ -34,7 +34,7 @@ const DEFINITIONS: [(&str, &str); 13] = [
     ),
     (
         "censored",
-        "the value is a bound only: rocks that left the terrain or ran out of time decide it. Runout, drop and time are then at least, reach angle at most what is written, and shares and numbers a year of rocks that come to a line at least, where such rocks may still come to it; the interval is open on that side, or its upper end takes those rocks as arriving; censored counts those rocks",
+        "the value is a bound only: rocks that left the terrain, ran out of time or failed decide it. Runout, drop and time are then at least, reach angle at most what is written, and shares and numbers a year of rocks that come to a line at least, where such rocks may still come to it; the interval is open on that side, or its upper end takes those rocks as arriving; censored counts those rocks",
     ),
     (
         "energy_balance_error",
@@ -46,16 +46,16 @@ const DEFINITIONS: [(&str, &str); 13] = [
     ),
     (
         "lines",
-        "over rocks, of the value at the first crossing, which is interpolated on the parabola of a flight or the cubic of a step; reach = rocks that cross / rocks released; height_m vertical, height_normal_m along the normal of the triangle below",
+        "over rocks, of the value at the first crossing, which is interpolated on the parabola of a flight or the cubic of a step; reach = rocks that cross / rocks released; may_still_come = rocks that have not crossed but may, with any energy: they are missing in the statistics, whose percentiles may be too low; height_m vertical, height_normal_m along the normal of the triangle below",
     ),
     (
         "maps",
-        "one value per rock and cell, its largest there; 95th percentiles from classes of ratio 1.05: within 2.5 % of the ranked value; heights are taken at three places of a flight in the cell; intensity_class by the 95th percentile of energy, counted: weak below 30 kJ, strong from 300 kJ on",
+        "one value per rock and cell, its largest there; 95th percentiles from classes of ratio 1.05: within 2.5 % of the ranked value; heights are taken at three places of a flight in the cell; intensity_class by the 95th percentile of energy, counted: weak below 30 kJ, strong from 300 kJ on; open_on_maps = rocks that ended on the map and would have gone on: further on they are missing, and probabilities and percentiles may be too low",
     ),
     ("max_height_m", "vertical, from the ground below to the lowest point of the rock"),
     (
         "percentiles",
-        "over all rocks that did not fail, linear between neighbouring order statistics; rocks that left the terrain or ran out of time count with what they had done until then",
+        "over all rocks that were released, linear between neighbouring order statistics; rocks that left the terrain, ran out of time or failed count with what they had done until then",
     ),
     ("reach_angle_deg", "atan(drop / runout)"),
     (
@@ -105,6 +105,9 @@ pub struct Summary {
     /// Where the maps lie, if there are any.
     #[serde(default)]
     pub maps: Option<MapFrame>,
+    /// Rocks that ended on the map and would have gone on, as a share of all that were released; none of none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub open_on_maps: Option<Proportion>,
     /// Largest energy balance error of one rock (–).
     pub largest_energy_balance_error: Option<Largest>,
     /// Failures by reason, effort, energy ledger, largest rise of energy.
@@ -166,6 +169,7 @@ impl Summary {
             residual: Vec::new(),
             site: info.site,
             observed: info.observed,
+            open_on_maps: info.maps.and_then(|map| hazard.open_on(&map)),
             maps: info.maps,
             largest_energy_balance_error: hazard.largest_balance_error(),
             totals: hazard.totals.rounded(),

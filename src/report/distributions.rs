@@ -88,7 +88,7 @@ impl<'a> DistributionPanel<'a> {
     /// Draws it with its head so far above the frame (px).
     pub(super) fn draw(&self, canvas: &Canvas<'_>, head_px: f64) {
         let said = self.report.words();
-        let total = self.report.releases.len();
+        let total = self.report.released();
         self.panel.grid(canvas);
         self.bins.bars(canvas, &self.panel);
         let mut words = self.percentiles(canvas);

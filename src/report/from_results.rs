@@ -106,13 +106,15 @@ pub fn gather(results: &Results, ground: Option<GroundRaster>) -> Result<Report>
 
 /// What sources without a rock and rocks that left the terrain do to the numbers, before anything else.
 pub(super) fn warnings_first(hazard: &Hazard, words: &Words) -> Vec<String> {
+    let own = words.open();
     let kinds = [
-        (StopKind::LeftTerrain, words.have_left, words.remedy_left),
-        (StopKind::TimeUp, words.have_no_time, words.remedy_time),
-        (StopKind::OverBudget, words.have_no_budget, words.remedy_budget),
+        (StopKind::LeftTerrain, own.have_left, own.remedy_left),
+        (StopKind::TimeUp, own.have_no_time, own.remedy_time),
+        (StopKind::OverBudget, own.have_no_budget, own.remedy_budget),
+        (StopKind::Failed, own.have_failed, own.remedy_budget),
     ];
     let weighted = hazard.weights().map(|_| words.say(by_frequency::SHARE));
-    let some_rocks = weighted.unwrap_or_else(|| words.some_rocks.to_owned());
+    let some_rocks = weighted.unwrap_or_else(|| own.some_rocks.to_owned());
     let said = |(kind, what, remedy): (StopKind, &str, &str)| {
         let share = hazard.ended(kind);
         let count = |n: usize| format::decimal(n as f64, 0);
@@ -120,7 +122,7 @@ pub(super) fn warnings_first(hazard: &Hazard, words: &Words) -> Vec<String> {
         let (n, of) = (count(share.count), count(share.of));
         let rocks = fill(&some_rocks, &[("n", &n), ("of", &of), ("share", &percent)]);
         let said =
-            || fill(words.censored, &[("rocks", &rocks), ("what", &what), ("remedy", &remedy)]);
+            || fill(own.censored, &[("rocks", &rocks), ("what", &what), ("remedy", &remedy)]);
         (share.count > 0).then(said)
     };
     let missing = hazard.missing_events();

@@ -16,6 +16,7 @@ use super::profile::NEEDS;
 use super::site;
 use super::svg::path::{PaperFrame, Spot};
 use super::words::fill;
+use super::words::open::missing;
 use crate::math;
 use plotters::style::RGBColor;
 
@@ -139,17 +140,21 @@ fn draw_reach(report: &Report, maps: &CellMap, ground: Option<&Shaded>) -> Drawi
             ("strong", &strong),
         ],
     );
-    Drawing { svg, caption: caption + &few(report, maps) }
+    Drawing { svg, caption: caption + &lacks(report, maps) }
 }
 
-/// What a 95th percentile of few rocks is worth; nothing where none is.
-fn few(report: &Report, maps: &CellMap) -> String {
+/// What a 95th percentile of few rocks is worth, and which rocks are missing; nothing where nothing lacks.
+fn lacks(report: &Report, maps: &CellMap) -> String {
     let all: usize = maps.intensity_cells.iter().sum();
     let share = format::percent(maps.few_cells as f64 / all.max(1) as f64, 0);
-    if maps.few_cells == 0 {
-        return String::new();
-    }
-    fill(report.words().maps_few, &[("share", &share), ("needs", &NEEDS)])
+    let few = fill(report.words().maps_few, &[("share", &share), ("needs", &NEEDS)]);
+    let few = if maps.few_cells == 0 { String::new() } else { few };
+    few + &open(report, maps)
+}
+
+/// Rocks that would have gone on into other cells; nothing where none would.
+fn open(report: &Report, maps: &CellMap) -> String {
+    missing(report.words().open().on_maps, maps.open.as_ref())
 }
 
 /// Draws energy and height beside each other.
@@ -161,7 +166,7 @@ fn draw_values(report: &Report, maps: &CellMap, ground: Option<&Shaded>) -> Draw
         ClassedMap::of_values(words.map_height, &maps.height_m, ("m", 1.0), &[1.0, 2.0, 5.0]),
     ];
     let svg = draw_layers("maps-values", words.map_values_alt, (report, maps, ground), &layers);
-    Drawing { svg, caption: words.map_values_caption.to_owned() + &few(report, maps) }
+    Drawing { svg, caption: words.map_values_caption.to_owned() + &lacks(report, maps) }
 }
 
 /// Draws deposits and the probability of more than a weak intensity beside each other.
@@ -172,7 +177,7 @@ fn draw_ends(report: &Report, maps: &CellMap, ground: Option<&Shaded>) -> Drawin
         ClassedMap::of_shares(words.map_exceeds, &maps.exceeds),
     ];
     let svg = draw_layers("maps-ends", words.map_ends_alt, (report, maps, ground), &layers);
-    Drawing { svg, caption: words.map_ends_caption.to_owned() }
+    Drawing { svg, caption: words.map_ends_caption.to_owned() + &open(report, maps) }
 }
 
 fn draw_layers(

@@ -77,6 +77,12 @@ impl Report {
         released.map(|fall| (value(fall), fall.weight)).collect()
     }
 
+    /// Rocks that were released: those that figures and tables are of.
+    pub(super) fn released(&self) -> usize {
+        let is_one = |fall: &&ReleaseEnd| !matches!(fall.stop, Stop::NotReleased(_));
+        self.releases.iter().filter(is_one).count()
+    }
+
     /// The words of its language.
     pub(super) fn words(&self) -> &'static Words {
         Words::of(self.language)

@@ -77,7 +77,7 @@ pub(super) fn draw(report: &Report) -> Drawing {
         fill(words.contour_interval, &[("m", &format::plain(c.interval_m))])
     });
     let count = |n: usize| format::decimal(n as f64, 0);
-    let found = [count(report.paths.len()), count(report.releases.len())];
+    let found = [count(report.paths.len()), count(report.released())];
     let caption = fill(words.plan_caption, &[("paths", &found[0]), ("releases", &found[1])]);
     let density = if at_rest(report).count() > MANY { words.plan_density } else { "" };
     Drawing { svg, caption: caption + density + &interval }
@@ -208,7 +208,7 @@ fn ends(canvas: &Canvas<'_>, panel: &Panel, report: &Report) {
         deposits(canvas, panel, report);
     }
     for kind in ENDS.into_iter().filter(|kind| !(is_crowd && *kind == EndMark::AtRest)) {
-        let ends = report.releases.iter().filter(|fall| EndMark::of(&fall.stop) == kind);
+        let ends = report.releases.iter().filter(|fall| EndMark::of(&fall.stop) == Some(kind));
         kind.draw(canvas, &apart(panel, ends.map(|fall| fall.end_m), 0.8 * radius), radius);
     }
 }
@@ -269,13 +269,15 @@ const ENDS: [EndMark; 4] =
     [EndMark::AtRest, EndMark::LeftTerrain, EndMark::TimeUp, EndMark::Failed];
 
 impl EndMark {
-    fn of(stop: &Stop) -> Self {
-        match stop {
+    /// None of a rock that was never released: it has been nowhere.
+    fn of(stop: &Stop) -> Option<Self> {
+        Some(match stop {
             Stop::AtRest => Self::AtRest,
             Stop::LeftTerrain => Self::LeftTerrain,
             Stop::TimeUp | Stop::OverBudget => Self::TimeUp,
-            Stop::Failed(_) | Stop::NotReleased(_) => Self::Failed,
-        }
+            Stop::Failed(_) => Self::Failed,
+            Stop::NotReleased(_) => return None,
+        })
     }
 
     /// Draws marks of a radius (px) on a white rim.

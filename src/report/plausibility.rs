@@ -31,7 +31,7 @@ const ENOUGH: usize = 20;
 /// All checks that can be made.
 pub(super) fn checks(report: &Report, results: &Results) -> Vec<Check> {
     let mut checks = Vec::new();
-    if report.releases.len() >= ENOUGH {
+    if report.released() >= ENOUGH {
         checks.extend(reach(report));
         checks.extend(speed(report));
         checks.extend(report.ground.as_ref().and_then(|ground| hollows(report, ground)));
@@ -72,7 +72,7 @@ fn speed(report: &Report) -> Option<Check> {
         &[
             ("v", &format::significant(fastest, 3)),
             ("n", &count(fast.len())),
-            ("of", &count(report.releases.len())),
+            ("of", &count(report.released())),
             ("share", &format!("{}\u{2009}%", format::significant(100.0 * share, 2))),
             ("limit", &FAST_M_S),
         ],

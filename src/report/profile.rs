@@ -46,7 +46,7 @@ pub(super) fn draw(report: &Report, view: &ProfileView) -> Drawing {
         words.profile_caption,
         &[
             ("step", &format::plain(view.step_m)),
-            ("rocks", &words.rocks(report.releases.len())),
+            ("rocks", &words.rocks(report.released())),
             ("needs", &NEEDS),
         ],
     );

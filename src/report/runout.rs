@@ -11,7 +11,7 @@ use super::model::{Is, Quantile, ReleaseEnd, Report, ReportQuantity};
 use super::panel::{FOOT_PX, Panel, align};
 use super::svg::path::PaperFrame;
 use super::words::{Words, fill};
-use crate::simulation::Stop;
+use crate::hazard::StopKind;
 
 const TOP_PX: f64 = 12.0;
 const UPPER_PX: f64 = 220.0;
@@ -51,9 +51,7 @@ pub(super) fn draw(report: &Report) -> Drawing {
 
 /// Rocks whose runout is only a lower bound.
 fn open_rocks(report: &Report) -> usize {
-    let is_open = |fall: &&ReleaseEnd| {
-        matches!(fall.stop, Stop::LeftTerrain | Stop::TimeUp | Stop::OverBudget)
-    };
+    let is_open = |fall: &&ReleaseEnd| StopKind::from(&fall.stop).is_open();
     report.releases.iter().filter(is_open).count()
 }
 
@@ -61,8 +59,7 @@ fn open_rocks(report: &Report) -> usize {
 fn open_end(canvas: &Canvas<'_>, panel: &Panel, report: &Report) {
     let open = open_rocks(report);
     let last = report.runout_exceedance.last();
-    let Some(last) =
-        last.filter(|last| open > 0 && last.y.value * report.releases.len() as f64 > 1.5)
+    let Some(last) = last.filter(|last| open > 0 && last.y.value * report.released() as f64 > 1.5)
     else {
         return;
     };
@@ -99,7 +96,7 @@ fn caption(report: &Report, bins: &EqualBins) -> String {
     };
     let caption = fill(
         words.runout_caption,
-        &[("n", &count(report.releases.len())), ("width", &format::plain(bins.width))],
+        &[("n", &count(report.released())), ("width", &format::plain(bins.width))],
     );
     let caption = caption
         + &said(open_rocks(report), words.runout_open)
@@ -115,7 +112,7 @@ fn panels(report: &Report, bins: &EqualBins) -> (Panel, Panel) {
         x.low = 0.0;
     }
     let least = report.runout_exceedance.iter().map(|p| p.y.value).filter(|&y| y > 0.0);
-    let y = if report.releases.len() >= MANY {
+    let y = if report.released() >= MANY {
         let marked = report.quantiles.get(&ReportQuantity::Runout).into_iter().flatten();
         let marked = marked.map(|quantile| 0.999 * (1.0 - quantile.probability));
         let least = least.chain(marked).fold(0.1, f64::min).max(1e-4);

@@ -44,7 +44,7 @@ fn caption(report: &Report, line: &FallLine) -> String {
         words.side_caption,
         &[
             ("paths", &count(report.paths.len())),
-            ("releases", &count(report.releases.len())),
+            ("releases", &count(report.released())),
             ("compass", &line.compass(words)),
             ("bearing", &line.bearing_words(words)),
         ],

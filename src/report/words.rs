@@ -10,12 +10,14 @@ mod en;
 mod fr;
 mod glossary;
 mod it;
+pub(super) mod open;
 mod said;
 mod shapes;
 mod year;
 
 use super::format;
 use crate::scene::Language;
+use open::OpenWords;
 use shapes::ShapeWords;
 use std::fmt::{Display, Write as _};
 use year::YearWords;
@@ -44,6 +46,7 @@ macro_rules! words {
                 let mut texts = vec![$((stringify!($name), self.$name),)+];
                 texts.extend(self.year().texts());
                 texts.extend(self.shapes().texts());
+                texts.extend(self.open().texts());
                 texts
             }
         }
@@ -95,7 +98,6 @@ words! {
     col_side_measured, col_side_computed, agreement_title, agreement_note, this_run,
     calibration_title, calibration_note, calibration_note_one, blocks_held_out, uncalibrated, fitted_without, held_out,
     fitted_all, hardly_told, told_title, told_note, fitted, ends_title, ends_note, difference,
-    some_rocks, censored, have_left, remedy_left, have_no_time, remedy_time, have_no_budget, remedy_budget,
     check_failed, check_reach, check_reach_found, check_speed, check_speed_found, check_fast_found,
     check_deposits, check_deposits_found, check_pits, check_mesh, check_mesh_found, check_coarse,
     year_title, year_axis, year_energy_axis, years, nobody_year, hits_of, passages_of,
@@ -121,6 +123,11 @@ impl Words {
     /// What is said of a year on the first page and on its maps.
     pub(super) fn year(&self) -> &'static YearWords {
         YearWords::of(self.language())
+    }
+
+    /// What is said of rocks that would have gone on.
+    pub(super) fn open(&self) -> &'static OpenWords {
+        OpenWords::of(self.language())
     }
 
     /// What is said of rocks with shapes.

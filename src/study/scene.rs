@@ -10,7 +10,7 @@ use super::processor_time::Busy;
 use super::weighing::{FEWEST, Weigh};
 use crate::ensemble::Ensemble;
 use crate::error::Result;
-use crate::hazard::{Percentile, Row};
+use crate::hazard::{Percentile, Row, StopKind};
 use crate::math;
 use crate::plan::{Part, Plan};
 use crate::report::studied::Studied;
@@ -298,7 +298,7 @@ impl Rung {
     }
 
     fn add(&mut self, subjects: &[StudyQuantity], row: &Row, fall: &Trajectory) {
-        let failed = !row.stop.counts();
+        let failed = matches!(row.stop, StopKind::Failed | StopKind::NotReleased);
         self.failed += usize::from(failed);
         self.rise_j = self.rise_j.max(fall.ledger.rise_j);
         self.effort.add(&fall.effort);

@@ -57,7 +57,7 @@ impl TargetPrecision {
         let enough = sample.values().len() >= 2 * found.needs;
         (found.censored || (is_open && enough && sample.bounds() > 0)).then(|| {
             format!(
-                "--until \"{self}\": {} of {} rocks left the terrain or ran out of time, so that p{} of {} is only a bound and no number of releases narrows it; give terrain that reaches farther, a longer [solver] longest_s, or aim at a smaller percentile",
+                "--until \"{self}\": {} of {} rocks left the terrain, ran out of time or failed, so that p{} of {} is only a bound and no number of releases narrows it; give terrain that reaches farther, a longer [solver] longest_s, or aim at a smaller percentile",
                 sample.bounds(),
                 sample.values().len(),
                 self.percent,

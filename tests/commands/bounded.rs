@@ -141,6 +141,17 @@ fn a_release_without_room_is_a_row() {
     assert!(summary.contains(&format!("\"not_released\": {lost}")), "counted");
     let page = fs::read_to_string(dir.path().join("out/report.html")).unwrap();
     assert!(page.contains("not released"));
+    // figures are of the rocks that were released: they say how many, and none of the others has failed
+    let released = ends.len() - lost;
+    for caption in [
+        format!("of {released} releases; colour"),
+        format!("share of the {released} releases that run out farther"),
+        format!("over all {released} rocks"),
+        format!("release ({released})"),
+    ] {
+        assert!(page.contains(&caption), "{caption}");
+    }
+    assert!(!page.contains("failed ("));
     let said = String::from_utf8(rockfall(&["plan", word(&scene)]).stdout).unwrap();
     assert!(said.contains("of 1000 releases tried out find no place to start from"), "{said}");
     assert!(said.contains("% of the places drawn"), "{said}");

@@ -68,6 +68,70 @@ fn level_ground_cannot_be_sketched() {
     assert!(!file.exists());
 }
 
+/// An elevation model of cells of a size, rows from the north.
+fn grid(cell_m: f64, rows: &[Vec<f64>]) -> String {
+    let heights = |row: &Vec<f64>| row.iter().map(f64::to_string).collect::<Vec<_>>().join(" ");
+    let rows_said: Vec<String> = rows.iter().map(heights).collect();
+    let (columns, count) = (rows[0].len(), rows.len());
+    format!(
+        "ncols {columns}\nnrows {count}\nxllcorner 0\nyllcorner 0\ncellsize {cell_m}\n{}\n",
+        rows_said.join("\n")
+    )
+}
+
+/// A strip of two columns that falls along itself or across, a wall of 83° below a plateau and a slope of 85° all over: the
+/// sketched scene places its rocks where there is room, and all of them fall.
+#[test]
+fn strips_and_walls_are_sketched_too() {
+    let dir = tempfile::tempdir().unwrap();
+    let strip: Vec<Vec<f64>> = (0..40).map(|k| vec![100.0 - 3.0 * f64::from(k); 2]).collect();
+    let wall_m = |k: i32| match k {
+        ..20 => 100.0,
+        20..32 => 100.0 - 8.5 * f64::from(k - 20),
+        _ => -0.3 * f64::from(k - 32),
+    };
+    let wall: Vec<Vec<f64>> = (0..60).map(|k| vec![wall_m(k); 40]).collect();
+    let steep: Vec<Vec<f64>> = (0..30).map(|k| vec![400.0 - 11.5 * f64::from(k); 30]).collect();
+    let across = vec![vec![100.0, 60.0]; 40];
+    let cases = [(5.0, strip, "line_m"), (5.0, across, "points_m"), (1.0, wall, "points_m")];
+    for (cell_m, rows, place) in cases.into_iter().chain([(1.0, steep, "points_m")]) {
+        let (model, file) = (dir.path().join("made.asc"), dir.path().join("made.toml"));
+        fs::write(&model, grid(cell_m, &rows)).unwrap();
+        let (code, _, stderr) = said(&["init", word(&model), word(&file), "--overwrite"]);
+        assert_eq!(code, Some(0), "{place}: {stderr}");
+        let scene = filled_in(&fs::read_to_string(&file).unwrap());
+        assert!(scene.contains(&format!("\n{place} = [[")), "{scene}");
+        fs::write(&file, scene).unwrap();
+        let (code, plan, stderr) = said(&["plan", word(&file)]);
+        assert_eq!(code, Some(0), "{stderr}");
+        assert!(!plan.contains("find no place to start from"), "{plan}");
+    }
+}
+
+/// A rock without a gap below it on a slope of 60° is lifted by its own radius before it is clear of it: the plan says of
+/// how many, and by how much; on gentle ground it says nothing.
+#[test]
+fn the_plan_says_how_many_releases_are_lifted() {
+    let dir = tempfile::tempdir().unwrap();
+    let (model, file) = (dir.path().join("made.asc"), dir.path().join("made.toml"));
+    for (fall_m, lifted) in [(3.0_f64.sqrt(), true), (0.2, false)] {
+        let rows: Vec<Vec<f64>> = (0..40).map(|k| vec![99.0 - fall_m * f64::from(k); 40]).collect();
+        fs::write(&model, grid(1.0, &rows)).unwrap();
+        said(&["init", word(&model), word(&file), "--overwrite"]);
+        let scene = filled_in(&fs::read_to_string(&file).unwrap());
+        let sizes = scene.lines().find(|line| line.starts_with("radius_m")).unwrap();
+        let scene =
+            scene.replace(sizes, "radius_m = 0.5").replace("height_m = 0.5 ", "height_m = 0.0 ");
+        fs::write(&file, scene).unwrap();
+        let (code, plan, stderr) = said(&["plan", word(&file)]);
+        assert_eq!(code, Some(0), "{stderr}");
+        let line = plan.lines().find(|line| line.starts_with("lifted"));
+        assert_eq!(line.is_some(), lifted, "{plan}");
+        let expected = "1000 of 1000 releases tried out, over steep ground, by more than a tenth of their radius and up to 0.50 m";
+        assert!(line.is_none_or(|line| line.contains(expected)), "{line:?}");
+    }
+}
+
 /// The last lines of a run: an answer a line and a barrier, the time, the folder and the report; no colour for a file.
 #[test]
 fn a_run_ends_with_its_answers_and_its_report() {

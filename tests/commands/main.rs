@@ -42,6 +42,7 @@ mod rust_version;
 mod table_sizes;
 mod same_everywhere;
 mod shards;
+mod still_moving;
 mod stem_lists;
 mod tiles;
 mod until;

@@ -5,7 +5,7 @@ use crate::made;
 use made::{fall, info};
 use rockfall::frequency::{Frequency, FrequencyLaw, RockSource};
 use rockfall::hazard::{
-    CrossingRow, Hazard, Line, LineInfo, OpenRock, OpenRocks, Proportion, Row, StopKind,
+    CrossingRow, Hazard, Line, LineInfo, MapFrame, OpenRock, OpenRocks, Proportion, Row, StopKind,
 };
 use rockfall::rock::Vec3;
 use std::convert::Infallible;
@@ -77,6 +77,7 @@ fn rocks_that_may_still_come_move_the_upper_end() {
     let ends = [
         (StopKind::AtRest, up, [0.0; 3], false),
         (StopKind::TimeUp, up, [0.0, 5.0, 0.0], true),
+        (StopKind::Failed, up, [0.0, 5.0, 0.0], true),
         (StopKind::LeftTerrain, up, south, true),
         (StopKind::LeftTerrain, [20.0, -30.0, 0.0], south, false),
         (StopKind::LeftTerrain, up, [0.0, 0.0, -9.0], true),
@@ -97,7 +98,9 @@ fn rocks_that_may_still_come_move_the_upper_end() {
         line.add(&CrossingRow::of((index, &way.rock), &way.crossings[0], "road", Vec3::zeros()));
     }
     let seen = line.reach(100);
+    assert_eq!(line.may_still_come(100), None);
     line.leave_open(10..50);
+    assert_eq!(line.may_still_come(100), Some(Proportion::new(40, 100)));
     let reach = line.reach(100);
     let far = Proportion::new(50, 100);
     assert_eq!((reach.count, reach.low_95, reach.high_95), (10, seen.low_95, far.high_95));
@@ -105,4 +108,29 @@ fn rocks_that_may_still_come_move_the_upper_end() {
     // one more rock than chance knows of is no reason for a mark
     line.leave_open(10..11);
     assert!(!line.reach(100).censored && line.reach(100).high_95 > seen.high_95);
+}
+
+/// A map of 10 by 10 cells of 2 m: what ended on it and would have gone on is missing further on, and so is what has fallen out
+/// of the terrain in the middle of the map; what left over the edge of the map, and what came to rest, is not.
+#[test]
+fn rocks_that_ended_on_the_map_are_missing_in_it() {
+    let map =
+        MapFrame { west_m: 0.0, south_m: 0.0, cell_m: 2.0, columns: 10, rows: 10, epsg: None };
+    let ends = [
+        (StopKind::TimeUp, [0.5, 0.5, 0.0], true),
+        (StopKind::OverBudget, [10.0, 10.0, 0.0], true),
+        (StopKind::Failed, [f64::NAN, 10.0, 0.0], true),
+        (StopKind::LeftTerrain, [10.0, 10.0, 0.0], true),
+        (StopKind::LeftTerrain, [19.9, 10.0, 0.0], false),
+        (StopKind::LeftTerrain, [10.0, -0.3, 0.0], false),
+        (StopKind::AtRest, [10.0, 10.0, 0.0], false),
+    ];
+    let mut hazard = Hazard::default();
+    for (index, (stop, end_m, expected)) in ends.into_iter().enumerate() {
+        let row = Row { index, stop, end_m, ..Row::of(&fall(1), Vec3::zeros()) };
+        let is_missing = OpenRock::of(&row).is_some_and(|rock| rock.ended_on(&map));
+        assert_eq!(is_missing, expected, "{stop:?} {end_m:?}");
+        hazard.add(&row);
+    }
+    assert_eq!(hazard.open_on(&map), Some(Proportion::new(4, 7)));
 }

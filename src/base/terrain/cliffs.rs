@@ -11,16 +11,22 @@ use std::collections::BTreeMap;
 const CLIFF_COSINE: f64 = std::f64::consts::FRAC_1_SQRT_2;
 /// Where less than this share of the area is so steep, the steepest part of this share is taken (–).
 const STEEPEST_SHARE: f64 = 0.02;
+/// Cosines that differ by less are those of one slope (–).
+const COSINE_ROUNDING: f64 = 1e-9;
 /// Cells along the longer side of the terrain.
 const CELLS: f64 = 100.0;
+/// Halvings of a line that is longer than the terrain is wide.
+const MOST_HALVINGS: i32 = 8;
 /// Most corners of the line.
 const MOST_CORNERS: usize = 9;
 
 /// The face that a scene may begin with.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cliff {
-    /// A line through it along its strike, two corners or more, map coordinates (m).
-    pub line_m: Vec<[f64; 2]>,
+    /// A line through it along its strike, two corners or more, each with the height of the face there, map coordinates (m).
+    pub line_m: Vec<[f64; 3]>,
+    /// Its mean normal, upwards: level and towards the valley where it is a wall.
+    pub normal: Vec3,
     /// Area of its steep triangles (m²).
     pub area_m2: f64,
     /// Its lowest and highest place, map coordinates (m).
@@ -64,11 +70,14 @@ pub fn main_cliff(terrain: &Terrain) -> Option<Cliff> {
     let face = connected.iter().max_by(|a, b| worth(a).total_cmp(&worth(b)))?;
     let heights = face.iter().filter_map(|cell| cell.low_high);
     let [foot, top] = heights.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])?;
-    let on_ground = |at: &[f64; 2]| terrain.ground_below(at[0], at[1]).is_some();
-    let line: Vec<[f64; 2]> = along_strike(face, cell_m).into_iter().filter(on_ground).collect();
+    let on_ground = |at: &Vec3| terrain.ground_below(at.x, at.y).is_some();
+    let normal = face.iter().map(|cell| cell.normal).sum::<Vec3>().normalize();
+    let mut line = along_strike(face, (&normal, cell_m), on_ground);
+    line.retain(on_ground);
     let origin_m = terrain.origin_m;
     (line.len() > 1).then(|| Cliff {
-        line_m: line.iter().map(|at| [at[0] + origin_m.x, at[1] + origin_m.y]).collect(),
+        line_m: line.iter().map(|at| (at + origin_m).into()).collect(),
+        normal,
         area_m2: face.iter().map(|cell| cell.steep_m2).sum(),
         heights_m: [foot + origin_m.z, top + origin_m.z],
         cosine,
@@ -101,8 +110,9 @@ fn steep_from(faces: &[SlopeFace]) -> Option<f64> {
         sum += area;
         sum >= wanted
     });
-    // the last bit of a level plane is no slope
-    at_share.map(|(cosine, _)| cosine.max(CLIFF_COSINE)).filter(|cosine| *cosine < 1.0 - 1e-9)
+    // the last bit of a level plane is no slope, and the triangles of an even one differ by no more
+    let found = at_share.map(|(cosine, _)| cosine.max(CLIFF_COSINE) + COSINE_ROUNDING);
+    found.filter(|cosine| *cosine < 1.0)
 }
 
 /// The triangles in square cells, by column and row.
@@ -120,7 +130,10 @@ fn gathered(faces: &[SlopeFace], cosine: f64, cell_m: f64) -> BTreeMap<(i64, i64
             cell.low_high = Some([low.min(centre.z), high.max(centre.z)]);
         }
     }
-    cells.retain(|_, cell| cell.steep_m2 > 0.0 && cell.steep_m2 >= 0.5 * cell.area_m2);
+    // on an uneven slope the steepest triangles may lie apart, and fill half of no cell
+    let share = |cell: &SteepCell| cell.steep_m2 / cell.area_m2;
+    let least = cells.values().map(share).fold(0.0, f64::max).min(0.5);
+    cells.retain(|_, cell| cell.steep_m2 > 0.0 && share(cell) >= least);
     cells
 }
 
@@ -145,9 +158,13 @@ fn connected(cells: &BTreeMap<(i64, i64), SteepCell>) -> Vec<Vec<&SteepCell>> {
     faces
 }
 
-/// Corners along the strike of a face, each the middle of the cells in its stretch.
-fn along_strike(face: &[&SteepCell], cell_m: f64) -> Vec<[f64; 2]> {
-    let normal: Vec3 = face.iter().map(|cell| cell.normal).sum();
+/// Corners along the strike of a face, each the middle of the cells in its stretch. A face of one stretch has a line across
+/// its middle, as long as it finds ground.
+fn along_strike(
+    face: &[&SteepCell],
+    (normal, cell_m): (&Vec3, f64),
+    on_ground: impl Fn(&Vec3) -> bool,
+) -> Vec<Vec3> {
     let level = normal.xy().norm();
     let strike = if level > 0.0 { [-normal.y / level, normal.x / level] } else { [1.0, 0.0] };
     let middle = |cell: &SteepCell| [cell.centre.x / cell.steep_m2, cell.centre.y / cell.steep_m2];
@@ -158,7 +175,10 @@ fn along_strike(face: &[&SteepCell], cell_m: f64) -> Vec<[f64; 2]> {
     if to - from < cell_m {
         let all: f64 = face.iter().map(|cell| cell.steep_m2).sum();
         let at = face.iter().map(|cell| cell.centre).sum::<Vec3>() / all;
-        return [-0.5, 0.5].map(|half| [0, 1].map(|k| at[k] + half * cell_m * strike[k])).into();
+        let across = Vec3::new(strike[0], strike[1], 0.0) * (0.5 * cell_m);
+        let ends = |k: i32| [at - across * 0.5_f64.powi(k), at + across * 0.5_f64.powi(k)];
+        let held = (0..MOST_HALVINGS).map(ends).find(|ends| ends.iter().all(&on_ground));
+        return held.map_or_else(Vec::new, Vec::from);
     }
     let stretches = (((to - from) / cell_m) as usize + 1).clamp(2, MOST_CORNERS);
     let stretch_of = |cell: &SteepCell| {
@@ -170,10 +190,7 @@ fn along_strike(face: &[&SteepCell], cell_m: f64) -> Vec<[f64; 2]> {
         let sum = &mut sums[stretch_of(cell)];
         *sum = (sum.0 + cell.centre, sum.1 + cell.steep_m2);
     }
-    sums.iter()
-        .filter(|(_, area)| *area > 0.0)
-        .map(|(sum, area)| [sum.x / area, sum.y / area])
-        .collect()
+    sums.iter().filter(|(_, area)| *area > 0.0).map(|(sum, area)| sum / *area).collect()
 }
 
 #[cfg(test)]
@@ -212,7 +229,7 @@ mod tests {
         assert!((ends[0] - ends[1]).abs() > 25.0, "{ends:?}");
         // 40 m wide, 10 m in plan, falling 1.932 m a metre: 870 m²
         assert!((cliff.area_m2 / 870.0 - 1.0).abs() < 0.1, "{}", cliff.area_m2);
-        assert!((cliff.cosine - CLIFF_COSINE).abs() < 1e-12);
+        assert!((cliff.cosine - CLIFF_COSINE).abs() < 2.0 * COSINE_ROUNDING);
     }
 
     /// Of two faces of one size the upper one is taken.
@@ -229,5 +246,8 @@ mod tests {
         let hill = main_cliff(&terrain(|x, _| 0.01 * (x - 40.0).powi(2))).unwrap();
         assert!(hill.line_m.iter().all(|at| at[0] < 6.0), "{:?}", hill.line_m);
         assert_eq!(main_cliff(&terrain(|_, _| 3.0)), None);
+        // an even slope is steep all over, whatever rounding makes of its triangles
+        let even = main_cliff(&terrain(|x, y| -0.3 * x - 0.27 * y)).unwrap();
+        assert!(even.area_m2 > 1500.0, "{even:?}");
     }
 }

@@ -38,6 +38,7 @@ impl Plan {
             releases: places_of_release,
             radii_m: [smallest_m, median_m, largest_m],
             table_sizes,
+            lifted,
             terrain,
             mesh_health: _, // printed above the listing
             input_files,
@@ -89,6 +90,7 @@ impl Plan {
             format!("{smallest_m:.3} m smallest, {median_m:.3} m median, {largest_m:.3} m largest"),
         );
         list.lines("sizes of table", table_sizes.iter().cloned());
+        list.lines("lifted", lifted.iter().cloned());
         list.line(
             "terrain",
             format!("{} triangles in {} files", terrain.triangles.len(), files(terrain)),

@@ -5,14 +5,12 @@ use crate::math;
 use crate::rock::Vec3;
 use crate::solver::island::partition::Partition;
 use crate::terrain::Terrain;
-use parry3d_f64::query::PointQuery;
-use parry3d_f64::shape::Triangle;
 use std::f64::consts::TAU;
 
 /// A rock over steep ground may be in it although its lowest point is clear: then it is lifted, straight up, until it
 /// just touches. The place itself where it is clear already, or where no such height is near.
 pub(super) fn clear_of(terrain: &Terrain, centre: Vec3, radius_m: f64) -> Vec3 {
-    if distance_m(terrain, &centre, radius_m) >= radius_m {
+    if terrain.distance_m(&centre, radius_m) >= radius_m {
         return centre;
     }
     let start = centre + Vec3::z() * (LIFT * radius_m);
@@ -70,17 +68,4 @@ fn is_crossed([a, b, c]: &[Vec3; 3], end: &Vec3) -> bool {
     let n = (b - a).cross(&(c - a));
     let (height, reach) = (n.dot(a), n.dot(end));
     is_through && reach != 0.0 && (0.0..=1.0).contains(&(height / reach))
-}
-
-/// Distance from a point to the nearest triangle (m), or `reach_m` when none is nearer.
-pub(super) fn distance_m(terrain: &Terrain, point: &Vec3, reach_m: f64) -> f64 {
-    let mut nearest = reach_m;
-    terrain.index.near(point, reach_m, |start, count| {
-        for triangle in start..start + count {
-            let [a, b, c] = terrain.corners_m(triangle).map(Into::into);
-            let distance = Triangle::new(a, b, c).distance_to_local_point((*point).into(), true);
-            nearest = nearest.min(distance);
-        }
-    });
-    nearest
 }

@@ -1,6 +1,6 @@
 //! The first releases, tried out before a run.
 
-use super::{Frequency, Release, Releases, Where};
+use super::{Frequency, Release, Releases, TriedPlace, Where};
 use crate::error::{Error, Result};
 use crate::terrain::Terrain;
 
@@ -9,24 +9,41 @@ const TRIED: usize = 1000;
 /// Releases of a source that must be tried before it is refused: large rocks may find no room where smaller ones do.
 const FEWEST_OF_SOURCE: usize = 20;
 
+/// A rock that is lifted by less than this, over its radius, starts where the scene says (–).
+const LIFT_SAID: f64 = 0.1;
+
+/// What the first releases showed.
+#[derive(Debug)]
+pub struct TriedReleases {
+    /// Those that were made.
+    pub made: Vec<Release>,
+    /// How many are lifted off steep ground, and by how much, in words; none where none is by a tenth of its radius.
+    pub lifted: Option<String>,
+}
+
 impl Releases {
-    /// Tries the first releases out before a run: says which share of the zone has no ground or no room. Those that were made.
+    /// Tries the first releases out before a run: says which share of the zone has no ground or no room.
     ///
     /// # Errors
     /// If none of them can be made, or none of a source that has a frequency: its events would be missing.
-    pub fn try_out(&self, terrain: &Terrain, warnings: &mut Vec<String>) -> Result<Vec<Release>> {
+    pub fn try_out(&self, terrain: &Terrain, warnings: &mut Vec<String>) -> Result<TriedReleases> {
         let (mut places, mut made, mut first) = (0, Vec::new(), None);
+        let mut lifts_m = Vec::new();
         let sources = self.frequency.as_ref().map_or(&[][..], |frequency| frequency.sources());
         let mut of_source = vec![[0; 2]; sources.len()];
         for index in 0..TRIED {
-            let (release, drawn) = self.place_rock(terrain, index);
+            let TriedPlace { release, drawn, lift_m } = self.place_rock(terrain, index);
             places += drawn;
             if let Some(frequency) = &self.frequency {
                 let [tried, released] = &mut of_source[frequency.stratum(index).source];
                 (*tried, *released) = (*tried + 1, *released + usize::from(release.is_ok()));
             }
             match release {
-                Ok(release) => made.push(release),
+                Ok(release) => {
+                    let is_lifted = lift_m > LIFT_SAID * release.rock.radius_m;
+                    lifts_m.extend(is_lifted.then_some(lift_m));
+                    made.push(release);
+                }
                 Err(lost) => _ = first.get_or_insert(lost),
             }
         }
@@ -35,7 +52,14 @@ impl Releases {
         }
         self.check_sources(&of_source)?;
         warnings.extend(self.lost_places((places, made.len())));
-        Ok(made)
+        let largest_m = lifts_m.iter().copied().reduce(f64::max);
+        let lifted = largest_m.map(|largest_m| {
+            format!(
+                "{} of {TRIED} releases tried out, over steep ground, by more than a tenth of their radius and up to {largest_m:.2} m, until they just touch: they fall from higher than height_m says",
+                lifts_m.len()
+            )
+        });
+        Ok(TriedReleases { made, lifted })
     }
 
     /// Refuses a source of which no release tried out could be made; `of_source`: how many were tried, and how many made.

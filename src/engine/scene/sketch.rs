@@ -6,12 +6,13 @@ use crate::rock::Vec3;
 use crate::terrain::cliffs::{Cliff, main_cliff};
 use crate::terrain::formats::Options;
 use crate::terrain::read::MeshSource;
+use crate::terrain::walls::places_before;
 use crate::terrain::{Sheet, Terrain};
 use std::path::{Path, PathBuf};
 
 /// The text of a scene for the terrain in a file (a mesh or an elevation model), as it would stand in `scene_file`.
 ///
-/// Releases lie on a line through the largest steep face. Ground values are not filled in: the scene says so when it is
+/// Releases lie on a line through the largest steep face, or before it where it is a wall. Ground values are not filled in: the scene says so when it is
 /// read, and which keys are missing.
 ///
 /// # Errors
@@ -35,7 +36,7 @@ pub fn sketch(terrain_file: &Path, scene_file: &Path) -> Result<String> {
         quoted(&name),
         terrain.epsg.map_or_else(String::new, |code| format!("epsg = {code}\n")),
         quoted(&path.to_string_lossy()),
-        release(&cliff),
+        release(&cliff, &terrain),
     ))
 }
 
@@ -87,19 +88,37 @@ path_step_s = 0.05
 # cell_m = 2.0
 ";
 
-/// The table of releases: a line through the face, and what the face is.
-fn release(cliff: &Cliff) -> String {
-    let Cliff { line_m, area_m2, heights_m: [foot, top], cosine } = cliff;
-    let corners: Vec<String> = line_m.iter().map(|[x, y]| format!("[{x:.1}, {y:.1}]")).collect();
-    let slope_deg = math::acos(*cosine).to_degrees();
+/// The table of releases: a line through the face, or points before a wall, and what the face is.
+fn release(cliff: &Cliff, terrain: &Terrain) -> String {
+    let Cliff { line_m, area_m2, heights_m: [foot, top], cosine, normal: _ } = cliff;
+    let slope_deg = math::acos(cosine.min(1.0)).to_degrees();
+    let face = format!(
+        "the largest steep face, {area_m2:.0} m² steeper than {slope_deg:.0}° between {foot:.0} and {top:.0} m"
+    );
+    let before = places_before(terrain, cliff, ROOM_M);
+    let (what, gap, place) = if before.is_empty() {
+        let corners = line_m.iter().map(|[x, y, _]| format!("[{x:.1}, {y:.1}]"));
+        let gap = "height_m = 0.5                     # gap below the rock at its start\n";
+        (format!("the line runs through {face}"), gap, format!("line_m = [{}]", listed(corners)))
+    } else {
+        let points = before.iter().map(|[x, y, z]| format!("[{x:.1}, {y:.1}, {z:.1}]"));
+        let what = format!(
+            "the points stand before {face}.\n# Over a line on so steep a wall rocks would be lifted by radii, or find no room. The points are centres of rocks\n# {ROOM_M} m off the wall; larger rocks need more"
+        );
+        (what, "", format!("points_m = [{}]", listed(points)))
+    };
     format!(
-        "# CHECK: the line runs through the largest steep face, {area_m2:.0} m² steeper than {slope_deg:.0}° between {foot:.0} and {top:.0} m.\n\
-         # Where rocks really come from, you know better.\n\
-         [release]\ncount = 1000\nheight_m = 0.5                     # gap below the rock at its start\n\
-         velocity_m_s = [0.0, 0.0, 0.0]\nspin_rad_s = [0.0, 0.0, 0.0]\nline_m = [{}]\n",
-        corners.join(", ")
+        "# CHECK: {what}.\n# Where rocks really come from, you know better.\n\
+         [release]\ncount = 1000\n{gap}velocity_m_s = [0.0, 0.0, 0.0]\nspin_rad_s = [0.0, 0.0, 0.0]\n{place}\n"
     )
 }
+
+fn listed(corners: impl Iterator<Item = String>) -> String {
+    corners.collect::<Vec<_>>().join(", ")
+}
+
+/// Room before a wall (m): the largest rock of the sketch, and what a decimal of a coordinate may take away.
+const ROOM_M: f64 = 1.3;
 
 /// A text as TOML writes it.
 fn quoted(text: &str) -> String {

@@ -181,8 +181,8 @@ struct AtLine {
     barriers_stop: bool,
 }
 
-/// Share of rocks that left the terrain from which on it must be said what that does (–).
-const MANY_LEFT: f64 = 0.01;
+/// Share of rocks that would have gone on from which on it must be said what that does (–).
+const MANY_OPEN: f64 = 0.01;
 
 /// What is said of rocks that one of the runs did not release; nothing where there are none.
 fn not_released(
@@ -198,17 +198,17 @@ fn not_released(
     })
 }
 
-/// What rocks that left the terrain do to the numbers, where there are some.
+/// What rocks that would have gone on do to the numbers, where there are some.
 pub(super) fn censored(pair: &[Population; 2]) -> Option<String> {
-    let left = |of: &Population| {
-        let name = ended(StopKind::LeftTerrain);
-        of.shares.iter().find(|share| share.name == name).map_or(0.0, CountedShare::share)
+    let open = |of: &Population| -> f64 {
+        let ways = StopKind::ALL.iter().zip(&of.shares);
+        ways.filter(|(stop, _)| stop.is_open()).map(|(_, share)| share.share()).sum()
     };
-    let [a, b] = [left(&pair[0]), left(&pair[1])];
-    (a.max(b) > MANY_LEFT).then(|| {
+    let [a, b] = [open(&pair[0]), open(&pair[1])];
+    (a.max(b) > MANY_OPEN).then(|| {
         format!(
-            "{} of the rocks of A and {} of B left the terrain: their runout is a lower bound, and differences of runout and \
-             reach angle hold only up to the edge.",
+            "{} of the rocks of A and {} of B left the terrain, were still moving at the end or failed: all differences are of \
+             the ways as far as they were followed, and those of runout and reach angle are of bounds.",
             format::percent(a, 1),
             format::percent(b, 1)
         )
@@ -239,10 +239,11 @@ fn all(
         }
         let stop = StopKind::ALL.iter().position(|stop| *stop == row.stop).unwrap_or(0);
         found.shares[stop].releases.push(row.index);
-        // as in every other table: where a failed rock stopped is where the computation did
-        if row.stop.counts() && among.contains(row.index) {
+        if among.contains(row.index) {
             for ((_, values), quantity) in found.values.iter_mut().zip(WHOLE) {
-                values.push((row.index, quantity.of(&row)));
+                // a failed rock may have left no number
+                let value = Some(quantity.of(&row)).filter(|value| value.is_finite());
+                values.extend(value.map(|value| (row.index, value)));
             }
         }
     }

@@ -7,6 +7,7 @@ use super::super::model::{
     RockView,
 };
 use super::super::raster::GroundRaster;
+use super::super::words::open::missing as missing_rocks;
 use super::super::words::{Words, fill};
 use super::{estimate, of_percentile, statistics};
 use crate::error::Result;
@@ -240,7 +241,7 @@ fn arriving(one: &BarrierSummary, words: &Words) -> EstimateTable {
         note: fill(
             words.arriving_note,
             &[("crossing", &one.crossing), ("before", &before), ("left", &one.arriving.count)],
-        ),
+        ) + &missing_rocks(words.open().at_line, one.may_still_come.as_ref()),
         columns: statistics(words),
         rows: vec![
             row(words.total, ReportQuantity::Total, &one.energy_j),

@@ -7,6 +7,7 @@ use super::super::model::{
     ReportLine, ReportQuantity,
 };
 use super::super::raster::GroundRaster;
+use super::super::words::open::missing as missing_rocks;
 use super::super::words::{Words, fill};
 use super::{estimate, percentile_of, statistics_table};
 use crate::error::Result;
@@ -233,6 +234,8 @@ pub(super) fn tables(results: &Results, words: &Words) -> Vec<EstimateTable> {
                 ("again", &count(line.crossing_again())),
             ],
         );
+        let missing = line.may_still_come(releases);
+        let note = note + &missing_rocks(words.open().at_line, missing.as_ref());
         let rows =
             TABLED.map(|(quantity, name, like)| (name(words), like, line.sample(quantity), None));
         let title = fill(title, &[("name", &words.quoted(&line.info.name))]);

@@ -32,6 +32,7 @@ pub(super) fn maps(results: &Results) -> Result<Option<CellMap>> {
         reach: drawn(read(Layer::Reach)?),
         intensity_cells,
         few_cells,
+        open: results.summary.open_on_maps,
         intensity: drawn(intensity),
         energy_j: drawn(read(Layer::EnergyP95)?),
         height_m: drawn(read(Layer::HeightP95)?),

@@ -34,9 +34,10 @@ pub(super) fn observed(results: &Results) -> Result<Option<Observed>> {
     let (mut computed, mut weights) = (Vec::new(), Vec::new());
     for row in results.rows()? {
         let row = row?;
-        computed.extend(ObservedPath::of(&row));
-        let counts = standing.as_ref().filter(|_| row.stop.counts());
-        weights.extend(counts.map(|all| all.of_release(row.index)));
+        if let Some(way) = ObservedPath::of(&row) {
+            computed.push(way);
+            weights.extend(standing.as_ref().map(|all| all.of_release(row.index)));
+        }
     }
     let weights = standing.is_some().then_some(weights);
     let agreement = match &weights {

@@ -76,7 +76,7 @@ fn table(kinds: &BTreeMap<ShapeKind, Weighed>, words: &Words) -> EstimateTable {
 }
 
 fn estimate(rocks: &Weighed, quantity: Quantity, p: f64) -> Option<Estimate> {
-    let counted = rocks.iter().filter(|(_, row)| row.stop.counts());
+    let counted = rocks.iter().filter(|(_, row)| row.stop.is_released());
     let values = counted.map(|(weighs, row)| (quantity.of(row), *weighs, row.stop.is_open()));
     let sample = match quantity.open() {
         Some(open) => Sample::censored(values, open),

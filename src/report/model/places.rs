@@ -1,7 +1,7 @@
 //! Lines, barriers, maps and measured ends: what belongs to a place.
 
 use super::{BandPoint, Estimate, Quantile};
-use crate::hazard::{Agreement, ObservedPath};
+use crate::hazard::{Agreement, ObservedPath, Proportion};
 
 /// Speed and height of all rocks by distance from their release.
 #[derive(Debug, Clone, PartialEq)]
@@ -262,6 +262,8 @@ pub struct CellMap {
     pub intensity_cells: [usize; 3],
     /// Cells that too few rocks pass for an upper bound of their 95th percentile.
     pub few_cells: usize,
+    /// Rocks that ended on the map and would have gone on.
+    pub open: Option<Proportion>,
 }
 
 /// Cells, row by row from the south-west, each with a value.

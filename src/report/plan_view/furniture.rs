@@ -97,7 +97,7 @@ impl MapLegend {
         let words = report.words();
         let mut entries = Vec::new();
         if !report.releases.is_empty() {
-            let count = format::decimal(report.releases.len() as f64, 0);
+            let count = format::decimal(report.released() as f64, 0);
             entries.push((
                 Symbol::Zone(report.zone.clone()),
                 fill(words.key_release, &[("n", &count)]),
@@ -110,7 +110,8 @@ impl MapLegend {
             (EndMark::Failed, words.failed),
         ];
         for (mark, name) in names {
-            let count = report.releases.iter().filter(|f| EndMark::of(&f.stop) == mark).count();
+            let count =
+                report.releases.iter().filter(|f| EndMark::of(&f.stop) == Some(mark)).count();
             if count > 0 {
                 let text = format!("{name} ({})", format::decimal(count as f64, 0));
                 let is_density = mark == EndMark::AtRest && count > super::MANY;

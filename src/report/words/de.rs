@@ -320,15 +320,6 @@ pub(super) static WORDS: Words = Words {
     ends_title: "Endpunkte der Anpassung",
     ends_note: "Gerechnet minus gemessen mit 95-%-Intervall, aus erneut gezogenen gemessenen Endpunkten.",
     difference: "Unterschied",
-    // What rocks that did not come to rest do to the numbers
-    some_rocks: "{n} von {of} Blöcken ({share})",
-    censored: "{rocks} {what}: ihre Auslaufstrecke ist eine untere und ihr Pauschalgefälle eine obere Schranke, ebenso jedes Perzentil, das von ihnen abhängt (≥, ≤; kein Intervall auf dieser Seite). Auch Anteile und Häufigkeiten an Linien, zu denen sie noch kommen können, sind untere Schranken; die oberen Enden der Intervalle zählen diese Blöcke als angekommen. {remedy}",
-    have_left: "haben das Gelände verlassen",
-    remedy_left: "Weiter reichendes Gelände angeben, falls sie zählen.",
-    have_no_time: "bewegten sich noch, als ihre Zeit abgelaufen war",
-    remedy_time: "Ein längeres [solver] longest_s angeben.",
-    have_no_budget: "bewegten sich noch, als ihr Rechenaufwand erschöpft war",
-    remedy_budget: "Dem nachgehen: siehe, wie die Blöcke endeten.",
     // Plausibility
     check_failed: "{name}: {found}",
     check_reach: "Pauschalgefälle",

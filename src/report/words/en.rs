@@ -317,15 +317,6 @@ pub(super) static WORDS: Words = Words {
     ends_title: "Ends of the fit",
     ends_note: "Computed less measured with its 95 % interval, from measured ends drawn again.",
     difference: "difference",
-    // What rocks that did not come to rest do to the numbers
-    some_rocks: "{n} of {of} rocks ({share})",
-    censored: "{rocks} {what}: their runout is a lower and their reach angle an upper bound, and so is every percentile that they decide (≥, ≤; no interval on that side). Shares and frequencies at lines that they may still come to are lower bounds too; the upper ends of their intervals count these rocks as arriving. {remedy}",
-    have_left: "left the terrain",
-    remedy_left: "Give terrain that reaches farther if they matter.",
-    have_no_time: "were still moving when their time was up",
-    remedy_time: "Give a longer [solver] longest_s.",
-    have_no_budget: "were still moving when their budget of work was spent",
-    remedy_budget: "Ask why: see how the rocks ended.",
     // Plausibility
     check_failed: "{name}: {found}",
     check_reach: "Reach angle",

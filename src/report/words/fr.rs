@@ -320,15 +320,6 @@ pub(super) static WORDS: Words = Words {
     ends_title: "Arrêts du calage",
     ends_note: "Calculé moins mesuré avec intervalle à 95 %, par rééchantillonnage des arrêts mesurés.",
     difference: "différence",
-    // What rocks that did not come to rest do to the numbers
-    some_rocks: "{n} blocs sur {of} ({share})",
-    censored: "{rocks} {what}\u{a0}: leur distance est une borne inférieure et leur angle d’énergie une borne supérieure, comme tout centile qui en dépend (≥, ≤\u{a0}; pas d’intervalle de ce côté). Les parts et les fréquences aux lignes qu’ils peuvent encore atteindre sont aussi des bornes inférieures\u{a0}; le haut de leurs intervalles compte ces blocs comme arrivés. {remedy}",
-    have_left: "sont sortis du terrain",
-    remedy_left: "Donner un terrain plus étendu s’ils importent.",
-    have_no_time: "bougeaient encore à la fin de leur temps",
-    remedy_time: "Donner un [solver] longest_s plus long.",
-    have_no_budget: "bougeaient encore quand leur budget de calcul fut épuisé",
-    remedy_budget: "En chercher la cause\u{a0}: voir comment finissent les blocs.",
     // Plausibility
     check_failed: "{name}\u{a0}: {found}",
     check_reach: "Angle d’énergie",

@@ -320,15 +320,6 @@ pub(super) static WORDS: Words = Words {
     ends_title: "Arresti dell’adattamento",
     ends_note: "Calcolato meno misurato con intervallo al 95 %, da ricampionamento degli arresti misurati.",
     difference: "differenza",
-    // What rocks that did not come to rest do to the numbers
-    some_rocks: "{n} massi su {of} ({share})",
-    censored: "{rocks} {what}: la loro distanza è un limite inferiore e il loro angolo un limite superiore, come ogni percentile che ne dipende (≥, ≤; nessun intervallo da quel lato). Anche quote e frequenze alle linee che possono ancora raggiungere sono limiti inferiori; l’estremo superiore dei loro intervalli conta questi massi come arrivati. {remedy}",
-    have_left: "sono usciti dal terreno",
-    remedy_left: "Fornire un terreno più esteso se contano.",
-    have_no_time: "erano ancora in moto allo scadere del tempo",
-    remedy_time: "Dare un [solver] longest_s più lungo.",
-    have_no_budget: "erano ancora in moto quando lo sforzo di calcolo fu esaurito",
-    remedy_budget: "Chiedersi perché: vedere come finiscono i massi.",
     // Plausibility
     check_failed: "{name}: {found}",
     check_reach: "Angolo di propagazione",

@@ -111,6 +111,7 @@ fn maps() -> CellMap {
         exceeds: layer(|cell| 1e-3 * f64::from(1 + cell % 300)),
         intensity_cells: [400, 400, 400],
         few_cells: 130,
+        open: None,
     }
 }
 

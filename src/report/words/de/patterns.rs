@@ -24,8 +24,8 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "Größen sind nach Wichtigkeit gezogen: große Blöcke werden häufiger gerechnet, als sie kommen. Perzentile, Anteile und Karten sind zurückgewichtet und gelten für die Quellen, wie sie sind; Anzahlen, Histogramme und Punkte in Abbildungen zeigen Blöcke wie gerechnet",
     ),
     (
-        "{a} of {b} rocks failed: they are counted, but in no statistic; `--only` shows one again",
-        "{a} von {b} Blöcken sind fehlgeschlagen: gezählt, aber in keiner Statistik; `--only` zeigt einen noch einmal",
+        "{a} of {b} rocks failed: they count as far as they came; `--only {c}` shows one again",
+        "{a} von {b} Blöcken sind fehlgeschlagen: sie zählen, so weit sie kamen; `--only {c}` zeigt einen noch einmal",
     ),
     (
         "source “{a}”: no rock of {b} of its {c} events a year was released: they are missing in every number",
@@ -162,8 +162,8 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "Die Läufe haben verschiedene Startwerte: nichts bildet Paare, und Differenzen sind nicht besser bekannt als beide Läufe für sich. Mit einem Startwert lösten sich dieselben Blöcke.",
     ),
     (
-        "{a} of the rocks of A and {b} of B left the terrain: their runout is a lower bound, and differences of runout and reach angle hold only up to the edge.",
-        "{a} der Blöcke von A und {b} von B verließen das Gelände: ihre Auslaufstrecke ist eine untere Schranke, und Differenzen von Auslaufstrecke und Pauschalgefälle gelten nur bis zum Rand.",
+        "{a} of the rocks of A and {b} of B left the terrain, were still moving at the end or failed: all differences are of the ways as far as they were followed, and those of runout and reach angle are of bounds.",
+        "{a} der Blöcke von A und {b} von B verließen das Gelände, bewegten sich am Ende noch oder schlugen fehl: alle Differenzen sind die der Wege, so weit sie verfolgt wurden, und jene von Auslaufstrecke und Pauschalgefälle die von Schranken.",
     ),
     ("What changes from A to B", "Was sich von A nach B ändert"),
     ("Change from A to B (% of A)", "Änderung von A nach B (% von A)"),

@@ -9,6 +9,7 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ("[releases]", "Ablösungen"),
     ("[radius]", "Radius"),
     ("[sizes of table]", "Größen der Tabelle"),
+    ("[lifted]", "angehoben"),
     ("[terrain]", "Gelände"),
     ("[input file]", "Eingabedatei"),
     ("[ground zones]", "Bodenzonen"),
@@ -363,4 +364,8 @@ pub(super) const PLAN: &[(&str, &str)] = &[
         "{a} Speicher und {b} Platte: {n} Ablösungen, bis {p} Bahnpunkte, {c} Kartenzellen",
     ),
     ("measured ends in {file}", "gemessene Endpunkte in {file}"),
+    (
+        "{a} of {b} releases tried out, over steep ground, by more than a tenth of their radius and up to {c} m, until they just touch: they fall from higher than height_m says",
+        "{a} von {b} probeweise abgelösten Blöcken, über steilem Boden, um mehr als ein Zehntel ihres Radius und bis {c} m, bis sie gerade berühren: sie fallen von höher, als height_m sagt",
+    ),
 ];

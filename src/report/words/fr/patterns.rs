@@ -24,8 +24,8 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "les tailles sont tirées par importance\u{a0}: les gros blocs sont calculés plus souvent qu’ils ne viennent. Centiles, parts et cartes sont repondérés et valent pour les sources telles quelles\u{a0}; nombres de blocs, histogrammes et points des figures montrent les blocs calculés",
     ),
     (
-        "{a} of {b} rocks failed: they are counted, but in no statistic; `--only` shows one again",
-        "{a} blocs sur {b} ont échoué\u{a0}: comptés, mais dans aucune statistique\u{a0}; `--only` en remontre un",
+        "{a} of {b} rocks failed: they count as far as they came; `--only {c}` shows one again",
+        "{a} blocs sur {b} ont échoué\u{a0}: ils comptent jusqu’où ils sont venus\u{a0}; `--only {c}` en remontre un",
     ),
     (
         "source “{a}”: no rock of {b} of its {c} events a year was released: they are missing in every number",
@@ -165,8 +165,8 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "Les calculs ont des graines différentes\u{a0}: rien ne forme de paires, et les différences ne sont pas mieux connues que chaque calcul à part. Avec une seule graine, les mêmes blocs partiraient.",
     ),
     (
-        "{a} of the rocks of A and {b} of B left the terrain: their runout is a lower bound, and differences of runout and reach angle hold only up to the edge.",
-        "{a} des blocs de A et {b} de B ont quitté le terrain\u{a0}: leur distance est une borne inférieure, et les différences de distance et d’angle ne valent que jusqu’au bord.",
+        "{a} of the rocks of A and {b} of B left the terrain, were still moving at the end or failed: all differences are of the ways as far as they were followed, and those of runout and reach angle are of bounds.",
+        "{a} des blocs de A et {b} de B ont quitté le terrain, bougeaient encore à la fin ou ont échoué\u{a0}: toutes les différences sont celles des trajets tels qu’ils ont été suivis, et celles de distance et d’angle sont celles de bornes.",
     ),
     ("What changes from A to B", "Ce qui change de A à B"),
     ("Change from A to B (% of A)", "Changement de A à B (% de A)"),

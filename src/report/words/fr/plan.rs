@@ -9,6 +9,7 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ("[releases]", "départs"),
     ("[radius]", "rayon"),
     ("[sizes of table]", "tailles du tableau"),
+    ("[lifted]", "soulevés"),
     ("[terrain]", "terrain"),
     ("[input file]", "fichier lu"),
     ("[ground zones]", "zones de sol"),
@@ -372,4 +373,8 @@ pub(super) const PLAN: &[(&str, &str)] = &[
         "{a} de mémoire et {b} de disque\u{a0}: {n} départs, jusqu’à {p} points de trajectoires, {c} cellules de cartes",
     ),
     ("measured ends in {file}", "arrêts mesurés dans {file}"),
+    (
+        "{a} of {b} releases tried out, over steep ground, by more than a tenth of their radius and up to {c} m, until they just touch: they fall from higher than height_m says",
+        "{a} des {b} blocs essayés, au-dessus d’un sol raide, de plus d’un dixième de leur rayon et jusqu’à {c} m, jusqu’à ce qu’ils touchent à peine\u{a0}: ils tombent de plus haut que ne le dit height_m",
+    ),
 ];

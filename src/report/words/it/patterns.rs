@@ -24,8 +24,8 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "le dimensioni sono estratte per importanza: i massi grandi sono calcolati più spesso di quanto vengano. Percentili, quote e mappe sono ripesati e valgono per le sorgenti come sono; conteggi, istogrammi e punti nelle figure mostrano i massi come calcolati",
     ),
     (
-        "{a} of {b} rocks failed: they are counted, but in no statistic; `--only` shows one again",
-        "{a} massi su {b} sono falliti: contati, ma in nessuna statistica; `--only` ne mostra uno di nuovo",
+        "{a} of {b} rocks failed: they count as far as they came; `--only {c}` shows one again",
+        "{a} massi su {b} sono falliti: contano fin dove sono giunti; `--only {c}` ne mostra uno di nuovo",
     ),
     (
         "source “{a}”: no rock of {b} of its {c} events a year was released: they are missing in every number",
@@ -162,8 +162,8 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "I calcoli hanno semi diversi: nulla forma coppie, e le differenze non sono note meglio dei due calcoli separati. Con un solo seme si staccherebbero gli stessi massi.",
     ),
     (
-        "{a} of the rocks of A and {b} of B left the terrain: their runout is a lower bound, and differences of runout and reach angle hold only up to the edge.",
-        "{a} dei massi di A e {b} di B hanno lasciato il terreno: la loro distanza è un limite inferiore, e le differenze di distanza e di angolo valgono solo fino al bordo.",
+        "{a} of the rocks of A and {b} of B left the terrain, were still moving at the end or failed: all differences are of the ways as far as they were followed, and those of runout and reach angle are of bounds.",
+        "{a} dei massi di A e {b} di B hanno lasciato il terreno, erano ancora in moto alla fine o sono falliti: tutte le differenze sono quelle dei percorsi fin dove sono stati seguiti, e quelle di distanza e di angolo sono di limiti.",
     ),
     ("What changes from A to B", "Che cosa cambia da A a B"),
     ("Change from A to B (% of A)", "Variazione da A a B (% di A)"),

@@ -9,6 +9,7 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ("[releases]", "distacchi"),
     ("[radius]", "raggio"),
     ("[sizes of table]", "dimensioni tabella"),
+    ("[lifted]", "sollevati"),
     ("[terrain]", "terreno"),
     ("[input file]", "file letto"),
     ("[ground zones]", "zone di suolo"),
@@ -360,4 +361,8 @@ pub(super) const PLAN: &[(&str, &str)] = &[
         "{a} di memoria e {b} di disco: {n} distacchi, fino a {p} punti di traiettorie, {c} celle di mappe",
     ),
     ("measured ends in {file}", "arresti misurati in {file}"),
+    (
+        "{a} of {b} releases tried out, over steep ground, by more than a tenth of their radius and up to {c} m, until they just touch: they fall from higher than height_m says",
+        "{a} dei {b} massi provati, su terreno ripido, di più di un decimo del loro raggio e fino a {c} m, finché toccano appena: cadono da più in alto di quanto dica height_m",
+    ),
 ];

@@ -1,0 +1,88 @@
+//! What is said of rocks that would have gone on and of what they do to the numbers, language by language.
+
+use super::year::words_of;
+use super::{fill, format};
+use crate::hazard::Proportion;
+use crate::scene::Language;
+
+words_of! {
+    OpenWords:
+    some_rocks, censored, have_left, remedy_left, have_no_time, remedy_time, have_failed, have_no_budget,
+    remedy_budget, at_line, on_maps,
+}
+
+impl OpenWords {
+    pub(super) fn of(language: Language) -> &'static Self {
+        match language {
+            Language::En => &EN,
+            Language::De => &DE,
+            Language::Fr => &FR,
+            Language::It => &IT,
+        }
+    }
+}
+
+/// So many of the rocks, beside a place or map where they are missing: `text` is one of the texts for it; nothing of none.
+pub(in crate::report) fn missing(text: &str, rocks: Option<&Proportion>) -> String {
+    let said = |of: &Proportion| {
+        let share = format::percent(of.share, usize::from(of.share < 0.1));
+        fill(text, &[("n", &format::decimal(of.count as f64, 0)), ("share", &share)])
+    };
+    rocks.map_or(String::new(), said)
+}
+
+const EN: OpenWords = OpenWords {
+    some_rocks: "{n} of {of} rocks ({share})",
+    censored: "{rocks} {what}: their runout is a lower and their reach angle an upper bound, and so is every percentile that they decide (≥, ≤; no interval on that side). Shares and frequencies at lines that they may still come to are lower bounds too; the upper ends of their intervals count these rocks as arriving. {remedy}",
+    have_left: "left the terrain",
+    remedy_left: "Give terrain that reaches farther if they matter.",
+    have_no_time: "were still moving when their time was up",
+    remedy_time: "Give a longer [solver] longest_s.",
+    have_failed: "failed",
+    have_no_budget: "were still moving when their budget of work was spent",
+    remedy_budget: "Ask why: see how the rocks ended.",
+    at_line: " Rocks that may still come here, with any energy and height: {n} ({share}). The values are of those that came, and percentiles may be too low.",
+    on_maps: " Rocks that ended on the map and would have gone on: {n} ({share}); their time or work was up, the computation failed, or they left the terrain away from the edge of the map. Further on they are missing, and probabilities and percentiles may be too low.",
+};
+
+const DE: OpenWords = OpenWords {
+    some_rocks: "{n} von {of} Blöcken ({share})",
+    censored: "{rocks} {what}: ihre Auslaufstrecke ist eine untere und ihr Pauschalgefälle eine obere Schranke, ebenso jedes Perzentil, das von ihnen abhängt (≥, ≤; kein Intervall auf dieser Seite). Auch Anteile und Häufigkeiten an Linien, zu denen sie noch kommen können, sind untere Schranken; die oberen Enden der Intervalle zählen diese Blöcke als angekommen. {remedy}",
+    have_left: "haben das Gelände verlassen",
+    remedy_left: "Weiter reichendes Gelände angeben, falls sie zählen.",
+    have_no_time: "bewegten sich noch, als ihre Zeit abgelaufen war",
+    remedy_time: "Ein längeres [solver] longest_s angeben.",
+    have_failed: "sind fehlgeschlagen",
+    have_no_budget: "bewegten sich noch, als ihr Rechenaufwand erschöpft war",
+    remedy_budget: "Dem nachgehen: siehe, wie die Blöcke endeten.",
+    at_line: " Blöcke, die noch hierher kommen können, mit beliebiger Energie und Höhe: {n} ({share}). Die Werte sind die der angekommenen, und Perzentile können zu niedrig sein.",
+    on_maps: " Blöcke, die auf der Karte endeten und weitergelaufen wären: {n} ({share}); ihre Zeit oder ihr Rechenaufwand war erschöpft, die Rechnung schlug fehl, oder sie verließen das Gelände abseits vom Kartenrand. Weiter unten fehlen sie, und Wahrscheinlichkeiten und Perzentile können zu niedrig sein.",
+};
+
+const FR: OpenWords = OpenWords {
+    some_rocks: "{n} blocs sur {of} ({share})",
+    censored: "{rocks} {what}\u{a0}: leur distance est une borne inférieure et leur angle d’énergie une borne supérieure, comme tout centile qui en dépend (≥, ≤\u{a0}; pas d’intervalle de ce côté). Les parts et les fréquences aux lignes qu’ils peuvent encore atteindre sont aussi des bornes inférieures\u{a0}; le haut de leurs intervalles compte ces blocs comme arrivés. {remedy}",
+    have_left: "sont sortis du terrain",
+    remedy_left: "Donner un terrain plus étendu s’ils importent.",
+    have_no_time: "bougeaient encore à la fin de leur temps",
+    remedy_time: "Donner un [solver] longest_s plus long.",
+    have_failed: "ont échoué",
+    have_no_budget: "bougeaient encore quand leur budget de calcul fut épuisé",
+    remedy_budget: "En chercher la cause\u{a0}: voir comment finissent les blocs.",
+    at_line: " Blocs qui peuvent encore venir ici, avec toute énergie et toute hauteur\u{a0}: {n} ({share}). Les valeurs sont celles des blocs arrivés, et les centiles peuvent être trop faibles.",
+    on_maps: " Blocs arrêtés sur la carte qui auraient continué\u{a0}: {n} ({share})\u{a0}; leur temps ou leur budget de calcul était épuisé, le calcul a échoué, ou ils ont quitté le terrain loin du bord de la carte. Plus loin ils manquent, et probabilités et centiles peuvent être trop faibles.",
+};
+
+const IT: OpenWords = OpenWords {
+    some_rocks: "{n} massi su {of} ({share})",
+    censored: "{rocks} {what}: la loro distanza è un limite inferiore e il loro angolo un limite superiore, come ogni percentile che ne dipende (≥, ≤; nessun intervallo da quel lato). Anche quote e frequenze alle linee che possono ancora raggiungere sono limiti inferiori; l’estremo superiore dei loro intervalli conta questi massi come arrivati. {remedy}",
+    have_left: "sono usciti dal terreno",
+    remedy_left: "Fornire un terreno più esteso se contano.",
+    have_no_time: "erano ancora in moto allo scadere del tempo",
+    remedy_time: "Dare un [solver] longest_s più lungo.",
+    have_failed: "sono falliti",
+    have_no_budget: "erano ancora in moto quando lo sforzo di calcolo fu esaurito",
+    remedy_budget: "Chiedersi perché: vedere come finiscono i massi.",
+    at_line: " Massi che possono ancora giungere qui, con qualsiasi energia e altezza: {n} ({share}). I valori sono quelli dei massi arrivati, e i percentili possono essere troppo bassi.",
+    on_maps: " Massi finiti sulla carta che avrebbero proseguito: {n} ({share}); il loro tempo o lo sforzo di calcolo era esaurito, il calcolo è fallito, o hanno lasciato il terreno lontano dal bordo della carta. Più oltre mancano, e probabilità e percentili possono essere troppo bassi.",
+};
