@@ -5,6 +5,7 @@ use super::words::{of_a_trial, threads};
 use crate::calibrate::{self, CalibrationTrial, Ends};
 use crate::ensemble::Ensemble;
 use crate::error::Result;
+use crate::file::write_atomic;
 use crate::output;
 use crate::scene::Scene;
 use clap::Args;
@@ -59,12 +60,13 @@ fn fit(
         progress();
     })?;
     let vary = scenes[0].calibrate.as_ref().map_or(&[][..], |table| &table.vary);
-    let mut fitted = Vec::new();
+    // before the scenes are read again: hours of trials must not hang on a file that has been moved meanwhile
+    output::write_calibration(out, &found, &trials)?;
     for scene in scenes {
         let name = scene.file.file_stem().unwrap_or_default().to_string_lossy();
-        fitted.push((format!("{name}_fitted.toml"), calibrate::fitted_scene(scene, vary, &found)?));
+        let text = calibrate::fitted_scene(scene, vary, &found)?;
+        write_atomic(&out.join(format!("{name}_fitted.toml")), text.as_bytes())?;
     }
-    output::write_calibration(out, &found, (&trials, &fitted))?;
     let out = out.display();
     Ok(format!("{found}all trials in {out}/calibration.csv, fitted scenes beside it"))
 }

@@ -7,20 +7,16 @@ use crate::file::write_atomic;
 use std::fmt::Write as _;
 use std::path::Path;
 
-/// A fitted scene: name of its file, and its text.
-type Fitted = (String, String);
-
 const RESULT: &str = "calibration.json";
 
-/// Writes `calibration.csv` (every trial with the part that was held out; energy distances where fits are scored by them), `calibration.json`, and the fitted scenes
-/// under their names.
+/// Writes `calibration.csv` (every trial with the part that was held out; energy distances where fits are scored by them) and `calibration.json`.
 ///
 /// # Errors
 /// A folder or file that cannot be written.
 pub fn write_calibration(
     dir: &Path,
     found: &Calibration,
-    (trials, fitted): (&[(Ends, CalibrationTrial)], &[Fitted]),
+    trials: &[(Ends, CalibrationTrial)],
 ) -> Result<()> {
     std::fs::create_dir_all(dir).map_err(Error::file("create", dir))?;
     let mut text = format!(
@@ -52,9 +48,6 @@ pub fn write_calibration(
             let _ = write!(text, ",{ends_m}");
         }
         text.push('\n');
-    }
-    for (name, scene) in fitted {
-        write_atomic(&dir.join(name), scene.as_bytes())?;
     }
     write_atomic(&dir.join("calibration.csv"), text.as_bytes())?;
     write_json(&dir.join(RESULT), found)

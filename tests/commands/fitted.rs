@@ -75,3 +75,19 @@ fn the_fitted_scene_stands_anywhere_and_only_it_is_calibrated() {
     assert!(rockfall(&again).status.success());
     assert!(Scene::read(&out.join("changed_fitted.toml")).unwrap().is_fitted());
 }
+
+/// A fitted scene that cannot be written, here as a folder has its name, costs none of the trials.
+#[test]
+fn trials_are_kept_whatever_becomes_of_the_fitted_scene() {
+    let dir = Folder::new();
+    let scene = site(&dir);
+    let out = dir.path("fit");
+    fs::create_dir_all(out.join("gis_fitted.toml")).unwrap();
+    let done = rockfall(&["calibrate", word(&scene), "--releases", "20", "--out", word(&out)]);
+    assert_eq!(done.status.code(), Some(2));
+    let said = String::from_utf8_lossy(&done.stderr);
+    assert!(said.contains("gis_fitted.toml"), "{said}");
+    for kept in ["calibration.csv", "calibration.json"] {
+        assert!(out.join(kept).is_file(), "{kept}");
+    }
+}
