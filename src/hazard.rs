@@ -214,8 +214,7 @@ impl Hazard {
     /// Rocks that ended on the map and would have gone on: they are missing in its cells further on. None of none.
     pub fn open_on(&self, map: &MapFrame) -> Option<Proportion> {
         let open = self.open.iter().filter(|rock| rock.ended_on(map)).map(|rock| rock.release);
-        let found = share_of(&self.weights_or_equal(), open);
-        (found.count > 0).then_some(found)
+        rate::share_if_any(&self.weights_or_equal(), open)
     }
 
     /// Rocks that were released: shares of rocks are of these.

@@ -10,7 +10,7 @@ use super::design::{Design, Rule};
 use super::lines::{CrossingRow, by_rock};
 use super::open::OpenRocks;
 use super::proportion::Proportion;
-use super::rate::share_of;
+use super::rate::share_if_any;
 use super::totals::Largest;
 use super::{Statistic, statistic};
 use crate::frequency::Weights;
@@ -242,7 +242,7 @@ fn summary(
         barrier: barrier.clone(),
         crossing,
         arriving: arriving((rocks, &open[0]), weights),
-        may_still_come: (!open[0].is_empty()).then(|| share_of(weights, open[0].iter().copied())),
+        may_still_come: share_if_any(weights, open[0].iter().copied()),
         stopped,
         over,
         through: rocks.len() - stopped.count - over,

@@ -1,7 +1,7 @@
 //! What all rocks say at one evaluation line.
 
 use super::proportion::Proportion;
-use super::rate::{share_of, share_up_to};
+use super::rate::{share_if_any, share_up_to};
 use super::sample::Sample;
 use super::totals::Largest;
 use super::{Statistic, statistic};
@@ -299,7 +299,7 @@ impl Line {
     /// Rocks that have not crossed it and may still come, as a share of so many released; none where there are none.
     pub fn may_still_come(&self, released: usize) -> Option<Proportion> {
         let weights = self.weights.clone().unwrap_or_else(|| Weights::equal(released));
-        (!self.open.is_empty()).then(|| share_of(&weights, self.open.iter().copied()))
+        share_if_any(&weights, self.open.iter().copied())
     }
 
     /// Rocks that cross it more than once.

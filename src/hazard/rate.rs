@@ -313,7 +313,16 @@ pub fn share_of(weights: &Weights, releases: impl Iterator<Item = usize>) -> Pro
     proportion(weights, releases.map(|release| (weights.stratum_of(release) as u16, 1)))
 }
 
-/// The same, where `open` rocks may still do what the others did.
+/// The same; none of no releases.
+pub(super) fn share_if_any(
+    weights: &Weights,
+    releases: impl Iterator<Item = usize>,
+) -> Option<Proportion> {
+    let found = share_of(weights, releases);
+    (found.count > 0).then_some(found)
+}
+
+/// The share, where `open` rocks may still do what the others did.
 pub fn share_up_to(
     weights: &Weights,
     releases: impl Iterator<Item = usize> + Clone,

@@ -9,7 +9,8 @@ use std::path::Path;
 
 const RESULT: &str = "calibration.json";
 
-/// Writes `calibration.csv` (every trial with the part that was held out; energy distances where fits are scored by them) and `calibration.json`.
+/// Writes `calibration.csv` (every trial with the part that was held out; energy distances where fits are scored by them) and
+/// `calibration.json`.
 ///
 /// # Errors
 /// A folder or file that cannot be written.

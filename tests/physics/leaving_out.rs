@@ -137,7 +137,7 @@ fn features_left_out_are_never_touched() {
 }
 
 /// A way of which it is said that it stays on one plane touches nothing but that plane, wherever in its enclosure the rock is: all of
-/// an impact is then followed at once. On every kind of mesh, rocks a twentieth to twice as large as its cells.
+/// an impact is then followed at once. On every kind of mesh, rocks a tenth to twice as large as its cells.
 #[test]
 fn a_way_on_one_plane_touches_nothing_else() {
     let (mut said, mut crossing) = (0, 0);

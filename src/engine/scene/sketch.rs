@@ -12,8 +12,8 @@ use std::path::{Path, PathBuf};
 
 /// The text of a scene for the terrain in a file (a mesh or an elevation model), as it would stand in `scene_file`.
 ///
-/// Releases lie on a line through the largest steep face, or before it where it is a wall. Ground values are not filled in: the scene says so when it is
-/// read, and which keys are missing.
+/// Releases lie on a line through the largest steep face, or before it where it is a wall. Ground values are not filled in: the
+/// scene says so when it is read, and which keys are missing.
 ///
 /// # Errors
 /// A file that cannot be read as a terrain, or one without a slope.
@@ -91,7 +91,7 @@ path_step_s = 0.05
 /// The table of releases: a line through the face, or points before a wall, and what the face is.
 fn release(cliff: &Cliff, terrain: &Terrain) -> String {
     let Cliff { line_m, area_m2, heights_m: [foot, top], cosine, normal: _ } = cliff;
-    let slope_deg = math::acos(cosine.min(1.0)).to_degrees();
+    let slope_deg = math::acos(*cosine).to_degrees();
     let face = format!(
         "the largest steep face, {area_m2:.0} m² steeper than {slope_deg:.0}° between {foot:.0} and {top:.0} m"
     );

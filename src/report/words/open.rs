@@ -3,23 +3,11 @@
 use super::year::words_of;
 use super::{fill, format};
 use crate::hazard::Proportion;
-use crate::scene::Language;
 
 words_of! {
     OpenWords:
     some_rocks, censored, have_left, remedy_left, have_no_time, remedy_time, have_failed, have_no_budget,
     remedy_budget, at_line, on_maps,
-}
-
-impl OpenWords {
-    pub(super) fn of(language: Language) -> &'static Self {
-        match language {
-            Language::En => &EN,
-            Language::De => &DE,
-            Language::Fr => &FR,
-            Language::It => &IT,
-        }
-    }
 }
 
 /// So many of the rocks, beside a place or map where they are missing: `text` is one of the texts for it; nothing of none.

@@ -2,7 +2,6 @@
 
 use super::year::words_of;
 use crate::body::ShapeKind;
-use crate::scene::Language;
 
 words_of! {
     ShapeWords:
@@ -11,15 +10,6 @@ words_of! {
 }
 
 impl ShapeWords {
-    pub(super) fn of(language: Language) -> &'static Self {
-        match language {
-            Language::En => &EN,
-            Language::De => &DE,
-            Language::Fr => &FR,
-            Language::It => &IT,
-        }
-    }
-
     /// The name of a shape.
     pub(in crate::report) fn name(&self, kind: ShapeKind) -> &'static str {
         match kind {

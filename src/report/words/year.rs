@@ -1,8 +1,6 @@
 //! What is said of a year on the first page and on its maps, language by language.
 
-use crate::scene::Language;
-
-/// A struct of texts, by name.
+/// A struct of texts, by name. Where it is called there is a constant of it for each language: `EN`, `DE`, `FR`, `IT`.
 macro_rules! words_of {
     ($kind:ident: $($name:ident),+ $(,)?) => {
         /// The words of one language.
@@ -12,6 +10,16 @@ macro_rules! words_of {
         }
 
         impl $kind {
+            pub(super) fn of(language: $crate::scene::Language) -> &'static Self {
+                use $crate::scene::Language;
+                match language {
+                    Language::En => &EN,
+                    Language::De => &DE,
+                    Language::Fr => &FR,
+                    Language::It => &IT,
+                }
+            }
+
             /// All texts with places for what is found, by name.
             pub(super) fn texts(&self) -> Vec<(&'static str, &'static str)> {
                 vec![$((stringify!($name), self.$name),)+]
@@ -26,17 +34,6 @@ words_of! {
     YearWords:
     head_title, head_note, head_row, maps_title, maps_alt, map_period, map_energy, map_by_exponent,
     map_level, maps_caption, maps_by_exponent, maps_level,
-}
-
-impl YearWords {
-    pub(super) fn of(language: Language) -> &'static Self {
-        match language {
-            Language::En => &EN,
-            Language::De => &DE,
-            Language::Fr => &FR,
-            Language::It => &IT,
-        }
-    }
 }
 
 const EN: YearWords = YearWords {
