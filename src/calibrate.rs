@@ -7,6 +7,7 @@
 //! leave them open.
 
 mod fitted;
+mod parts;
 mod search;
 mod site;
 mod worth;
@@ -257,7 +258,7 @@ impl Calibration {
         parts.chain([("all ends", &trial.all)]).try_for_each(|(what, of)| {
             writeln!(
                 to,
-                "  {what:<14} runout {:.1} m (measured {:.1}), KS {:.3} (limit {:.3}), area {:.1} m, side {:.1} m (measured {:.1}){}",
+                "  {what:<14} runout {:.1} m (measured {:.1}), KS {:.3} (limit {:.3}), area {:.1} m, side {:.1} m (measured {:.1}){}{}",
                 of.computed_mean_m,
                 of.measured_mean_m,
                 of.ks,
@@ -266,6 +267,7 @@ impl Calibration {
                 of.computed_side_m,
                 of.measured_side_m,
                 of.ends_m.map_or_else(String::new, |ends_m| format!(", energy distance {ends_m:.2} m")),
+                if of.stayed > 0 { format!(", {} not compared", of.stayed) } else { String::new() },
             )
         })
     }

@@ -86,6 +86,8 @@ pub struct RunInfo {
     pub asked: AnnualRequest,
     /// Measured ways to compare with; none if the scene names none.
     pub observed: Vec<ObservedPath>,
+    /// Least runout of a computed rock that is compared with them (m); none compares all.
+    pub observed_least_runout_m: Option<f64>,
     /// Whether `paths.csv` is written.
     pub keeps_paths: bool,
     /// Whether `impacts.csv` is written.

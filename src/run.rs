@@ -114,7 +114,7 @@ pub fn run_observed(
 /// # Errors
 /// A file that cannot be read or understood.
 pub fn read_measured(plan: &Plan) -> Result<Vec<ObservedPath>> {
-    plan.deposits.as_deref().map_or(Ok(Vec::new()), ObservedPath::read)
+    plan.measured.as_ref().map_or(Ok(Vec::new()), ObservedPath::read)
 }
 
 /// One go at so many releases; a target precision may ask for another with more.
@@ -179,6 +179,7 @@ impl Round<'_> {
             barriers: infos::barriers(plan),
             asked: year::asked(plan),
             observed: read_measured(plan)?,
+            observed_least_runout_m: plan.measured.as_ref().and_then(|ends| ends.least_runout_m),
             keeps_paths: matches!(options.selection, Selection::Only(_)) || plan.paths.is_kept(),
             keeps_impacts: plan.impacts.is_kept(),
             has_blocks: plan.releases.has_blocks(),

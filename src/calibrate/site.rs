@@ -1,15 +1,16 @@
 //! One scene of a calibration and what was measured on it.
 
+use super::parts::{few, parts_of, rows_of};
 use super::{Ends, put_all, refuse_weights};
 use crate::ensemble::Ensemble;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::hazard::{
     Agreement, EndDistances, ObservedPath, Row, Weighted, distances, effective, rank, runouts,
 };
 use crate::math;
 use crate::plan::{Part, Plan};
 use crate::random::{RandomStream, unit};
-use crate::scene::{CalibrationScore, Scene, VaryTable};
+use crate::scene::{CalibrateTable, CalibrationScore, Scene, VaryTable};
 use crate::simulation::{Scratch, simulate_release};
 use crate::terrain::Terrain;
 use std::path::Path;
@@ -24,6 +25,8 @@ type ObservedWays = Vec<(usize, ObservedPath)>;
 /// What one trial computed on a scene.
 pub(super) struct Computed {
     ways: ObservedWays,
+    /// Release numbers of the rocks that are not compared, as their runout is less than any that was measured can be.
+    stayed: Vec<usize>,
     /// How far the ends lie from the measured ones; only where a fit is scored by it.
     apart: Option<EndDistances>,
 }
@@ -32,6 +35,8 @@ pub(super) struct Computed {
 pub(super) struct CalibrationSite {
     scene: Scene,
     measured: Vec<ObservedPath>,
+    /// Least runout of a computed rock that is compared (m).
+    least_runout_m: Option<f64>,
     /// The block that each measured end belongs to; empty if the file does not tell.
     blocks: Vec<String>,
     /// The part that each measured end is held out with.
@@ -64,10 +69,12 @@ impl CalibrationSite {
         (releases, parts): (usize, usize),
         score: CalibrationScore,
     ) -> Result<Self> {
-        let (measured, blocks, part) = match scene.calibrate.as_ref().map(|table| &table.deposits) {
-            Some(deposits) => {
+        let ends = scene.calibrate.as_ref().map(CalibrateTable::measured);
+        let (measured, blocks, part) = match &ends {
+            Some(ends) => {
+                let deposits = &ends.file;
                 let (measured, blocks) =
-                    (ObservedPath::read(deposits)?, ObservedPath::read_blocks(deposits)?);
+                    (ObservedPath::read(ends)?, ObservedPath::read_blocks(deposits)?);
                 let part =
                     parts_of(measured.len(), &blocks, parts).ok_or_else(|| few(deposits, parts))?;
                 (measured, blocks, part)
@@ -90,7 +97,19 @@ impl CalibrationSite {
         }
         let (shapes, terrain, all) = (Vec::new(), Some(terrain), (0..measured.len()).collect());
         let groups = vec![all];
-        let mut site = Self { scene, measured, blocks, part, terrain, groups, score, shapes, own };
+        let least_runout_m = ends.and_then(|ends| ends.least_runout_m);
+        let mut site = Self {
+            scene,
+            measured,
+            least_runout_m,
+            blocks,
+            part,
+            terrain,
+            groups,
+            score,
+            shapes,
+            own,
+        };
         let blocks: Vec<Vec<usize>> =
             site.rows_of_blocks().into_iter().map(|(_, rows)| rows).collect();
         if !blocks.is_empty() {
@@ -142,17 +161,21 @@ impl CalibrationSite {
             refuse_weights(&self.scene, Some(&year.frequency))?;
         }
         let origin_m = plan.terrain.origin_m;
-        let mut ways = ObservedWays::new();
+        let (mut ways, mut stayed) = (ObservedWays::new(), Vec::new());
         let one =
             |index: usize, scratch: &mut Scratch| simulate_release(&plan, index, None, scratch);
         for falls in ensemble.in_chunks(0..plan.count, Scratch::default, one) {
-            let way =
-                |fall| ObservedPath::of(&Row::of(fall, origin_m)).map(|way| (fall.index, way));
-            ways.extend(falls?.iter().filter_map(way));
+            for fall in falls? {
+                match ObservedPath::of(&Row::of(&fall, origin_m)) {
+                    Some(way) if way.ran(self.least_runout_m) => ways.push((fall.index, way)),
+                    Some(_) => stayed.push(fall.index),
+                    None => {}
+                }
+            }
         }
         plan.releases.shapes().clone_into(&mut self.shapes);
         self.terrain = Some(plan.terrain);
-        let mut computed = Computed { ways, apart: None };
+        let mut computed = Computed { ways, stayed, apart: None };
         if self.score == CalibrationScore::Ends {
             let beside = |rows: &[usize]| self.weighted(&computed, rows);
             computed.apart = Some(EndDistances::of(&self.measured, &self.groups, beside));
@@ -170,7 +193,18 @@ impl CalibrationSite {
     pub(super) fn compare(&self, computed: &Computed, of: Ends) -> Option<Agreement> {
         let rows = self.rows(of);
         let found = Agreement::of_weighted(&self.ends(&rows), &self.weighted(computed, &rows))?;
-        Some(Agreement { ends_m: self.ends_m(computed, &rows), ..found })
+        let stayed = self.stayed(computed, &rows);
+        Some(Agreement { stayed, ends_m: self.ends_m(computed, &rows), ..found })
+    }
+
+    /// Rocks that would stand beside some of the ends, had they run.
+    fn stayed(&self, computed: &Computed, rows: &[usize]) -> usize {
+        let Some(own) = &self.own else { return computed.stayed.len() };
+        let is_beside = |index: &&usize| {
+            let place = own.of_release(**index);
+            place.is_some() && rows.iter().any(|&row| Some(own.of_end[row]) == place)
+        };
+        computed.stayed.iter().filter(is_beside).count()
     }
 
     /// Rows of some of the ends.
@@ -286,41 +320,6 @@ impl OwnPlaces {
     }
 }
 
-/// Rows of each block, blocks in the order of the file; an end of no known block is one of its own.
-fn rows_of(ends: usize, blocks: &[String]) -> Vec<(&str, Vec<usize>)> {
-    let mut known: Vec<(&str, Vec<usize>)> = Vec::new();
-    for row in 0..ends {
-        let block = blocks.get(row).map(String::as_str);
-        match known.iter_mut().find(|(name, _)| block == Some(name)) {
-            Some((_, rows)) => rows.push(row),
-            None => known.push((block.unwrap_or_default(), vec![row])),
-        }
-    }
-    known
-}
-
-/// The part that each measured end is held out with: throws of one block together, each block where there are fewest so
-/// far. None where there are fewer blocks than parts.
-fn parts_of(ends: usize, blocks: &[String], parts: usize) -> Option<Vec<usize>> {
-    let known = rows_of(ends, blocks);
-    let mut sizes = vec![0; parts];
-    let mut part = vec![0; ends];
-    for (_, rows) in &known {
-        let least = (0..parts).min_by_key(|&part| sizes[part])?;
-        sizes[least] += rows.len();
-        for &row in rows {
-            part[row] = least;
-        }
-    }
-    sizes.iter().all(|size| *size > 0).then_some(part)
-}
-
-fn few(deposits: &Path, parts: usize) -> Error {
-    let found = format!("found fewer blocks than the {parts} parts that held_out asks for");
-    let remedy = "write ends of more blocks, or held_out = 0.0, which holds none out";
-    Error::input(deposits, "rows", found, remedy)
-}
-
 /// The scene without anything that a trial has no use for.
 fn bare(scene: &Scene, releases: usize) -> Scene {
     let mut bare = scene.clone();
@@ -333,15 +332,6 @@ fn bare(scene: &Scene, releases: usize) -> Scene {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// Seven throws of three blocks in two parts: no block in both, and the parts as even as they can be.
-    #[test]
-    fn throws_of_one_block_are_held_out_together() {
-        let blocks = ["a", "b", "a", "c", "a", "b", "c"].map(str::to_owned);
-        assert_eq!(parts_of(7, &blocks, 2), Some(vec![0, 1, 0, 1, 0, 1, 1]));
-        assert_eq!(parts_of(7, &blocks, 4), None);
-        assert_eq!(parts_of(5, &[], 2), Some(vec![0, 1, 0, 1, 0]));
-    }
 
     /// Three ends from one place and one from another, which the scene releases from evenly, and from a third.
     #[test]

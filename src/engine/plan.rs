@@ -23,7 +23,8 @@ use crate::error::{Error, Result};
 use crate::ground::Ground;
 use crate::random::Distribution;
 use crate::release::{self, Lost, Release, Releases};
-use crate::scene::{BarrierTable, InputFile, Language, ObjectTable, Polyline, RecordTable, Scene};
+use crate::scene::{self, BarrierTable, InputFile, Language, ObjectTable, Polyline, RecordTable};
+use crate::scene::{MeasuredEnds, Scene};
 use crate::solver::Settings;
 use crate::terrain::health::Health;
 use crate::terrain::{Terrain, patches::Patched, stems::Stems};
@@ -162,8 +163,8 @@ pub struct Plan {
     pub rolling_stops: Vec<String>,
     /// Ratio of the springs and tangential restitution of each ground, in words.
     pub tangential: Vec<String>,
-    /// File of measured ends that the report compares with.
-    pub deposits: Option<PathBuf>,
+    /// Measured ends that the report compares with.
+    pub measured: Option<MeasuredEnds>,
     /// What went in, as name and value.
     pub inputs: Vec<(String, String)>,
     /// Rows of the report's title block.
@@ -300,7 +301,7 @@ impl Plan {
             catalogued: grounds::catalogued(scene),
             rolling_stops: grounds::rolling_stops(scene),
             tangential: grounds::tangential(scene),
-            deposits: scene.calibrate.as_ref().map(|table| table.deposits.clone()),
+            measured: scene.calibrate.as_ref().map(scene::CalibrateTable::measured),
             warnings,
             fast_warnings,
             terrain,

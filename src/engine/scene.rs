@@ -35,7 +35,9 @@ mod zones;
 
 pub use barrier::{BarrierTable, DesignTable, Simulation, Standard, Topography};
 pub use blocks::{BlockRow, BothSizes, SizeFrom};
-pub use calibrate::{CalibrateTable, CalibrationScore, FittedValue, VaryKey, VaryTable};
+pub use calibrate::{
+    CalibrateTable, CalibrationScore, FittedValue, MeasuredEnds, VaryKey, VaryTable,
+};
 pub use catalogue::{CATALOGUE, KnownGround, catalogue, known_ground};
 pub use drawn::{BarrierEntry, LineEntry};
 pub use files::InputFile;

@@ -11,6 +11,7 @@ use super::sample::Sample;
 use crate::error::{Error, Result};
 use crate::file::{self, LONGEST_TEXT};
 use crate::math;
+use crate::scene::MeasuredEnds;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -57,6 +58,9 @@ pub struct Agreement {
     pub measured_side_m: f64,
     /// The same of the computed ends, across the same direction (m).
     pub computed_side_m: f64,
+    /// Computed rocks that are not among them, as their runout is less than any that was measured can be.
+    #[serde(default)]
+    pub stayed: usize,
     /// Energy distance of the ends in plan view, block by block ([`EndDistances`], m); only where a fit is scored by it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ends_m: Option<f64>,
@@ -73,6 +77,11 @@ impl ObservedPath {
         [self.end_m[0] - self.start_m[0], self.end_m[1] - self.start_m[1]]
     }
 
+    /// Whether its runout is at least so long (m); none is as short as can be.
+    pub fn ran(&self, least_runout_m: Option<f64>) -> bool {
+        least_runout_m.is_none_or(|least_m| self.runout_m() >= least_m)
+    }
+
     /// The way of a computed rock; one that failed has no end to compare.
     pub fn of(row: &Row) -> Option<Self> {
         let flat = |[x, y, _]: [f64; 3]| [x, y];
@@ -83,8 +92,9 @@ impl ObservedPath {
     /// Reads measured ways from a CSV file with the columns `release_x_m`, `release_y_m`, `x_m`, `y_m`.
     ///
     /// # Errors
-    /// A file that cannot be read, or a row without these numbers.
-    pub fn read(path: &Path) -> Result<Vec<Self>> {
+    /// A file that cannot be read, a row without these numbers, or an end nearer to its release than any computed one may be.
+    pub fn read(ends: &MeasuredEnds) -> Result<Vec<Self>> {
+        let path = ends.file.as_path();
         let wrong = |why: csv::Error| {
             let line = why.position().map_or(1, csv::Position::line);
             let remedy = "write numbers in the columns release_x_m, release_y_m, x_m, y_m";
@@ -102,6 +112,11 @@ impl ObservedPath {
         if ways.len() < 2 {
             let found = format!("found {} measured ends", ways.len());
             return Err(Error::input(path, "rows", found, "write at least two"));
+        }
+        if let Some(at) = ways.iter().position(|way| !way.ran(ends.least_runout_m)) {
+            let found = format!("found an end {:.2} m from its release", ways[at].runout_m());
+            let remedy = "write a smaller least_runout_m in [calibrate], which is for lists without such ends";
+            return Err(Error::input(path, format!("line {}", at + 2), found, remedy));
         }
         Ok(ways)
     }
@@ -149,6 +164,7 @@ impl Agreement {
             area_m: mean(|one| one.area_m),
             measured_side_m: mean(|one| one.measured_side_m),
             computed_side_m: mean(|one| one.computed_side_m),
+            stayed: each.iter().map(|one| one.stayed).sum(),
             ends_m: first.ends_m.map(|_| mean(|one| one.ends_m.unwrap_or(f64::NAN))),
         })
     }
@@ -191,6 +207,7 @@ impl Agreement {
             area_m,
             measured_side_m: EndSpread::of(&even, along).across_m(),
             computed_side_m: EndSpread::of(computed, along).across_m(),
+            stayed: 0,
             ends_m: None,
         })
     }

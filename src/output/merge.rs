@@ -82,6 +82,7 @@ impl Shard {
             barriers,
             asked,
             observed,
+            observed_least_runout_m,
             site,
             ..
         } = self.summary.clone();
@@ -103,6 +104,7 @@ impl Shard {
             barriers: barriers.into_iter().map(|one| one.barrier).collect(),
             asked,
             observed,
+            observed_least_runout_m,
             keeps_paths: keeps(PATHS),
             keeps_impacts: keeps(IMPACTS),
             has_blocks,

@@ -102,6 +102,9 @@ pub struct Summary {
     /// Measured ways, if the scene names any.
     #[serde(default)]
     pub observed: Vec<ObservedPath>,
+    /// Least runout of a computed rock that is compared with them (m); none compares all.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub observed_least_runout_m: Option<f64>,
     /// Where the maps lie, if there are any.
     #[serde(default)]
     pub maps: Option<MapFrame>,
@@ -169,6 +172,7 @@ impl Summary {
             residual: Vec::new(),
             site: info.site,
             observed: info.observed,
+            observed_least_runout_m: info.observed_least_runout_m,
             open_on_maps: info.maps.and_then(|map| hazard.open_on(&map)),
             maps: info.maps,
             largest_energy_balance_error: hazard.largest_balance_error(),

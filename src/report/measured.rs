@@ -10,7 +10,7 @@ use super::panel::{FOOT_PX, Panel};
 use super::plan_view::ground;
 use super::svg::path::{PaperFrame, Spot};
 use super::words::{Words, fill};
-use crate::hazard::{ObservedPath, Weighted, runouts};
+use crate::hazard::{Agreement, ObservedPath, Weighted, runouts};
 
 const TOP_PX: f64 = 26.0;
 const CURVE_PX: f64 = 210.0;
@@ -20,6 +20,9 @@ const LEFT_PX: f64 = 66.0;
 /// What is said more where computed rocks weigh what they stand for.
 const WEIGHED: &str = "Computed rocks weigh what they stand for, measured ones all the same; the limit is that of as many \
     computed rocks of equal weight as would know as much.";
+/// What is said more where computed rocks are not compared.
+const NOT_COMPARED: &str = "{n} computed rocks are not compared: their runout is less than least_runout_m of [calibrate], and a \
+    list of throws holds none that stayed where it was set down.";
 /// Pens of both distributions: told apart without colour.
 const COMPUTED: Pen = Pen::full(BLUE, 1.6);
 const MEASURED: Pen = Pen::full(VERMILLION, 1.8).dashed();
@@ -71,13 +74,20 @@ pub(super) fn draw(report: &Report, observed: &Observed) -> Drawing {
             ("side_computed", &number(at.computed_side_m)),
         ],
     );
-    Drawing { svg, caption: caption + &weighing(observed, words) }
+    Drawing { svg, caption: caption + &weighing(observed, words) + &not_compared(&at, words) }
 }
 
 /// What caption and table say more where computed rocks weigh what they stand for; else nothing.
 pub(super) fn weighing(observed: &Observed, words: &Words) -> String {
     let said = observed.weights.as_ref().map(|_| format!(" {}", words.say(WEIGHED)));
     said.unwrap_or_default()
+}
+
+/// What is said more where computed rocks are not compared; else nothing.
+pub(super) fn not_compared(agreement: &Agreement, words: &Words) -> String {
+    let count = agreement.stayed;
+    let said = fill(NOT_COMPARED, &[("n", &format::decimal(count as f64, 0))]);
+    if count > 0 { format!(" {}", words.say(&said)) } else { String::new() }
 }
 
 fn head(canvas: &Canvas<'_>, panel: &Panel, words: &str) {

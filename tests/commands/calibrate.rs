@@ -209,6 +209,50 @@ fn ends_are_compared_from_their_own_places() {
     assert!(own.abs() < 1.0 && heap > 2.0, "own places {own} m, all together {heap} m");
 }
 
+/// Measured: the ends of rocks that ran a metre or more. Those that stay are left out of what is computed, too, and that is said; a list with
+/// a shorter way is refused.
+#[test]
+fn rocks_that_stay_where_they_are_set_down_are_not_compared() {
+    let dir = tempfile::tempdir().unwrap();
+    let scene = thrown(dir.path(), "throws", [0.5, 5.0], "");
+    let ends = fs::read_to_string(measure(&scene, "17")).unwrap();
+    let ran = |line: &&str| {
+        let at: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
+        (at[2] - at[0]).hypot(at[3] - at[1]) >= 1.0
+    };
+    let (head, all) = ends.split_once('\n').unwrap();
+    let kept: Vec<&str> = all.lines().filter(ran).collect();
+    assert!((8..32).contains(&kept.len()), "{}", kept.len());
+    fs::write(dir.path().join("ran.csv"), format!("{head}\n{}\n", kept.join("\n"))).unwrap();
+    let vary = "vary = [{ ground = \"meadow\", key = \"rolling_friction\", from = 0.4, to = 0.5, before = 0.45 }]";
+    let with = |name: &str, least: &str| {
+        let table = format!("[calibrate]\ndeposits = \"ran.csv\"\nheld_out = 0.0\n{least}\n{vary}");
+        thrown(dir.path(), name, [0.5, 5.0], &table)
+    };
+    let fit = |name: &str, least: &str| {
+        let (scene, out) = (with(name, least), dir.path().join(name));
+        let done = rockfall(&["calibrate", word(&scene), "--releases", "80", "--out", word(&out)]);
+        assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+        read_calibration(&out).unwrap().unwrap().before.all
+    };
+    let (throws, all) = (fit("least", "least_runout_m = 1.0"), fit("all", ""));
+    assert_eq!((throws.computed + throws.stayed, all.computed, all.stayed), (80, 80, 0));
+    assert!(throws.stayed > 10 && throws.ks < throws.ks_limit, "{throws:?}");
+    assert!(all.computed_mean_m < all.measured_mean_m - 0.3 && all.ks > all.ks_limit, "{all:?}");
+    // the run of the scene says the same, and its plan before it
+    let (scene, out) = (with("run", "least_runout_m = 1.0"), dir.path().join("page"));
+    let plan = rockfall(&["plan", word(&scene)]);
+    let plan = String::from_utf8(plan.stdout).unwrap();
+    assert!(plan.contains("without computed rocks whose runout is less than 1 m"), "{plan}");
+    assert!(rockfall(&["run", word(&scene), "--quiet", "--out", word(&out)]).status.success());
+    let page = fs::read_to_string(out.join("report.html")).unwrap();
+    assert!(page.contains("computed rocks are not compared: their runout is less"), "{page}");
+    let refused = rockfall(&["plan", word(&with("refused", "least_runout_m = 9.0"))]);
+    let refused = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert!(refused.contains("ran.csv: line 2: found an end"), "{refused}");
+    assert!(refused.contains("write a smaller least_runout_m"), "{refused}");
+}
+
 /// The level with its part y > 1 set 6 m lower but for a ledge: most rocks from the second place roll down and run further.
 fn step(dir: &Path) {
     let p = |x: f64, y: f64, z: f64| Vec3::new(x, y, z);

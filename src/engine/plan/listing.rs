@@ -71,7 +71,7 @@ impl Plan {
             catalogued,
             rolling_stops,
             tangential,
-            deposits,
+            measured,
             inputs: _,      // with the report
             title_block: _, // with the report
             sources: _,     // with the report
@@ -179,8 +179,8 @@ impl Plan {
         let cost = self.cost(count);
         let asks = if cost.is_modest() { "" } else { "; runs with --yes only" };
         list.line("at most", format!("{cost}{asks}"));
-        if let Some(file) = deposits {
-            list.line("compared with", format!("measured ends in {}", file.display()));
+        if let Some(measured) = measured {
+            list.line("compared with", measured.to_string());
         }
         list.lines("warning", warnings.iter().cloned());
         list.lines("warning", fast_warnings.iter().map(|warning| warning.text.clone()));

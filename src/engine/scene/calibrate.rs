@@ -6,6 +6,7 @@ use super::shapes::CORNER_RADIUS;
 use super::{GroundTable, Scene};
 use crate::random::Distribution;
 use serde::Deserialize;
+use std::fmt;
 use std::path::PathBuf;
 
 /// Most parts that are held out in turn: each is a search of its own.
@@ -17,6 +18,9 @@ const MOST_PARTS: usize = 20;
 pub struct CalibrateTable {
     /// CSV file of measured ends with `release_x_m`, `release_y_m`, `x_m`, `y_m` in map coordinates.
     pub deposits: PathBuf,
+    /// Computed rocks whose runout is less (m) are left out of the comparison, ≥ 0; absent = 0, none is. A list of throws
+    /// holds none that stayed where it was set down: such a block is thrown again.
+    pub least_runout_m: Option<f64>,
     /// Share of the measured ends that is held out of each fit to score it on (–), 0..0.5; absent = 0.5.
     pub held_out: Option<f64>,
     /// What a fit brings near: absent = [`CalibrationScore::Runout`].
@@ -27,6 +31,25 @@ pub struct CalibrateTable {
     /// What `rockfall calibrate` has fitted, as it notes it in the fitted scene; empty elsewhere.
     #[serde(default)]
     pub fitted: Vec<FittedValue>,
+}
+
+/// Measured ends that computed ones are compared with.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeasuredEnds {
+    /// CSV file of [`CalibrateTable::deposits`].
+    pub file: PathBuf,
+    /// [`CalibrateTable::least_runout_m`].
+    pub least_runout_m: Option<f64>,
+}
+
+impl fmt::Display for MeasuredEnds {
+    fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(to, "measured ends in {}", self.file.display())?;
+        if let Some(least_m) = self.least_runout_m {
+            write!(to, ", without computed rocks whose runout is less than {least_m} m")?;
+        }
+        Ok(())
+    }
 }
 
 /// One fitted value.
@@ -250,6 +273,11 @@ impl GroundTable {
 }
 
 impl CalibrateTable {
+    /// What computed ends are compared with.
+    pub fn measured(&self) -> MeasuredEnds {
+        MeasuredEnds { file: self.deposits.clone(), least_runout_m: self.least_runout_m }
+    }
+
     /// Parts of the measured ends that are held out in turn; 0 where none is.
     pub fn parts(&self) -> usize {
         match self.held_out.unwrap_or(0.5) {
@@ -259,6 +287,7 @@ impl CalibrateTable {
     }
 
     fn check(&self) -> Checked {
+        optional("least_runout_m", self.least_runout_m, Allowed::NotNegative, "")?;
         optional("held_out", self.held_out, Allowed::Between(0.0, 0.5), "")?;
         if self.parts() > MOST_PARTS {
             let remedy = format!("write 0.0, or {} or more", 1.0 / MOST_PARTS as f64);

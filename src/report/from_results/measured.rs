@@ -1,7 +1,7 @@
 //! Measured ends and calibration, gathered from summary, releases and `calibration.json`.
 
 use super::super::format;
-use super::super::measured::weighing;
+use super::super::measured::{not_compared, weighing};
 use super::super::model::{About, Estimate, EstimateTable, Observed};
 use super::super::words::{Words, fill};
 use super::estimate;
@@ -31,10 +31,15 @@ pub(super) fn observed(results: &Results) -> Result<Option<Observed>> {
         return Ok(None);
     }
     let standing = results.hazard.weights();
-    let (mut computed, mut weights) = (Vec::new(), Vec::new());
+    let least_runout_m = results.summary.observed_least_runout_m;
+    let (mut computed, mut weights, mut stayed) = (Vec::new(), Vec::new(), 0);
     for row in results.rows()? {
         let row = row?;
         if let Some(way) = ObservedPath::of(&row) {
+            if !way.ran(least_runout_m) {
+                stayed += 1;
+                continue;
+            }
             computed.push(way);
             weights.extend(standing.as_ref().map(|all| all.of_release(row.index)));
         }
@@ -47,7 +52,10 @@ pub(super) fn observed(results: &Results) -> Result<Option<Observed>> {
             Agreement::of_events(&measured, &weighted.collect::<Vec<_>>())
         }
     };
-    Ok(agreement.map(|agreement| Observed { measured, computed, weights, agreement }))
+    Ok(agreement.map(|found| {
+        let agreement = Agreement { stayed, ..found };
+        Observed { measured, computed, weights, agreement }
+    }))
 }
 
 /// What must be known before anything else where the computed ends are not those that were measured.
@@ -72,7 +80,7 @@ pub(super) fn tables(results: &Results, words: &Words) -> Result<Vec<EstimateTab
         tables.push(EstimateTable {
             about: About::Measured,
             title: words.agreement_title.to_owned(),
-            note: note + &weighing(&observed, words),
+            note: note + &weighing(&observed, words) + &not_compared(agreement, words),
             columns: columns(words),
             rows: vec![(words.this_run.to_owned(), cells(&observed.agreement))],
             ..EstimateTable::default()
@@ -103,7 +111,7 @@ fn calibration(found: &Calibration, words: &Words) -> EstimateTable {
     EstimateTable {
         about: About::Measured,
         title: words.calibration_title.to_owned(),
-        note: effort(found, words),
+        note: effort(found, words) + &not_compared(&found.whole.all, words),
         columns: columns(words),
         rows,
         ..EstimateTable::default()

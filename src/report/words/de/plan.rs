@@ -54,6 +54,15 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ("[compared with]", "verglichen mit"),
     ("[warning]", "Warnung"),
     // What the plan says
+    (
+        "{n} computed rocks are not compared: their runout is less than least_runout_m of [calibrate], and a list of throws holds none that stayed where it was set down.",
+        "{n} gerechnete Blöcke werden nicht verglichen: ihre Auslaufstrecke ist kleiner als least_runout_m von [calibrate], und eine Liste von Würfen enthält keinen, der liegen blieb, wo er angesetzt wurde.",
+    ),
+    (
+        "measured ends in {file}, without computed rocks whose runout is less than {least} m",
+        "gemessenen Endpunkten in {file}, ohne gerechnete Blöcke, deren Auslaufstrecke kleiner ist als {least} m",
+    ),
+    ("measured ends in {file}", "gemessenen Endpunkten in {file}"),
     ("left out: {why}", "weggelassen: {why}"),
     ("leapt over: {why}", "übersprungen: {why}"),
     ("the scene has none", "die Szene hat keine"),

@@ -54,6 +54,15 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ("[compared with]", "comparé à"),
     ("[warning]", "attention"),
     // What the plan says
+    (
+        "{n} computed rocks are not compared: their runout is less than least_runout_m of [calibrate], and a list of throws holds none that stayed where it was set down.",
+        "{n} blocs calculés ne sont pas comparés\u{a0}: leur distance de propagation est inférieure à least_runout_m de [calibrate], et une liste de lancers n’en contient aucun qui soit resté là où il a été posé.",
+    ),
+    (
+        "measured ends in {file}, without computed rocks whose runout is less than {least} m",
+        "des arrêts mesurés dans {file}, sans les blocs calculés dont la distance de propagation est inférieure à {least} m",
+    ),
+    ("measured ends in {file}", "des arrêts mesurés dans {file}"),
     ("left out: {why}", "laissé de côté\u{a0}: {why}"),
     ("leapt over: {why}", "franchi d’un bond\u{a0}: {why}"),
     ("the scene has none", "la scène n’en a pas"),

@@ -54,6 +54,15 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ("[compared with]", "confrontato con"),
     ("[warning]", "attenzione"),
     // What the plan says
+    (
+        "{n} computed rocks are not compared: their runout is less than least_runout_m of [calibrate], and a list of throws holds none that stayed where it was set down.",
+        "{n} massi calcolati non sono confrontati: la loro distanza di arresto è minore di least_runout_m di [calibrate], e un elenco di lanci non ne contiene alcuno rimasto dove è stato posato.",
+    ),
+    (
+        "measured ends in {file}, without computed rocks whose runout is less than {least} m",
+        "arresti misurati in {file}, senza i massi calcolati la cui distanza di arresto è minore di {least} m",
+    ),
+    ("measured ends in {file}", "arresti misurati in {file}"),
     ("left out: {why}", "tralasciato: {why}"),
     ("leapt over: {why}", "saltato: {why}"),
     ("the scene has none", "la scena non ne ha"),
