@@ -19,6 +19,7 @@ use crate::ensemble::Ensemble;
 use crate::error::{Error, Flaw, Result};
 use crate::frequency::Frequency;
 use crate::hazard::Agreement;
+use crate::math;
 use crate::random::Distribution;
 use crate::scene::{CalibrateTable, GroundTable, Scene, VaryKey, VaryTable};
 use search::ParameterSearch;
@@ -250,7 +251,7 @@ impl Calibration {
     ) -> fmt::Result {
         let values = self.names.iter().zip(&trial.values);
         let values: Vec<String> =
-            values.map(|(name, value)| format!("{name} = {value:.4}")).collect();
+            values.map(|(name, value)| format!("{name} = {}", math::rounded(*value, 4))).collect();
         writeln!(to, "{who:<16} {}", values.join(", "))?;
         let parts = [("fitted ends", &trial.fitted), ("held-out ends", &trial.kept_apart)];
         // before, and fitted on all, there is nothing apart

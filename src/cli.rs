@@ -15,6 +15,7 @@ mod terminal;
 mod words;
 
 use crate::error::{Error, Result};
+use crate::hazard::barrier_warnings;
 use crate::output::{self, Mode, Results};
 use crate::plan::Plan;
 use crate::report::{self, format::significant};
@@ -215,7 +216,10 @@ fn run(args: &RunArgs) -> Result<ExitCode> {
         RunEnd::Complete(results) => {
             bar.finish();
             if !args.quiet {
-                say(format!("\n{}\n", report::headline(&results.hazard).join("\n")));
+                let barriers = barrier_warnings(&results.summary.barriers);
+                let barriers = barriers.iter().map(|warning| format!("warning: {warning}"));
+                let said = report::headline(&results.hazard).into_iter().chain(barriers);
+                say(format!("\n{}\n", said.collect::<Vec<_>>().join("\n")));
                 say(last_words(&results));
             }
             Ok(ExitCode::SUCCESS)

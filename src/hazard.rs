@@ -32,7 +32,8 @@ pub use annual::{
 };
 pub use arrival::Arrival;
 pub use barriers::{
-    Arrivals, AtPlace, Barrier, BarrierSummary, Elsewhere, arrivals, judge, stopping,
+    Arrivals, AtPlace, Barrier, BarrierSummary, Elsewhere, arrivals, barrier_warnings, judge,
+    stopping,
 };
 pub use design::{Design, Rule};
 pub use difference::{Difference, Reading, Values, WeightedCount};

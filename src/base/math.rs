@@ -41,6 +41,11 @@ pub fn runge_kutta_4<const N: usize>(
     std::array::from_fn(|i| state[i] + h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]))
 }
 
+/// The nearest number with so many significant digits.
+pub fn rounded(value: f64, digits: usize) -> f64 {
+    format!("{:.*e}", digits.max(1) - 1, value).parse().unwrap_or(value)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -231,7 +231,8 @@ fn middle_95(mut numbers: Vec<f64>) -> [f64; 2] {
 impl fmt::Display for Told {
     fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { name, value, low_95, high_95, is_told } = self;
-        write!(to, "{name} = {value:.4} (95 %: {low_95:.4} to {high_95:.4})")?;
+        let [value, low_95, high_95] = [value, low_95, high_95].map(|&v| math::rounded(v, 4));
+        write!(to, "{name} = {value} (95 %: {low_95} to {high_95})")?;
         if *is_told {
             return Ok(());
         }

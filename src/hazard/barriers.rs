@@ -58,8 +58,11 @@ pub struct BarrierSummary {
     pub may_still_come: Option<Proportion>,
     /// Rocks stopped, as a share of those that arrive.
     pub stopped: Proportion,
-    /// Rocks that reach above its upper edge.
+    /// Rocks that reach above its upper edge, those of unknown height among them.
     pub over: usize,
+    /// Rocks that cross it where there is no ground below, so that their height is not known: they count as passing over it.
+    #[serde(default, skip_serializing_if = "super::is_0")]
+    pub height_unknown: usize,
     /// Rocks below its edge with more energy than it can stop.
     pub through: usize,
     /// Total energy of the rocks that arrive (J).
@@ -245,6 +248,7 @@ fn summary(
         may_still_come: share_if_any(weights, open[0].iter().copied()),
         stopped,
         over,
+        height_unknown: rocks.iter().filter(|rock| rock.top_m.is_infinite()).count(),
         through: rocks.len() - stopped.count - over,
         energy_j: statistic(|rock| rock.total_j),
         top_m: statistic(|rock| rock.top_m),
@@ -252,6 +256,18 @@ fn summary(
         design_values: asked.and_then(Result::ok),
         by_place: offsets.zip(places).zip(open).map(at_place).collect(),
     }
+}
+
+/// Says of each barrier that rocks cross where there is no ground below it how many they are.
+pub fn barrier_warnings(barriers: &[BarrierSummary]) -> Vec<String> {
+    let are_any = |one: &&BarrierSummary| one.height_unknown > 0;
+    let said = |one: &BarrierSummary| {
+        format!(
+            "barrier “{}”: {} of {} arriving rocks cross it where the terrain has a hole: their height is not known, and they count as passing over it; fill the hole",
+            one.barrier.name, one.height_unknown, one.arriving.count
+        )
+    };
+    barriers.iter().filter(are_any).map(said).collect()
 }
 
 #[cfg(test)]

@@ -62,7 +62,16 @@ pub struct CrossingRow {
     pub top_m: Option<f64>,
 }
 
+/// Two lines on one place are crossed at times that differ by rounding (s).
+const SAME_INSTANT_S: f64 = 1e-9;
+
 impl CrossingRow {
+    /// Whether the rock crosses this line later than at a time (s), or at that instant: of a line that is drawn on a barrier
+    /// rounding would say both.
+    pub(super) fn is_behind(&self, time_s: f64) -> bool {
+        self.time_s + SAME_INSTANT_S > time_s
+    }
+
     /// Columns of `crossings.csv`.
     pub const COLUMNS: [&'static str; 16] = [
         "index",

@@ -31,7 +31,7 @@ pub struct Percentile {
     pub high_95: Option<f64>,
     /// The true percentile lies below this with 95 % confidence (one-sided); none when there are too few rocks.
     pub upper_95: Option<f64>,
-    /// Rocks needed before any [`upper_95`](Self::upper_95) exists: 59 for P95, 299 for P99.
+    /// Rocks needed before any [`upper_95`](Self::upper_95) exists: 59 for P95, 299 for P99, more of unlike weight.
     pub needs: usize,
     /// Whether rocks whose own value is only a bound leave this percentile a bound too: see [`Open`].
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
@@ -89,7 +89,9 @@ impl Percentile {
     ///
     /// The interval is Woodruff's (1952): the share of weight below is known to `σ² = Σ w² (1{x ≤ q} − p)² / (Σ w)²`, and
     /// the values at the shares `p ± 1.96 σ` enclose the percentile. Where such a share is not below 1, or has no rock
-    /// below it, that end is open. [`needs`](Self::needs) counts rocks of equal weight.
+    /// below it, that end is open. `σ²` is at least that of `n_e = (Σ w)² / Σ w²` rocks of equal weight (Kish 1965),
+    /// `p (1 − p) / n_e`: that no heavy rock was seen beyond the percentile does not say that none goes there.
+    /// [`needs`](Self::needs) is as many of these rocks as it takes for an `n_e` that suffices.
     pub(super) fn weighted((sorted, weights): (&[f64], &[f64]), p: f64) -> Option<Self> {
         let all: f64 = weights.iter().sum();
         let at = |share: f64| {
@@ -103,14 +105,16 @@ impl Percentile {
         };
         let value = at(p)?;
         let side = |(x, w): (&f64, &f64)| (w * (f64::from(u8::from(*x <= value)) - p)).powi(2);
-        let sd = sorted.iter().zip(weights).map(side).sum::<f64>().sqrt() / all;
+        let seen = sorted.iter().zip(weights).map(side).sum::<f64>() / (all * all);
+        let worth = all * all / weights.iter().map(|weight| weight * weight).sum::<f64>();
+        let sd = seen.max(p * (1.0 - p) / worth).sqrt();
         let end = |share: f64| (share > 0.0 && share < 1.0).then(|| at(share)).flatten();
         Some(Self {
             value,
             low_95: end(p - NORMAL_95 * sd),
             high_95: end(p + NORMAL_95 * sd),
             upper_95: end(p + NORMAL_ONE_SIDED_95 * sd),
-            needs: needed(p),
+            needs: (needed(p) as f64 * sorted.len() as f64 / worth - 1e-9).ceil() as usize,
             censored: false,
         })
     }

@@ -39,20 +39,19 @@ pub struct Residual {
     pub with: Passing,
 }
 
-/// Which rows of one rock no barrier has stopped it before, in the order of the rows given.
+/// Which rows of one rock no barrier has stopped it before, in the order of the rows given. A line that is drawn on a barrier lies
+/// behind it.
 pub fn unstopped(barriers: &[Barrier], rock: &[CrossingRow]) -> Vec<bool> {
-    let mut order: Vec<usize> = (0..rock.len()).collect();
-    order.sort_by(|&a, &b| rock[a].time_s.total_cmp(&rock[b].time_s));
-    let mut passes = vec![true; rock.len()];
-    let mut is_stopped = false;
-    for row in order {
-        passes[row] = !is_stopped;
-        let met = barriers.iter().find(|barrier| barrier.name == rock[row].line);
-        is_stopped |= met.is_some_and(|barrier| {
-            Arrival::of(&rock[row]).is_stopped(barrier.height_m, barrier.capacity_j)
-        });
-    }
-    passes
+    let met = |row: &CrossingRow| barriers.iter().find(|barrier| barrier.name == row.line);
+    let stops = |row: &&CrossingRow| {
+        met(row).is_some_and(|net| Arrival::of(row).is_stopped(net.height_m, net.capacity_j))
+    };
+    let stop_s = rock.iter().filter(stops).map(|row| row.time_s).fold(f64::INFINITY, f64::min);
+    let passes = |row: &CrossingRow| match met(row) {
+        Some(_) => row.time_s <= stop_s,
+        None => !row.is_behind(stop_s),
+    };
+    rock.iter().map(passes).collect()
 }
 
 /// Rocks that pass one line, 24 bytes each.
@@ -104,7 +103,7 @@ fn take(
     let passes = unstopped(barriers, rock);
     for (row, passes) in rock.iter().zip(passes) {
         let Some(at) = lines.iter().position(|line| line.name == row.line) else { continue };
-        let before = rock.iter().filter(|other| other.time_s < row.time_s);
+        let before = rock.iter().filter(|other| row.is_behind(other.time_s));
         let met = before.filter_map(|other| barriers.iter().position(|b| b.name == other.line));
         let seen = &mut seen[at];
         seen.behind.extend(met);
@@ -145,6 +144,24 @@ mod tests {
     use super::*;
     use crate::hazard::lines::tests::row;
     use std::convert::Infallible;
+
+    /// A road drawn on a net is crossed a rounding before or after it: what the net stops is not on the road, either way.
+    #[test]
+    fn a_line_on_a_barrier_lies_behind_it() {
+        let net = Barrier {
+            name: "net".to_owned(),
+            height_m: 3.0,
+            capacity_j: 100.0,
+            design: None,
+            elsewhere: vec![],
+        };
+        for rounding_s in [-2e-15, 0.0, 2e-15] {
+            let rock = [row(0, "road", 2.0 + rounding_s, 0.1, 50.0), row(0, "net", 2.0, 0.1, 50.0)];
+            assert_eq!(unstopped(std::slice::from_ref(&net), &rock), [false, true]);
+        }
+        let rock = [row(0, "road", 1.999, 0.1, 50.0), row(0, "net", 2.0, 0.1, 50.0)];
+        assert_eq!(unstopped(&[net], &rock), [true, true]);
+    }
 
     /// By hand: the net holds 100 J. Rock 0 passes the path above the net and is stopped by it, rock 1 breaks through,
     /// rock 2 meets the road first and the net behind it, rock 3 never meets the net.

@@ -161,7 +161,7 @@ impl Totals {
         let Effort { steps, unsettled, .. } = self.effort;
         if unsettled > 0 {
             warnings.push(format!(
-                "{unsettled} of {steps} contact steps did not settle: their contact forces do not agree with their motion; take a smaller step_s, or for spheres scheme \"adaptive\""
+                "{unsettled} of {steps} contact steps did not settle: their contact forces do not agree with their motion; take a smaller tolerance_m_s, step_s or corner_way, whichever the scheme has"
             ));
         }
         let lost = self.ledger.remainder_j.value() / self.released_j.value();

@@ -111,7 +111,7 @@ impl Axis {
         let is_plain = down >= -4 && up <= 5;
         let label = |value: f64, exponent: i32| {
             if is_plain {
-                format::plain(format::rounded(value, 1))
+                format::plain(math::rounded(value, 1))
             } else {
                 format::power_of_ten(exponent)
             }

@@ -59,11 +59,6 @@ pub fn short(value: f64) -> String {
     if value.abs() >= 1e5 { scientific(value, 2) } else { significant(value, 3) }
 }
 
-/// The nearest number with so many significant digits.
-pub fn rounded(value: f64, digits: usize) -> f64 {
-    format!("{:.*e}", digits.max(1) - 1, value).parse().unwrap_or(value)
-}
-
 /// `value` as `m×10ⁿ`, the mantissa with so many decimals and left out where it is 1.
 pub fn scientific(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$e}");

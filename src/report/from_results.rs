@@ -377,6 +377,7 @@ fn text_of(results: &Results, words: &Words) -> Text {
         warnings: [
             &summary.warnings[..],
             &fast_warnings(results)[..],
+            &hazard::barrier_warnings(&summary.barriers)[..],
             &summary.totals.warnings(results.hazard.rocks()),
         ]
         .concat()

@@ -78,7 +78,7 @@ impl ClassedMap {
         let class = |v: f64| {
             ends.iter().position(|end| v / size <= end * (1.0 + 1e-9)).unwrap_or(CLASSES - 1)
         };
-        let name = |k: usize| format!("≤\u{2009}{}", format::plain(format::rounded(ends[k], 3)));
+        let name = |k: usize| format!("≤\u{2009}{}", format::plain(math::rounded(ends[k], 3)));
         Self {
             title: format!("{title} ({unit})"),
             cells: values.iter().map(|&(cell, v)| (cell, class(v))).collect(),

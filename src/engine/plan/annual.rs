@@ -62,7 +62,7 @@ pub(super) fn year(
     }
     if !frequency.weights(count).are_equal() {
         warnings.push(
-            "sizes are sampled by importance: large rocks are computed more often than they come. Percentiles, shares and maps are weighted back and hold for the sources as they are; counts of rocks, histograms and dots in figures show rocks as computed"
+            "sizes are sampled by importance: large rocks are computed more often than they come. Percentiles, shares and maps are weighted back and hold for the sources as they are; counts of rocks and dots in figures show rocks as computed"
                 .to_owned(),
         );
     }

@@ -336,7 +336,7 @@ fn described(table: &ShapeTable, shape: &Shape, note: &str) -> String {
         moments
     };
     format!(
-        "{}, weight {}{note}: {} corner balls of {} R, {} edges, {} faces; reaches {:.3} R, moments of inertia {low:.3}, {middle:.3}, {high:.3} of the sphere's; rounding takes {:.4} R off its corners",
+        "{}, weight {}{note}: {} corner balls of {:.3} R, {} edges, {} faces; reaches {:.3} R, moments of inertia {low:.3}, {middle:.3}, {high:.3} of the sphere's; rounding takes {:.3} R off its corners",
         named(table),
         table.weight.unwrap_or(1.0),
         shape.core.corners.len(),

@@ -214,7 +214,7 @@ impl YearSums {
         for row in rock.iter() {
             let place = places.iter_mut().find(|place| place.name == row.line);
             let Some(place) = place else { continue };
-            place.add(row, stop.filter(|(time_s, _)| *time_s < row.time_s), frequency);
+            place.add(row, stop.filter(|(time_s, _)| row.is_behind(*time_s)), frequency);
         }
     }
 

@@ -90,11 +90,15 @@ pub(super) fn lines(results: &Results, ground: Option<&GroundRaster>) -> Result<
         line.energy_exceedance = exceedance(all().map(energy), (&weights, &open));
         line.height_exceedance = exceedance(all().map(height), (&weights, &open));
     }
-    // stable: lines without ground keep the order of the scene, behind the others
-    let key = |line: &ReportLine| {
-        if line.elevation_m.is_nan() { f64::NEG_INFINITY } else { line.elevation_m }
+    // on level ground the line that most rocks reach comes first; stable: lines without ground keep the order of the scene
+    let height = |line: &ReportLine| {
+        if line.elevation_m.is_nan() { f64::NEG_INFINITY } else { line.elevation_m.round() }
     };
-    lines.sort_by(|a, b| key(b).total_cmp(&key(a)));
+    let key = |line: &ReportLine| (height(line), line.crossings.len());
+    lines.sort_by(|a, b| {
+        let ((high_a, many_a), (high_b, many_b)) = (key(a), key(b));
+        high_b.total_cmp(&high_a).then(many_b.cmp(&many_a))
+    });
     Ok(lines)
 }
 

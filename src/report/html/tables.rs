@@ -103,7 +103,7 @@ fn like(value: f64, digits: usize) -> impl Fn(f64) -> String {
     let last = exponent - digits as f64 + 1.0;
     move |v| {
         if !(-4.0..9.0).contains(&exponent) {
-            return format::significant(format::rounded(v, digits), digits);
+            return format::significant(math::rounded(v, digits), digits);
         }
         let place = math::pow(10.0, last.max(0.0));
         format::decimal(

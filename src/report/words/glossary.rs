@@ -48,7 +48,7 @@ pub(super) const DE: Glossary = [
     ),
     (
         "Rückhalt",
-        "Anteil der Ablösungen, der eine Linie nicht erreicht: was zwischen zwei Linien fehlt, blieb dort liegen.",
+        "Anteil der Ablösungen, der eine Linie nicht erreicht: was zwischen zwei Linien fehlt, blieb dort liegen oder verließ das Gelände.",
     ),
     (
         "Höhe rechtwinklig zum Hang",

@@ -4,6 +4,10 @@
 pub(super) const RECORDED: &[(&str, &str)] = &[
     // What it warns of
     (
+        "barrier “{name}”: {a} of {b} arriving rocks cross it where the terrain has a hole: their height is not known, and they count as passing over it; fill the hole",
+        "Schutzbauwerk “{name}”: {a} von {b} ankommenden Blöcken queren es, wo das Gelände ein Loch hat: ihre Höhe ist unbekannt, sie zählen als darüber hinweg; das Loch füllen",
+    ),
+    (
         "{where} omega * step_s = {x} for a rock of {r} m, which does not resolve its impacts: write a step_s below {y}",
         "{where} omega * step_s = {x} für einen Block von {r} m, was seine Aufpralle nicht auflöst: step_s kleiner als {y} schreiben",
     ),
@@ -20,8 +24,8 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "{file} sagt, wie oft seine Zonen Blöcke ablösen, und die Szene fragt nichts pro Jahr: die Tabelle [frequency] schreiben, und jede Zone ist eine Quelle",
     ),
     (
-        "sizes are sampled by importance: large rocks are computed more often than they come. Percentiles, shares and maps are weighted back and hold for the sources as they are; counts of rocks, histograms and dots in figures show rocks as computed",
-        "Größen sind nach Wichtigkeit gezogen: große Blöcke werden häufiger gerechnet, als sie kommen. Perzentile, Anteile und Karten sind zurückgewichtet und gelten für die Quellen, wie sie sind; Anzahlen, Histogramme und Punkte in Abbildungen zeigen Blöcke wie gerechnet",
+        "sizes are sampled by importance: large rocks are computed more often than they come. Percentiles, shares and maps are weighted back and hold for the sources as they are; counts of rocks and dots in figures show rocks as computed",
+        "Größen sind nach Wichtigkeit gezogen: große Blöcke werden häufiger gerechnet, als sie kommen. Perzentile, Anteile und Karten sind zurückgewichtet und gelten für die Quellen, wie sie sind; Anzahlen und Punkte in Abbildungen zeigen Blöcke wie gerechnet",
     ),
     (
         "{a} of {b} rocks failed: they count as far as they came; `--only {c}` shows one again",
@@ -40,8 +44,8 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "{a} von {b} Blöcken bewegten sich noch, als ihr Rechenbudget erschöpft war: sie zählen, so weit sie kamen; `--only {c}` zeigt einen noch einmal",
     ),
     (
-        "{a} of {b} contact steps did not settle: their contact forces do not agree with their motion; take a smaller step_s, or for spheres scheme \"adaptive\"",
-        "{a} von {b} Kontaktschritten kamen nicht zur Ruhe: ihre Kontaktkräfte passen nicht zu ihrer Bewegung; kleineres step_s nehmen, oder für Kugeln das Verfahren \"adaptive\"",
+        "{a} of {b} contact steps did not settle: their contact forces do not agree with their motion; take a smaller tolerance_m_s, step_s or corner_way, whichever the scheme has",
+        "{a} von {b} Kontaktschritten kamen nicht zur Ruhe: ihre Kontaktkräfte passen nicht zu ihrer Bewegung; kleineres tolerance_m_s, step_s oder corner_way nehmen, je nach Verfahren",
     ),
     (
         "the computation itself lost {x} % of the energy released, beside friction and damping; take a smaller tolerance or step, or scheme \"reference\"",

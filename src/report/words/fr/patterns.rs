@@ -4,6 +4,10 @@
 pub(super) const RECORDED: &[(&str, &str)] = &[
     // What it warns of
     (
+        "barrier “{name}”: {a} of {b} arriving rocks cross it where the terrain has a hole: their height is not known, and they count as passing over it; fill the hole",
+        "ouvrage “{name}”\u{a0}: {a} des {b} blocs qui arrivent le franchissent là où le terrain a un trou\u{a0}: leur hauteur est inconnue, ils comptent comme passant par-dessus\u{a0}; combler le trou",
+    ),
+    (
         "{where} omega * step_s = {x} for a rock of {r} m, which does not resolve its impacts: write a step_s below {y}",
         "{where} omega * step_s = {x} pour un bloc de {r} m, ce qui ne résout pas ses chocs\u{a0}: écrire un step_s sous {y}",
     ),
@@ -20,8 +24,8 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "{file} dit à quelle fréquence ses zones libèrent des blocs, et la scène ne demande rien par an\u{a0}: écrire la table [frequency], et chaque zone est une source",
     ),
     (
-        "sizes are sampled by importance: large rocks are computed more often than they come. Percentiles, shares and maps are weighted back and hold for the sources as they are; counts of rocks, histograms and dots in figures show rocks as computed",
-        "les tailles sont tirées par importance\u{a0}: les gros blocs sont calculés plus souvent qu’ils ne viennent. Centiles, parts et cartes sont repondérés et valent pour les sources telles quelles\u{a0}; nombres de blocs, histogrammes et points des figures montrent les blocs calculés",
+        "sizes are sampled by importance: large rocks are computed more often than they come. Percentiles, shares and maps are weighted back and hold for the sources as they are; counts of rocks and dots in figures show rocks as computed",
+        "les tailles sont tirées par importance\u{a0}: les gros blocs sont calculés plus souvent qu’ils ne viennent. Centiles, parts et cartes sont repondérés et valent pour les sources telles quelles\u{a0}; nombres de blocs et points des figures montrent les blocs calculés",
     ),
     (
         "{a} of {b} rocks failed: they count as far as they came; `--only {c}` shows one again",
@@ -40,8 +44,8 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "{a} blocs sur {b} bougeaient encore quand leur budget de calcul fut épuisé\u{a0}: ils comptent jusqu’où ils sont venus\u{a0}; `--only {c}` en remontre un",
     ),
     (
-        "{a} of {b} contact steps did not settle: their contact forces do not agree with their motion; take a smaller step_s, or for spheres scheme \"adaptive\"",
-        "{a} pas de contact sur {b} ne se sont pas stabilisés\u{a0}: leurs forces ne s’accordent pas à leur mouvement\u{a0}; prendre un step_s plus petit, ou pour des sphères le schéma \"adaptive\"",
+        "{a} of {b} contact steps did not settle: their contact forces do not agree with their motion; take a smaller tolerance_m_s, step_s or corner_way, whichever the scheme has",
+        "{a} pas de contact sur {b} ne se sont pas stabilisés\u{a0}: leurs forces ne s’accordent pas à leur mouvement\u{a0}; prendre tolerance_m_s, step_s ou corner_way plus petit, selon le schéma",
     ),
     (
         "the computation itself lost {x} % of the energy released, beside friction and damping; take a smaller tolerance or step, or scheme \"reference\"",
@@ -66,10 +70,7 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
     ("Source “{name}”", "Source «\u{a0}{name}\u{a0}»"),
     ("Object “{name}”", "Objet «\u{a0}{name}\u{a0}»"),
     ("by the volumes of the sources, see below", "selon les volumes des sources, voir plus bas"),
-    (
-        "springs {a} normal, {b} along the surface",
-        "ressorts {a} normaux, {b} le long de la surface",
-    ),
+    ("springs {a} normal, {b} along the surface", "ressorts {a} normaux, {b} tangents"),
     ("{a} times that", "{a} fois autant"),
     ("friction angle {a}", "angle de frottement {a}"),
     ("restitution {a}", "restitution {a}"),

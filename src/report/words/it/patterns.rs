@@ -4,6 +4,10 @@
 pub(super) const RECORDED: &[(&str, &str)] = &[
     // What it warns of
     (
+        "barrier “{name}”: {a} of {b} arriving rocks cross it where the terrain has a hole: their height is not known, and they count as passing over it; fill the hole",
+        "barriera “{name}”: {a} dei {b} massi che arrivano la attraversano dove il terreno ha un buco: la loro altezza non è nota e contano come passati sopra; riempire il buco",
+    ),
+    (
         "{where} omega * step_s = {x} for a rock of {r} m, which does not resolve its impacts: write a step_s below {y}",
         "{where} omega * step_s = {x} per un masso di {r} m, che non risolve i suoi urti: scrivere uno step_s sotto {y}",
     ),
@@ -20,8 +24,8 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "{file} dice quanto spesso le sue zone liberano massi, e la scena non chiede nulla all’anno: scrivere la tabella [frequency], e ogni zona è una sorgente",
     ),
     (
-        "sizes are sampled by importance: large rocks are computed more often than they come. Percentiles, shares and maps are weighted back and hold for the sources as they are; counts of rocks, histograms and dots in figures show rocks as computed",
-        "le dimensioni sono estratte per importanza: i massi grandi sono calcolati più spesso di quanto vengano. Percentili, quote e mappe sono ripesati e valgono per le sorgenti come sono; conteggi, istogrammi e punti nelle figure mostrano i massi come calcolati",
+        "sizes are sampled by importance: large rocks are computed more often than they come. Percentiles, shares and maps are weighted back and hold for the sources as they are; counts of rocks and dots in figures show rocks as computed",
+        "le dimensioni sono estratte per importanza: i massi grandi sono calcolati più spesso di quanto vengano. Percentili, quote e mappe sono ripesati e valgono per le sorgenti come sono; conteggi e punti nelle figure mostrano i massi come calcolati",
     ),
     (
         "{a} of {b} rocks failed: they count as far as they came; `--only {c}` shows one again",
@@ -40,8 +44,8 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "{a} massi su {b} si muovevano ancora quando il loro budget di calcolo era esaurito: contano fin dove sono giunti; `--only {c}` ne mostra uno di nuovo",
     ),
     (
-        "{a} of {b} contact steps did not settle: their contact forces do not agree with their motion; take a smaller step_s, or for spheres scheme \"adaptive\"",
-        "{a} passi di contatto su {b} non si sono assestati: le loro forze non concordano con il moto; prendere uno step_s più piccolo, o per sfere lo schema \"adaptive\"",
+        "{a} of {b} contact steps did not settle: their contact forces do not agree with their motion; take a smaller tolerance_m_s, step_s or corner_way, whichever the scheme has",
+        "{a} passi di contatto su {b} non si sono assestati: le loro forze non concordano con il moto; prendere tolerance_m_s, step_s o corner_way più piccolo, secondo lo schema",
     ),
     (
         "the computation itself lost {x} % of the energy released, beside friction and damping; take a smaller tolerance or step, or scheme \"reference\"",
