@@ -52,6 +52,8 @@ pub struct Rung {
     pub rise_j: f64,
     /// Values of each subject, release by release; NaN for a failed rock, −∞ for one that has none.
     values: Vec<Vec<f64>>,
+    /// Whether each rock would have gone on: it left the terrain, ran out of time or failed.
+    is_open: Vec<bool>,
 }
 
 /// One percentile of one quantity.
@@ -63,6 +65,8 @@ pub struct StudyStatistic {
     pub percent: u8,
     /// Under the scene's own setting.
     pub own: Percentile,
+    /// Rocks that would have gone on, of which it sees only a bound.
+    pub open: usize,
     /// Half the 95 % interval of the first so many releases, for rising numbers up to all.
     pub sampling: Vec<(usize, f64)>,
     /// Over the ladder.
@@ -187,11 +191,12 @@ pub fn study(
         let finest = meshes.len().saturating_sub(2);
         let on = |meshes: &[Vec<f64>]| Paired::weighing(meshes, &rocks);
         let (on_meshes, on_finest) = (on(&on_mesh), on(&on_mesh[finest..]));
+        let open = subjects[subject].open().map(|side| (&rungs[own].is_open[..], side));
         for percent in PERCENTS {
             let p = f64::from(percent) / 100.0;
-            let Some(found) = weighing.percentile(&all[own], p) else { continue };
+            let Some(found) = weighing.percentile(&all[own], open, p) else { continue };
             let ladder = paired.ladder(p, relatives, order, plan.seed);
-            let sampling = weighing.sampling(&all[own], p);
+            let sampling = weighing.sampling(&all[own], open, p);
             let meshes = with_meshes.then(|| PercentileLadder {
                 own_error: on_finest.ladder(p, &times[finest..], MESH_ORDER, plan.seed).own_error,
                 ..on_meshes.ladder(p, &times, MESH_ORDER, plan.seed)
@@ -200,6 +205,7 @@ pub fn study(
                 subject,
                 percent,
                 own: found,
+                open: open.map_or(0, |(bounds, _)| bounds.iter().filter(|is| **is).count()),
                 sampling,
                 ladder,
                 meshes,
@@ -268,6 +274,7 @@ impl Rung {
             failed: 0,
             rise_j: 0.0,
             values: Vec::new(),
+            is_open: Vec::new(),
         }
     }
 
@@ -302,6 +309,7 @@ impl Rung {
         self.failed += usize::from(failed);
         self.rise_j = self.rise_j.max(fall.ledger.rise_j);
         self.effort.add(&fall.effort);
+        self.is_open.push(row.stop.is_open());
         for (values, subject) in self.values.iter_mut().zip(subjects) {
             values.push(if failed { f64::NAN } else { subject.value(row, fall) });
         }

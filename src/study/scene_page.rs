@@ -62,6 +62,12 @@ pub fn sentence(study: &SceneStudy, statistic: &StudyStatistic, wanted: Option<f
         format!("**P{} {name} {} {unit}**", statistic.percent, significant(statistic.own.value, 4));
     let (Some(sampling), Some(total)) = (statistic.sampling_error(), statistic.total_error())
     else {
+        if statistic.open > 0 && (statistic.own.censored || study.releases >= statistic.own.needs) {
+            return format!(
+                "{head}: only a bound. {} of {} rocks left the terrain, ran out of time or failed, and no number of releases makes it narrower; give terrain that reaches farther.",
+                statistic.open, study.releases
+            );
+        }
         return format!(
             "{head}: too few rocks for an interval; {} or more are needed.",
             statistic.own.needs

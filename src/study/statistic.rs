@@ -1,6 +1,6 @@
 //! What a scene's study looks at: quantities of whole journeys, and what passes the scene's lines.
 
-use crate::hazard::{Quantity, Row};
+use crate::hazard::{Open, Quantity, Row};
 use crate::plan::{EvaluationLine, Plan};
 use crate::rock::Rock;
 use crate::simulation::{Crossing, Trajectory};
@@ -58,6 +58,14 @@ impl StudyQuantity {
         };
         let lines = plan.recorders().lines.iter().enumerate().flat_map(at_line);
         whole.into_iter().chain(lines).collect()
+    }
+
+    /// On which side the truth of a rock lies that was seen only in part; none where what was seen is its value.
+    pub(super) fn open(&self) -> Option<Open> {
+        match self.of {
+            Of::Rock(quantity) => quantity.open(),
+            Of::HeightAt(_) | Of::EnergyAt(_) => None,
+        }
     }
 
     pub(super) fn value(&self, row: &Row, fall: &Trajectory) -> f64 {

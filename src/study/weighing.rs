@@ -1,7 +1,7 @@
 //! What the rocks of a study stand for, where sizes are sampled by importance.
 
 use crate::frequency::{Frequency, Weights};
-use crate::hazard::{Percentile, Sample};
+use crate::hazard::{Open, Percentile, Sample};
 use crate::plan::{Part, Plan};
 
 /// Fewest releases of which a sampling error is given.
@@ -47,20 +47,37 @@ impl Weigh {
         }
     }
 
-    /// Of the values of the first so many releases.
-    pub(super) fn percentile(&self, values: &[f64], p: f64) -> Option<Percentile> {
+    /// Of the values of the first so many releases, some of which may be only bounds.
+    pub(super) fn percentile(
+        &self,
+        values: &[f64],
+        open: Option<(&[bool], Open)>,
+        p: f64,
+    ) -> Option<Percentile> {
         let weights = self.0.as_ref().map(|frequency| frequency.weights(values.len()));
         let weight = |release| weights.as_ref().map_or(1.0, |all| all.of_release(release));
         let each = values.iter().enumerate().map(|(release, value)| (*value, weight(release)));
-        Sample::weighted(each).percentile(p)
+        let sample = match open {
+            None => Sample::weighted(each),
+            Some((bounds, side)) => {
+                let seen = each.zip(bounds).map(|((value, weighs), is)| (value, weighs, *is));
+                Sample::censored(seen, side)
+            }
+        };
+        sample.percentile(p)
     }
 
     /// Half widths of the 95 % interval for the first 100, 200, 500, 1000 … releases.
-    pub(super) fn sampling(&self, values: &[f64], p: f64) -> Vec<(usize, f64)> {
+    pub(super) fn sampling(
+        &self,
+        values: &[f64],
+        open: Option<(&[bool], Open)>,
+        p: f64,
+    ) -> Vec<(usize, f64)> {
         let numbers = (2..).flat_map(|power| [1, 2, 5].map(|step| step * 10usize.pow(power)));
         let inner = numbers.take_while(|&n| n < values.len()).filter(|&n| n >= FEWEST);
         let half = |n: usize| {
-            let found = self.percentile(&values[..n], p)?;
+            let found = self.percentile(&values[..n], open, p)?;
             Some((n, 0.5 * (found.high_95? - found.low_95?)))
         };
         inner.chain([values.len()]).filter_map(half).collect()
