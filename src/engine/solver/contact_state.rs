@@ -74,6 +74,15 @@ pub(crate) struct Blow {
     pub(crate) triangle: u32,
 }
 
+/// Impacts that an implicit step runs into: see `step_control::onset`.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Onset {
+    /// Whether they press nothing in the present try: it will be cut where they begin.
+    pub(super) waits: bool,
+    /// Whether one would have pressed at the end of a stage of it.
+    pub(super) is_met: bool,
+}
+
 /// A rock in contact.
 #[derive(Debug)]
 pub struct ContactState {
@@ -117,6 +126,8 @@ pub struct ContactState {
     pub may_yield: bool,
     /// Whether the current blow has been announced (`rigid`).
     pub(crate) is_struck: bool,
+    /// Impacts that an implicit step runs into.
+    pub(super) onset: Onset,
     /// Work space of the fixed step.
     pub scratch: DdaScratch,
     /// Contact sweeps done.
@@ -162,6 +173,7 @@ impl ContactState {
             impact: ImpactProgress::default(),
             struck: ContactHistories::default(),
             is_struck: true,
+            onset: Onset::default(),
             may_yield: false,
             blow: None,
             facets: RoughFacets::default(),
@@ -182,7 +194,7 @@ impl ContactState {
         self.plane.forget();
         self.impact.forget();
         self.struck.clear();
-        (self.is_struck, self.blow) = (true, None);
+        (self.is_struck, self.blow, self.onset) = (true, None, Onset::default());
         // Nothing of the rock before, not even a guess, may tell.
         self.contacts.iter_mut().for_each(|contact| contact.mode = SlipState::default());
         if !self.near.covers(&c) {

@@ -11,6 +11,7 @@ use super::multi_contact;
 use super::tableau::Tableau;
 use crate::contact::TOUCH;
 use crate::contact::history::carry;
+use crate::ground::NormalElement;
 use crate::rock::Vec3;
 
 /// Most passes in which geometry and forces are brought to agree.
@@ -160,6 +161,9 @@ impl ContactState {
             contact.roll = roll;
             contact.penetration =
                 world.body.radius - self.touches[k].distance_m - contact.n.dot(&(base.c - at));
+            if self.onset.waits && memory.met_m_s > 0.0 {
+                contact.normal = NormalElement::NONE;
+            }
             self.contacts[k] = contact;
         }
     }
@@ -215,6 +219,8 @@ impl ContactState {
                 carry(shear_rate, &contact.n, &self.histories[contact.history].n);
             rate.roll[contact.history] = roll_rate;
             rate.loss.add(&contact.loss(world, &end.v, &end.w, &shear_rate), 1.0);
+            self.onset.is_met |=
+                self.histories[contact.history].met_m_s > 0.0 && contact.pen_at(&end.v, hh) > 0.0;
         }
     }
 

@@ -10,16 +10,18 @@
 //! springs alike, and the cost of an impact does not depend on `p_N`. A step is also refused when a
 //! stage has no solution, when it jumps over a feature, and when energy rises.
 
+mod onset;
 mod settle;
 
 use super::Settings;
 use super::body::Body;
-use super::contact_state::{ContactEnvironment, ContactState};
+use super::contact_state::{ContactEnvironment, ContactState, Onset};
 use super::loss::Loss;
 use super::stage::End;
 use super::tableau::Tableau;
 use crate::contact::history::carry;
 use crate::ground::Law;
+use onset::MET;
 pub(crate) use settle::{StepFailure, TrialStep, TryOutcome, settle};
 
 /// First step of a contact, in radians of its oscillation (–): an impact must be resolved, or it creates energy.
@@ -161,11 +163,25 @@ pub fn advance(
     }
     let limit = travel_limit(world, state);
     let (omega, known) = (stiffest(world, state), state.histories.len());
-    let mut trial = RockTrial { world, control, state, h, limit, omega, known, end: None };
+    let mut trial = RockTrial {
+        world,
+        control,
+        state,
+        h,
+        limit,
+        omega,
+        known,
+        end: None,
+        waits: true,
+        cuts: 0,
+    };
     done.dt = settle(&mut trial, control, h_max, &mut done.rejected)?;
     done.steps = 1;
     if let Some(end) = trial.end {
         accept(world, control.tableau, state, (&end, done.dt), &mut done.loss);
+        // what has waited presses from now on
+        let Onset { waits, is_met } = std::mem::take(&mut state.onset);
+        state.fresh &= !(waits && is_met);
     }
     Ok(done)
 }
@@ -181,6 +197,9 @@ struct RockTrial<'a, 'w> {
     /// Memories at the step's start.
     known: usize,
     end: Option<End>,
+    /// Whether impacts that begin within the step wait for its end, and how often it has been cut for that.
+    waits: bool,
+    cuts: u32,
 }
 
 impl TrialStep for RockTrial<'_, '_> {
@@ -199,13 +218,24 @@ impl TrialStep for RockTrial<'_, '_> {
     fn try_step(&mut self, dt: f64) -> TryOutcome {
         // memories that came up in a try that failed have never been
         self.state.histories.truncate(self.known);
+        let waits = self.waits && dt * self.omega > MET;
+        self.state.onset = Onset { waits, is_met: false };
         let Some((end, error)) = attempt(self.world, self.control, self.state, dt, self.omega)
         else {
             return TryOutcome::Unsettled;
         };
         self.end = Some(end);
         let hh = self.control.tableau.diagonal * dt;
-        if error <= 1.0 && dt * self.omega > RESOLVED && gains(self.world, self.state, &end, hh) {
+        if let Some(share) = self.until_impact(&end, (dt, hh)) {
+            return TryOutcome::Cut(share);
+        }
+        // what has just begun stores less than the error of the step
+        let begins = self.state.onset.is_met && self.state.onset.waits;
+        if error <= 1.0
+            && !begins
+            && dt * self.omega > RESOLVED
+            && gains(self.world, self.state, &end, hh)
+        {
             return TryOutcome::Gains;
         }
         TryOutcome::Error(error)
