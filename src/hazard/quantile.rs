@@ -89,9 +89,9 @@ impl Percentile {
     ///
     /// The interval is Woodruff's (1952): the share of weight below is known to `σ² = Σ w² (1{x ≤ q} − p)² / (Σ w)²`, and
     /// the values at the shares `p ± 1.96 σ` enclose the percentile. Where such a share is not below 1, or has no rock
-    /// below it, that end is open. `σ²` is at least that of `n_e = (Σ w)² / Σ w²` rocks of equal weight (Kish 1965),
-    /// `p (1 − p) / n_e`: that no heavy rock was seen beyond the percentile does not say that none goes there.
-    /// [`needs`](Self::needs) is as many of these rocks as it takes for an `n_e` that suffices.
+    /// below it, that end is open. For the upper end one more rock of the heaviest weight lies above, as Fay and Feuer (1997) have it for
+    /// rates: that no heavy rock was seen beyond the percentile does not say that none goes there.
+    /// [`needs`](Self::needs) is as many of these rocks as it takes to be worth enough of equal weight, `(Σ w)² / Σ w²` (Kish 1965).
     pub(super) fn weighted((sorted, weights): (&[f64], &[f64]), p: f64) -> Option<Self> {
         let all: f64 = weights.iter().sum();
         let at = |share: f64| {
@@ -107,13 +107,14 @@ impl Percentile {
         let side = |(x, w): (&f64, &f64)| (w * (f64::from(u8::from(*x <= value)) - p)).powi(2);
         let seen = sorted.iter().zip(weights).map(side).sum::<f64>() / (all * all);
         let worth = all * all / weights.iter().map(|weight| weight * weight).sum::<f64>();
-        let sd = seen.max(p * (1.0 - p) / worth).sqrt();
+        let heaviest = weights.iter().copied().fold(0.0, f64::max) / all;
+        let (sd, wider) = (seen.sqrt(), (seen + (p * heaviest).powi(2)).sqrt());
         let end = |share: f64| (share > 0.0 && share < 1.0).then(|| at(share)).flatten();
         Some(Self {
             value,
             low_95: end(p - NORMAL_95 * sd),
-            high_95: end(p + NORMAL_95 * sd),
-            upper_95: end(p + NORMAL_ONE_SIDED_95 * sd),
+            high_95: end(p + NORMAL_95 * wider),
+            upper_95: end(p + NORMAL_ONE_SIDED_95 * wider),
             needs: (needed(p) as f64 * sorted.len() as f64 / worth - 1e-9).ceil() as usize,
             censored: false,
         })

@@ -156,6 +156,20 @@ fn weighted_means_and_percentiles_are_covered() {
     }
 }
 
+/// Six of 300 rocks stand for half of all: 300 of them are worth `594²/15 294` = 23 of equal weight, and none of the six beyond P95 says
+/// little.
+#[test]
+fn a_percentile_that_one_heavy_rock_may_move_has_no_upper_end() {
+    let weight = |k: usize| if k.is_multiple_of(50) { 50.0 } else { 1.0 };
+    let sample = Sample::weighted((0..300).map(|k| (k as f64, weight(k))));
+    let found = sample.percentile(0.95).unwrap();
+    assert_eq!((found.high_95, found.upper_95), (None, None));
+    assert!(found.low_95.is_some());
+    assert_eq!(found.needs, (59.0_f64 * 300.0 * 15_294.0 / 594.0_f64.powi(2)).ceil() as usize);
+    let median = sample.percentile(0.5).unwrap();
+    assert!(median.high_95.is_some() && median.low_95.is_some());
+}
+
 /// What a net stops of the rocks that arrive: a share whose chance may hang on the weight. In order: it does not, heavy rocks are
 /// stopped seldom, only they are ever stopped.
 #[test]

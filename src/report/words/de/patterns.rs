@@ -4,10 +4,6 @@
 pub(super) const RECORDED: &[(&str, &str)] = &[
     // What it warns of
     (
-        "barrier “{name}”: {a} of {b} arriving rocks cross it where the terrain has a hole: their height is not known, and they count as passing over it; fill the hole",
-        "Schutzbauwerk “{name}”: {a} von {b} ankommenden Blöcken queren es, wo das Gelände ein Loch hat: ihre Höhe ist unbekannt, sie zählen als darüber hinweg; das Loch füllen",
-    ),
-    (
         "{where} omega * step_s = {x} for a rock of {r} m, which does not resolve its impacts: write a step_s below {y}",
         "{where} omega * step_s = {x} für einen Block von {r} m, was seine Aufpralle nicht auflöst: step_s kleiner als {y} schreiben",
     ),
@@ -42,6 +38,10 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
     (
         "{a} of {b} rocks were still moving when their budget of work was spent: they count as far as they came; `--only {c}` shows one again",
         "{a} von {b} Blöcken bewegten sich noch, als ihr Rechenbudget erschöpft war: sie zählen, so weit sie kamen; `--only {c}` zeigt einen noch einmal",
+    ),
+    (
+        "barrier “{name}”: {a} of {b} arriving rocks cross it where the terrain has a hole: their height is not known, and they count as passing over it; fill the hole",
+        "Schutzbauwerk “{name}”: {a} von {b} ankommenden Blöcken queren es, wo das Gelände ein Loch hat: ihre Höhe ist unbekannt, sie zählen als darüber hinweg; das Loch füllen",
     ),
     (
         "{a} of {b} contact steps did not settle: their contact forces do not agree with their motion; take a smaller tolerance_m_s, step_s or corner_way, whichever the scheme has",

@@ -4,10 +4,6 @@
 pub(super) const RECORDED: &[(&str, &str)] = &[
     // What it warns of
     (
-        "barrier “{name}”: {a} of {b} arriving rocks cross it where the terrain has a hole: their height is not known, and they count as passing over it; fill the hole",
-        "ouvrage “{name}”\u{a0}: {a} des {b} blocs qui arrivent le franchissent là où le terrain a un trou\u{a0}: leur hauteur est inconnue, ils comptent comme passant par-dessus\u{a0}; combler le trou",
-    ),
-    (
         "{where} omega * step_s = {x} for a rock of {r} m, which does not resolve its impacts: write a step_s below {y}",
         "{where} omega * step_s = {x} pour un bloc de {r} m, ce qui ne résout pas ses chocs\u{a0}: écrire un step_s sous {y}",
     ),
@@ -42,6 +38,10 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
     (
         "{a} of {b} rocks were still moving when their budget of work was spent: they count as far as they came; `--only {c}` shows one again",
         "{a} blocs sur {b} bougeaient encore quand leur budget de calcul fut épuisé\u{a0}: ils comptent jusqu’où ils sont venus\u{a0}; `--only {c}` en remontre un",
+    ),
+    (
+        "barrier “{name}”: {a} of {b} arriving rocks cross it where the terrain has a hole: their height is not known, and they count as passing over it; fill the hole",
+        "ouvrage “{name}”\u{a0}: {a} des {b} blocs qui arrivent le franchissent là où le terrain a un trou\u{a0}: leur hauteur est inconnue, ils comptent comme passant par-dessus\u{a0}; combler le trou",
     ),
     (
         "{a} of {b} contact steps did not settle: their contact forces do not agree with their motion; take a smaller tolerance_m_s, step_s or corner_way, whichever the scheme has",

@@ -4,10 +4,6 @@
 pub(super) const RECORDED: &[(&str, &str)] = &[
     // What it warns of
     (
-        "barrier “{name}”: {a} of {b} arriving rocks cross it where the terrain has a hole: their height is not known, and they count as passing over it; fill the hole",
-        "barriera “{name}”: {a} dei {b} massi che arrivano la attraversano dove il terreno ha un buco: la loro altezza non è nota e contano come passati sopra; riempire il buco",
-    ),
-    (
         "{where} omega * step_s = {x} for a rock of {r} m, which does not resolve its impacts: write a step_s below {y}",
         "{where} omega * step_s = {x} per un masso di {r} m, che non risolve i suoi urti: scrivere uno step_s sotto {y}",
     ),
@@ -42,6 +38,10 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
     (
         "{a} of {b} rocks were still moving when their budget of work was spent: they count as far as they came; `--only {c}` shows one again",
         "{a} massi su {b} si muovevano ancora quando il loro budget di calcolo era esaurito: contano fin dove sono giunti; `--only {c}` ne mostra uno di nuovo",
+    ),
+    (
+        "barrier “{name}”: {a} of {b} arriving rocks cross it where the terrain has a hole: their height is not known, and they count as passing over it; fill the hole",
+        "barriera “{name}”: {a} dei {b} massi che arrivano la attraversano dove il terreno ha un buco: la loro altezza non è nota e contano come passati sopra; riempire il buco",
     ),
     (
         "{a} of {b} contact steps did not settle: their contact forces do not agree with their motion; take a smaller tolerance_m_s, step_s or corner_way, whichever the scheme has",
