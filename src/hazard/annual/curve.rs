@@ -95,6 +95,12 @@ pub(super) fn curve(
         open = Some(class);
     }
     points.extend(open.map(|before| point(before, running, ceilings)));
+    // what has the larger energy has the smaller too: a lower end holds for all points below it
+    let mut least = 0.0f64;
+    for point in &mut points {
+        least = least.max(point.low_95);
+        point.low_95 = least;
+    }
     points
 }
 
