@@ -281,6 +281,19 @@ mod tests {
         Barrier { name: name.to_owned(), height_m, capacity_j, design: None, elsewhere: vec![] }
     }
 
+    /// Over a hole nobody knows how high a rock is: it is let through, and a warning says so.
+    #[test]
+    fn rocks_of_unknown_height_are_named() {
+        let net = [barrier("net", 3.0, 100.0)];
+        let rows = [row(0, "net", 1.0, 0.5, 50.0), row(1, "net", 1.0, f64::NAN, 50.0)];
+        let rows = rows.into_iter().map(Ok::<_, Infallible>);
+        let found = judge(&net, rows, (&Weights::equal(2), &OpenRocks::default())).unwrap();
+        let at = &found[0];
+        assert_eq!([at.arriving.count, at.stopped.count, at.over, at.height_unknown], [2, 1, 1, 1]);
+        let said = barrier_warnings(&found);
+        assert!(said.len() == 1 && said[0].contains("“net”: 1 of 2"), "{said:?}");
+    }
+
     /// By hand: rock 0 is stopped by the upper net and never seen below; rock 1 flies over the upper one and is stopped
     /// below; rock 2 breaks through both; rock 3 meets the lower one only.
     #[test]
