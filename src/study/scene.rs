@@ -182,7 +182,7 @@ pub fn study(
     let weighing = Weigh::of(&plan);
     let rocks = weighing.rocks(plan.count);
     let mut statistics = Vec::new();
-    for subject in 0..subjects.len() {
+    for (subject, quantity) in subjects.iter().enumerate() {
         let all: Vec<Vec<f64>> = rungs.iter().map(|rung| rung.values[subject].clone()).collect();
         let paired = Paired::weighing(&all, &rocks);
         let on_mesh: Vec<_> = meshes.iter().map(|mesh| mesh.rung.values[subject].clone()).collect();
@@ -191,7 +191,7 @@ pub fn study(
         let finest = meshes.len().saturating_sub(2);
         let on = |meshes: &[Vec<f64>]| Paired::weighing(meshes, &rocks);
         let (on_meshes, on_finest) = (on(&on_mesh), on(&on_mesh[finest..]));
-        let open = subjects[subject].open().map(|side| (&rungs[own].is_open[..], side));
+        let open = quantity.open().map(|side| (&rungs[own].is_open[..], side));
         for percent in PERCENTS {
             let p = f64::from(percent) / 100.0;
             let Some(found) = weighing.percentile(&all[own], open, p) else { continue };
