@@ -299,9 +299,8 @@ fn interval(value: f64, variance: f64, &Limits { most, heaviest, .. }: &Limits) 
     if spread <= 1e-12 * most {
         return [(most - NONE * heaviest).max(0.0), most];
     }
+    let weight = (variance / spread).max(f64::MIN_POSITIVE);
     let wider = (variance + heaviest * heaviest) / (spread + heaviest);
-    // near all of them the spread says nothing: what did not count then weighs no more than with one more of the heaviest
-    let weight = (variance / spread).min(wider).max(f64::MIN_POSITIVE);
     let share = value / most;
     [most * wilson(share, most / weight).0, most * wilson(share, most / wider).1]
 }
