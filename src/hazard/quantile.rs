@@ -106,7 +106,7 @@ impl Percentile {
         let value = at(p)?;
         let side = |(x, w): (&f64, &f64)| (w * (f64::from(u8::from(*x <= value)) - p)).powi(2);
         let seen = sorted.iter().zip(weights).map(side).sum::<f64>() / (all * all);
-        let worth = all * all / weights.iter().map(|weight| weight * weight).sum::<f64>();
+        let worth = worth(weights);
         let heaviest = weights.iter().copied().fold(0.0, f64::max) / all;
         let (sd, wider) = (seen.sqrt(), (seen + (p * heaviest).powi(2)).sqrt());
         let end = |share: f64| (share > 0.0 && share < 1.0).then(|| at(share)).flatten();
@@ -119,6 +119,12 @@ impl Percentile {
             censored: false,
         })
     }
+}
+
+/// So many rocks of equal weight would say as much (–): `(Σ w)² / Σ w²` (Kish 1965).
+pub(super) fn worth(weights: &[f64]) -> f64 {
+    let all: f64 = weights.iter().sum();
+    all * all / weights.iter().map(|weight| weight * weight).sum::<f64>()
 }
 
 /// The value at `(n − 1) p` of the sorted values, counted from 0, linear in between.

@@ -1,7 +1,6 @@
 //! What arrives at the evaluation lines, without barriers and with them: the risk that remains.
 
-use super::arrival::Arrival;
-use super::barriers::Barrier;
+use super::barriers::{Barrier, stopping};
 use super::lines::{CrossingRow, LineInfo, LineQuantity, by_rock};
 use super::open::OpenRocks;
 use super::proportion::Proportion;
@@ -42,14 +41,12 @@ pub struct Residual {
 /// Which rows of one rock no barrier has stopped it before, in the order of the rows given. A line that is drawn on a barrier lies
 /// behind it.
 pub fn unstopped(barriers: &[Barrier], rock: &[CrossingRow]) -> Vec<bool> {
-    let met = |row: &CrossingRow| barriers.iter().find(|barrier| barrier.name == row.line);
-    let stops = |row: &&CrossingRow| {
-        met(row).is_some_and(|net| Arrival::of(row).is_stopped(net.height_m, net.capacity_j))
-    };
-    let stop_s = rock.iter().filter(stops).map(|row| row.time_s).fold(f64::INFINITY, f64::min);
-    let passes = |row: &CrossingRow| match met(row) {
-        Some(_) => row.time_s <= stop_s,
-        None => !row.is_behind(stop_s),
+    let stopped_by = stopping(barriers);
+    let stops = rock.iter().filter(|row| stopped_by(row).is_some());
+    let stop_s = stops.map(|row| row.time_s).fold(f64::INFINITY, f64::min);
+    let passes = |row: &CrossingRow| {
+        let is_barrier = barriers.iter().any(|barrier| barrier.name == row.line);
+        if is_barrier { row.time_s <= stop_s } else { !row.is_behind(stop_s) }
     };
     rock.iter().map(passes).collect()
 }
@@ -145,16 +142,16 @@ mod tests {
     use crate::hazard::lines::tests::row;
     use std::convert::Infallible;
 
+    /// It holds 100 J.
+    fn net() -> Barrier {
+        let (name, elsewhere) = ("net".to_owned(), Vec::new());
+        Barrier { name, height_m: 3.0, capacity_j: 100.0, design: None, elsewhere }
+    }
+
     /// A road drawn on a net is crossed a rounding before or after it: what the net stops is not on the road, either way.
     #[test]
     fn a_line_on_a_barrier_lies_behind_it() {
-        let net = Barrier {
-            name: "net".to_owned(),
-            height_m: 3.0,
-            capacity_j: 100.0,
-            design: None,
-            elsewhere: vec![],
-        };
+        let net = net();
         for rounding_s in [-2e-15, 0.0, 2e-15] {
             let rock = [row(0, "road", 2.0 + rounding_s, 0.1, 50.0), row(0, "net", 2.0, 0.1, 50.0)];
             assert_eq!(unstopped(std::slice::from_ref(&net), &rock), [false, true]);
@@ -167,13 +164,7 @@ mod tests {
     /// rock 2 meets the road first and the net behind it, rock 3 never meets the net.
     #[test]
     fn what_a_net_stops_does_not_arrive_behind_it() {
-        let net = Barrier {
-            name: "net".to_owned(),
-            height_m: 3.0,
-            capacity_j: 100.0,
-            design: None,
-            elsewhere: vec![],
-        };
+        let net = net();
         let line = |name: &str| LineInfo {
             name: name.to_owned(),
             length_m: 1.0,

@@ -1,7 +1,7 @@
 //! All values of one quantity, sorted, and what they say.
 
 use super::proportion::NORMAL_95;
-use super::quantile::{Open, Percentile};
+use super::quantile::{Open, Percentile, worth};
 use crate::math;
 use serde::{Deserialize, Serialize};
 
@@ -110,9 +110,7 @@ impl Sample {
 
     /// So many values of equal weight would say as much (–): `(Σ w)² / Σ w²`.
     pub fn effective_rocks(&self) -> f64 {
-        let Some(weights) = &self.weights else { return self.sorted.len() as f64 };
-        let all: f64 = weights.iter().sum();
-        all * all / weights.iter().map(|weight| weight * weight).sum::<f64>()
+        self.weights.as_ref().map_or(self.sorted.len() as f64, |weights| worth(weights))
     }
 
     /// The values in ascending order.

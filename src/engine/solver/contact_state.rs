@@ -79,7 +79,7 @@ pub(crate) struct Blow {
 pub(super) struct Onset {
     /// Whether they press nothing in the present try: it will be cut where they begin.
     pub(super) waits: bool,
-    /// Whether one would have pressed at the end of a stage of it.
+    /// Whether one that waits would have pressed at the end of a stage of it.
     pub(super) is_met: bool,
 }
 

@@ -219,8 +219,9 @@ impl ContactState {
                 carry(shear_rate, &contact.n, &self.histories[contact.history].n);
             rate.roll[contact.history] = roll_rate;
             rate.loss.add(&contact.loss(world, &end.v, &end.w, &shear_rate), 1.0);
-            self.onset.is_met |=
-                self.histories[contact.history].met_m_s > 0.0 && contact.pen_at(&end.v, hh) > 0.0;
+            self.onset.is_met |= self.onset.waits
+                && self.histories[contact.history].met_m_s > 0.0
+                && contact.pen_at(&end.v, hh) > 0.0;
         }
     }
 

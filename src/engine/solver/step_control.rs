@@ -180,8 +180,7 @@ pub fn advance(
     if let Some(end) = trial.end {
         accept(world, control.tableau, state, (&end, done.dt), &mut done.loss);
         // what has waited presses from now on
-        let Onset { waits, is_met } = std::mem::take(&mut state.onset);
-        state.fresh &= !(waits && is_met);
+        state.fresh &= !std::mem::take(&mut state.onset).is_met;
     }
     Ok(done)
 }
@@ -230,9 +229,8 @@ impl TrialStep for RockTrial<'_, '_> {
             return TryOutcome::Cut(share);
         }
         // what has just begun stores less than the error of the step
-        let begins = self.state.onset.is_met && self.state.onset.waits;
         if error <= 1.0
-            && !begins
+            && !self.state.onset.is_met
             && dt * self.omega > RESOLVED
             && gains(self.world, self.state, &end, hh)
         {

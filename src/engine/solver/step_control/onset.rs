@@ -5,7 +5,6 @@
 //! followed in its own time ([`explicit_impact`](crate::solver::explicit_impact)).
 
 use super::{ONSET, PLACE_ROUNDING, RockTrial};
-use crate::solver::contact_state::Onset;
 use crate::solver::stage::End;
 
 /// Most cuts of a step for impacts that begin within it.
@@ -17,8 +16,7 @@ impl RockTrial<'_, '_> {
     /// The share (–) of a step of `dt` (s) after which an impact has just begun that it runs into; none if it runs into none. `hh` is
     /// the part of the step that its last stage is implicit in (s).
     pub(super) fn until_impact(&mut self, end: &End, (dt, hh): (f64, f64)) -> Option<f64> {
-        let Onset { waits, is_met } = self.state.onset;
-        if !(waits && is_met) {
+        if !self.state.onset.is_met {
             return None;
         }
         let share = self.begun(end, (dt, hh));
