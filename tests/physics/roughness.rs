@@ -127,6 +127,50 @@ fn a_sliding_rock_meets_one_facet_after_the_other() {
     }
 }
 
+/// Rocks set free on a slope of 21.8° that rolling friction hardly holds (16.7°), on facets of up to 15°: most facets are come to
+/// more slowly than soft springs rebound from. How far they get in 10 s is the same for springs of 1e8 to 1e11 N/m and every
+/// scheme, and has been 26 to 65 m in 30 s where a facet was met anew in every small impact, and none slower than that.
+#[test]
+fn slow_rolling_over_facets_does_not_feel_the_springs() {
+    let fall = -21.8f64.to_radians().tan();
+    let at = |x: f64, y: f64| Vec3::new(x, y, fall * x);
+    let [a, b, c, d] = [at(-20.0, -90.0), at(200.0, -90.0), at(200.0, 90.0), at(-20.0, 90.0)];
+    let slope = terrain(vec![[a, b, c], [a, c, d]]);
+    let n = Vec3::new(-fall, 0.0, 1.0).normalize() * ROCK.radius_m;
+    let rocks = 200;
+    let way = |case: &Case| {
+        let start = [[n.x, n.y, n.z], [0.0; 3], [0.0; 3]];
+        let ways = (0..rocks).map(|seed| case.run_with(&slope, start, 10.0, seed));
+        let ways: Vec<f64> = ways.map(|run| run.end.position_m.x - n.x).collect();
+        let mean = ways.iter().sum::<f64>() / rocks as f64;
+        let square = ways.iter().map(|x| (x - mean).powi(2)).sum::<f64>();
+        (mean, square.sqrt() / rocks as f64)
+    };
+    let mut found = Vec::new();
+    for (name, case) in SCHEMES {
+        let stiffest = if case.scheme == Scheme::Reference { 1e9 } else { 1e11 };
+        for p_n in [1e8, 1e9, 1e10, 1e11].into_iter().filter(|p_n| *p_n <= stiffest) {
+            let ground = Ground {
+                normal_stiffness_n_m: p_n,
+                shear_stiffness_n_m: 0.25 * p_n,
+                friction_angle_rad: 35f64.to_radians(),
+                restitution: Some(0.5),
+                rolling_friction: 0.3,
+                ..elastic(15.0)
+            };
+            let (mean, error) = way(&Case { ground, ..case });
+            println!("{name}, {p_n:e} N/m: {mean:.2} ± {error:.2} m");
+            found.push((name, p_n, mean, error));
+        }
+    }
+    // an impact on springs of 1e8 N/m takes 10 ms: so much of the way it meets no weight
+    let (_, _, mean, error) = found[found.len() - 1];
+    for (name, p_n, other, beside) in &found {
+        let allowed = 3.0 * error.hypot(*beside) + 0.03 * mean;
+        assert!((other - mean).abs() < allowed, "{name} {p_n:e}: {other} for {mean}");
+    }
+}
+
 /// A world with the scheme of a case, on one ground.
 fn world_of(case: &Case, ground: Ground) -> World {
     let Case { scheme, tolerance_m_s, step_s, .. } = *case;

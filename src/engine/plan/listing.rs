@@ -125,7 +125,7 @@ impl Plan {
         list.part("rolling friction", rolling, |()| "computed".to_owned());
         list.lines("rolling stops", rolling_stops.iter().cloned());
         list.part("roughness", roughness, |()| {
-            "a facet at every impact, and after every roughness length of sliding or rolling"
+            "one facet for every roughness length of the way, leaping, sliding or rolling"
                 .to_owned()
         });
         list.part("soil", soil, |lines| lines.join("; "));

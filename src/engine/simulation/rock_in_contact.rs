@@ -12,6 +12,7 @@ use crate::contact::{ContactPoint, Feature};
 use crate::rock::Vec3;
 use crate::solver::contact_state::{Blow, ContactEnvironment, ContactState};
 use crate::solver::roughness::Meeting;
+use nalgebra::Rotation3;
 use std::f64::consts::PI;
 
 /// An impact is over after so many contact times (–), whether the rock has left or not.
@@ -37,18 +38,10 @@ impl RockInContact<'_, '_> {
     /// before the blow.
     pub(super) fn announce(&mut self) {
         let Some(fastest) = self.fastest_unannounced() else { return };
-        // a facet that is still met belongs to the place before: the rock is turned back first
-        let facet = if self.world.law(fastest.triangle).roughness_rad > 0.0 {
-            self.leave_facet();
-            let Blow { n, triangle, .. } = fastest;
-            let at = Meeting { n, triangle, c: self.state.c, v: self.state.v };
-            self.state.facets.struck(&self.world, &at)
-        } else {
-            None
-        };
+        let facet = self.next_facet(&fastest);
         // whether a rock rebounds is judged by its approach to the facet
         // approach to the tilted normal n' = turn n, at the velocity not yet turned
-        let to_facet_m_s = facet.map_or(0.0, |turn| -(turn * fastest.n).dot(&self.state.v));
+        let to_facet_m_s = facet.map_or(0.0, |(_, approach_m_s)| approach_m_s);
         if to_facet_m_s >= self.world.law(fastest.triangle).capture_m_s {
             self.state.rebound(&self.world, to_facet_m_s);
         }
@@ -76,9 +69,24 @@ impl RockInContact<'_, '_> {
             self.state.blow = Some(Blow { approach_m_s, ..fastest });
         }
         // the rock is turned against the facet, instead of the mesh: contact itself stays as it is
-        if let Some(turn) = facet.filter(|_| rebounds) {
+        // what is captured is turned too: the facet takes what it takes
+        if let Some((turn, _)) = facet {
             self.state.turn_against(&self.world, turn, until_s);
         }
+    }
+
+    /// The facet that a rock meets which strikes the surface so, and its approach to it (m/s), if it meets a new one.
+    /// One that it is turned against belongs to the place before: it is turned back first.
+    fn next_facet(&mut self, blow: &Blow) -> Option<(Rotation3<f64>, f64)> {
+        let Blow { n, triangle, .. } = *blow;
+        let at = |state: &ContactState| Meeting { n, triangle, c: state.c, v: state.v };
+        if !self.state.facets.meet_next(&self.world, &at(self.state)) {
+            return None;
+        }
+        self.leave_facet();
+        let at = at(self.state);
+        let turn = self.state.facets.struck(&self.world, &at)?;
+        Some((turn, at.approach_m_s(&turn)))
     }
 
     /// The fastest of the contacts that have begun.
@@ -170,8 +178,8 @@ impl RockInContact<'_, '_> {
         };
         let at =
             Meeting { n: history.n, triangle: history.triangle, c: self.state.c, v: self.state.v };
-        if self.state.facets.are_behind(&self.world, &at) {
-            history.announced = self.state.facets.struck(&self.world, &at).is_none();
+        if self.state.facets.meet_next(&self.world, &at) {
+            history.announced = false;
             self.announce();
             // its blow is announced herewith
             self.state.is_struck |= self.state.facets.is_any_met();

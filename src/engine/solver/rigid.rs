@@ -22,6 +22,7 @@ use super::friction_rolling::{Answers, ContactFrame, Pair, SlipState};
 use super::impact::{FrozenContact, throw};
 use super::law::capture_m_s;
 use super::loss::Loss;
+use super::roughness;
 use super::step_control::{Advance, StepError};
 use crate::contact::TOUCH;
 use crate::contact::history::ContactHistory;
@@ -225,10 +226,15 @@ pub fn advance(
     if finite { Ok(done) } else { Err(StepError::NotFinite) }
 }
 
-/// Whether a touch of the last look comes in faster than the capture speed.
+/// Whether a touch of the last look comes in faster than the capture speed, or as fast as to a facet that is met.
 fn hits(world: &ContactEnvironment, state: &ContactState) -> bool {
     let reach = world.body.radius * (1.0 + TOUCH);
-    state.touches.iter().any(|touch| touch.distance_m < reach && is_fast(world, touch, &state.v))
+    let meets = state.facets.is_any_met();
+    let comes = |touch: &ContactPoint| {
+        let fast = -touch.normal.dot(&state.v);
+        is_fast(world, touch, &state.v) || meets && fast >= 0.5 * roughness::least_m_s(world)
+    };
+    state.touches.iter().any(|touch| touch.distance_m < reach && comes(touch))
 }
 
 /// Whether a rock with velocity `v` hits a touch too fast to be captured.

@@ -4,15 +4,15 @@
 //! direction, weighted by `max(0, −v·n′)` with `n′` the tilted normal, the flux of the rock through the facet. Whether it
 //! rebounds is judged by its approach to the facet. A rebound into the mean surface is simply the next impact.
 //!
-//! Roughness belongs to the place: until the rock has moved on by the ground's roughness length it meets the same facet, so
-//! that the number of its small impacts, which is a matter of stiffness and steps, does not decide how often it is deflected.
-//! A rock that slides or rolls meets the next facet once that length is behind it.
+//! Roughness belongs to the place: it meets one facet for each roughness length of its way, and the mean surface until that is
+//! behind it, so that the number of its small impacts, which is a matter of stiffness and steps, does not decide how often it
+//! is deflected. If it met the same facet in each of them, stiff springs would let it hop up a ramp that soft ones roll along.
 //!
 //! Energy is untouched: the rock is turned against the facet and turned back, and a rotation
 //! changes neither speed nor spin.
 
 use super::environment::ContactEnvironment;
-use super::law::capture_m_s;
+use crate::contact::history::SAME_GRIP;
 use crate::ground::Law;
 use crate::math;
 use crate::random::{RandomStream, unit};
@@ -20,9 +20,17 @@ use crate::rock::Vec3;
 use nalgebra::{Rotation3, Unit};
 use std::f64::consts::TAU;
 
+/// What is approached more slowly than this is no facet (–, relative to `√(g R)`, the speed of a rock that falls by half its
+/// radius): it takes less than a ten-thousandth of that energy, whatever the springs.
+const LEAST: f64 = 1e-2;
 /// Facets drawn until one is met: one in three at least where the rock comes to the surface, one in six where it goes along it.
 /// A bound for pathological cases only.
 const DRAWS: u32 = 1000;
+
+/// Slowest approach to a facet (m/s).
+pub(super) fn least_m_s(world: &ContactEnvironment) -> f64 {
+    LEAST * (world.body.gravity.norm() * world.body.radius).sqrt()
+}
 
 /// The facets that one rock meets.
 #[derive(Debug, Clone, Default)]
@@ -35,10 +43,10 @@ pub(crate) struct RoughFacets {
 /// The facet met last.
 #[derive(Debug, Clone)]
 struct TiltedFacet {
-    /// Where the rock was (m), and on which ground.
+    /// Where the rock was (m), on which surface, and on which ground.
     centre: Vec3,
+    normal: Vec3,
     ground: u16,
-    turn: Rotation3<f64>,
 }
 
 /// What a rock is turned by while it meets a facet.
@@ -63,6 +71,11 @@ pub(crate) struct Meeting {
 }
 
 impl Meeting {
+    /// Approach to the facet that the surface is turned to (m/s).
+    pub(crate) fn approach_m_s(&self, turn: &Rotation3<f64>) -> f64 {
+        -(turn * self.n).dot(&self.v)
+    }
+
     /// Fastest approach to any facet tilted by `most` (rad) at most (m/s).
     ///
     /// `−n'·v` over all `n'` within an angle of `n` is `|v|` if the direction `−v` is among them,
@@ -93,43 +106,36 @@ impl RoughFacets {
         self.random.is_some()
     }
 
-    /// The facet that a rock strikes, as the rotation from the surface to it: the last one as far as it reaches, a new one
-    /// beyond. `None` on smooth ground, and where neither it nor the surface is approached faster than the capture speed.
+    /// The facet that a rock strikes, as the rotation from the surface to it. `None` on smooth ground, as far as the last facet
+    /// reaches, and where the surface is approached no faster than what is part of rolling.
+    ///
+    /// What is approached more slowly than the capture speed does not rebound, but it deflects and takes what it takes: the
+    /// capture speed goes with `√(m/p_N)`, and soft springs must not make the ground smooth for slow rocks.
     pub(crate) fn struck(
         &mut self,
         world: &ContactEnvironment,
         at: &Meeting,
     ) -> Option<Rotation3<f64>> {
-        let (law, ground) = (world.law(at.triangle), world.ground_of(at.triangle));
-        let capture = capture_m_s(law);
-        if law.roughness_rad <= 0.0 || at.most_m_s(law.roughness_rad) < capture {
+        if !self.meet_next(world, at) {
             return None;
         }
-        let approach = |turn: &Rotation3<f64>| -(turn * at.n).dot(&at.v);
-        // the last facet still reaches here, and is not seen from behind
-        let known = self.last.as_ref().filter(|facet| {
-            facet.ground == ground
-                && (facet.centre - at.c).norm() < law.roughness_length_m
-                && approach(&facet.turn) > 0.0
-        });
-        let turn = if let Some(facet) = known {
-            facet.turn
-        } else {
-            let turn = draw(self.random.as_mut()?, at, law.roughness_rad)?;
-            self.last = Some(TiltedFacet { centre: at.c, ground, turn });
-            turn
-        };
-        let fastest = approach(&turn).max(-at.n.dot(&at.v));
-        (fastest >= capture).then_some(turn)
+        let (most, least) = (world.law(at.triangle).roughness_rad, least_m_s(world));
+        let turn = draw(self.random.as_mut()?, at, most, least)?;
+        let ground = world.ground_of(at.triangle);
+        self.last = Some(TiltedFacet { centre: at.c, normal: at.n, ground });
+        Some(turn)
     }
 
-    /// Whether the last facet no longer reaches to a rock in contact at `at`.
-    pub(crate) fn are_behind(&self, world: &ContactEnvironment, at: &Meeting) -> bool {
+    /// Whether a rock at a surface sees a new facet: it comes fast enough, and the last one does not reach here. That is far off,
+    /// on another ground, or on another side of what the rock has run into.
+    pub(crate) fn meet_next(&self, world: &ContactEnvironment, at: &Meeting) -> bool {
         let law = world.law(at.triangle);
         law.roughness_rad > 0.0
+            && at.most_m_s(law.roughness_rad) >= least_m_s(world)
             && self.last.as_ref().is_none_or(|facet| {
                 (facet.centre - at.c).norm() >= law.roughness_length_m
                     || facet.ground != world.ground_of(at.triangle)
+                    || facet.normal.dot(&at.n) <= SAME_GRIP
             })
     }
 
@@ -144,11 +150,12 @@ impl RoughFacets {
     }
 }
 
-/// A facet that a rock sees, as the rotation from the surface to it; tilted by `most` (rad) at most.
+/// A facet that a rock sees, as the rotation from the surface to it; tilted by `most` (rad) at most and approached at `least`
+/// (m/s) or faster.
 ///
 /// Rejection sampling: tilt and direction uniform, accepted with the probability `max(0,
 /// −v·n')/fastest`. Three numbers of the rock's own stream a try.
-fn draw(random: &mut RandomStream, at: &Meeting, most: f64) -> Option<Rotation3<f64>> {
+fn draw(random: &mut RandomStream, at: &Meeting, most: f64, least: f64) -> Option<Rotation3<f64>> {
     let fastest = at.most_m_s(most);
     let beside = if at.n.x.abs() < 0.6 { Vec3::x() } else { Vec3::y() };
     // any axis square to the normal: it is turned by a uniform angle to give the direction of the
@@ -158,7 +165,7 @@ fn draw(random: &mut RandomStream, at: &Meeting, most: f64) -> Option<Rotation3<
         let around = math::turn(&Unit::new_normalize(at.n), TAU * unit(random));
         let axis = Unit::new_normalize(around * across);
         let turn = math::turn(&axis, most * unit(random));
-        let seen = -(turn * at.n).dot(&at.v);
-        (seen > fastest * unit(random)).then_some(turn)
+        let seen = at.approach_m_s(&turn);
+        (seen > fastest * unit(random) && seen >= least).then_some(turn)
     })
 }

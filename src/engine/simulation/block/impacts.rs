@@ -4,8 +4,10 @@
 use super::super::impacts::Struck;
 use super::super::rock_in_contact::IMPACT_TIMES;
 use super::{Roll, turned};
+use crate::rock::Vec3;
 use crate::solver::loss::Loss;
 use crate::solver::roughness::Meeting;
+use nalgebra::Rotation3;
 use std::f64::consts::PI;
 
 impl Roll<'_> {
@@ -42,25 +44,50 @@ impl Roll<'_> {
         let new = springs.histories.iter().filter(|history| !history.announced);
         let fastest = new.max_by(|one, other| one.approach_m_s.total_cmp(&other.approach_m_s));
         let Some(fastest) = fastest.copied() else { return };
-        self.turn_back();
-        let lever = fastest.point - self.moving.pose.centre;
-        let v = self.moving.at(self.block, &lever);
-        let meeting =
-            Meeting { n: fastest.n, triangle: fastest.triangle, c: self.moving.pose.centre, v };
-        let facet = self.footing.facets.struck(&self.world, &meeting);
+        let facet = self.next_facet(fastest.triangle, &fastest.n, &fastest.point);
         let until_s = self.recorder.now.time_s + IMPACT_TIMES * PI / self.footing.springs.slowest();
-        let strikes = facet.is_some() || !fastest.captured;
         let held_j = self.footing.springs.held_j();
         // whether a block rebounds is judged by its approach to the facet
-        let to_facet_m_s = facet.map(|turn| -(turn * fastest.n).dot(&v));
+        let capture_m_s = self.world.law(fastest.triangle).capture_m_s;
+        let to_facet_m_s = facet.map(|(_, speed)| speed).filter(|speed| *speed >= capture_m_s);
         for k in 0..self.footing.springs.histories.len() {
             self.begin_impact(k, to_facet_m_s, (until_s, held_j));
         }
-        if !strikes {
-            return;
+        if to_facet_m_s.is_some() || !fastest.captured {
+            self.dig_and_break((fastest.triangle, &fastest.n), until_s);
         }
+        // what is captured is turned too: the facet takes what it takes
+        if let Some((turn, _)) = facet {
+            self.footing.turn_against(self.block, &mut self.moving, (turn, until_s));
+        }
+    }
+
+    /// The facet that the block meets which strikes a surface with normal `n` at `point`, and its approach to it (m/s), if it
+    /// meets a new one. One that it is turned against belongs to the place before: it is turned back first.
+    fn next_facet(
+        &mut self,
+        triangle: u32,
+        n: &Vec3,
+        point: &Vec3,
+    ) -> Option<(Rotation3<f64>, f64)> {
+        let at = |roll: &Self| {
+            let c = roll.moving.pose.centre;
+            Meeting { n: *n, triangle, c, v: roll.moving.at(roll.block, &(point - c)) }
+        };
+        if !self.footing.facets.meet_next(&self.world, &at(self)) {
+            return None;
+        }
+        self.turn_back();
+        let at = at(self);
+        let turn = self.footing.facets.struck(&self.world, &at)?;
+        Some((turn, at.approach_m_s(&turn)))
+    }
+
+    /// What an impact that rebounds does to the ground and to stems; it is that of the triangle and the normal of its fastest
+    /// contact.
+    fn dig_and_break(&mut self, (triangle, n): (u32, &Vec3), until_s: f64) {
         if self.scars.are_any() {
-            self.dig(fastest.triangle, &fastest.n);
+            self.dig(triangle, n);
         }
         let broken_j = self.footing.break_stems(&self.world, self.block, &mut self.moving);
         self.recorder.ledger.trees_j += broken_j;
@@ -68,9 +95,6 @@ impl Roll<'_> {
             self.footing.springs.refresh();
         }
         self.footing.springs.until_s = until_s;
-        if let Some(turn) = facet {
-            self.footing.turn_against(self.block, &mut self.moving, (turn, until_s));
-        }
     }
 
     /// Notes down that contact `k` has begun, if it has not been; on rough ground all rebound with the fastest.

@@ -53,7 +53,7 @@ impl Footing {
         moving: &Moving,
     ) -> bool {
         self.facets.are_any()
-            && self.meeting(block, moving).is_some_and(|at| self.facets.are_behind(world, &at))
+            && self.meeting(block, moving).is_some_and(|at| self.facets.meet_next(world, &at))
     }
 
     /// The fastest of the contacts that touch, as it meets a facet.
@@ -77,7 +77,7 @@ impl Footing {
         let Some(history) = hardest else { return };
         let v = moving.at(block, &(history.point - moving.pose.centre));
         let (n, triangle, c) = (history.n, history.triangle, moving.pose.centre);
-        if self.facets.are_behind(world, &Meeting { n, triangle, c, v }) {
+        if self.facets.meet_next(world, &Meeting { n, triangle, c, v }) {
             (history.announced, history.captured) = (false, true);
             history.approach_m_s = -n.dot(&v);
         }

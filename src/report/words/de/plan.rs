@@ -269,8 +269,8 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ),
     ("{name}: on slopes of up to {x}°", "{name}: an Hängen bis {x}°"),
     (
-        "a facet at every impact, and after every roughness length of sliding or rolling",
-        "eine Facette bei jedem Aufprall und nach jeder Rauheitslänge im Gleiten oder Rollen",
+        "one facet for every roughness length of the way, leaping, sliding or rolling",
+        "eine Facette auf jeder Rauheitslänge des Weges, im Springen, Gleiten oder Rollen",
     ),
     (
         "{name}: friction grows with slip, from {a} to {b}",

@@ -275,8 +275,8 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ),
     ("{name}: on slopes of up to {x}°", "{name}\u{a0}: sur les pentes jusqu’à {x}°"),
     (
-        "a facet at every impact, and after every roughness length of sliding or rolling",
-        "une facette à chaque choc, et après chaque longueur de rugosité en glissant ou en roulant",
+        "one facet for every roughness length of the way, leaping, sliding or rolling",
+        "une facette par longueur de rugosité du trajet, en sautant, en glissant ou en roulant",
     ),
     (
         "{name}: friction grows with slip, from {a} to {b}",

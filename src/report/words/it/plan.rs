@@ -272,8 +272,8 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ),
     ("{name}: on slopes of up to {x}°", "{name}: su pendii fino a {x}°"),
     (
-        "a facet at every impact, and after every roughness length of sliding or rolling",
-        "una faccetta a ogni urto, e dopo ogni lunghezza di rugosità scivolando o rotolando",
+        "one facet for every roughness length of the way, leaping, sliding or rolling",
+        "una faccetta per ogni lunghezza di rugosità del percorso, saltando, scivolando o rotolando",
     ),
     (
         "{name}: friction grows with slip, from {a} to {b}",

@@ -226,7 +226,9 @@ impl RigidIsland {
             let normal = facet.map_or(touch.normal, |turn| turn * touch.normal);
             let mut ground_contact =
                 GroundContact::new(k, (touch.feature, touch.triangle), normal, law);
-            ground_contact.impact((body, law, tolerance), (&v, &ball.w), ball.blows >= LIVELY);
+            let is_slow = -normal.dot(&v) < capture_m_s(law);
+            let captured = is_slow || ball.blows >= LIVELY;
+            ground_contact.impact((body, law, tolerance), (&v, &ball.w), captured);
             let before = (ball.v, ball.w);
             ball.take_late(&ground_contact.load(body), s);
             let mean = mean_late(ball, &before, s);
@@ -260,14 +262,13 @@ fn hit_of(k: usize, touch: &ContactPoint, (c, radius): (&Vec3, f64), approach_m_
 }
 
 /// Whether a rock that slides or rolls strikes the next facet of rough ground, the last one being behind it.
-fn meets_facet(world: &ContactEnvironment, state: &mut ContactState, ball: &StepBody) -> bool {
+fn meets_facet(world: &ContactEnvironment, state: &ContactState, ball: &StepBody) -> bool {
     let reach = ball.body.radius * (1.0 + HELD);
-    let ContactState { touches, facets, .. } = state;
-    let rough = touches.iter().filter(|touch| touch.distance_m <= reach).find_map(|touch| {
+    let mut held = state.touches.iter().filter(|touch| touch.distance_m <= reach);
+    held.any(|touch| {
         let at = Meeting { n: touch.normal, triangle: touch.triangle, c: ball.c, v: ball.v };
-        facets.are_behind(world, &at).then_some(at)
-    });
-    rough.is_some_and(|at| facets.struck(world, &at).is_some())
+        state.facets.meet_next(world, &at)
+    })
 }
 
 /// Mean motion in a blow that fell `s` (s) before the end of the step, from the motions there without and with it.
