@@ -179,6 +179,10 @@ fn a_run_ends_with_its_answers_and_its_report() {
         last[6].starts_with("line \"foot of the face\": ") && last[6].contains("P95 of energy")
     );
     assert!(!stdout.contains('\u{1b}'), "colour where no terminal reads: {stdout}");
+    // drawn again, it says where the page is, as a run does
+    let (code, stdout, stderr) = said(&["draw", word(&out)]);
+    assert_eq!(code, Some(0), "{stderr}");
+    assert_eq!(stdout, format!("report: {}\n", out.join("report.html").display()));
     // the share that is said is the one of the summary
     let summary: serde_json::Value =
         serde_json::from_str(&fs::read_to_string(out.join("summary.json")).unwrap()).unwrap();

@@ -251,6 +251,9 @@ fn zones_of_mixed_geometry_are_sources_without_weights() {
     let zones = read.release.zone_list.as_ref().unwrap();
     assert!((zones.share(0) - 0.75).abs() < 1e-12, "as often as they release rocks");
     assert!(!dir.plan(&text).contains("are not used"));
+    let unasked = text.replace("[frequency]\n", "");
+    let said = dir.plan(&unasked);
+    assert!(said.contains("shared by their frequencies"), "{said}");
     mixed("\"frequency_per_year\":0.3", "");
     assert!(dir.refusal(&text).contains("or frequency_per_year"));
 }

@@ -364,6 +364,7 @@ fn zones_of_ground(done: &Patched) -> String {
 fn shared_by(zones: &Zones) -> &'static str {
     match zones.list().first() {
         Some(Zone { weight: Some(_), .. }) => "shared by their weights",
+        _ if zones.has_kinds() => "shared by their frequencies",
         Some(Zone { place: ZonePlace::Points(_), .. }) => "shared by their numbers of points",
         Some(Zone { place: ZonePlace::Lines(_), .. }) => "shared by their lengths",
         _ => "shared by their areas",

@@ -115,6 +115,7 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ("each a source of its own", "jede eine eigene Quelle"),
     ("shared by their weights", "verteilt nach ihren Gewichten"),
     ("shared by their numbers of points", "verteilt nach ihrer Zahl von Punkten"),
+    ("shared by their frequencies", "verteilt nach ihren Häufigkeiten"),
     ("shared by their lengths", "verteilt nach ihren Längen"),
     ("shared by their areas", "verteilt nach ihren Flächen"),
     ("{a} m smallest, {b} m median, {c} m largest", "{a} m kleinster, {b} m Median, {c} m größter"),

@@ -112,6 +112,7 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ("each a source of its own", "chacune une source à part"),
     ("shared by their weights", "réparties selon leurs poids"),
     ("shared by their numbers of points", "réparties selon leurs nombres de points"),
+    ("shared by their frequencies", "réparties selon leurs fréquences"),
     ("shared by their lengths", "réparties selon leurs longueurs"),
     ("shared by their areas", "réparties selon leurs surfaces"),
     (

@@ -112,6 +112,7 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ("each a source of its own", "ciascuna una sorgente a sé"),
     ("shared by their weights", "ripartite secondo i pesi"),
     ("shared by their numbers of points", "ripartite secondo il numero di punti"),
+    ("shared by their frequencies", "ripartite secondo le frequenze"),
     ("shared by their lengths", "ripartite secondo le lunghezze"),
     ("shared by their areas", "ripartite secondo le aree"),
     (
