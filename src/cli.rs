@@ -148,7 +148,7 @@ pub fn main() -> ExitCode {
         Command::Run(args) => run(&args),
         Command::Plan { scene } => plan(&scene),
         Command::Merge { shards, out, overwrite } => merge(&shards, &out, overwrite),
-        Command::Draw { dir } => report::draw_again(&dir).map(|()| ExitCode::SUCCESS),
+        Command::Draw { dir } => report::draw_again(&dir).map(|()| say(report_in(&dir))),
         Command::Compare(args) => compare::compare(&args),
         Command::Verify { out } => verify(&out),
         Command::Grounds => Ok(say(crate::scene::catalogue())),
@@ -184,7 +184,12 @@ fn merge(shards: &[PathBuf], out: &Path, overwrite: bool) -> Result<ExitCode> {
     output::merge(shards, out, mode)
         .and_then(|results| report::draw_merged(&results, shards))
         .map_err(|error| error.on_full_disk("make room and merge again with --overwrite"))?;
-    Ok(say(format!("results in {}", out.display())))
+    Ok(say(format!("results in {}\n{}", out.display(), report_in(out))))
+}
+
+/// Where the page of a folder of results is, a last line.
+fn report_in(dir: &Path) -> String {
+    format!("report: {}", dir.join("report.html").display())
 }
 
 fn run(args: &RunArgs) -> Result<ExitCode> {
@@ -235,7 +240,7 @@ fn last_words(results: &Results) -> String {
     let rate = significant(took.releases_per_second, 3);
     said.push(format!("{releases} releases in {time} ({rate} a second)"));
     said.push(format!("results in {}", results.dir.display()));
-    said.push(format!("report: {}", results.dir.join("report.html").display()));
+    said.push(report_in(&results.dir));
     said.join("\n")
 }
 

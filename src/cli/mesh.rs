@@ -5,7 +5,7 @@ use super::words::up;
 use crate::error::{Error, Result};
 use crate::file;
 use crate::rock::Vec3;
-use crate::terrain::formats;
+use crate::terrain::formats::{self, Options};
 use crate::terrain::read::MeshSource;
 use crate::terrain::stl::write_binary;
 use crate::terrain::weld::Up;
@@ -16,9 +16,9 @@ use std::process::ExitCode;
 
 #[derive(Debug, Subcommand)]
 pub(super) enum MeshCommand {
-    /// Print the health of STL files as they will be welded
+    /// Print the health of terrain files as they will be welded
     Check {
-        /// STL files
+        /// STL files, or what else a scene reads as terrain: PLY, OBJ, GeoTIFF, ESRI ASCII grid
         #[arg(required = true)]
         files: Vec<PathBuf>,
         /// Which axis of the files points up, as `up` in the scene: with y, (x, y, z) becomes (x, -z, y)
@@ -75,7 +75,11 @@ pub(super) fn mesh(command: MeshCommand) -> Result<ExitCode> {
 
 /// Health of mesh files as they will be welded, in words.
 fn check(files: &[PathBuf], up: Up) -> Result<String> {
-    let source = |path: &PathBuf| MeshSource { up, ..slope_source(path) };
+    let is_stl = |path: &Path| path.extension().is_some_and(|end| end.eq_ignore_ascii_case("stl"));
+    let source = |path: &PathBuf| {
+        let options = (!is_stl(path)).then(Options::default);
+        MeshSource { up, options, ..slope_source(path) }
+    };
     let sources: Vec<MeshSource> = files.iter().map(source).collect();
     let (_, health) = Terrain::read(&sources, Vec3::zeros(), None)?;
     Ok(health.to_string())

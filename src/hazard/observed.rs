@@ -288,7 +288,7 @@ mod tests {
     }
 
     /// By hand: of 10 ends that stand for 9 events and one that stands for 90, the runouts 1 and 5 m have the mean 4.64 m, and
-    /// the 11 ends know what 99²/(10 · 0.81 + 90²) = 1.21 of equal weight would.
+    /// the 11 ends are as precise as 99²/(10 · 0.81 + 90²) = 1.21 of equal weight.
     #[test]
     fn ends_that_stand_for_more_events_count_for_more() {
         let computed: Vec<Weighted> = ways(&[[1.0; 10].as_slice(), &[5.0]].concat())

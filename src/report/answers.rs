@@ -1,7 +1,9 @@
 //! The answer at each line and barrier, a sentence each: what a run says last.
 
 use super::bound::Is;
-use super::format::{NO_NUMBER, counted, decimal, percents, sign, significant};
+use super::format::{
+    NO_NUMBER, counted, decimal, percent, percent_at_most, percents, sign, significant,
+};
 use super::model::energy_unit;
 use super::words::Words;
 use crate::hazard::{
@@ -47,7 +49,7 @@ fn line(of: &LineSummary) -> String {
         let may_come = but_may_come(of.reach.censored);
         return format!(
             "line \"{name}\": no rock crosses it{may_come} {}",
-            share_interval(&of.reach)
+            interval_of_none(&of.reach)
         );
     }
     let p95 = |column: &str, said: fn(&Percentile) -> String| {
@@ -69,7 +71,7 @@ fn barrier(of: &BarrierSummary) -> String {
         let may_come = but_may_come(of.arriving.censored);
         return format!(
             "barrier \"{name}\": no rock arrives{may_come} {}",
-            share_interval(&of.arriving)
+            interval_of_none(&of.arriving)
         );
     }
     let design = match (&of.design_values, &of.barrier.design) {
@@ -139,6 +141,11 @@ fn share_interval(of: &Proportion) -> String {
     format!("({})", interval(&low, &high))
 }
 
+/// The interval of a share of which none was seen: its upper end is a bound, and is not rounded down.
+fn interval_of_none(of: &Proportion) -> String {
+    format!("({})", interval(&percent(0.0, 0), &percent_at_most(of.high_95)))
+}
+
 /// A share and the ends of its interval.
 fn shares(of: &Proportion) -> [String; 3] {
     percents([of.share, of.low_95, of.high_95], digits)
@@ -163,5 +170,14 @@ mod tests {
         assert_eq!(said(940_000, 1_000_000), "94.00 % (93.95 % to 94.05 %)");
         assert_eq!(said(940, 1000), "94 % (92 % to 95 %)");
         assert_eq!(said(0, 1_000_000), "0.0000 % (0.0000 % to 0.0003 %)");
+    }
+
+    /// None of 2000 bounds a share by 3/2000, one decimal of which would be 0.1 %.
+    #[test]
+    fn none_of_many_is_bounded_from_above() {
+        let said = |of: usize| interval_of_none(&Proportion::new(0, of)).replace('\u{2009}', " ");
+        assert_eq!(said(2000), "(0 % to 0.15 %)");
+        assert_eq!(said(10_000), "(0 % to 0.030 %)");
+        assert_eq!(said(1), "(0 % to 100 %)");
     }
 }

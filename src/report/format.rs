@@ -114,6 +114,18 @@ pub fn percent(share: f64, decimals: usize) -> String {
     format!("{}{THIN_SPACE}%", decimal(100.0 * share, decimals))
 }
 
+/// The upper end of a share (0..1) in per cent, to two digits and never below it: none of 10 000 bounds a share by 0.030 %,
+/// and not by 0.0 %.
+pub fn percent_at_most(share: f64) -> String {
+    let percent = 100.0 * share;
+    let written = format!("{percent:e}");
+    let exponent = written.split_once('e').and_then(|(_, e)| e.parse::<i32>().ok()).unwrap_or(0);
+    let place: f64 = format!("1e{}", exponent - 1).parse().unwrap_or(1.0);
+    // what is a number of two digits already stays what it is, whatever its last bits
+    let up = place * (percent / place - 1e-9).ceil();
+    format!("{}{THIN_SPACE}%", significant(up, 2))
+}
+
 /// Digits that a number may get beyond its own before its interval is seen: a share of 10⁻⁸ still is.
 const MOST_MORE: usize = 6;
 
@@ -151,8 +163,16 @@ pub fn escape(text: &str) -> String {
     safe
 }
 
-/// A sentence begins with a capital letter and ends with a full stop.
+/// A sentence begins with a capital letter, but for the name of a file, and ends with a full stop.
 pub(super) fn sentence(text: &str) -> String {
+    let word = text.split_whitespace().next().unwrap_or_default();
+    if word.trim_end_matches(['.', ':', ',']).contains(['.', '/', '\\']) {
+        return if text.ends_with(['.', '!', '?', '…']) {
+            text.to_owned()
+        } else {
+            format!("{text}.")
+        };
+    }
     let mut letters = text.chars();
     let first = letters.next().into_iter().flat_map(char::to_uppercase);
     let whole: String = first.chain(letters).collect();
@@ -189,6 +209,22 @@ mod tests {
         assert_eq!(said([0.0, 0.0, 0.0]), written("0.0% 0.0% 0.0%"));
         assert_eq!(said([1.0, 1.0, 1.0]), written("100% 100% 100%"));
         assert_eq!(said([0.5, f64::NAN, f64::NAN]), written("50% – –"));
+    }
+
+    /// A bound that is rounded down is none: none of 2000 leaves up to 0.15 %, which in binary is a little less.
+    #[test]
+    fn an_upper_end_is_not_rounded_down() {
+        let said = [1.0, 0.5, 0.121, 0.0015, 0.0003, 1e-5, 0.0].map(percent_at_most).join(" ");
+        let written = "100% 50% 13% 0.15% 0.030% 0.0010% 0%".replace('%', "\u{2009}%");
+        assert_eq!(said, written);
+    }
+
+    /// `Zones.geojson` is another file than `zones.geojson`.
+    #[test]
+    fn a_sentence_keeps_the_name_of_a_file() {
+        assert_eq!(sentence("zones.geojson says so"), "zones.geojson says so.");
+        assert_eq!(sentence("../drawn/zones says so"), "../drawn/zones says so.");
+        assert_eq!(sentence("mesh: coarse"), "Mesh: coarse.");
     }
 
     #[test]

@@ -31,7 +31,7 @@ const MARKED: [f64; 2] = [0.50, 0.95];
 /// What there is to say of a line that no rock crosses; none where one does.
 pub(super) fn nobody(words: &Words, line: &ReportLine) -> Option<String> {
     let what = if line.is_barrier { words.the_line_of_barrier } else { words.the_line };
-    let below = format::percent(line.reach.high, usize::from(line.reach.high < 0.1));
+    let below = format::percent_at_most(line.reach.high);
     let nobody = if line.is_weighted {
         words.say(by_frequency::NOBODY)
     } else {

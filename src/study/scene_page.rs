@@ -15,6 +15,10 @@ pub struct Wish {
     pub error: f64,
 }
 
+/// Why a percentile of the tables is not to all digits that of the sentences above them.
+const RANKED: &str = "\nA percentile in the tables is the value of one rock, the smallest that so many of them do not exceed; in the sentences \
+    above, as in reports, it lies between two neighbouring rocks.\n";
+
 /// Writes the page.
 pub(super) fn page(study: &SceneStudy, wish: Option<Wish>) -> String {
     let mut page = format!("# Error against run time: {}\n\n", study.title);
@@ -31,8 +35,8 @@ pub(super) fn page(study: &SceneStudy, wish: Option<Wish>) -> String {
     if let Some(effective) = study.effective_releases {
         let _ = writeln!(
             page,
-            "Sizes are sampled by importance: every rock counts for its part of the frequency of its source, and {} of equal weight would \
-             know as much. Percentiles hold for the sources as they are. Rocks are drawn again class by class of size and source, and the interval of \
+            "Every rock counts for its part of the frequency of its source, and all are as precise as {} of equal weight. \
+             Percentiles hold for the sources as they are. Rocks are drawn again class by class of size and source, and the interval of \
              a percentile is Woodruff's.\n",
             format::decimal(effective, 0)
         );
@@ -40,6 +44,7 @@ pub(super) fn page(study: &SceneStudy, wish: Option<Wish>) -> String {
     sentences(&mut page, study, wish);
     page += "\n![Error over run time](error.svg)\n\n";
     settings_table(&mut page, study);
+    page += RANKED;
     statistics_table(&mut page, study);
     mesh_table(&mut page, study);
     page

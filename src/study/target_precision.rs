@@ -127,6 +127,9 @@ impl FromStr for TargetPrecision {
         let times = match multiple {
             Some((.., times)) => *times,
             None if found == unit => 1.0,
+            None if found.is_empty() => {
+                return Err(format!("found {number} without a unit; {name} is in {unit}"));
+            }
             None => return Err(format!("found the unit \"{found}\"; {name} is in {unit}")),
         };
         if !(number > 0.0 && number.is_finite()) {
@@ -166,6 +169,8 @@ mod tests {
             let told = wrong.parse::<TargetPrecision>().unwrap_err();
             assert!(told.contains("found"), "{wrong}: {told}");
         }
+        let told = "runout.p95 < 1".parse::<TargetPrecision>().unwrap_err();
+        assert_eq!(told, "found 1 without a unit; runout is in m");
     }
 
     /// Evenly spread values: the interval of the median of n is about 2/√n wide, so half the width takes four times as many.

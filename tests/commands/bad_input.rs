@@ -134,6 +134,25 @@ fn every_bad_mesh_is_refused_with_its_message() {
     }
 }
 
+/// What a scene reads as terrain can be examined too, and where an STL file is asked for, its name says where it belongs.
+#[test]
+fn other_terrain_files_are_examined_or_shown_their_place() {
+    let examined = rockfall(&["mesh", "check", "terrain/tyrol_dem.tif"]);
+    let said = String::from_utf8_lossy(&examined.stdout).into_owned();
+    assert!(
+        examined.status.success() && said.contains("GeoTIFF") && said.contains("welded"),
+        "{said}"
+    );
+    let dir = tempfile::tempdir().unwrap();
+    let file = dir.path().join("scene.toml");
+    let scene = fs::read_to_string("examples/tyrol.toml").unwrap();
+    let tyrol = format!("{}/terrain/tyrol_dem.tif", env!("CARGO_MANIFEST_DIR"));
+    let line = scene.lines().find(|line| line.starts_with("mesh = ")).unwrap();
+    fs::write(&file, scene.replacen(line, &format!("mesh = \"{tyrol}\""), 1)).unwrap();
+    let said = refusal(rockfall(&["plan", file.to_str().unwrap()]));
+    assert!(said.contains("found a GeoTIFF, no STL; a scene reads it under `file`"), "{said}");
+}
+
 /// Files that the system does not let be read, and grids that are none.
 #[test]
 #[cfg(target_os = "linux")]

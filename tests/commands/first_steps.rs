@@ -53,6 +53,26 @@ fn a_sketched_scene_asks_for_its_ground_and_then_runs() {
     }
 }
 
+/// The examples at the end of a sketched scene lie on its terrain, in map coordinates: without their # they are a line, a
+/// barrier and maps.
+#[test]
+fn examples_of_a_sketched_scene_lie_on_its_terrain() {
+    let dir = tempfile::tempdir().unwrap();
+    let file = dir.path().join("first.toml");
+    let (code, _, stderr) = said(&["init", "terrain/tyrol_dem.tif", word(&file)]);
+    assert_eq!(code, Some(0), "{stderr}");
+    let scene = filled_in(&fs::read_to_string(&file).unwrap());
+    let (before, examples) = scene.split_once("path_step_s").unwrap();
+    let is_key = |line: &str| line.starts_with("# [") || line.contains(" = ");
+    let written = |line: &str| line.strip_prefix("# ").filter(|_| is_key(line)).map(str::to_owned);
+    let examples: Vec<String> =
+        examples.lines().map(|line| written(line).unwrap_or_else(|| line.to_owned())).collect();
+    fs::write(&file, format!("{before}path_step_s{}", examples.join("\n"))).unwrap();
+    let (code, plan, stderr) = said(&["plan", word(&file)]);
+    assert_eq!(code, Some(0), "{stderr}");
+    assert!(plan.contains("road (") && plan.contains("net (4 m") && plan.contains("cells of 2 m"));
+}
+
 #[test]
 fn level_ground_cannot_be_sketched() {
     let dir = tempfile::tempdir().unwrap();
@@ -159,6 +179,10 @@ fn a_run_ends_with_its_answers_and_its_report() {
         last[6].starts_with("line \"foot of the face\": ") && last[6].contains("P95 of energy")
     );
     assert!(!stdout.contains('\u{1b}'), "colour where no terminal reads: {stdout}");
+    // drawn again, it says where the page is, as a run does
+    let (code, stdout, stderr) = said(&["draw", word(&out)]);
+    assert_eq!(code, Some(0), "{stderr}");
+    assert_eq!(stdout, format!("report: {}\n", out.join("report.html").display()));
     // the share that is said is the one of the summary
     let summary: serde_json::Value =
         serde_json::from_str(&fs::read_to_string(out.join("summary.json")).unwrap()).unwrap();

@@ -106,6 +106,12 @@ fn lists_that_do_not_fit_are_refused() {
     dir.put("trees.csv", table());
     dir.put("far.csv", table().replace("2600020.5", "2700020.5"));
     dir.put("flat.csv", "x,y,dbh_m,height_m\n2600020.5,1200060.5,0,18\n");
+    dir.put("centimetres.csv", table().replace("0.4", "40"));
+    dir.put("centimetres.geojson", drawing("").replace("0.4", "40"));
+    dir.put("semicolons.csv", table().replace(',', ";"));
+    dir.put("german.csv", table().replace("dbh_m", "bhd_cm"));
+    dir.put("latin.csv", b"x,y,dbh_m,h\xf6he\n1,2,0.3,20\n");
+    dir.put("empty.csv", "");
     let swiss =
         "\"crs\":{\"type\":\"name\",\"properties\":{\"name\":\"urn:ogc:def:crs:EPSG::21781\"}},";
     dir.put("other.geojson", drawing(swiss));
@@ -114,6 +120,24 @@ fn lists_that_do_not_fit_are_refused() {
     for (text, parts) in [
         (with_trees(slope, "file = \"far.csv\""), ["line 2", "found no slope at (2700020.5"]),
         (with_trees(slope, "file = \"flat.csv\""), ["line 2", "found dbh_m = 0"]),
+        (
+            with_trees(slope, "file = \"centimetres.csv\""),
+            ["line 2: found dbh_m = 40", "30 cm has dbh_m = 0.3"],
+        ),
+        (
+            with_trees(slope, "file = \"centimetres.geojson\""),
+            ["feature 1: found dbh_m = 40", "30 cm has dbh_m = 0.3"],
+        ),
+        (
+            with_trees(slope, "file = \"semicolons.csv\""),
+            ["line 1: found the header x;y;dbh_m;height_m", "under the header x,y,dbh_m,height_m"],
+        ),
+        (
+            with_trees(slope, "file = \"german.csv\""),
+            ["line 1: found the header x,y,bhd_cm,height_m", "x,y,dbh_m,height_m"],
+        ),
+        (with_trees(slope, "file = \"latin.csv\""), ["line 1", "under the header x,y,dbh_m"]),
+        (with_trees(slope, "file = \"empty.csv\""), ["found no tree", "under the header x,y"]),
         (
             with_trees(slope, "file = \"other.geojson\""),
             ["found EPSG:21781", "ogr2ogr -t_srs EPSG:2056"],

@@ -52,6 +52,10 @@ fn each_zone_releases_as_often_as_it_says() {
     let scene = Scene::read(&file).unwrap();
     let (terrain, _) = scene.read_terrain().unwrap();
     let plan = Plan::compile(&scene, terrain).unwrap();
+    // no size is sampled here, and none is said to be
+    let said = plan.to_string();
+    assert!(said.contains("the same number of rocks is computed for every source"), "{said}");
+    assert!(!said.contains("large rocks are computed more often"), "{said}");
     for index in 0..40 {
         assert_eq!(plan.releases.zone_of(index), Some(index % 2));
         let at = plan.release(index).unwrap().motion.position_m + plan.terrain.origin_m;
@@ -247,6 +251,9 @@ fn zones_of_mixed_geometry_are_sources_without_weights() {
     let zones = read.release.zone_list.as_ref().unwrap();
     assert!((zones.share(0) - 0.75).abs() < 1e-12, "as often as they release rocks");
     assert!(!dir.plan(&text).contains("are not used"));
+    let unasked = text.replace("[frequency]\n", "");
+    let said = dir.plan(&unasked);
+    assert!(said.contains("shared by their frequencies"), "{said}");
     mixed("\"frequency_per_year\":0.3", "");
     assert!(dir.refusal(&text).contains("or frequency_per_year"));
 }

@@ -18,7 +18,7 @@ impl MeshSource {
     fn load(&self) -> Result<Loaded> {
         let path = &self.sheet.path;
         let Some(options) = &self.options else { return stl::read(path).map(Loaded::Mesh) };
-        let is_list = self.sheet.is_tree && make::begins_like_list(&crate::file::head(path)?);
+        let is_list = self.sheet.is_tree && make::is_list(path, &crate::file::head(path)?);
         let loaded = if is_list {
             Loaded::Trees(make::read_list(path)?)
         } else {

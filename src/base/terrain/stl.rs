@@ -145,7 +145,9 @@ pub fn parse(bytes: Vec<u8>, file: &Path) -> Result<Soup> {
 }
 
 /// How other files begin that end up under the name of an STL file, and what to do about them.
-const OTHER_KINDS: [(&[u8], &str, &str); 12] = [
+const OTHER_KINDS: [(&[u8], &str, &str); 14] = [
+    (b"II*\0", "a GeoTIFF", GRID),
+    (b"MM\0*", "a GeoTIFF", GRID),
     (b"\xff\xfe", "text in UTF-16", "save it as UTF-8 or ASCII"),
     (b"\xfe\xff", "text in UTF-16", "save it as UTF-8 or ASCII"),
     (b"PK\x03\x04", "a ZIP archive", "unpack it and write the STL file in it"),
@@ -154,11 +156,18 @@ const OTHER_KINDS: [(&[u8], &str, &str); 12] = [
     (b"<html", "a web page", "download the mesh again"),
     (b"<?xml", "an XML file", EXPORT),
     (b"\x89PNG", "a PNG image", EXPORT),
-    (b"ply", "a PLY file", EXPORT),
+    (b"ply", "a PLY file", MESH),
     (b"glTF", "a glTF file", EXPORT),
-    (b"v ", "a Wavefront OBJ file", EXPORT),
-    (b"ncols", "an ESRI ASCII grid", "turn it into STL with `rockfall mesh from-grid`"),
+    (b"v ", "a Wavefront OBJ file", MESH),
+    (b"ncols", "an ESRI ASCII grid", GRID),
 ];
+
+/// What to do about an elevation model in the place of an STL file.
+const GRID: &str = "a scene reads it under `file` in the place of `mesh`; `rockfall mesh from-grid` turns it into STL";
+
+/// What to do about another mesh in the place of an STL file.
+const MESH: &str =
+    "a scene reads it under `file` in the place of `mesh`; or export it as STL, binary or ASCII";
 
 /// What to do about a file that is no STL.
 const EXPORT: &str = "export the mesh again as STL, binary or ASCII";

@@ -61,16 +61,22 @@ pub(super) fn year(
         ));
     }
     if !frequency.weights(count).are_equal() {
-        warnings.push(
-            "sizes are sampled by importance: large rocks are computed more often than they come. Percentiles, shares and maps are weighted back and hold for the sources as they are; counts of rocks and dots in figures show rocks as computed"
-                .to_owned(),
-        );
+        warnings.push(weighed(strata > frequency.sources().len()).to_owned());
     }
     let matrix = scene.frequency.as_ref().and_then(|table| table.matrix.as_ref()?.table());
     let largest_m: Vec<f64> =
         frequency.strata().iter().map(|stratum| largest_m(scene, stratum)).collect();
     let most_j = most_j(scene, terrain, &largest_m);
     Ok(Part::Kept(YearPlan { frequency, matrix, most_j, largest_m }))
+}
+
+/// What is said where rocks do not all weigh the same; `has_sizes`: some source has classes of size.
+fn weighed(has_sizes: bool) -> &'static str {
+    if has_sizes {
+        "sizes are sampled by importance: large rocks are computed more often than they come. Percentiles, shares and maps are weighted back and hold for the sources as they are; counts of rocks and dots in figures show rocks as computed"
+    } else {
+        "the same number of rocks is computed for every source, however often it releases them in a year. Percentiles, shares and maps are weighted back and hold for the sources as they are; counts of rocks and dots in figures show rocks as computed"
+    }
 }
 
 /// What properties of zones say in vain.
@@ -228,7 +234,7 @@ pub(super) fn lines(year: &YearPlan, count: usize) -> Vec<String> {
         .collect();
     let weights = frequency.weights(count);
     lines.push(format!(
-        "{:.4} events a year; {} classes of size and source, {} rocks or more each: {count} rocks know what {:.0} of equal weight would",
+        "{:.4} events a year; {} classes of size and source, {} rocks or more each: {count} rocks are as precise as {:.0} of equal weight",
         frequency.per_year(),
         frequency.strata().len(),
         count / frequency.strata().len(),

@@ -349,10 +349,10 @@ fn input_file(InputFile { path, bytes, assumed }: &InputFile) -> String {
 fn zones_of_ground(done: &Patched) -> String {
     let Patched { zones, laid_m2, crossed, pieces, other_side_m2, is_cut } = done;
     let cut = if *is_cut {
-        format!("cut into {pieces}, by which {other_side_m2:.1} m² change hands")
+        format!("cut into {pieces}, which gives {other_side_m2:.1} m² their own ground")
     } else {
         format!(
-            "left whole, each with the ground at its centroid; cut = true would make {pieces} of them, and {other_side_m2:.1} m² would change hands"
+            "left whole, each with the ground at its centroid; so {other_side_m2:.1} m² have the ground of the other side; cut = true would mend that with {pieces} triangles"
         )
     };
     format!(
@@ -364,6 +364,7 @@ fn zones_of_ground(done: &Patched) -> String {
 fn shared_by(zones: &Zones) -> &'static str {
     match zones.list().first() {
         Some(Zone { weight: Some(_), .. }) => "shared by their weights",
+        _ if zones.has_kinds() => "shared by their frequencies",
         Some(Zone { place: ZonePlace::Points(_), .. }) => "shared by their numbers of points",
         Some(Zone { place: ZonePlace::Lines(_), .. }) => "shared by their lengths",
         _ => "shared by their areas",

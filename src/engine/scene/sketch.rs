@@ -5,6 +5,7 @@ use crate::math;
 use crate::rock::Vec3;
 use crate::terrain::cliffs::{Cliff, main_cliff};
 use crate::terrain::formats::Options;
+use crate::terrain::health::Health;
 use crate::terrain::read::MeshSource;
 use crate::terrain::walls::places_before;
 use crate::terrain::{Sheet, Terrain};
@@ -32,12 +33,22 @@ pub fn sketch(terrain_file: &Path, scene_file: &Path) -> Result<String> {
     let key = if is_stl { "mesh" } else { "file" };
     let triangles = health.triangles;
     Ok(format!(
-        "{HEAD}title = {}\nseed = 2017\n{}\n[[terrain]]\n{key} = {}           # {triangles} triangles\nground = \"slope\"\n{GROUND}{}{REST}",
+        "{HEAD}title = {}\nseed = 2017\n{}\n[[terrain]]\n{key} = {}           # {triangles} triangles\nground = \"slope\"\n{GROUND}{}{}",
         quoted(&name),
         terrain.epsg.map_or_else(String::new, |code| format!("epsg = {code}\n")),
         quoted(&path.to_string_lossy()),
         release(&cliff, &terrain),
+        REST.replace("LINE", &across(&health)),
     ))
+}
+
+/// A line over the middle of the terrain, from a quarter of its width to three: an example where rocks may come.
+fn across(health: &Health) -> String {
+    let [low, high] = [health.low_m, health.high_m];
+    let [west, east] = [low[0], high[0]];
+    let at = |share: f64| west + share * (east - west);
+    let y = 0.5 * (low[1] + high[1]);
+    format!("[[{:.1}, {y:.1}], [{:.1}, {y:.1}]]", at(0.25), at(0.75))
 }
 
 const HEAD: &str = "\
@@ -74,12 +85,12 @@ path_step_s = 0.05
 # Evaluation lines: how many rocks cross, how fast, how high, with which energy. Map coordinates.
 # [[lines]]
 # name = \"road\"
-# points_m = [[0.0, 0.0], [40.0, 0.0]]
+# points_m = LINE
 
 # A net or dam: what it stops and what its design asks for.
 # [[barriers]]
 # name = \"net\"
-# points_m = [[0.0, 0.0], [40.0, 0.0]]
+# points_m = LINE
 # height_m = 4.0
 # capacity_j = 1000e3
 

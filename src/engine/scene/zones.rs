@@ -84,6 +84,11 @@ impl Zones {
         &self.list
     }
 
+    /// Whether some are points, others lines or areas: then they share the releases by weights or frequencies alone.
+    pub fn has_kinds(&self) -> bool {
+        has_kinds(&self.list)
+    }
+
     /// The share of all releases that a zone gets (–).
     pub fn share(&self, zone: usize) -> f64 {
         self.shares[zone] - zone.checked_sub(1).map_or(0.0, |before| self.shares[before])
@@ -179,6 +184,12 @@ fn zone(feature: &GisFeature, file: &Path) -> Result<Zone> {
     Err(feature.wrong(file, "found no point", "draw a point, a line or a polygon"))
 }
 
+/// Whether some zones are points, others lines or areas.
+fn has_kinds(list: &[Zone]) -> bool {
+    let kind = |zone: &Zone| std::mem::discriminant(&zone.place);
+    list.iter().any(|zone| kind(zone) != kind(&list[0]))
+}
+
 /// By what the releases are shared: weights, or the size of the zones, or their rates where sizes have no common measure.
 fn sizes(list: &[Zone], file: &Path) -> Result<Vec<f64>> {
     let weights: Vec<f64> = list.iter().filter_map(|zone| zone.weight).collect();
@@ -200,7 +211,7 @@ fn sizes(list: &[Zone], file: &Path) -> Result<Vec<f64>> {
     // what says how often it releases rocks has a measure in common with others that say the same
     for often in [|zone: &Zone| zone.frequency_per_year, |zone: &Zone| zone.per_year_at_1m3] {
         let rates: Vec<f64> = list.iter().filter_map(often).collect();
-        if rates.len() == list.len() && list.iter().any(|zone| kind(zone) != kind(&list[0])) {
+        if rates.len() == list.len() && has_kinds(list) {
             return Ok(rates);
         }
     }

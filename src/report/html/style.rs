@@ -2,7 +2,7 @@
 
 /// The style of the page, for screen and A4.
 pub(super) const STYLE: &str = "\
-:root { color-scheme: light; }
+:root { color-scheme: only light; }
 * { box-sizing: border-box; }
 body { margin: 0; background: #fff; color: #222; font: 15px/1.5 Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif; }
 main { max-width: 900px; margin: 0 auto; padding: 28px 24px 48px; }

@@ -32,7 +32,7 @@ pub(in crate::report) fn draw(report: &Report, maps: &CellMap, year: &YearCells)
     let mut level = String::new();
     if let Some(LevelCells { name, source, cells }) = &year.levels {
         layers.push(of_levels(fill(said.map_level, &[("name", &short(name))]), cells));
-        level = fill(said.maps_level, &[("source", source)]);
+        level = fill(said.maps_level, &[("name", name), ("source", source)]);
     }
     // no shaded ground: it stands in all other maps, and would cost more than all else of the year
     let svg = draw_layers("maps-year", said.maps_alt, (report, maps, None), &layers);

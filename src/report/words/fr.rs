@@ -360,7 +360,7 @@ pub(super) static WORDS: Words = Words {
     often_title: "Combien de fois par an\u{a0}: {name}",
     often_note: "Nombres par an sauf indication de la colonne\u{a0}: {events} événements par an aux sources fois la part de leurs blocs qui arrivent. {rocks} blocs, valant {effective} de poids égal. Intervalles à 95 %\u{a0}; si aucun n’a été vu, une borne unilatérale. Variation avec ln(taux)\u{a0}: 10 % d’événements en plus en donnent 10 % de plus. Probabilité en un an\u{a0}: 1 − e^−λ.",
     returns_title: "Énergie des périodes de retour\u{a0}: {name}",
-    returns_note: "Franchi avec au moins cette énergie une fois en tant d’années en moyenne\u{a0}; pas de nombre si les blocs viennent plus rarement. L’intervalle à 95 % est celui de la fréquence, lu le long de l’énergie\u{a0}; ouvert si trop peu de blocs le bornent.",
+    returns_note: "Franchi avec au moins cette énergie une fois en tant d’années en moyenne\u{a0}; pas de nombre si les blocs viennent plus rarement. L’intervalle à 95 % est celui de la fréquence, lu le long de l’énergie\u{a0}; si trop peu de blocs le bornent, sa borne supérieure est la plus grande énergie que permettent tailles et terrain, ou manque.",
     risk_title: "Risque annuel\u{a0}: {name}",
     barrier_weighted: " Les points sont les blocs tels que calculés, les gros plus souvent qu’ils ne viennent\u{a0}; les parts sont pondérées en retour.",
     barrier_year_title: "Combien par an\u{a0}: ouvrage {name}",

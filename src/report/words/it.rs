@@ -360,7 +360,7 @@ pub(super) static WORDS: Words = Words {
     often_title: "Quante volte all’anno: {name}",
     often_note: "Numeri all’anno salvo diversa indicazione della colonna: {events} eventi all’anno alle sorgenti per la quota dei loro massi che arrivano. {rocks} massi, che valgono {effective} di peso uguale. Intervalli al 95 %; dove nessuno è stato visto, un limite unilaterale. Variazione con ln(tasso): il 10 % di eventi in più ne dà il 10 % in più. Probabilità in un anno: 1 − e^−λ.",
     returns_title: "Energia dei tempi di ritorno: {name}",
-    returns_note: "Superato con almeno tale energia in media una volta in tanti anni; nessun numero dove i massi arrivano più di rado. L’intervallo al 95 % è quello della frequenza, letto lungo l’energia; dove troppo pochi massi lo limitano, è aperto.",
+    returns_note: "Superato con almeno tale energia in media una volta in tanti anni; nessun numero dove i massi arrivano più di rado. L’intervallo al 95 % è quello della frequenza, letto lungo l’energia; dove troppo pochi massi lo limitano, il suo estremo superiore è la massima energia che dimensioni e terreno permettono, oppure manca.",
     risk_title: "Rischio annuo: {name}",
     barrier_weighted: " I punti sono i massi come calcolati, i grandi più spesso di quanto arrivino; le quote sono ripesate.",
     barrier_year_title: "Quante volte l’anno: barriera {name}",

@@ -38,7 +38,7 @@ words_of! {
 
 const EN: YearWords = YearWords {
     head_title: "How often a year",
-    head_note: "A year, not conditional on release. Small figures: 95 % intervals of chance in the sample; they do not say how well rate and exponent are known. 10 % more events a year at the sources change a number by 0.1 of its change with ln(rate), an exponent larger by 0.1 by 0.1 of its change with exponent. All energies, risks and what each barrier saves stand in the chapter of the year.",
+    head_note: "A year, not conditional on release. Small figures: 95 % intervals of chance in the sample; they do not say how well rate and exponent are known. 10 % more events a year at the sources change a number by 0.1 of its change with ln(rate), an exponent larger by 0.1 by 0.1 of its change with exponent. The chapter on the year has all energies, the risks, and what each barrier keeps away.",
     head_row: "{name}: {energy} kJ or more{barriers}",
     maps_title: "A year on the map",
     maps_alt: "Maps of return period and energy",
@@ -48,12 +48,12 @@ const EN: YearWords = YearWords {
     map_level: "Level: {name}",
     maps_caption: "A year, not conditional on release, cell by cell and without barriers: return period of passages with {energy} kJ or more, and the energy that is passed once in {years} years (no colour: rocks come more seldom). 10 % more events a year at the sources make all frequencies 10 % larger.{exponent}{level} Intervals and derivatives of all layers lie in maps/ as GeoTIFF.",
     maps_by_exponent: " Change with exponent: 2 means 20 % more passages where the exponents of all power laws are 0.1 larger, their events of 1 m³ or more kept.",
-    maps_level: " Levels by the table of the scene; its source: {source}.",
+    maps_level: " Levels by the table of the scene, “{name}”; its source: {source}.",
 };
 
 const DE: YearWords = YearWords {
     head_title: "Wie oft pro Jahr",
-    head_note: "Pro Jahr, nicht bedingt auf die Ablösung. Kleine Zahlen: 95-%-Intervalle des Zufalls der Stichprobe; sie sagen nicht, wie gut Rate und Exponent bekannt sind. 10 % mehr Ereignisse pro Jahr an den Quellen ändern eine Zahl um 0.1 ihrer Änderung mit ln(Rate), ein um 0.1 größerer Exponent um 0.1 ihrer Änderung mit dem Exponenten. Alle Energien, Risiken und was jedes Schutzbauwerk fernhält, stehen im Kapitel des Jahres.",
+    head_note: "Pro Jahr, nicht bedingt auf die Ablösung. Kleine Zahlen: 95-%-Intervalle des Zufalls der Stichprobe; sie sagen nicht, wie gut Rate und Exponent bekannt sind. 10 % mehr Ereignisse pro Jahr an den Quellen ändern eine Zahl um 0.1 ihrer Änderung mit ln(Rate), ein um 0.1 größerer Exponent um 0.1 ihrer Änderung mit dem Exponenten. Das Kapitel über das Jahr enthält alle Energien, die Risiken und was jedes Schutzbauwerk fernhält.",
     head_row: "{name}: {energy} kJ oder mehr{barriers}",
     maps_title: "Das Jahr auf der Karte",
     maps_alt: "Karten von Wiederkehrperiode und Energie",
@@ -63,7 +63,7 @@ const DE: YearWords = YearWords {
     map_level: "Stufe: {name}",
     maps_caption: "Pro Jahr, nicht bedingt auf die Ablösung, Zelle für Zelle und ohne Schutzbauwerke: Wiederkehrperiode der Durchgänge mit {energy} kJ oder mehr, und die Energie, die einmal in {years} Jahren überschritten wird (ohne Farbe: Blöcke kommen seltener). 10 % mehr Ereignisse pro Jahr an den Quellen machen alle Häufigkeiten 10 % größer.{exponent}{level} Intervalle und Ableitungen aller Ebenen liegen in maps/ als GeoTIFF.",
     maps_by_exponent: " Änderung mit dem Exponenten: 2 heißt 20 % mehr Durchgänge, wenn die Exponenten aller Potenzgesetze um 0.1 größer sind und die Ereignisse ab 1 m³ bleiben.",
-    maps_level: " Stufen nach der Tabelle der Szene; ihre Quelle: {source}.",
+    maps_level: " Stufen nach der Tabelle der Szene, „{name}“; ihre Quelle: {source}.",
 };
 
 const FR: YearWords = YearWords {
@@ -78,7 +78,7 @@ const FR: YearWords = YearWords {
     map_level: "Degré\u{a0}: {name}",
     maps_caption: "Par an, non conditionnel au départ, maille par maille et sans ouvrages\u{a0}: période de retour des passages avec {energy} kJ ou plus, et énergie dépassée une fois en {years} ans (sans couleur\u{a0}: les blocs viennent plus rarement). 10 % d’événements en plus par an aux sources augmentent toutes les fréquences de 10 %.{exponent}{level} Intervalles et dérivées de toutes les couches sont dans maps/ en GeoTIFF.",
     maps_by_exponent: " Variation avec l’exposant\u{a0}: 2 veut dire 20 % de passages en plus si les exposants de toutes les lois de puissance sont plus grands de 0.1, leurs événements dès 1 m³ gardés.",
-    maps_level: " Degrés selon la table de la scène\u{a0}; sa source\u{a0}: {source}.",
+    maps_level: " Degrés selon la table de la scène, «\u{a0}{name}\u{a0}»\u{a0}; sa source\u{a0}: {source}.",
 };
 
 const IT: YearWords = YearWords {
@@ -93,5 +93,5 @@ const IT: YearWords = YearWords {
     map_level: "Grado: {name}",
     maps_caption: "All’anno, non condizionato al distacco, cella per cella e senza barriere: tempo di ritorno dei passaggi con {energy} kJ o più, ed energia superata una volta in {years} anni (senza colore: i massi arrivano più di rado). Il 10 % di eventi in più all’anno alle sorgenti rende tutte le frequenze maggiori del 10 %.{exponent}{level} Intervalli e derivate di tutti gli strati sono in maps/ come GeoTIFF.",
     maps_by_exponent: " Variazione con l’esponente: 2 vuol dire il 20 % di passaggi in più se gli esponenti di tutte le leggi di potenza sono maggiori di 0.1, mantenuti i loro eventi da 1 m³ in su.",
-    maps_level: " Gradi secondo la tabella della scena; la sua fonte: {source}.",
+    maps_level: " Gradi secondo la tabella della scena, «{name}»; la sua fonte: {source}.",
 };

@@ -64,7 +64,8 @@ fn nothing_is_unreadable_on_a_dark_ground() {
         }
         let page = html::page(&report, &drawn);
         assert!(
-            page.contains("color-scheme: light") && page.contains("background: #fff; color: #222")
+            page.contains("color-scheme: only light")
+                && page.contains("background: #fff; color: #222")
         );
     }
 }

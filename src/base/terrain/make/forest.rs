@@ -14,6 +14,10 @@ use std::path::Path;
 const REMEDY: &str =
     "write comma-separated numbers with decimal points under the header x,y,dbh_m,height_m";
 
+/// Largest diameter at breast height and height that are believed (m): the thickest and the tallest known tree have 11.6 m
+/// and 116 m. Beyond them a list is in centimetres or feet.
+const LARGEST_M: [(&str, f64); 2] = [("dbh_m", 12.0), ("height_m", 120.0)];
+
 /// One row of a list.
 #[derive(Debug, Deserialize)]
 #[expect(clippy::struct_field_names, reason = "the names are those of the columns")]
@@ -51,6 +55,25 @@ pub(in crate::terrain) fn begins_like_list(head: &[u8]) -> bool {
     gis::begins_like_drawing(head) || names.split(',').any(|name| name.trim() == "dbh_m")
 }
 
+/// Whether a file under `[[trees]]` is meant as a list of trees: begins like one, or is a table by its name.
+pub(in crate::terrain) fn is_list(path: &Path, head: &[u8]) -> bool {
+    let is_table = |ending: &std::ffi::OsStr| {
+        ["csv", "tsv", "txt"].iter().any(|one| ending.eq_ignore_ascii_case(one))
+    };
+    begins_like_list(head) || path.extension().is_some_and(is_table)
+}
+
+/// What is wrong with the size of a tree.
+fn implausible(stem: &Stem) -> Option<String> {
+    let sizes = [stem.dbh_m, stem.height_m];
+    let wrong = |value: f64, most: f64| !(value > 0.0 && value <= most);
+    let mut found = LARGEST_M.iter().zip(sizes).filter(|((_, most), value)| wrong(*value, *most));
+    found.next().map(|((key, _), value)| format!("found {key} = {value}"))
+}
+
+/// What to do about such a tree.
+const IN_METRES: &str = "write a number above 0, in metres: a stem of 30 cm has dbh_m = 0.3";
+
 /// Points with the properties `dbh_m` and `height_m`.
 fn read_drawn(path: &Path) -> Result<TreeList> {
     let layer = gis::read(path)?;
@@ -66,6 +89,9 @@ fn read_drawn(path: &Path) -> Result<TreeList> {
             feature.positive(name, path)?.ok_or_else(lacks)
         };
         let (dbh_m, height_m) = (value("dbh_m")?, value("height_m")?);
+        if let Some(found) = implausible(&Stem { x_m: 0.0, y_m: 0.0, dbh_m, height_m }) {
+            return Err(feature.wrong(path, found, IN_METRES));
+        }
         let stem = |&[x_m, y_m]: &[f64; 2]| Stem { x_m, y_m, dbh_m, height_m };
         trees.extend(points.iter().map(|point| (feature.number as u64, stem(point))));
     }
@@ -76,14 +102,19 @@ fn read_drawn(path: &Path) -> Result<TreeList> {
 /// GeoJSON file or Shapefile of points with the properties `dbh_m` and `height_m`. Each comes with its line or feature.
 ///
 /// # Errors
-/// A file that cannot be read, a row without these numbers, a diameter or height that is not above 0, no row at all.
+/// A file that cannot be read, a header or a row without these, a diameter or height that is not above 0 or larger than any tree's, no row at all.
 pub fn read_list(path: &Path) -> Result<TreeList> {
     if gis::begins_like_drawing(&file::head(path)?) {
         return read_drawn(path);
     }
     let file = file::open(path, LONGEST_TEXT)?;
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(file);
-    let headers = reader.headers().cloned().unwrap_or_default();
+    let header = |found: String| Error::input(path, "line 1", found, REMEDY);
+    let headers = reader.headers().map_err(|why| header(format!("found {why}")))?.clone();
+    if !headers.is_empty() && headers.iter().all(|name| name != "dbh_m") {
+        let found = headers.iter().collect::<Vec<_>>().join(",");
+        return Err(header(format!("found the header {found}")));
+    }
     let mut trees = Vec::new();
     for row in reader.records() {
         let wrong =
@@ -98,18 +129,11 @@ pub fn read_list(path: &Path) -> Result<TreeList> {
         if !(x_m.is_finite() && y_m.is_finite()) {
             return Err(wrong(line, format!("found a place ({x_m}, {y_m})")));
         }
-        for (key, value) in [("dbh_m", dbh_m), ("height_m", height_m)] {
-            if !(value > 0.0 && value.is_finite()) {
-                let remedy = "write a number above 0, in metres";
-                return Err(Error::input(
-                    path,
-                    format!("line {line}"),
-                    format!("found {key} = {value}"),
-                    remedy,
-                ));
-            }
+        let stem = Stem { x_m, y_m, dbh_m, height_m };
+        if let Some(found) = implausible(&stem) {
+            return Err(Error::input(path, format!("line {line}"), found, IN_METRES));
         }
-        trees.push((line, Stem { x_m, y_m, dbh_m, height_m }));
+        trees.push((line, stem));
     }
     if trees.is_empty() {
         return Err(Error::input(path, "rows", "found no tree", REMEDY));

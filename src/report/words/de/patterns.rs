@@ -24,6 +24,10 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "Größen sind nach Wichtigkeit gezogen: große Blöcke werden häufiger gerechnet, als sie kommen. Perzentile, Anteile und Karten sind zurückgewichtet und gelten für die Quellen, wie sie sind; Anzahlen und Punkte in Abbildungen zeigen Blöcke wie gerechnet",
     ),
     (
+        "the same number of rocks is computed for every source, however often it releases them in a year. Percentiles, shares and maps are weighted back and hold for the sources as they are; counts of rocks and dots in figures show rocks as computed",
+        "von jeder Quelle werden gleich viele Blöcke gerechnet, wie oft auch immer sie im Jahr welche ablöst. Perzentile, Anteile und Karten sind zurückgewichtet und gelten für die Quellen, wie sie sind; Anzahlen und Punkte in Abbildungen zeigen Blöcke wie gerechnet",
+    ),
+    (
         "{a} of {b} rocks failed: they count as far as they came; `--only {c}` shows one again",
         "{a} von {b} Blöcken sind fehlgeschlagen: sie zählen, so weit sie kamen; `--only {c}` zeigt einen noch einmal",
     ),
@@ -135,7 +139,7 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
     ),
     (
         "{who}: shares, means and percentiles are those of events, as in the report of each run. Numbers of rocks are of computed ones: rare sizes are computed more often than they come.",
-        "{who}: Anteile, Mittelwerte und Perzentile sind die der Ereignisse, wie im Bericht jedes Laufs. Anzahlen von Blöcken sind die gerechneter: seltene Größen sind öfter gerechnet, als sie vorkommen.",
+        "{who}: Anteile, Mittelwerte und Perzentile sind die der Ereignisse, wie im Bericht jedes Laufs. Anzahlen sind die der gerechneten Blöcke: seltene Größen sind öfter gerechnet, als sie vorkommen.",
     ),
     (
         "The runs have other sources or other classes of size: the same release number is another rock in each, nothing pairs, and differences are known no better than both runs apart.",
@@ -237,11 +241,11 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
     ("{n} computed", "{n} gerechnet"),
     (
         "Shares are by frequency; numbers of rocks are of computed ones.",
-        "Anteile gelten nach Häufigkeit; Anzahlen von Blöcken sind die gerechneter.",
+        "Anteile gelten nach Häufigkeit; Anzahlen sind die der gerechneten Blöcke.",
     ),
     (
         "Curves, lines and bars are by frequency; numbers of rocks are of computed ones.",
-        "Kurven, Linien und Balken gelten nach Häufigkeit; Anzahlen von Blöcken sind die gerechneter.",
+        "Kurven, Linien und Balken gelten nach Häufigkeit; Anzahlen sind die der gerechneten Blöcke.",
     ),
     (
         "fastest {v} m/s; {share} of the rocks by frequency ({n} of {of} computed) above {limit} m/s, which single blocks seldom pass",

@@ -115,6 +115,7 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ("each a source of its own", "jede eine eigene Quelle"),
     ("shared by their weights", "verteilt nach ihren Gewichten"),
     ("shared by their numbers of points", "verteilt nach ihrer Zahl von Punkten"),
+    ("shared by their frequencies", "verteilt nach ihren Häufigkeiten"),
     ("shared by their lengths", "verteilt nach ihren Längen"),
     ("shared by their areas", "verteilt nach ihren Flächen"),
     ("{a} m smallest, {b} m median, {c} m largest", "{a} m kleinster, {b} m Median, {c} m größter"),
@@ -133,12 +134,12 @@ pub(super) const PLAN: &[(&str, &str)] = &[
         "{n}, {area} m² im Grundriss; {k} von einem Rand gequerte Dreiecke sind {how}",
     ),
     (
-        "cut into {n}, by which {area} m² change hands",
-        "in {n} geschnitten, wodurch {area} m² wechseln",
+        "cut into {n}, which gives {area} m² their own ground",
+        "in {n} geschnitten, womit {area} m² ihren eigenen Boden haben",
     ),
     (
-        "left whole, each with the ground at its centroid; cut = true would make {n} of them, and {area} m² would change hands",
-        "ganz gelassen, jedes mit dem Boden an seinem Schwerpunkt; cut = true machte {n} daraus, und {area} m² wechselten",
+        "left whole, each with the ground at its centroid; so {area} m² have the ground of the other side; cut = true would mend that with {n} triangles",
+        "ganz gelassen, jedes mit dem Boden an seinem Schwerpunkt; so haben {area} m² den Boden der anderen Seite; cut = true behöbe das mit {n} Dreiecken",
     ),
     ("origin {place} m subtracted, no EPSG code", "Ursprung {place} m abgezogen, kein EPSG-Code"),
     ("origin {place} m subtracted, EPSG:{code}", "Ursprung {place} m abgezogen, EPSG:{code}"),
@@ -349,7 +350,7 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ),
     ("{a} events a year of the scene's rocks", "{a} Ereignisse pro Jahr mit den Blöcken der Szene"),
     (
-        "{a} events a year; {b} classes of size and source, {c} rocks or more each: {d} rocks know what {e} of equal weight would",
+        "{a} events a year; {b} classes of size and source, {c} rocks or more each: {d} rocks are as precise as {e} of equal weight",
         "{a} Ereignisse pro Jahr; {b} Klassen von Größe und Quelle, je {c} Blöcke oder mehr: {d} Blöcke sind so aussagekräftig wie {e} gleichen Gewichts",
     ),
     ("levels of “{name}”; source: {source}", "Stufen von „{name}“; Quelle: {source}"),

@@ -112,6 +112,7 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ("each a source of its own", "chacune une source à part"),
     ("shared by their weights", "réparties selon leurs poids"),
     ("shared by their numbers of points", "réparties selon leurs nombres de points"),
+    ("shared by their frequencies", "réparties selon leurs fréquences"),
     ("shared by their lengths", "réparties selon leurs longueurs"),
     ("shared by their areas", "réparties selon leurs surfaces"),
     (
@@ -133,12 +134,12 @@ pub(super) const PLAN: &[(&str, &str)] = &[
         "{n}, {area} m² en plan\u{a0}; {k} triangles traversés par une limite sont {how}",
     ),
     (
-        "cut into {n}, by which {area} m² change hands",
-        "coupés en {n}, par quoi {area} m² changent de sol",
+        "cut into {n}, which gives {area} m² their own ground",
+        "coupés en {n}, ce qui donne à {area} m² leur propre sol",
     ),
     (
-        "left whole, each with the ground at its centroid; cut = true would make {n} of them, and {area} m² would change hands",
-        "laissés entiers, chacun avec le sol de son centre\u{a0}; cut = true en ferait {n}, et {area} m² changeraient de sol",
+        "left whole, each with the ground at its centroid; so {area} m² have the ground of the other side; cut = true would mend that with {n} triangles",
+        "laissés entiers, chacun avec le sol de son centre\u{a0}; ainsi {area} m² ont le sol de l’autre côté\u{a0}; cut = true y remédierait avec {n} triangles",
     ),
     ("origin {place} m subtracted, no EPSG code", "origine {place} m soustraite, pas de code EPSG"),
     ("origin {place} m subtracted, EPSG:{code}", "origine {place} m soustraite, EPSG:{code}"),
@@ -355,8 +356,8 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ),
     ("{a} events a year of the scene's rocks", "{a} événements par an des blocs de la scène"),
     (
-        "{a} events a year; {b} classes of size and source, {c} rocks or more each: {d} rocks know what {e} of equal weight would",
-        "{a} événements par an\u{a0}; {b} classes de taille et de source, de {c} blocs ou plus\u{a0}: {d} blocs en savent autant que {e} de même poids",
+        "{a} events a year; {b} classes of size and source, {c} rocks or more each: {d} rocks are as precise as {e} of equal weight",
+        "{a} événements par an\u{a0}; {b} classes de taille et de source, de {c} blocs ou plus\u{a0}: {d} blocs sont aussi précis que {e} de même poids",
     ),
     (
         "levels of “{name}”; source: {source}",

@@ -112,6 +112,7 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ("each a source of its own", "ciascuna una sorgente a sé"),
     ("shared by their weights", "ripartite secondo i pesi"),
     ("shared by their numbers of points", "ripartite secondo il numero di punti"),
+    ("shared by their frequencies", "ripartite secondo le frequenze"),
     ("shared by their lengths", "ripartite secondo le lunghezze"),
     ("shared by their areas", "ripartite secondo le aree"),
     (
@@ -133,12 +134,12 @@ pub(super) const PLAN: &[(&str, &str)] = &[
         "{n}, {area} m² in pianta; {k} triangoli attraversati da un confine sono {how}",
     ),
     (
-        "cut into {n}, by which {area} m² change hands",
-        "tagliati in {n}, per cui {area} m² cambiano suolo",
+        "cut into {n}, which gives {area} m² their own ground",
+        "tagliati in {n}, con cui {area} m² hanno il proprio suolo",
     ),
     (
-        "left whole, each with the ground at its centroid; cut = true would make {n} of them, and {area} m² would change hands",
-        "lasciati interi, ciascuno con il suolo del suo baricentro; cut = true ne farebbe {n}, e {area} m² cambierebbero suolo",
+        "left whole, each with the ground at its centroid; so {area} m² have the ground of the other side; cut = true would mend that with {n} triangles",
+        "lasciati interi, ciascuno con il suolo del suo baricentro; così {area} m² hanno il suolo dell’altro lato; cut = true vi rimedierebbe con {n} triangoli",
     ),
     (
         "origin {place} m subtracted, no EPSG code",
@@ -349,8 +350,8 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ),
     ("{a} events a year of the scene's rocks", "{a} eventi all’anno dei massi della scena"),
     (
-        "{a} events a year; {b} classes of size and source, {c} rocks or more each: {d} rocks know what {e} of equal weight would",
-        "{a} eventi all’anno; {b} classi di dimensione e sorgente, di {c} massi o più: {d} massi ne sanno quanto {e} di ugual peso",
+        "{a} events a year; {b} classes of size and source, {c} rocks or more each: {d} rocks are as precise as {e} of equal weight",
+        "{a} eventi all’anno; {b} classi di dimensione e sorgente, di {c} massi o più: {d} massi sono precisi quanto {e} di ugual peso",
     ),
     ("levels of “{name}”; source: {source}", "livelli di «{name}»; fonte: {source}"),
     ("{name}: {a} a year of {b} to {c} m³, {rest}", "{name}: {a} all’anno da {b} a {c} m³, {rest}"),
