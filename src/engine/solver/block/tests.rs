@@ -3,6 +3,7 @@ use super::*;
 mod cases;
 mod limit;
 mod prism;
+mod reachable;
 mod rolling;
 mod rolls;
 mod slip;
