@@ -11,7 +11,6 @@
 mod energy;
 mod facet;
 mod look;
-mod reachable;
 mod rolling;
 mod slip;
 mod solve;
@@ -281,7 +280,9 @@ impl Footing {
         let rounding_m_s =
             f64::EPSILON * moving.pose.centre.amax() / dt + ROUNDING_OF_SPEED * v.norm();
         let free = (v + weight, w);
-        self.unsettled = !self.solve_reachable(&mass, free, rounding_m_s);
+        self.turning = rigid_turning(&self.contacts);
+        let asked = (&mut self.contacts[..], &mut self.turning);
+        self.unsettled = !solve(&mass, asked, free, (rounding_m_s, SWEEPS), &mut self.sweeps);
         moving.v += weight;
         moving.take(&self.contacts, &self.turning, block.mass_kg);
         // the way of the step is that of the mean velocity, so this is just what the weight gives

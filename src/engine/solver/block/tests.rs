@@ -3,7 +3,6 @@ use super::*;
 mod cases;
 mod limit;
 mod prism;
-mod reachable;
 mod rolling;
 mod rolls;
 mod slip;
