@@ -4,12 +4,20 @@ use super::BadSurface;
 use crate::rock::Vec3;
 use nalgebra::Matrix3;
 
-/// Points of one face lie in its plane to this (–, relative to the size of the hull).
+/// Points of one face lie in its plane to this (–, relative to the size of the hull) …
 const FLAT: f64 = 1e-9;
+/// … or, where faces then overlap, to the first of these multiples of it with which they do not: points of a file are rounded to its digits.
+const FLATTER: [f64; 4] = [10.0, 1e2, 1e3, 1e4];
 /// Most corners of a core.
 const MOST: usize = 64;
 /// Weight of "move along the mean normal" beside "keep every face where it is" when corners are moved inwards (–).
 const GUIDE: f64 = 1e-10;
+/// A corner that is moved inwards may stand out of a moved plane by this (–, relative to the way) …
+const STANDS_OUT: f64 = 0.05;
+/// … is pushed back at most so often …
+const PUSHES: usize = 200;
+/// … and is one with another that ends closer than this (–, relative to the way).
+const ONE: f64 = 1e-6;
 
 /// Most corners that a core may have.
 pub const fn most_corners() -> usize {
@@ -65,7 +73,18 @@ impl Core {
             return Err(BadSurface::TooMany(points.len()));
         }
         let size = points.iter().map(Vec3::norm).fold(0.0, f64::max);
-        let planes = supporting(points, FLAT * size);
+        let first = Self::flat_to(points, FLAT * size)?;
+        if first.is_whole() {
+            return Ok(first);
+        }
+        let mut flatter =
+            FLATTER.iter().map_while(|by| Self::flat_to(points, by * FLAT * size).ok());
+        Ok(flatter.find(Self::is_whole).unwrap_or(first))
+    }
+
+    /// The same, where points no further than `flat` from a plane lie in it.
+    fn flat_to(points: &[Vec3], flat: f64) -> Result<Self, BadSurface> {
+        let planes = supporting(points, flat);
         let on = |k: usize| planes.iter().filter(|plane| plane.points & (1 << k) != 0).count();
         let kept: Vec<usize> = (0..points.len()).filter(|&k| on(k) > 2).collect();
         if planes.len() < 4 || kept.len() < 4 {
@@ -75,6 +94,13 @@ impl Core {
         let faces: Vec<HullFace> = planes.iter().map(|plane| plane.face(&kept, &corners)).collect();
         let ridges = ridges(&faces, &corners);
         Ok(Self { corners, ridges, faces })
+    }
+
+    /// Whether its faces close and do not overlap: every edge has two, and Euler's formula holds.
+    fn is_whole(&self) -> bool {
+        let sides: usize = self.faces.iter().map(|face| face.corners.len()).sum();
+        sides == 2 * self.ridges.len()
+            && self.corners.len() + self.faces.len() == self.ridges.len() + 2
     }
 
     /// The same, larger.
@@ -87,7 +113,10 @@ impl Core {
     }
 
     /// Corners moved inwards so that the planes of their faces move by `way`: exactly where three faces meet, by least
-    /// squares where more do.
+    /// squares where more do. The origin must lie deeper than that behind every face.
+    ///
+    /// A corner of an edge or face that is short beside `way` would come out behind faces that are not its own, and the body would
+    /// grow there: it is pushed back.
     pub(super) fn inset(&self, way: f64) -> Vec<Vec3> {
         let moved = |k: usize| {
             let of = |face: &&HullFace| face.corners.contains(&(k as u8));
@@ -100,9 +129,31 @@ impl Core {
                 right += n;
             }
             let step = square.try_inverse().map_or(mean, |inverse| inverse * right);
-            self.corners[k] - step * way
+            self.pushed_back(self.corners[k] - step * way, way)
         };
-        (0..self.corners.len()).map(moved).collect()
+        let mut kept: Vec<Vec3> = Vec::new();
+        for p in (0..self.corners.len()).map(moved) {
+            if kept.iter().all(|other| (p - other).norm() > ONE * way) {
+                kept.push(p);
+            }
+        }
+        kept
+    }
+
+    /// A point pushed back, plane by plane, until it stands out of no face's plane, moved inwards by `way`, by more than
+    /// [`STANDS_OUT`] of that; what is left then, towards the origin, which lies behind all of them.
+    fn pushed_back(&self, mut p: Vec3, way: f64) -> Vec3 {
+        let most = STANDS_OUT * way;
+        let level = |face: &HullFace| face.level - way + most;
+        for _ in 0..PUSHES {
+            let out = self.faces.iter().map(|face| (face.normal.dot(&p) - level(face), face));
+            match out.max_by(|one, other| one.0.total_cmp(&other.0)) {
+                Some((out, face)) if out > 0.0 => p -= face.normal * out,
+                _ => return p,
+            }
+        }
+        let share = |face: &HullFace| level(face) / face.normal.dot(&p).max(level(face));
+        p * self.faces.iter().map(share).fold(1.0, f64::min)
     }
 
     /// Distance of a point from the core, 0 inside: that to the nearest of its faces' planes, or more.

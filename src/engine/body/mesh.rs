@@ -78,6 +78,9 @@ impl Surface {
         let (hull, _) = try_convex_hull(&points).map_err(|_| BadSurface::Flat)?;
         let hull: Vec<Vec3> = hull.iter().map(|p| Vec3::new(p.x, p.y, p.z)).collect();
         let mut kept = first_corners(&hull);
+        if Core::of(&kept).is_err() {
+            kept = widest_four(&hull);
+        }
         loop {
             let core = Core::of(&kept)?;
             let far = hull.iter().map(|p| (core.distance(p), p));
@@ -105,4 +108,17 @@ fn first_corners(points: &[Vec3]) -> Vec<Vec3> {
         }
     }
     kept
+}
+
+/// Four points that span much: of a body with few corners those along the axes may lie in one plane.
+fn widest_four(points: &[Vec3]) -> Vec<Vec3> {
+    let farthest = |from: &dyn Fn(&Vec3) -> f64| {
+        points.iter().copied().max_by(|a, b| from(a).total_cmp(&from(b))).unwrap_or_default()
+    };
+    let start = points.first().copied().unwrap_or_default();
+    let a = farthest(&|p| (p - start).norm());
+    let b = farthest(&|p| (p - a).norm());
+    let c = farthest(&|p| (b - a).cross(&(p - a)).norm());
+    let across = (b - a).cross(&(c - a));
+    vec![a, b, c, farthest(&|p| across.dot(&(p - a)).abs())]
 }

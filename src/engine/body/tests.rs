@@ -85,6 +85,21 @@ fn cores_have_all_their_faces() {
     }
 }
 
+/// Points that a file holds with few digits lie only nearly in the planes of their faces: the faces are found all the same, none twice and none
+/// across another.
+#[test]
+fn faces_of_rounded_coordinates_do_not_overlap() {
+    let turned = turn(&Unit::new_normalize(Vec3::new(0.3, -1.0, 0.6)), 1.1);
+    for digits in [6, 7, 8, 9, 10, 11, 12] {
+        let step = 10.0_f64.powi(-digits);
+        let points = prism_surface(16, 0.6).points;
+        let rounded = points.iter().map(|p| (turned * p).map(|x| (x / step).round() * step));
+        let core = Core::of(&rounded.collect::<Vec<_>>()).unwrap();
+        assert_eq!(core.corners.len() + core.faces.len(), core.ridges.len() + 2, "{digits}");
+        assert!(digits < 10 || core.faces.len() == 18, "{digits}: {}", core.faces.len());
+    }
+}
+
 /// A rounded box keeps its faces where they are and loses only its corners, by (√3 − 1) of the balls' radius.
 #[test]
 fn rounding_keeps_faces() {
@@ -128,4 +143,65 @@ fn an_open_surface_is_refused() {
     assert_eq!(surface.check_closed(), Ok(()));
     surface.triangles.pop();
     assert_eq!(surface.check_closed(), Err(BadSurface::Open(3)));
+}
+
+/// Four corners are a body, wherever they are: a regular tetrahedron's lie three in a plane as seen along the axes.
+#[test]
+fn few_corners_span_a_body() {
+    let regular = [[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]];
+    let slender = [[0.0, 0.0, 0.0], [1.0, 0.9, 0.8], [0.9, 1.0, 0.7], [1.1, 0.7, 1.0]];
+    for corners in [regular, slender] {
+        let surface = Surface { points: corners.map(Vec3::from).to_vec(), triangles: Vec::new() };
+        let thinned = surface.thinned(32, 0.0).unwrap();
+        assert_eq!((thinned.corners.len(), thinned.of), (4, 4));
+        assert!(thinned.left < 1e-12);
+    }
+}
+
+/// However round its corners are, a body does not grow by it: no ball stands out of a face by more than a twentieth of its radius, also where
+/// edges and faces are shorter than that; faces of boxes stay where they are.
+#[test]
+fn rounding_stands_out_of_no_face() {
+    let scan: Vec<Vec3> = (0..32)
+        .map(|k| {
+            let (z, angle) = (2.0 * (f64::from(k) + 0.5) / 32.0 - 1.0, 2.399_963 * f64::from(k));
+            let ((sin, cos), r) = (crate::math::sin_cos(angle), (1.0 - z * z).sqrt());
+            let bump = 1.0 - 0.15 * f64::from(k * 7 % 5) / 5.0;
+            Vec3::new(r * cos, 0.8 * r * sin, 0.6 * z) * bump
+        })
+        .collect();
+    let disc: Vec<Vec3> =
+        sphere_points().iter().map(|p| p.component_mul(&Vec3::new(1.0, 1.0, 0.4))).collect();
+    // a pyramid whose tip is cut off
+    let spike: Vec<Vec3> = (0..6)
+        .map(|k| {
+            let ((sin, cos), r) =
+                (crate::math::sin_cos(2.1 * f64::from(k / 2)), if k % 2 == 0 { 1.0 } else { 0.1 });
+            Vec3::new(r * cos, r * sin, 3.0 * (1.0 - r))
+        })
+        .collect();
+    for points in
+        [scan, disc, spike, eota([1.0, 1.0, 0.5]).points, box_surface([3.0, 2.0, 1.0]).points]
+    {
+        let hull = Core::of(&points).unwrap();
+        let fan = |face: &HullFace| {
+            let own = face.corners.clone();
+            (2..own.len()).map(move |k| [own[0], own[k - 1], own[k]].map(u32::from))
+        };
+        let triangles = hull.faces.iter().flat_map(fan).collect();
+        let solid = Solid::of(&Surface { points: hull.corners.clone(), triangles });
+        let unit = solid.equal_radius();
+        for ball in [0.05, 0.1, 0.2, 0.3, 0.4] {
+            let Ok(shape) = Shape::of(&solid, &points, ball) else { continue };
+            for face in &hull.faces {
+                let normal = solid.axes.inverse_transform_vector(&face.normal);
+                let most =
+                    shape.core.corners.iter().map(|p| p.dot(&normal)).fold(f64::MIN, f64::max);
+                let level = (face.level - face.normal.dot(&solid.centre)) / unit;
+                let out = most + ball - level;
+                assert!(out <= 0.05 * ball * (1.0 + 1e-9), "{ball}: {out}");
+                assert!(points.len() != 8 || out.abs() < 1e-9, "{ball}: {out}");
+            }
+        }
+    }
 }

@@ -63,11 +63,7 @@ impl Shapes {
             return Ok(shapes);
         }
         for (index, table) in scene.rocks.shapes.iter().enumerate() {
-            let refuse = |why: BadSurface| {
-                let place = format!("[[rocks.shapes]] of #{}", index + 1);
-                let file = table.mesh.as_deref().unwrap_or(&scene.file);
-                Error::input(file, place, why.to_string(), remedy(&why))
-            };
+            let refuse = |why: BadSurface| refused(scene, (index, table), &why);
             let (made, line) = prepared(table)?.map_err(refuse)?;
             shapes.lines.push(line);
             shapes.entries.push(ShapeShare { table: table.clone(), made });
@@ -142,7 +138,8 @@ impl ShapeShare {
         let sides = sides_of(&self.table, quantile);
         let shape = match &self.made {
             Some(shape) => shape.clone(),
-            // checked at the ends of what can be drawn; between them nothing is rounder
+            // checked at the ends of what can be drawn; between them nothing is rounder: with x the logarithms of the sides, that of a
+            // face's distance over the radius of equal volume, −½ ln Σ nᵢ² e^(−2xᵢ) − ⅓ Σ xᵢ, is concave, so it is least at an end
             None => of_sides(&self.table, sides).ok()?,
         };
         Some((sides, shape))
@@ -254,9 +251,14 @@ fn prepared(
 }
 
 fn made(table: &ShapeTable) -> std::result::Result<(Option<Shape>, String), BadSurface> {
-    // the extremes must do too: a shape that is drawn is made without a chance to complain
-    for share in [0.001, 0.999] {
-        make(table, |axis| axis.quantile(share))?;
+    // the extremes must do too, each side's with each other's: a shape that is drawn is made without a chance to complain
+    for ends in 0..8_u32 {
+        let mut side = 0;
+        make(table, |axis| {
+            let (least, most) = axis.support();
+            side += 1;
+            if ends >> (side - 1) & 1 == 0 { least } else { most }
+        })?;
     }
     let shape = make(table, |axis| axis.quantile(0.5))?;
     let mut drawn = table.axes.iter().flatten().chain(&table.ratio);
@@ -311,6 +313,19 @@ fn welded(facets: &Facets) -> Surface {
         surface.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
     }
     surface
+}
+
+/// The message of a shape that cannot be made: of its scan, or of its corners.
+fn refused(scene: &Scene, (index, table): (usize, &ShapeTable), why: &BadSurface) -> Error {
+    let of_corners = matches!(why, BadSurface::NoCore).then_some(table.corner_radius).flatten();
+    let key = if of_corners.is_some() { "corner_radius" } else { "mesh" };
+    let place = format!("[[rocks.shapes]] #{} {key}", index + 1);
+    let found = of_corners.map_or_else(
+        || why.to_string(),
+        |ball| format!("found {ball}, so round that nothing is left between the corners"),
+    );
+    let file = table.mesh.as_deref().filter(|_| of_corners.is_none()).unwrap_or(&scene.file);
+    Error::input(file, place, found, remedy(why))
 }
 
 fn remedy(why: &BadSurface) -> &'static str {

@@ -35,7 +35,10 @@ pub struct ShapeTable {
 
 /// How rocks with a shape are turned at release.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(untagged, expecting = "\"random\", or a quaternion [w, x, y, z]")]
+#[serde(
+    untagged,
+    expecting = "found neither \"random\" nor four numbers; write orientation = \"random\" or a quaternion [w, x, y, z]"
+)]
 pub enum Orientation {
     /// Uniform over all turns.
     Random(RandomWord),

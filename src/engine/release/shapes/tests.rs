@@ -14,3 +14,24 @@ fn turns_are_uniform() {
     assert!(mean.abs() < 5.0 / (3.0 * n as f64).sqrt(), "{mean}");
     assert!((square - 1.0 / 3.0).abs() < 5.0 * 0.298 / (n as f64).sqrt(), "{square}");
 }
+
+/// Sides that are drawn are tried with each other's ends: with corners of 0.3, a cube and a bar have a core left, a slab has none, and it must
+/// not be met as a sphere.
+#[test]
+fn sides_are_tried_with_each_others_ends() {
+    let table = |axes: &str, ball: f64| -> ShapeTable {
+        toml::from_str(&format!("kind = \"box\"\naxes = {axes}\ncorner_radius = {ball}")).unwrap()
+    };
+    let both = "[{ uniform = [0.1, 1.0] }, { uniform = [0.1, 1.0] }, 1.0]";
+    assert_eq!(made(&table(both, 0.3)).err(), Some(BadSurface::NoCore));
+    let rare = "[1.0, 1.0, { values = [0.1, 1.0], weights = [1, 5000] }]";
+    assert_eq!(made(&table(rare, 0.3)).err(), Some(BadSurface::NoCore));
+    let fits = table(both, 0.15);
+    let (shape, _) = made(&fits).unwrap();
+    let entry = ShapeShare { table: fits, made: shape };
+    for first in [0.0, 0.3, 0.999] {
+        assert!(
+            [0.0, 0.5, 0.999].iter().all(|&other| entry.shape([first, other, 0.5, 0.5]).is_some())
+        );
+    }
+}
