@@ -16,8 +16,10 @@ use std::sync::OnceLock;
 const NODES: usize = 512;
 /// Tolerance of the nodes (–).
 const TOLERANCE: f64 = 1e-6;
-/// Difference of two blows that is none (–, of each of their numbers).
-const SAME: f64 = 1e-5;
+/// Difference of two materials that is none (–, of each of their numbers).
+const SAME: f64 = 1e-9;
+/// The same of `m R²/I`: rocks that overlap by the error of a step are struck at levers that are shorter by as much (–).
+const NEARLY: f64 = 1e-2;
 
 /// The blows of all pairs of one material.
 #[derive(Debug)]
@@ -50,7 +52,7 @@ impl BlowTable {
         }
         let x = slip / approach;
         // what a spring that loses nothing gives back is twice the slip, and no rounding may give more
-        let against = self.against(x).min(2.0 * x / (1.0 + self.plane.turns()));
+        let against = self.against(x).min(2.0 * x / (1.0 + turns(with.0)));
         Some([approach * (1.0 + self.exit.speed), approach * against])
     }
 
@@ -58,15 +60,14 @@ impl BlowTable {
     fn is_of(&self, (body, law): (&Body, &Law)) -> bool {
         let (damping_ratio, shear) = Plane::elements((body, law), false);
         let own = &self.plane.shear;
-        let turns = body.mass * body.radius * body.radius / body.inertia;
         let pairs = [
-            (damping_ratio, self.plane.swing.zeta),
-            (shear.damping, own.damping),
-            (shear.rate, own.rate),
-            (shear.cap, own.cap),
-            (turns, self.plane.turns()),
+            (damping_ratio, self.plane.swing.zeta, SAME),
+            (shear.damping, own.damping, SAME),
+            (shear.rate, own.rate, SAME),
+            (shear.cap, own.cap, SAME),
+            (turns(body), self.plane.turns(), NEARLY),
         ];
-        pairs.iter().all(|(one, other)| (one - other).abs() <= SAME * other.abs())
+        pairs.iter().all(|(one, other, off)| (one - other).abs() <= off * other.abs())
     }
 
     /// Impulse against a slip of `x` approaches.
@@ -77,10 +78,16 @@ impl BlowTable {
         low + (high - low) * (at - below as f64)
     }
 
+    /// Followed when it is asked for first.
     fn node(&self, k: usize) -> f64 {
         *self.nodes[k].get_or_init(|| {
             let share = k as f64 / NODES as f64;
             self.plane.rubbed(self.sliding * share / (1.0 - share), self.exit.lift)
         })
     }
+}
+
+/// `m R²/I` (–).
+fn turns(body: &Body) -> f64 {
+    body.mass * body.radius * body.radius / body.inertia
 }

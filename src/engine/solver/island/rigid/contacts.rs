@@ -359,18 +359,17 @@ impl GroundContact {
     /// Finds the impulses for a motion that holds the present ones, and acts with what they change by; how much that
     /// changes the speed at the contact (m/s).
     pub(super) fn solve(&mut self, ball: &mut StepBody) -> f64 {
-        let held = *self;
-        let (normal_force, turn) = held.load(&ball.body);
+        let held = self.impulses();
+        let (normal_force, turn) = self.load(&ball.body);
         let (v, w) = (ball.v - normal_force * ball.inv.0, ball.w - turn * ball.inv.1);
         self.strike(&ball.body, &v, &w);
-        if held.normal_force <= 0.0 && self.normal_force <= 0.0 {
+        if held.0 <= 0.0 && self.normal_force <= 0.0 {
             return 0.0;
         }
         let (normal_force, turn) = self.load(&ball.body);
         (ball.v, ball.w) = (v + normal_force * ball.inv.0, w + turn * ball.inv.1);
-        let change = (self.normal_force - held.normal_force)
-            .abs()
-            .max((self.shear_force - held.shear_force).norm());
-        change.max((self.turn - held.turn).norm() / ball.body.radius) * ball.inv.0
+        let change = self.impulses().less(&held);
+        let along = change.1.norm().max(change.2.norm() / ball.body.radius);
+        change.0.abs().max(along) * ball.inv.0
     }
 }
