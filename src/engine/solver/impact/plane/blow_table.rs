@@ -17,9 +17,9 @@ const NODES: usize = 512;
 /// Tolerance of the nodes (–).
 const TOLERANCE: f64 = 1e-6;
 /// Difference of two materials that is none (–, of each of their numbers).
-const SAME: f64 = 1e-9;
+const SAME_MATERIAL: f64 = 1e-9;
 /// The same of `m R²/I`: rocks that overlap by the error of a step are struck at levers that are shorter by as much (–).
-const NEARLY: f64 = 1e-2;
+const SAME_LEVERS: f64 = 1e-2;
 
 /// The blows of all pairs of one material.
 #[derive(Debug)]
@@ -61,11 +61,11 @@ impl BlowTable {
         let (damping_ratio, shear) = Plane::elements((body, law), false);
         let own = &self.plane.shear;
         let pairs = [
-            (damping_ratio, self.plane.swing.zeta, SAME),
-            (shear.damping, own.damping, SAME),
-            (shear.rate, own.rate, SAME),
-            (shear.cap, own.cap, SAME),
-            (turns(body), self.plane.turns(), NEARLY),
+            (damping_ratio, self.plane.swing.zeta, SAME_MATERIAL),
+            (shear.damping, own.damping, SAME_MATERIAL),
+            (shear.rate, own.rate, SAME_MATERIAL),
+            (shear.cap, own.cap, SAME_MATERIAL),
+            (turns(body), self.plane.turns(), SAME_LEVERS),
         ];
         pairs.iter().all(|(one, other, off)| (one - other).abs() <= off * other.abs())
     }

@@ -31,8 +31,9 @@ const SETTLED_FEW: f64 = 1e-3;
 pub(super) const FEW: usize = 64;
 /// The same over the capture speed, where there is hardly any weight (–).
 const SETTLED_OF_CAPTURE: f64 = 1e-6;
-/// Part of that from which a change stirs the rocks: what is passed over adds up (–).
-const STIRS: f64 = 0.2;
+/// Part of that from which a change stirs the rocks (–). What is passed over adds up; with a fifth a heap takes half as many
+/// solutions of contacts more, most of them in few steps, and loses its energy no faster.
+const STIRS: f64 = 0.5;
 
 impl RigidIsland {
     /// Sweeps until nothing changes any more, helped along by jumps; whether that came about. A jump that does not bring
