@@ -261,6 +261,22 @@ impl ContactState {
         }
     }
 
+    /// How far `c` is from where touches were looked for last (m); they are looked for anew if that is farther than `way` (m).
+    #[inline]
+    pub(super) fn look_ahead_near(
+        &mut self,
+        world: &ContactEnvironment,
+        c: &Vec3,
+        way: f64,
+    ) -> Vec3 {
+        let off = self.looked_ahead.map(|at| c - at);
+        if let Some(off) = off.filter(|off| off.norm_squared() <= way * way) {
+            return off;
+        }
+        self.look_ahead_again(world, c);
+        Vec3::zeros()
+    }
+
     /// The memory of touch `k` of the last look; a new one starts without stretch and without history of rates.
     #[inline]
     pub fn history_of(

@@ -51,7 +51,7 @@ mod integrate;
 mod tests;
 
 pub(super) use plane::LOCAL;
-pub(crate) use plane::{Followed, Plane, Rebound, blow_along_a_line};
+pub(crate) use plane::{BlowTable, Followed, Plane, Rebound, blow_along_a_line};
 pub(crate) use rigid_limit::{FrozenContact, throw};
 
 /// What following an impact has cost.

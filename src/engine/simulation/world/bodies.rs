@@ -17,9 +17,11 @@ use crate::ground::{Capture, Damping, Ground, Law};
 use crate::release::Release;
 use crate::simulation::Trajectory;
 use crate::simulation::settings::RunSettings;
-use crate::solver::island::TRAVEL;
+use crate::solver::impact::BlowTable;
 use crate::solver::island::broad_phase::{Ball, overlapping};
+use crate::solver::island::{TRAVEL, blows_of};
 use rayon::prelude::*;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Way of the fastest rock in one window, relative to its radius (–): the islands stay small.
@@ -57,6 +59,8 @@ pub(super) struct BodyWorld<'a> {
     pub(super) now_s: f64,
     /// What the world has cost so far, counted.
     pub(super) statistics: WorldStats,
+    /// Blows between two of its rocks, in the rigid limit.
+    blows: Option<Arc<BlowTable>>,
 }
 
 impl<'a> BodyWorld<'a> {
@@ -66,7 +70,7 @@ impl<'a> BodyWorld<'a> {
         answer: &PairMaterial,
         bodies: Vec<Option<Box<WorldBody<'a>>>>,
     ) -> Self {
-        Self {
+        let mut world = Self {
             settings,
             answer: (answer.ground, Damping::of(answer.ground.restitution)),
             capture: settings.capture(),
@@ -75,7 +79,13 @@ impl<'a> BodyWorld<'a> {
             wide: CachedPairs::default(),
             now_s: 0.0,
             statistics: WorldStats::default(),
+            blows: None,
+        };
+        if world.is_rigid() && world.bodies.len() > 1 {
+            let [a, b] = [0, 1].map(|k| &world.body(k).member.body);
+            world.blows = blows_of(&world.law(0, 1), [a, b]).map(Arc::new);
         }
+        world
     }
 
     /// Rock `k`.
@@ -350,13 +360,10 @@ impl<'a> BodyWorld<'a> {
             // rocks move by pointer into the island: nothing is copied
             let ids: Vec<u32> = list.iter().map(|&k| present[k as usize]).collect();
             let bodies = ids.iter().filter_map(|&k| self.bodies[k as usize].take()).collect();
-            jobs.push(IslandWindow::new(
-                self.settings,
-                ids,
-                bodies,
-                pair_histories,
-                (self.now_s, end_s),
-            ));
+            let times_s = (self.now_s, end_s);
+            let mut job = IslandWindow::new(self.settings, ids, bodies, pair_histories, times_s);
+            job.blows.clone_from(&self.blows);
+            jobs.push(job);
         }
         jobs
     }

@@ -14,10 +14,12 @@ use super::{BodyState, WorldBody, WorldStats};
 use crate::contact::pair::{PairHistory, PairImpact, meeting_s};
 use crate::simulation::Stop;
 use crate::simulation::settings::RunSettings;
+use crate::solver::impact::BlowTable;
 use crate::solver::island::partition::Partition;
 use crate::solver::island::{Done, Given, Island};
 use crate::solver::loss::Loss;
 use crate::solver::step_control::{ONSET, StepError};
+use std::sync::Arc;
 
 /// A gap between two rocks that is rounding of their flight (–, relative to the sum of their radii).
 ///
@@ -54,6 +56,8 @@ pub(super) struct IslandWindow<'a> {
     pub(super) missed: bool,
     /// What the island cost, counted.
     pub(super) statistics: WorldStats,
+    /// Blows between two rocks of the world's material.
+    pub(super) blows: Option<Arc<BlowTable>>,
 }
 
 impl<'a> IslandWindow<'a> {
@@ -75,6 +79,7 @@ impl<'a> IslandWindow<'a> {
             goes_back: true,
             missed: false,
             statistics: WorldStats::default(),
+            blows: None,
         }
     }
 
@@ -273,8 +278,9 @@ impl<'a> IslandWindow<'a> {
         let h = h.fold(f64::INFINITY, f64::min);
         // the solver borrows the rocks' state; the journeys stay here
         let members = self.bodies.iter_mut().map(|body| body.member.lend()).collect();
-        let mut island =
-            Island::new(self.settings.terrain, members, std::mem::take(&mut self.pair_histories));
+        let pair_histories = std::mem::take(&mut self.pair_histories);
+        let mut island = Island::new(self.settings.terrain, members, pair_histories)
+            .of_material(self.blows.clone());
         island.h = h;
         island
     }

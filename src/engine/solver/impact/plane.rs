@@ -4,6 +4,7 @@
 //! speed. Frame: two tangents and the normal. Normal motion first, closed and alone; then motion
 //! along the plane under its force; then the free way out of the slab.
 
+mod blow_table;
 mod straight;
 
 use super::ImpactEffort;
@@ -17,6 +18,7 @@ use crate::solver::body::Body;
 use crate::solver::friction_rolling::{Along, ContactFrame, Local};
 use crate::solver::loss::Loss;
 
+pub(crate) use blow_table::BlowTable;
 pub(crate) use straight::blow_along_a_line;
 
 /// From this tolerance on a shorter series of the force is accurate enough (–).
@@ -110,6 +112,13 @@ impl Plane {
             tolerance,
             first: FIRST * math::pow(tolerance, 0.2),
         }
+    }
+
+    /// Damping ratio of the normal motion (–), and the shear element, of one point of contact.
+    fn elements((body, law): (&Body, &Law), captured: bool) -> (f64, SliderElement) {
+        let normal = law.normal(captured);
+        let shear = SliderElement::shear(body, law, normal.stiffness_n_m(1.0));
+        (normal.damping_ratio(body.mass), shear)
     }
 
     /// Follows a rock that has just touched the plane with unit normal `n`, with velocity `v` (m/s), `n·v < 0`, and spin `w`

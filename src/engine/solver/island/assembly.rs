@@ -15,9 +15,11 @@ use crate::ground::Law;
 use crate::rock::Vec3;
 use crate::solver::Settings;
 use crate::solver::contact_state::ContactEnvironment;
+use crate::solver::impact::BlowTable;
 use crate::solver::step_control::{self, Control, ONSET, StepError, TRAVEL, TrialStep, TryOutcome};
 use crate::solver::tableau::{STAGES, TR_BDF2};
 use crate::terrain::Terrain;
+use std::sync::Arc;
 
 /// Overload at which a bond does not simply break: the step is cut to find the moment.
 const OVERLOAD: f64 = 0.05;
@@ -86,6 +88,12 @@ impl<'a> Island<'a> {
             rigid: RigidIsland::default(),
             pair_histories,
         }
+    }
+
+    /// The same, with the blows of two rocks of the material that all are of.
+    #[must_use]
+    pub(crate) fn of_material(self, blows: Option<Arc<BlowTable>>) -> Self {
+        Self { rigid: RigidIsland::of_material(blows), ..self }
     }
 
     /// One accepted step of at most `h_max` (s).

@@ -30,23 +30,27 @@ impl ContactQueue {
     }
 
     /// The first at or after `k`.
+    #[inline]
     pub(super) fn from(&self, k: usize) -> Option<usize> {
-        let first = *self.0.get(k / 64)? & (u64::MAX << (k % 64));
-        let rest = self.0.iter().zip(0..).skip(k / 64 + 1).map(|(word, at)| (at, *word));
-        let mut words = std::iter::once((k / 64, first)).chain(rest);
-        words
-            .find(|(_, word)| *word != 0)
-            .map(|(at, word)| 64 * at + word.trailing_zeros() as usize)
+        let mut at = k / 64;
+        let mut word = *self.0.get(at)? & (u64::MAX << (k % 64));
+        while word == 0 {
+            at += 1;
+            word = *self.0.get(at)?;
+        }
+        Some(64 * at + word.trailing_zeros() as usize)
     }
 
     /// The last before `k`.
+    #[inline]
     pub(super) fn below(&self, k: usize) -> Option<usize> {
-        let first = self.0.get(k / 64).map_or(0, |word| word & !(u64::MAX << (k % 64)));
-        let rest = (0..k / 64).rev().map(|at| (at, self.0[at]));
-        let mut words = std::iter::once((k / 64, first)).chain(rest);
-        words
-            .find(|(_, word)| *word != 0)
-            .map(|(at, word)| 64 * at + 63 - word.leading_zeros() as usize)
+        let mut at = k / 64;
+        let mut word = self.0.get(at).map_or(0, |word| word & !(u64::MAX << (k % 64)));
+        while word == 0 {
+            at = at.checked_sub(1)?;
+            word = self.0[at];
+        }
+        Some(64 * at + 63 - word.leading_zeros() as usize)
     }
 
     pub(super) fn last(&self) -> Option<usize> {

@@ -24,14 +24,17 @@ use super::outcome::{Done, Given, Hit};
 use crate::contact::pair::{PairHistory, between};
 use crate::rock::Vec3;
 use crate::solver::contact_state::ContactEnvironment;
+use crate::solver::impact::BlowTable;
 use crate::solver::law::capture_m_s;
 use crate::solver::loss::Loss;
 use crate::solver::rigid::{HELD, remember};
 use crate::solver::step_control::StepError;
 use crate::terrain::Terrain;
+pub(crate) use contacts::blows_of;
 use contacts::{BallContact, GroundContact, StepBody};
 use impacts::{ImpactScene, PendingImpact};
 use std::collections::BinaryHeap;
+use std::sync::Arc;
 use sweeps::Leaning;
 
 /// Longest way of a rock in one step (–, relative to its radius). Impacts on the way are found wherever they are; a
@@ -65,6 +68,8 @@ pub(super) struct RigidIsland {
     capture_m_s: f64,
     /// Length of the current step (s).
     dt: f64,
+    /// Blows between rocks of one material.
+    blows: Option<Arc<BlowTable>>,
     sweeps: u64,
     jumps: u64,
 }
@@ -101,6 +106,11 @@ impl RigidIsland {
             ..Done::default()
         };
         if finite { Ok(done) } else { Err(StepError::NotFinite) }
+    }
+
+    /// With the blows of a world whose rocks are of one material.
+    pub(super) fn of_material(blows: Option<Arc<BlowTable>>) -> Self {
+        Self { blows, ..Self::default() }
     }
 
     /// Sweeps and systems solved since this was asked last.

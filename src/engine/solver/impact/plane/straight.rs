@@ -20,8 +20,7 @@ pub(crate) fn blow_along_a_line(
     [approach, slip]: [f64; 2],
     tolerance: f64,
 ) -> [f64; 2] {
-    let body = Body { gravity: Vec3::zeros(), ..*body };
-    let plane = Plane::of_patch(&body, law, (captured, 1.0), tolerance);
+    let plane = blow_plane((body, law), captured, tolerance);
     // without weight nothing keeps it but a speed too small to be squared
     let Some(exit) = plane.swing.exit(0.0) else { return [approach, 0.0] };
     let kept = if captured { 0.0 } else { exit.speed };
@@ -33,9 +32,15 @@ pub(crate) fn blow_along_a_line(
     [approach * (1.0 + kept), against]
 }
 
+/// The impacts of a body without weight.
+pub(super) fn blow_plane((body, law): (&Body, &Law), captured: bool, tolerance: f64) -> Plane {
+    let body = Body { gravity: Vec3::zeros(), ..*body };
+    Plane::of_patch(&body, law, (captured, 1.0), tolerance)
+}
+
 impl Plane {
     /// Impulse against the slip `u` of a blow of so long, in units of mass, approach speed and `1/ω`.
-    fn rubbed(&self, u: f64, length: f64) -> f64 {
+    pub(super) fn rubbed(&self, u: f64, length: f64) -> f64 {
         let flow = Straight { element: self.shear, lightness: 1.0 + self.turns() };
         let start = Start {
             v: [u, 0.0],

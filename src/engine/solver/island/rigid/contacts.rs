@@ -6,7 +6,7 @@ use crate::ground::{FrictionLimits, Law};
 use crate::rock::Vec3;
 use crate::solver::body::Body;
 use crate::solver::friction_rolling::SlipState;
-use crate::solver::impact::{FrozenContact, blow_along_a_line, throw};
+use crate::solver::impact::{BlowTable, FrozenContact, blow_along_a_line, throw};
 use crate::solver::island::pair_contact::Twist;
 use crate::solver::rigid::rub;
 
@@ -139,14 +139,18 @@ impl BallContact {
     /// Adds to its impulses what the cone allows, and acts with that.
     pub(super) fn push_on(&mut self, step: &Impulses, a: &mut StepBody, b: &mut StepBody) {
         let next = self.impulses().plus(step).within(&self.limits);
-        let change = Self {
-            normal_force: next.0 - self.normal_force,
-            shear_force: next.1 - self.shear_force,
-            ..*self
-        };
-        (self.normal_force, self.shear_force) = (next.0, next.1);
-        a.take(&change.load(0));
-        b.take(&change.load(1));
+        self.go_to((next.0, next.1), a, b);
+    }
+
+    /// Takes these impulses, and acts with what that changes; the change.
+    #[inline]
+    fn go_to(&mut self, next: (f64, Vec3), a: &mut StepBody, b: &mut StepBody) -> (f64, Vec3) {
+        let change = (next.0 - self.normal_force, next.1 - self.shear_force);
+        (self.normal_force, self.shear_force) = next;
+        let (push, turn) = (self.n * change.0 - change.1, self.n.cross(&change.1));
+        a.take(&(push, turn * self.levers[0]));
+        b.take(&(-push, turn * self.levers[1]));
+        change
     }
 
     /// The contact of two rocks with centres at `at`, without impulses.
@@ -199,23 +203,20 @@ impl BallContact {
     }
 
     /// Impulses of an impact of the two rocks: the limit of stiff springs, the same map as for a rock and the ground.
-    ///
-    /// What the two do to each other is what the ground does to one body with their reduced mass `1/(1/m_a + 1/m_b)`, with their
-    /// velocity apart and their slip for its velocity, and an inertia that meets friction at the contact point as they do.
     pub(super) fn impact(
         &mut self,
-        (law, tolerance): (&Law, f64),
+        (law, known, tolerance): (&Law, Option<&BlowTable>, f64),
         [a, b]: [&StepBody; 2],
         captured: bool,
     ) {
-        let (inv_n, inv_t) = self.inv;
-        let (mass, radius) = (1.0 / inv_n, a.body.radius.min(b.body.radius));
-        let inertia = mass * radius * radius / (inv_t / inv_n - 1.0);
-        let body = Body { mass, inertia, radius, gravity: Vec3::zeros() };
+        let body = one_for_two(self.inv, a.body.radius.min(b.body.radius));
+        let mass = body.mass;
         let (approach, slip) = (-self.speed(a, b), self.slip(a, b));
         let speeds = [approach, slip.norm()];
         let captured = captured || law.is_plastic();
-        let pushed = blow_along_a_line((&body, law), captured, speeds, tolerance);
+        let known = known.filter(|_| !captured).and_then(|table| table.blow((&body, law), speeds));
+        let pushed =
+            known.unwrap_or_else(|| blow_along_a_line((&body, law), captured, speeds, tolerance));
         self.normal_force = mass * pushed[0];
         // followed to a tolerance, the impulse of a rock that slides all the while may be beyond its cap by as much
         let shear_force = slip * (mass * pushed[1] / speeds[1].max(f64::MIN_POSITIVE));
@@ -226,24 +227,34 @@ impl BallContact {
     /// changes the speed at the contact (m/s).
     #[inline]
     pub(super) fn solve(&mut self, a: &mut StepBody, b: &mut StepBody) -> f64 {
-        let (held, shear_force) = (self.normal_force, self.shear_force);
+        let held = self.normal_force;
         let speed = self.speed(a, b);
         let normal_force = (held + (self.target - speed) / self.inv.0).max(0.0);
         if normal_force <= 0.0 && held <= 0.0 {
             return 0.0;
         }
-        let stick = shear_force + self.slip(a, b) / self.inv.1;
-        (self.normal_force, self.shear_force) =
-            (normal_force, self.limits.shear(stick, normal_force));
-        let change = Self {
-            normal_force: normal_force - held,
-            shear_force: self.shear_force - shear_force,
-            ..*self
-        };
-        a.take(&change.load(0));
-        b.take(&change.load(1));
-        (change.normal_force.abs() * self.inv.0).max(change.shear_force.norm() * self.inv.1)
+        let stick = self.shear_force + self.slip(a, b) / self.inv.1;
+        let next = (normal_force, self.limits.shear(stick, normal_force));
+        let change = self.go_to(next, a, b);
+        (change.0.abs() * self.inv.0).max(change.1.norm() * self.inv.1)
     }
+}
+
+/// What two rocks do to each other is what the ground does to one body with their reduced mass `1/(1/m_a + 1/m_b)`, with their
+/// velocity apart and their slip for its velocity, and an inertia that meets friction at the contact point as they do. `inv_n` is
+/// one over that mass, `inv_t` the same of the touched point along the surface (1/kg).
+fn one_for_two((inv_n, inv_t): (f64, f64), radius: f64) -> Body {
+    let mass = 1.0 / inv_n;
+    let inertia = mass * radius * radius / (inv_t / inv_n - 1.0);
+    Body { mass, inertia, radius, gravity: Vec3::zeros() }
+}
+
+/// The blows of all rocks that are of the material of these two, which rebound from each other by `law`.
+pub(crate) fn blows_of(law: &Law, [a, b]: [&Body; 2]) -> Option<BlowTable> {
+    let inv_n = 1.0 / a.mass + 1.0 / b.mass;
+    let turning = [a, b].map(|body| body.radius * body.radius / body.inertia);
+    let body = one_for_two((inv_n, inv_n + turning[0] + turning[1]), a.radius.min(b.radius));
+    BlowTable::new(&body, &law.without_rolling())
 }
 
 /// The contact of a rock with the mesh and its impulses.
@@ -348,18 +359,17 @@ impl GroundContact {
     /// Finds the impulses for a motion that holds the present ones, and acts with what they change by; how much that
     /// changes the speed at the contact (m/s).
     pub(super) fn solve(&mut self, ball: &mut StepBody) -> f64 {
-        let held = *self;
-        let (normal_force, turn) = held.load(&ball.body);
+        let held = self.impulses();
+        let (normal_force, turn) = self.load(&ball.body);
         let (v, w) = (ball.v - normal_force * ball.inv.0, ball.w - turn * ball.inv.1);
         self.strike(&ball.body, &v, &w);
-        if held.normal_force <= 0.0 && self.normal_force <= 0.0 {
+        if held.0 <= 0.0 && self.normal_force <= 0.0 {
             return 0.0;
         }
         let (normal_force, turn) = self.load(&ball.body);
         (ball.v, ball.w) = (v + normal_force * ball.inv.0, w + turn * ball.inv.1);
-        let change = (self.normal_force - held.normal_force)
-            .abs()
-            .max((self.shear_force - held.shear_force).norm());
-        change.max((self.turn - held.turn).norm() / ball.body.radius) * ball.inv.0
+        let change = self.impulses().less(&held);
+        let along = change.1.norm().max(change.2.norm() / ball.body.radius);
+        change.0.abs().max(along) * ball.inv.0
     }
 }

@@ -177,7 +177,11 @@ impl RigidIsland {
         let mut ball_contact = BallContact::new((place, pair_history), [a, b], [&at[0], &at[1]]);
         let law = pair_history.law.without_rolling();
         let before = [(a.v, a.w), (b.v, b.w)];
-        ball_contact.impact((&law, tolerance), [a, b], a.blows.max(b.blows) >= LIVELY);
+        ball_contact.impact(
+            (&law, self.blows.as_deref(), tolerance),
+            [a, b],
+            a.blows.max(b.blows) >= LIVELY,
+        );
         let mut given = [0.0; 2];
         for (k, ball) in [a, b].into_iter().enumerate() {
             let load = ball_contact.load(k);

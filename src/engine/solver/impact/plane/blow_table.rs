@@ -1,0 +1,93 @@
+//! Blows along a line from a table: among spheres of one material all pairs answer slip by the same function.
+//!
+//! In units of the approach and of the spring's own time a blow without weight and rolling knows its damping ratio, its shear element,
+//! `1 + m R²/I` and slip over approach `x`. With springs and dashpots of one material the first three are the same for
+//! spheres of all sizes, so the impulse against the slip is one function `J(x)`: 0 at rest, and `μ (1 + e)` where the
+//! contact slides from its beginning to its end. It is followed at the nodes between which a blow falls, once for all, and is a
+//! straight line between them.
+
+use super::straight::blow_plane;
+use super::{Exit, Plane};
+use crate::ground::Law;
+use crate::solver::body::Body;
+use std::sync::OnceLock;
+
+/// Nodes but the last, equal in `x/(x + x₀)`: a line between them is off by less than an impact at the tolerance of nodes.
+const NODES: usize = 512;
+/// Tolerance of the nodes (–).
+const TOLERANCE: f64 = 1e-6;
+/// Difference of two materials that is none (–, of each of their numbers).
+const SAME_MATERIAL: f64 = 1e-9;
+/// The same of `m R²/I`: rocks that overlap by the error of a step are struck at levers that are shorter by as much (–).
+const SAME_LEVERS: f64 = 1e-2;
+
+/// The blows of all pairs of one material.
+#[derive(Debug)]
+pub(crate) struct BlowTable {
+    plane: Plane,
+    exit: Exit,
+    /// Slip over approach from which on the contact about slides all the while (–).
+    sliding: f64,
+    /// Impulses over mass and approach; each is found when it is asked for, and is the same whoever asks.
+    nodes: Box<[OnceLock<f64>]>,
+}
+
+impl BlowTable {
+    /// An empty table of the blows on `body` that rebound; `None` where there is nothing to follow.
+    pub(crate) fn new(body: &Body, law: &Law) -> Option<Self> {
+        let plane = blow_plane((body, law), false, TOLERANCE);
+        let exit = plane.swing.exit(0.0).filter(|_| plane.shear.is_on())?;
+        let most = plane.shear.damping * plane.shear.cap * (1.0 + exit.speed);
+        let sliding = (1.0 + plane.turns()) * most;
+        let nodes: Box<[OnceLock<f64>]> = (0..=NODES).map(|_| OnceLock::new()).collect();
+        nodes[0].get_or_init(|| 0.0);
+        nodes[NODES].get_or_init(|| most);
+        Some(Self { plane, exit, sliding, nodes })
+    }
+
+    /// As [`blow_along_a_line`](super::blow_along_a_line), without capture; `None` for a blow that is not of this material.
+    pub(crate) fn blow(&self, with: (&Body, &Law), [approach, slip]: [f64; 2]) -> Option<[f64; 2]> {
+        if !self.is_of(with) {
+            return None;
+        }
+        let x = slip / approach;
+        // what a spring that loses nothing gives back is twice the slip, and no rounding may give more
+        let against = self.against(x).min(2.0 * x / (1.0 + turns(with.0)));
+        Some([approach * (1.0 + self.exit.speed), approach * against])
+    }
+
+    /// Whether the blows of this body are those of the table.
+    fn is_of(&self, (body, law): (&Body, &Law)) -> bool {
+        let (damping_ratio, shear) = Plane::elements((body, law), false);
+        let own = &self.plane.shear;
+        let pairs = [
+            (damping_ratio, self.plane.swing.zeta, SAME_MATERIAL),
+            (shear.damping, own.damping, SAME_MATERIAL),
+            (shear.rate, own.rate, SAME_MATERIAL),
+            (shear.cap, own.cap, SAME_MATERIAL),
+            (turns(body), self.plane.turns(), SAME_LEVERS),
+        ];
+        pairs.iter().all(|(one, other, off)| (one - other).abs() <= off * other.abs())
+    }
+
+    /// Impulse against a slip of `x` approaches.
+    fn against(&self, x: f64) -> f64 {
+        let at = NODES as f64 * (x / (x + self.sliding));
+        let below = (at as usize).min(NODES - 1);
+        let [low, high] = [below, below + 1].map(|k| self.node(k));
+        low + (high - low) * (at - below as f64)
+    }
+
+    /// Followed when it is asked for first.
+    fn node(&self, k: usize) -> f64 {
+        *self.nodes[k].get_or_init(|| {
+            let share = k as f64 / NODES as f64;
+            self.plane.rubbed(self.sliding * share / (1.0 - share), self.exit.lift)
+        })
+    }
+}
+
+/// `m R²/I` (–).
+fn turns(body: &Body) -> f64 {
+    body.mass * body.radius * body.radius / body.inertia
+}
