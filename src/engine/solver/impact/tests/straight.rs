@@ -63,7 +63,7 @@ fn a_coarse_blow_is_as_good_as_it_says() {
 }
 
 /// Spheres of one material rebound by one table, whatever their mass: its impulse of friction is off by less than a blow that is followed to
-/// 2e-5 of its speed (7e-6), the rebound is the closed form, and no blow gives energy. Another material has another.
+/// 2e-5 of its speed, the rebound is the closed form, and no blow gives energy. Another material has another.
 #[test]
 fn a_table_is_that_of_all_spheres_of_a_material() {
     let mut uniform = uniforms(11);
