@@ -256,3 +256,38 @@ fn a_rock_larger_than_its_triangles_rebounds_as_on_a_plane() {
         }
     }
 }
+
+/// e = 1 without friction on the rim of a rough sheet, where the ball presses into several points of its border: energy is kept.
+#[test]
+fn elastic_impacts_on_the_rim_of_a_rough_sheet_keep_their_energy() {
+    let terrain = noisy(0.25, 16, 0.005);
+    let ground = rockfall::ground::Ground {
+        normal_stiffness_n_m: 1e10,
+        shear_stiffness_n_m: 0.25e10,
+        friction_angle_rad: 0.0,
+        restitution: Some(1.0),
+        ..GROUND
+    };
+    let rock = Rock { radius_m: 1.5, ..ROCK };
+    let case = Case { scheme: Scheme::Reference, tolerance_m_s: 1e-8, ground, rock, ..CASE };
+    let places = (0..400).map(|k| [1.95 + 0.005 * f64::from(k % 40), -1.0 + 0.005 * f64::from(k)]);
+    let off = places.map(|[x, y]| kept(&terrain, &case, [[x, y, 1.55], [0.0, 3.0, -12.0]]) - 1.0);
+    let worst = off.map(f64::abs).fold(0.0, f64::max);
+    println!("{worst:e}");
+    assert!(worst < 1e-6, "{worst:e}");
+}
+
+/// Without friction nothing can turn a rock: its spin stays to the last bit, also where the steps of an impact among patches are
+/// balanced.
+#[test]
+fn an_impact_without_friction_leaves_the_spin_alone() {
+    let terrain = noisy(0.1, 40, 0.005);
+    let ground = rockfall::ground::Ground { friction_angle_rad: 0.0, ..GROUND };
+    let spin = [1.0, 2.0, 3.0];
+    for k in 0..20 {
+        let case = Case { ground, tolerance_m_s: 0.05, ..CASE };
+        let start = [[0.05 * f64::from(k) - 0.5, 0.31, 0.55], [2.0, 0.0, -8.0], spin];
+        let run = case.run(&terrain, start, 0.1);
+        assert_eq!(run.end.spin_rad_s, Vec3::from(spin), "{k}");
+    }
+}

@@ -91,13 +91,13 @@ impl PatchScratch {
     }
 
     /// Finds the patches of a ball of `radius` (m) at `centre` among `sheets`, all triangles near it, and hands each to
-    /// `found`, in the order of their first triangles.
+    /// `found`, in the order of their first triangles: the point contact that acts like it, and its nearest point.
     pub(super) fn find(
         &mut self,
         terrain: &Terrain,
         sheets: &[u32],
         (centre, radius): (&Vec3, f64),
-        mut found: impl FnMut(ContactPoint),
+        mut found: impl FnMut(ContactPoint, &ContactPoint),
     ) {
         self.pressed.clear();
         self.shared.clear();
@@ -113,7 +113,7 @@ impl PatchScratch {
             if patch.parent as usize == k
                 && let Some(touch) = patch.touch(radius)
             {
-                found(touch);
+                found(touch, &patch.nearest);
             }
         }
     }

@@ -254,13 +254,17 @@ impl ContactState {
     /// the energy is what came in less what the contacts took.
     ///
     /// Velocity and spin are scaled by one factor, so the direction of the rebound does not change.
-    /// An impact with `e = 1` and no friction then keeps its energy to rounding.
+    /// An impact with `e = 1` and no friction then keeps its energy to rounding. Where no ground has
+    /// friction nothing can turn the rock, and the velocity alone is scaled.
     fn balance(&mut self, world: &ContactEnvironment) {
-        let (gained, motion) = (self.impact.gained, self.motion_j(&world.body));
+        let (body, gained) = (&world.body, self.impact.gained);
+        let turns = world.laws.iter().any(|law| law.limits().caps(1.0) != (0.0, 0.0));
+        let motion =
+            if turns { self.motion_j(body) } else { 0.5 * body.mass * self.v.norm_squared() };
         if gained.abs() < BALANCED * motion {
             let kept = (1.0 - gained / motion).sqrt();
             self.v *= kept;
-            self.w *= kept;
+            self.w *= if turns { kept } else { 1.0 };
         }
         (self.impact.gained, self.impact.left) = (0.0, 0.0);
     }

@@ -153,20 +153,30 @@ impl Neighbours {
         // what does not reach the ball yet stays as it is: a patch is only what is pressed in
         touches.drop_nearer(self.radius);
         let mut patches = std::mem::take(&mut self.patches);
-        patches.find(terrain, &self.sheets, (centre, self.radius), |touch: ContactPoint| {
-            let nearest = centre - touch.normal * touch.distance_m;
-            let features = &terrain.features;
-            let at_border = match touch.feature.kind {
-                FeatureKind::Face => false,
-                FeatureKind::Edge => features.edges.is_border(touch.feature.id),
-                FeatureKind::Vertex => features.is_border_vertex(touch.feature.id, terrain.mesh()),
-            };
-            // the border of one sheet on another (T-junction, overlap) is no contact of its own
-            let covered = at_border && self.is_covered(terrain, &nearest, centre, touch.distance_m);
-            if !covered {
-                self.merge(touch, centre, touches);
-            }
-        });
+        patches.find(
+            terrain,
+            &self.sheets,
+            (centre, self.radius),
+            |touch, nearest: &ContactPoint| {
+                let features = &terrain.features;
+                let at_border = match touch.feature.kind {
+                    FeatureKind::Face => false,
+                    FeatureKind::Edge => features.edges.is_border(touch.feature.id),
+                    FeatureKind::Vertex => {
+                        features.is_border_vertex(touch.feature.id, terrain.mesh())
+                    }
+                };
+                // The border of one sheet on another (T-junction, overlap) is no contact of its own. Where that is asked is
+                // the nearest point of the mesh: that of the point contact which acts like the patch lies beside the mesh,
+                // and the patch's own triangles would cover it.
+                let foot = centre - nearest.normal * nearest.distance_m;
+                let covered =
+                    at_border && self.is_covered(terrain, &foot, centre, nearest.distance_m);
+                if !covered {
+                    self.merge(touch, centre, touches);
+                }
+            },
+        );
         self.patches = patches;
     }
 }
