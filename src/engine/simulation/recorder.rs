@@ -50,11 +50,11 @@ pub(super) struct Recorder<'a> {
     next_point_s: f64,
 }
 
-/// Path points of a flight at which its height is measured, at most; the leap itself needs none.
-/// The largest clearance over rough ground has no closed form, so it is sampled.
-const HEIGHT_POINTS: f64 = 8.0;
+/// Points of a flight at which its height is measured, at most; the leap itself needs none.
+/// The largest clearance over rough ground has no closed form, so it is sampled: behind a cliff it may be a few decimetres more.
+const HEIGHT_POINTS: f64 = 250.0;
 /// Heights are measured at most this often in flight (s).
-const HEIGHT_STEP_S: f64 = 0.1;
+const HEIGHT_STEP_S: f64 = 0.04;
 
 /// A moment of a journey, to go back to: lists only grow, so their lengths will do.
 #[derive(Debug)]
