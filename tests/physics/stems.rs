@@ -311,8 +311,14 @@ fn a_bad_list_is_refused_with_its_line() {
             "x,y,dbh_m,height_m\n10,5,thick,20\n",
             "line 2: found 10,5,thick,20; write comma-separated",
         ),
-        ("x;y;dbh_m;height_m\n10;5;0,4;20\n", "line 2: found CSV error"),
-        ("x,y,dbh_cm,height_m\n10,5,40,20\n", "line 2: found 10,5,40,20; write comma-separated"),
+        (
+            "x;y;dbh_m;height_m\n10;5;0,4;20\n",
+            "line 1: found the header x;y;dbh_m;height_m; write comma",
+        ),
+        (
+            "x,y,dbh_cm,height_m\n10,5,40,20\n",
+            "line 1: found the header x,y,dbh_cm,height_m; write comma",
+        ),
         (
             "x,y,dbh_m,height_m\n1e6,5,0.4,20\n",
             "line 2: found no slope at (1000000, 5); write a place",

@@ -22,7 +22,7 @@ use crate::rock::{Motion, Vec3};
 const GROWTH: f64 = 0.01;
 /// Change of the mean velocity from one half of the rule's time to the next that is still rest (–, relative to the rule's
 /// speed): with the usual rule 0.013 m/s², what a ball has that rolls on 0.1° without rolling friction.
-const TURN: f64 = 0.1;
+const TURNS: f64 = 0.1;
 
 /// How calm one rock has been.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -63,7 +63,7 @@ impl RestCriterion {
             let mean_m_s = velocity_m_s.norm().max(self.turned_m.norm() * by_time);
             let rests = self.before_m_s.is_some_and(|(speed_before, velocity_before)| {
                 mean_m_s <= speed_before + GROWTH * rule.speed_m_s
-                    && (velocity_m_s - velocity_before).norm() <= TURN * rule.speed_m_s
+                    && (velocity_m_s - velocity_before).norm() <= TURNS * rule.speed_m_s
             });
             let before_m_s = Some((mean_m_s, velocity_m_s));
             *self = Self { before_m_s, rests, ..Self::from(to.position_m) };

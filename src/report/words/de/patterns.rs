@@ -24,10 +24,6 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "Größen sind nach Wichtigkeit gezogen: große Blöcke werden häufiger gerechnet, als sie kommen. Perzentile, Anteile und Karten sind zurückgewichtet und gelten für die Quellen, wie sie sind; Anzahlen und Punkte in Abbildungen zeigen Blöcke wie gerechnet",
     ),
     (
-        "the same number of rocks is computed for every source, however often it releases them in a year. Percentiles, shares and maps are weighted back and hold for the sources as they are; counts of rocks and dots in figures show rocks as computed",
-        "von jeder Quelle werden gleich viele Blöcke gerechnet, wie oft auch immer sie im Jahr welche ablöst. Perzentile, Anteile und Karten sind zurückgewichtet und gelten für die Quellen, wie sie sind; Anzahlen und Punkte in Abbildungen zeigen Blöcke wie gerechnet",
-    ),
-    (
         "{a} of {b} rocks failed: they count as far as they came; `--only {c}` shows one again",
         "{a} von {b} Blöcken sind fehlgeschlagen: sie zählen, so weit sie kamen; `--only {c}` zeigt einen noch einmal",
     ),

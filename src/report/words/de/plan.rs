@@ -378,4 +378,8 @@ pub(super) const PLAN: &[(&str, &str)] = &[
         "{a} of {b} releases tried out, over steep ground, by more than a tenth of their radius and up to {c} m, until they just touch: they fall from higher than height_m says",
         "{a} von {b} probeweise abgelösten Blöcken, über steilem Boden, um mehr als ein Zehntel ihres Radius und bis {c} m, bis sie gerade berühren: sie fallen von höher, als height_m sagt",
     ),
+    (
+        "the same number of rocks is computed for every source, however often it releases them in a year. Percentiles, shares and maps are weighted back and hold for the sources as they are; counts of rocks and dots in figures show rocks as computed",
+        "von jeder Quelle werden gleich viele Blöcke gerechnet, wie oft auch immer sie im Jahr welche ablöst. Perzentile, Anteile und Karten sind zurückgewichtet und gelten für die Quellen, wie sie sind; Anzahlen und Punkte in Abbildungen zeigen Blöcke wie gerechnet",
+    ),
 ];

@@ -24,10 +24,6 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "les tailles sont tirées par importance\u{a0}: les gros blocs sont calculés plus souvent qu’ils ne viennent. Centiles, parts et cartes sont repondérés et valent pour les sources telles quelles\u{a0}; nombres de blocs et points des figures montrent les blocs calculés",
     ),
     (
-        "the same number of rocks is computed for every source, however often it releases them in a year. Percentiles, shares and maps are weighted back and hold for the sources as they are; counts of rocks and dots in figures show rocks as computed",
-        "autant de blocs sont calculés pour chaque source, quel que soit le nombre qu’elle en libère par an. Centiles, parts et cartes sont repondérés et valent pour les sources telles quelles\u{a0}; nombres de blocs et points des figures montrent les blocs calculés",
-    ),
-    (
         "{a} of {b} rocks failed: they count as far as they came; `--only {c}` shows one again",
         "{a} blocs sur {b} ont échoué\u{a0}: ils comptent jusqu’où ils sont venus\u{a0}; `--only {c}` en remontre un",
     ),

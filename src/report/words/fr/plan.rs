@@ -387,4 +387,8 @@ pub(super) const PLAN: &[(&str, &str)] = &[
         "{a} of {b} releases tried out, over steep ground, by more than a tenth of their radius and up to {c} m, until they just touch: they fall from higher than height_m says",
         "{a} des {b} blocs essayés, au-dessus d’un sol raide, de plus d’un dixième de leur rayon et jusqu’à {c} m, jusqu’à ce qu’ils touchent à peine\u{a0}: ils tombent de plus haut que ne le dit height_m",
     ),
+    (
+        "the same number of rocks is computed for every source, however often it releases them in a year. Percentiles, shares and maps are weighted back and hold for the sources as they are; counts of rocks and dots in figures show rocks as computed",
+        "autant de blocs sont calculés pour chaque source, quel que soit le nombre qu’elle en libère par an. Centiles, parts et cartes sont repondérés et valent pour les sources telles quelles\u{a0}; nombres de blocs et points des figures montrent les blocs calculés",
+    ),
 ];

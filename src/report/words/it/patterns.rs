@@ -24,10 +24,6 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "le dimensioni sono estratte per importanza: i massi grandi sono calcolati più spesso di quanto vengano. Percentili, quote e mappe sono ripesati e valgono per le sorgenti come sono; conteggi e punti nelle figure mostrano i massi come calcolati",
     ),
     (
-        "the same number of rocks is computed for every source, however often it releases them in a year. Percentiles, shares and maps are weighted back and hold for the sources as they are; counts of rocks and dots in figures show rocks as computed",
-        "per ogni sorgente si calcola lo stesso numero di massi, comunque spesso ne distacchi in un anno. Percentili, quote e mappe sono ripesati e valgono per le sorgenti come sono; conteggi e punti nelle figure mostrano i massi come calcolati",
-    ),
-    (
         "{a} of {b} rocks failed: they count as far as they came; `--only {c}` shows one again",
         "{a} massi su {b} sono falliti: contano fin dove sono giunti; `--only {c}` ne mostra uno di nuovo",
     ),

@@ -375,4 +375,8 @@ pub(super) const PLAN: &[(&str, &str)] = &[
         "{a} of {b} releases tried out, over steep ground, by more than a tenth of their radius and up to {c} m, until they just touch: they fall from higher than height_m says",
         "{a} dei {b} massi provati, su terreno ripido, di più di un decimo del loro raggio e fino a {c} m, finché toccano appena: cadono da più in alto di quanto dica height_m",
     ),
+    (
+        "the same number of rocks is computed for every source, however often it releases them in a year. Percentiles, shares and maps are weighted back and hold for the sources as they are; counts of rocks and dots in figures show rocks as computed",
+        "per ogni sorgente si calcola lo stesso numero di massi, comunque spesso ne distacchi in un anno. Percentili, quote e mappe sono ripesati e valgono per le sorgenti come sono; conteggi e punti nelle figure mostrano i massi come calcolati",
+    ),
 ];

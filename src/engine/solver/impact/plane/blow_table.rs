@@ -13,10 +13,10 @@ use crate::solver::body::Body;
 use std::sync::OnceLock;
 
 /// Nodes but the last, equal in `x/(x + x₀)`: a line between them is off by less than an impact at the tolerance of nodes.
-const NODES: usize = 512;
+const NODES: usize = 1024;
 /// Tolerance of the nodes (–).
 const TOLERANCE: f64 = 1e-6;
-/// Difference of two materials that is none (–, of each of their numbers).
+/// Difference of two materials that is none (–), of each of their numbers or of 1.
 const SAME_MATERIAL: f64 = 1e-9;
 /// The same of `m R²/I`: rocks that overlap by the error of a step are struck at levers that are shorter by as much (–).
 const SAME_LEVERS: f64 = 1e-2;
@@ -67,7 +67,7 @@ impl BlowTable {
             (shear.cap, own.cap, SAME_MATERIAL),
             (turns(body), self.plane.turns(), SAME_LEVERS),
         ];
-        pairs.iter().all(|(one, other, off)| (one - other).abs() <= off * other.abs())
+        pairs.iter().all(|(one, other, off)| (one - other).abs() <= off * other.abs().max(1.0))
     }
 
     /// Impulse against a slip of `x` approaches.
