@@ -166,16 +166,10 @@ pub fn escape(text: &str) -> String {
 /// A sentence begins with a capital letter, but for the name of a file, and ends with a full stop.
 pub(super) fn sentence(text: &str) -> String {
     let word = text.split_whitespace().next().unwrap_or_default();
-    if word.trim_end_matches(['.', ':', ',']).contains(['.', '/', '\\']) {
-        return if text.ends_with(['.', '!', '?', '…']) {
-            text.to_owned()
-        } else {
-            format!("{text}.")
-        };
-    }
+    let is_file = word.trim_end_matches(['.', ':', ',']).contains(['.', '/', '\\']);
     let mut letters = text.chars();
-    let first = letters.next().into_iter().flat_map(char::to_uppercase);
-    let whole: String = first.chain(letters).collect();
+    let first = if is_file { None } else { letters.next() };
+    let whole: String = first.into_iter().flat_map(char::to_uppercase).chain(letters).collect();
     if whole.ends_with(['.', '!', '?', '…']) { whole } else { whole + "." }
 }
 

@@ -39,6 +39,11 @@ impl Body {
         }
     }
 
+    /// Speed of a rock that has fallen by half its radius (m/s): `√(g R)`, what is slow for a rock of its size.
+    pub(crate) fn fall_speed_m_s(&self) -> f64 {
+        (self.gravity.norm() * self.radius).sqrt()
+    }
+
     /// Mass that a force along the surface meets at the contact point (kg): `m/(1 + m R²/I)`.
     #[inline]
     pub(crate) fn mass_along(&self) -> f64 {

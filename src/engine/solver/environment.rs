@@ -47,7 +47,7 @@ impl ContactEnvironment<'_> {
     /// `√(g R)` is the speed of a rock that falls by half its radius: what comes in at a thousandth
     /// of it is part of rolling, not a blow.
     pub(super) fn least_impact_m_s(&self) -> f64 {
-        LEAST_IMPACT * (self.body.gravity.norm() * self.body.radius).sqrt()
+        LEAST_IMPACT * self.body.fall_speed_m_s()
     }
 
     /// The law of touch `k` among others of the same instant.

@@ -34,6 +34,9 @@ use crate::rock::Vec3;
 pub(crate) const HELD: f64 = 1e-4;
 /// Local error of an impact followed in its own time (–, relative to its speed).
 pub(crate) const IMPACT: f64 = 2e-5;
+/// Share of the slowest approach to a facet from which on a turned rock comes to it (–): turning rounds the approach, and once
+/// the facet is struck there is none.
+const ONTO_FACET: f64 = 0.5;
 /// Sweeps over the contacts, at most.
 const SWEEPS: u32 = 100;
 /// Change of an impulse, relative to the largest, below which the sweeps have settled (–).
@@ -231,8 +234,9 @@ fn hits(world: &ContactEnvironment, state: &ContactState) -> bool {
     let reach = world.body.radius * (1.0 + TOUCH);
     let meets = state.facets.is_any_met();
     let comes = |touch: &ContactPoint| {
-        let fast = -touch.normal.dot(&state.v);
-        is_fast(world, touch, &state.v) || meets && fast >= 0.5 * roughness::least_m_s(world)
+        let approach = -touch.normal.dot(&state.v);
+        is_fast(world, touch, &state.v)
+            || meets && approach >= ONTO_FACET * roughness::least_m_s(world)
     };
     state.touches.iter().any(|touch| touch.distance_m < reach && comes(touch))
 }

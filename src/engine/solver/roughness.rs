@@ -29,7 +29,7 @@ const DRAWS: u32 = 1000;
 
 /// Slowest approach to a facet (m/s).
 pub(super) fn least_m_s(world: &ContactEnvironment) -> f64 {
-    LEAST * (world.body.gravity.norm() * world.body.radius).sqrt()
+    LEAST * world.body.fall_speed_m_s()
 }
 
 /// The facets that one rock meets.

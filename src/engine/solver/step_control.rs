@@ -108,7 +108,7 @@ impl Control {
 
 /// Local error allowed to a rock in lasting contact (m/s): that of the run, and a share of `√(g R)`.
 pub(crate) fn lasting_m_s(settings: &Settings, body: &Body) -> f64 {
-    let own = (body.gravity.norm() * body.radius).sqrt();
+    let own = body.fall_speed_m_s();
     let relative = if own > 0.0 { PIVOT * own } else { f64::INFINITY };
     settings.tolerance_m_s.min(relative)
 }
