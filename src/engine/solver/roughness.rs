@@ -23,6 +23,8 @@ use std::f64::consts::TAU;
 /// What is approached more slowly than this is no facet (–, relative to `√(g R)`, the speed of a rock that falls by half its
 /// radius): it takes less than a ten-thousandth of that energy, whatever the springs.
 const LEAST: f64 = 1e-2;
+/// Share of the roughness length within which a facet that is met late counts from where it was due (–).
+const LATE: f64 = 0.5;
 /// Facets drawn until one is met: one in three at least where the rock comes to the surface, one in six where it goes along it.
 /// A bound for pathological cases only.
 const DRAWS: u32 = 1000;
@@ -47,6 +49,8 @@ struct TiltedFacet {
     centre: Vec3,
     normal: Vec3,
     ground: u16,
+    /// Way from there to the next (m).
+    reach_m: f64,
 }
 
 /// What a rock is turned by while it meets a facet.
@@ -119,11 +123,20 @@ impl RoughFacets {
         if !self.meet_next(world, at) {
             return None;
         }
-        let (most, least) = (world.law(at.triangle).roughness_rad, least_m_s(world));
-        let turn = draw(self.random.as_mut()?, at, most, least)?;
+        let law = world.law(at.triangle);
+        let turn = draw(self.random.as_mut()?, at, law.roughness_rad, least_m_s(world))?;
+        let reach_m = law.roughness_length_m - self.passed_m(at, law.roughness_length_m);
         let ground = world.ground_of(at.triangle);
-        self.last = Some(TiltedFacet { centre: at.c, normal: at.n, ground });
+        self.last = Some(TiltedFacet { centre: at.c, normal: at.n, ground, reach_m });
         Some(turn)
+    }
+
+    /// How far the rock is past the place of the next facet (m): a step ends somewhere behind it, and lengths of steps must not
+    /// decide how many facets there are. Farther than by the share [`LATE`] of the roughness length it has flown or stood.
+    fn passed_m(&self, at: &Meeting, length_m: f64) -> f64 {
+        let past_m = |facet: &TiltedFacet| (facet.centre - at.c).norm() - facet.reach_m;
+        let past_m = self.last.as_ref().map_or(0.0, past_m);
+        if (0.0..LATE * length_m).contains(&past_m) { past_m } else { 0.0 }
     }
 
     /// Whether a rock at a surface sees a new facet: it comes fast enough, and the last one does not reach here. That is far off,
@@ -133,7 +146,7 @@ impl RoughFacets {
         law.roughness_rad > 0.0
             && at.most_m_s(law.roughness_rad) >= least_m_s(world)
             && self.last.as_ref().is_none_or(|facet| {
-                (facet.centre - at.c).norm() >= law.roughness_length_m
+                (facet.centre - at.c).norm() >= facet.reach_m
                     || facet.ground != world.ground_of(at.triangle)
                     || facet.normal.dot(&at.n) <= SAME_GRIP
             })
@@ -168,4 +181,69 @@ fn draw(random: &mut RandomStream, at: &Meeting, most: f64, least: f64) -> Optio
         let seen = at.approach_m_s(&turn);
         (seen > fastest * unit(random) && seen >= least).then_some(turn)
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ground::{Capture, Damping, Ground};
+    use crate::random::{Purpose, stream};
+    use crate::rock::Rock;
+    use crate::solver::body::Body;
+    use crate::terrain::stl::Soup;
+    use crate::terrain::weld::{Piece, Up, weld};
+    use crate::terrain::{Sheet, Terrain};
+    use std::path::Path;
+
+    /// Mean way from one facet to the next (–, relative to the roughness length) of a rock that looks for one after every `step` of
+    /// that length.
+    fn spacing(step: f64) -> f64 {
+        let ground = Ground {
+            normal_stiffness_n_m: 1e9,
+            shear_stiffness_n_m: 0.25e9,
+            friction_angle_rad: 0.6,
+            restitution: Some(0.5),
+            rolling_friction: 0.3,
+            roughness_rad: 0.25,
+            roughness_length_m: Some(0.5),
+            slip_friction: None,
+            scar: None,
+            restitution_half_m_s: None,
+        };
+        let corners = [Vec3::zeros(), Vec3::x() * 9.0, Vec3::y() * 9.0];
+        let soup = Soup::from(vec![corners]);
+        let piece = Piece { file: Path::new("made"), soup: &soup, up: Up::Z, scale: 1.0, sheet: 0 };
+        let welded = weld(&[piece], Vec3::zeros(), Some(1e-9)).unwrap();
+        let sheet = Sheet { path: "made".into(), ground: 0, is_tree: false };
+        let terrain = Terrain::new(welded, vec![sheet]);
+        let rock = Rock { radius_m: 0.5, density_kg_m3: 2700.0 };
+        let capture = Capture { own_m_s: None, tolerance_m_s: 0.05, gravity_m_s2: 9.81 };
+        let law = Law::new(&ground, &Damping::of(ground.restitution), &rock, &capture);
+        let mut facets = RoughFacets::of(stream(1, Purpose::Impacts, 0), &[law]);
+        let laws = &mut [law];
+        let body = Body::new(&rock, 9.81);
+        let world = ContactEnvironment { terrain: &terrain, body, laws };
+        let (count, v) = (2000, Vec3::x() * 2.0);
+        let mut met = 0;
+        for k in 0..count {
+            let c = Vec3::x() * (0.5 * step * f64::from(k));
+            met += u32::from(
+                facets.struck(&world, &Meeting { n: Vec3::z(), triangle: 0, c, v }).is_some(),
+            );
+        }
+        f64::from(count) * step / f64::from(met)
+    }
+
+    /// However long the steps are, there is one facet for each roughness length of the way. Counted from where each was met, there
+    /// was one for each whole number of steps that is no shorter: 1.2, 1.05 and 1.2.
+    #[test]
+    fn steps_do_not_decide_how_many_facets_there_are() {
+        for step in [0.01, 0.3, 0.35, 0.4] {
+            let mean = spacing(step);
+            assert!(
+                (mean - 1.0).abs() < 5e-3,
+                "{step}: one facet for each {mean} roughness lengths"
+            );
+        }
+    }
 }
