@@ -70,8 +70,14 @@ pub struct Health {
     pub border_edges: Tally,
     /// Connected runs of border edges: the outline, holes, and the ends of open stems.
     pub border_loops: usize,
-    /// Border vertices on the inside of a border edge.
+    /// Border vertices on the inside of a border edge, before triangles were split there.
     pub t_junctions: Tally,
+    /// Facets that were split there.
+    pub split_facets: usize,
+    /// What they were split into.
+    pub split_into: usize,
+    /// Vertices that still lie on an edge: its triangle is too thin to be split.
+    pub t_junctions_left: Tally,
     /// Edges whose two triangles are wound against each other.
     pub flipped_edges: Tally,
     /// Triangles of each part that shares no edge with another, the largest first.
@@ -111,7 +117,10 @@ impl Health {
             non_manifold_edges: odd.non_manifold,
             border_edges: odd.borders,
             border_loops: measure::border_loops(welded),
-            t_junctions: measure::t_junctions(welded),
+            t_junctions: welded.splits.junctions.clone(),
+            split_facets: welded.splits.facets,
+            split_into: welded.splits.pieces,
+            t_junctions_left: welded.splits.left.clone(),
             flipped_edges: odd.flipped,
             parts: measure::parts(welded),
             low_m,

@@ -66,6 +66,12 @@ impl Health {
         )
     }
 
+    fn split_text(&self) -> String {
+        let (facets, into) = (grouped(self.split_facets), grouped(self.split_into));
+        let left = grouped(self.t_junctions_left.count);
+        format!("{facets} facets split there into {into}; {left} kept where too thin to split")
+    }
+
     /// Name, tally and treatment of everything that can be wrong.
     fn rows(&self) -> [(&'static str, &Tally, String); 7] {
         let loops = format!("kept, can be hit; {} open border(s)", grouped(self.border_loops));
@@ -79,11 +85,7 @@ impl Health {
                 "kept, every triangle can be hit".into(),
             ),
             ("border edges", &self.border_edges, loops),
-            (
-                "T-junctions",
-                &self.t_junctions,
-                "kept; the closer face wins, no false edge contact".into(),
-            ),
+            ("T-junctions", &self.t_junctions, self.split_text()),
             (
                 "flipped neighbours",
                 &self.flipped_edges,
