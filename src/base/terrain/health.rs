@@ -32,6 +32,9 @@ pub struct FileHealth {
     pub epsg: Option<u32>,
     /// What the file holds and what was done with it, in words.
     pub notes: Vec<String>,
+    /// What looks wrong in it, in words.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<String>,
 }
 
 impl FileHealth {
@@ -128,6 +131,15 @@ impl Health {
             area_m2: measure::area_m2(welded),
             edge_quantiles_m: measure::edge_quantiles_m(welded),
         }
+    }
+
+    /// What looks wrong in the files, each with its name.
+    pub fn warnings(&self) -> impl Iterator<Item = String> + '_ {
+        let of_file = |file: &FileHealth| {
+            let named = |warning: &String| format!("{}: {warning}", file.file);
+            file.warnings.iter().map(named).collect::<Vec<_>>()
+        };
+        self.files.iter().flat_map(of_file)
     }
 
     /// Refuses a terrain whose binary files hold coordinates too large for 32 bits.

@@ -40,6 +40,7 @@ pub(super) fn file(piece: &Piece, map_origin_m: Vec3) -> FileHealth {
         spacing: soup.is_single.then(|| Spacing::of(&soup.facets)),
         epsg: soup.epsg,
         notes: soup.notes.clone(),
+        warnings: soup.warnings.clone(),
     }
 }
 

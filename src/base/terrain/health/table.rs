@@ -109,6 +109,9 @@ impl fmt::Display for FileHealth {
         for note in &self.notes {
             writeln!(f, "  {note}")?;
         }
+        for warning in &self.warnings {
+            writeln!(f, "  warning: {warning}")?;
+        }
         if self.normals_off.count > 0 {
             let count = grouped(self.normals_off.count);
             writeln!(
