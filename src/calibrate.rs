@@ -157,8 +157,8 @@ fn vary_of(scenes: &[Scene]) -> Result<(&[VaryTable], usize)> {
         if let Some((found, remedy)) = vary.iter().find_map(refused) {
             return wrong(scene, &found, remedy);
         }
-        refuse_too_round(scene, vary, first)?;
     }
+    scenes.iter().try_for_each(|scene| refuse_too_round(scene, vary, first))?;
     Ok((vary, first.calibrate.as_ref().map_or(0, CalibrateTable::parts)))
 }
 
