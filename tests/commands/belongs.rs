@@ -310,7 +310,7 @@ fn a_folder_that_may_not_be_written_is_refused_before_the_terrain_is_read() {
     for (out, part) in [
         (&taken, "taken: holds other results: another scene"),
         (&in_file, "slope.stl/out"),
-        (&fresh, "no mesh"),
+        (&fresh, "slope.stl: start: 7 bytes"),
     ] {
         let said = rockfall(&["run", word(&file), "--quiet", "--out", word(out)]);
         let stderr = String::from_utf8(said.stderr).unwrap();
