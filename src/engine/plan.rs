@@ -27,8 +27,7 @@ use crate::release::{self, Lost, Release, Releases};
 use crate::scene::{self, BarrierTable, InputFile, Language, ObjectTable, Polyline, RecordTable};
 use crate::scene::{MeasuredEnds, Scene};
 use crate::solver::Settings;
-use crate::terrain::health::Health;
-use crate::terrain::{Terrain, patches::Patched, stems::Stems};
+use crate::terrain::{Terrain, health::Health, patches::Patched, stems::Stems};
 use std::convert::Infallible;
 use std::path::PathBuf;
 

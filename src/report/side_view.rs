@@ -116,7 +116,9 @@ pub(super) fn name_marks(canvas: &Canvas<'_>, panels: &[Panel], marks: &[(f64, M
     };
     // all lines before the first name: none runs through a name
     for (at, mark) in marks {
-        panels.iter().for_each(|panel| panel.upright(canvas, *at, look(mark).1));
+        for panel in panels {
+            panel.upright(canvas, *at, look(mark).1);
+        }
     }
     let place = |at: f64| first.at(at, first.y.low).0;
     let lines: Vec<f64> = marks.iter().map(|(at, _)| place(*at)).collect();

@@ -55,7 +55,9 @@ impl Welded {
 
     fn tally(&self, vertices: &BTreeSet<u32>) -> Tally {
         let mut tally = Tally::default();
-        vertices.iter().for_each(|&v| tally.add(self.on_map(self.vertices_m[v as usize])));
+        for &vertex in vertices {
+            tally.add(self.on_map(self.vertices_m[vertex as usize]));
+        }
         tally
     }
 

@@ -67,6 +67,9 @@ impl Health {
     }
 
     fn split_text(&self) -> String {
+        if self.t_junctions.count == 0 {
+            return "closed: the facet on the edge would be split there".into();
+        }
         let (facets, into) = (grouped(self.split_facets), grouped(self.split_into));
         let left = grouped(self.t_junctions_left.count);
         format!("{facets} facets split there into {into}; {left} kept where too thin to split")
