@@ -22,10 +22,8 @@ mod options;
 pub mod read;
 pub mod patches;
 pub mod seen;
-pub mod split;
 pub mod stems;
 pub mod stl;
-pub mod t_junctions;
 pub mod walls;
 pub mod weld;
 

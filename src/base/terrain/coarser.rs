@@ -7,7 +7,7 @@
 
 use super::Terrain;
 use super::edges::{Edges, ends};
-use super::split::Splits;
+use super::weld::split::Splits;
 use super::weld::{Tally, Welded};
 use crate::rock::Vec3;
 use std::cmp::Reverse;

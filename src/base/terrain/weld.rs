@@ -10,9 +10,9 @@ use crate::rock::Vec3;
 use crate::terrain::edges::{self, Edges};
 use crate::terrain::faces::Mesh;
 use crate::terrain::merge::Merger;
-use crate::terrain::split::Splits;
 use crate::terrain::stl::Soup;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
+use split::Splits;
 use std::path::Path;
 
 /// Weld tolerance relative to the longest side of the box of the model (–).
@@ -268,7 +268,7 @@ impl Welded {
     }
 
     /// Lists the edges, once triangles that are there twice are dropped.
-    pub(super) fn list_edges(&mut self) {
+    fn list_edges(&mut self) {
         self.edges = Edges::of(&self.triangles);
         let again = self.duplicates();
         if !again.is_empty() {
@@ -369,7 +369,7 @@ fn drop_at<T>(list: &mut Vec<T>, positions: &[u32]) {
 }
 
 /// Whether the area exceeds [`ZERO_AREA`] of the longest edge squared (repeated corners have none).
-pub(super) fn has_area([a, b, c]: &[Vec3; 3]) -> bool {
+fn has_area([a, b, c]: &[Vec3; 3]) -> bool {
     let longest2 = (b - a).norm_squared().max((c - b).norm_squared()).max((a - c).norm_squared());
     0.5 * (b - a).cross(&(c - a)).norm() >= ZERO_AREA * longest2 && longest2 > 0.0
 }
@@ -391,5 +391,7 @@ fn nothing_left(pieces: &[Piece], welded: &Welded) -> Error {
 }
 
 mod numbers;
+pub mod split;
+pub mod t_junctions;
 #[cfg(test)]
 mod tests;

@@ -104,13 +104,13 @@ fn cells_find_the_t_junctions_that_brute_force_finds() {
             let share = to.dot(&along) / along.norm_squared();
             let from_ends_m = share.min(1.0 - share) * along.norm();
             if beside <= 1e-3 && from_ends_m > 1e-3 {
-                expected.push(crate::terrain::t_junctions::TJunction { vertex, edge });
+                expected.push(crate::terrain::weld::t_junctions::TJunction { vertex, edge });
             }
         }
     }
     expected.sort_unstable();
     assert!(expected.len() > 10, "the example has {} T-junctions", expected.len());
-    assert_eq!(crate::terrain::t_junctions::t_junctions(&welded), expected);
+    assert_eq!(crate::terrain::weld::t_junctions::t_junctions(&welded), expected);
 }
 
 #[test]

@@ -5,7 +5,7 @@
 //! vertices there but no edges: rocks gained and lost up to a third of their energy, in a plain surface as in a fold.
 
 use super::t_junctions::{TJunction, share_along, t_junctions};
-use super::weld::{Tally, Welded, has_area};
+use super::{Tally, Welded, has_area};
 use crate::rock::Vec3;
 use std::collections::BTreeSet;
 
