@@ -21,6 +21,7 @@ use crate::frequency::Frequency;
 use crate::hazard::Agreement;
 use crate::math;
 use crate::random::Distribution;
+use crate::release::check_shapes;
 use crate::scene::{CalibrateTable, GroundTable, Scene, VaryKey, VaryTable};
 use search::ParameterSearch;
 use serde::{Deserialize, Serialize};
@@ -157,7 +158,29 @@ fn vary_of(scenes: &[Scene]) -> Result<(&[VaryTable], usize)> {
             return wrong(scene, &found, remedy);
         }
     }
+    scenes.iter().try_for_each(|scene| refuse_too_round(scene, vary, first))?;
     Ok((vary, first.calibrate.as_ref().map_or(0, CalibrateTable::parts)))
+}
+
+/// Refuses corners that a trial would make too round for a shape, by the key that says so.
+fn refuse_too_round(scene: &Scene, vary: &[VaryTable], first: &Scene) -> Result<()> {
+    check_shapes(scene)?;
+    for (index, vary) in vary.iter().enumerate().filter(|(_, v)| v.key == VaryKey::CornerRadius) {
+        for (key, value) in [("before", vary.before), ("to", vary.to)] {
+            let mut tried = scene.clone();
+            put_all(&mut tried, std::slice::from_ref(vary), &[value])?;
+            if check_shapes(&tried).is_err() {
+                let place = format!("[calibrate] vary #{} {key}", index + 1);
+                let found = format!(
+                    "found {value}, a corner_radius too round for a shape of {}",
+                    scene.file.display()
+                );
+                let remedy = "write a smaller number, or a less slender shape";
+                return Err(Error::input(&first.file, place, found, remedy));
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Refuses sources whose rocks do not all stand for the same number of events.

@@ -194,8 +194,9 @@ fn report_in(dir: &Path) -> String {
 
 fn run(args: &RunArgs) -> Result<ExitCode> {
     let scene = args.scene()?;
-    let plan = Plan::of_scene(&scene)?;
     let options = args.options();
+    options.check_folder(&scene)?;
+    let plan = Plan::of_scene(&scene)?;
     if !args.yes {
         plan.cost(options.selection.range(plan.count).len()).check()?;
     }

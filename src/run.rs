@@ -9,7 +9,7 @@ pub use options::{RunOptions, Selection};
 use crate::ensemble::Ensemble;
 use crate::error::{Error, Result};
 use crate::hazard::{Hazard, ObservedPath};
-use crate::output::{self, Identity, Mode, Output, Results, RunInfo};
+use crate::output::{self, Mode, Output, Results, RunInfo};
 use crate::plan::Plan;
 use crate::report;
 use crate::simulation::{self, Scratch};
@@ -157,19 +157,11 @@ impl Round<'_> {
     /// What the results need to know.
     fn info(&self) -> Result<RunInfo> {
         let Self { plan, options, releases, ensemble } = *self;
-        let asked = options.selection.range(releases);
         let ground_of =
             |sheet: &crate::terrain::Sheet| plan.ground_names[usize::from(sheet.ground)].clone();
         Ok(RunInfo {
             title: plan.title.clone(),
-            identity: Identity {
-                scene_hash: plan.scene_hash.clone(),
-                version: plan.version.to_owned(),
-                seed: plan.seed,
-                first_release: asked.start,
-                releases: asked.len(),
-                of_releases: releases,
-            },
+            identity: options.identity((plan.scene_hash.clone(), plan.seed), releases),
             origin_m: plan.terrain.origin_m,
             site: infos::site(plan),
             ground_of_sheet: plan.terrain.sheets.iter().map(ground_of).collect(),

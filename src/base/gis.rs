@@ -221,6 +221,12 @@ pub fn transformed(file: &Path, epsg: Option<u32>, from: &str) -> String {
     format!("ogr2ogr {from}-t_srs EPSG:{code} {} {}", out(file), file.display())
 }
 
+/// Why a feature without a geometry is refused: left out it would take its events a year, or its stem, with it.
+fn without_shape(file: &Path, feature: String) -> Error {
+    let remedy = "draw it where it lies, or remove the feature";
+    Error::input(file, feature, "found no geometry", remedy)
+}
+
 /// Why coordinates in degrees are of no use, and the command that makes metres of them.
 fn degrees(file: &Path) -> Error {
     let remedy =

@@ -24,7 +24,6 @@ pub mod patches;
 pub mod seen;
 pub mod stems;
 pub mod stl;
-pub mod t_junctions;
 pub mod walls;
 pub mod weld;
 

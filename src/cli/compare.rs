@@ -2,7 +2,7 @@
 
 use super::terminal::say;
 use crate::error::Result;
-use crate::report::compare::Comparison;
+use crate::report::compare::{Comparison, PAGE};
 use clap::Args;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -16,12 +16,16 @@ pub(super) struct CompareArgs {
     /// Folder for page, figures and table
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
+    /// Replace the comparison in the folder
+    #[arg(long)]
+    overwrite: bool,
 }
 
 /// Compares two finished runs, writes page, figures and table, and says what changes.
 pub(super) fn compare(args: &CompareArgs) -> Result<ExitCode> {
+    Comparison::check_folder(&args.out, args.overwrite)?;
     let comparison = Comparison::of(&args.a, &args.b)?;
     comparison.write(&args.out)?;
-    let page = args.out.join("compare.html");
+    let page = args.out.join(PAGE);
     Ok(say(format!("{}\n\npage in {}", comparison.headline().join("\n"), page.display())))
 }

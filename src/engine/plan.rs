@@ -14,6 +14,7 @@ mod recorders;
 
 pub use annual::YearPlan;
 pub use cost::Cost;
+pub use inputs::VERSION;
 pub use listing::PlanEntry;
 pub use recorders::{EvaluationLine, Footprint, LinePiece, MapGrid, Recorders};
 pub use stiffness::{FastWarning, OwnDissipation};
@@ -26,8 +27,7 @@ use crate::release::{self, Lost, Release, Releases};
 use crate::scene::{self, BarrierTable, InputFile, Language, ObjectTable, Polyline, RecordTable};
 use crate::scene::{MeasuredEnds, Scene};
 use crate::solver::Settings;
-use crate::terrain::health::Health;
-use crate::terrain::{Terrain, patches::Patched, stems::Stems};
+use crate::terrain::{Terrain, health::Health, patches::Patched, stems::Stems};
 use std::convert::Infallible;
 use std::path::PathBuf;
 
@@ -198,7 +198,7 @@ impl Plan {
     /// A mesh that cannot be read or used, and as [`Self::compile`].
     pub fn of_scene(scene: &Scene) -> Result<Self> {
         let (terrain, health) = scene.read_terrain()?;
-        Ok(Self { mesh_health: Some(health), ..Self::compile(scene, terrain)? })
+        Ok(Self::compile(scene, terrain)?.with_health(health))
     }
 
     /// Works out what the scene needs on a terrain that is there already.
@@ -232,7 +232,7 @@ impl Plan {
             title: scene.title.clone(),
             scene_file: scene.file.clone(),
             scene_hash: scene.hash_in_force(),
-            version: concat!(env!("CARGO_PKG_VERSION"), "+", env!("ROCKFALL_BUILD")),
+            version: VERSION,
             mesh_origin_m: scene.origin_m,
             epsg: scene.epsg.or(terrain.epsg),
             seed: scene.seed,

@@ -13,8 +13,8 @@ use crate::rock::{Motion, Rock, Vec3};
 use crate::scene::{Area, Corner, GroundTable, Polyline, ReleasePoint, Scene, SourceTable, Zones};
 use crate::terrain::Terrain;
 use clear::{clear_of, is_inside_tree};
-pub use shapes::DrawnShape;
 use shapes::Shapes;
+pub use shapes::{DrawnShape, check_shapes};
 use std::path::PathBuf;
 
 /// How deep a rock may sit in the ground at its release, over its radius (–): coordinates are typed with

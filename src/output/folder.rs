@@ -70,6 +70,29 @@ pub(super) fn prepare(
 
 /// The run to go on with; none when the folder may be emptied. An error when it must not be touched.
 pub(super) fn look(dir: &Path, info: &RunInfo, mode: Mode) -> Result<Option<Progress>> {
+    let found = claimed(dir, &info.identity, mode)?;
+    let goes_on = |found: &Progress| mode == Mode::Extend && found.done < info.identity.releases;
+    // A finished run has thrown away what its maps would go on from: its rocks are computed once more, the same.
+    let has_all = |found: &Progress| {
+        !goes_on(found) || info.maps.is_none() || maps::has_state(dir, found.done)
+    };
+    Ok(found.filter(has_all))
+}
+
+/// Refuses a folder that a run with this identity may not touch, or cannot write; leaves it as it is.
+///
+/// # Errors
+///
+/// If it holds results that `mode` does not allow to touch, cannot be written, or is being written by another process.
+pub fn check_folder(dir: &Path, identity: &Identity, mode: Mode) -> Result<()> {
+    if mode == Mode::Fresh {
+        claimed(dir, identity, mode)?;
+    }
+    FolderLock::on(dir).map(drop)
+}
+
+/// The run that has a claim on the folder; none when it may be emptied. An error when it must not be touched.
+fn claimed(dir: &Path, identity: &Identity, mode: Mode) -> Result<Option<Progress>> {
     if mode == Mode::Overwrite {
         return Ok(None);
     }
@@ -85,8 +108,7 @@ pub(super) fn look(dir: &Path, info: &RunInfo, mode: Mode) -> Result<Option<Prog
         return Ok(None);
     }
     let (title, old) = (&found.title, &found.identity);
-    let asked =
-        if mode == Mode::Extend { as_long_as(old, &info.identity) } else { info.identity.clone() };
+    let asked = if mode == Mode::Extend { as_long_as(old, identity) } else { identity.clone() };
     if let Some(difference) = old.asks_otherwise(&asked) {
         return refuse(
             dir,
@@ -94,17 +116,10 @@ pub(super) fn look(dir: &Path, info: &RunInfo, mode: Mode) -> Result<Option<Prog
             "take another --out or replace them with --overwrite",
         );
     }
-    let goes_on = mode == Mode::Extend && found.done < info.identity.releases;
-    if goes_on && info.maps.is_some() && !maps::has_state(dir, found.done) {
-        // A finished run has thrown away what its maps would go on from: its rocks are computed once more, the same.
-        return Ok(None);
-    }
     match mode {
-        Mode::Resume | Mode::Extend if old.version != info.identity.version => {
-            let both = format!(
-                "was begun with version {}, this is {}",
-                old.version, info.identity.version
-            );
+        Mode::Resume | Mode::Extend if old.version != identity.version => {
+            let both =
+                format!("was begun with version {}, this is {}", old.version, identity.version);
             refuse(dir, &both, "go on with that version or start again with --overwrite")
         }
         Mode::Resume | Mode::Extend => Ok(Some(found)),

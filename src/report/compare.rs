@@ -22,6 +22,11 @@ use std::fs;
 use std::path::Path;
 use table::Group;
 
+/// The page.
+pub const PAGE: &str = "compare.html";
+/// The table of all differences.
+const TABLE: &str = "differences.csv";
+
 /// Two runs and what differs.
 #[derive(Debug)]
 pub struct Comparison {
@@ -95,28 +100,35 @@ impl Comparison {
         self.populations.iter().flatten().any(|of| of.among.standing.is_some())
     }
 
+    /// Refuses a folder with a comparison that is not to be replaced, or with the results of a run.
+    ///
+    /// # Errors
+    /// If it is one.
+    pub fn check_folder(dir: &Path, overwrite: bool) -> Result<()> {
+        let refuse = |why: &str| Err(Error::Request(format!("--out {}: {why}", dir.display())));
+        if output::releases_in(dir)?.is_some() {
+            return refuse("holds the results of a run; write another folder");
+        }
+        if !overwrite && [PAGE, TABLE].iter().any(|name| dir.join(name).exists()) {
+            return refuse("holds a comparison; write another folder, or --overwrite");
+        }
+        Ok(())
+    }
+
     /// Writes `differences.csv`, `figures/*.svg` and `compare.html` below `dir`.
     ///
     /// # Errors
     /// When `dir` holds the results of a run, or a file cannot be written.
     pub fn write(&self, dir: &Path) -> Result<()> {
-        if output::releases_in(dir)?.is_some() {
-            return Err(Error::Request(format!(
-                "--out {}: holds the results of a run; write another folder",
-                dir.display()
-            )));
-        }
+        Self::check_folder(dir, true)?;
         let figures = dir.join("figures");
         fs::create_dir_all(&figures).map_err(Error::file("create", &figures))?;
         let drawn = figures::all(self);
         for (heading, drawing) in &drawn {
             write_atomic(&figures.join(&heading.file), drawing.svg.as_bytes())?;
         }
-        write_atomic(
-            &dir.join("differences.csv"),
-            table::csv(&self.groups, self.paired).as_bytes(),
-        )?;
-        write_atomic(&dir.join("compare.html"), page::page(self, &drawn).as_bytes())
+        write_atomic(&dir.join(TABLE), table::csv(&self.groups, self.paired).as_bytes())?;
+        write_atomic(&dir.join(PAGE), page::page(self, &drawn).as_bytes())
     }
 
     /// The differences that matter most, line by line for a terminal.

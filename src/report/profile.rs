@@ -2,12 +2,12 @@
 
 use super::axis::Axis;
 use super::canvas::{Canvas, Label, Pen, SMALL, paint, text_width};
-use super::colour::{BLUE, DARK_GREEN, GREY, INK, SKY};
+use super::colour::{BLUE, GREY, INK, SKY};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
 use super::model::{ProfileStretch, ProfileView, Report, ReportStretch};
 use super::panel::{FOOT_PX, Panel, align};
-use super::side_view::name_above;
+use super::side_view::name_marks;
 use super::svg::path::PaperFrame;
 use super::words::{Words, fill};
 
@@ -38,7 +38,7 @@ pub(super) fn draw(report: &Report, view: &ProfileView) -> Drawing {
         for (panel, (of, _)) in panels.iter().zip(shown) {
             draw_panel(canvas, panel, view, of);
         }
-        marks(canvas, &panels, view);
+        name_marks(canvas, &panels, &view.marks);
         panels[0].axes_above_another(canvas);
         panels[1].axes(canvas);
     });
@@ -98,21 +98,6 @@ fn steps(view: &ProfileView, of: impl Fn(&ProfileStretch) -> f64) -> Vec<(f64, f
         [(at.from_m, value), (at.from_m + view.step_m, value)]
     };
     view.stretches.iter().flat_map(ends).collect()
-}
-
-/// Where lines and barriers stand, through both panels, named above.
-fn marks(canvas: &Canvas<'_>, panels: &[Panel; 2], view: &ProfileView) {
-    for (at, mark) in &view.marks {
-        let (colour, pen) = match mark.barrier {
-            Some(_) => (DARK_GREEN, Pen::full(DARK_GREEN, 1.6)),
-            None => (INK, Pen::full(INK, 0.9).dotted()),
-        };
-        for panel in panels {
-            panel.upright(canvas, *at, pen);
-        }
-        let x = panels[0].at(*at, panels[0].y.low).0;
-        name_above(canvas, &panels[0].frame, (x, &mark.name), colour);
-    }
 }
 
 fn key(canvas: &Canvas<'_>, frame: &PaperFrame, words: &Words) {

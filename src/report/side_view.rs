@@ -4,7 +4,7 @@ mod along;
 
 use super::axis::Axis;
 use super::canvas::{Canvas, Label, Pen, SMALL, fitted, paint};
-use super::colour::{BLUE, INK};
+use super::colour::{BLUE, DARK_GREEN, INK};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
 use super::model::{MapMark, Path, Report};
@@ -101,21 +101,37 @@ impl View {
         let mut marks: Vec<(f64, MapMark)> = report.marks.iter().filter_map(place).collect();
         marks.sort_by(|a, b| a.0.total_cmp(&b.0));
         let inside = self.ground.x.low..=self.ground.x.high;
-        for (at, mark) in marks.into_iter().filter(|(at, _)| inside.contains(at)) {
-            let colour = if mark.barrier.is_some() { super::colour::DARK_GREEN } else { INK };
-            let pen = Pen::full(colour, if mark.barrier.is_some() { 1.6 } else { 0.9 });
-            let pen = if mark.barrier.is_some() { pen } else { pen.dotted() };
-            self.ground.upright(canvas, at, pen);
-            let x = self.ground.at(at, self.ground.y.low).0;
-            name_above(canvas, &self.ground.frame, (x, &mark.name), colour);
-        }
+        let shown = marks.into_iter().filter(|(at, _)| inside.contains(at));
+        let shown: Vec<(f64, MapMark)> = shown.collect();
+        name_marks(canvas, std::slice::from_ref(&self.ground), &shown);
     }
 }
 
-/// The name of a mark above the frame, or in it where a neighbour's stands above already.
-pub(super) fn name_above(
+/// Where lines and barriers stand, through all panels, named above the first.
+pub(super) fn name_marks(canvas: &Canvas<'_>, panels: &[Panel], marks: &[(f64, MapMark)]) {
+    let Some(first) = panels.first() else { return };
+    let look = |mark: &MapMark| match mark.barrier {
+        Some(_) => (DARK_GREEN, Pen::full(DARK_GREEN, 1.6)),
+        None => (INK, Pen::full(INK, 0.9).dotted()),
+    };
+    // all lines before the first name: none runs through a name
+    for (at, mark) in marks {
+        for panel in panels {
+            panel.upright(canvas, *at, look(mark).1);
+        }
+    }
+    let place = |at: f64| first.at(at, first.y.low).0;
+    let lines: Vec<f64> = marks.iter().map(|(at, _)| place(*at)).collect();
+    for (at, mark) in marks {
+        name_above(canvas, (&first.frame, &lines), (place(*at), &mark.name), look(mark).0);
+    }
+}
+
+/// The name of a mark above the frame, or in it where a neighbour's stands above already: between the `lines`, or across one
+/// where there is no room between them.
+fn name_above(
     canvas: &Canvas<'_>,
-    frame: &PaperFrame,
+    (frame, lines): (&PaperFrame, &[f64]),
     (x, name): (f64, &str),
     colour: RGBColor,
 ) {
@@ -132,7 +148,13 @@ pub(super) fn name_above(
         let room = label.frame();
         room.left >= frame.left && room.right <= frame.right && canvas.is_free(&room)
     };
-    if let Some(label) = candidates.into_iter().find(free) {
+    let crossed = |label: &Label| {
+        let room = label.frame();
+        let through = |line: &f64| (room.left - 2.0..=room.right + 2.0).contains(line);
+        room.bottom > frame.top && lines.iter().any(through)
+    };
+    let (across, between): (Vec<Label>, Vec<Label>) = candidates.filter(free).partition(crossed);
+    if let Some(label) = between.into_iter().chain(across).next() {
         canvas.text_on_rim(&label.coloured(colour));
     }
 }

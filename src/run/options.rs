@@ -1,7 +1,9 @@
 //! What is asked of a run.
 
 use crate::error::{Error, Result};
-use crate::output::Mode;
+use crate::output::{self, Identity, Mode};
+use crate::plan::VERSION;
+use crate::scene::Scene;
 use crate::study::target_precision::TargetPrecision;
 use std::ops::Range;
 use std::path::PathBuf;
@@ -30,6 +32,29 @@ impl RunOptions {
             selection: Selection::All,
             threads: None,
             until: None,
+        }
+    }
+
+    /// Refuses a folder that a run of the scene could not write into: so much is known before the terrain is read.
+    ///
+    /// # Errors
+    /// A folder that holds results which [`RunOptions::existing`] does not allow to touch, that cannot be made or written, or
+    /// that another process is writing into.
+    pub fn check_folder(&self, scene: &Scene) -> Result<()> {
+        let identity = self.identity((scene.hash_in_force(), scene.seed), scene.release.count);
+        output::check_folder(&self.out, &identity, self.existing)
+    }
+
+    /// What tells these results from others: those of a scene, by its hash, and a seed.
+    pub(super) fn identity(&self, (scene_hash, seed): (String, u64), count: usize) -> Identity {
+        let asked = self.selection.range(count);
+        Identity {
+            scene_hash,
+            version: VERSION.to_owned(),
+            seed,
+            first_release: asked.start,
+            releases: asked.len(),
+            of_releases: count,
         }
     }
 }

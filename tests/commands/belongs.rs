@@ -290,3 +290,32 @@ fn results_know_their_measured_ends_and_their_build() {
     let (_, build) = version.split_once('+').unwrap();
     assert!(build.len() == 16 && build.chars().all(|c| c.is_ascii_hexdigit()), "{version}");
 }
+
+/// Where results may not go is said before the terrain is read, which may take minutes: here it cannot be read at all.
+#[test]
+fn a_folder_that_may_not_be_written_is_refused_before_the_terrain_is_read() {
+    let dir = tempfile::tempdir().unwrap();
+    let mesh = dir.path().join("slope.stl");
+    fs::write(&mesh, "no mesh").unwrap();
+    let scene = fs::read_to_string("examples/quick.toml").unwrap();
+    let home = format!("{}/terrain", env!("CARGO_MANIFEST_DIR"));
+    let scene =
+        scene.replace("../terrain/quick_slope.stl", word(&mesh)).replace("../terrain", &home);
+    let file = dir.path().join("scene.toml");
+    fs::write(&file, scene).unwrap();
+    let taken = dir.path().join("taken");
+    write_all(&taken, Mode::Fresh).unwrap();
+    let in_file = mesh.join("out");
+    let fresh = dir.path().join("fresh");
+    for (out, part) in [
+        (&taken, "taken: holds other results: another scene"),
+        (&in_file, "slope.stl/out"),
+        (&fresh, "slope.stl: start: 7 bytes"),
+    ] {
+        let said = rockfall(&["run", word(&file), "--quiet", "--out", word(out)]);
+        let stderr = String::from_utf8(said.stderr).unwrap();
+        assert_eq!(said.status.code(), Some(2), "{stderr}");
+        assert!(stderr.contains(part), "{part}: {stderr}");
+    }
+    assert!(!fresh.exists());
+}

@@ -252,6 +252,13 @@ fn values_that_play_no_part_are_not_varied() {
     let said = rockfall(&["calibrate", word(&first), word(&second)]);
     let said = String::from_utf8(said.stderr).unwrap();
     assert!(said.contains("spheres.toml") && said.contains("spheres have no corners"), "{said}");
+    // the end of the range is wrong, not the shape that the scene has
+    let said = rockfall(&["calibrate", word(&first)]);
+    let said = String::from_utf8(said.stderr).unwrap();
+    assert!(
+        said.contains("blocks.toml: [calibrate] vary #1 to: found 0.4, a corner_radius"),
+        "{said}"
+    );
     // names of blocks stand in a table
     let text = fs::read_to_string(scene(dir.path(), "points", SHAPES, "")).unwrap();
     let text = text.replace("table = \"blocks.csv\"", "points_m = [[0.0, 0.0]]");

@@ -7,6 +7,7 @@ use rockfall::contact::neighbours::Neighbours;
 use rockfall::rock::{Rock, Vec3};
 use rockfall::solver::Scheme;
 use rockfall::terrain::Terrain;
+use rockfall::terrain::stl::Facet;
 
 /// Energy and force over `p_N` of a ball of `radius` at `centre`, as the contacts say: `½ Σ |a|² pen²`, `Σ |a|² pen n̂`.
 fn pressed(terrain: &Terrain, near: &mut Neighbours, centre: &Vec3, radius: f64) -> (f64, Vec3) {
@@ -290,4 +291,82 @@ fn an_impact_without_friction_leaves_the_spin_alone() {
         let run = case.run(&terrain, start, 0.1);
         assert_eq!(run.end.spin_rad_s, Vec3::from(spin), "{k}");
     }
+}
+
+/// Two sheets that rise by half the angle on either side of their common line x = 0, which is cut into other pieces on each.
+fn seam(angle: f64, shares: [&[f64]; 2]) -> Vec<Facet> {
+    let mut facets = Vec::new();
+    for (side, shares) in [-1.0, 1.0].into_iter().zip(shares) {
+        let at =
+            |x: f64, share: f64| Vec3::new(side * x, 6.0 * share - 3.0, x * (0.5 * angle).tan());
+        for pair in shares.windows(2) {
+            let [a, b, c, d] =
+                [at(0.0, pair[0]), at(0.0, pair[1]), at(3.0, pair[1]), at(3.0, pair[0])];
+            facets.extend([[a, b, c], [a, c, d]]);
+        }
+    }
+    facets
+}
+
+const WHOLE: [f64; 2] = [0.0, 1.0];
+const THREE: [f64; 4] = [0.0, 0.3, 0.55, 1.0];
+
+/// Corners that only one side of a seam has take part in the energy like all others: a ball is pressed as where both sides
+/// have them, in a plane, in hollow folds and on ridges.
+#[test]
+fn a_seam_with_other_corners_on_either_side_presses_like_one_with_the_same() {
+    let mut near = Neighbours::default();
+    let mut several = 0;
+    for angle in [0.0, 1e-3, 0.02, 0.2, 0.6, 1.5, -0.02, -0.4] {
+        let same = terrain(seam(angle, [&THREE, &THREE]));
+        for shares in [[&WHOLE[..], &THREE[..]], [&THREE[..], &[0.0, 0.4, 0.55, 0.8, 1.0][..]]] {
+            let other = terrain(seam(angle, shares));
+            for k in 0..200 {
+                let random = &mut common::zoo::dice(901, k);
+                let mut of = |from, to| common::zoo::between(random, from, to);
+                let pen = of(0.0, 0.05);
+                // in a fold the centre is above the line where the ball presses into both sides
+                let x = of(-1.0, 1.0) * f64::min(angle.abs(), 0.4);
+                let z = (1.0 - pen) / (0.5 * angle).cos() + x.abs() * (0.5 * angle).tan();
+                let centre = Vec3::new(x, of(-2.9, 2.9), z);
+                let [right, found] = [&same, &other]
+                    .map(|terrain| pressed(terrain, &mut near, &(centre - terrain.origin_m), 1.0));
+                assert!(
+                    (found.0 - right.0).abs() <= 1e-12,
+                    "{angle} {centre:?} {found:?} {right:?}"
+                );
+                assert!(
+                    (found.1 - right.1).norm() <= 1e-9,
+                    "{angle} {centre:?} {found:?} {right:?}"
+                );
+                several += usize::from(2.0 * right.0 * 1.000_001 < right.1.norm_squared());
+            }
+        }
+    }
+    assert!(several > 100, "{several}");
+}
+
+/// e = 1 without friction in hollow folds with one edge on the one side and three on the other: energy is kept.
+#[test]
+fn elastic_impacts_on_seams_with_other_corners_on_either_side_keep_their_energy() {
+    let ground =
+        rockfall::ground::Ground { friction_angle_rad: 0.0, restitution: Some(1.0), ..GROUND };
+    let schemes = [(Scheme::Reference, 1e-8), (Scheme::Adaptive, 0.05), (Scheme::Rigid, 0.05)];
+    let mut worst = [0.0f64; 3];
+    for angle in [0.0, 1e-3, 0.02, 0.1, 0.5] {
+        let terrain = terrain(seam(angle, [&WHOLE, &THREE]));
+        for k in 0..40 {
+            let random = &mut common::zoo::dice(902, k);
+            let x = common::zoo::between(random, -0.6, 0.6) * angle * ROCK.radius_m;
+            let y = common::zoo::between(random, -2.0, 2.0);
+            let start = [[x, y, 0.6 + x.abs() * angle], [1.0, 2.0, -10.0]];
+            for (worst, (scheme, tolerance_m_s)) in worst.iter_mut().zip(schemes) {
+                let case =
+                    Case { scheme, tolerance_m_s, ground, capture_speed_m_s: Some(0.0), ..CASE };
+                *worst = worst.max((kept(&terrain, &case, start) - 1.0).abs());
+            }
+        }
+    }
+    println!("{worst:?}");
+    assert!(worst[0] < 1e-6 && worst[1] < 2e-3 && worst[2] < 1e-12, "{worst:?}");
 }

@@ -1,6 +1,7 @@
 //! GeoJSON (RFC 7946), with the older member `crs` that names a map projection; GDAL and QGIS write it.
 
-use super::{Corner, Geometry, GisFeature, GisLayer, PropertyValue, degrees, place, polygons};
+use super::{Corner, Geometry, GisFeature, GisLayer, PropertyValue};
+use super::{degrees, place, polygons, without_shape};
 use crate::error::{Error, Result};
 use serde_json::{Map, Value as Json};
 use std::collections::BTreeMap;
@@ -27,9 +28,8 @@ pub fn parse(bytes: &[u8], file: &Path) -> Result<GisLayer> {
     let mut features = Vec::new();
     for (number, json) in (1..).zip(list) {
         let wrong = |found: String| Error::input(file, format!("feature {number}"), found, WRITE);
-        // a feature without a place says nothing here
         if json["geometry"].is_null() {
-            continue;
+            return Err(without_shape(file, format!("feature {number}")));
         }
         let shape = shape(&json["geometry"]).map_err(wrong)?;
         features.push(GisFeature {

@@ -3,7 +3,8 @@
 //! Read here in a few lines and not by a library: every count in the file is checked against its bytes before it is
 //! believed.
 
-use super::{Corner, Geometry, GisFeature, GisLayer, PropertyValue, degrees, place, polygons, wkt};
+use super::{Corner, Geometry, GisFeature, GisLayer, PropertyValue};
+use super::{degrees, place, polygons, without_shape, wkt};
 use crate::error::{Error, Result};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -60,7 +61,8 @@ pub fn parse(shp: &[u8], dbf: Option<&[u8]>, prj: Option<&[u8]>, file: &Path) ->
         let row = rows.get(number - 1);
         let is_deleted = row.is_some_and(Option::is_none);
         let shape = shape(content).map_err(|found| broken(record(), &found))?;
-        if let Some(shape) = shape.filter(|_| !is_deleted) {
+        if !is_deleted {
+            let shape = shape.ok_or_else(|| without_shape(file, record()))?;
             let properties = row.cloned().flatten().unwrap_or_default();
             features.push(GisFeature { number, shape, properties });
         }

@@ -78,6 +78,10 @@ fn a_refused_drawing_names_the_feature() {
         (two(feature("Point", "[1,1e9]")), "feature 2: found the coordinates (1, 1000000000)"),
         (two(feature("Circle", "[1,2]")), "feature 2: found a geometry of type \"Circle\""),
         (two(feature("LineString", "3")), "feature 2: found coordinates that are no list"),
+        (
+            two("{\"type\":\"Feature\",\"geometry\":null}".to_owned()),
+            "feature 2: found no geometry; draw it",
+        ),
         ("{\"type\":\"Topology\"}".to_owned(), "found \"Topology\""),
         ("[1,\n2".to_owned(), "line 2: found no JSON"),
     ] {

@@ -7,6 +7,7 @@
 
 use super::Terrain;
 use super::edges::{Edges, ends};
+use super::weld::split::Splits;
 use super::weld::{Tally, Welded};
 use crate::rock::Vec3;
 use std::cmp::Reverse;
@@ -66,6 +67,7 @@ fn empty(terrain: &Terrain) -> Welded {
         zero_area: Tally::default(),
         duplicates: Tally::default(),
         moved_corners: 0,
+        splits: Splits::default(),
     }
 }
 

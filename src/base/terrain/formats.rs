@@ -50,13 +50,22 @@ pub(super) struct ElevationModel {
     epsg: Option<u32>,
     /// What was done with it, in words.
     notes: Vec<String>,
+    /// What looks wrong in it.
+    warnings: Vec<String>,
     /// How many other grids its surface goes on in.
     joined: usize,
 }
 
 impl ElevationModel {
     fn of(grid: Grid, format: Format, epsg: Option<u32>) -> Loaded {
-        Loaded::Grid(Self { grid, format, epsg, notes: Vec::new(), joined: 0 })
+        Loaded::Grid(Self {
+            grid,
+            format,
+            epsg,
+            notes: Vec::new(),
+            warnings: Vec::new(),
+            joined: 0,
+        })
     }
 }
 

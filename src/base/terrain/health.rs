@@ -32,6 +32,9 @@ pub struct FileHealth {
     pub epsg: Option<u32>,
     /// What the file holds and what was done with it, in words.
     pub notes: Vec<String>,
+    /// What looks wrong in it, in words.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<String>,
 }
 
 impl FileHealth {
@@ -70,8 +73,14 @@ pub struct Health {
     pub border_edges: Tally,
     /// Connected runs of border edges: the outline, holes, and the ends of open stems.
     pub border_loops: usize,
-    /// Border vertices on the inside of a border edge.
+    /// Border vertices on the inside of a border edge, before triangles were split there.
     pub t_junctions: Tally,
+    /// Facets that were split there.
+    pub split_facets: usize,
+    /// What they were split into.
+    pub split_into: usize,
+    /// Vertices that still lie on an edge: its triangle is too thin to be split.
+    pub t_junctions_left: Tally,
     /// Edges whose two triangles are wound against each other.
     pub flipped_edges: Tally,
     /// Triangles of each part that shares no edge with another, the largest first.
@@ -111,7 +120,10 @@ impl Health {
             non_manifold_edges: odd.non_manifold,
             border_edges: odd.borders,
             border_loops: measure::border_loops(welded),
-            t_junctions: measure::t_junctions(welded),
+            t_junctions: welded.splits.junctions.clone(),
+            split_facets: welded.splits.facets,
+            split_into: welded.splits.pieces,
+            t_junctions_left: welded.splits.left.clone(),
             flipped_edges: odd.flipped,
             parts: measure::parts(welded),
             low_m,
@@ -119,6 +131,15 @@ impl Health {
             area_m2: measure::area_m2(welded),
             edge_quantiles_m: measure::edge_quantiles_m(welded),
         }
+    }
+
+    /// What looks wrong in the files, each with its name.
+    pub fn warnings(&self) -> impl Iterator<Item = String> + '_ {
+        let of_file = |file: &FileHealth| {
+            let named = |warning: &String| format!("{}: {warning}", file.file);
+            file.warnings.iter().map(named).collect::<Vec<_>>()
+        };
+        self.files.iter().flat_map(of_file)
     }
 
     /// Refuses a terrain whose binary files hold coordinates too large for 32 bits.

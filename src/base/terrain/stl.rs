@@ -80,6 +80,8 @@ pub struct Soup {
     pub epsg: Option<u32>,
     /// What the file holds and what was done with it, in words.
     pub notes: Vec<String>,
+    /// What looks wrong in it, in words.
+    pub warnings: Vec<String>,
 }
 
 impl From<Vec<Facet>> for Soup {
@@ -99,6 +101,7 @@ impl Soup {
             is_single: format == Format::Binary,
             epsg: None,
             notes: Vec::new(),
+            warnings: Vec::new(),
         }
     }
 

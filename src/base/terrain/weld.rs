@@ -1,8 +1,9 @@
 //! Several STL soups become one mesh with shared vertices and known neighbours.
 //!
 //! Order of work: turn and scale each file, subtract the whole-metre centre of the common box (before anything is
-//! rounded), merge vertices, drop triangles without area and exact duplicates, then list the edges. Everything follows
-//! the order of the input: the same files give the same mesh, bit for bit.
+//! rounded), merge vertices, drop triangles without area and exact duplicates, list the edges, then split triangles on
+//! whose edges vertices of others lie. Everything follows the order of the input: the same files give the same mesh, bit
+//! for bit.
 
 use crate::error::{Error, Result};
 use crate::rock::Vec3;
@@ -11,6 +12,7 @@ use crate::terrain::faces::Mesh;
 use crate::terrain::merge::Merger;
 use crate::terrain::stl::Soup;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
+use split::Splits;
 use std::path::Path;
 
 /// Weld tolerance relative to the longest side of the box of the model (–).
@@ -83,7 +85,7 @@ impl Tally {
     }
 }
 
-/// The welded mesh. Every vertex is used, every triangle has an area and occurs once.
+/// The welded mesh. Every vertex is used, every triangle has an area and occurs once; those of one facet may be several.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Welded {
     /// Map position of the local (0, 0, 0): `map = local + origin` (m). Whole metres plus the scene's origin.
@@ -108,6 +110,8 @@ pub struct Welded {
     pub duplicates: Tally,
     /// Corners that were moved onto a vertex up to the tolerance away.
     pub moved_corners: usize,
+    /// What was done where a vertex lies on an edge.
+    pub splits: Splits,
 }
 
 /// Welds the pieces into one mesh around the whole-metre centre of their box.
@@ -154,6 +158,7 @@ pub(super) fn join(
         zero_area: Tally::default(),
         duplicates: Tally::default(),
         moved_corners: 0,
+        splits: Splits::default(),
     };
     welded.take(pieces, &frame);
     if welded.triangles.is_empty() {
@@ -166,14 +171,9 @@ impl Joined {
     /// The second half of [`weld`].
     pub(super) fn finish(self) -> Welded {
         let Self(mut welded) = self;
-        welded.edges = Edges::of(&welded.triangles);
-        let again = welded.duplicates();
-        if !again.is_empty() {
-            welded.edges = Edges::default();
-            welded.drop_triangles(&again);
-            welded.edges = Edges::of(&welded.triangles);
-        }
-        if welded.zero_area.count + again.len() > 0 {
+        welded.list_edges();
+        welded.split_at_t_junctions();
+        if welded.zero_area.count + welded.duplicates.count > 0 {
             welded.drop_unused_vertices();
         }
         welded
@@ -265,6 +265,17 @@ impl Welded {
     pub fn edge_m(&self, edge: u32) -> Vec3 {
         let [a, b] = self.ends(edge);
         self.vertices_m[b as usize] - self.vertices_m[a as usize]
+    }
+
+    /// Lists the edges, once triangles that are there twice are dropped.
+    fn list_edges(&mut self) {
+        self.edges = Edges::of(&self.triangles);
+        let again = self.duplicates();
+        if !again.is_empty() {
+            self.edges = Edges::default();
+            self.drop_triangles(&again);
+            self.edges = Edges::of(&self.triangles);
+        }
     }
 
     /// Merges vertices and keeps every facet that has an area.
@@ -380,5 +391,7 @@ fn nothing_left(pieces: &[Piece], welded: &Welded) -> Error {
 }
 
 mod numbers;
+pub mod split;
+pub mod t_junctions;
 #[cfg(test)]
 mod tests;

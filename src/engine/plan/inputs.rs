@@ -1,8 +1,20 @@
 //! What went into a run, as name and value for the report.
 
-use super::annual;
+use super::{Plan, annual};
 use crate::random::Distribution;
 use crate::scene::{GroundTable, MeshFile, ReportTable, Scene, known_ground};
+use crate::terrain::health::Health;
+
+/// Version of rockfall, and after the + the fingerprint of its sources.
+pub const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), "+", env!("ROCKFALL_BUILD"));
+
+impl Plan {
+    /// The same with what was found in the meshes.
+    pub(super) fn with_health(mut self, health: Health) -> Self {
+        self.warnings.splice(..0, health.warnings());
+        Self { mesh_health: Some(health), ..self }
+    }
+}
 
 /// The inputs of a scene, name by name.
 pub(super) fn of(scene: &Scene) -> Vec<(String, String)> {

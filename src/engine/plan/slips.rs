@@ -1,6 +1,7 @@
 //! Numbers that look like another unit: allowed, but most likely a slip.
 
-use crate::scene::Scene;
+use crate::math;
+use crate::scene::{GroundTable, Scene};
 
 /// Densities of rock (kg/m³): pumice is lighter, ore heavier.
 const ROCK_KG_M3: [f64; 2] = [1000.0, 5000.0];
@@ -35,6 +36,7 @@ pub(super) fn of(scene: &Scene) -> Vec<String> {
             ));
         }
     }
+    found.extend(scene.grounds.iter().filter_map(|(name, ground)| falling_friction(name, ground)));
     for barrier in scene.barriers.iter().filter(|barrier| barrier.capacity_j < LEAST_NET_J) {
         found.push(format!(
             "[[barriers]] \"{}\" capacity_j = {} takes next to nothing; is it in kJ? write {:e}",
@@ -45,6 +47,18 @@ pub(super) fn of(scene: &Scene) -> Vec<String> {
     }
     found.extend(scene.epsg.and_then(epsg));
     found
+}
+
+/// Friction that grows with the way slipped, written so that it falls.
+fn falling_friction(name: &str, ground: &GroundTable) -> Option<String> {
+    let most = ground.slip_friction?.most;
+    let angle_deg = ground.friction_angle_deg.support().1;
+    let start = math::tan(angle_deg.to_radians());
+    (most < start).then(|| {
+        format!(
+            "[grounds.{name}] slip_friction.max = {most} is below the friction coefficient {start:.3} of friction_angle_deg = {angle_deg}: friction falls with the way slipped; write {start:.3} or more"
+        )
+    })
 }
 
 fn density(found: f64) -> Option<String> {
@@ -79,6 +93,25 @@ fn epsg(code: u32) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A ceiling below where friction begins is said, also where only some rocks begin above it; one above is not.
+    #[test]
+    fn friction_that_falls_with_the_way_slipped_is_said() {
+        let ground = |angle: &str, max: f64| -> GroundTable {
+            toml::from_str(&format!(
+                "normal_stiffness_n_m = 1e9\ntangential_ratio = 0.5\nrestitution = 0.3\nfriction_angle_deg = {angle}\n\
+                 slip_friction = {{ max = {max:?}, kappa_per_m = 0.7, beta_per_s = 20.0 }}"
+            ))
+            .unwrap()
+        };
+        // tan 30° = 0.577, tan 40° = 0.839
+        for (angle, max, is_said) in
+            [("30.0", 0.57, true), ("30.0", 0.58, false), ("{ uniform = [20.0, 40.0] }", 0.8, true)]
+        {
+            let said = falling_friction("scree", &ground(angle, max));
+            assert_eq!(said.is_some(), is_said, "{angle} {max} {said:?}");
+        }
+    }
 
     /// What the issue found in scenes, and what must not be taken for a slip.
     #[test]

@@ -38,6 +38,14 @@ struct ShapeShare {
     made: Option<Shape>,
 }
 
+/// Refuses shapes that cannot be made.
+///
+/// # Errors
+/// A scan that cannot be read or is not closed, corners too round for a shape.
+pub fn check_shapes(scene: &Scene) -> Result<()> {
+    Shapes::compile(scene).map(drop)
+}
+
 /// The shapes of a scene; empty for spheres alone.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Shapes {

@@ -7,7 +7,7 @@ use crate::random::Distribution;
 use crate::solver::Scheme;
 use serde::{Deserialize, Deserializer};
 
-/// How one ground answers a rock; every value may be a distribution, drawn once per release.
+/// How one ground answers a rock; every value but those of soil may be a distribution, drawn once per release.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table [grounds.NAME]")]
 pub struct GroundTable {
@@ -145,14 +145,35 @@ fn stiffness(key: &str, value: &Distribution) -> Checked {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table { max, kappa_per_m, beta_per_s }")]
 struct SlipTable {
-    max: f64,
-    kappa_per_m: f64,
-    beta_per_s: f64,
+    max: OneNumber,
+    kappa_per_m: OneNumber,
+    beta_per_s: OneNumber,
+}
+
+/// A value of soil: the energy of a scar and the way slipped are reckoned with one for all rocks.
+#[derive(Deserialize)]
+#[serde(
+    untagged,
+    expecting = "a number: values of slip_friction and scar are the same for every rock, no distributions"
+)]
+enum OneNumber {
+    Number(f64),
+}
+
+impl OneNumber {
+    fn value(&self) -> f64 {
+        let Self::Number(value) = self;
+        *value
+    }
 }
 
 fn slip_friction<'de, D: Deserializer<'de>>(from: D) -> Result<Option<SlipFriction>, D::Error> {
     SlipTable::deserialize(from).map(|SlipTable { max, kappa_per_m, beta_per_s }| {
-        Some(SlipFriction { most: max, kappa_per_m, beta_per_s })
+        Some(SlipFriction {
+            most: max.value(),
+            kappa_per_m: kappa_per_m.value(),
+            beta_per_s: beta_per_s.value(),
+        })
     })
 }
 
@@ -160,13 +181,17 @@ fn slip_friction<'de, D: Deserializer<'de>>(from: D) -> Result<Option<SlipFricti
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table { strength_kn_m2, drag, soil_density_kg_m3 }")]
 struct ScarTable {
-    strength_kn_m2: f64,
-    drag: f64,
-    soil_density_kg_m3: f64,
+    strength_kn_m2: OneNumber,
+    drag: OneNumber,
+    soil_density_kg_m3: OneNumber,
 }
 
 fn scar<'de, D: Deserializer<'de>>(from: D) -> Result<Option<Scar>, D::Error> {
     ScarTable::deserialize(from).map(|ScarTable { strength_kn_m2, drag, soil_density_kg_m3 }| {
-        Some(Scar { strength_kn_m2, drag, soil_density_kg_m3 })
+        Some(Scar {
+            strength_kn_m2: strength_kn_m2.value(),
+            drag: drag.value(),
+            soil_density_kg_m3: soil_density_kg_m3.value(),
+        })
     })
 }

@@ -188,6 +188,37 @@ fn nearly_ply() -> impl Strategy<Value = Vec<u8>> {
         .prop_map(|words| format!("ply\n{}", words.join(" ")).into_bytes())
 }
 
+/// A grid text of two by three cells.
+fn grid(heights: [f64; 6]) -> Grid {
+    let heights = heights.map(|height| height.to_string()).join(" ");
+    let text = format!("ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n{heights}\n");
+    Grid::parse(&text, Path::new("m.asc")).unwrap()
+}
+
+/// Zeros among heights far above are said to be cells without data; a coast, a valley floor at 0 m and a grid of zeros are not.
+#[test]
+fn zeros_far_below_all_other_cells_are_said() {
+    let said = |heights| {
+        let loaded = ElevationModel::of(grid(heights), Format::AsciiGrid, None);
+        let used = loaded.used(Path::new("m.asc"), &Options::default(), &Vec::new()).unwrap();
+        let Loaded::Grid(model) = used else { unreachable!("a grid was given") };
+        model.warnings
+    };
+    let warned = said([0.0, 500.0, 510.0, 0.0, 520.0, 530.0]);
+    assert_eq!(warned.len(), 1);
+    assert!(
+        warned[0].starts_with("2 of 6 cells are exactly 0 m high and all others above 500.0 m")
+    );
+    for sound in [
+        [0.0, 0.5, 510.0, 0.0, 520.0, 530.0],
+        [0.0, -1.0, 510.0, 0.0, 520.0, 530.0],
+        [0.0; 6],
+        [500.0, 510.0, 520.0, 530.0, 540.0, 550.0],
+    ] {
+        assert!(said(sound).is_empty(), "{sound:?}");
+    }
+}
+
 proptest! {
     #[test]
     fn no_bytes_make_the_readers_panic(bytes in prop_oneof![prop::collection::vec(any::<u8>(), 0..300), nearly_ply()]) {

@@ -4,7 +4,6 @@ use super::FileHealth;
 use crate::rock::Vec3;
 use crate::terrain::groups::Groups;
 use crate::terrain::stl::{Spacing, area_vector};
-use crate::terrain::t_junctions;
 use crate::terrain::weld::{Piece, Tally, Welded};
 use rayon::iter::{
     IndexedParallelIterator, IntoParallelIterator, IntoParallelRefMutIterator, ParallelIterator,
@@ -41,6 +40,7 @@ pub(super) fn file(piece: &Piece, map_origin_m: Vec3) -> FileHealth {
         spacing: soup.is_single.then(|| Spacing::of(&soup.facets)),
         epsg: soup.epsg,
         notes: soup.notes.clone(),
+        warnings: soup.warnings.clone(),
     }
 }
 
@@ -132,17 +132,6 @@ pub(super) fn border_loops(welded: &Welded) -> usize {
         groups.join(place(a), place(b));
     }
     groups.sizes().len()
-}
-
-/// Border vertices on the inside of a border edge, each once.
-pub(super) fn t_junctions(welded: &Welded) -> Tally {
-    let mut junctions = t_junctions::t_junctions(welded);
-    junctions.dedup_by_key(|junction| junction.vertex);
-    let mut tally = Tally::default();
-    for junction in junctions {
-        tally.add(welded.on_map(welded.vertices_m[junction.vertex as usize]));
-    }
-    tally
 }
 
 /// Triangles of each edge-connected part, the largest first.

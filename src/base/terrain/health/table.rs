@@ -66,6 +66,15 @@ impl Health {
         )
     }
 
+    fn split_text(&self) -> String {
+        if self.t_junctions.count == 0 {
+            return "closed: the facet on the edge would be split there".into();
+        }
+        let (facets, into) = (grouped(self.split_facets), grouped(self.split_into));
+        let left = grouped(self.t_junctions_left.count);
+        format!("{facets} facets split there into {into}; {left} kept where too thin to split")
+    }
+
     /// Name, tally and treatment of everything that can be wrong.
     fn rows(&self) -> [(&'static str, &Tally, String); 7] {
         let loops = format!("kept, can be hit; {} open border(s)", grouped(self.border_loops));
@@ -79,11 +88,7 @@ impl Health {
                 "kept, every triangle can be hit".into(),
             ),
             ("border edges", &self.border_edges, loops),
-            (
-                "T-junctions",
-                &self.t_junctions,
-                "kept; the closer face wins, no false edge contact".into(),
-            ),
+            ("T-junctions", &self.t_junctions, self.split_text()),
             (
                 "flipped neighbours",
                 &self.flipped_edges,
@@ -106,6 +111,9 @@ impl fmt::Display for FileHealth {
         }
         for note in &self.notes {
             writeln!(f, "  {note}")?;
+        }
+        for warning in &self.warnings {
+            writeln!(f, "  warning: {warning}")?;
         }
         if self.normals_off.count > 0 {
             let count = grouped(self.normals_off.count);

@@ -68,6 +68,12 @@ fn a_border_vertex_on_the_inside_of_an_edge_is_a_t_junction() {
         (found.t_junctions.count, &found.t_junctions.examples_m[..]),
         (1, &[[1005.0, 5.0, 0.0]][..])
     );
+    // the three triangles that met there are four: each shares an edge with the next
+    assert_eq!(
+        (found.split_facets, found.split_into, found.triangles, found.parts.len()),
+        (1, 2, 4, 1)
+    );
+    assert_eq!((found.t_junctions_left.count, found.border_loops), (0, 1));
     // default tolerance: 1e-6 of the longest side (10 m)
     assert_eq!(health(t_mesh(0.9e-5)).t_junctions.count, 1);
     assert_eq!(health(t_mesh(1.1e-5)).t_junctions.count, 0);
@@ -79,12 +85,15 @@ fn cells_find_the_t_junctions_that_brute_force_finds() {
     let mut facets: Vec<Facet> = Vec::new();
     for k in 0..60 {
         let f = |n: usize| f64::from((k * n % 17) as u32) / 2.0;
-        let (low, tip) = (p(f(3), f(7)), Vec3::new(f(5), f(11), 1.0 + k as f64));
+        // a little beside each other, so that nothing is split
+        let (low, tip) = (p(f(3) + 1e-6 * k as f64, f(7)), Vec3::new(f(5), f(11), 1.0 + k as f64));
         facets.push([low, low + p(0.0, 40.0 * f64::from(u32::from(k % 9 == 0)) + 3.0), tip]);
     }
     let soup = Soup::from(facets);
     let piece = Piece { file: Path::new("t.stl"), soup: &soup, up: Up::Z, scale: 1.0, sheet: 0 };
-    let welded = weld(&[piece], Vec3::zeros(), Some(1e-3)).unwrap();
+    let mut welded = weld(&[piece], Vec3::zeros(), Some(1e-9)).unwrap();
+    assert_eq!(welded.splits.facets, 0);
+    welded.tolerance_m = 1e-3;
     let mut expected = Vec::new();
     for edge in welded.edges.borders() {
         let [a, b] = welded.ends(edge);
@@ -93,14 +102,15 @@ fn cells_find_the_t_junctions_that_brute_force_finds() {
             let to = welded.vertices_m[vertex as usize] - start;
             let beside = to.cross(&along).norm() / along.norm();
             let share = to.dot(&along) / along.norm_squared();
-            if beside <= 1e-3 && (0.0..=1.0).contains(&share) {
-                expected.push(crate::terrain::t_junctions::TJunction { vertex, edge });
+            let from_ends_m = share.min(1.0 - share) * along.norm();
+            if beside <= 1e-3 && from_ends_m > 1e-3 {
+                expected.push(crate::terrain::weld::t_junctions::TJunction { vertex, edge });
             }
         }
     }
     expected.sort_unstable();
     assert!(expected.len() > 10, "the example has {} T-junctions", expected.len());
-    assert_eq!(crate::terrain::t_junctions::t_junctions(&welded), expected);
+    assert_eq!(crate::terrain::weld::t_junctions::t_junctions(&welded), expected);
 }
 
 #[test]
@@ -145,7 +155,8 @@ proptest! {
         let pieces = [Piece { file: Path::new("t.stl"), soup: &soup, up: Up::Z, scale: 1.0, sheet: 0 }];
         let Ok(welded) = weld(&pieces, Vec3::zeros(), None) else { return Ok(()) };
         let found = Health::of(&welded, &pieces);
-        prop_assert_eq!(found.triangles + found.zero_area.count + found.duplicates.count, soup.facets.len());
+        let made = soup.facets.len() + found.split_into - found.split_facets;
+        prop_assert_eq!(found.triangles + found.zero_area.count + found.duplicates.count, made);
         prop_assert_eq!(found.parts.iter().sum::<usize>(), found.triangles);
         let sides: usize = welded.edges.all().map(|edge| welded.edges.count_on(edge)).sum();
         prop_assert_eq!(welded.edges.all().count(), found.edges);

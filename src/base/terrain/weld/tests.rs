@@ -180,27 +180,29 @@ proptest! {
         let points: Vec<Vec3> = corners.iter().map(|c| Vec3::from(c.map(f64::from)) * 0.7).collect();
         let facets: Vec<[Vec3; 3]> = points.chunks_exact(3).map(|c| [c[0], c[1], c[2]]).collect();
         let soup = Soup::from(facets.clone());
-        let Ok(welded) = weld(&[piece(&soup, 0)], Vec3::zeros(), Some(tolerance_m)) else { return Ok(()) };
-        let kept = &welded.vertices_m;
+        let Ok(Joined(joined)) = join(&[piece(&soup, 0)], Vec3::zeros(), Some(tolerance_m)) else { return Ok(()) };
+        let kept = &joined.vertices_m;
         for (i, a) in kept.iter().enumerate() {
             prop_assert!(kept[..i].iter().all(|b| (a - b).norm() > tolerance_m));
         }
-        for (t, triangle) in welded.triangles.iter().enumerate() {
-            let source = facets[welded.facet_of[t] as usize];
+        for (t, triangle) in joined.triangles.iter().enumerate() {
+            let source = facets[joined.facet_of[t] as usize];
             for k in 0..3 {
-                let moved = welded.on_map(kept[triangle[k] as usize]) - source[k];
+                let moved = joined.on_map(kept[triangle[k] as usize]) - source[k];
                 prop_assert!(moved.norm() <= tolerance_m + 1e-12); // rounding of the recentring
             }
         }
-        prop_assert!((0..kept.len() as u32).all(|v| welded.triangles.iter().flatten().any(|&u| u == v)));
+        let welded = Joined(joined).finish();
+        let kept = welded.vertices_m.len() as u32;
+        prop_assert!((0..kept).all(|v| welded.triangles.iter().flatten().any(|&u| u == v)));
         let mut sets: Vec<[u32; 3]> = welded.triangles.clone();
         for set in &mut sets {
-set.sort_unstable();
-}
+            set.sort_unstable();
+        }
         sets.sort_unstable();
         prop_assert!(sets.windows(2).all(|pair| pair[0] != pair[1]));
         prop_assert!(sets.iter().all(|set| set[0] < set[1] && set[1] < set[2]));
-        let all = facets.len();
+        let all = facets.len() + welded.splits.pieces - welded.splits.facets;
         prop_assert_eq!(welded.zero_area.count + welded.duplicates.count + welded.triangles.len(), all);
     }
 }

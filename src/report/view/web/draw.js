@@ -215,15 +215,30 @@ function drawBalls(gl, view, at, { height, ratio }) {
   }
 }
 
-// Names of lines and barriers beside their middle.
+// Names of lines and barriers beside their middle, one above the other where they would overlap.
 function nameWalls({ scene, shown, matrix, canvas, labels }) {
-  scene.walls.forEach((wall, i) => {
-    const label = labels[i];
+  const names = scene.walls.map((wall, i) => {
     const middle = wall.foot[Math.floor(wall.foot.length / 2)];
     const spot = shown.walls && middle ? project(matrix, plus(middle, [0, 0, wall.height_m ?? 0]), canvas.clientWidth, canvas.clientHeight) : null;
-    label.hidden = !spot;
-    if (spot) Object.assign(label.style, { left: `${spot[0]}px`, top: `${spot[1]}px` });
+    labels[i].hidden = !spot;
+    return { label: labels[i], spot, width: labels[i].offsetWidth, height: labels[i].offsetHeight };
   });
+  for (const { label, spot } of apart(names.filter((name) => name.spot))) {
+    Object.assign(label.style, { left: `${spot[0]}px`, top: `${spot[1]}px` });
+  }
+}
+
+// Names as high as they stand or higher, so that none overlaps another: the lowest stays.
+function apart(names) {
+  const placed = [];
+  for (const name of [...names].sort((a, b) => b.spot[1] - a.spot[1])) {
+    let y = name.spot[1];
+    const overlaps = (other) => Math.abs(name.spot[0] - other.spot[0]) < (name.width + other.width) / 2 + 2
+      && y > other.spot[1] - other.height - 2 && y - name.height < other.spot[1] + 2;
+    for (let other = placed.find(overlaps); other; other = placed.find(overlaps)) y = other.spot[1] - other.height - 2;
+    placed.push({ ...name, spot: [name.spot[0], y] });
+  }
+  return placed;
 }
 
 // The nearest ball, end or path within some pixels of a place in the picture.

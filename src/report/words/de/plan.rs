@@ -382,4 +382,8 @@ pub(super) const PLAN: &[(&str, &str)] = &[
         "the same number of rocks is computed for every source, however often it releases them in a year. Percentiles, shares and maps are weighted back and hold for the sources as they are; counts of rocks and dots in figures show rocks as computed",
         "von jeder Quelle werden gleich viele Blöcke gerechnet, wie oft auch immer sie im Jahr welche ablöst. Perzentile, Anteile und Karten sind zurückgewichtet und gelten für die Quellen, wie sie sind; Anzahlen und Punkte in Abbildungen zeigen Blöcke wie gerechnet",
     ),
+    (
+        "{file}: {n} of {all} cells are exactly 0 m high and all others above {low} m: cells without data? then declare 0 as no data (gdal_translate -a_nodata 0)",
+        "{file}: {n} von {all} Zellen sind genau 0 m hoch und alle anderen über {low} m: Zellen ohne Daten? dann 0 als „keine Daten“ erklären (gdal_translate -a_nodata 0)",
+    ),
 ];

@@ -391,4 +391,8 @@ pub(super) const PLAN: &[(&str, &str)] = &[
         "the same number of rocks is computed for every source, however often it releases them in a year. Percentiles, shares and maps are weighted back and hold for the sources as they are; counts of rocks and dots in figures show rocks as computed",
         "autant de blocs sont calculés pour chaque source, quel que soit le nombre qu’elle en libère par an. Centiles, parts et cartes sont repondérés et valent pour les sources telles quelles\u{a0}; nombres de blocs et points des figures montrent les blocs calculés",
     ),
+    (
+        "{file}: {n} of {all} cells are exactly 0 m high and all others above {low} m: cells without data? then declare 0 as no data (gdal_translate -a_nodata 0)",
+        "{file}\u{a0}: {n} cellules sur {all} sont à 0 m exactement et toutes les autres au-dessus de {low} m\u{a0}: des cellules sans données\u{a0}? alors déclarer 0 comme absence de données (gdal_translate -a_nodata 0)",
+    ),
 ];

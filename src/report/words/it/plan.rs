@@ -379,4 +379,8 @@ pub(super) const PLAN: &[(&str, &str)] = &[
         "the same number of rocks is computed for every source, however often it releases them in a year. Percentiles, shares and maps are weighted back and hold for the sources as they are; counts of rocks and dots in figures show rocks as computed",
         "per ogni sorgente si calcola lo stesso numero di massi, comunque spesso ne distacchi in un anno. Percentili, quote e mappe sono ripesati e valgono per le sorgenti come sono; conteggi e punti nelle figure mostrano i massi come calcolati",
     ),
+    (
+        "{file}: {n} of {all} cells are exactly 0 m high and all others above {low} m: cells without data? then declare 0 as no data (gdal_translate -a_nodata 0)",
+        "{file}: {n} celle su {all} sono esattamente a 0 m e tutte le altre sopra {low} m: celle senza dati? allora dichiarare 0 come dato mancante (gdal_translate -a_nodata 0)",
+    ),
 ];

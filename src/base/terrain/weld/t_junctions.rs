@@ -33,17 +33,24 @@ pub fn t_junctions(welded: &Welded) -> Vec<TJunction> {
     found
 }
 
-/// Whether the vertex is no end of the edge and within the tolerance of its inside.
+/// Whether the vertex is no end of the edge and within the tolerance of its inside, farther than that from its ends along it:
+/// both pieces are shorter than the edge then.
 fn lies_inside(welded: &Welded, vertex: u32, edge: u32) -> bool {
     let ends = welded.ends(edge);
     if ends.contains(&vertex) {
         return false;
     }
-    let [a, b] = ends.map(|v| welded.vertices_m[v as usize]);
-    let (along, to) = (b - a, welded.vertices_m[vertex as usize] - a);
-    let share = to.dot(&along) / along.norm_squared();
+    let (along, share) = (welded.edge_m(edge), share_along(welded, ends, vertex));
+    let to = welded.vertices_m[vertex as usize] - welded.vertices_m[ends[0] as usize];
     let reach_m = welded.tolerance_m.max(REACH_OF_EDGE * along.norm());
-    (0.0..=1.0).contains(&share) && (to - share * along).norm() <= reach_m
+    let least = reach_m / along.norm();
+    share > least && share < 1.0 - least && (to - share * along).norm() <= reach_m
+}
+
+/// Where the foot of a vertex lies between two others (–): 0 at the first, 1 at the second.
+pub(super) fn share_along(welded: &Welded, ends: [u32; 2], vertex: u32) -> f64 {
+    let [a, b, to] = [ends[0], ends[1], vertex].map(|v| welded.vertices_m[v as usize]);
+    (to - a).dot(&(b - a)) / (b - a).norm_squared()
 }
 
 /// Border vertices sorted into cells about as large as a border edge, so that every edge passes few of them.
