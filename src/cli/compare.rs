@@ -16,14 +16,11 @@ pub(super) struct CompareArgs {
     /// Folder for page, figures and table
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// Replace the comparison in the folder
-    #[arg(long)]
-    overwrite: bool,
 }
 
 /// Compares two finished runs, writes page, figures and table, and says what changes.
 pub(super) fn compare(args: &CompareArgs) -> Result<ExitCode> {
-    Comparison::check_folder(&args.out, args.overwrite)?;
+    Comparison::check_folder(&args.out)?;
     let comparison = Comparison::of(&args.a, &args.b)?;
     comparison.write(&args.out)?;
     let page = args.out.join(PAGE);

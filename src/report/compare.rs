@@ -100,17 +100,16 @@ impl Comparison {
         self.populations.iter().flatten().any(|of| of.among.standing.is_some())
     }
 
-    /// Refuses a folder with a comparison that is not to be replaced, or with the results of a run.
+    /// Refuses a folder with the results of a run; an earlier comparison is replaced.
     ///
     /// # Errors
     /// If it is one.
-    pub fn check_folder(dir: &Path, overwrite: bool) -> Result<()> {
-        let refuse = |why: &str| Err(Error::Request(format!("--out {}: {why}", dir.display())));
+    pub fn check_folder(dir: &Path) -> Result<()> {
         if output::releases_in(dir)?.is_some() {
-            return refuse("holds the results of a run; write another folder");
-        }
-        if !overwrite && [PAGE, TABLE].iter().any(|name| dir.join(name).exists()) {
-            return refuse("holds a comparison; write another folder, or --overwrite");
+            return Err(Error::Request(format!(
+                "--out {}: holds the results of a run; write another folder",
+                dir.display()
+            )));
         }
         Ok(())
     }
@@ -120,7 +119,7 @@ impl Comparison {
     /// # Errors
     /// When `dir` holds the results of a run, or a file cannot be written.
     pub fn write(&self, dir: &Path) -> Result<()> {
-        Self::check_folder(dir, true)?;
+        Self::check_folder(dir)?;
         let figures = dir.join("figures");
         fs::create_dir_all(&figures).map_err(Error::file("create", &figures))?;
         let drawn = figures::all(self);
