@@ -5,8 +5,7 @@
 //! stuck, at the end of the step: what changed its velocity since the start of the step by turning alone is taken off twice. So a push does
 //! no work, a block in rest stays where it is, and pivoting keeps its energy to second order.
 //!
-//! Restitution is Newton's, contact by contact. With friction and several contacts that rule can gain energy (Glocker 2013); where it
-//! would, all restitutions are lowered together until it does not.
+//! An impact is that of stiff springs ([`strike`](Footing::strike)).
 
 mod energy;
 mod facet;
@@ -50,8 +49,6 @@ const STILL_M_S: f64 = 1e-9;
 const ROUNDING: f64 = 1e-12;
 /// Velocities are known to this (–).
 const ROUNDING_OF_SPEED: f64 = 1e-14;
-/// Halvings of the restitution where it would gain energy.
-const HALVINGS: u32 = 30;
 
 /// A block in contact.
 #[derive(Debug, Clone)]

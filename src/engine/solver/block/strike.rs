@@ -6,12 +6,15 @@
 
 use super::energy::hold_energy;
 use super::solve::{BlockContact, SWEEPS, rigid_turning, solve};
-use super::{Footing, HALVINGS, Moving, ROUNDING, ROUNDING_OF_SPEED, STILL_M_S};
+use super::{Footing, Moving, ROUNDING, ROUNDING_OF_SPEED, STILL_M_S};
 use crate::body::Block;
 use crate::contact::block::BlockTouch;
 use crate::rock::Vec3;
 use crate::solver::environment::ContactEnvironment;
 use crate::solver::loss::Loss;
+
+/// Halvings of the restitution where it would gain energy.
+const HALVINGS: u32 = 30;
 
 impl Footing {
     /// The impact of all contacts that touch, at the place and in no time; contacts too slow to rebound take part and give
@@ -36,9 +39,13 @@ impl Footing {
         if let Some(turn) = &facet {
             moving.redirect(block, &turn.inverse());
         }
-        let follows = self.is_followed_to_its_limit(world, (block, moving));
-        let blow = if follows { self.blow(world, (block, moving)) } else { None };
-        let loss = blow.unwrap_or_else(|| self.impulses(world, (block, moving)));
+        let loss = if self.is_followed_to_its_limit(world, (block, moving)) {
+            let square = self.square_blow(world, (block, moving));
+            square.or_else(|| self.blow(world, (block, moving)))
+        } else {
+            None
+        };
+        let loss = loss.unwrap_or_else(|| self.impulses(world, (block, moving), true));
         if let Some(turn) = &facet {
             moving.redirect(block, turn);
         }
@@ -53,7 +60,7 @@ impl Footing {
     ) -> bool {
         let law = |touch: &BlockTouch| world.law(touch.triangle);
         let rebounds = |touch: &BlockTouch| {
-            (std::env::var("PLASTIC").is_ok() || !law(touch).is_plastic()) && Self::is_struck(world, (block, moving), touch)
+            !law(touch).is_plastic() && Self::is_struck(world, (block, moving), touch)
         };
         self.touching(block).any(rebounds)
             && self.touching(block).any(|touch| law(touch).shear.is_on())
@@ -62,11 +69,31 @@ impl Footing {
                 .all(|touch| !law(touch).shear.is_on() || law(touch).shear.is_damped())
     }
 
-    /// The blow of impulses alone; what it takes.
+    /// The blow of contacts that do not slip, where pushes alone leave nothing to slip either, as of a face that falls flat: friction has
+    /// nothing to do then, and impulses are exact.
+    fn square_blow(
+        &mut self,
+        world: &ContactEnvironment,
+        (block, moving): (&Block, &mut Moving),
+    ) -> Option<Loss> {
+        if self.slip_m_s(block, moving) > STILL_M_S {
+            return None;
+        }
+        let mut thrown = moving.clone();
+        let loss = self.impulses(world, (block, &mut thrown), false);
+        if self.slip_m_s(block, &thrown) > STILL_M_S {
+            return None;
+        }
+        *moving = thrown;
+        Some(loss)
+    }
+
+    /// The blow of impulses alone, with friction if it `rubs`; what it takes.
     fn impulses(
         &mut self,
         world: &ContactEnvironment,
         (block, moving): (&Block, &mut Moving),
+        rubs: bool,
     ) -> Loss {
         let mass = moving.mass(block);
         let (v, w) = (moving.v, moving.spin(block));
@@ -80,7 +107,11 @@ impl Footing {
             } else {
                 0.0
             };
-            (self.contact(world, (&mass, touch), 0.0, Vec3::zeros()), back)
+            let mut contact = self.contact(world, (&mass, touch), 0.0, Vec3::zeros());
+            if !rubs {
+                contact.friction = 0.0;
+            }
+            (contact, back)
         }));
         let (before_j, rounding_m_s) = (moving.motion_j(block), ROUNDING_OF_SPEED * v.norm());
         let mut thrown = moving.clone();

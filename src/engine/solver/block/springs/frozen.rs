@@ -26,7 +26,6 @@ use crate::solver::impact::LOCAL;
 use crate::solver::impact::dormand_prince::{Attempt, Flow, Rates, Stages, put, three};
 use crate::solver::law::capture_m_s;
 use crate::solver::loss::Loss;
-use crate::solver::rigid::IMPACT;
 
 /// Where velocity, angular momentum and the stretch of the rolling spring begin among the numbers that change; penetration and
 /// stretch of each contact follow.
@@ -38,11 +37,11 @@ const CONTACTS: usize = 9;
 const OWN: usize = 4;
 /// What is summed up: losses by friction, damping, rolling friction and to trees.
 const SUMS: usize = 4;
-/// Contacts with room of their own: most blows are those of one or two corners.
-const FEW: usize = 2;
 /// Steps, and radians of the stiffest contact, after which a blow is ended: corners that rattle in a notch have no other end.
 const MOST_STEPS: u32 = 5_000;
 const MOST_RAD: f64 = 300.0;
+/// Local error allowed in a blow (–, relative to the fastest of its contact points): what `adaptive` allows by default.
+const BLOW: f64 = 2e-4;
 /// A speed that is none (–, relative to the error allowed).
 const NOTHING: f64 = 1e-3;
 
@@ -101,15 +100,17 @@ impl Footing {
         }
         let omega = contacts.iter().map(|contact| contact.law.omega_rad_s()).fold(0.0, f64::max);
         let fastest = touches.iter().map(|touch| moving.at(block, &touch.lever).norm());
-        let allowed = LOCAL * IMPACT * fastest.fold(0.0, f64::max);
+        let allowed = LOCAL * BLOW * fastest.fold(0.0, f64::max);
         let mut rolling = RollingSpring::default();
         rolling.take_up(&contacts);
         let mut flow =
             FrozenFlow { world, block, mass, touches, contacts, rolling, omega, allowed };
-        let end = if touches.len() <= FEW {
-            flow.follow::<{ CONTACTS + OWN * FEW }, { 2 * FEW }>(moving)
-        } else {
-            flow.follow::<{ CONTACTS + OWN * MOST }, { 2 * MOST }>(moving)
+        // numbers live on the stack, and loops over them are those of a constant
+        let end = match touches.len() {
+            1 => flow.follow::<{ CONTACTS + OWN }, 2>(moving),
+            2 => flow.follow::<{ CONTACTS + 2 * OWN }, 4>(moving),
+            3..=4 => flow.follow::<{ CONTACTS + 4 * OWN }, 8>(moving),
+            _ => flow.follow::<{ CONTACTS + OWN * MOST }, { 2 * MOST }>(moving),
         };
         self.springs.contacts = flow.contacts;
         end
@@ -256,7 +257,9 @@ impl FrozenFlow<'_, '_> {
                     self.begin_again(k, y);
                 }
                 is_back |= comes;
-            } else if !self.contacts[k].waits && y[at] <= 0.0 && self.contacts[k].normal_force <= 0.0
+            } else if !self.contacts[k].waits
+                && y[at] <= 0.0
+                && self.contacts[k].normal_force <= 0.0
             {
                 self.contacts[k].waits = true;
                 // what its spring held is lost
@@ -286,7 +289,12 @@ impl FrozenFlow<'_, '_> {
     }
 
     /// The motion at a state, and what was taken: together exactly what the motion has lost.
-    fn end<const N: usize>(&self, y: &[f64; N], start: &Moving, sums: &[f64; SUMS]) -> (Moving, Loss) {
+    fn end<const N: usize>(
+        &self,
+        y: &[f64; N],
+        start: &Moving,
+        sums: &[f64; SUMS],
+    ) -> (Moving, Loss) {
         let mut end = Moving { v: three(y, V), momentum: three(y, MOMENTUM), ..start.clone() };
         let before_j = start.motion_j(self.block);
         let after_j = end.motion_j(self.block);

@@ -160,11 +160,7 @@ impl Footing {
 }
 
 /// The share of the mass that a contact moves among those that touch with it (–): `G_ii/Σ_j G_ij` along the normals.
-fn share_of<'t>(
-    mass: &Mass,
-    touch: &BlockTouch,
-    all: impl Iterator<Item = &'t BlockTouch>,
-) -> f64 {
+fn share_of<'t>(mass: &Mass, touch: &BlockTouch, all: impl Iterator<Item = &'t BlockTouch>) -> f64 {
     let along = |one: &BlockTouch, other: &BlockTouch| {
         let arms = [one, other].map(|touch| touch.lever.cross(&touch.normal));
         one.normal.dot(&other.normal) / mass.mass + arms[0].dot(&(mass.inverse * arms[1]))
