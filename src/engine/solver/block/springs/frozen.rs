@@ -22,8 +22,8 @@ use crate::rock::Vec3;
 use crate::solver::block::solve::Mass;
 use crate::solver::environment::ContactEnvironment;
 use crate::solver::explicit_impact::{FIRST, LONGEST_RAD, SHORTEST_RAD, judge};
-use crate::solver::impact::LOCAL;
 use crate::solver::impact::dormand_prince::{Attempt, Flow, Rates, Stages, put, three};
+use crate::solver::impact::{LOCAL, NOTHING};
 use crate::solver::law::capture_m_s;
 use crate::solver::loss::Loss;
 
@@ -42,8 +42,6 @@ const MOST_STEPS: u32 = 5_000;
 const MOST_RAD: f64 = 300.0;
 /// Local error allowed in a blow (–, relative to the fastest of its contact points): what `adaptive` allows by default.
 const BLOW: f64 = 2e-4;
-/// A speed that is none (–, relative to the error allowed).
-const NOTHING: f64 = 1e-3;
 
 /// Contacts that do not move, and the block that strikes them.
 struct FrozenFlow<'a, 'w> {
