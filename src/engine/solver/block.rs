@@ -5,8 +5,7 @@
 //! stuck, at the end of the step: what changed its velocity since the start of the step by turning alone is taken off twice. So a push does
 //! no work, a block in rest stays where it is, and pivoting keeps its energy to second order.
 //!
-//! Restitution is Newton's, contact by contact. With friction and several contacts that rule can gain energy (Glocker 2013); where it
-//! would, all restitutions are lowered together until it does not.
+//! An impact is that of stiff springs ([`strike`](Footing::strike)).
 
 mod energy;
 mod facet;
@@ -16,6 +15,7 @@ mod slip;
 mod solve;
 mod springs;
 mod stems;
+mod strike;
 mod yielding;
 
 use super::environment::ContactEnvironment;
@@ -49,8 +49,6 @@ const STILL_M_S: f64 = 1e-9;
 const ROUNDING: f64 = 1e-12;
 /// Velocities are known to this (–).
 const ROUNDING_OF_SPEED: f64 = 1e-14;
-/// Halvings of the restitution where it would gain energy.
-const HALVINGS: u32 = 30;
 
 /// A block in contact.
 #[derive(Debug, Clone)]
@@ -182,70 +180,6 @@ impl Footing {
     pub(crate) fn touching(&self, block: &Block) -> impl Iterator<Item = &BlockTouch> {
         let most = TOUCH * block.radius_m;
         self.touches.found.iter().filter(move |touch| touch.gap_m <= most)
-    }
-
-    /// The impact of all contacts that touch, at the place and in no time; contacts too slow to rebound take part and give
-    /// nothing back. What it takes, and whether there was any.
-    pub(crate) fn strike(
-        &mut self,
-        world: &ContactEnvironment,
-        block: &Block,
-        moving: &mut Moving,
-    ) -> Option<Loss> {
-        let mass = moving.mass(block);
-        let (v, w) = (moving.v, moving.spin(block));
-        let approach = |touch: &BlockTouch| -touch.normal.dot(&moving.at(block, &touch.lever));
-        let comes = self.touching(block).any(|touch| approach(touch) > STILL_M_S);
-        if !comes && !self.comes_to_next_facet(world, block, moving) {
-            return None;
-        }
-        let facet = self.facet(world, block, moving);
-        if !comes && facet.is_none() {
-            return None;
-        }
-        let tilted = |touch: &BlockTouch| BlockTouch {
-            normal: facet.map_or(touch.normal, |turn| turn * touch.normal),
-            ..*touch
-        };
-        let mut wanted = std::mem::take(&mut self.wanted);
-        wanted.clear();
-        wanted.extend(self.touching(block).map(|touch| {
-            let (law, touch) = (world.law(touch.triangle), &tilted(touch));
-            let back = if Self::is_struck(world, (block, moving), touch) {
-                let speed = approach(touch);
-                law.restitution_at(speed) * speed
-            } else {
-                0.0
-            };
-            (self.contact(world, (&mass, touch), 0.0, Vec3::zeros()), back)
-        }));
-        let (before_j, rounding_m_s) = (moving.motion_j(block), ROUNDING_OF_SPEED * v.norm());
-        let mut thrown = moving.clone();
-        let mut try_with = |share: f64| {
-            self.contacts.clear();
-            let goal = |(one, back): &(BlockContact, f64)| one.with_goal(one.n * (back * share));
-            self.contacts.extend(wanted.iter().map(goal));
-            self.turning = rigid_turning(&self.contacts);
-            let asked = (&mut self.contacts[..], &mut self.turning);
-            self.unsettled = !solve(&mass, asked, (v, w), (rounding_m_s, SWEEPS), &mut self.sweeps);
-            thrown = moving.clone();
-            thrown.take(&self.contacts, &self.turning, block.mass_kg);
-            thrown.motion_j(block) <= before_j * (1.0 + ROUNDING)
-        };
-        if !try_with(1.0) {
-            let (mut low, mut high) = (0.0, 1.0);
-            for _ in 0..HALVINGS {
-                let middle = 0.5 * (low + high);
-                if try_with(middle) { low = middle } else { high = middle }
-            }
-            try_with(low);
-        }
-        self.wanted = wanted;
-        let after = (&thrown.v, &thrown.spin(block));
-        let loss = self.booked(world, [(&v, &w), after], before_j - thrown.motion_j(block));
-        *moving = thrown;
-        hold_energy(block, moving, [before_j, 0.0]);
-        Some(loss)
     }
 
     /// One step of sustained contact of at most `most_s`, in which no corner moves further than `corner_way` of its ball.

@@ -52,6 +52,7 @@ mod tests;
 
 pub(super) use plane::LOCAL;
 pub(crate) use plane::{BlowTable, Followed, Plane, Rebound, blow_along_a_line};
+pub(super) use rigid_limit::NOTHING;
 pub(crate) use rigid_limit::{FrozenContact, throw};
 
 /// What following an impact has cost.

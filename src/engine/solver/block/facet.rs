@@ -12,7 +12,7 @@ use nalgebra::Rotation3;
 
 impl Moving {
     /// Turns velocity and spin; every joule stays.
-    fn redirect(&mut self, block: &Block, turn: &Rotation3<f64>) {
+    pub(super) fn redirect(&mut self, block: &Block, turn: &Rotation3<f64>) {
         let w = self.spin(block);
         let turning_j = 0.5 * w.dot(&self.momentum);
         let mass = self.mass(block);

@@ -17,6 +17,7 @@
 mod controlled;
 mod dda;
 mod explicit;
+mod frozen;
 mod history;
 mod newton;
 mod rolling;

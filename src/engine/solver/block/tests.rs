@@ -1,5 +1,6 @@
 use super::*;
 
+mod blow;
 mod cases;
 mod limit;
 mod prism;

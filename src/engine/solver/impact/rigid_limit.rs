@@ -76,7 +76,7 @@ const LONGEST_STEP: f64 = 0.9;
 /// A step shorter than this is not cut at a kink (radians).
 const SHORTEST_CUT: f64 = 1e-9;
 /// An approach slower than this share of the error allowed is none (–).
-const NOTHING: f64 = 1e-3;
+pub(in crate::solver) const NOTHING: f64 = 1e-3;
 /// Radians of the softest contact, flights between touches apart, after which an impact is ended: rattling between walls has no other end.
 const MOST_TIME: f64 = 300.0;
 /// A rock whose motion changes by no more than so many errors allowed over a swing of the softest contact is jammed (–).

@@ -81,35 +81,21 @@ impl BlockHistory {
 }
 
 impl Footing {
-    /// The law of a contact that begins: its dashpots have the damping ratio of the ground for the mass that the contact moves,
-    /// `m_n = 1/(V_N M⁻¹ V_Nᵀ)`, so that restitution without friction is that of the ground; where several begin at once each has its share.
-    fn law_of_touch(
-        &self,
+    /// The law of a contact that begins at a speed of approach (m/s): its dashpots have the damping ratio of the ground for the mass that the
+    /// contact moves, `m_n = 1/(V_N M⁻¹ V_Nᵀ)`, so that restitution without friction is that of the ground; where several touch at once, itself
+    /// among `all`, each has its share.
+    pub(super) fn law_of_touch<'t>(
         world: &ContactEnvironment,
-        (block, mass): (&Block, &Mass),
+        mass: &Mass,
         touch: &BlockTouch,
-        approach_m_s: f64,
+        (approach_m_s, all): (f64, impl Iterator<Item = &'t BlockTouch>),
     ) -> Law {
         let mut law = *world.law(touch.triangle);
         if approach_m_s >= capture_m_s(&law) {
             law.struck_at(approach_m_s);
         }
         let [along, across] = mass.moved_by((&touch.normal, &touch.lever));
-        let along = along * self.share_of((block, mass), touch);
-        law.for_masses([along, across], mass.mass)
-    }
-
-    /// The share of the mass that a contact moves among those that begin with it (–): `G_ii/Σ_j G_ij` along the normals.
-    fn share_of(&self, (block, mass): (&Block, &Mass), touch: &BlockTouch) -> f64 {
-        let along = |one: &BlockTouch, other: &BlockTouch| {
-            let arms = [one, other].map(|touch| touch.lever.cross(&touch.normal));
-            one.normal.dot(&other.normal) / mass.mass + arms[0].dot(&(mass.inverse * arms[1]))
-        };
-        let own = along(touch, touch);
-        let with = |other: &&BlockTouch| other.gap_m <= TOUCH * block.radius_m && *other != touch;
-        let others = self.touches.found.iter().filter(with);
-        let all = own + others.map(|other| along(touch, other)).sum::<f64>();
-        own / all.max(LEAST_SHARED * own)
+        law.for_masses([along * share_of(mass, touch, all), across], mass.mass)
     }
 
     /// The memory of every contact of the last look, in their order; new ones begin.
@@ -154,7 +140,7 @@ impl Footing {
             part: touch.part,
             feature: touch.feature,
             triangle: touch.triangle,
-            law: self.law_of_touch(world, (block, mass), touch, approach_m_s),
+            law: Self::law_of_touch(world, mass, touch, (approach_m_s, self.touching(block))),
             n: touch.normal,
             point: moving.pose.centre + touch.lever,
             shear: Vec3::zeros(),
@@ -171,6 +157,18 @@ impl Footing {
             impact: 0,
         }
     }
+}
+
+/// The share of the mass that a contact moves among those that touch with it (–): `G_ii/Σ_j G_ij` along the normals.
+fn share_of<'t>(mass: &Mass, touch: &BlockTouch, all: impl Iterator<Item = &'t BlockTouch>) -> f64 {
+    let along = |one: &BlockTouch, other: &BlockTouch| {
+        let arms = [one, other].map(|touch| touch.lever.cross(&touch.normal));
+        one.normal.dot(&other.normal) / mass.mass + arms[0].dot(&(mass.inverse * arms[1]))
+    };
+    let own = along(touch, touch);
+    let others = all.filter(|other| *other != touch);
+    let all = own + others.map(|other| along(touch, other)).sum::<f64>();
+    own / all.max(LEAST_SHARED * own)
 }
 
 impl super::Springs {

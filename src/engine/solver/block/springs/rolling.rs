@@ -35,6 +35,11 @@ impl RollingSpring {
         }
     }
 
+    /// Whether a contact has brought rolling friction.
+    pub(super) fn is_on(&self) -> bool {
+        self.element.is_some()
+    }
+
     /// It over a stage in which it acts for `a` and the block turns for `b` (s), from a stretch at its base (rad).
     pub(super) fn over(&mut self, base: &Vec3, times_s: (f64, f64)) -> Turning {
         self.base = *base;

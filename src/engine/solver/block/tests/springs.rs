@@ -5,6 +5,8 @@ use super::*;
 use crate::solver::Scheme;
 use nalgebra::Unit;
 
+/// The one whose own error is least.
+pub(super) const FINEST: Scheme = Scheme::Reference;
 pub(super) const SCHEMES: [Scheme; 3] = [Scheme::Adaptive, Scheme::Reference, Scheme::Dda];
 
 /// The same run with springs of `p_n` (N/m); `dda` with `ω Δt` = 0.01.

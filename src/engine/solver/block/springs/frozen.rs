@@ -1,0 +1,364 @@
+//! A blow on a block in the limit of stiff springs.
+//!
+//! In that limit nothing moves while the blow lasts: normals, levers and the tensor of inertia stay what they are, weight does nothing, and
+//! what is left of the law of a contact is an equation in the blow's own time `1/ω`,
+//!
+//! ```text
+//! x_k' = −n_k·u_k,   u_k = v + ω × a_k,   m v' = Σ (F_k n_k − q_k),   ℓ' = Σ a_k × (F_k n_k − q_k)
+//! ```
+//!
+//! with the forces of spring, dashpot and slider that all schemes have. Its end depends on ratios of stiffness alone, not on how large they are.
+//! Where friction and lever couple push and slip, this is not what Newton's rule of restitution makes of each contact: a corner
+//! that sticks is thrown back as its spring has it, several corners share what comes as they give way, and nothing can gain energy.
+//!
+//! A contact that lets go and comes again begins anew, at the speed with which it comes: the step is cut there, as its dashpot pushes
+//! at once.
+
+use super::{Footing, Moving, RollingSpring, SpringAnswer, SpringContact};
+use crate::body::Block;
+use crate::contact::MOST;
+use crate::contact::block::BlockTouch;
+use crate::rock::Vec3;
+use crate::solver::block::solve::Mass;
+use crate::solver::environment::ContactEnvironment;
+use crate::solver::explicit_impact::{FIRST, LONGEST_RAD, SHORTEST_RAD, judge};
+use crate::solver::impact::dormand_prince::{Attempt, Flow, Rates, Stages, put, three};
+use crate::solver::impact::{LOCAL, NOTHING};
+use crate::solver::law::capture_m_s;
+use crate::solver::loss::Loss;
+
+/// Where velocity, angular momentum and the stretch of the rolling spring begin among the numbers that change; penetration and
+/// stretch of each contact follow.
+const V: usize = 0;
+const MOMENTUM: usize = 3;
+const ROLLED: usize = 6;
+const CONTACTS: usize = 9;
+/// How many numbers each contact has.
+const OWN: usize = 4;
+/// What is summed up: losses by friction, damping, rolling friction and to trees.
+const SUMS: usize = 4;
+/// Steps, and radians of the stiffest contact, after which a blow is ended: corners that rattle in a notch have no other end.
+const MOST_STEPS: u32 = 5_000;
+const MOST_RAD: f64 = 300.0;
+/// Local error allowed in a blow (–, relative to the fastest of its contact points): what `adaptive` allows by default.
+const BLOW: f64 = 2e-4;
+
+/// Contacts that do not move, and the block that strikes them.
+struct FrozenFlow<'a, 'w> {
+    world: &'a ContactEnvironment<'w>,
+    block: &'a Block,
+    mass: Mass,
+    /// What touches, and the contacts with it in the same order; one that has let go `waits`.
+    touches: &'a [BlockTouch],
+    contacts: Vec<SpringContact>,
+    rolling: RollingSpring,
+    /// Stiffest contact (rad/s), and local error allowed (m/s).
+    omega: f64,
+    allowed: f64,
+}
+
+impl Footing {
+    /// The blow of the contacts that touch, with what springs of any stiffness make of it; `None` where it has no such limit, or does not
+    /// end by itself: the motion is not changed then.
+    pub(in super::super) fn blow(
+        &mut self,
+        world: &ContactEnvironment,
+        (block, moving): (&Block, &mut Moving),
+    ) -> Option<Loss> {
+        let mut touches = std::mem::take(&mut self.aside);
+        touches.clear();
+        touches.extend(self.touching(block).take(MOST));
+        let thrown = self.thrown(world, (block, moving), &touches);
+        self.aside = touches;
+        let (next, taken) = thrown?;
+        *moving = next;
+        Some(taken)
+    }
+
+    /// The motion after the blow on these touches, and what its contacts have taken.
+    fn thrown(
+        &mut self,
+        world: &ContactEnvironment,
+        (block, moving): (&Block, &Moving),
+        touches: &[BlockTouch],
+    ) -> Option<(Moving, Loss)> {
+        let mass = moving.mass(block);
+        let mut contacts = std::mem::take(&mut self.springs.contacts);
+        contacts.clear();
+        for (k, touch) in touches.iter().enumerate() {
+            let ground = world.ground_of(touch.triangle);
+            let friction = self.slip.friction(ground, world.law(touch.triangle), 0.0);
+            let approach_m_s = -touch.normal.dot(&moving.at(block, &touch.lever));
+            let law = Self::law_of_touch(world, &mass, touch, (approach_m_s, touches.iter()));
+            let mut contact = SpringContact::frozen((k, touch), law);
+            contact.law.rub_with(friction);
+            contact.captured = approach_m_s < capture_m_s(&law);
+            contact.waits = approach_m_s < 0.0;
+            contacts.push(contact);
+        }
+        let omega = contacts.iter().map(|contact| contact.law.omega_rad_s()).fold(0.0, f64::max);
+        let fastest = touches.iter().map(|touch| moving.at(block, &touch.lever).norm());
+        let allowed = LOCAL * BLOW * fastest.fold(0.0, f64::max);
+        let mut rolling = RollingSpring::default();
+        rolling.take_up(&contacts);
+        let mut flow =
+            FrozenFlow { world, block, mass, touches, contacts, rolling, omega, allowed };
+        // numbers live on the stack, and loops over them are those of a constant
+        let end = match touches.len() {
+            1 => flow.follow::<{ CONTACTS + OWN }, 2>(moving),
+            2 => flow.follow::<{ CONTACTS + 2 * OWN }, 4>(moving),
+            3..=4 => flow.follow::<{ CONTACTS + 4 * OWN }, 8>(moving),
+            _ => flow.follow::<{ CONTACTS + OWN * MOST }, { 2 * MOST }>(moving),
+        };
+        self.springs.contacts = flow.contacts;
+        end
+    }
+}
+
+impl SpringContact {
+    /// Contact `k` where the block just touches.
+    fn frozen((k, touch): (usize, &BlockTouch), law: crate::ground::Law) -> Self {
+        Self {
+            history: k,
+            law: law.of_patch(touch.gain2, 1.0),
+            captured: false,
+            waits: false,
+            triangle: touch.triangle,
+            n: touch.normal,
+            lever: touch.lever,
+            offset_m: 0.0,
+            penetration: 0.0,
+            shear: Vec3::zeros(),
+            normal_force: 0.0,
+            shear_force: Vec3::zeros(),
+        }
+    }
+}
+
+impl FrozenFlow<'_, '_> {
+    /// Follows the blow of a block from this motion.
+    fn follow<const N: usize, const P: usize>(
+        &mut self,
+        moving: &Moving,
+    ) -> Option<(Moving, Loss)> {
+        let (mut y, mut sums) = ([0.0; N], [0.0; SUMS]);
+        put(&mut y, V, &moving.v);
+        put(&mut y, MOMENTUM, &moving.momentum);
+        let mut stages = Stages::<N, SUMS, P>::NONE;
+        let (mut h, mut gone) = (FIRST / self.omega, 0.0);
+        self.rates(0, &y, stages.first());
+        for _ in 0..MOST_STEPS {
+            let dt = h.min(LONGEST_RAD / self.omega);
+            let is_short = dt * self.omega < SHORTEST_RAD;
+            let felt = (!is_short).then_some(self.allowed);
+            let tried = match stages.step(self, &y, dt, felt) {
+                Attempt::Whole(tried) => tried,
+                Attempt::Cut(share) => {
+                    h = dt * share;
+                    continue;
+                }
+            };
+            let (accepted, next_h) = judge((dt, h), (tried.error2, true), is_short).ok()?;
+            h = next_h;
+            if !accepted {
+                continue;
+            }
+            if let Some(share) = self.comes_again(&y, &tried.y).filter(|_| !is_short) {
+                h = dt * share;
+                continue;
+            }
+            y = tried.y;
+            sums.iter_mut().zip(tried.q).for_each(|(sum, q)| *sum += q);
+            gone += dt * self.omega;
+            stages.pass();
+            let mut begins = self.switch(&mut y);
+            // the forces are those of the step's end
+            if !begins && self.is_free() {
+                let Some(wait_s) = self.next_touch(&y) else {
+                    return Some(self.end(&y, moving, &sums));
+                };
+                self.drift(&mut y, wait_s);
+                (begins, gone) = (true, gone + wait_s * self.omega);
+            }
+            if gone > MOST_RAD {
+                return None;
+            }
+            if begins {
+                h = FIRST / self.omega;
+                self.rates(0, &y, stages.first());
+            }
+        }
+        None
+    }
+
+    /// The velocity of a contact's point at a state.
+    fn point_m_s<const N: usize>(&self, k: usize, y: &[f64; N]) -> Vec3 {
+        let w = self.mass.inverse * three(y, MOMENTUM);
+        Mass::at(&self.contacts[k].lever, (&three(y, V), &w))
+    }
+
+    /// Penetration up to which a contact that comes again need not be met more exactly (m).
+    fn begins_m(&self) -> f64 {
+        self.allowed / self.omega
+    }
+
+    /// Whether no contact pushes at the state last asked for.
+    fn is_free(&self) -> bool {
+        self.contacts.iter().all(|contact| contact.waits || contact.normal_force <= 0.0)
+    }
+
+    /// How long (s) a block that nothing pushes goes on until it touches again, if it does.
+    fn next_touch<const N: usize>(&self, y: &[f64; N]) -> Option<f64> {
+        let waits = (0..self.contacts.len()).filter_map(|k| {
+            let comes_m_s = -self.contacts[k].n.dot(&self.point_m_s(k, y));
+            let gap_m = -y[CONTACTS + OWN * k];
+            (comes_m_s > NOTHING * self.allowed).then(|| (gap_m / comes_m_s).max(0.0))
+        });
+        waits.reduce(f64::min)
+    }
+
+    /// Lets a block that nothing pushes go on for so long (s); what touches then begins anew.
+    fn drift<const N: usize>(&mut self, y: &mut [f64; N], wait_s: f64) {
+        for k in 0..self.contacts.len() {
+            let up_m_s = self.contacts[k].n.dot(&self.point_m_s(k, y));
+            let x = &mut y[CONTACTS + OWN * k];
+            *x -= up_m_s * wait_s;
+            let touches = *x > -0.5 * self.begins_m() && up_m_s < 0.0;
+            self.contacts[k].waits = true;
+            if touches {
+                self.begin_again(k, y);
+            }
+        }
+    }
+
+    /// At which share of a step from `y` to `end` the first contact that had let go is back, if that is not its very end (–).
+    fn comes_again<const N: usize>(&self, y: &[f64; N], end: &[f64; N]) -> Option<f64> {
+        let begins_m = self.begins_m();
+        let waits = self.contacts.iter().enumerate().filter(|(_, contact)| contact.waits);
+        let back = waits.filter_map(|(k, _)| {
+            let [x, reached] = [y, end].map(|y| y[CONTACTS + OWN * k]);
+            let share = (0.5 * begins_m - x) / (reached - x);
+            // one that was let go while it was pressed in is not met on the way
+            (x < 0.0 && reached > begins_m).then_some(share)
+        });
+        back.reduce(f64::min)
+    }
+
+    /// Notes which contacts have let go and which are back; whether one is.
+    fn switch<const N: usize>(&mut self, y: &mut [f64; N]) -> bool {
+        let mut is_back = false;
+        for k in 0..self.contacts.len() {
+            let at = CONTACTS + OWN * k;
+            if self.contacts[k].waits && y[at] >= 0.0 {
+                let comes = self.contacts[k].n.dot(&self.point_m_s(k, y)) < 0.0;
+                if comes {
+                    self.begin_again(k, y);
+                }
+                is_back |= comes;
+            } else if !self.contacts[k].waits
+                && y[at] <= 0.0
+                && self.contacts[k].normal_force <= 0.0
+            {
+                self.contacts[k].waits = true;
+                // what its spring held is lost
+                put(y, at + 1, &Vec3::zeros());
+            }
+        }
+        is_back
+    }
+
+    /// A contact comes again: with the dashpot of its speed, and its share among those that touch with it.
+    fn begin_again<const N: usize>(&mut self, k: usize, y: &mut [f64; N]) {
+        let at = CONTACTS + OWN * k;
+        let touch = &self.touches[k];
+        let approach_m_s = -touch.normal.dot(&self.point_m_s(k, y));
+        let with = self.touches.iter().enumerate();
+        let with = with.filter(|(j, _)| !self.contacts[*j].waits).map(|(_, other)| other);
+        let law = Footing::law_of_touch(self.world, &self.mass, touch, (approach_m_s, with));
+        let friction = self.contacts[k].law.friction_coefficient();
+        let rebounds =
+            self.contacts.iter().any(|one| !one.waits && !one.captured && one.normal_force > 0.0);
+        let mut contact = SpringContact::frozen((k, touch), law);
+        contact.law.rub_with(friction);
+        contact.captured = approach_m_s < capture_m_s(&law) && !rebounds;
+        self.contacts[k] = contact;
+        y[at] = y[at].max(0.0);
+        put(y, at + 1, &Vec3::zeros());
+    }
+
+    /// The motion at a state, and what was taken: together exactly what the motion has lost.
+    fn end<const N: usize>(
+        &self,
+        y: &[f64; N],
+        start: &Moving,
+        sums: &[f64; SUMS],
+    ) -> (Moving, Loss) {
+        let mut end = Moving { v: three(y, V), momentum: three(y, MOMENTUM), ..start.clone() };
+        let before_j = start.motion_j(self.block);
+        let after_j = end.motion_j(self.block);
+        // the steps' own error
+        if after_j > before_j {
+            end.scale_motion((before_j / after_j).sqrt());
+        }
+        let [friction, damping, rolling, trees] = sums.map(|sum| sum.max(0.0));
+        let summed = Loss { friction, damping, rolling, trees };
+        let lost_j = (before_j - end.motion_j(self.block)).max(0.0);
+        let mut loss = Loss::default();
+        loss.add(&summed, lost_j / summed.sum().max(f64::MIN_POSITIVE));
+        (end, loss)
+    }
+}
+
+impl<const N: usize, const P: usize> Flow<N, SUMS, P> for FrozenFlow<'_, '_> {
+    fn rates(&mut self, _node: usize, y: &[f64; N], to: &mut Rates<N, SUMS, P>) {
+        *to = Rates::NONE;
+        let v = three(y, V);
+        let w = self.mass.inverse * three(y, MOMENTUM);
+        let (mut push, mut torque, mut loss) = (Vec3::zeros(), Vec3::zeros(), Loss::default());
+        for (k, contact) in self.contacts.iter_mut().enumerate() {
+            let (at, u) = (CONTACTS + OWN * k, Mass::at(&contact.lever, (&v, &w)));
+            to.y[at] = -contact.n.dot(&u);
+            (contact.penetration, contact.shear) = (y[at], three(y, at + 1));
+            if contact.waits {
+                (contact.normal_force, contact.shear_force) = (0.0, Vec3::zeros());
+                continue;
+            }
+            let SpringAnswer { pulls, asked2, shear_rate } = contact.press(&u);
+            let force = contact.n * contact.normal_force - contact.shear_force;
+            push += force;
+            torque += contact.lever.cross(&force);
+            put(&mut to.y, at + 1, &shear_rate);
+            loss.add(&contact.power(self.world, &u, &shear_rate), 1.0);
+            // in units of acceleration, so that times a step they are speeds
+            let by_mass = 1.0 / self.mass.mass;
+            let (pushes, cap) = (contact.normal_force, contact.law.shear.cap(contact.normal_force));
+            to.kinks[2 * k] = [(pushes * by_mass).powi(2), (-pulls).max(0.0) * by_mass];
+            to.kinks[2 * k + 1] = [asked2 * by_mass * by_mass, cap * by_mass];
+        }
+        if self.rolling.is_on() {
+            self.rolling.stretch = three(y, ROLLED);
+            let turning = self.rolling.press(&self.contacts, &w);
+            torque -= turning.moment;
+            put(&mut to.y, ROLLED, &turning.rate);
+            loss.add(&self.rolling.power(self.world, &self.contacts, &w), 1.0);
+        }
+        to.q = [loss.friction, loss.damping, loss.rolling, loss.trees];
+        put(&mut to.y, V, &(push / self.mass.mass));
+        put(&mut to.y, MOMENTUM, &torque);
+    }
+
+    /// Ways and stretches times `ω`, spin and turns times the largest radius, all in m/s.
+    fn size2(&self, off: &[f64; N]) -> f64 {
+        let (reach2, omega2) = (self.block.bound_m.powi(2), self.omega * self.omega);
+        let pressed = self.contacts.iter().enumerate().filter(|(_, one)| one.normal_force > 0.0);
+        let ways2 = pressed.map(|(k, _)| {
+            let at = CONTACTS + OWN * k;
+            (off[at] * off[at]).max(three(off, at + 1).norm_squared())
+        });
+        let worst2 = (ways2.fold(0.0, f64::max) * omega2)
+            .max(three(off, V).norm_squared())
+            .max((self.mass.inverse * three(off, MOMENTUM)).norm_squared() * reach2)
+            .max(three(off, ROLLED).norm_squared() * reach2 * omega2);
+        worst2 / (self.allowed * self.allowed)
+    }
+}

@@ -1,0 +1,144 @@
+//! The impact of a block in no time.
+//!
+//! A blow that rebounds is the limit of the springs' for stiff ones ([`blow`](Footing::blow)). What comes too slowly to rebound, what a
+//! plastic ground keeps and what does not rub is a blow of impulses alone, contact by contact with Newton's restitution. With several
+//! contacts that rule can gain energy (Glocker 2013); where it would, all restitutions are lowered together until it does not.
+
+use super::energy::hold_energy;
+use super::solve::{BlockContact, SWEEPS, rigid_turning, solve};
+use super::{Footing, Moving, ROUNDING, ROUNDING_OF_SPEED, STILL_M_S};
+use crate::body::Block;
+use crate::contact::block::BlockTouch;
+use crate::rock::Vec3;
+use crate::solver::environment::ContactEnvironment;
+use crate::solver::loss::Loss;
+
+/// Halvings of the restitution where it would gain energy.
+const HALVINGS: u32 = 30;
+
+impl Footing {
+    /// The impact of all contacts that touch, at the place and in no time; contacts too slow to rebound take part and give
+    /// nothing back. What it takes, and whether there was any.
+    pub(crate) fn strike(
+        &mut self,
+        world: &ContactEnvironment,
+        block: &Block,
+        moving: &mut Moving,
+    ) -> Option<Loss> {
+        let comes = self
+            .touching(block)
+            .any(|touch| -touch.normal.dot(&moving.at(block, &touch.lever)) > STILL_M_S);
+        if !comes && !self.comes_to_next_facet(world, block, moving) {
+            return None;
+        }
+        let facet = self.facet(world, block, moving);
+        if !comes && facet.is_none() {
+            return None;
+        }
+        // a facet is met as in the schemes with springs: the motion is turned against it, and back
+        if let Some(turn) = &facet {
+            moving.redirect(block, &turn.inverse());
+        }
+        let loss = if self.is_followed_to_its_limit(world, (block, moving)) {
+            let square = self.square_blow(world, (block, moving));
+            square.or_else(|| self.blow(world, (block, moving)))
+        } else {
+            None
+        };
+        let loss = loss.unwrap_or_else(|| self.impulses(world, (block, moving), true));
+        if let Some(turn) = &facet {
+            moving.redirect(block, turn);
+        }
+        Some(loss)
+    }
+
+    /// Whether a blow rebounds from something that rubs and has dashpots.
+    fn is_followed_to_its_limit(
+        &self,
+        world: &ContactEnvironment,
+        (block, moving): (&Block, &Moving),
+    ) -> bool {
+        let law = |touch: &BlockTouch| world.law(touch.triangle);
+        let rebounds = |touch: &BlockTouch| {
+            !law(touch).is_plastic() && Self::is_struck(world, (block, moving), touch)
+        };
+        self.touching(block).any(rebounds)
+            && self.touching(block).any(|touch| law(touch).shear.is_on())
+            && self
+                .touching(block)
+                .all(|touch| !law(touch).shear.is_on() || law(touch).shear.is_damped())
+    }
+
+    /// The blow of contacts that do not slip, where pushes alone leave nothing to slip either, as of a face that falls flat: friction has
+    /// nothing to do then, and impulses are exact.
+    fn square_blow(
+        &mut self,
+        world: &ContactEnvironment,
+        (block, moving): (&Block, &mut Moving),
+    ) -> Option<Loss> {
+        if self.slip_m_s(block, moving) > STILL_M_S {
+            return None;
+        }
+        let mut thrown = moving.clone();
+        let loss = self.impulses(world, (block, &mut thrown), false);
+        if self.slip_m_s(block, &thrown) > STILL_M_S {
+            return None;
+        }
+        *moving = thrown;
+        Some(loss)
+    }
+
+    /// The blow of impulses alone, with friction if it `rubs`; what it takes.
+    fn impulses(
+        &mut self,
+        world: &ContactEnvironment,
+        (block, moving): (&Block, &mut Moving),
+        rubs: bool,
+    ) -> Loss {
+        let mass = moving.mass(block);
+        let (v, w) = (moving.v, moving.spin(block));
+        let mut wanted = std::mem::take(&mut self.wanted);
+        wanted.clear();
+        wanted.extend(self.touching(block).map(|touch| {
+            let law = world.law(touch.triangle);
+            let back = if Self::is_struck(world, (block, moving), touch) {
+                let speed = -touch.normal.dot(&moving.at(block, &touch.lever));
+                law.restitution_at(speed) * speed
+            } else {
+                0.0
+            };
+            let mut contact = self.contact(world, (&mass, touch), 0.0, Vec3::zeros());
+            if !rubs {
+                contact.friction = 0.0;
+            }
+            (contact, back)
+        }));
+        let (before_j, rounding_m_s) = (moving.motion_j(block), ROUNDING_OF_SPEED * v.norm());
+        let mut thrown = moving.clone();
+        let mut try_with = |share: f64| {
+            self.contacts.clear();
+            let goal = |(one, back): &(BlockContact, f64)| one.with_goal(one.n * (back * share));
+            self.contacts.extend(wanted.iter().map(goal));
+            self.turning = rigid_turning(&self.contacts);
+            let asked = (&mut self.contacts[..], &mut self.turning);
+            self.unsettled = !solve(&mass, asked, (v, w), (rounding_m_s, SWEEPS), &mut self.sweeps);
+            thrown = moving.clone();
+            thrown.take(&self.contacts, &self.turning, block.mass_kg);
+            thrown.motion_j(block) <= before_j * (1.0 + ROUNDING)
+        };
+        if !try_with(1.0) {
+            let (mut low, mut high) = (0.0, 1.0);
+            for _ in 0..HALVINGS {
+                let middle = 0.5 * (low + high);
+                if try_with(middle) { low = middle } else { high = middle }
+            }
+            try_with(low);
+        }
+        self.wanted = wanted;
+        let after = (&thrown.v, &thrown.spin(block));
+        let loss = self.booked(world, [(&v, &w), after], before_j - thrown.motion_j(block));
+        *moving = thrown;
+        hold_energy(block, moving, [before_j, 0.0]);
+        loss
+    }
+}
