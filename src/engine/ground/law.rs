@@ -21,7 +21,7 @@ mod normal;
 
 use super::Ground;
 use crate::rock::Rock;
-use damping::CAPTURE_DAMPING_RATIO;
+use damping::{CAPTURE_DAMPING_RATIO, along_ratio};
 pub use damping::{
     Damping, NormalImpact, damping_ratio, normal_impact, restitution, tangential_restitution,
 };
@@ -30,8 +30,6 @@ pub(crate) use normal::{FixedStepNormal, NormalElement, NormalLine};
 
 /// Rolling stiffness over `p_s R²` (–); with it the rolling spring is a tenth as stiff as the shear spring.
 const ROLLING_STIFFNESS: f64 = 0.1;
-/// Damping ratio of the shear spring: without it the spring returns the slip like a super ball.
-const SHEAR_DAMPING_RATIO: f64 = 1.0;
 /// No impact slower than this rebounds (m/s), whatever the springs say.
 const SLOWEST_REBOUND_M_S: f64 = 0.02;
 /// No impact is slower than this (m/s), whatever capture speed is asked for: in the rigid limit a blow takes no time, and rounding
@@ -51,6 +49,8 @@ pub struct Law {
     pub(crate) shear: FrictionElement,
     /// What rolling meets.
     pub(crate) rolling: FrictionElement,
+    /// Critical dashpots along the surface (N s/m) and of rolling (N m s/rad).
+    critical: [f64; 2],
     /// Impacts slower than this do not rebound (m/s).
     pub capture_m_s: f64,
     /// Normal restitution (–) of slow impacts, see [`Self::restitution_at`].
@@ -84,6 +84,7 @@ impl Law {
         c_n_captured: 0.0,
         shear: FrictionElement::NONE,
         rolling: FrictionElement::NONE,
+        critical: [0.0; 2],
         capture_m_s: 0.0,
         restitution: 0.0,
         restitution_half_m_s: f64::INFINITY,
@@ -111,21 +112,26 @@ impl Law {
         let k_r = if rolls { ROLLING_STIFFNESS * p_s * radius * radius } else { 0.0 };
         let physical = damping.capture_number * capture.gravity_m_s2 / omega;
         let least = (0.5 * capture.tolerance_m_s).max(SLOWEST_REBOUND_M_S);
-        let damped = if ground.restitution.is_some() { SHEAR_DAMPING_RATIO } else { 0.0 };
+        let damped = if ground.restitution.is_some() { along_ratio(damping.ratio) } else { 0.0 };
+        let critical = [
+            2.0 * (p_s * m / Rock::SLIP_LIGHTNESS).sqrt(),
+            2.0 * (k_r * Rock::ROLLING_INERTIA * m).sqrt() * radius,
+        ];
         Self {
             p_n,
             c_n: 2.0 * damping.ratio * m * omega,
             c_n_captured: 2.0 * CAPTURE_DAMPING_RATIO.max(damping.ratio) * m * omega,
             shear: FrictionElement {
                 k: p_s,
-                c: 2.0 * damped * (p_s * m / Rock::SLIP_LIGHTNESS).sqrt(),
+                c: damped * critical[0],
                 limit: ground.friction_coefficient(),
             },
             rolling: FrictionElement {
                 k: k_r,
-                c: 2.0 * (k_r * Rock::ROLLING_INERTIA * m).sqrt() * radius,
+                c: along_ratio(damping.ratio) * critical[1],
                 limit: ground.rolling_friction * radius,
             },
+            critical,
             capture_m_s: capture.own_m_s.unwrap_or_else(|| physical.max(least)),
             restitution: ground.restitution.unwrap_or(1.0),
             restitution_half_m_s: ground.restitution_half_m_s.unwrap_or(f64::INFINITY),
@@ -243,6 +249,8 @@ impl Law {
             let critical = 2.0 * self.p_n / self.omega;
             self.c_n = ratio * critical;
             self.c_n_captured = CAPTURE_DAMPING_RATIO.max(ratio) * critical;
+            self.shear.c = along_ratio(ratio) * self.critical[0];
+            self.rolling.c = along_ratio(ratio) * self.critical[1];
         }
     }
 }
