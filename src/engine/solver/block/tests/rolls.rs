@@ -46,7 +46,7 @@ impl Slap {
     }
 
     /// The same by a model of its own: two edges that do not move far, each on the springs and dashpots of its two corners, in the plane,
-    /// stepped by the classical Runge–Kutta method in units of `1/ω`. Damping ratio 5 along the normal, 1 along the surface.
+    /// stepped by the classical Runge–Kutta method in units of `1/ω`. Damping ratio 5 along the normal and along the surface.
     fn in_the_plane(&self, rad: f64) -> f64 {
         let block = &self.case.block;
         let [about_x, about_y, _] = block.inertia_kg_m2.map(|i| i / block.mass_kg);
@@ -61,7 +61,7 @@ impl Slap {
         let share = along / f64::max(4.0, 0.25 * along);
         let law = PlanarLaw {
             spring: [2.0, 0.5],
-            dashpot: [2.0 * 10.0 * (share / along).sqrt(), 2.0 * 2.0 * (0.25 / across).sqrt()],
+            dashpot: [(share / along).sqrt(), (0.25 / across).sqrt()].map(|one| 2.0 * 10.0 * one),
             friction: 10.0,
         };
         // velocity, then pressed in and stretched at the rear and at the front edge
@@ -108,7 +108,7 @@ impl PlanarLaw {
 
 /// S10: on stiff springs a slap is what a model of its own in the plane tells, and once the weight has brought the prism to rest on its front
 /// edge, five sides and more have left of their spin what the rigid limit has: their rear edge is lifted off at once. That of four
-/// sides is pressed in by the blow in front of it, however stiff the springs are: it keeps more.
+/// sides is pressed in by the blow in front of it, however stiff the springs are: it keeps a little more.
 #[test]
 fn a_slap_on_springs_takes_what_it_must() {
     for sides in [4, 5, 6, 8] {
@@ -120,7 +120,7 @@ fn a_slap_on_springs_takes_what_it_must() {
             let (rests, rigid) = (slap.follow(200.0), slap.rigid());
             println!("{sides} {scheme:?}: {found} planar {planar}; {rests} rigid {rigid}");
             assert!((found - planar).abs() < 2e-3, "{sides} {scheme:?}: {found} {planar}");
-            let known = if sides == 4 { 0.3116 } else { rigid };
+            let known = if sides == 4 { 0.2685 } else { rigid };
             assert!((rests - known).abs() < 2e-3, "{sides} {scheme:?}: {rests} {known}");
         }
     }
@@ -155,9 +155,9 @@ fn a_face_slides_on_springs_over_any_triangulation() {
     }
 }
 
-/// S11, S12: a hexagonal prism on stiff springs comes near to the limit cycle of the rigid limit, as fast before a slap and as slow at the top
-/// of its way but for a hundredth: a plastic blow on springs still gives back a hundredth of the speed, and its friction comes a little
-/// after its push. What that cycle is, `adaptive` and `reference` agree on.
+/// S11, S12: a hexagonal prism on stiff springs comes into the limit cycle of the rigid limit, as fast before a slap and as slow at the top
+/// of its way, to a hundredth of a per cent. With a critical dashpot along the surface it was off by a third of a per cent: its friction
+/// came after its push. `adaptive` and `reference` agree on it.
 #[test]
 fn a_hexagonal_prism_rolls_on_springs_into_its_limit_cycle() {
     for degrees in [10.0, 15.0] {
@@ -176,7 +176,7 @@ fn a_hexagonal_prism_rolls_on_springs_into_its_limit_cycle() {
             (one.0 / other.0 - 1.0).abs().max((one.1 / other.1 - 1.0).abs())
         };
         for (found, scheme) in found.iter().zip(SCHEMES) {
-            assert!(off(found, &rigid) < 2e-2, "{scheme:?} {degrees}: {found:?} {rigid:?}");
+            assert!(off(found, &rigid) < 2e-4, "{scheme:?} {degrees}: {found:?} {rigid:?}");
         }
         assert!(off(&found[0], &found[1]) < 1e-5, "{degrees}: {found:?}");
     }
