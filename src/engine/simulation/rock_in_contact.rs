@@ -72,6 +72,7 @@ impl RockInContact<'_, '_> {
         // what is captured is turned too: the facet takes what it takes
         if let Some((turn, _)) = facet {
             self.state.turn_against(&self.world, turn, until_s);
+            self.recorder.now.turn(&turn.inverse());
         }
     }
 
@@ -158,6 +159,8 @@ impl RockInContact<'_, '_> {
             recorder.ledger.trees_j += taken_j;
         };
         state.break_stems(world, note);
+        // what the stems took is booked: the step begins with what they left
+        (recorder.now.velocity_m_s, recorder.now.spin_rad_s) = (state.v, state.w);
     }
 
     /// A rock that slides or rolls on rough ground meets the next facet once the last is behind it.
@@ -221,11 +224,11 @@ impl RockInContact<'_, '_> {
 
     /// Turns the rock back, if it is turned.
     pub(super) fn leave_facet(&mut self) {
-        if self.state.turn_back(&self.world) {
+        if let Some(turn) = self.state.turn_back(&self.world) {
             // a rebound into the mean surface is the next impact
             self.recorder.impacts.forget_last();
-            let now = &mut self.recorder.now;
-            (now.velocity_m_s, now.spin_rad_s) = (self.state.v, self.state.w);
+            // turned, not taken from the state: a step that is not noted yet has changed its speed
+            self.recorder.now.turn(&turn);
         }
     }
 }
