@@ -7,7 +7,8 @@
 //! begins the step is cut.
 //!
 //! State: way, velocity and spin of the rock, shear and rolling stretch of each contact; summed
-//! along: what friction, dashpots, rolling and trees take. Why explicit: the implicit stage costs
+//! along: what friction, dashpots, rolling and trees take. What normal springs hold is a matter of place,
+//! known at both ends of a step. Why explicit: the implicit stage costs
 //! an iteration over geometry and contacts, and a rebound is over in `π` radians, a handful of
 //! steps; stiffness enters only by the unit of time.
 
@@ -55,8 +56,8 @@ struct Accepted {
     dt: f64,
     /// What it summed up (J).
     sums: [f64; SUMS],
-    /// Energy in the normal springs at its start and end (J), if all of them push at both.
-    stored: Option<(Loss, Loss)>,
+    /// What normal springs have taken up in it (J).
+    taken_up: Loss,
 }
 
 /// Whether a whole try of `dt` (s) is accepted by its error (squared, over the one allowed), and the step to try next (s). One that was cut
@@ -153,7 +154,7 @@ impl ContactState {
         flow.rates_of(&y, stages.first());
         // what the present place touches is met whatever becomes of the tries
         flow.state.accept_meetings(world.least_impact_m_s());
-        let before = flow.stored_j();
+        flow.note_start();
         let known = flow.state.histories.len();
         let mut kept = 0.0;
         loop {
@@ -180,10 +181,10 @@ impl ContactState {
             flow.state.impact.h = if accepted { next_h.max(kept) } else { next_h };
             if accepted {
                 done.rejected -= 1;
-                let (end, after) = (flow.end(&tried.y), flow.stored_j());
+                let end = flow.end(&tried.y);
+                let taken_up = flow.taken_up();
                 flow.remember();
-                let stored = before.zip(after);
-                return Ok(Some(Accepted { end, dt, sums: tried.q, stored }));
+                return Ok(Some(Accepted { end, dt, sums: tried.q, taken_up }));
             }
             kept = 0.0;
         }
@@ -199,12 +200,9 @@ impl ContactState {
     ) {
         let (body, end) = (&world.body, &accepted.end);
         let before = self.motion_j(body);
-        let [friction, damping, rolling, trees, stores, tree_stores] = accepted.sums;
+        let [friction, damping, rolling, trees] = accepted.sums;
         let mut loss = Loss { friction, damping, rolling, trees };
-        // where springs push from the step's start to its end, what they store is known exactly
-        if let Some(ends) = &accepted.stored {
-            loss.know_stored([stores, tree_stores], ends);
-        }
+        loss.add(&accepted.taken_up, 1.0);
         let lifted = -body.mass * body.gravity.dot(&(end.c - self.c));
         (self.c, self.v, self.w) = (end.c, end.v, end.w);
         // what the springs store is counted among the losses until they give it back
@@ -214,7 +212,8 @@ impl ContactState {
         self.accept_meetings(world.least_impact_m_s());
         self.fresh = false;
         done.dt += accepted.dt + self.let_go(world, bounds, bounds.h_max - accepted.dt);
-        if self.is_free() || self.impact.left <= 0.0 {
+        // what rebounds no more goes on with other steps, also while something else still presses
+        if self.is_free() || !self.is_rebounding() {
             self.balance(world);
         }
         done.loss.add(&loss, 1.0);

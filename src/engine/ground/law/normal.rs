@@ -102,6 +102,17 @@ impl NormalElement {
         0.5 * self.p_n * penetration * penetration
     }
 
+    /// Power that the dashpot takes at a penetration (m) and a speed apart (m/s), ≥ 0 (W): `c_N s²` while they push together, and all
+    /// that the spring gives back where it goes apart faster than it can follow, `p_N x s`.
+    #[inline]
+    pub(crate) fn dissipating_w(&self, penetration: f64, apart_m_s: f64) -> f64 {
+        if self.pull_or_push(penetration, apart_m_s) > 0.0 {
+            self.c_n * apart_m_s * apart_m_s
+        } else {
+            self.p_n * penetration * apart_m_s.max(0.0)
+        }
+    }
+
     /// Power that the spring takes up (W).
     #[inline]
     pub(crate) fn storing_w(&self, penetration: f64, closing_m_s: f64) -> f64 {
