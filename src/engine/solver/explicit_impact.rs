@@ -54,10 +54,8 @@ struct StepBounds {
 struct Accepted {
     end: End,
     dt: f64,
-    /// What it summed up (J).
-    sums: [f64; SUMS],
-    /// What normal springs have taken up in it (J).
-    taken_up: Loss,
+    /// What contacts took, what springs hold counted in (J).
+    loss: Loss,
 }
 
 /// Whether a whole try of `dt` (s) is accepted by its error (squared, over the one allowed), and the step to try next (s). One that was cut
@@ -118,15 +116,15 @@ impl ContactState {
         let mut accepted = None;
         if known <= 2 {
             accepted = if world.laws.iter().any(|law| law.rolling.is_on()) {
-                self.step_among::<2, 21, 6>(world, &bounds, done)?
+                self.step_among::<2, 21, { SUMS + 2 }, 6>(world, &bounds, done)?
             } else {
-                self.step_among::<2, 15, 6>(world, &bounds, done)?
+                self.step_among::<2, 15, { SUMS + 2 }, 6>(world, &bounds, done)?
             };
         }
         if accepted.is_none() {
             // what the crowded try has met is forgotten
             self.histories.truncate(known);
-            accepted = self.step_among::<HISTORIES, { 9 + 6 * HISTORIES }, { 3 * HISTORIES }>(
+            accepted = self.step_among::<HISTORIES, { 9 + 6 * HISTORIES }, { SUMS + HISTORIES }, { 3 * HISTORIES }>(
                 world, &bounds, done,
             )?;
         }
@@ -141,7 +139,7 @@ impl ContactState {
     ///
     /// A try that is cut at a kink is shorter, not wrong; one whose error is too large shrinks by
     /// the usual rule.
-    fn step_among<const C: usize, const N: usize, const P: usize>(
+    fn step_among<const C: usize, const N: usize, const Q: usize, const P: usize>(
         &mut self,
         world: &ContactEnvironment,
         bounds: &StepBounds,
@@ -150,7 +148,7 @@ impl ContactState {
         let StepBounds { omega, limit, h_max, allowed } = *bounds;
         let mut flow = Among::<C>::new(world, self, (omega, allowed));
         let y = flow.begin::<N>();
-        let mut stages = Stages::<N, SUMS, P>::NONE;
+        let mut stages = Stages::<N, Q, P>::NONE;
         flow.rates_of(&y, stages.first());
         // what the present place touches is met whatever becomes of the tries
         flow.state.accept_meetings(world.least_impact_m_s());
@@ -182,9 +180,10 @@ impl ContactState {
             if accepted {
                 done.rejected -= 1;
                 let end = flow.end(&tried.y);
-                let taken_up = flow.taken_up();
+                let mut loss = flow.taken_up(&tried.q);
+                loss.add(&summed(&tried.q), 1.0);
                 flow.remember();
-                return Ok(Some(Accepted { end, dt, sums: tried.q, taken_up }));
+                return Ok(Some(Accepted { end, dt, loss }));
             }
             kept = 0.0;
         }
@@ -198,11 +197,8 @@ impl ContactState {
         bounds: &StepBounds,
         done: &mut Advance,
     ) {
-        let (body, end) = (&world.body, &accepted.end);
+        let (body, end, loss) = (&world.body, &accepted.end, &accepted.loss);
         let before = self.motion_j(body);
-        let [friction, damping, rolling, trees] = accepted.sums;
-        let mut loss = Loss { friction, damping, rolling, trees };
-        loss.add(&accepted.taken_up, 1.0);
         let lifted = -body.mass * body.gravity.dot(&(end.c - self.c));
         (self.c, self.v, self.w) = (end.c, end.v, end.w);
         // what the springs store is counted among the losses until they give it back
@@ -216,7 +212,7 @@ impl ContactState {
         if self.is_free() || !self.is_rebounding() {
             self.balance(world);
         }
-        done.loss.add(&loss, 1.0);
+        done.loss.add(loss, 1.0);
         done.steps += 1;
     }
 
@@ -267,4 +263,9 @@ impl ContactState {
         }
         (self.impact.gained, self.impact.left) = (0.0, 0.0);
     }
+}
+
+/// What contacts took beside what their normal springs hold, from the sums of a step (J).
+fn summed<const Q: usize>(sums: &[f64; Q]) -> Loss {
+    Loss { friction: sums[0], damping: sums[1], rolling: sums[2], trees: sums[3] }
 }

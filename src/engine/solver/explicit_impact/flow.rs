@@ -28,7 +28,7 @@ const V: usize = 3;
 const W: usize = 6;
 /// Where the springs begin: shear of all `C` contacts, then rolling of all, each with three numbers.
 const SPRINGS: usize = 9;
-/// What is summed up: losses by friction, damping, rolling and to trees, all but what normal springs take up.
+/// What is summed up: losses by friction, damping, rolling and to trees. What the normal spring of each contact takes up follows.
 pub(super) const SUMS: usize = 4;
 
 /// A contact at the state last asked for.
@@ -57,9 +57,9 @@ pub(super) struct Among<'a, 'w, const C: usize> {
     pub(super) is_smooth: bool,
     /// The one face met at the step's start; [`Feature::NONE`] if it was something else.
     face: Option<Feature>,
-    /// Energy in the normal spring of each contact at the step's start (J), and which of them hang there without a push.
-    began_j: [f64; C],
-    hangs: u32,
+    /// Energy in the normal spring of each contact at the step's start (J), if it is known, and which of them have a dashpot.
+    began_j: [Option<f64>; C],
+    damped: u32,
     list: [PressedContact; C],
     len: usize,
 }
@@ -74,9 +74,10 @@ impl PressedContact {
         slides: false,
     };
 
-    /// Energy in its normal spring (J).
-    fn stored_j(&self) -> f64 {
-        self.normal.stored_j(self.at.penetration)
+    /// Energy in its normal spring (J), unless that goes apart faster than spring and dashpot can follow; the mass is that of the rock (kg).
+    fn known_j(&self, mass: f64) -> Option<f64> {
+        let pushes = self.normal_force > 0.0 || !self.normal.is_damped(mass);
+        pushes.then(|| self.normal.stored_j(self.at.penetration))
     }
 }
 
@@ -94,8 +95,8 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
             is_crowded: false,
             is_smooth: true,
             face: None,
-            began_j: [0.0; C],
-            hangs: 0,
+            began_j: [Some(0.0); C],
+            damped: 0,
             list,
             len: 0,
         }
@@ -137,34 +138,24 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
     /// Notes what the normal springs hold at the step's start, the state last asked for.
     pub(super) fn note_start(&mut self) {
         for contact in &self.list[..self.len] {
-            self.began_j[contact.place] = contact.stored_j();
-            self.hangs |= u32::from(contact.normal_force <= 0.0) << contact.place;
+            self.began_j[contact.place] = contact.known_j(self.world.body.mass);
         }
     }
 
     /// What the normal springs have taken up since the step's start (J), at its end, the state last asked for.
     ///
-    /// Known from the two ends, whatever patches came and went between them: the energy of a place is continuous. One that hangs without
-    /// a push has lost what it held as it let go, and is left out from then on: how it relaxes does not matter.
-    pub(super) fn taken_up(&self) -> Loss {
+    /// Known from the two ends where they push at both, whatever patches came and went between them: the energy of a place is
+    /// continuous. A spring whose dashpot has let it go has not given back what it held: there the sums over the step tell.
+    pub(super) fn taken_up<const Q: usize>(&self, sums: &[f64; Q]) -> Loss {
         let mut taken = Loss::default();
-        let mut add = |damping: f64, triangle: u32| {
-            taken.add(&Loss { damping, ..Loss::default() }.on(self.world, triangle), 1.0);
-        };
-        let mut hung = self.hangs;
-        for contact in self.pressed() {
-            let is_hung = hung & (1 << contact.place) != 0;
-            if contact.normal_force > 0.0 {
-                hung &= !(1 << contact.place);
-            }
-            if contact.normal_force > 0.0 || !is_hung {
-                add(contact.stored_j(), contact.touch.triangle);
-            }
-        }
         for (place, history) in self.state.histories.iter().enumerate().take(C) {
-            if hung & (1 << place) == 0 {
-                add(-self.began_j[place], history.triangle);
-            }
+            let end = self.pressed().iter().find(|contact| contact.place == place);
+            let gone_j = (self.damped & (1 << place) == 0).then_some(0.0);
+            let ended_j = end.map_or(gone_j, |contact| contact.known_j(self.world.body.mass));
+            let known = self.began_j[place].zip(ended_j).map(|(began, ended)| ended - began);
+            let damping = known.unwrap_or(sums[SUMS + place]);
+            let triangle = end.map_or(history.triangle, |contact| contact.touch.triangle);
+            taken.add(&Loss { damping, ..Loss::default() }.on(self.world, triangle), 1.0);
         }
         taken
     }
@@ -190,12 +181,12 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
     }
 
     /// Writes the rates at `y` over `rates`; its contacts are those of the rock's state then.
-    pub(super) fn rates_of<const N: usize, const P: usize>(
+    pub(super) fn rates_of<const N: usize, const Q: usize, const P: usize>(
         &mut self,
         y: &[f64; N],
-        rates: &mut Rates<N, SUMS, P>,
+        rates: &mut Rates<N, Q, P>,
     ) {
-        let Self { world, state, hangs, .. } = self;
+        let Self { world, state, damped, .. } = self;
         let body = &world.body;
         let (by_mass, by_inertia) = (1.0 / body.mass, 1.0 / body.inertia);
         *rates = Rates::NONE;
@@ -248,10 +239,11 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
                 put(&mut rates.y, SPRINGS + 3 * (C + place), &action.rates[1]);
             }
             // energy that goes into trees is counted apart, whatever takes it
-            let [friction, mut damping, rolling] = action.powers(&w);
-            if normal_force > 0.0 || *hangs & (1 << place) == 0 {
-                damping += normal.dissipating_w(at.penetration, n.dot(&v));
-            }
+            let apart = n.dot(&v);
+            let [friction, shear_damping, rolling] = action.powers(&w);
+            let damping = shear_damping + normal.dissipating_w(at.penetration, apart);
+            rates.q[SUMS + place] = normal.storing_w(at.penetration, -apart);
+            *damped |= u32::from(normal.is_damped(body.mass)) << place;
             if world.terrain.is_tree(touch.triangle) {
                 rates.q[3] += friction + damping + rolling;
             } else {
@@ -276,9 +268,11 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
     }
 }
 
-impl<const C: usize, const N: usize, const P: usize> Flow<N, SUMS, P> for Among<'_, '_, C> {
+impl<const C: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, P>
+    for Among<'_, '_, C>
+{
     #[inline]
-    fn rates(&mut self, _node: usize, y: &[f64; N], to: &mut Rates<N, SUMS, P>) {
+    fn rates(&mut self, _node: usize, y: &[f64; N], to: &mut Rates<N, Q, P>) {
         self.rates_of(y, to);
     }
 
