@@ -49,6 +49,13 @@ pub struct Motion {
 }
 
 impl Motion {
+    /// Turns velocity and spin; the rock stays where it is.
+    #[inline]
+    pub fn turn(&mut self, turn: &nalgebra::Rotation3<f64>) {
+        self.velocity_m_s = turn * self.velocity_m_s;
+        self.spin_rad_s = turn * self.spin_rad_s;
+    }
+
     /// `m v²/2` (J).
     #[inline]
     pub fn translational_j(&self, rock: &Rock) -> f64 {

@@ -104,6 +104,9 @@ pub struct Ledger {
     /// Handed on to other rocks, negative if received; 0 for a rock alone, and in sum over a world.
     #[serde(default)]
     pub passed_on_j: f64,
+    /// What the springs of its contacts with the mesh hold at the end more than at release: not lost, but no motion either.
+    #[serde(default)]
+    pub springs_j: f64,
     /// What the numerics lost (positive) or gained (negative).
     pub remainder_j: f64,
     /// Largest rise of mechanical energy seen over one contact episode (J), ≥ 0; 0 in exact arithmetic.

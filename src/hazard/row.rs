@@ -67,6 +67,9 @@ pub struct Row {
     pub others_j: f64,
     /// Energy handed on to other rocks, negative if received (J).
     pub passed_on_j: f64,
+    /// Energy that the springs of its contacts with the mesh hold at the end, more than at release (J).
+    #[serde(default)]
+    pub springs_j: f64,
     /// Its shape; none in a scene of spheres, where the file has no such columns.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shape: Option<ShapeOf>,
@@ -148,7 +151,7 @@ impl From<&Stop> for StopKind {
 
 impl Row {
     /// Columns of `releases.csv`, in order; a vector takes three.
-    pub const COLUMNS: [&'static str; 38] = [
+    pub const COLUMNS: [&'static str; 39] = [
         "index",
         "stop",
         "time_s",
@@ -187,6 +190,7 @@ impl Row {
         "remainder_j",
         "others_j",
         "passed_on_j",
+        "springs_j",
     ];
 
     /// Columns that follow them where a scene has blocks: shape, sides 2 and 3 over side 1, and how it was turned at release.
@@ -230,6 +234,7 @@ impl Row {
             remainder_j: fall.ledger.remainder_j,
             others_j: fall.ledger.others_j,
             passed_on_j: fall.ledger.passed_on_j,
+            springs_j: fall.ledger.springs_j,
             shape: fall.shape,
             soil_j: None,
         }

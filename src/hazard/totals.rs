@@ -44,6 +44,9 @@ pub struct LedgerSums {
     /// Handed on to other rocks.
     #[serde(default)]
     pub passed_on_j: Sum,
+    /// Held by springs of contacts at the end.
+    #[serde(default)]
+    pub springs_j: Sum,
     /// What the numerics lost (positive) or gained (negative).
     pub remainder_j: Sum,
     /// The largest [`Ledger::rise_j`]; no sum.
@@ -200,6 +203,7 @@ impl LedgerSums {
             soil_j,
             others_j,
             passed_on_j,
+            springs_j,
             remainder_j,
             rise_j,
         } = *one;
@@ -210,6 +214,7 @@ impl LedgerSums {
         self.soil_j.add(soil_j);
         self.others_j.add(others_j);
         self.passed_on_j.add(passed_on_j);
+        self.springs_j.add(springs_j);
         self.remainder_j.add(remainder_j);
         self.rise_j = self.rise_j.max(rise_j);
     }
@@ -223,6 +228,7 @@ impl LedgerSums {
             soil_j,
             others_j,
             passed_on_j,
+            springs_j,
             remainder_j,
             rise_j,
         } = other;
@@ -233,6 +239,7 @@ impl LedgerSums {
         self.soil_j.join(soil_j);
         self.others_j.join(others_j);
         self.passed_on_j.join(passed_on_j);
+        self.springs_j.join(springs_j);
         self.remainder_j.join(remainder_j);
         self.rise_j = self.rise_j.max(*rise_j);
     }
@@ -246,6 +253,7 @@ impl LedgerSums {
             soil_j: self.soil_j.rounded(),
             others_j: self.others_j.rounded(),
             passed_on_j: self.passed_on_j.rounded(),
+            springs_j: self.springs_j.rounded(),
             remainder_j: self.remainder_j.rounded(),
             rise_j: self.rise_j,
         }

@@ -13,6 +13,7 @@ mod dda_energy;
 mod exact_edge;
 mod exact_plane;
 mod heap;
+mod impact_ledger;
 mod ledger;
 mod leaving_out;
 mod oracle_contact;

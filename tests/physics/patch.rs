@@ -21,7 +21,7 @@ fn pressed(terrain: &Terrain, near: &mut Neighbours, centre: &Vec3, radius: f64)
 }
 
 /// A valley along y at x = 0; its sides rise by half the angle each.
-fn fold(angle: f64) -> Terrain {
+pub(crate) fn fold(angle: f64) -> Terrain {
     let z = 3.0 * (0.5 * angle).tan();
     let at = |x: f64, y: f64| Vec3::new(x, y, if x == 0.0 { 0.0 } else { z });
     let (a, b, c) = (at(-3.0, -3.0), at(0.0, -3.0), at(3.0, -3.0));
@@ -205,7 +205,7 @@ fn rocks_of_every_size_lift_off_an_edge_alike() {
 }
 
 /// A noisy plane of square cells, larger than the ball sees.
-fn noisy(cell: f64, cells: usize, noise_m: f64) -> Terrain {
+pub(crate) fn noisy(cell: f64, cells: usize, noise_m: f64) -> Terrain {
     use common::zoo::{between, dice};
     let random = &mut dice(77, 0);
     let half = 0.5 * cell * cells as f64;

@@ -372,6 +372,9 @@ fn rocks_of_one_world_break_stems_each_for_itself() {
                 fall.start
             );
             assert_eq!(fall.tree_impact_count, 1, "{scheme:?}");
+            // what the stem took is booked once
+            let remainder = fall.ledger.remainder_j.abs() / shot_j();
+            assert!(remainder < numerics.max(1e-6), "{scheme:?}: {:?}", fall.ledger);
         }
     }
 }

@@ -124,7 +124,7 @@ fn the_columns_are_those_of_the_contract() {
         "index,stop,time_s,radius_m,mass_kg,start_x_m,start_y_m,start_z_m,end_x_m,end_y_m,end_z_m,\
          end_vx_m_s,end_vy_m_s,end_vz_m_s,end_wx_rad_s,end_wy_rad_s,end_wz_rad_s,runout_m,drop_m,\
          reach_angle_deg,max_speed_m_s,max_translational_j,max_rotational_j,max_total_j,max_height_m,\
-         impacts,tree_impacts,energy_balance_error,steps,leaps,sweeps,friction_j,damping_j,rolling_j,trees_j,remainder_j,others_j,passed_on_j"
+         impacts,tree_impacts,energy_balance_error,steps,leaps,sweeps,friction_j,damping_j,rolling_j,trees_j,remainder_j,others_j,passed_on_j,springs_j"
     );
     assert_eq!(
         first("paths.csv"),

@@ -120,8 +120,7 @@ impl Roll<'_> {
         self.recorder.ledger.remainder_j -= rise_j + lost_j;
         // what springs hold is not lost
         let stored = self.stored();
-        self.recorder.pay(&stored, -1.0);
-        self.recorder.pay(&held, 1.0);
+        self.recorder.hold(&stored, &held);
         // contacts only take energy: a rise is an error of the solver
         let ledger = &mut self.recorder.ledger;
         ledger.rise_j = ledger.rise_j.max(rise_j + stored.sum() - held.sum());
@@ -147,7 +146,7 @@ impl Roll<'_> {
             self.footing.bend_stem(&self.world, (block, &mut self.moving), &mut done.loss);
             self.recorder.effort.steps += 1;
             self.recorder.effort.unsettled += u64::from(done.unsettled);
-            self.recorder.pay(&done.loss, 1.0);
+            self.recorder.pay(&done.loss);
             if self.scars.are_any() {
                 self.plough(&from, done.is_free);
             }
@@ -244,7 +243,7 @@ impl Roll<'_> {
         self.recorder.effort.unsettled += u64::from(loss.is_some() && self.footing.unsettled);
         let mut loss = loss.unwrap_or_default();
         self.footing.bend_stem(&self.world, (block, &mut self.moving), &mut loss);
-        self.recorder.pay(&loss, 1.0);
+        self.recorder.pay(&loss);
         let is_free = !self.footing.holds(&self.world, (block, &self.moving), true);
         if is_free {
             let kept = self.scars.leave(&self.world.body, &self.moving.v);
@@ -255,7 +254,7 @@ impl Roll<'_> {
         self.recorder.turned = Some(turned(block, &self.moving));
         // the largest speed may be the one right after an impact
         self.recorder.note_speed();
-        self.recorder.end_impacts(|_| false, || 0.0);
+        self.recorder.end_all_impacts();
         is_free
     }
 

@@ -251,12 +251,11 @@ impl Fall<'_> {
         self.recorder.ledger.remainder_j -= rise_j + self.recorder.lost_j() - lost_before_j;
         // A rock that rests presses on its springs: what they hold is not lost.
         let stored = self.held();
-        self.recorder.pay(&stored, -1.0);
-        self.recorder.pay(&held, 1.0);
+        self.recorder.hold(&stored, &held);
         // largest over all episodes: 0 in exact arithmetic, since contacts only take energy
         self.recorder.ledger.rise_j =
             self.recorder.ledger.rise_j.max(rise_j + stored.sum() - held.sum());
-        self.recorder.end_impacts(|_| false, || 0.0);
+        self.recorder.end_all_impacts();
         self.in_contact().leave_facet();
         stop
     }
@@ -301,7 +300,7 @@ impl Fall<'_> {
             if self.state.bend(&world, &mut done.loss) {
                 *stepper = Stepper::new(self.settings.step, &world, self.state);
             }
-            self.recorder.pay(&done.loss, 1.0);
+            self.recorder.pay(&done.loss);
             let to = Motion {
                 time_s: self.recorder.now.time_s + done.dt,
                 position_m: self.state.c,

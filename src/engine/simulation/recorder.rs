@@ -311,31 +311,42 @@ impl<'a> Recorder<'a> {
         number
     }
 
-    /// Ends the impacts whose time is over or whose patch no longer `holds` the rock; `held_j` as above.
-    ///
-    /// `held_j` is asked only if the last of them ends: summing the springs costs a look at every
-    /// contact.
-    pub(super) fn end_impacts(
-        &mut self,
-        holds: impl Fn(u32) -> bool,
-        held_j: impl FnOnce() -> f64,
-    ) {
+    /// Ends the impacts whose time is over or whose patch no longer `holds` the rock; whether those were the last, to be booked.
+    #[must_use]
+    pub(super) fn end_impacts(&mut self, holds: impl Fn(u32) -> bool) -> bool {
         if !self.impacts.is_any() {
-            return;
+            return false;
         }
         self.impacts.end(self.now.time_s, self.now.velocity_m_s.norm(), holds);
-        if !self.impacts.is_any() {
-            self.impacts.book((self.lost_to_mesh_j() - held_j(), self.ledger.soil_j));
+        !self.impacts.is_any()
+    }
+
+    /// Books what the impacts took that have ended; `held_j` as above.
+    pub(super) fn book_impacts(&mut self, held_j: f64) {
+        self.impacts.book((self.lost_to_mesh_j() - held_j, self.ledger.soil_j));
+    }
+
+    /// Ends all impacts where no spring holds anything.
+    pub(super) fn end_all_impacts(&mut self) {
+        if self.end_impacts(|_| false) {
+            self.book_impacts(0.0);
         }
     }
 
-    /// Writes `times` the losses into the ledger.
-    /// Times −1 takes a loss back: what springs held at the end was not lost.
-    pub(super) fn pay(&mut self, loss: &Loss, times: f64) {
-        self.ledger.friction_j += times * loss.friction;
-        self.ledger.damping_j += times * loss.damping;
-        self.ledger.rolling_j += times * loss.rolling;
-        self.ledger.trees_j += times * loss.trees;
+    /// Writes losses into the ledger, what springs take up counted in.
+    pub(super) fn pay(&mut self, loss: &Loss) {
+        self.ledger.friction_j += loss.friction;
+        self.ledger.damping_j += loss.damping;
+        self.ledger.rolling_j += loss.rolling;
+        self.ledger.trees_j += loss.trees;
+    }
+
+    /// Takes what springs hold at the end of an episode out of the losses, and what they `brought` along from before back in.
+    pub(super) fn hold(&mut self, stored: &Loss, brought: &Loss) {
+        let mut back = *brought;
+        back.add(stored, -1.0);
+        self.pay(&back);
+        self.ledger.springs_j -= back.sum();
     }
 
     /// All losses so far (J).

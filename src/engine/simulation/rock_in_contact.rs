@@ -47,8 +47,11 @@ impl RockInContact<'_, '_> {
         }
         // what contacts that were announced earlier hold in their springs: the new impact must not
         // be charged with it
-        let known = self.state.histories.iter().filter(|history| history.announced);
-        let held_j = ContactState::held_j(&self.world, known);
+        let held_j = if self.has_springs {
+            self.state.held_j(&self.world, |history| history.announced)
+        } else {
+            0.0
+        };
         let until_s = self.recorder.now.time_s + self.impact_time();
         let mut rebounds = false;
         for k in 0..self.state.histories.len() {
@@ -72,6 +75,7 @@ impl RockInContact<'_, '_> {
         // what is captured is turned too: the facet takes what it takes
         if let Some((turn, _)) = facet {
             self.state.turn_against(&self.world, turn, until_s);
+            self.recorder.now.turn(&turn.inverse());
         }
     }
 
@@ -158,6 +162,8 @@ impl RockInContact<'_, '_> {
             recorder.ledger.trees_j += taken_j;
         };
         state.break_stems(world, note);
+        // what the stems took is booked: the step begins with what they left
+        (recorder.now.velocity_m_s, recorder.now.spin_rad_s) = (state.v, state.w);
     }
 
     /// A rock that slides or rolls on rough ground meets the next facet once the last is behind it.
@@ -207,13 +213,14 @@ impl RockInContact<'_, '_> {
         if !self.has_springs && self.state.is_struck {
             return;
         }
-        let (world, histories, has_springs) =
-            (&self.world, &self.state.histories, self.has_springs);
+        let Self { world, state, has_springs, .. } = self;
         // the rigid limit keeps no memory of what has hit and left again within a step
-        self.recorder.end_impacts(
-            |number| !has_springs || histories.iter().any(|history| history.impact == number),
-            || ContactState::held_j(world, histories.iter()),
-        );
+        let histories = &state.histories;
+        let lasts = |number| !*has_springs || histories.iter().any(|one| one.impact == number);
+        if self.recorder.end_impacts(lasts) {
+            let held_j = if *has_springs { state.held_j(world, |_| true) } else { 0.0 };
+            self.recorder.book_impacts(held_j);
+        }
         if self.state.has_met_its_facet(self.recorder.now.time_s) {
             self.leave_facet();
         }
@@ -221,11 +228,11 @@ impl RockInContact<'_, '_> {
 
     /// Turns the rock back, if it is turned.
     pub(super) fn leave_facet(&mut self) {
-        if self.state.turn_back(&self.world) {
+        if let Some(turn) = self.state.turn_back(&self.world) {
             // a rebound into the mean surface is the next impact
             self.recorder.impacts.forget_last();
-            let now = &mut self.recorder.now;
-            (now.velocity_m_s, now.spin_rad_s) = (self.state.v, self.state.w);
+            // turned, not taken from the state: a step that is not noted yet has changed its speed
+            self.recorder.now.turn(&turn);
         }
     }
 }

@@ -375,11 +375,11 @@ impl ContactState {
         self.facets.tilt = Some(Tilt { turn, until_s });
     }
 
-    /// Turns the rock back if it is turned; whether it was.
-    pub(crate) fn turn_back(&mut self, world: &ContactEnvironment) -> bool {
-        let Some(Tilt { turn, .. }) = self.facets.tilt.take() else { return false };
+    /// Turns the rock back if it is turned; returns by what.
+    pub(crate) fn turn_back(&mut self, world: &ContactEnvironment) -> Option<Rotation3<f64>> {
+        let Tilt { turn, .. } = self.facets.tilt.take()?;
         self.redirect(world, turn * self.v, turn * self.w);
-        true
+        Some(turn)
     }
 
     /// Whether the rock is turned against a facet that it has left, or whose time is up at `now_s` (s).

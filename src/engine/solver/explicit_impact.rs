@@ -7,7 +7,8 @@
 //! begins the step is cut.
 //!
 //! State: way, velocity and spin of the rock, shear and rolling stretch of each contact; summed
-//! along: what friction, dashpots, rolling and trees take. Why explicit: the implicit stage costs
+//! along: what friction, dashpots, rolling and trees take. What normal springs hold is a matter of place,
+//! known at both ends of a step. Why explicit: the implicit stage costs
 //! an iteration over geometry and contacts, and a rebound is over in `π` radians, a handful of
 //! steps; stiffness enters only by the unit of time.
 
@@ -53,10 +54,8 @@ struct StepBounds {
 struct Accepted {
     end: End,
     dt: f64,
-    /// What it summed up (J).
-    sums: [f64; SUMS],
-    /// Energy in the normal springs at its start and end (J), if all of them push at both.
-    stored: Option<(Loss, Loss)>,
+    /// What contacts took, what springs hold counted in (J).
+    loss: Loss,
 }
 
 /// Whether a whole try of `dt` (s) is accepted by its error (squared, over the one allowed), and the step to try next (s). One that was cut
@@ -117,15 +116,15 @@ impl ContactState {
         let mut accepted = None;
         if known <= 2 {
             accepted = if world.laws.iter().any(|law| law.rolling.is_on()) {
-                self.step_among::<2, 21, 6>(world, &bounds, done)?
+                self.step_among::<2, 21, { SUMS + 2 }, 6>(world, &bounds, done)?
             } else {
-                self.step_among::<2, 15, 6>(world, &bounds, done)?
+                self.step_among::<2, 15, { SUMS + 2 }, 6>(world, &bounds, done)?
             };
         }
         if accepted.is_none() {
             // what the crowded try has met is forgotten
             self.histories.truncate(known);
-            accepted = self.step_among::<HISTORIES, { 9 + 6 * HISTORIES }, { 3 * HISTORIES }>(
+            accepted = self.step_among::<HISTORIES, { 9 + 6 * HISTORIES }, { SUMS + HISTORIES }, { 3 * HISTORIES }>(
                 world, &bounds, done,
             )?;
         }
@@ -140,7 +139,7 @@ impl ContactState {
     ///
     /// A try that is cut at a kink is shorter, not wrong; one whose error is too large shrinks by
     /// the usual rule.
-    fn step_among<const C: usize, const N: usize, const P: usize>(
+    fn step_among<const C: usize, const N: usize, const Q: usize, const P: usize>(
         &mut self,
         world: &ContactEnvironment,
         bounds: &StepBounds,
@@ -149,11 +148,11 @@ impl ContactState {
         let StepBounds { omega, limit, h_max, allowed } = *bounds;
         let mut flow = Among::<C>::new(world, self, (omega, allowed));
         let y = flow.begin::<N>();
-        let mut stages = Stages::<N, SUMS, P>::NONE;
+        let mut stages = Stages::<N, Q, P>::NONE;
         flow.rates_of(&y, stages.first());
         // what the present place touches is met whatever becomes of the tries
         flow.state.accept_meetings(world.least_impact_m_s());
-        let before = flow.stored_j();
+        flow.note_start();
         let known = flow.state.histories.len();
         let mut kept = 0.0;
         loop {
@@ -180,10 +179,11 @@ impl ContactState {
             flow.state.impact.h = if accepted { next_h.max(kept) } else { next_h };
             if accepted {
                 done.rejected -= 1;
-                let (end, after) = (flow.end(&tried.y), flow.stored_j());
+                let end = flow.end(&tried.y);
+                let mut loss = flow.taken_up(&tried.q);
+                loss.add(&summed(&tried.q), 1.0);
                 flow.remember();
-                let stored = before.zip(after);
-                return Ok(Some(Accepted { end, dt, sums: tried.q, stored }));
+                return Ok(Some(Accepted { end, dt, loss }));
             }
             kept = 0.0;
         }
@@ -197,14 +197,8 @@ impl ContactState {
         bounds: &StepBounds,
         done: &mut Advance,
     ) {
-        let (body, end) = (&world.body, &accepted.end);
+        let (body, end, loss) = (&world.body, &accepted.end, &accepted.loss);
         let before = self.motion_j(body);
-        let [friction, damping, rolling, trees, stores, tree_stores] = accepted.sums;
-        let mut loss = Loss { friction, damping, rolling, trees };
-        // where springs push from the step's start to its end, what they store is known exactly
-        if let Some(ends) = &accepted.stored {
-            loss.know_stored([stores, tree_stores], ends);
-        }
         let lifted = -body.mass * body.gravity.dot(&(end.c - self.c));
         (self.c, self.v, self.w) = (end.c, end.v, end.w);
         // what the springs store is counted among the losses until they give it back
@@ -214,10 +208,11 @@ impl ContactState {
         self.accept_meetings(world.least_impact_m_s());
         self.fresh = false;
         done.dt += accepted.dt + self.let_go(world, bounds, bounds.h_max - accepted.dt);
-        if self.is_free() || self.impact.left <= 0.0 {
+        // what rebounds no more goes on with other steps, also while something else still presses
+        if self.is_free() || !self.is_rebounding() {
             self.balance(world);
         }
-        done.loss.add(&loss, 1.0);
+        done.loss.add(loss, 1.0);
         done.steps += 1;
     }
 
@@ -268,4 +263,9 @@ impl ContactState {
         }
         (self.impact.gained, self.impact.left) = (0.0, 0.0);
     }
+}
+
+/// What contacts took beside what their normal springs hold, from the sums of a step (J).
+fn summed<const Q: usize>(sums: &[f64; Q]) -> Loss {
+    Loss { friction: sums[0], damping: sums[1], rolling: sums[2], trees: sums[3] }
 }

@@ -112,11 +112,11 @@ impl Action {
         }
     }
 
-    /// Power that goes into friction, dashpots and springs, and rolling (W), in this order.
+    /// Power that goes into friction, into spring and dashpot of shear, and into rolling (W), in this order.
     #[inline]
-    pub(crate) fn powers(&self, approach: f64, w: &Vec3) -> [f64; 3] {
+    pub(crate) fn powers(&self, w: &Vec3) -> [f64; 3] {
         let slipping = self.shear_force.dot(&(self.slip - self.rates[0]));
-        let damping = self.shear_force.dot(&self.rates[0]) + self.normal[0] * approach;
+        let damping = self.shear_force.dot(&self.rates[0]);
         [slipping, damping, self.rolling_moment.dot(w)]
     }
 }

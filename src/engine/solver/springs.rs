@@ -35,17 +35,32 @@ impl ContactState {
         stored
     }
 
-    /// About how much the springs of contacts that last hold (J), as their memories tell: `F²/(2 p_N)` and the stretches.
-    pub fn held_j<'h>(
+    /// How much the springs of the contacts hold that `count` (J). Touches are looked for anew, and the last look stays as it was: a
+    /// force would not tell, as dashpots push as well.
+    pub(crate) fn held_j(
+        &mut self,
         world: &ContactEnvironment,
-        histories: impl Iterator<Item = &'h ContactHistory>,
+        count: impl Fn(&ContactHistory) -> bool,
     ) -> f64 {
-        let held = histories.map(|history| {
+        if !self.histories.iter().any(&count) {
+            return 0.0;
+        }
+        let (c, last) = (self.c, self.touches);
+        self.know(world, &c);
+        self.near.touches(world.terrain, &c, world.body.radius, &mut self.touches);
+        let all = self.stored_j(world).sum();
+        let touches = std::mem::replace(&mut self.touches, last);
+        let others = self.histories.iter().filter(|history| !count(history));
+        let of_others = others.map(|history| {
             let law = world.law(history.triangle);
-            let penetration = law.pressed_m(history.normal_force);
-            law.stored_j(penetration, history.shear.norm_squared(), history.roll.norm_squared())
+            let touch = touches.iter().find(|touch| touch.feature == history.feature);
+            let pressed = touch.map_or(0.0, |touch| {
+                let penetration = (world.body.radius - touch.distance_m).max(0.0);
+                touch.gain2 * law.stored_j(penetration, 0.0, 0.0)
+            });
+            pressed + law.stored_j(0.0, history.shear.norm_squared(), history.roll.norm_squared())
         });
-        held.sum()
+        all - of_others.sum::<f64>()
     }
 
     /// A time (s) within which the contacts of `on` take no more than `work_j`: their forces do not grow faster than springs

@@ -8,6 +8,8 @@ use super::Law;
 
 /// Stiffness that holds a contact exactly at the surface, over `m/h` (–).
 const HOLD: f64 = 1e7;
+/// Damping ratio that is none (–).
+const ROUNDED: f64 = 1e-9;
 
 /// Spring and dashpot in force.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -100,6 +102,23 @@ impl NormalElement {
     #[inline]
     pub(crate) fn stored_j(&self, penetration: f64) -> f64 {
         0.5 * self.p_n * penetration * penetration
+    }
+
+    /// Whether its dashpot takes anything of the motion of a mass (kg): one for a restitution of 1 holds what its search rounds.
+    #[inline]
+    pub(crate) fn is_damped(&self, m: f64) -> bool {
+        self.c_n * self.c_n > (2.0 * ROUNDED).powi(2) * self.p_n * m
+    }
+
+    /// Power that the dashpot takes at a penetration (m) and a speed apart (m/s), ≥ 0 (W): `c_N s²` while the contact pushes, and all that
+    /// its spring gives back, `p_N x s`, where it goes apart faster than spring and dashpot can follow.
+    #[inline]
+    pub(crate) fn dissipating_w(&self, penetration: f64, apart_m_s: f64) -> f64 {
+        if self.pull_or_push(penetration, apart_m_s) > 0.0 {
+            self.c_n * apart_m_s * apart_m_s
+        } else {
+            self.p_n * penetration * apart_m_s.max(0.0)
+        }
     }
 
     /// Power that the spring takes up (W).

@@ -32,7 +32,7 @@ impl Roll<'_> {
     /// Ends an episode of contact.
     pub(super) fn end_contact(&mut self) {
         if self.has_springs() {
-            self.recorder.end_impacts(|_| false, || 0.0);
+            self.recorder.end_all_impacts();
             self.turn_back();
         }
     }
@@ -126,7 +126,9 @@ impl Roll<'_> {
         }
         let springs = &self.footing.springs;
         let lasts = |number| springs.histories.iter().any(|history| history.impact == number);
-        self.recorder.end_impacts(lasts, || springs.held_j());
+        if self.recorder.end_impacts(lasts) {
+            self.recorder.book_impacts(springs.held_j());
+        }
         let now_s = self.recorder.now.time_s;
         if self.footing.has_met_its_facet(now_s) {
             self.turn_back();

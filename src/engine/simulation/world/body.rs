@@ -160,7 +160,7 @@ impl<'a> WorldBody<'a> {
         // A rock that is pressed in from the start has the energy of its springs, too.
         if settings.step.scheme.has_springs() {
             let held = state.stored_j(&world);
-            self.recorder.pay(&held, 1.0);
+            self.recorder.hold(&Loss::default(), &held);
             self.began_j.0 += held.sum();
         }
         // an impact must be resolved from its start; what is too slow to rebound, the error control alone finds out
@@ -284,7 +284,7 @@ impl<'a> WorldBody<'a> {
         // one slipping contact, with mesh or rock, makes the step "sliding"
         let slides = slides || self.member.state.histories.iter().any(|history| history.slides);
         self.recorder.step(to, slides);
-        self.recorder.pay(&loss, 1.0);
+        self.recorder.pay(&loss);
         self.recorder.ledger.others_j += given.lost;
         self.recorder.ledger.passed_on_j += given.passed_on;
         // energy balance of the step: what motion, friction, dashpots and other rocks do not account for is numerical
@@ -312,8 +312,8 @@ impl<'a> WorldBody<'a> {
         // The rigid limit has no springs, whatever the depth that rounding leaves.
         let is_rigid = !settings.step.scheme.has_springs();
         let stored = if is_rigid { Loss::default() } else { state.springs_j(&world) };
-        self.recorder.pay(&stored, -1.0);
-        self.recorder.end_impacts(|_| false, || 0.0);
+        self.recorder.hold(&stored, &Loss::default());
+        self.recorder.end_all_impacts();
         self.in_contact(settings).leave_facet();
         let rise_j = self.total_j(settings) - self.began_j.0 + given_j + stored.sum();
         // without numerical error it is 0 or less: contacts only take energy

@@ -184,13 +184,12 @@ impl Springs {
         self.impact_m_s = self.fastest_m_s().map_or(0.0, |own| own.max(self.impact_m_s));
     }
 
-    /// About how much springs hold (J), as the memories tell.
+    /// How much springs hold (J), as the memories tell.
     pub(crate) fn held_j(&self) -> f64 {
         let held = self.histories.iter().filter(|history| history.closed).map(|history| {
-            let penetration = history.law.pressed_m(history.normal_force);
-            history.law.stored_j(penetration, history.shear.norm_squared(), 0.0)
+            history.law.stored_j(history.pressed_m, history.shear.norm_squared(), 0.0)
         });
-        held.sum()
+        held.sum::<f64>() + self.rolling.holds_j()
     }
 }
 

@@ -28,8 +28,8 @@ const V: usize = 3;
 const W: usize = 6;
 /// Where the springs begin: shear of all `C` contacts, then rolling of all, each with three numbers.
 const SPRINGS: usize = 9;
-/// What is summed up: losses by friction, damping, rolling and to trees, and what normal springs of slope and trees take up.
-pub(super) const SUMS: usize = 6;
+/// What is summed up: losses by friction, damping, rolling and to trees. What the normal spring of each contact takes up follows.
+pub(super) const SUMS: usize = 4;
 
 /// A contact at the state last asked for.
 #[derive(Debug, Clone, Copy)]
@@ -38,7 +38,6 @@ pub(super) struct PressedContact {
     pub(super) place: usize,
     pub(super) touch: ContactPoint,
     pub(super) at: ContactPlace,
-    pub(super) is_tree: bool,
     /// Normal spring and dashpot in force.
     pub(super) normal: NormalElement,
     /// Normal force (N), and whether friction is at its cap.
@@ -58,6 +57,9 @@ pub(super) struct Among<'a, 'w, const C: usize> {
     pub(super) is_smooth: bool,
     /// The one face met at the step's start; [`Feature::NONE`] if it was something else.
     face: Option<Feature>,
+    /// Energy in the normal spring of each contact at the step's start (J), if it is known, and which of them have a dashpot.
+    began_j: [Option<f64>; C],
+    damped: u32,
     list: [PressedContact; C],
     len: usize,
 }
@@ -67,11 +69,16 @@ impl PressedContact {
         place: 0,
         touch: ContactPoint::NONE,
         at: ContactPlace { n: ZERO, penetration: 0.0, shear: ZERO, roll: ZERO },
-        is_tree: false,
         normal: NormalElement::NONE,
         normal_force: 0.0,
         slides: false,
     };
+
+    /// Energy in its normal spring (J), unless that goes apart faster than spring and dashpot can follow; the mass is that of the rock (kg).
+    fn known_j(&self, mass: f64) -> Option<f64> {
+        let pushes = self.normal_force > 0.0 || !self.normal.is_damped(mass);
+        pushes.then(|| self.normal.stored_j(self.at.penetration))
+    }
 }
 
 impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
@@ -81,7 +88,18 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
         scale: (f64, f64),
     ) -> Self {
         let list = [PressedContact::NONE; C];
-        Self { world, state, scale, is_crowded: false, is_smooth: true, face: None, list, len: 0 }
+        Self {
+            world,
+            state,
+            scale,
+            is_crowded: false,
+            is_smooth: true,
+            face: None,
+            began_j: [Some(0.0); C],
+            damped: 0,
+            list,
+            len: 0,
+        }
     }
 
     /// Whether rolling springs are among `N` numbers.
@@ -117,21 +135,29 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
         &self.list[..self.len]
     }
 
-    /// Energy in the normal springs at the state last asked for (J), if all of them push.
+    /// Notes what the normal springs hold at the step's start, the state last asked for.
+    pub(super) fn note_start(&mut self) {
+        for contact in &self.list[..self.len] {
+            self.began_j[contact.place] = contact.known_j(self.world.body.mass);
+        }
+    }
+
+    /// What the normal springs have taken up since the step's start (J), at its end, the state last asked for.
     ///
-    /// `p_N pen²/2`; where a contact pulls or hangs free the spring relaxes by itself, and the sums
-    /// must tell.
-    pub(super) fn stored_j(&self) -> Option<Loss> {
-        let contacts = self.pressed();
-        if contacts.is_empty() || contacts.iter().any(|contact| contact.normal_force <= 0.0) {
-            return None;
+    /// Known from the two ends where they push at both, whatever patches came and went between them: the energy of a place is
+    /// continuous. A spring whose dashpot has let it go has not given back what it held: there the sums over the step tell.
+    pub(super) fn taken_up<const Q: usize>(&self, sums: &[f64; Q]) -> Loss {
+        let mut taken = Loss::default();
+        for (place, history) in self.state.histories.iter().enumerate().take(C) {
+            let end = self.pressed().iter().find(|contact| contact.place == place);
+            let gone_j = (self.damped & (1 << place) == 0).then_some(0.0);
+            let ended_j = end.map_or(gone_j, |contact| contact.known_j(self.world.body.mass));
+            let known = self.began_j[place].zip(ended_j).map(|(began, ended)| ended - began);
+            let damping = known.unwrap_or(sums[SUMS + place]);
+            let triangle = end.map_or(history.triangle, |contact| contact.touch.triangle);
+            taken.add(&Loss { damping, ..Loss::default() }.on(self.world, triangle), 1.0);
         }
-        let mut stored = Loss::default();
-        for contact in contacts {
-            let joule = contact.normal.stored_j(contact.at.penetration);
-            *(if contact.is_tree { &mut stored.trees } else { &mut stored.damping }) += joule;
-        }
-        Some(stored)
+        taken
     }
 
     /// Writes the contacts at the state last asked for into their memories.
@@ -155,12 +181,12 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
     }
 
     /// Writes the rates at `y` over `rates`; its contacts are those of the rock's state then.
-    pub(super) fn rates_of<const N: usize, const P: usize>(
+    pub(super) fn rates_of<const N: usize, const Q: usize, const P: usize>(
         &mut self,
         y: &[f64; N],
-        rates: &mut Rates<N, SUMS, P>,
+        rates: &mut Rates<N, Q, P>,
     ) {
-        let Self { world, state, .. } = self;
+        let Self { world, state, damped, .. } = self;
         let body = &world.body;
         let (by_mass, by_inertia) = (1.0 / body.mass, 1.0 / body.inertia);
         *rates = Rates::NONE;
@@ -206,7 +232,6 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
             };
             let action = Action::of(body, law, &normal, &at, (&v, &w));
             let [normal_force, pulls] = action.normal;
-            let approach = -n.dot(&v);
             dv += (n * normal_force - action.shear_force) * by_mass;
             dw += (n.cross(&action.shear_force) * body.radius - action.rolling_moment) * by_inertia;
             put(&mut rates.y, SPRINGS + 3 * place, &carry(action.rates[0], &n, &memory.n));
@@ -214,17 +239,17 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
                 put(&mut rates.y, SPRINGS + 3 * (C + place), &action.rates[1]);
             }
             // energy that goes into trees is counted apart, whatever takes it
-            let is_tree = world.terrain.is_tree(touch.triangle);
-            let [friction, damping, rolling] = action.powers(approach, &w);
-            let stores = normal.storing_w(at.penetration, approach);
-            if is_tree {
+            let apart = n.dot(&v);
+            let [friction, shear_damping, rolling] = action.powers(&w);
+            let damping = shear_damping + normal.dissipating_w(at.penetration, apart);
+            rates.q[SUMS + place] = normal.storing_w(at.penetration, -apart);
+            *damped |= u32::from(normal.is_damped(body.mass)) << place;
+            if world.terrain.is_tree(touch.triangle) {
                 rates.q[3] += friction + damping + rolling;
-                rates.q[5] += stores;
             } else {
                 rates.q[0] += friction;
                 rates.q[1] += damping;
                 rates.q[2] += rolling;
-                rates.q[4] += stores;
             }
             let (cap, most) = law.limits().caps(normal_force);
             // In units of acceleration, so that times a step they are speeds.
@@ -234,8 +259,7 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
             rates.kinks[3 * place + 1] = [action.asked2[0] * by_mass * by_mass, cap * by_mass];
             rates.kinks[3 * place + 2] = [action.asked2[1] * turn * turn, most * turn];
             let slides = law.shear.slides2(action.asked2[0], normal_force);
-            self.list[self.len] =
-                PressedContact { place, touch, at, is_tree, normal, normal_force, slides };
+            self.list[self.len] = PressedContact { place, touch, at, normal, normal_force, slides };
             self.len += 1;
         }
         put(&mut rates.y, WAY, &v);
@@ -244,9 +268,11 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
     }
 }
 
-impl<const C: usize, const N: usize, const P: usize> Flow<N, SUMS, P> for Among<'_, '_, C> {
+impl<const C: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, P>
+    for Among<'_, '_, C>
+{
     #[inline]
-    fn rates(&mut self, _node: usize, y: &[f64; N], to: &mut Rates<N, SUMS, P>) {
+    fn rates(&mut self, _node: usize, y: &[f64; N], to: &mut Rates<N, Q, P>) {
         self.rates_of(y, to);
     }
 

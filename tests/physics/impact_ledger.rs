@@ -1,0 +1,117 @@
+//! Where the energy of impacts goes: dashpots take what dashpots take, also where patches come and go within a step, and what springs
+//! hold is not lost.
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test says what it saw")]
+
+use crate::common::*;
+use crate::patch::{fold, noisy};
+use rockfall::ground::Ground;
+use rockfall::rock::Rock;
+use rockfall::simulation::{Ledger, Trajectory};
+use rockfall::solver::Scheme;
+use rockfall::terrain::Terrain;
+use std::f64::consts::PI;
+
+/// Rocks that strike noisy meshes and folds again and again: far larger than their triangles, and smaller ones.
+fn journeys(ground: &Ground, scheme: Scheme, see: &mut impl FnMut(&str, &Trajectory)) {
+    let sites: [(&str, Terrain, f64); 5] = [
+        ("1 mm of noise, R 5 m", noisy(0.1, 40, 0.001), 5.0),
+        ("5 mm of noise, R 5 m", noisy(0.1, 40, 0.005), 5.0),
+        ("5 mm of noise, R 0.5 m", noisy(0.1, 40, 0.005), 0.5),
+        ("fold of 0.02 rad", fold(0.02), 0.5),
+        ("fold of 0.6 rad", fold(0.6), 0.5),
+    ];
+    let tolerance_m_s = if scheme == Scheme::Reference { 1e-8 } else { 0.05 };
+    for (name, site, radius_m) in &sites {
+        let rock = Rock { radius_m: *radius_m, ..ROCK };
+        let case = Case { scheme, tolerance_m_s, ground: *ground, rock, ..CASE };
+        for k in 0..8 {
+            let x = 0.013 * f64::from(k) - 0.05;
+            let start = [[x, 0.03, 1.05 * radius_m + 0.05], [0.1, 0.05, -8.0], [0.0; 3]];
+            see(&format!("{scheme:?}, {name}, {k}"), &case.run(site, start, 2.0));
+        }
+    }
+}
+
+/// Without dashpots and friction nothing is taken: `damping_j` is 0 to rounding, however often patches have met and parted.
+#[test]
+fn dashpots_that_are_not_there_take_nothing() {
+    let ground = Ground { restitution: Some(1.0), friction_angle_rad: 0.0, ..GROUND };
+    for scheme in [Scheme::Adaptive, Scheme::Reference] {
+        let (mut damping, mut remainder) = (0.0f64, 0.0f64);
+        journeys(&ground, scheme, &mut |_, run| {
+            let share = |joule: f64| joule.abs() / run.extremes.total_j;
+            damping = damping.max(share(run.ledger.damping_j));
+            remainder = remainder.max(share(run.ledger.remainder_j));
+        });
+        println!("{scheme:?}: damping {damping:e}, remainder {remainder:e}");
+        assert!(damping < 1e-12 && remainder < 1e-12, "{scheme:?}: {damping:e} {remainder:e}");
+    }
+}
+
+/// Energy at the end (J) besides height: of motion.
+fn motion_j(run: &Trajectory) -> f64 {
+    run.end.translational_j(&run.rock) + run.end.rotational_j(&run.rock)
+}
+
+fn booked_j(row: &Ledger) -> f64 {
+    row.friction_j + row.damping_j + row.rolling_j + row.trees_j + row.springs_j + row.remainder_j
+}
+
+/// With friction and with dashpots: no entry is negative, all add up to what the rock lost, and gains of the steps, counted apart from their
+/// losses, are small.
+#[test]
+fn entries_are_losses_and_add_up() {
+    for (restitution, rolling_friction) in [(1.0, 0.0), (0.5, 0.0), (0.5, 0.3)] {
+        let ground = Ground { restitution: Some(restitution), rolling_friction, ..GROUND };
+        let (mut gained, mut lost, mut all) = (0.0, 0.0, 0.0);
+        journeys(&ground, Scheme::Adaptive, &mut |name, run| {
+            let (row, scale) = (&run.ledger, run.extremes.total_j);
+            for entry in [row.friction_j, row.damping_j, row.rolling_j] {
+                assert!(entry >= -1e-9 * scale, "e {restitution}, {name}: {row:?}");
+            }
+            let off = run.released_j - motion_j(run) - booked_j(row);
+            assert!(off.abs() < 1e-9 * scale, "e {restitution}, {name}: {off} J, {row:?}");
+            *(if row.remainder_j < 0.0 { &mut gained } else { &mut lost }) += row.remainder_j;
+            all += scale;
+        });
+        println!("e {restitution}, rolling {rolling_friction}: {gained:e} {lost:e} of {all:e} J");
+        assert!(-gained < 1e-4 * all && lost < 2e-3 * all, "e {restitution}: {gained} {lost}");
+    }
+}
+
+/// The row of a rock whose time is up in the middle of an impact says what its springs hold then.
+#[test]
+fn what_springs_hold_when_time_is_up_is_in_the_row() {
+    let site = noisy(0.1, 40, 0.001);
+    for (scheme, tolerance_m_s) in
+        [(Scheme::Adaptive, 0.05), (Scheme::Reference, 1e-8), (Scheme::Dda, 0.0)]
+    {
+        let omega = (GROUND.normal_stiffness_n_m / ROCK.mass_kg()).sqrt();
+        let case = Case { scheme, tolerance_m_s, ..CASE };
+        let start = [[0.02, 0.03, 0.502], [0.0, 0.0, -8.0], [0.0; 3]];
+        let run = case.run(&site, start, 2e-3 / 8.0 + 0.3 * PI / omega);
+        let (row, scale) = (&run.ledger, run.extremes.total_j);
+        let off = run.released_j - motion_j(&run) - booked_j(row);
+        println!("{scheme:?}: {off:e} of {scale:e} J, {row:?}");
+        assert!(row.springs_j > 0.1 * scale, "{scheme:?}: {row:?}");
+        assert!(off.abs() < 1e-9 * scale, "{scheme:?}: {off} J, {row:?}");
+    }
+}
+
+/// An impact that hardly rebounds is over, by its time, while its spring still gives back against the dashpot: its row says what has been
+/// lost by then, neither more nor less.
+#[test]
+fn the_row_of_an_impact_leaves_out_what_its_spring_still_holds() {
+    let site = noisy(0.1, 40, 0.0);
+    for restitution in [0.0, 0.01, 0.1] {
+        let ground = Ground { restitution: Some(restitution), friction_angle_rad: 0.0, ..GROUND };
+        let omega = (GROUND.normal_stiffness_n_m / ROCK.mass_kg()).sqrt();
+        let start = [[0.02, 0.03, 0.5], [0.0, 0.0, -8.0], [0.0; 3]];
+        let run = Case { ground, ..CASE }.run(&site, start, 3.0 * PI / omega * (1.0 + 1e-6));
+        let (row, scale) = (&run.ledger, run.extremes.total_j);
+        let lost = row.friction_j + row.damping_j + row.rolling_j;
+        let off = run.impacts[0].energy_lost_j - lost;
+        println!("e {restitution}: {off:e} of {scale:e} J, {row:?}");
+        assert!(off.abs() < 1e-6 * scale, "e {restitution}: {off} of {scale} J, {row:?}");
+    }
+}
