@@ -319,7 +319,7 @@ fn a_broken_table_says_where() {
     let said = spoil(|text| text.replacen("time_s", "time_h", 1));
     assert!(said.contains("line 1") && said.contains("time_h"), "{said}");
     let said = spoil(|text| text.replacen("2,at_rest,", "2,at_rest,0,", 1));
-    assert!(said.contains("line 4: 39 values instead of 38"), "{said}");
+    assert!(said.contains("line 4: 40 values instead of 39"), "{said}");
     let said = spoil(|text| text.split_inclusive('\n').take(50).collect());
     assert!(said.contains("49 rows instead of 60"), "{said}");
     let said = spoil(|text| text.replacen("\n2,", "\n7,", 1));
