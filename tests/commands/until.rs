@@ -18,7 +18,7 @@ const KILLS: [usize; 2] = [12, 100];
 /// Kills of one run before it is left to end.
 const KILLS_OF_ONE_RUN: usize = 4;
 /// Three rounds, with maps, lines, paths and impacts.
-const AIM: &str = "speed.p50 < 0.3 m/s";
+const AIM: &str = "speed.p50 < 0.2 m/s";
 
 fn run(out: &Path, more: &[&str]) -> Command {
     let scene = ["run", "examples/quick.toml", "--quiet", "--out", out.to_str().unwrap()];

@@ -22,7 +22,7 @@ use super::stage::End;
 use super::step_control::{Advance, StepError, TRAVEL};
 use crate::contact::TOUCH;
 use crate::contact::history::{ContactHistory, HISTORIES};
-use flow::{Among, SUMS};
+use flow::{Among, LOSSES};
 
 /// First step of an impact (rad of its oscillation).
 pub(super) const FIRST: f64 = 0.3;
@@ -116,15 +116,15 @@ impl ContactState {
         let mut accepted = None;
         if known <= 2 {
             accepted = if world.laws.iter().any(|law| law.rolling.is_on()) {
-                self.step_among::<2, 21, { SUMS + 2 }, 6>(world, &bounds, done)?
+                self.step_among::<2, 21, { LOSSES + 2 }, 6>(world, &bounds, done)?
             } else {
-                self.step_among::<2, 15, { SUMS + 2 }, 6>(world, &bounds, done)?
+                self.step_among::<2, 15, { LOSSES + 2 }, 6>(world, &bounds, done)?
             };
         }
         if accepted.is_none() {
             // what the crowded try has met is forgotten
             self.histories.truncate(known);
-            accepted = self.step_among::<HISTORIES, { 9 + 6 * HISTORIES }, { SUMS + HISTORIES }, { 3 * HISTORIES }>(
+            accepted = self.step_among::<HISTORIES, { 9 + 6 * HISTORIES }, { LOSSES + HISTORIES }, { 3 * HISTORIES }>(
                 world, &bounds, done,
             )?;
         }

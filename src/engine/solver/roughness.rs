@@ -24,7 +24,7 @@ use std::f64::consts::TAU;
 /// radius): it takes less than a ten-thousandth of that energy, whatever the springs.
 const LEAST: f64 = 1e-2;
 /// Share of the roughness length within which a facet that is met late counts from where it was due (–).
-const LATE: f64 = 0.5;
+const PAST_DUE: f64 = 0.5;
 /// Facets drawn until one is met: one in three at least where the rock comes to the surface, one in six where it goes along it.
 /// A bound for pathological cases only.
 const DRAWS: u32 = 1000;
@@ -132,11 +132,11 @@ impl RoughFacets {
     }
 
     /// How far the rock is past the place of the next facet (m): a step ends somewhere behind it, and lengths of steps must not
-    /// decide how many facets there are. Farther than by the share [`LATE`] of the roughness length it has flown or stood.
+    /// decide how many facets there are. Farther than by the share [`PAST_DUE`] of the roughness length it has flown or stood.
     fn passed_m(&self, at: &Meeting, length_m: f64) -> f64 {
         let past_m = |facet: &TiltedFacet| (facet.centre - at.c).norm() - facet.reach_m;
         let past_m = self.last.as_ref().map_or(0.0, past_m);
-        if (0.0..LATE * length_m).contains(&past_m) { past_m } else { 0.0 }
+        if (0.0..PAST_DUE * length_m).contains(&past_m) { past_m } else { 0.0 }
     }
 
     /// Whether a rock at a surface sees a new facet: it comes fast enough, and the last one does not reach here. That is far off,

@@ -29,7 +29,7 @@ const W: usize = 6;
 /// Where the springs begin: shear of all `C` contacts, then rolling of all, each with three numbers.
 const SPRINGS: usize = 9;
 /// What is summed up: losses by friction, damping, rolling and to trees. What the normal spring of each contact takes up follows.
-pub(super) const SUMS: usize = 4;
+pub(super) const LOSSES: usize = 4;
 
 /// A contact at the state last asked for.
 #[derive(Debug, Clone, Copy)]
@@ -153,7 +153,7 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
             let gone_j = (self.damped & (1 << place) == 0).then_some(0.0);
             let ended_j = end.map_or(gone_j, |contact| contact.known_j(self.world.body.mass));
             let known = self.began_j[place].zip(ended_j).map(|(began, ended)| ended - began);
-            let damping = known.unwrap_or(sums[SUMS + place]);
+            let damping = known.unwrap_or(sums[LOSSES + place]);
             let triangle = end.map_or(history.triangle, |contact| contact.touch.triangle);
             taken.add(&Loss { damping, ..Loss::default() }.on(self.world, triangle), 1.0);
         }
@@ -242,7 +242,7 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
             let apart = n.dot(&v);
             let [friction, shear_damping, rolling] = action.powers(&w);
             let damping = shear_damping + normal.dissipating_w(at.penetration, apart);
-            rates.q[SUMS + place] = normal.storing_w(at.penetration, -apart);
+            rates.q[LOSSES + place] = normal.storing_w(at.penetration, -apart);
             *damped |= u32::from(normal.is_damped(body.mass)) << place;
             if world.terrain.is_tree(touch.triangle) {
                 rates.q[3] += friction + damping + rolling;
