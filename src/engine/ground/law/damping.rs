@@ -44,7 +44,7 @@ fn angle_over_sine(zeta: f64) -> f64 {
 /// Share of its slip that an impact on a plane gives back where it sticks throughout (–), for a ratio `p_s/p_N` (–);
 /// negative where the slip goes on when the rock leaves.
 ///
-/// The slip is that of the contact point's `2/7 m` on the shear spring with its dashpot of ratio `ζ_s` ([`along_ratio`]),
+/// The slip is that of the contact point's `2/7 m` on the shear spring with its dashpot of ratio `ζ_s = max(1, ζ)`,
 /// `u = u₀ (1 − ω_s t) e^(−ω_s t)` where that is critical, with `ω_s = ω √(7/2 p_s/p_N)`, over the `2 acos ζ/√(1 − ζ²)` radians of ω
 /// that [`restitution`] ends after.
 pub fn tangential_restitution(ratio: f64, damping: &Damping) -> f64 {
