@@ -176,7 +176,7 @@ fn a_hexagonal_prism_rolls_on_springs_into_its_limit_cycle() {
             (one.0 / other.0 - 1.0).abs().max((one.1 / other.1 - 1.0).abs())
         };
         for (found, scheme) in found.iter().zip(SCHEMES) {
-            let bound = if scheme == Scheme::Dda { 2e-3 } else { 1e-4 };
+            let bound = if scheme.has_fixed_step() { 2e-3 } else { 1e-4 };
             assert!(off(found, &rigid) < bound, "{scheme:?} {degrees}: {found:?} {rigid:?}");
         }
         assert!(off(&found[0], &found[1]) < 1e-5, "{degrees}: {found:?}");
