@@ -8,13 +8,19 @@ use rockfall::ground::{Damping, Ground, tangential_restitution};
 use rockfall::release::Releases;
 use rockfall::rock::Vec3;
 use rockfall::scene::Scene;
+use rockfall::terrain::Terrain;
 use std::path::Path;
+
+/// A level triangle around the origin.
+fn level() -> Terrain {
+    let p = |x: f64, y: f64| Vec3::new(x, y, 0.0);
+    terrain(vec![[p(-50.0, -50.0), p(50.0, -50.0), p(0.0, 80.0)]])
+}
 
 /// Every scheme with springs or their limit gives back the share of its slip that the formula says.
 #[test]
 fn an_impact_that_sticks_gives_back_what_the_plan_says() {
-    let p = |x: f64, y: f64| Vec3::new(x, y, 0.0);
-    let plane = terrain(vec![[p(-50.0, -50.0), p(50.0, -50.0), p(0.0, 80.0)]]);
+    let plane = level();
     for row in ROWS.iter().filter(|row| row.case.ground.restitution.is_some()) {
         for (ratio, e) in [
             (0.05, 0.5),
@@ -50,8 +56,7 @@ fn an_impact_that_sticks_gives_back_what_the_plan_says() {
 /// along the surface and a stronger one along the normal, half of that was missing at e = 0.01.
 #[test]
 fn an_impact_that_hardly_rebounds_rubs_as_much_as_another() {
-    let p = |x: f64, y: f64| Vec3::new(x, y, 0.0);
-    let plane = terrain(vec![[p(-50.0, -50.0), p(50.0, -50.0), p(0.0, 80.0)]]);
+    let plane = level();
     for row in ROWS.iter().filter(|row| row.case.ground.restitution.is_some()) {
         for (e, slip_m_s) in
             [0.01, 0.02, 0.05, 0.1, 0.3].map(|e| [(e, 1.0), (e, 4.0), (e, 12.0)]).concat()

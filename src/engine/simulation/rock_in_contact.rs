@@ -47,11 +47,7 @@ impl RockInContact<'_, '_> {
         }
         // what contacts that were announced earlier hold in their springs: the new impact must not
         // be charged with it
-        let held_j = if self.has_springs {
-            self.state.held_j(&self.world, |history| history.announced)
-        } else {
-            0.0
-        };
+        let held_j = self.held_j(|history| history.announced);
         let until_s = self.recorder.now.time_s + self.impact_time();
         let mut rebounds = false;
         for k in 0..self.state.histories.len() {
@@ -213,17 +209,21 @@ impl RockInContact<'_, '_> {
         if !self.has_springs && self.state.is_struck {
             return;
         }
-        let Self { world, state, has_springs, .. } = self;
         // the rigid limit keeps no memory of what has hit and left again within a step
-        let histories = &state.histories;
-        let lasts = |number| !*has_springs || histories.iter().any(|one| one.impact == number);
+        let (histories, has_springs) = (&self.state.histories, self.has_springs);
+        let lasts = |number| !has_springs || histories.iter().any(|one| one.impact == number);
         if self.recorder.end_impacts(lasts) {
-            let held_j = if *has_springs { state.held_j(world, |_| true) } else { 0.0 };
+            let held_j = self.held_j(|_| true);
             self.recorder.book_impacts(held_j);
         }
         if self.state.has_met_its_facet(self.recorder.now.time_s) {
             self.leave_facet();
         }
+    }
+
+    /// Energy in the springs of the contacts that `count` (J).
+    fn held_j(&mut self, count: impl Fn(&ContactHistory) -> bool) -> f64 {
+        if self.has_springs { self.state.held_j(&self.world, count) } else { 0.0 }
     }
 
     /// Turns the rock back, if it is turned.

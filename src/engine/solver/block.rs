@@ -156,8 +156,13 @@ impl Moving {
         block: &Block,
         touches: impl Iterator<Item = &'t BlockTouch>,
     ) -> Option<&'t BlockTouch> {
-        let approach = |touch: &&BlockTouch| -touch.normal.dot(&self.at(block, &touch.lever));
+        let approach = |touch: &&BlockTouch| self.approach_m_s(block, touch);
         touches.max_by(|one, other| approach(one).total_cmp(&approach(other)))
+    }
+
+    /// Speed of a contact towards the mesh (m/s).
+    pub(crate) fn approach_m_s(&self, block: &Block, touch: &BlockTouch) -> f64 {
+        -touch.normal.dot(&self.at(block, &touch.lever))
     }
 
     /// Velocity of a point of the block (m/s).
@@ -275,7 +280,7 @@ impl Footing {
     ) -> f64 {
         let most = TOUCH * block.radius_m;
         self.touches.found.iter().filter(|touch| touch.gap_m > most).fold(dt, |dt, touch| {
-            let speed = -touch.normal.dot(&moving.at(block, &touch.lever));
+            let speed = moving.approach_m_s(block, touch);
             let fast = speed >= capture_m_s(world.law(touch.triangle));
             if fast { dt.min((touch.gap_m / speed).max(1e-9)) } else { dt }
         })

@@ -31,7 +31,7 @@ impl Footing {
         (block, moving): (&Block, &Moving),
         touch: &BlockTouch,
     ) -> bool {
-        -touch.normal.dot(&moving.at(block, &touch.lever)) >= capture_m_s(world.law(touch.triangle))
+        moving.approach_m_s(block, touch) >= capture_m_s(world.law(touch.triangle))
     }
 
     /// The facet of rough ground that the fastest of the contacts that touch meets.

@@ -25,9 +25,7 @@ impl Footing {
         block: &Block,
         moving: &mut Moving,
     ) -> Option<Loss> {
-        let comes = self
-            .touching(block)
-            .any(|touch| -touch.normal.dot(&moving.at(block, &touch.lever)) > STILL_M_S);
+        let comes = self.touching(block).any(|touch| moving.approach_m_s(block, touch) > STILL_M_S);
         if !comes && !self.comes_to_next_facet(world, block, moving) {
             return None;
         }
@@ -39,12 +37,11 @@ impl Footing {
         if let Some(turn) = &facet {
             moving.redirect(block, &turn.inverse());
         }
-        let loss = if self.is_followed_to_its_limit(world, (block, moving)) {
-            let square = self.square_blow(world, (block, moving));
-            square.or_else(|| self.blow(world, (block, moving)))
-        } else {
-            None
-        };
+        let mut loss = None;
+        if self.is_followed_to_its_limit(world, (block, moving)) {
+            loss = self.square_blow(world, (block, moving));
+            loss = loss.or_else(|| self.blow(world, (block, moving)));
+        }
         let loss = loss.unwrap_or_else(|| self.impulses(world, (block, moving), true));
         if let Some(turn) = &facet {
             moving.redirect(block, turn);
@@ -102,7 +99,7 @@ impl Footing {
         wanted.extend(self.touching(block).map(|touch| {
             let law = world.law(touch.triangle);
             let back = if Self::is_struck(world, (block, moving), touch) {
-                let speed = -touch.normal.dot(&moving.at(block, &touch.lever));
+                let speed = moving.approach_m_s(block, touch);
                 law.restitution_at(speed) * speed
             } else {
                 0.0

@@ -18,6 +18,7 @@ use super::{Footing, Moving, RollingSpring, SpringAnswer, SpringContact};
 use crate::body::Block;
 use crate::contact::MOST;
 use crate::contact::block::BlockTouch;
+use crate::ground::Law;
 use crate::rock::Vec3;
 use crate::solver::block::solve::Mass;
 use crate::solver::environment::ContactEnvironment;
@@ -88,10 +89,9 @@ impl Footing {
         for (k, touch) in touches.iter().enumerate() {
             let ground = world.ground_of(touch.triangle);
             let friction = self.slip.friction(ground, world.law(touch.triangle), 0.0);
-            let approach_m_s = -touch.normal.dot(&moving.at(block, &touch.lever));
+            let approach_m_s = moving.approach_m_s(block, touch);
             let law = Self::law_of_touch(world, &mass, touch, (approach_m_s, touches.iter()));
-            let mut contact = SpringContact::frozen((k, touch), law);
-            contact.law.rub_with(friction);
+            let mut contact = SpringContact::frozen((k, touch), law, friction);
             contact.captured = approach_m_s < capture_m_s(&law);
             contact.waits = approach_m_s < 0.0;
             contacts.push(contact);
@@ -116,11 +116,13 @@ impl Footing {
 }
 
 impl SpringContact {
-    /// Contact `k` where the block just touches.
-    fn frozen((k, touch): (usize, &BlockTouch), law: crate::ground::Law) -> Self {
+    /// Contact `k` where the block just touches, with a coefficient of friction (–).
+    fn frozen((k, touch): (usize, &BlockTouch), law: Law, friction: f64) -> Self {
+        let mut law = law.of_patch(touch.gain2, 1.0);
+        law.rub_with(friction);
         Self {
             history: k,
-            law: law.of_patch(touch.gain2, 1.0),
+            law,
             captured: false,
             waits: false,
             triangle: touch.triangle,
@@ -278,8 +280,7 @@ impl FrozenFlow<'_, '_> {
         let friction = self.contacts[k].law.friction_coefficient();
         let rebounds =
             self.contacts.iter().any(|one| !one.waits && !one.captured && one.normal_force > 0.0);
-        let mut contact = SpringContact::frozen((k, touch), law);
-        contact.law.rub_with(friction);
+        let mut contact = SpringContact::frozen((k, touch), law, friction);
         contact.captured = approach_m_s < capture_m_s(&law) && !rebounds;
         self.contacts[k] = contact;
         y[at] = y[at].max(0.0);

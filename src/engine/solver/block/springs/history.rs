@@ -132,7 +132,7 @@ impl Footing {
         (block, moving): (&Block, &Moving),
     ) -> BlockHistory {
         let mass = &moving.mass(block);
-        let approach_m_s = -touch.normal.dot(&moving.at(block, &touch.lever));
+        let approach_m_s = moving.approach_m_s(block, touch);
         // what is born while an impact rebounds belongs to it, however slow it is
         let rebounds = self.springs.is_rebounding();
         let captured = approach_m_s < capture_m_s(world.law(touch.triangle)) && !rebounds;
