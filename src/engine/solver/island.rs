@@ -31,6 +31,7 @@ mod outcome;
 mod active_set;
 mod rigid;
 mod stage;
+mod trial;
 mod sweeps;
 
 pub use assembly::Island;

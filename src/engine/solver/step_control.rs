@@ -21,7 +21,7 @@ use super::stage::End;
 use super::tableau::Tableau;
 use crate::contact::history::carry;
 use crate::ground::Law;
-use onset::MET;
+pub(crate) use onset::{Begun, OnsetSearch};
 pub(crate) use settle::{StepFailure, TrialStep, TryOutcome, settle};
 
 /// First step of a contact, in radians of its oscillation (–): an impact must be resolved, or it creates energy.
@@ -172,8 +172,7 @@ pub fn advance(
         omega,
         known,
         end: None,
-        waits: true,
-        cuts: 0,
+        onsets: OnsetSearch::NEW,
     };
     done.dt = settle(&mut trial, control, h_max, &mut done.rejected)?;
     done.steps = 1;
@@ -196,9 +195,7 @@ struct RockTrial<'a, 'w> {
     /// Memories at the step's start.
     known: usize,
     end: Option<End>,
-    /// Whether impacts that begin within the step wait for its end, and how often it has been cut for that.
-    waits: bool,
-    cuts: u32,
+    onsets: OnsetSearch,
 }
 
 impl TrialStep for RockTrial<'_, '_> {
@@ -217,8 +214,7 @@ impl TrialStep for RockTrial<'_, '_> {
     fn try_step(&mut self, dt: f64) -> TryOutcome {
         // memories that came up in a try that failed have never been
         self.state.histories.truncate(self.known);
-        let waits = self.waits && dt * self.omega > MET;
-        self.state.onset = Onset { waits, is_met: false };
+        self.state.onset = Onset { waits: self.onsets.waits(dt * self.omega), is_met: false };
         let Some((end, error)) = attempt(self.world, self.control, self.state, dt, self.omega)
         else {
             return TryOutcome::Unsettled;

@@ -10,13 +10,14 @@ use super::dda_system::Global;
 use super::outcome::Done;
 use super::pair_contact::{PairContact, Twist};
 use super::rigid::RigidIsland;
+use super::trial::IslandTrial;
 use crate::contact::pair::{PairHistory, between};
 use crate::ground::Law;
 use crate::rock::Vec3;
 use crate::solver::Settings;
-use crate::solver::contact_state::ContactEnvironment;
+use crate::solver::contact_state::{ContactEnvironment, Onset};
 use crate::solver::impact::BlowTable;
-use crate::solver::step_control::{self, Control, ONSET, StepError, TRAVEL, TrialStep, TryOutcome};
+use crate::solver::step_control::{self, Control, ONSET, StepError, TRAVEL};
 use crate::solver::tableau::{STAGES, TR_BDF2};
 use crate::terrain::Terrain;
 use std::sync::Arc;
@@ -47,6 +48,8 @@ pub struct Island<'a> {
     pub(super) motions: Vec<Twist>,
     pub(super) stirred: ActiveSet,
     pub(super) tolerance: f64,
+    /// Impacts of two rocks that a step runs into; those on the mesh are with the rocks.
+    pub(super) onset: Onset,
     /// Rates of the shear springs at each stage.
     pub(super) pair_rates: Vec<[Vec3; STAGES]>,
     /// Forces of the last solution.
@@ -82,6 +85,7 @@ impl<'a> Island<'a> {
             motions: Vec::new(),
             stirred: ActiveSet::default(),
             tolerance: 0.0,
+            onset: Onset::default(),
             pair_rates: vec![[Vec3::zeros(); STAGES]; pair_histories.len()],
             pair_forces,
             global: Global::default(),
@@ -116,6 +120,7 @@ impl<'a> Island<'a> {
         // a rock that was turned against a facet, or whose stem has given way, has other rates
         if !self.fresh || self.members.iter().any(|member| !member.state.fresh) {
             self.rates_now();
+            self.accept_meetings();
         }
         let omega = self.omega();
         if !self.h.is_finite() {
@@ -123,10 +128,12 @@ impl<'a> Island<'a> {
         }
         self.members.iter_mut().for_each(|member| member.known = member.state.histories.len());
         let mut rejected = 0;
-        let mut trial = IslandTrial { island: self, control, omega };
-        // shortens the step until error, energy and bonds allow it
+        let mut trial = IslandTrial::new(self, control, omega);
+        // shortens the step until error, energy and bonds allow it, and to where impacts begin and end
         let dt = step_control::settle(&mut trial, control, h_max, &mut rejected)?;
-        Ok(Done { rejected, ..self.accept(control.tableau, dt) })
+        let done = self.accept(control.tableau, dt);
+        self.begin_late();
+        Ok(Done { rejected, ..done })
     }
 
     /// One step of the scheme `rigid`, at most `longest` and `h_max` (s) long.
@@ -148,7 +155,7 @@ impl<'a> Island<'a> {
     }
 
     /// Whether motion, height and springs of the whole island together hold more at the step's end than at its start.
-    fn gains(&self, hh: f64) -> bool {
+    pub(super) fn gains(&self, hh: f64) -> bool {
         // `unknown`: energy that rounding of the places alone may make, weight and normal forces times a length
         let (mut before, mut after, mut unknown) = (0.0, 0.0, 0.0);
         for IslandBody { state, body, end, .. } in self.members.iter().map(|member| &**member) {
@@ -177,7 +184,7 @@ impl<'a> Island<'a> {
         for pair in &self.pairs {
             let ends = pair.ends.map(|k| (self.members[k].end.v, self.members[k].end.w));
             // at the end of the stage: the base's penetration less what the normal speed takes of it
-            let mut penetration = pair.penetration - hh * pair.speed([&ends[0], &ends[1]]);
+            let mut penetration = pair.pen_at(pair.speed([&ends[0], &ends[1]]), hh);
             if pair.bond.is_none() {
                 penetration = penetration.max(0.0);
             }
@@ -192,7 +199,7 @@ impl<'a> Island<'a> {
     }
 
     /// Largest `√(p_N/m)` among the contacts there are or may be (rad/s).
-    fn omega(&self) -> f64 {
+    pub(super) fn omega(&self) -> f64 {
         let pair_histories = self
             .pair_histories
             .iter()
@@ -230,7 +237,7 @@ impl<'a> Island<'a> {
 
     /// One step to its last stage; its error relative to the tolerance, `None` if a stage does not settle.
     /// All implicit stages in turn; the last one is the step's end, because the tableau is stiffly accurate.
-    fn attempt(&mut self, control: &Control, dt: f64) -> Option<f64> {
+    pub(super) fn attempt(&mut self, control: &Control, dt: f64) -> Option<f64> {
         let tableau = control.tableau;
         for i in 1..tableau.stages {
             self.stage(tableau, i, dt)?;
@@ -303,46 +310,5 @@ impl<'a> Island<'a> {
             worst2 = worst2.max(own2 * by * by);
         }
         worst2.sqrt()
-    }
-}
-
-/// A step of the island, tried with any length.
-struct IslandTrial<'i, 'a> {
-    island: &'i mut Island<'a>,
-    control: &'i Control,
-    omega: f64,
-}
-
-impl TrialStep for IslandTrial<'_, '_> {
-    /// The island's own next step, which the controller updates.
-    fn h(&mut self) -> &mut f64 {
-        &mut self.island.h
-    }
-
-    fn limit(&mut self) -> f64 {
-        self.island.travel_limit()
-    }
-
-    /// The stiffest contact at the step's start (rad/s).
-    fn omega(&self) -> f64 {
-        self.omega
-    }
-
-    fn try_step(&mut self, dt: f64) -> TryOutcome {
-        let outcome = match self.island.attempt(self.control, dt) {
-            None => TryOutcome::Unsettled,
-            Some(error) if error <= 1.0 => {
-                let hh = self.control.tableau.diagonal * dt;
-                // a step that resolves the springs by far cannot gain more than its error: only coarse ones are asked
-                let gains = dt * self.omega > step_control::RESOLVED && self.island.gains(hh);
-                if gains { TryOutcome::Gains } else { return TryOutcome::Error(error) }
-            }
-            Some(error) => TryOutcome::Error(error),
-        };
-        // Memories that came up in a step deviated away go with it.
-        for member in self.island.members.iter_mut().map(|slot| &mut **slot) {
-            member.state.histories.truncate(member.known);
-        }
-        outcome
     }
 }

@@ -71,6 +71,8 @@ pub struct Memory {
     motion: (Vec3, Vec3, Vec3),
     histories: Vec<ContactHistory>,
     impact: ImpactProgress,
+    /// Whether the present blow has been announced (`rigid`), and of which contacts one is about to be.
+    blow: (bool, Vec<ContactHistory>),
     facets: RoughFacets,
     stems: (StemLoad, Vec<u32>),
     flying: bool,
@@ -146,6 +148,7 @@ impl IslandBody {
             motion: (state.c, state.v, state.w),
             histories: state.histories.to_vec(),
             impact: state.impact.clone(),
+            blow: (state.is_struck, state.struck.to_vec()),
             facets: state.facets.clone(),
             stems: (state.stem_load.clone(), state.near.gone.clone()),
             flying: self.flying,
@@ -159,6 +162,8 @@ impl IslandBody {
         (state.c, state.v, state.w) = memory.motion;
         state.histories.restore(&memory.histories);
         state.impact.clone_from(&memory.impact);
+        state.is_struck = memory.blow.0;
+        state.struck.restore(&memory.blow.1);
         state.facets.clone_from(&memory.facets);
         state.plane.forget();
         state.stem_load.clone_from(&memory.stems.0);
@@ -276,5 +281,28 @@ impl IslandBody {
         self.kept.extend(
             contacts.iter().map(|s| (s.feature, s.normal_force, s.shear_force, s.rolling_moment)),
         );
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::history::ContactHistories;
+    use crate::rock::Rock;
+
+    /// A window that is gone through again announces the blows of the rigid limit as it did before, each once.
+    #[test]
+    fn a_rock_that_goes_back_knows_of_its_blow_what_it_knew() {
+        let rock = Rock { radius_m: 0.5, density_kg_m3: 2700.0 };
+        let start = (Vec3::z(), Vec3::x(), Vec3::zeros());
+        let mut member = IslandBody::new(Body::new(&rock, 9.8), Vec::new(), start);
+        let touch = crate::contact::ContactPoints::default().list[0];
+        member.state.is_struck = false;
+        member.state.struck.push(ContactHistory::new(&touch, false));
+        let memory = member.memory();
+        (member.state.is_struck, member.state.struck) = (true, ContactHistories::default());
+        member.recall(&memory);
+        assert!(!member.state.is_struck);
+        assert_eq!(member.state.struck.len(), 1);
     }
 }

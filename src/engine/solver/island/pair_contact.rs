@@ -24,6 +24,8 @@ pub(super) struct PairContact {
     pub(super) captured: bool,
     /// The impact that goes on.
     pub(super) impact: PairImpact,
+    /// Whether an impact begins with it that presses nothing in the present try.
+    pub(super) waits: bool,
     /// Holds in tension too.
     pub(super) bond: Option<Bond>,
     /// Unit normal from the second to the first.
@@ -70,6 +72,7 @@ impl PairContact {
             normal: pair_history.law.normal(pair_history.captured),
             captured: pair_history.captured,
             impact: pair_history.impact,
+            waits: false,
             bond: pair_history.bond,
             n,
             penetration: pair_history.bond.map_or(reach, |bond| bond.length_m) - distance,
@@ -92,6 +95,20 @@ impl PairContact {
         if !self.captured {
             self.impact = PairImpact::begun(fastest_m_s);
         }
+    }
+
+    /// Begins in a try in which impacts that come up wait for its end.
+    pub(super) fn begin_late(&mut self, approach_m_s: f64) {
+        self.waits = !self.captured && approach_m_s >= self.law.capture_m_s;
+        if self.waits {
+            self.normal = NormalElement::NONE;
+        }
+    }
+
+    /// Penetration at the end of a stage of length `h`, where the normal speed apart is `vn` (m).
+    #[inline]
+    pub(super) fn pen_at(&self, vn: f64, h: f64) -> f64 {
+        self.penetration - h * vn
     }
 
     /// Whether it holds any force.

@@ -94,7 +94,11 @@ impl Island<'_> {
             // a new contact: whether it rebounds is judged by the approach at the stage's base
             if !pair_history.is_held() {
                 let struck_m_s = a.struck_m_s.max(b.struck_m_s);
-                pair.begin(-pair.n.dot(&(a.base.v - b.base.v)), struck_m_s);
+                let approach_m_s = -pair.n.dot(&(a.base.v - b.base.v));
+                pair.begin(approach_m_s, struck_m_s);
+                if self.onset.waits {
+                    pair.begin_late(approach_m_s);
+                }
             }
             // the remembered stretch is turned with the normal: the spring stays in the tangent plane
             let from = if pair_history.is_held() { pair_history.n } else { pair.n };
@@ -131,6 +135,8 @@ impl Island<'_> {
                 let (force, rolling_moment) = pair.load(k);
                 -force.dot(v) - rolling_moment.dot(w)
             };
+            let apart_m_s = pair.speed(pair.ends.map(|end| &self.motions[end]));
+            self.onset.is_met |= pair.waits && pair.pen_at(apart_m_s, hh) > 0.0;
             for (end, given) in pair.ends.into_iter().zip(Given::of_ends([power(0), power(1)])) {
                 self.members[end].given[i].add(&given, 1.0);
             }

@@ -1,16 +1,105 @@
-//! Impacts that begin within an implicit step of a rock in lasting contact, which rolls along and strikes a wall or a tree.
+//! Impacts that begin within an implicit step of rocks in lasting contact, which roll along and strike a wall, a tree or each other.
 //!
 //! The force of a dashpot is there at once, a jump within a step, and what is allowed to lasting contact is no measure of an impact. So a
 //! contact that may rebound presses nothing in the step in which it comes up, the step ends where it begins, and from there on it is
-//! followed in its own time ([`explicit_impact`](crate::solver::explicit_impact)).
+//! followed in its own time: that of a rock alone by explicit stages ([`explicit_impact`](crate::solver::explicit_impact)), that in an
+//! island by implicit ones, which are short and held to the speed of the impact.
 
 use super::{ONSET, PLACE_ROUNDING, RockTrial};
+use crate::solver::contact_state::ContactState;
 use crate::solver::stage::End;
 
 /// Most cuts of a step for impacts that begin within it.
 const MOST_CUTS: u32 = 12;
 /// A step this short ends where an impact begins, as exactly as anybody can tell (rad of the stiffest contact).
-pub(super) const MET: f64 = 1e-8;
+const MET: f64 = 1e-8;
+
+/// How the tries of one step meet the impacts that begin within it.
+#[derive(Debug)]
+pub(crate) struct OnsetSearch {
+    /// Whether they wait for the step's end, and how often it has been cut for that.
+    waits: bool,
+    cuts: u32,
+}
+
+impl OnsetSearch {
+    /// Before the first try.
+    pub(crate) const NEW: Self = Self { waits: true, cuts: 0 };
+
+    /// Whether what comes up in a try of so many radians presses nothing in it.
+    pub(crate) fn waits(&self, rad: f64) -> bool {
+        self.waits && rad > MET
+    }
+
+    /// The share (–) to which a try of so many radians has to be cut where impacts have `begun` that it runs into; none if they have
+    /// just begun as it ends.
+    pub(crate) fn cut(&mut self, begun: &Begun, rad: f64) -> Option<f64> {
+        let share = begun.share();
+        if share >= 1.0 {
+            return None;
+        }
+        self.cuts += 1;
+        if share * rad > MET && self.cuts < MOST_CUTS {
+            return Some(share);
+        }
+        // it has popped up, or is not to be met: it presses from where it is found
+        self.waits = false;
+        Some((ONSET / rad).min(1.0))
+    }
+}
+
+/// Where in a try of `dt` (s) the first of the impacts that it runs into begins.
+#[derive(Debug)]
+pub(crate) struct Begun {
+    dt: f64,
+    /// Penetration (m) at which one has just begun, by its speed of approach over `omega` (–, rad/s).
+    begins: (f64, f64),
+    is_at_end: bool,
+    share: f64,
+}
+
+impl Begun {
+    /// In a try of `dt` (s), to a share of the speed of an impact (–) with a stiffest contact (rad/s).
+    pub(crate) const fn within(dt: f64, begins: (f64, f64)) -> Self {
+        Self { dt, begins, is_at_end: false, share: 1.0 }
+    }
+
+    /// A contact of a rock of a radius (m) that has come up is pressed in at the try's end (m) and comes at a speed (m/s); at its start
+    /// there was a gap (m), 0 if that is not known.
+    pub(crate) fn see(&mut self, (pressed_m, comes_m_s): (f64, f64), gap_m: f64, radius_m: f64) {
+        let (share, omega) = self.begins;
+        let begins_m = (share * comes_m_s / omega).max(PLACE_ROUNDING * radius_m);
+        self.is_at_end |= pressed_m > 0.0;
+        if pressed_m > begins_m {
+            // a little behind its beginning, so that the next step begins with it
+            let since_s = (pressed_m - 0.5 * begins_m) / comes_m_s;
+            let begins = if comes_m_s > 0.0 { 1.0 - since_s / self.dt } else { 0.0 };
+            // what glances comes more slowly, or leaves again: it lies on the line from gap to penetration
+            let between = gap_m / (gap_m + pressed_m);
+            let share = if begins > 0.0 { begins } else { between };
+            // one that was apart has not popped up, however near it was
+            let least = if gap_m > 0.0 { 2.0 * MET / (self.dt * self.begins.1) } else { share };
+            self.share = self.share.min(share.max(least));
+        }
+    }
+
+    /// The share (–) of it, 1 or more where what has come up has hardly begun, not positive where it has been there from the start.
+    fn share(&self) -> f64 {
+        // one that has come and gone within the step
+        if self.is_at_end { self.share } else { 0.5 }
+    }
+}
+
+impl ContactState {
+    /// Sees what of a rock of a radius (m) has come up in the present try, which ends at `end`; `hh` is the part of it that its last
+    /// stage is implicit in (s).
+    pub(crate) fn see_begun(&self, begun: &mut Begun, (end, hh): (&End, f64), radius_m: f64) {
+        let contacts = &self.contacts[..self.contact_count];
+        for contact in contacts.iter().filter(|it| self.histories[it.history].met_m_s > 0.0) {
+            begun.see((contact.pen_at(&end.v, hh), -contact.n.dot(&end.v)), 0.0, radius_m);
+        }
+    }
+}
 
 impl RockTrial<'_, '_> {
     /// The share (–) of a step of `dt` (s) after which an impact has just begun that it runs into; none if it runs into none. `hh` is
@@ -19,36 +108,8 @@ impl RockTrial<'_, '_> {
         if !self.state.onset.is_met {
             return None;
         }
-        let share = self.begun(end, (dt, hh));
-        if share >= 1.0 {
-            return None;
-        }
-        self.cuts += 1;
-        if share * dt * self.omega > MET && self.cuts < MOST_CUTS {
-            return Some(share);
-        }
-        // it has popped up, or is not to be met: it presses from where it is found
-        self.waits = false;
-        Some((ONSET / (dt * self.omega)).min(1.0))
-    }
-
-    /// The same, 1 or more where what has come up has hardly begun, not positive where it has been there from the start.
-    fn begun(&self, end: &End, (dt, hh): (f64, f64)) -> f64 {
-        let least_m = PLACE_ROUNDING * self.world.body.radius;
-        let contacts = &self.state.contacts[..self.state.contact_count];
-        let come = contacts.iter().filter(|it| self.state.histories[it.history].met_m_s > 0.0);
-        let (mut is_at_end, mut share) = (false, 1.0f64);
-        for contact in come {
-            let (pressed_m, comes_m_s) = (contact.pen_at(&end.v, hh), -contact.n.dot(&end.v));
-            let begins_m = (self.control.impact * comes_m_s / self.omega).max(least_m);
-            is_at_end |= pressed_m > 0.0;
-            if pressed_m > begins_m {
-                // a little behind its beginning, so that the next step begins with it
-                let since_s = (pressed_m - 0.5 * begins_m) / comes_m_s;
-                share = share.min(if comes_m_s > 0.0 { 1.0 - since_s / dt } else { 0.0 });
-            }
-        }
-        // one that has come and gone within the step
-        if is_at_end { share } else { 0.5 }
+        let mut begun = Begun::within(dt, (self.control.impact, self.omega));
+        self.state.see_begun(&mut begun, (end, hh), self.world.body.radius);
+        self.onsets.cut(&begun, dt * self.omega)
     }
 }

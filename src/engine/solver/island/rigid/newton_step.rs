@@ -189,6 +189,7 @@ impl BallContact {
             law,
             captured: pair_history.captured,
             impact: PairImpact::default(),
+            waits: false,
             bond: None,
             n: self.n,
             penetration: self.target,

@@ -1,0 +1,197 @@
+//! A step of an island, tried with any length, and the impacts that begin and end within it.
+//!
+//! An impact that begins within a step waits for its end, as that of a rock alone does ([`step_control`]). One that ends within it is a kink,
+//! of which the error estimate sees too little: from a radian before its end on, a step that passes it takes away several per cent of
+//! its energy. So what still presses a rock with a part of the impact is not let go within a step, which ends where it opens.
+
+use super::assembly::Island;
+use super::body::IslandBody;
+use super::pair_contact::PairContact;
+use crate::contact::pair::{PairHistory, between};
+use crate::solver::contact_state::{ContactEnvironment, Onset};
+use crate::solver::law::StageContact;
+use crate::solver::step_control::{
+    self, Begun, Control, ONSET, OnsetSearch, TrialStep, TryOutcome,
+};
+
+/// Speed that a spring may still give a rock as its contact opens within a step (–, relative to that of its impact): 4e-4 of
+/// the energy, and the step that passes the kink misses a part of that.
+const LET_GO: f64 = 0.02;
+/// Most cuts of a step for contacts that open within it.
+const MOST_CUTS: u32 = 4;
+/// Shortest part of a try to which one that opens cuts it (–): it is found by a straight line from force to force.
+const LEAST_CUT: f64 = 0.05;
+
+/// A step of the island, tried with any length.
+pub(super) struct IslandTrial<'i, 'a> {
+    island: &'i mut Island<'a>,
+    control: &'i Control,
+    /// The stiffest contact at the step's start (rad/s).
+    omega: f64,
+    onsets: OnsetSearch,
+    /// Cuts for contacts that open.
+    cuts: u32,
+}
+
+impl<'i, 'a> IslandTrial<'i, 'a> {
+    /// Before the first try.
+    pub(super) const fn new(island: &'i mut Island<'a>, control: &'i Control, omega: f64) -> Self {
+        Self { island, control, omega, onsets: OnsetSearch::NEW, cuts: 0 }
+    }
+
+    /// What a try of `dt` (s) comes to.
+    fn outcome(&mut self, dt: f64) -> TryOutcome {
+        let (rad, hh) = (dt * self.omega, self.control.tableau.diagonal * dt);
+        self.island.let_wait(self.onsets.waits(rad));
+        let Some(error) = self.island.attempt(self.control, dt) else {
+            return TryOutcome::Unsettled;
+        };
+        let is_met = self.island.is_met();
+        if is_met {
+            let begun = Begun::within(dt, (self.control.impact, self.omega));
+            if let Some(share) = self.onsets.cut(&self.island.begun(begun, hh), rad) {
+                return TryOutcome::Cut(share);
+            }
+        }
+        if error > 1.0 || error.is_nan() {
+            return TryOutcome::Error(error);
+        }
+        let opens = self.island.opens(hh);
+        if opens < 1.0 && self.cuts < MOST_CUTS {
+            self.cuts += 1;
+            return TryOutcome::Cut(opens.max(LEAST_CUT));
+        }
+        // a step that resolves the springs by far cannot gain more than its error, and what has just begun stores less: only coarse
+        // ones are asked
+        if !is_met && rad > step_control::RESOLVED && self.island.gains(hh) {
+            return TryOutcome::Gains;
+        }
+        TryOutcome::Error(error)
+    }
+}
+
+impl TrialStep for IslandTrial<'_, '_> {
+    /// The island's own next step, which the controller updates.
+    fn h(&mut self) -> &mut f64 {
+        &mut self.island.h
+    }
+
+    fn limit(&mut self) -> f64 {
+        self.island.travel_limit()
+    }
+
+    fn omega(&self) -> f64 {
+        self.omega
+    }
+
+    fn try_step(&mut self, dt: f64) -> TryOutcome {
+        let outcome = self.outcome(dt);
+        if !matches!(outcome, TryOutcome::Error(error) if error <= 1.0) {
+            // memories that came up in a try that failed have never been
+            for member in self.island.members.iter_mut().map(|slot| &mut **slot) {
+                member.state.histories.truncate(member.known);
+            }
+        }
+        outcome
+    }
+}
+
+impl Island<'_> {
+    /// Says whether impacts that come up in the next try wait for its end.
+    fn let_wait(&mut self, waits: bool) {
+        self.onset = Onset { waits, is_met: false };
+        self.members.iter_mut().for_each(|member| member.state.onset = self.onset);
+    }
+
+    /// Whether the present try has run into an impact.
+    fn is_met(&self) -> bool {
+        self.onset.is_met || self.members.iter().any(|member| member.state.onset.is_met)
+    }
+
+    /// Where in the present try the first impact begins that it runs into.
+    fn begun(&self, mut begun: Begun, hh: f64) -> Begun {
+        for member in self.members.iter().map(|slot| &**slot) {
+            member.state.see_begun(&mut begun, (&member.end, hh), member.body.radius);
+        }
+        for pair in self.pairs.iter().filter(|pair| pair.waits) {
+            let [a, b] = pair.ends.map(|end| &self.members[end]);
+            let apart_m_s = self.apart_m_s(pair);
+            let gap_m = between(&a.state.c, &b.state.c).1 - a.body.radius - b.body.radius;
+            let pressed = (pair.pen_at(apart_m_s, hh), -apart_m_s);
+            begun.see(pressed, gap_m.max(0.0), a.body.radius.min(b.body.radius));
+        }
+        begun
+    }
+
+    /// Normal speed apart at the try's end (m/s).
+    fn apart_m_s(&self, pair: &PairContact) -> f64 {
+        let ends = pair.ends.map(|end| (self.members[end].end.v, self.members[end].end.w));
+        pair.speed([&ends[0], &ends[1]])
+    }
+
+    /// The share (–) of the present try after which the first contact opens that still presses with a part of its impact; 1 if none does.
+    fn opens(&self, hh: f64) -> f64 {
+        let rocks = self.members.iter().map(|member| member.opens(hh)).fold(1.0, f64::min);
+        let mut pairs = self.pairs.iter().peekable();
+        let of_pair = |(k, history): (usize, &PairHistory)| {
+            let pair = pairs.next_if(|pair| pair.pair_history == k);
+            let (before, impact_m_s) = (history.normal_force, history.impact.speed_m_s);
+            if impact_m_s <= 0.0 || history.bond.is_some() {
+                return 1.0;
+            }
+            let inv_m = [history.a, history.b].map(|k| 1.0 / self.members[k as usize].body.mass);
+            let gives_m_s = before * (inv_m[0] + inv_m[1]) / history.law.omega_rad_s();
+            let pulls = |pair: &PairContact| {
+                let apart_m_s = self.apart_m_s(pair);
+                pair.normal.pull_or_push(pair.pen_at(apart_m_s, hh), apart_m_s)
+            };
+            // rocks that are so far apart that they are not asked have been let go halfway
+            let after = pair.map_or(-before, pulls);
+            opening((before, after), (gives_m_s, impact_m_s))
+        };
+        self.pair_histories.iter().enumerate().map(of_pair).fold(rocks, f64::min)
+    }
+
+    /// What the present place touches is met whatever becomes of the tries.
+    pub(super) fn accept_meetings(&mut self) {
+        for member in self.members.iter_mut().map(|slot| &mut **slot) {
+            let world =
+                ContactEnvironment { terrain: self.terrain, body: member.body, laws: &member.laws };
+            member.state.accept_meetings(world.least_impact_m_s());
+        }
+    }
+
+    /// After an accepted step: the impacts at whose beginning it ended press from now on, and the next step resolves them.
+    pub(super) fn begin_late(&mut self) {
+        if self.is_met() {
+            self.fresh = false;
+            self.h = self.h.min(ONSET / self.omega());
+        }
+        self.let_wait(false);
+    }
+}
+
+/// The share (–) of a try after which a contact opens whose force (N) is so much before and would be so much after it, negative if it
+/// could pull; `gives_m_s` is the speed that its spring gives yet of an impact of `impact_m_s`. 1 if it does not, or gives little.
+fn opening((before, after): (f64, f64), (gives_m_s, impact_m_s): (f64, f64)) -> f64 {
+    let is_late = after < 0.0 && gives_m_s > LET_GO * impact_m_s;
+    if is_late { before / (before - after) } else { 1.0 }
+}
+
+impl IslandBody {
+    /// The same of its contacts with the mesh.
+    fn opens(&self, hh: f64) -> f64 {
+        let (state, end) = (&self.state, &self.end);
+        if !state.is_rebounding() {
+            return 1.0;
+        }
+        let of_contact = |contact: &StageContact| {
+            let before = state.histories[contact.history].normal_force;
+            let depth_m = contact.pen_at(&end.v, hh);
+            let after = contact.normal.pull_or_push(depth_m, contact.n.dot(&end.v));
+            let gives_m_s = before / (self.body.mass * contact.law.omega_rad_s());
+            opening((before, after), (gives_m_s, state.impact.speed_m_s))
+        };
+        self.contacts().iter().map(of_contact).fold(1.0, f64::min)
+    }
+}
