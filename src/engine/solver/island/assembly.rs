@@ -10,7 +10,6 @@ use super::dda_system::Global;
 use super::outcome::Done;
 use super::pair_contact::{PairContact, Twist};
 use super::rigid::RigidIsland;
-use super::trial::IslandTrial;
 use crate::contact::pair::{PairHistory, between};
 use crate::ground::Law;
 use crate::rock::Vec3;
@@ -127,10 +126,8 @@ impl<'a> Island<'a> {
             self.h = ONSET / omega;
         }
         self.members.iter_mut().for_each(|member| member.known = member.state.histories.len());
-        let mut rejected = 0;
-        let mut trial = IslandTrial::new(self, control, omega);
-        // shortens the step until error, energy and bonds allow it, and to where impacts begin and end
-        let dt = step_control::settle(&mut trial, control, h_max, &mut rejected)?;
+        // as long as error, energy and bonds allow it, and to where impacts begin and end
+        let (dt, rejected) = self.settle_step(control, omega, h_max)?;
         let done = self.accept(control.tableau, dt);
         self.begin_late();
         Ok(Done { rejected, ..done })

@@ -287,6 +287,7 @@ impl IslandBody {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::contact::ContactPoint;
     use crate::contact::history::ContactHistories;
     use crate::rock::Rock;
 
@@ -296,9 +297,8 @@ mod tests {
         let rock = Rock { radius_m: 0.5, density_kg_m3: 2700.0 };
         let start = (Vec3::z(), Vec3::x(), Vec3::zeros());
         let mut member = IslandBody::new(Body::new(&rock, 9.8), Vec::new(), start);
-        let touch = crate::contact::ContactPoints::default().list[0];
         member.state.is_struck = false;
-        member.state.struck.push(ContactHistory::new(&touch, false));
+        member.state.struck.push(ContactHistory::new(&ContactPoint::NONE, false));
         let memory = member.memory();
         (member.state.is_struck, member.state.struck) = (true, ContactHistories::default());
         member.recall(&memory);

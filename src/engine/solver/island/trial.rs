@@ -11,7 +11,7 @@ use crate::contact::pair::{PairHistory, between};
 use crate::solver::contact_state::{ContactEnvironment, Onset};
 use crate::solver::law::StageContact;
 use crate::solver::step_control::{
-    self, Begun, Control, ONSET, OnsetSearch, TrialStep, TryOutcome,
+    self, Begun, Control, ONSET, OnsetSearch, StepError, TrialStep, TryOutcome,
 };
 
 /// Speed that a spring may still give a rock as its contact opens within a step (–, relative to that of its impact): 4e-4 of
@@ -23,7 +23,7 @@ const MOST_CUTS: u32 = 4;
 const LEAST_CUT: f64 = 0.05;
 
 /// A step of the island, tried with any length.
-pub(super) struct IslandTrial<'i, 'a> {
+struct IslandTrial<'i, 'a> {
     island: &'i mut Island<'a>,
     control: &'i Control,
     /// The stiffest contact at the step's start (rad/s).
@@ -33,12 +33,7 @@ pub(super) struct IslandTrial<'i, 'a> {
     cuts: u32,
 }
 
-impl<'i, 'a> IslandTrial<'i, 'a> {
-    /// Before the first try.
-    pub(super) const fn new(island: &'i mut Island<'a>, control: &'i Control, omega: f64) -> Self {
-        Self { island, control, omega, onsets: OnsetSearch::NEW, cuts: 0 }
-    }
-
+impl IslandTrial<'_, '_> {
     /// What a try of `dt` (s) comes to.
     fn outcome(&mut self, dt: f64) -> TryOutcome {
         let (rad, hh) = (dt * self.omega, self.control.tableau.diagonal * dt);
@@ -97,6 +92,24 @@ impl TrialStep for IslandTrial<'_, '_> {
 }
 
 impl Island<'_> {
+    /// Tries steps of at most `h_max` (s) in contacts of at most `omega` (rad/s) until one is accurate: its length (s), and how many
+    /// were thrown away.
+    ///
+    /// # Errors
+    /// [`StepError`] if the step had to become too short to matter.
+    pub(super) fn settle_step(
+        &mut self,
+        control: &Control,
+        omega: f64,
+        h_max: f64,
+    ) -> Result<(f64, u64), StepError> {
+        let mut rejected = 0;
+        let mut trial =
+            IslandTrial { island: self, control, omega, onsets: OnsetSearch::NEW, cuts: 0 };
+        let dt = step_control::settle(&mut trial, control, h_max, &mut rejected)?;
+        Ok((dt, rejected))
+    }
+
     /// Says whether impacts that come up in the next try wait for its end.
     fn let_wait(&mut self, waits: bool) {
         self.onset = Onset { waits, is_met: false };
