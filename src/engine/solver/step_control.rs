@@ -21,7 +21,7 @@ use super::stage::End;
 use super::tableau::Tableau;
 use crate::contact::history::carry;
 use crate::ground::Law;
-use onset::MET;
+pub(crate) use onset::{MET, MOST_CUTS};
 pub(crate) use settle::{StepFailure, TrialStep, TryOutcome, settle};
 
 /// First step of a contact, in radians of its oscillation (–): an impact must be resolved, or it creates energy.

@@ -49,17 +49,16 @@ impl Footing {
         Some(loss)
     }
 
-    /// Whether a blow rebounds from something that rubs and has dashpots.
+    /// Whether a blow is fast enough to rebound and meets something that rubs and has dashpots. Ground that gives nothing back is no case of its
+    /// own: its dashpots are those of the restitution that tends to 0, and where friction and lever couple, what they leave is not what
+    /// impulses make of a contact that must stop dead.
     fn is_followed_to_its_limit(
         &self,
         world: &ContactEnvironment,
         (block, moving): (&Block, &Moving),
     ) -> bool {
         let law = |touch: &BlockTouch| world.law(touch.triangle);
-        let rebounds = |touch: &BlockTouch| {
-            !law(touch).is_plastic() && Self::is_struck(world, (block, moving), touch)
-        };
-        self.touching(block).any(rebounds)
+        self.touching(block).any(|touch| Self::is_struck(world, (block, moving), touch))
             && self.touching(block).any(|touch| law(touch).shear.is_on())
             && self
                 .touching(block)

@@ -8,9 +8,9 @@ use super::{ONSET, PLACE_ROUNDING, RockTrial};
 use crate::solver::stage::End;
 
 /// Most cuts of a step for impacts that begin within it.
-const MOST_CUTS: u32 = 12;
+pub(crate) const MOST_CUTS: u32 = 12;
 /// A step this short ends where an impact begins, as exactly as anybody can tell (rad of the stiffest contact).
-pub(super) const MET: f64 = 1e-8;
+pub(crate) const MET: f64 = 1e-8;
 
 impl RockTrial<'_, '_> {
     /// The share (–) of a step of `dt` (s) after which an impact has just begun that it runs into; none if it runs into none. `hh` is
