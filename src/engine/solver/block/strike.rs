@@ -1,7 +1,7 @@
 //! The impact of a block in no time.
 //!
-//! A blow that rebounds is the limit of the springs' for stiff ones ([`blow`](Footing::blow)). What comes too slowly to rebound, what a
-//! plastic ground keeps and what does not rub is a blow of impulses alone, contact by contact with Newton's restitution. With several
+//! A blow fast enough to rebound is the limit of the springs' for stiff ones ([`blow`](Footing::blow)), on plastic ground as on any other.
+//! What comes more slowly and what does not rub is a blow of impulses alone, contact by contact with Newton's restitution. With several
 //! contacts that rule can gain energy (Glocker 2013); where it would, all restitutions are lowered together until it does not.
 
 use super::energy::hold_energy;

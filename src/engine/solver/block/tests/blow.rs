@@ -22,12 +22,14 @@ fn off_the_limit(k: u8, restitution: f64) -> [f64; 2] {
     let x = f64::from(k);
     let axis = Unit::new_normalize(Vec3::new(sin(x), 0.5 + cos(2.0 * x), 0.7));
     // every fourth on an edge, along which its corners strike together
-    let attitude = if k % 4 == 0 { tilted(0.3 + 0.02 * x) } else { turn(&axis, 0.4 + 0.9 * x) };
-    let spin = if k % 4 == 0 { Vec3::y() } else { Vec3::new(cos(x), sin(3.0 * x), 1.0) } * 5.0;
+    let attitude =
+        if k.is_multiple_of(4) { tilted(0.3 + 0.02 * x) } else { turn(&axis, 0.4 + 0.9 * x) };
+    let spin =
+        if k.is_multiple_of(4) { Vec3::y() } else { Vec3::new(cos(x), sin(3.0 * x), 1.0) } * 5.0;
     let made = || {
         let body = block(&surfaces[usize::from(k % 2)], 0.05);
         let mut case = BlockRun::new(slope(0.0, 50.0), body, (0.1 + 0.05 * x, restitution));
-        if k % 3 == 0 {
+        if k.is_multiple_of(3) {
             case.ground.restitution_half_m_s = Some(5.0);
             case.law = law_of(&case.ground, &case.block, 1e-3);
         }
