@@ -2,6 +2,7 @@ use super::*;
 
 mod blow;
 mod cases;
+mod ledger;
 mod limit;
 mod prism;
 mod rolling;
