@@ -37,15 +37,6 @@ impl Loss {
         }
     }
 
-    /// What normal springs of slope and trees have taken up was summed along the way (J); where what they store at both ends is known,
-    /// the difference of that takes the place of the sums.
-    pub(super) fn know_stored(&mut self, summed: [f64; 2], (before, after): &(Self, Self)) {
-        self.damping -= summed[0];
-        self.trees -= summed[1];
-        self.add(after, 1.0);
-        self.add(before, -1.0);
-    }
-
     /// All of it.
     pub fn sum(&self) -> f64 {
         self.friction + self.damping + self.rolling + self.trees

@@ -21,7 +21,7 @@ use super::stage::End;
 use super::tableau::Tableau;
 use crate::contact::history::carry;
 use crate::ground::Law;
-pub(crate) use onset::{Begun, OnsetSearch};
+pub(crate) use onset::{Begun, MET, MOST_CUTS, OnsetSearch};
 pub(crate) use settle::{StepFailure, TrialStep, TryOutcome, settle};
 
 /// First step of a contact, in radians of its oscillation (–): an impact must be resolved, or it creates energy.

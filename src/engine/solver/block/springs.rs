@@ -241,10 +241,15 @@ impl SpringContact {
 
     /// Power that goes into it (W) at a velocity `u` of the contact point (m/s); what springs store is counted in.
     fn power(&self, world: &ContactEnvironment, u: &Vec3, shear_rate: &Vec3) -> Loss {
+        let pushes = -self.normal_force * self.n.dot(u);
+        self.shear_power(u, shear_rate, pushes).on(world, self.triangle)
+    }
+
+    /// The same, with what goes into its normal element (W).
+    fn shear_power(&self, u: &Vec3, shear_rate: &Vec3, normal_w: f64) -> Loss {
         let slip = u - self.n * self.n.dot(u);
         let friction = self.shear_force.dot(&(slip - shear_rate));
-        let damping = self.shear_force.dot(shear_rate) - self.normal_force * self.n.dot(u);
-        Loss { friction, damping, ..Loss::default() }.on(world, self.triangle)
+        Loss { friction, damping: self.shear_force.dot(shear_rate) + normal_w, ..Loss::default() }
     }
 }
 

@@ -1,7 +1,7 @@
 //! The impact of a block in no time.
 //!
-//! A blow that rebounds is the limit of the springs' for stiff ones ([`blow`](Footing::blow)). What comes too slowly to rebound, what a
-//! plastic ground keeps and what does not rub is a blow of impulses alone, contact by contact with Newton's restitution. With several
+//! A blow fast enough to rebound is the limit of the springs' for stiff ones ([`blow`](Footing::blow)), on plastic ground as on any other.
+//! What comes more slowly and what does not rub is a blow of impulses alone, contact by contact with Newton's restitution. With several
 //! contacts that rule can gain energy (Glocker 2013); where it would, all restitutions are lowered together until it does not.
 
 use super::energy::hold_energy;
@@ -49,17 +49,16 @@ impl Footing {
         Some(loss)
     }
 
-    /// Whether a blow rebounds from something that rubs and has dashpots.
+    /// Whether a blow is fast enough to rebound and meets something that rubs and has dashpots. Ground that gives nothing back is no case of its
+    /// own: its dashpots are those of the restitution that tends to 0, and where friction and lever couple, what they leave is not what
+    /// impulses make of a contact that must stop dead.
     fn is_followed_to_its_limit(
         &self,
         world: &ContactEnvironment,
         (block, moving): (&Block, &Moving),
     ) -> bool {
         let law = |touch: &BlockTouch| world.law(touch.triangle);
-        let rebounds = |touch: &BlockTouch| {
-            !law(touch).is_plastic() && Self::is_struck(world, (block, moving), touch)
-        };
-        self.touching(block).any(rebounds)
+        self.touching(block).any(|touch| Self::is_struck(world, (block, moving), touch))
             && self.touching(block).any(|touch| law(touch).shear.is_on())
             && self
                 .touching(block)

@@ -2,6 +2,7 @@ use super::*;
 
 mod blow;
 mod cases;
+mod ledger;
 mod limit;
 mod prism;
 mod rolling;
@@ -26,6 +27,8 @@ use std::path::Path;
 
 /// Gravity of the exact cases (m/s²).
 const G: f64 = 9.81;
+/// A capture speed up to which every blow of a case comes too slowly to rebound (m/s): it stops dead.
+const TOO_SLOW_M_S: f64 = 100.0;
 
 fn terrain(facets: Vec<Facet>) -> Terrain {
     let soup = Soup::from(facets);
@@ -300,6 +303,7 @@ fn a_slap_takes_what_it_must() {
         let ball = 0.001;
         let mut case =
             BlockRun::new(slope(0.0, 50.0), block(&prism_on_its_side(sides), ball), (10.0, 0.0));
+        case.law = law_of(&case.ground, &case.block, TOO_SLOW_M_S);
         let corners = &case.block.core.corners;
         let low = corners.iter().map(|p| p.z).fold(f64::MAX, f64::min);
         let half = corners.iter().filter(|p| p.z < low + 1e-6).map(|p| p.x).fold(0.0, f64::max);

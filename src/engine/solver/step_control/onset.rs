@@ -10,9 +10,9 @@ use crate::solver::contact_state::ContactState;
 use crate::solver::stage::End;
 
 /// Most cuts of a step for impacts that begin within it.
-const MOST_CUTS: u32 = 12;
+pub(crate) const MOST_CUTS: u32 = 12;
 /// A step this short ends where an impact begins, as exactly as anybody can tell (rad of the stiffest contact).
-const MET: f64 = 1e-8;
+pub(crate) const MET: f64 = 1e-8;
 
 /// How the tries of one step meet the impacts that begin within it.
 #[derive(Debug)]

@@ -70,6 +70,7 @@ impl TrialStep for BlockTrial<'_, '_> {
             }
             Some(StagesOutcome::Whole(end, error)) => (end, error),
         };
+        let error = self.onsets.bounded(error, dt * self.omega);
         self.made_j = if error <= 1.0 { self.made_j(&end, dt) } else { 0.0 };
         // what comes up pressed in, as one feature takes the place of another, is not brought away by a shorter step
         let is_payable = dt * self.omega <= RESOLVED || self.made_j <= self.payable_j(&end);

@@ -16,21 +16,19 @@ use crate::contact::block::{BlockTouch, BlockTouches};
 use crate::contact::pair::LASTS_RAD;
 use crate::ground::Law;
 use crate::solver::environment::ContactEnvironment;
-pub(super) use crate::solver::explicit_impact::SHORTEST_RAD;
-use crate::solver::explicit_impact::{BALANCED, FIRST, LONGEST_RAD, judge};
+use crate::solver::explicit_impact::{BALANCED, FIRST, LONGEST_RAD, SHORTEST_RAD, judge};
 use crate::solver::impact::LOCAL;
 use crate::solver::impact::dormand_prince::{Attempt, Stages};
 use crate::solver::loss::Loss;
 use crate::solver::step_control::{Control, StepError};
-pub(super) use flow::POPPED;
-use flow::{BlockFlow, ErrorScale, SUMS};
+use flow::{BlockFlow, ErrorScale, LOSSES};
 
 /// A contact that lets go is left behind in this times the time that its speed takes (–).
 const LETS_GO: f64 = 1.2;
 /// Penetration that is rounding of places (–, relative to the radius of the sphere of equal volume).
 pub(super) const ROUNDING_OF_PLACE: f64 = 1e-11;
 /// Tries that are cut where a contact begins, at most; after them it presses from where it is found.
-pub(super) const ONSETS: u32 = 6;
+const ONSETS: u32 = 6;
 /// Contacts with room of their own: the usual case, and the most that are followed here.
 const FEW_PRESS: usize = 2;
 const MOST_PRESS: usize = 6;
@@ -102,7 +100,7 @@ impl Footing {
         let mut rejected = 0;
         let mut step = None;
         if self.springs.histories.len() <= FEW_PRESS {
-            step = self.step_among::<FEW_PRESS, { 12 + 3 * FEW_PRESS }, { 2 * FEW_PRESS }>(
+            step = self.step_among::<FEW_PRESS, { 12 + 3 * FEW_PRESS }, { LOSSES + FEW_PRESS }, { 2 * FEW_PRESS }>(
                 world,
                 (block, &start),
                 &bounds,
@@ -110,7 +108,7 @@ impl Footing {
             )?;
         }
         if step.is_none() {
-            step = self.step_among::<MOST_PRESS, { 12 + 3 * MOST_PRESS }, { 2 * MOST_PRESS }>(
+            step = self.step_among::<MOST_PRESS, { 12 + 3 * MOST_PRESS }, { LOSSES + MOST_PRESS }, { 2 * MOST_PRESS }>(
                 world,
                 (block, &start),
                 &bounds,
@@ -148,7 +146,7 @@ impl Footing {
     /// Tries steps with room for `C` contacts until one is accurate; `None` if there are more of them.
     ///
     /// A try that is cut at a kink or where a contact begins is shorter, not wrong.
-    fn step_among<const C: usize, const N: usize, const P: usize>(
+    fn step_among<const C: usize, const N: usize, const Q: usize, const P: usize>(
         &mut self,
         world: &ContactEnvironment,
         on: (&Block, &Moving),
@@ -159,10 +157,10 @@ impl Footing {
         let mut h = self.springs.h;
         let mut flow = BlockFlow::<C>::new(world, self, on, scale);
         let y = flow.begin::<N>();
-        let mut stages = Stages::<N, SUMS, P>::NONE;
+        let mut stages = Stages::<N, Q, P>::NONE;
         flow.rates_of(0, &y, stages.first());
         flow.settle_contacts();
-        let (before, mut onsets, mut is_open) = (flow.stored_j(), 0, false);
+        let (mut onsets, mut is_open) = (0, false);
         loop {
             let wished = h.min(limit);
             let dt = wished.min(h_max);
@@ -192,11 +190,11 @@ impl Footing {
             h = next_h;
             if accepted {
                 *rejected -= 1;
-                let stored = before.zip(flow.stored_j()).filter(|_| flow.is_smooth);
+                let loss = flow.taken(&tried.q);
                 let mut end = flow.moving;
                 self.springs.h = h;
                 end.pose.attitude = orthonormal(&end.pose.attitude);
-                return Ok(Some(ExplicitStep { end, dt, loss: summed(&tried.q, stored) }));
+                return Ok(Some(ExplicitStep { end, dt, loss }));
             }
         }
     }
@@ -262,17 +260,6 @@ impl Footing {
         self.springs.refresh();
         beyond_j
     }
-}
-
-/// The losses of a step from its sums. Where the same springs push from its start to its end, what they store is known exactly and takes
-/// the place of its sum.
-fn summed(sums: &[f64; SUMS], stored: Option<(Loss, Loss)>) -> Loss {
-    let [friction, damping, trees, stores, tree_stores] = *sums;
-    let mut loss = Loss { friction, damping, trees, ..Loss::default() };
-    if let Some(ends) = &stored {
-        loss.know_stored([stores, tree_stores], ends);
-    }
-    loss
 }
 
 impl super::Springs {

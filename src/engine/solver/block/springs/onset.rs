@@ -4,11 +4,11 @@
 //! is accurate where little is allowed. So a contact that comes up fast enough to rebound presses nothing in the step in which it
 //! comes up, and the step is cut where it begins, as those of an impact in its own time are ([`explicit`](super::explicit)).
 
-use super::explicit::{ONSETS, POPPED, ROUNDING_OF_PLACE, SHORTEST_RAD};
+use super::explicit::ROUNDING_OF_PLACE;
 use super::{Footing, Moving, Springs};
 use crate::body::Block;
 use crate::solver::environment::ContactEnvironment;
-use crate::solver::step_control::Control;
+use crate::solver::step_control::{Control, MET, MOST_CUTS, RESOLVED};
 
 /// Where in the tries of one step impacts begin.
 #[derive(Debug)]
@@ -51,12 +51,18 @@ impl Onsets {
         begun.reduce(f64::min)
     }
 
-    /// The share (–) to which a try of so many radians is cut; one that has popped up, and what is still not met after many cuts, presses
-    /// from where it is found.
+    /// The share (–) to which a try of so many radians is cut. One that has popped up, and what is still not met after many cuts, presses
+    /// from where it is found, in a step so short that little of the impact is over by its end: what is allowed to lasting contact is no measure of it.
     pub(super) fn cut(&mut self, share: f64, rad: f64) -> f64 {
         self.cuts += 1;
-        self.press = share <= POPPED || share * rad <= SHORTEST_RAD || self.cuts >= ONSETS;
-        if self.press { 1.0 } else { share }
+        self.press = share * rad <= MET || self.cuts >= MOST_CUTS;
+        if self.press { (RESOLVED / rad).min(1.0) } else { share }
+    }
+
+    /// The error of a try of so many radians, over the one allowed (–). One in which a contact comes to press is accepted once it is so short
+    /// that nobody can tell where in it: its error is that of the jump.
+    pub(super) fn bounded(&self, error: f64, rad: f64) -> f64 {
+        if self.press && rad <= MET { error.clamp(0.0, 1.0) } else { error }
     }
 }
 

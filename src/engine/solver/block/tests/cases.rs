@@ -137,15 +137,21 @@ fn a_face_slides_over_any_triangulation() {
     );
 }
 
-/// When (s) the axis of largest inertia first carries 95 % of the energy of the spin of a slab of 2.5 x 3 x 1 m that rolls down 27° with
-/// rough friction, e = 0 (Leine 2014, 5.2), as `made` for a scheme.
-pub(super) fn rolling_slab(made: impl Fn(BlockRun) -> BlockRun) -> Option<f64> {
+/// How many of three slabs of 2.5 x 3 x 1 m that roll down 27° with rough friction, e = 0 (Leine 2014, 5.2), as `made` for a scheme, come
+/// to turn about the axis of largest inertia within 60 s. They begin a thousandth of a radian apart: that is enough for times between 7 and
+/// 60 s, with every scheme, and one of ten takes longer.
+pub(super) fn rolling_slabs(made: impl Fn(BlockRun) -> BlockRun) -> usize {
+    [0.2, 0.201, 0.202].into_iter().filter(|tilt| rolling_slab(*tilt, &made).is_some()).count()
+}
+
+/// When (s) that axis first carries 95 % of the energy of the spin of one that leans sideways so much at first (rad).
+fn rolling_slab(tilt: f64, made: impl Fn(BlockRun) -> BlockRun) -> Option<f64> {
     let angle = 27_f64.to_radians();
     let body = block(&box_surface([2.5, 3.0, 1.0]), 0.05);
     let mut case = made(BlockRun::new(slope(angle, 4e3), body, (10.0, 0.0)));
     let (along, up) = axes(angle);
     let start = [up * 2.5 - along * 3000.0, along * 28.0, Vec3::y() * 20.8];
-    let mut moving = case.start(tilted(angle) * turn(&Vec3::x_axis(), 0.2), start);
+    let mut moving = case.start(tilted(angle) * turn(&Vec3::x_axis(), tilt), start);
     let own = case.block.clone();
     let widest =
         (0..3).max_by(|&i, &j| own.inertia_kg_m2[i].total_cmp(&own.inertia_kg_m2[j])).unwrap();
@@ -167,10 +173,11 @@ pub(super) fn rolling_slab(made: impl Fn(BlockRun) -> BlockRun) -> Option<f64> {
     first
 }
 
-/// S16: within 60 s the slab rolls as a wheel.
+/// S16: within 60 s slabs roll as wheels.
 #[test]
 fn a_slab_comes_to_roll_as_a_wheel() {
-    assert!(rolling_slab(|case| case).is_some());
+    let rolling = rolling_slabs(|case| case);
+    assert!(rolling >= 2, "{rolling}");
 }
 
 /// Half of the restitution is left at the ground's half speed: a cube that falls flat on its face.

@@ -27,10 +27,10 @@ const TURNED: usize = 3;
 const V: usize = 6;
 const MOMENTUM: usize = 9;
 const SPRINGS: usize = 12;
-/// What is summed up: losses by friction, damping and to trees, and what normal springs of slope and trees take up.
-pub(super) const SUMS: usize = 5;
+/// What is summed up: losses by friction, damping and to trees. What the normal spring of each contact takes up follows.
+pub(super) const LOSSES: usize = 3;
 /// A contact that seems to have begun so near to the step's start has not come up by the way: it popped up, and presses at once (–).
-pub(in super::super) const POPPED: f64 = 0.02;
+const POPPED: f64 = 0.02;
 
 /// What errors are measured by.
 #[derive(Debug, Clone, Copy)]
@@ -63,6 +63,9 @@ pub(super) struct BlockFlow<'a, 'w, const C: usize> {
     pub(super) onset: Option<f64>,
     /// Whether there were more contacts than places.
     pub(super) is_crowded: bool,
+    /// Energy in the normal spring of each contact at the step's start (J), if it is known, and whether it has a dashpot.
+    began_j: [Option<f64>; C],
+    damped: [bool; C],
     /// Whether the try has met the same pairs of features throughout.
     pub(super) is_smooth: bool,
     /// The block at the state last asked for.
@@ -91,6 +94,8 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
             is_open: false,
             onset: None,
             is_crowded: false,
+            began_j: [Some(0.0); C],
+            damped: [false; C],
             is_smooth: true,
             moving: start.clone(),
         }
@@ -115,6 +120,9 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
         for (first, touch) in self.first.iter_mut().zip(&self.footing.touches.found) {
             *first = (touch.part, touch.feature);
         }
+        for contact in self.footing.springs.contacts.iter().filter(|one| one.history < C) {
+            self.began_j[contact.history] = self.known_j(contact);
+        }
     }
 
     /// Begins another try, of length `dt` (s), from the same state; what comes up in it presses at once if it `is_open`.
@@ -123,22 +131,30 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
         (self.dt, self.is_open, self.onset, self.is_smooth) = (dt, is_open, None, true);
     }
 
-    /// Energy in the normal springs at the state last asked for (J), if all of them push.
+    /// Energy in the normal spring of a contact (J), unless that goes apart faster than spring and dashpot can follow.
+    fn known_j(&self, contact: &SpringContact) -> Option<f64> {
+        let normal = contact.law.normal(contact.captured);
+        let pushes = contact.normal_force > 0.0 || !normal.is_damped(self.block.mass_kg);
+        pushes.then(|| normal.stored_j(contact.penetration.max(0.0)))
+    }
+
+    /// What the step has taken, from its sums, at its end, the state last asked for.
     ///
-    /// Where a contact pulls or hangs free its spring relaxes by itself, and the sums must tell.
-    pub(super) fn stored_j(&self) -> Option<Loss> {
-        let contacts = &self.footing.springs.contacts;
-        if contacts.is_empty() || contacts.iter().any(|contact| contact.normal_force <= 0.0) {
-            return None;
+    /// What a normal spring has taken up is known from both ends of the step where it pushes at both, whatever features came and went between
+    /// them. One whose dashpot has let it go has not given back what it held: there the sum tells.
+    pub(super) fn taken<const Q: usize>(&self, sums: &[f64; Q]) -> Loss {
+        let mut taken = Loss { friction: sums[0], damping: sums[1], trees: sums[2], rolling: 0.0 };
+        let springs = &self.footing.springs;
+        for (place, history) in springs.histories.iter().enumerate().take(C) {
+            let end = springs.contacts.iter().find(|contact| contact.history == place);
+            let gone_j = (!self.damped[place]).then_some(0.0);
+            let ended_j = end.map_or(gone_j, |contact| self.known_j(contact));
+            let known_j = self.began_j[place].zip(ended_j).map(|(began, ended)| ended - began);
+            let damping = known_j.unwrap_or(sums[LOSSES + place]);
+            let triangle = end.map_or(history.triangle, |contact| contact.triangle);
+            taken.add(&Loss { damping, ..Loss::default() }.on(self.world, triangle), 1.0);
         }
-        let mut stored = Loss::default();
-        for contact in contacts {
-            let normal = contact.law.normal(contact.captured);
-            let damping = normal.stored_j(contact.penetration.max(0.0));
-            let one = Loss { damping, ..Loss::default() };
-            stored.add(&one.on(self.world, contact.triangle), 1.0);
-        }
-        Some(stored)
+        taken
     }
 
     /// The block at a state, and its rotation vector since the step's start (rad).
@@ -166,11 +182,11 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
     }
 
     /// Writes the rates at `y`, a state of stage `node`, over `rates`; contacts are those of `y` then.
-    pub(super) fn rates_of<const N: usize, const P: usize>(
+    pub(super) fn rates_of<const N: usize, const Q: usize, const P: usize>(
         &mut self,
         node: usize,
         y: &[f64; N],
-        rates: &mut Rates<N, SUMS, P>,
+        rates: &mut Rates<N, Q, P>,
     ) {
         *rates = Rates::NONE;
         // the try is cut where a contact begins: what comes later is thrown away
@@ -222,27 +238,27 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
     }
 
     /// Force of a contact whose point moves by `u` (m/s); its spring, its losses and its kinks go into `rates`.
-    fn press<const N: usize, const P: usize>(
-        &self,
+    fn press<const N: usize, const Q: usize, const P: usize>(
+        &mut self,
         contact: &mut SpringContact,
         u: &Vec3,
-        rates: &mut Rates<N, SUMS, P>,
+        rates: &mut Rates<N, Q, P>,
     ) -> Vec3 {
         let pressing = contact.press(u);
         let place = contact.history;
         let memory = &self.footing.springs.histories[place];
         let rate = carry(pressing.shear_rate, &contact.n, &memory.n);
         put(&mut rates.y, SPRINGS + 3 * place, &rate);
-        let power = contact.power(self.world, u, &pressing.shear_rate);
-        let closing = -contact.n.dot(u);
-        let stores = contact.law.normal(contact.captured);
-        let stores = stores.storing_w(contact.penetration.max(0.0), closing);
-        // energy that goes into trees is counted apart, whatever takes it
-        let is_tree = self.world.terrain.is_tree(contact.triangle);
+        let (normal, up) = (contact.law.normal(contact.captured), contact.n.dot(u));
+        let penetration = contact.penetration.max(0.0);
+        let dissipates = normal.dissipating_w(penetration, up);
+        let power = contact.shear_power(u, &pressing.shear_rate, dissipates);
+        let power = power.on(self.world, contact.triangle);
         for (sum, power) in rates.q.iter_mut().zip([power.friction, power.damping, power.trees]) {
             *sum += power;
         }
-        rates.q[if is_tree { 4 } else { 3 }] += stores;
+        rates.q[LOSSES + place] = normal.storing_w(penetration, -up);
+        self.damped[place] = normal.is_damped(self.block.mass_kg);
         // in units of acceleration, so that times a step they are speeds
         let by_mass = 1.0 / self.block.mass_kg;
         let (pushes, cap) = (contact.normal_force, contact.law.shear.cap(contact.normal_force));
@@ -252,9 +268,11 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
     }
 }
 
-impl<const C: usize, const N: usize, const P: usize> Flow<N, SUMS, P> for BlockFlow<'_, '_, C> {
+impl<const C: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, P>
+    for BlockFlow<'_, '_, C>
+{
     #[inline]
-    fn rates(&mut self, node: usize, y: &[f64; N], to: &mut Rates<N, SUMS, P>) {
+    fn rates(&mut self, node: usize, y: &[f64; N], to: &mut Rates<N, Q, P>) {
         self.rates_of(node, y, to);
     }
 
