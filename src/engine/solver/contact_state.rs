@@ -138,6 +138,8 @@ pub struct ContactState {
 
 /// Features are collected for the rock's centre up to this far from where it was (–, relative to R) …
 const MARGIN: f64 = 0.35;
+/// … half of that ahead of it (–) …
+const AHEAD: f64 = 0.17;
 /// … at a touch no further than this, if that is enough for the impact (–) …
 const LEAST_MARGIN: f64 = 0.06;
 /// … which goes on for about so many contact times `π/ω` (–) …
@@ -220,11 +222,12 @@ impl ContactState {
         }
     }
 
-    /// Collects the features around `c`.
+    /// Collects the features around `c` and ahead of it along the velocity, so that most of them are still to come.
     pub(crate) fn collect(&mut self, world: &ContactEnvironment, c: &Vec3) {
         let r = world.body.radius;
+        let ahead = c + self.v.cap_magnitude(AHEAD * r);
         let begun = self.stopwatches.now();
-        self.near.collect(world.terrain, c, r, MARGIN * r, SLACK * r);
+        self.near.collect(world.terrain, &ahead, r, MARGIN * r, SLACK * r);
         self.stopwatches.stop(TimedPiece::Geometry, begun);
     }
 

@@ -26,9 +26,6 @@ use crate::ground::{Law, NormalElement};
 use crate::rock::Vec3;
 use trial::PlaneTrial;
 
-/// Features are collected so far ahead of the rock (–, relative to R): half of how far they are known.
-const AHEAD: f64 = 0.17;
-
 /// Whether the rock's one contact is the face that its one memory belongs to.
 fn is_on_face(world: &ContactEnvironment, rock: &ContactState) -> bool {
     let [history] = &rock.histories[..] else { return false };
@@ -114,12 +111,11 @@ impl ContactState {
     }
 
     /// Sees to it that the features where a step of `dt` goes are known, and a little beyond.
-    /// Looks ahead along the velocity, so that most of what is collected is still to come.
     fn see_ahead(&mut self, world: &ContactEnvironment, dt: f64) {
         let way = (self.v * dt).cap_magnitude(TRAVEL * world.body.radius);
         if !(self.near.covers(&self.c) && self.near.covers(&(self.c + way))) {
-            let ahead = self.v.cap_magnitude(AHEAD * world.body.radius);
-            self.collect(world, &(self.c + ahead));
+            let c = self.c;
+            self.collect(world, &c);
         }
     }
 

@@ -17,13 +17,12 @@
 
 use super::body::Body;
 use super::contact_state::{ContactEnvironment, ContactState};
-use super::dda::TRAVEL;
 use super::friction_rolling::{Answers, ContactFrame, Pair, SlipState};
 use super::impact::{FrozenContact, throw};
 use super::law::capture_m_s;
 use super::loss::Loss;
 use super::roughness;
-use super::step_control::{Advance, StepError};
+use super::step_control::{Advance, StepError, TRAVEL};
 use crate::contact::TOUCH;
 use crate::contact::history::ContactHistory;
 use crate::contact::{ContactPoint, MOST};
@@ -33,7 +32,7 @@ use crate::rock::Vec3;
 /// Touches no further away than this still hold the rock (–, relative to R).
 pub(crate) const HELD: f64 = 1e-4;
 /// Local error of an impact followed in its own time (–, relative to its speed).
-pub(crate) const IMPACT: f64 = 2e-5;
+pub(crate) const IMPACT: f64 = 1e-4;
 /// Share of the slowest approach to a facet from which on a turned rock comes to it (–): turning rounds the approach, and once
 /// the facet is struck there is none.
 const ONTO_FACET: f64 = 0.5;

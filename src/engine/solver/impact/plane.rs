@@ -93,7 +93,7 @@ impl Plane {
     }
 
     /// The same of a patch, captured or not, with its stiffness scale (–).
-    pub(super) fn of_patch(
+    pub(in crate::solver::impact) fn of_patch(
         body: &Body,
         law: &Law,
         (captured, scale): (bool, f64),
@@ -203,16 +203,23 @@ impl Plane {
     /// impulse `J = Σ q dt` alone: `Δv = −J/m`, and the lever `R` turns it into spin.
     fn shears(&self, start: &Start, t: f64, effort: &mut ImpactEffort) -> Along2 {
         let turns = self.turns();
-        let flow = Shear { element: self.shear, lightness: 1.0 + turns, gravity: start.gravity };
+        let lightness = 1.0 + turns;
         let u = [start.v[0] - start.w[1], start.v[1] + start.w[0]];
-        let (y, [slipping, ways @ ..]) = self.run(&flow, [u[0], u[1], 0.0, 0.0], start, t, effort);
+        let (y, slipping, ways) = if start.gravity == [0.0; 2] {
+            self.slips_along_a_line(u, start, t, effort)
+        } else {
+            let flow = Shear { element: self.shear, lightness, gravity: start.gravity };
+            let (y, [slipping, ways @ ..]) =
+                self.run(&flow, [u[0], u[1], 0.0, 0.0], start, t, effort);
+            ([y[0], y[1]], slipping, ways)
+        };
         let g = start.gravity;
         // slip without friction, less slip as it came out, is what the impulse did to the contact
         // point
         let free = [0, 1].map(|k| u[k] + g[k] * t);
         // Impulse over mass, and its sum over time.
-        let blow = [0, 1].map(|k| (free[k] - y[k]) / flow.lightness);
-        let blown = [0, 1].map(|k| ((u[k] + 0.5 * g[k] * t) * t - ways[k]) / flow.lightness);
+        let blow = [0, 1].map(|k| (free[k] - y[k]) / lightness);
+        let blown = [0, 1].map(|k| ((u[k] + 0.5 * g[k] * t) * t - ways[k]) / lightness);
         let way = [0, 1].map(|k| (start.v[k] + 0.5 * g[k] * t) * t - blown[k]);
         let mut end = Along2 {
             v: [0, 1].map(|k| start.v[k] + g[k] * t - blow[k]),

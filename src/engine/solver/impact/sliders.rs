@@ -115,16 +115,16 @@ pub(super) struct Straight {
     pub(super) lightness: f64,
 }
 
-/// Slip, spring `s`.
-impl ForcedFlow<2, 0, 1> for Straight {
+/// Slip, spring `s`; summed up: what slipping takes, slip.
+impl ForcedFlow<2, 2, 1> for Straight {
     #[inline]
-    fn rates(&self, f: f64, y: &[f64; 2], to: &mut Rates<2, 0, 1>) {
+    fn rates(&self, f: f64, y: &[f64; 2], to: &mut Rates<2, 2, 1>) {
         let SliderElement { damping, rate, cap } = self.element;
         let (asked, cap) = (y[0] + y[1], cap * f);
         let p = asked.min(cap).max(-cap);
         *to = Rates {
             y: [-self.lightness * damping * p, rate * (p - y[1])],
-            q: [],
+            q: [damping * cap * (asked - p).abs(), y[0]],
             kinks: [[asked * asked, cap]],
         };
     }

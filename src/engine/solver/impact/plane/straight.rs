@@ -3,10 +3,11 @@
 //! Two rocks that strike each other are such a case: their slip is a straight line as long as nothing but the contact acts on it.
 //! The law, its steps and their error are those of [`Plane::follow`]; only the impulses are asked for, neither ways nor losses.
 
-use super::{LOCAL, Plane, Start};
+use super::{LOCAL, Plane, Start, dot};
 use crate::ground::Law;
 use crate::rock::Vec3;
 use crate::solver::body::Body;
+use crate::solver::friction_rolling::Along;
 use crate::solver::impact::ImpactEffort;
 use crate::solver::impact::sliders::Straight;
 
@@ -41,7 +42,6 @@ pub(super) fn blow_plane((body, law): (&Body, &Law), captured: bool, tolerance: 
 impl Plane {
     /// Impulse against the slip `u` of a blow of so long, in units of mass, approach speed and `1/ω`.
     pub(super) fn rubbed(&self, u: f64, length: f64) -> f64 {
-        let flow = Straight { element: self.shear, lightness: 1.0 + self.turns() };
         let start = Start {
             v: [u, 0.0],
             w: [0.0; 3],
@@ -49,9 +49,37 @@ impl Plane {
             gamma: 0.0,
             allowed: LOCAL * self.tolerance * (1.0 + u * u).sqrt(),
         };
-        let mut effort = ImpactEffort::default();
-        let ([after, _], []) = self.run(&flow, [u, 0.0], &start, length, &mut effort);
+        let (after, _) = self.along_a_line(u, &start, length, &mut ImpactEffort::default());
+        (u - after) / (1.0 + self.turns())
+    }
+
+    /// As [`Straight`] from a slip in two directions: slip at the end, what slipping took, and the way of the slip.
+    pub(super) fn slips_along_a_line(
+        &self,
+        slip: Along,
+        start: &Start,
+        length: f64,
+        effort: &mut ImpactEffort,
+    ) -> (Along, f64, Along) {
+        let size = dot(slip, slip).sqrt();
+        if size == 0.0 {
+            return ([0.0; 2], 0.0, [0.0; 2]);
+        }
+        let (after, [taken, way]) = self.along_a_line(size, start, length, effort);
+        (slip.map(|u| u * (after / size)), taken, slip.map(|u| u * (way / size)))
+    }
+
+    /// The slip `u` at the end, what slipping took, and its way.
+    fn along_a_line(
+        &self,
+        u: f64,
+        start: &Start,
+        length: f64,
+        effort: &mut ImpactEffort,
+    ) -> (f64, [f64; 2]) {
+        let flow = Straight { element: self.shear, lightness: 1.0 + self.turns() };
+        let ([after, _], sums) = self.run(&flow, [u, 0.0], start, length, effort);
         // the spring gives back no more than it has had, whatever the error of the steps
-        (u - after.min(u).max(-u)) / flow.lightness
+        (after.clamp(-u, u), sums)
     }
 }

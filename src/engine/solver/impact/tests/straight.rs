@@ -4,22 +4,28 @@ use super::{G, case, ground, motion_j, uniforms};
 use crate::ground::Law;
 use crate::rock::Vec3;
 use crate::solver::body::Body;
-use crate::solver::impact::{BlowTable, FrozenContact, blow_along_a_line, throw};
+use crate::solver::impact::{BlowTable, Followed, Plane, blow_along_a_line};
 
 /// Tolerance that leaves rounding and little more (–).
 const FINE: f64 = 1e-10;
 
-/// Impulses over the mass, along the normal and against the slip (m/s), of an impact in two directions.
+/// Impulses over the mass, along the normal and against the slip (m/s), of an impact in two directions. A weight along the surface
+/// that no number feels keeps it from being followed along its line.
 fn in_two_directions(
     (body, law): (&Body, &Law),
     captured: bool,
     [approach, slip]: [f64; 2],
 ) -> [f64; 2] {
-    let struck = FrozenContact { normal: Vec3::z(), law, stiffness_scale: 1.0, captured };
     let along = Vec3::new(0.6, 0.8, 0.0);
     let v = along * slip - Vec3::z() * approach;
-    let after = throw(body, &[struck], (&v, &Vec3::zeros()), FINE).velocity_m_s;
-    [after.z + approach, slip - along.dot(&after)]
+    let body = Body { gravity: along * 1e-200, ..*body };
+    let plane = Plane::of_patch(&body, law, (captured, 1.0), FINE);
+    let Followed::Left(out) = plane.follow(&Vec3::z(), &v, &Vec3::zeros()) else {
+        panic!("it stays")
+    };
+    let after = out.velocity_m_s;
+    let kept = if captured { 0.0 } else { after.z };
+    [kept + approach, slip - along.dot(&after)]
 }
 
 /// Largest difference of the impulses over the speed (–) from those in two directions, by the tolerance of the blow.
