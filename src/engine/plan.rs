@@ -211,7 +211,7 @@ impl Plan {
         grounds::check_size(scene, &terrain)?;
         let releases = Releases::compile(scene, &terrain)?;
         terrain.stems = grounds::stems(scene, &terrain)?;
-        let mut warnings = [slips::of(scene), grounds::unused(scene, &terrain)].concat();
+        let mut warnings = grounds::warnings(scene, &terrain);
         let table_sizes = sizes::of_table(scene, &mut warnings);
         let mut fast_warnings = Vec::new();
         let tried = releases.try_out(&terrain, &mut warnings)?;

@@ -90,7 +90,8 @@ impl Percentile {
     /// The interval is Woodruff's (1952): the share of weight below is known to `σ² = Σ w² (1{x ≤ q} − p)² / (Σ w)²`, and
     /// the values at the shares `p ± 1.96 σ` enclose the percentile. Where such a share is not below 1, or has no rock
     /// below it, that end is open. For the upper end one more rock of the heaviest weight lies above, as Fay and Feuer (1997) have it for
-    /// rates: that no heavy rock was seen beyond the percentile does not say that none goes there.
+    /// rates: that no heavy rock was seen beyond the percentile does not say that none goes there. Of fewer rocks than it needs there is no
+    /// lower end either: the few heavy ones that decide where it lies tell too little of `σ`.
     /// [`needs`](Self::needs) is as many of these rocks as it takes to be worth enough of equal weight, `(Σ w)² / Σ w²` (Kish 1965).
     pub(super) fn weighted((sorted, weights): (&[f64], &[f64]), p: f64) -> Option<Self> {
         let all: f64 = weights.iter().sum();
@@ -110,12 +111,13 @@ impl Percentile {
         let heaviest = weights.iter().copied().fold(0.0, f64::max) / all;
         let (sd, wider) = (seen.sqrt(), (seen + (p * heaviest).powi(2)).sqrt());
         let end = |share: f64| (share > 0.0 && share < 1.0).then(|| at(share)).flatten();
+        let needs = (needed(p) as f64 * sorted.len() as f64 / worth - 1e-9).ceil() as usize;
         Some(Self {
             value,
-            low_95: end(p - NORMAL_95 * sd),
+            low_95: end(p - NORMAL_95 * sd).filter(|_| sorted.len() >= needs),
             high_95: end(p + NORMAL_95 * wider),
             upper_95: end(p + NORMAL_ONE_SIDED_95 * wider),
-            needs: (needed(p) as f64 * sorted.len() as f64 / worth - 1e-9).ceil() as usize,
+            needs,
             censored: false,
         })
     }

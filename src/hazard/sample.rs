@@ -1,6 +1,6 @@
 //! All values of one quantity, sorted, and what they say.
 
-use super::proportion::NORMAL_95;
+use super::proportion::student_95;
 use super::quantile::{Open, Percentile, worth};
 use crate::math;
 use serde::{Deserialize, Serialize};
@@ -15,7 +15,7 @@ pub struct Sample {
     far: Option<(Box<Sample>, Open)>,
 }
 
-/// A mean with its 95 % interval.
+/// A mean with its 95 % interval, see [`Sample::mean`].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Mean {
     /// Mean.
@@ -118,30 +118,30 @@ impl Sample {
         &self.sorted
     }
 
-    /// Mean with the normal interval `± 1.96 s/√n`; none of nothing.
+    /// Mean with its interval; none of nothing. The ends are the outer ones of Student's interval and of Hall's (1992), which knows that values
+    /// are skewed: few rocks of a long tail tell that the mean lies far above rather than below.
     ///
-    /// Where that would reach below 0 although no value does, the interval is normal for the logarithm of the mean:
-    /// `mean · exp(± 1.96 s/(mean √n))`.
+    /// Where the lower end would be below 0 although no value is, it is `mean · exp(−half/mean)`, normal for the logarithm of the mean.
     /// Summed in ascending order, so the same values give the same bits however they arrived. Weighted values: ratio of
     /// sums, with the variance `Σ w² (x − mean)² / (Σ w)²` of its linearisation (delta method).
     pub fn mean(&self) -> Option<Mean> {
-        let (value, half) = match &self.weights {
-            None => mean_and_half(&self.sorted),
-            Some(weights) => weighted_mean_and_half(&self.sorted, weights),
+        let spread = match &self.weights {
+            None => Spread::of(&self.sorted),
+            Some(weights) => Spread::weighted((&self.sorted, weights), self.effective_rocks()),
         };
+        let (value, below, above) = (spread.mean, spread.below(), spread.above());
         let is_positive = self.sorted.first().is_some_and(|least| *least >= 0.0) && value > 0.0;
-        let (low, high) = if is_positive && half > value {
-            let factor = math::exp(half / value);
-            (value / factor, value * factor)
+        let low = if is_positive && below > value {
+            value * math::exp(-below / value)
         } else {
-            (value - half, value + half)
+            value - below
         };
         let ends = |end: f64| (self.sorted.len() > 1).then_some(end);
         let open = self.far.as_ref().map(|(_, open)| *open);
         let mean = Mean {
             value,
             low_95: ends(low).filter(|_| open != Some(Open::Below)),
-            high_95: ends(high).filter(|_| open != Some(Open::Above)),
+            high_95: ends(value + above).filter(|_| open != Some(Open::Above)),
             censored: open.is_some(),
         };
         (!self.sorted.is_empty()).then_some(mean)
@@ -212,21 +212,62 @@ impl Sample {
     }
 }
 
-/// Mean and half its normal interval.
-fn mean_and_half(values: &[f64]) -> (f64, f64) {
-    let n = values.len() as f64;
-    let value = values.iter().sum::<f64>() / n;
-    let squares: f64 = values.iter().map(|one| (one - value).powi(2)).sum();
-    (value, NORMAL_95 * (squares / (n - 1.0) / n).sqrt())
+/// A mean, how well it is known, and how skewed that is.
+struct Spread {
+    mean: f64,
+    /// Standard error.
+    error: f64,
+    /// Skewness of the mean (–): of equal weights that of the values over `√n`.
+    skewness: f64,
+    /// Half width of Student's interval, in standard errors (–).
+    student: f64,
 }
 
-/// The same of weighted values.
-fn weighted_mean_and_half(values: &[f64], weights: &[f64]) -> (f64, f64) {
-    let pairs = || values.iter().zip(weights);
-    let all: f64 = weights.iter().sum();
-    let value = pairs().map(|(x, w)| w * x).sum::<f64>() / all;
-    let squares: f64 = pairs().map(|(x, w)| (w * (x - value)).powi(2)).sum();
-    (value, NORMAL_95 * squares.sqrt() / all)
+/// A skewness of the mean below this is none (–).
+const SYMMETRIC: f64 = 1e-6;
+
+impl Spread {
+    fn of(values: &[f64]) -> Self {
+        let n = values.len() as f64;
+        let mean = values.iter().sum::<f64>() / n;
+        let [squares, cubes] =
+            [2, 3].map(|power| values.iter().map(|one| (one - mean).powi(power)).sum::<f64>());
+        let error = (squares / (n - 1.0) / n).sqrt();
+        Self { mean, error, skewness: skewness(squares, cubes), student: student_95(n - 1.0) }
+    }
+
+    /// The same of values with weights, worth so many of equal weight.
+    fn weighted((values, weights): (&[f64], &[f64]), worth: f64) -> Self {
+        let pairs = || values.iter().zip(weights);
+        let all: f64 = weights.iter().sum();
+        let mean = pairs().map(|(x, w)| w * x).sum::<f64>() / all;
+        let [squares, cubes] =
+            [2, 3].map(|power| pairs().map(|(x, w)| (w * (x - mean)).powi(power)).sum::<f64>());
+        let error = squares.sqrt() / all;
+        Self { mean, error, skewness: skewness(squares, cubes), student: student_95(worth - 1.0) }
+    }
+
+    /// How far the interval reaches below the mean.
+    fn below(&self) -> f64 {
+        self.error * self.student.max(self.hall(self.student))
+    }
+
+    /// How far it reaches above.
+    fn above(&self) -> f64 {
+        self.error * self.student.max(-self.hall(-self.student))
+    }
+
+    /// Where the studentised mean is as far out as `t` of one that is not skewed (–): the inverse of Hall's cubic
+    /// `T + a T²/3 + a² T³/27 + a/6` with the skewness `a` of the mean.
+    fn hall(&self, t: f64) -> f64 {
+        let a = self.skewness;
+        if a.abs() < SYMMETRIC { t } else { 3.0 / a * (math::cbrt(1.0 + a * (t - a / 6.0)) - 1.0) }
+    }
+}
+
+/// Skewness of a sum from the sums of the squares and cubes of its parts (–); 0 where nothing varies.
+fn skewness(squares: f64, cubes: f64) -> f64 {
+    if squares > 0.0 { cubes / (squares * squares.sqrt()) } else { 0.0 }
 }
 
 /// The next of 1, 2, 5 times a power of ten.

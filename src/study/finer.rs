@@ -2,6 +2,7 @@
 
 use crate::math;
 use crate::solver::Settings;
+use crate::solver::step_control::COARSEST_M_S;
 
 /// Longest way of a corner that is still less than its ball: a step may not jump over what it should strike (–).
 const LONGEST_WAY: f64 = 1.0;
@@ -11,7 +12,10 @@ const LONGEST_WAY: f64 = 1.0;
 pub(super) fn finer(step: &Settings, relative: f64, has_blocks: bool) -> Settings {
     let mut finer = *step;
     if step.scheme.controls_error() {
-        finer.tolerance_m_s *= relative;
+        // what is coarser than the coarsest that is felt is no coarser: finer than that it has to be
+        let felt_m_s = step.tolerance_m_s.min(COARSEST_M_S);
+        finer.tolerance_m_s =
+            if relative < 1.0 { felt_m_s * relative } else { step.tolerance_m_s * relative };
     } else {
         finer.step_s *= relative;
     }

@@ -134,7 +134,8 @@ fn ladder_of(scheme: Scheme) -> (&'static [f64], f64) {
     scheme.of([
         // each halving costs double
         (&[2.0, 1.0, 0.5][..], 1.0),
-        (&[2.0, 1.0, 0.25, 0.0625, 0.015_625], 2.0 / 3.0),
+        // nothing coarser than the scene's own: what impacts may be wrong by is bounded, and no coarser tolerance would change it
+        (&[1.0, 0.25, 0.0625, 0.015_625], 2.0 / 3.0),
         // far above the scene's own tolerance the error no longer follows its law, below it a rung costs little more;
         // this one is already at the fine end
         (&[4096.0, 256.0, 16.0, 1.0], 1.0),

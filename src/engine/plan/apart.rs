@@ -4,6 +4,7 @@ use super::{Part, Plan};
 use crate::error::{Error, Result};
 use crate::ground::Ground;
 use crate::release::{Release, TYPED_DEPTH};
+use crate::scene::Scene;
 use crate::solver::island::broad_phase::{Ball, overlapping};
 
 /// Overlap allowed over that which the weight above presses in (–): a wedge presses more than a column.
@@ -22,6 +23,13 @@ impl Plan {
         }
         Ok(releases)
     }
+}
+
+/// What is said of the sample that the rocks of one world are; nothing where each has the terrain for itself.
+pub(super) fn one_sample(scene: &Scene) -> Vec<String> {
+    let shares = scene.release.together && scene.release.count > 1;
+    let said = "rocks of one world meet each other, but all intervals take them for independent and are too narrow for what they share, as how long a heap moves: run several seeds and compare";
+    shares.then(|| said.to_owned()).into_iter().collect()
 }
 
 /// Refuses rocks that overlap deeper than the weight of those above would press them together: their springs would shoot

@@ -1,6 +1,6 @@
 //! What the grounds of a scene ask of the plan: stems that give way, sources of values, grounds without use.
 
-use super::Part;
+use super::{Part, apart, slips};
 use crate::contact::pair::Strength;
 use crate::error::{Error, Result};
 use crate::ground::{Damping, Ground, Scar, swept_m3, tangential_restitution};
@@ -116,8 +116,13 @@ fn rolling_of_blocks(scene: &Scene) -> impl Iterator<Item = String> {
     })
 }
 
+/// What the scene warns of that no part of the plan does: grounds, and what all rocks share.
+pub(super) fn warnings(scene: &Scene, terrain: &Terrain) -> Vec<String> {
+    [slips::of(scene), unused(scene, terrain), apart::one_sample(scene)].concat()
+}
+
 /// Warnings about grounds and keys that nothing answers with.
-pub(super) fn unused(scene: &Scene, terrain: &Terrain) -> Vec<String> {
+fn unused(scene: &Scene, terrain: &Terrain) -> Vec<String> {
     let used = |index: usize| terrain.sheets.iter().any(|sheet| usize::from(sheet.ground) == index);
     let has_tree = |index: usize| {
         terrain.sheets.iter().any(|sheet| sheet.is_tree && usize::from(sheet.ground) == index)

@@ -86,6 +86,8 @@ pub struct Control {
 /// 4e-3 times the tolerance, 2e-4 at most: at the default of 0.05 m/s that is 2e-4, and restitution
 /// is right to about as much.
 const IMPACT: (f64, f64) = (4e-3, 2e-4);
+/// Coarsest tolerance that still changes a step (m/s): beyond it impacts, which carry most of the error, are followed as exactly as at it.
+pub const COARSEST_M_S: f64 = IMPACT.1 / IMPACT.0;
 /// The same for the reference.
 const IMPACT_OF_REFERENCE: f64 = 1e-10;
 /// Local error allowed in lasting contact, whatever is asked for (–, relative to √(g R), the speed of a rock that tips over

@@ -32,9 +32,9 @@ pub struct ReturnEnergy {
     pub low_95: f64,
     /// Upper end of the 95 % interval (J); none where too few rocks bound it.
     pub high_95: Option<f64>,
-    /// Change with the logarithm of all rates (J).
+    /// Change with the logarithm of all rates (J), over 15 % of them either way.
     pub by_log_rate: Option<f64>,
-    /// Change with the exponents (J).
+    /// Change with the exponents (J), over 0.05 either way.
     pub by_exponent: Option<f64>,
 }
 
@@ -95,11 +95,11 @@ pub(super) fn curve(
         open = Some(class);
     }
     points.extend(open.map(|before| point(before, running, ceilings)));
-    // what has the larger energy has the smaller too: a lower end holds for all points below it
-    let mut least = 0.0f64;
+    // what has the larger energy has the smaller too: λ at a lower energy is no less, and so are both ends
+    let mut ends = (0.0f64, 0.0f64);
     for point in &mut points {
-        least = least.max(point.low_95);
-        point.low_95 = least;
+        ends = (ends.0.max(point.low_95), ends.1.max(point.high_95));
+        (point.low_95, point.high_95) = ends;
     }
     points
 }
@@ -110,8 +110,11 @@ fn point(class: u16, running: &Running<'_>, ceilings: &Ceilings) -> ExceedancePo
     ExceedancePoint { energy_j: lower_end_of(class), per_year, low_95, high_95, by_exponent }
 }
 
-/// Step by which rate and exponent are moved to see how an energy follows (–).
-const STEP: f64 = 1e-3;
+/// How far the logarithm of the rates is moved either way to see how an energy follows (–): over several classes of energy and the rocks in
+/// them, as inside one class the curve knows no slope of its own.
+const RATE_STEP: f64 = 0.15;
+/// The same of the exponents (–): it moves rates by about as much.
+const EXPONENT_STEP: f64 = 0.05;
 
 /// The energy of a return period on a curve of falling points.
 ///
@@ -126,19 +129,21 @@ pub(super) fn return_energy(
 ) -> ReturnEnergy {
     let at = |of: &dyn Fn(&ExceedancePoint) -> f64| reached(points, of, 1.0 / years);
     let energy_j = at(&|p| p.per_year);
-    let slope = |moved: &dyn Fn(&ExceedancePoint, f64) -> f64| {
-        let end = |step: f64| at(&|p| moved(p, step));
-        Some((end(STEP)? - end(-STEP)?) / (2.0 * STEP))
+    let slope = |moved: &dyn Fn(&ExceedancePoint, f64) -> f64, step: f64| {
+        let [less, more] = [-step, step].map(|step| at(&|p| moved(p, step)));
+        // where rarer rocks have no such energy, the other side tells
+        Some((more? - less.or(energy_j)?) / if less.is_some() { 2.0 * step } else { step })
     };
     ReturnEnergy {
         years,
         energy_j,
         low_95: at(&|p| p.low_95).unwrap_or(0.0),
         high_95: ceilings.highest(points, 1.0 / years),
-        by_log_rate: energy_j.and_then(|_| slope(&|p, step| p.per_year * (1.0 + step))),
+        by_log_rate: energy_j
+            .and_then(|_| slope(&|p, step| p.per_year * math::exp(step), RATE_STEP)),
         by_exponent: energy_j
             .filter(|_| has_exponent)
-            .and_then(|_| slope(&|p, step| p.per_year + step * p.by_exponent)),
+            .and_then(|_| slope(&|p, step| p.per_year + step * p.by_exponent, EXPONENT_STEP)),
     }
 }
 

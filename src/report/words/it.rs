@@ -2,6 +2,7 @@
 
 mod patterns;
 mod plan;
+mod samples;
 
 use super::{Words, glossary};
 
@@ -384,6 +385,6 @@ pub(super) static WORDS: Words = Words {
     ],
     glossary: glossary::IT,
     // What the program records in English, and its words here
-    said: &[plan::PLAN, patterns::RECORDED],
+    said: &[plan::PLAN, patterns::RECORDED, samples::SAMPLES],
     view: patterns::VIEW,
 };

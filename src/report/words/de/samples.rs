@@ -1,0 +1,7 @@
+//! What is said of samples of rocks in English, in German.
+
+/// By patterns, as for the plan.
+pub(super) const SAMPLES: &[(&str, &str)] = &[(
+    "rocks of one world meet each other, but all intervals take them for independent and are too narrow for what they share, as how long a heap moves: run several seeds and compare",
+    "Blöcke einer gemeinsamen Welt begegnen einander: alle Intervalle nehmen sie als unabhängig und sind zu eng für das, was sie teilen, etwa wie lange sich ein Haufen bewegt; mehrere Startwerte (seed) rechnen und vergleichen",
+)];
