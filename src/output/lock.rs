@@ -4,6 +4,8 @@ use crate::error::{Error, Result};
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
+use std::thread;
+use std::time::Duration;
 
 /// Name of the empty file that is locked. Beside results it stays: whoever removed it could take it from under another
 /// process.
@@ -19,6 +21,24 @@ pub struct FolderLock {
     file: Option<File>,
     /// What is removed if nothing comes of it, the last first.
     made: Vec<PathBuf>,
+}
+
+/// How often a lock that is held is asked for again, and after how long.
+const TRIES: u32 = 10;
+const WAIT: Duration = Duration::from_millis(20);
+
+/// Tries to lock for a fifth of a second: a process that another thread has just begun holds what its parent held until it is a program
+/// of its own, and a lock that nobody wants any more is still there for that instant.
+fn patiently(
+    lock: impl Fn() -> std::result::Result<(), TryLockError>,
+) -> std::result::Result<(), TryLockError> {
+    for _ in 1..TRIES {
+        match lock() {
+            Err(TryLockError::WouldBlock) => thread::sleep(WAIT),
+            done => return done,
+        }
+    }
+    lock()
 }
 
 impl FolderLock {
@@ -47,7 +67,7 @@ impl FolderLock {
                 dir.display()
             )))
         };
-        match file.try_lock() {
+        match patiently(|| file.try_lock()) {
             // the process that had it may have removed it meanwhile: then this is no lock any more
             Ok(()) if is_there(&file, &path) => lock.file = Some(file),
             Ok(()) => return taken(),

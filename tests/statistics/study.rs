@@ -163,9 +163,9 @@ fn errors_of_a_scene_are_told_apart() {
     }
     assert!(page.contains("(the scene's own)") && page.contains(", own |"), "{page}");
     let rows = |file: &str| fs::read_to_string(dir.path().join(file)).unwrap().lines().count() - 1;
-    // three quantities, three percentiles (two with too few rocks), five tolerances, three meshes
-    assert_eq!((rows("error.csv") % 5, rows("mesh.csv") % 3), (0, 0));
-    assert_eq!(rows("error.csv") / 5, rows("mesh.csv") / 3);
+    // three quantities, three percentiles (two with too few rocks), four tolerances, three meshes
+    assert_eq!((rows("error.csv") % 4, rows("mesh.csv") % 3), (0, 0));
+    assert_eq!(rows("error.csv") / 4, rows("mesh.csv") / 3);
     let drawn = fs::read_to_string(dir.path().join("error.svg")).unwrap();
     // every axis says that it is an error, every text has its own room
     assert!(drawn.contains("mesh") && drawn.matches(">Error of P95 ").count() == 3);

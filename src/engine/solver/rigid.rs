@@ -32,7 +32,7 @@ use crate::rock::Vec3;
 /// Touches no further away than this still hold the rock (–, relative to R).
 pub(crate) const HELD: f64 = 1e-4;
 /// Local error of an impact followed in its own time (–, relative to its speed).
-pub(crate) const IMPACT: f64 = 4e-5;
+pub(crate) const IMPACT: f64 = 2e-5;
 /// Share of the slowest approach to a facet from which on a turned rock comes to it (–): turning rounds the approach, and once
 /// the facet is struck there is none.
 const ONTO_FACET: f64 = 0.5;
