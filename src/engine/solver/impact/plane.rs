@@ -205,7 +205,7 @@ impl Plane {
         let turns = self.turns();
         let lightness = 1.0 + turns;
         let u = [start.v[0] - start.w[1], start.v[1] + start.w[0]];
-        let (y, slipping, ways) = if start.gravity == [0.0; 2] {
+        let (y, slipping, ways) = if start.gravity.iter().all(|g| *g == 0.0) {
             self.slips_along_a_line(u, start, t, effort)
         } else {
             let flow = Shear { element: self.shear, lightness, gravity: start.gravity };
