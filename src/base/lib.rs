@@ -8,6 +8,7 @@ pub mod error;
 pub mod math;
 pub mod file;
 pub mod stopwatch;
+pub mod parallel;
 pub mod random;
 pub mod rock;
 pub mod frequency;

@@ -27,6 +27,7 @@ pub mod stl;
 pub mod walls;
 pub mod weld;
 
+use crate::parallel;
 use crate::rock::Vec3;
 use faces::{Face, Mesh};
 use features::Features;
@@ -34,7 +35,6 @@ use floor::Floor;
 use index::Index;
 use parry3d_f64::query::PointQuery;
 use parry3d_f64::shape::Triangle;
-use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use std::path::PathBuf;
 use stems::Stems;
 use weld::Welded;
@@ -236,6 +236,6 @@ impl Terrain {
 
 /// A list in another order.
 #[expect(clippy::needless_pass_by_value, reason = "the old list goes at once: it is large")]
-fn in_order<T: Copy + Send + Sync>(order: &[u32], list: Vec<T>) -> Vec<T> {
-    order.par_iter().map(|&k| list[k as usize]).collect()
+fn in_order<T: Copy + Default + Send + Sync>(order: &[u32], list: Vec<T>) -> Vec<T> {
+    parallel::map(order.len(), |k| list[order[k] as usize])
 }

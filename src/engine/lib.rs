@@ -5,7 +5,9 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 // words and terrain
-pub use rockfall_base::{error, file, frequency, gis, math, random, rock, stopwatch, terrain};
+pub use rockfall_base::{
+    error, file, frequency, gis, math, parallel, random, rock, stopwatch, terrain,
+};
 
 // bodies and grounds
 pub mod body;

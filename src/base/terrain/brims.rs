@@ -21,7 +21,7 @@ const SLACK: f64 = 1e-5;
 const NEEDLE: f64 = 1e-2;
 
 /// The edges and corners that a triangle owns: bits 0–2 its edges, bits 3–5 its corners. Each is in one of three lists.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Brim {
     /// Touched only by balls whose centre is in front of the triangle's plane …
     pub front: u8,

@@ -3,7 +3,7 @@
 //! Side `3 t + k` is the side of triangle `t` from its corner `k` to its corner `(k + 1) % 3`. An edge has the number of the
 //! first of its sides, and every side knows the next one on its edge: four bytes a side tell all.
 
-use rayon::iter::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
+use crate::parallel;
 
 /// The two ends of a side, the lower number first.
 #[inline]
@@ -42,10 +42,10 @@ impl Edges {
             let first = on_edge.next().unwrap_or(side);
             on_edge.find(|&other| other > side).unwrap_or(first)
         };
-        let all = 0..triangles.len() as u32;
-        let next = all.into_par_iter().map(|t| [0, 1, 2].map(|k| next(3 * t + k)));
-        let mut edges = Self { next: next.collect(), count: 0 };
-        edges.count = edges.par_all().count();
+        let next = parallel::map(triangles.len(), |t| [0, 1, 2].map(|k| next(3 * t as u32 + k)));
+        let mut edges = Self { next, count: 0 };
+        let add = |sum, side| sum + usize::from(edges.is_edge(side as u32));
+        edges.count = parallel::fold(edges.sides(), &0, add, |one, other| one + other);
         edges
     }
 
@@ -68,8 +68,8 @@ impl Edges {
             let later = all().filter(|&other| other > now(side)).min();
             later.or_else(|| all().min()).unwrap_or(now(side))
         };
-        let next = order.par_iter().map(|&before| [0, 1, 2].map(|k| next(3 * before + k)));
-        Self { next: next.collect(), count: self.count }
+        let next = parallel::map(order.len(), |now| [0, 1, 2].map(|k| next(3 * order[now] + k)));
+        Self { next, count: self.count }
     }
 
     /// How many there are.
@@ -118,9 +118,9 @@ impl Edges {
         (0..3 * self.next.len() as u32).filter(|&side| self.is_edge(side))
     }
 
-    /// The same on all threads.
-    pub(super) fn par_all(&self) -> impl ParallelIterator<Item = u32> + '_ {
-        (0..3 * self.next.len() as u32).into_par_iter().filter(|&side| self.is_edge(side))
+    /// Sides of all triangles: three each.
+    pub(super) fn sides(&self) -> usize {
+        3 * self.next.len()
     }
 
     /// The triangles on an edge, ascending: one at a border, two inside a sheet, more where sheets meet.
@@ -156,8 +156,7 @@ impl Edges {
 
     /// The edges with one triangle only.
     pub fn borders(&self) -> Vec<u32> {
-        let all = (0..3 * self.next.len() as u32).into_par_iter();
-        all.filter(|&side| self.is_border(side)).collect()
+        parallel::filter(self.sides(), |side| self.is_border(side))
     }
 }
 
@@ -168,11 +167,13 @@ const LONG: usize = 32;
 /// vertex.
 fn sides_by_lower_vertex(triangles: &[[u32; 3]]) -> (Vec<u32>, Vec<(u32, u32)>) {
     let lower = |[a, b, c]: &[u32; 3]| [*a.min(b), *b.min(c), *c.min(a)];
-    let highest = |corners: &[u32; 3]| corners.iter().copied().max().unwrap_or(0);
-    let vertices = triangles.par_iter().map(highest).max().map_or(0, |number| number as usize + 1);
+    let above =
+        |found: u32, triangle: usize| triangles[triangle].iter().fold(found, |a, &b| a.max(b + 1));
+    let vertices = parallel::fold(triangles.len(), &0, above, u32::max) as usize;
     let (starts, sides) = grouped(triangles.iter().map(lower), triangles.len(), vertices);
-    let with_upper = |&side: &u32| (ends(triangles, side)[1], side);
-    (starts, sides.par_iter().map(with_upper).collect())
+    let with_upper = |side: u32| (ends(triangles, side)[1], side);
+    let sides = parallel::map(sides.len(), |place| with_upper(sides[place]));
+    (starts, sides)
 }
 
 /// Where the places of each vertex begin, and the places in a list of 3 `triangles` vertices by vertex, ascending.

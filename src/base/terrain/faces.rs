@@ -1,8 +1,8 @@
 //! Triangles by the numbers of their corners, and ready for the hot loops: kept so, or made anew at every look where memory counts more than time.
 
 use super::edges::ends;
+use crate::parallel;
 use crate::rock::Vec3;
-use rayon::iter::{IntoParallelIterator, ParallelIterator};
 
 /// Vertices and triangles of a mesh.
 #[derive(Debug, Clone, Copy)]
@@ -56,7 +56,7 @@ impl Mesh<'_> {
 const SLIVER: f64 = 1e-9;
 
 /// A triangle ready for the hot loops.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct Face {
     /// First corner (m).
     pub a: Vec3,
@@ -115,8 +115,8 @@ pub(super) struct Faces(Vec<Face>);
 
 impl Faces {
     pub(super) fn of(mesh: Mesh, ready: bool) -> Self {
-        let count = if ready { mesh.triangles.len() as u32 } else { 0 };
-        Self((0..count).into_par_iter().map(|t| Face::new(mesh.corners_m(t))).collect())
+        let count = if ready { mesh.triangles.len() } else { 0 };
+        Self(parallel::map(count, |t| Face::new(mesh.corners_m(t as u32))))
     }
 
     #[inline]

@@ -3,7 +3,6 @@
 //! Facets over common points take a third of the memory, and a common point is placed and welded once instead of six times.
 
 use crate::rock::Vec3;
-use rayon::iter::{IntoParallelIterator, ParallelIterator};
 
 /// A facet: its three corners, anticlockwise seen from outside (from above, on a slope).
 pub type Facet = [Vec3; 3];
@@ -88,11 +87,6 @@ impl Facets {
     /// All of them.
     pub fn iter(&self) -> impl Iterator<Item = Facet> + '_ {
         (0..self.len()).map(|number| self.at(number))
-    }
-
-    /// All of them, on all threads; in no order.
-    pub(super) fn par_iter(&self) -> impl ParallelIterator<Item = Facet> + '_ {
-        (0..self.len()).into_par_iter().map(|number| self.at(number))
     }
 
     /// Adds one, with corners of its own.

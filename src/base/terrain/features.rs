@@ -8,11 +8,8 @@
 use super::brims::{Brim, Cone, LEANS};
 use super::edges::{Edges, grouped};
 use super::faces::{Face, Faces, Mesh};
+use crate::parallel;
 use crate::rock::Vec3;
-use rayon::iter::{
-    IndexedParallelIterator, IntoParallelIterator, IntoParallelRefIterator,
-    IntoParallelRefMutIterator, ParallelIterator,
-};
 
 /// Sine of the angle between faces below which an edge is flat (–): rounding of `f64` coordinates, no more.
 const FLAT: f64 = 1e-12;
@@ -70,7 +67,7 @@ impl Features {
         let corners = mesh.triangles.iter().copied();
         let (starts, mut triangles_at) =
             grouped(corners, mesh.triangles.len(), mesh.vertices_m.len());
-        triangles_at.par_iter_mut().for_each(|corner| *corner /= 3);
+        parallel::update(&mut triangles_at, |_, corner| *corner /= 3);
         let mut features = Self { faces, edges, starts, triangles_at, ..Self::default() };
         features.weigh(mesh);
         features.own(mesh);
@@ -98,14 +95,14 @@ impl Features {
 
     /// Weighs the vertices: with `T` triangles and `E` edges at one, the edges weigh `E − 2 T` together.
     fn weigh(&mut self, mesh: Mesh) {
-        let weight = |vertex: u32| {
+        let weight = |vertex: usize| {
+            let vertex = vertex as u32;
             let triangles = self.triangles_at(vertex).len();
             let more =
                 (1 + triangles).cast_signed() - self.count_neighbours(vertex, mesh).cast_signed();
             more.clamp(i8::MIN.into(), i8::MAX.into()) as i8
         };
-        self.vertex_weight =
-            (0..mesh.vertices_m.len() as u32).into_par_iter().map(weight).collect();
+        self.vertex_weight = parallel::map(mesh.vertices_m.len(), weight);
     }
 
     /// How many edges are at a vertex, also of a fan of thousands.
@@ -167,7 +164,7 @@ impl Features {
             (0..3).filter(is_sharp).fold(0, |bits, k| bits | 1 << k)
         };
         let mut owned: Vec<u8> =
-            (0..mesh.triangles.len() as u32).into_par_iter().map(sharp_sides).collect();
+            parallel::map(mesh.triangles.len(), |triangle| sharp_sides(triangle as u32));
         let mut corner = vec![false; mesh.vertices_m.len()];
         for (bits, corners) in owned.iter().zip(mesh.triangles) {
             for k in (0..3).filter(|k| bits & (1 << k) != 0) {
@@ -177,7 +174,7 @@ impl Features {
         }
         let sharp = corner.iter().filter(|sharp| **sharp).count();
         let mut pressed = corner.clone();
-        corner.par_iter_mut().enumerate().for_each(|(vertex, kept)| {
+        parallel::update(&mut corner, |vertex, kept| {
             *kept &= *kept && self.is_within_reach(vertex as u32, mesh);
         });
         let edges = owned.iter().map(|bits| bits.count_ones() as usize).sum::<usize>();
@@ -192,8 +189,7 @@ impl Features {
             saddles: sharp - corners,
         };
         give_corners(&mut owned, &mut corner, mesh.triangles);
-        let rows = owned.par_iter().enumerate();
-        self.brims = rows.map(|(t, &owned)| self.brim(t as u32, owned, mesh)).collect();
+        self.brims = parallel::map(owned.len(), |t| self.brim(t as u32, owned[t], mesh));
         for (brim, corners) in self.brims.iter_mut().zip(mesh.triangles) {
             for (k, &vertex) in corners.iter().enumerate() {
                 if std::mem::take(&mut pressed[vertex as usize]) {

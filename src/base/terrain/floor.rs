@@ -2,8 +2,8 @@
 
 use super::faces::Face;
 use super::index::below;
+use crate::parallel;
 use crate::rock::Vec3;
-use rayon::iter::{IntoParallelIterator, ParallelIterator};
 
 /// Shares of the triangles that are looked at beside each other, each with cells of its own, and the fewest triangles in one.
 const SHARES: usize = 16;
@@ -49,15 +49,14 @@ impl Floor {
             low_m: vec![f32::INFINITY; columns * rows],
         };
         let share = triangles.div_ceil(SHARES).max(LEAST_SHARE);
-        let shares = (0..triangles.div_ceil(share)).into_par_iter().map(|number| {
-            let mut floor = empty.clone();
+        let mut floors = vec![empty.clone(); triangles.div_ceil(share)];
+        parallel::update_shares(&mut floors, 1, |number, floor| {
             let of_share = number * share..triangles.min((number + 1) * share);
             for face in of_share.filter_map(|t| ground(t as u32)) {
-                floor.lower_to(&face, WIDER * longest);
+                floor[0].lower_to(&face, WIDER * longest);
             }
-            floor
         });
-        shares.reduce(|| empty.clone(), Self::lower)
+        floors.into_iter().fold(empty, Self::lower)
     }
 
     /// The lower one of two, cell by cell.

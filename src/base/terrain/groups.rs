@@ -1,7 +1,6 @@
 //! Which of many things hang together.
 
-use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
-use rayon::slice::ParallelSliceMut;
+use crate::parallel;
 
 /// Things that one thread joins among themselves: of a lattice of triangles, forty rows of a large tile.
 const SHARE: u32 = 1 << 18;
@@ -25,8 +24,8 @@ impl Groups {
     ) -> Self {
         let mut groups = Self::of(count);
         let share_of = |thing: u32| thing / SHARE;
-        groups.parent.par_chunks_mut(SHARE as usize).enumerate().for_each(|(share, parents)| {
-            let share = share as u32;
+        parallel::update_shares(&mut groups.parent, SHARE as usize, |first, parents| {
+            let share = share_of(first as u32);
             let mut own = Self::of(parents.len());
             for thing in 0..parents.len() as u32 {
                 let inside =
@@ -38,9 +37,8 @@ impl Groups {
             }
         });
         let leaves_its_share =
-            |&thing: &u32| beside(thing).any(|other| share_of(other) != share_of(thing));
-        let seams: Vec<u32> = (0..count as u32).into_par_iter().filter(leaves_its_share).collect();
-        for thing in seams {
+            |thing: u32| beside(thing).any(|other| share_of(other) != share_of(thing));
+        for thing in parallel::filter(count, leaves_its_share) {
             beside(thing).for_each(|other| groups.join(thing, other));
         }
         groups

@@ -6,12 +6,12 @@
 //! for bit.
 
 use crate::error::{Error, Result};
+use crate::parallel;
 use crate::rock::Vec3;
 use crate::terrain::edges::{self, Edges};
 use crate::terrain::faces::Mesh;
 use crate::terrain::merge::Merger;
 use crate::terrain::stl::Soup;
-use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use split::Splits;
 use std::path::Path;
 
@@ -228,7 +228,12 @@ impl CommonBox {
                 let [a, b, c] = facet.map(|corner| piece.placed(corner));
                 (a.inf(&b).inf(&c), a.sup(&b).sup(&c))
             };
-            let of_piece = piece.soup.facets.par_iter().map(box_of).reduce(|| nothing, both);
+            let of_piece = parallel::fold(
+                piece.soup.facets.len(),
+                &nothing,
+                |all, number| both(all, box_of(piece.soup.facets.at(number))),
+                both,
+            );
             if of_piece.0.min() < -LARGEST_M || of_piece.1.max() > LARGEST_M {
                 return Err(piece.too_far());
             }
@@ -289,9 +294,7 @@ impl Welded {
             let (mut all, moved) = numbers::of(facets, reach, &local, &mut merger);
             self.moved_corners += moved;
             let merged = |number: usize| all[number].map(|v| merger.kept_m()[v as usize]);
-            let flat = (0..all.len() as u32).into_par_iter();
-            let flat: Vec<u32> =
-                flat.filter(|&number| !has_area(&merged(number as usize))).collect();
+            let flat = parallel::filter(all.len(), |number| !has_area(&merged(number as usize)));
             for &number in &flat {
                 self.zero_area.add(merged(number as usize)[0] + self.origin_m);
             }
@@ -311,11 +314,11 @@ impl Welded {
             let (corners, k) = (self.triangles[side as usize / 3], side as usize % 3);
             corners[(k + 2) % 3]
         };
-        let is_again = |&t: &u32| {
+        let is_again = |t: u32| {
             let same = |side: u32| side / 3 < t && third(side) == third(3 * t);
             self.edges.sides_on(3 * t).any(same)
         };
-        (0..self.triangles.len() as u32).into_par_iter().filter(is_again).collect()
+        parallel::filter(self.triangles.len(), is_again)
     }
 
     fn drop_triangles(&mut self, again: &[u32]) {

@@ -1,7 +1,6 @@
 //! Ground and trees of a terrain apart.
 
 use crate::terrain::Terrain;
-use rayon::slice::ParallelSliceMut;
 
 /// Triangles with their own corners, map coordinates (m).
 #[derive(Debug, Clone, Default)]
@@ -28,7 +27,7 @@ impl<'a> TerrainPart<'a> {
         let own = |t: &u32| terrain.is_tree(*t) == trees;
         let mut order: Vec<u32> = (0..terrain.triangles.len() as u32).filter(own).collect();
         let key = |t: u32| (terrain.sheet_of[t as usize], terrain.facet_of[t as usize], t);
-        order.par_sort_unstable_by_key(|&t| key(t));
+        order.sort_unstable_by_key(|&t| key(t));
         let vertices = if order.is_empty() { 0 } else { terrain.vertices_m.len() };
         let (mut number, mut used) = (vec![u32::MAX; vertices], Vec::new());
         for vertex in order.iter().flat_map(|&t| terrain.triangles[t as usize]) {

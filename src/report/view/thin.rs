@@ -1,10 +1,9 @@
 //! Terrain too fine for a page, drawn coarser.
 
 use super::part::{TerrainPart, TriangleSoup};
+use crate::parallel;
 use crate::report::format;
 use crate::rock::Vec3;
-use rayon::iter::{IntoParallelIterator, ParallelIterator};
-use rayon::slice::ParallelSliceMut;
 use std::collections::BTreeSet;
 
 /// How much longer the cells become when there are still too many triangles (–).
@@ -63,9 +62,11 @@ impl ThinningCells {
             let [x, y, z] = [each(0), each(1), each(2)];
             ([x.0, y.0, z.0], [x.1, y.1, z.1])
         };
-        let cell_of = |v: u32| cell(part.place_m(v), cell_m);
-        let all = (0..part.vertices() as u32).into_par_iter().map(cell_of).map(|at| (at, at));
-        let (first, last) = all.reduce(|| nothing, both);
+        let add = |all, v: usize| {
+            let at = cell(part.place_m(v as u32), cell_m);
+            both(all, (at, at))
+        };
+        let (first, last) = parallel::fold(part.vertices(), &nothing, add, both);
         let size = |k: usize| u128::from(last[k].abs_diff(first[k])) + 1;
         Self { cell_m, first, sizes: [size(0), size(1), size(2)] }
     }
@@ -75,15 +76,18 @@ impl ThinningCells {
     }
 
     /// The number of each vertex's cell, over its own 32 bits; ascending.
-    fn sorted<K: Ord + Send>(&self, part: &TerrainPart, word: impl Fn(u128) -> K + Sync) -> Vec<K> {
+    fn sorted<K: Clone + Default + Ord + Send>(
+        &self,
+        part: &TerrainPart,
+        word: impl Fn(u128) -> K + Sync,
+    ) -> Vec<K> {
         let number = |v: u32| {
             let at = cell(part.place_m(v), self.cell_m);
             let [x, y, z] = [0, 1, 2].map(|k| u128::from(at[k].abs_diff(self.first[k])));
             ((x * self.sizes[1] + y) * self.sizes[2] + z) << VERTEX_BITS | u128::from(v)
         };
-        let all = (0..part.vertices() as u32).into_par_iter();
-        let mut words: Vec<K> = all.map(|v| word(number(v))).collect();
-        words.par_sort_unstable();
+        let mut words: Vec<K> = parallel::map(part.vertices(), |v| word(number(v as u32)));
+        words.sort_unstable();
         words
     }
 }

@@ -1,8 +1,8 @@
 //! Triangles over a lattice of points, two for every cell.
 
+use crate::parallel;
 use crate::rock::Vec3;
 use crate::terrain::facets::{Facet, Facets};
-use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
 
 /// Numbers of the corners of a cell: south-west, south-east, north-east, north-west.
 pub(super) type Around = [u32; 4];
@@ -24,7 +24,7 @@ impl Lattice {
     ) -> Self {
         let none = Vec3::repeat(f64::NAN);
         let place = |at: usize| point(at % columns, at / columns).unwrap_or(none);
-        let points = (0..columns * rows).into_par_iter().map(place).collect();
+        let points = parallel::map(columns * rows, place);
         Self { columns, rows, points }
     }
 
@@ -44,17 +44,17 @@ impl Lattice {
             let of_cell = move |column: usize| own.halves(column, row, wanted);
             (0..own.columns.saturating_sub(1)).flat_map(of_cell)
         };
-        let rows = (0..own.rows.saturating_sub(1)).into_par_iter();
         // Counted first: every row then knows its place.
-        let counts: Vec<usize> = rows.map(|row| halves(row).count()).collect();
+        let mut counts = vec![0; own.rows.saturating_sub(1)];
+        parallel::update_shares(&mut counts, 1, |row, count| count[0] = halves(row).count());
         let mut corners = vec![[0; 3]; counts.iter().sum()];
         let mut free = &mut corners[..];
-        let places: Vec<&mut [[u32; 3]]> = counts
+        let mut places: Vec<&mut [[u32; 3]]> = counts
             .into_iter()
             .map(|count| free.split_off_mut(..count).unwrap_or_default())
             .collect();
-        places.into_par_iter().enumerate().for_each(|(row, places)| {
-            places.iter_mut().zip(halves(row)).for_each(|(place, half)| *place = half);
+        parallel::update_shares(&mut places, 1, |row, places| {
+            places[0].iter_mut().zip(halves(row)).for_each(|(place, half)| *place = half);
         });
         Facets::Shared { points: self.points, corners, apart_m }
     }

@@ -1,13 +1,11 @@
 //! The measurements behind [`Health`](super::Health).
 
 use super::FileHealth;
+use crate::parallel;
 use crate::rock::Vec3;
 use crate::terrain::groups::Groups;
 use crate::terrain::stl::{Spacing, area_vector};
 use crate::terrain::weld::{Piece, Tally, Welded};
-use rayon::iter::{
-    IndexedParallelIterator, IntoParallelIterator, IntoParallelRefMutIterator, ParallelIterator,
-};
 
 /// Longest edge over height (–) above which a triangle counts as a needle: a quarter of a millimetre on 2.5 m. Such a
 /// triangle is kept; its normal is known to about 1e-12.
@@ -22,10 +20,11 @@ const QUANTILES: [f64; 5] = [0.0, 0.05, 0.5, 0.95, 1.0];
 /// One file; `map_origin_m` is the map position of its (0, 0, 0).
 pub(super) fn file(piece: &Piece, map_origin_m: Vec3) -> FileHealth {
     let soup = piece.soup;
-    let down = soup
-        .facets
-        .par_iter()
-        .filter(|facet| area_vector(&facet.map(|corner| piece.placed(corner))).z < 0.0);
+    let is_down = |facet: usize| {
+        area_vector(&soup.facets.at(facet).map(|corner| piece.placed(corner))).z < 0.0
+    };
+    let add = |sum, facet| sum + usize::from(is_down(facet));
+    let down = parallel::fold(soup.facets.len(), &0, add, |one, other| one + other);
     let mut normals_off = Tally::default();
     for &facet in &soup.normals_off {
         normals_off.add(piece.placed(soup.facets.at(facet as usize)[0]) + map_origin_m);
@@ -35,7 +34,7 @@ pub(super) fn file(piece: &Piece, map_origin_m: Vec3) -> FileHealth {
         format: soup.format,
         solids: soup.solids.len(),
         facets: soup.facets.len(),
-        facing_down: down.count() as f64 / soup.facets.len().max(1) as f64,
+        facing_down: down as f64 / soup.facets.len().max(1) as f64,
         normals_off,
         spacing: soup.is_single.then(|| Spacing::of(&soup.facets)),
         epsg: soup.epsg,
@@ -75,8 +74,11 @@ enum Odd {
 
 /// The odd edges, located at their middle, by the numbers of their ends.
 pub(super) fn odd_edges(welded: &Welded) -> OddEdges {
-    let with_ends = |edge: u32| odd(welded, edge).map(|odd| (welded.ends(edge), odd));
-    let mut found: Vec<([u32; 2], Odd)> = welded.edges.par_all().filter_map(with_ends).collect();
+    let with_ends = |side: usize| {
+        let edge = Some(side as u32).filter(|&side| welded.edges.is_edge(side))?;
+        odd(welded, edge).map(|odd| (welded.ends(edge), odd))
+    };
+    let mut found = parallel::filter_map(welded.edges.sides(), with_ends);
     found.sort_unstable();
     let mut tallies = OddEdges::default();
     for (ends, odd) in found {
@@ -104,17 +106,16 @@ fn odd(welded: &Welded, edge: u32) -> Option<Odd> {
 
 /// Triangles more than [`NEEDLE`] times as long as high.
 pub(super) fn needles(welded: &Welded) -> Tally {
-    let is_needle = |&triangle: &usize| {
-        let corners @ [a, b, c] = welded.corners_m(triangle);
+    let is_needle = |triangle: u32| {
+        let corners @ [a, b, c] = welded.corners_m(triangle as usize);
         let longest2 =
             (b - a).norm_squared().max((c - b).norm_squared()).max((a - c).norm_squared());
         // longest / height = longest² / (2 area)
         longest2 > NEEDLE * area_vector(&corners).norm()
     };
-    let needles = (0..welded.triangles.len()).into_par_iter().filter(is_needle);
     let mut tally = Tally::default();
-    for triangle in needles.collect::<Vec<_>>() {
-        tally.add(welded.on_map(welded.corners_m(triangle)[0]));
+    for triangle in parallel::filter(welded.triangles.len(), is_needle) {
+        tally.add(welded.on_map(welded.corners_m(triangle as usize)[0]));
     }
     tally
 }
@@ -155,7 +156,7 @@ pub(super) fn area_m2(welded: &Welded) -> f64 {
     // added up one after the other: the same sum on any number of threads
     for first in (0..welded.triangles.len()).step_by(AT_ONCE) {
         let some = &mut areas[..AT_ONCE.min(welded.triangles.len() - first)];
-        some.par_iter_mut().enumerate().for_each(|(k, area)| {
+        parallel::update(some, |k, area| {
             *area = 0.5 * area_vector(&welded.corners_m(first + k)).norm();
         });
         sum = some.iter().fold(sum, |sum, area| sum + area);
@@ -165,8 +166,11 @@ pub(super) fn area_m2(welded: &Welded) -> f64 {
 
 /// Edge lengths (m) at [`QUANTILES`], by the nearest rank.
 pub(super) fn edge_quantiles_m(welded: &Welded) -> [f64; 5] {
-    let length = |edge: u32| welded.edge_m(edge).norm();
-    let mut lengths: Vec<f64> = welded.edges.par_all().map(length).collect();
+    let length = |side: usize| {
+        let edge = Some(side as u32).filter(|&side| welded.edges.is_edge(side));
+        edge.map(|edge| welded.edge_m(edge).norm())
+    };
+    let mut lengths = parallel::filter_map(welded.edges.sides(), length);
     let last = lengths.len().saturating_sub(1) as f64;
     if lengths.is_empty() {
         return [0.0; QUANTILES.len()];

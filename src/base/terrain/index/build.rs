@@ -2,11 +2,12 @@
 
 use super::runs::{PlacedTriangle, Run};
 use super::{BvhNode, COUNT_SHIFT, Child, DEPTH, Index, LEAF, LEAF_BIT, MOST_IN_LEAF, WIDE};
+use crate::parallel;
 use crate::rock::Vec3;
 use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::math::Vector;
 use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, TraversalAction};
-use rayon::iter::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
 
 /// How an index is built: triangles in a leaf, and in one tree of parry's, which takes about 300 bytes for each until it is
 /// packed.
@@ -78,8 +79,7 @@ impl Index {
         if count == 0 {
             return (Self::default(), Vec::new());
         }
-        let mut placed: Vec<PlacedTriangle> =
-            (0..count as u32).into_par_iter().map(|t| PlacedTriangle::of(t, &corners)).collect();
+        let mut placed = parallel::map(count, |t| PlacedTriangle::of(t as u32, &corners));
         let mut index = Self::default();
         let whole = Run { start: 0, triangles: &mut placed, above: None };
         let (mut parts, levels) = index.share_out(whole, at_once);
@@ -99,7 +99,7 @@ impl Index {
         (index.lo, index.hi) = (whole.lo, whole.hi);
         index.close_boxes();
         index.nodes.shrink_to_fit();
-        (index, placed.par_iter().map(|placed| placed.triangle).collect())
+        (index, parallel::map(placed.len(), |place| placed[place].triangle))
     }
 
     /// Cuts what is too large for one tree of parry's into four, and those again; gives the parts and the levels above them.

@@ -1,11 +1,10 @@
 //! Triangles by where they lie, halved until a part fits one tree.
 
+use crate::parallel;
 use crate::rock::Vec3;
-use rayon::iter::ParallelIterator;
-use rayon::slice::ParallelSlice;
 
 /// A triangle by its number in the input, and where it lies.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(super) struct PlacedTriangle {
     /// Three times its centre (m): only the order counts, and what is equal here is told apart by the number.
     centre: [f32; 3],
@@ -21,9 +20,6 @@ impl PlacedTriangle {
 
 /// Least and largest coordinates (m).
 type Spans = ([f32; 3], [f32; 3]);
-
-/// Triangles that one thread looks at without a pause.
-const LOOKED_AT: usize = 1 << 14;
 
 /// Triangles that stand side by side in the index.
 pub(super) struct Run<'a> {
@@ -52,7 +48,7 @@ impl Run<'_> {
 
     /// The axis along which the centres lie widest apart.
     fn widest(&self) -> usize {
-        let nothing = || ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
+        let nothing = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
         let both = |(mut lo, mut hi): Spans, (other_lo, other_hi): Spans| {
             for k in 0..3 {
                 lo[k] = lo[k].min(other_lo[k]);
@@ -60,10 +56,11 @@ impl Run<'_> {
             }
             (lo, hi)
         };
-        let of_some = |some: &[PlacedTriangle]| {
-            some.iter().fold(nothing(), |all, one| both(all, (one.centre, one.centre)))
+        let add = |all, at: usize| {
+            let centre = self.triangles[at].centre;
+            both(all, (centre, centre))
         };
-        let (lo, hi) = self.triangles.par_chunks(LOOKED_AT).map(of_some).reduce(nothing, both);
+        let (lo, hi) = parallel::fold(self.triangles.len(), &nothing, add, both);
         Vec3::from([0, 1, 2].map(|k| f64::from(hi[k]) - f64::from(lo[k]))).imax()
     }
 }

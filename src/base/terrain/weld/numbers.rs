@@ -1,9 +1,9 @@
 //! The numbers that a file's points have in the mesh.
 
+use crate::parallel;
 use crate::rock::Vec3;
 use crate::terrain::facets::Facets;
 use crate::terrain::merge::Merger;
-use rayon::iter::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
 
 /// The numbers of the corners of all facets, which lie where `local` puts them, and how many corners moved; `reach` is the
 /// tolerance in the file's unit.
@@ -14,8 +14,8 @@ pub(super) fn of(
     merger: &mut Merger,
 ) -> (Vec<[u32; 3]>, usize) {
     if let (true, Some(apart)) = (merger.kept_m().is_empty(), Apart::of(facets, reach)) {
-        let at = |&point: &u32| local(apart.points_of_file[point as usize]);
-        merger.keep_apart(apart.used.par_iter().map(at).collect());
+        let at = |k: usize| local(apart.points_of_file[apart.used[k] as usize]);
+        merger.keep_apart(parallel::map(apart.used.len(), at));
         return (apart.corners, 0);
     }
     merger.open();
@@ -25,11 +25,11 @@ pub(super) fn of(
         (0..facets.len())
             .map(|number| numbers.of_corners(number, |k| local(facets.at(number)[k]), merger)),
     );
-    let moved = (0..facets.len()).into_par_iter().map(|number| {
+    let moved = |sum, number: usize| {
         let (merged, corners) = (all[number], facets.at(number).map(local));
-        (0..3).filter(|&k| merger.kept_m()[merged[k] as usize] != corners[k]).count()
-    });
-    let moved = moved.sum();
+        sum + (0..3).filter(|&k| merger.kept_m()[merged[k] as usize] != corners[k]).count()
+    };
+    let moved = parallel::fold(all.len(), &0, moved, |one, other| one + other);
     (all, moved)
 }
 
