@@ -42,10 +42,16 @@ pub(super) fn rest(way: &SchemeSetting, notes: &mut Notes) {
     let placed = 2.0 * f64::EPSILON * SETUP.rock.radius_m / way.fineness;
     let still = if way.scheme.has_fixed_step() { placed } else { DIGITS };
     notes.hold(way, "on a slope of 20°", "speed at the end (m/s)", end.velocity_m_s.norm(), still);
+    top(way, notes, ground);
+}
+
+/// A top on the spot, pressed in by its weight.
+fn top(way: &SchemeSetting, notes: &mut Notes, ground: Ground) {
     let level = terrain(make::jittered_plane(10.0, 6, 0.0));
+    let pressed = if sprung(way) { SETUP.pressed_m(0.0) } else { 0.0 };
     let top = Setup {
         ground,
-        centre_m: Vec3::new(0.1, 0.2, 0.5 - pressed),
+        centre_m: Vec3::new(0.1, 0.2, SETUP.rock.radius_m - pressed),
         spin_rad_s: Vec3::new(0.0, 0.0, 20.0),
         longest_s: 4.0,
         ..SETUP

@@ -99,7 +99,9 @@ pub(super) fn stack(way: &SchemeSetting, notes: &mut Notes) {
         let fastest = [a, b].map(|fall| fall.end.velocity_m_s.norm());
         // places are rounded, and over a step that is a speed; what the rigid limit leaves of an overlap comes within the second
         let placed = 4.0 * f64::EPSILON * z[1] / way.fineness;
-        let bound = way.scheme.of([placed, 1e-4, 1e-4, RIGID_OVERLAP * RADIUS_M]);
+        // sweeps over masses up to 1e9 apart leave a hundred-thousandth of the weight: so much of `g` for a second
+        let swept = 1e-5 * GRAVITY_M_S2;
+        let bound = way.scheme.of([placed, swept, swept, RIGID_OVERLAP * RADIUS_M]);
         notes.hold(way, &setting, "speed at the end (m/s)", fastest[0].max(fastest[1]), bound);
     }
 }
