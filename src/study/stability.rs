@@ -1,6 +1,7 @@
 //! Stiff and extreme cases, each held against its analytic expectation or a bound, for every scheme.
 
 mod blocks;
+mod bounds;
 mod fineness;
 mod folds;
 mod geometry;
@@ -14,6 +15,7 @@ use super::bench::{Setup, settings};
 use crate::simulation::{Scratch, Stop, Trajectory};
 use crate::solver::{Scheme, Settings};
 use crate::terrain::Terrain;
+use bounds::DIGITS;
 use rayon::prelude::*;
 
 pub use map::{Map, StabilityCell, Verdict};
@@ -108,9 +110,6 @@ pub(super) struct Notes {
     outcomes: Vec<CaseOutcome>,
 }
 
-/// Mechanical energy may rise over a contact by this share of what there is (–): rounding of some thousand steps.
-const RISE: f64 = 1e-9;
-
 impl Notes {
     /// Notes one number.
     fn hold(
@@ -166,7 +165,7 @@ impl Notes {
             f64::from(u8::from(failed) + u8::from(differs)),
             0.0,
         );
-        self.hold(way, setting, "energy rise over energy", journey.ledger.rise_j / energy, RISE);
+        self.hold(way, setting, "energy rise over energy", journey.ledger.rise_j / energy, DIGITS);
         journey
     }
 }

@@ -1,17 +1,19 @@
 //! Blocks at their ends: flat, slender, small and large beside the triangles, fast, elastic, rough.
 
+use super::bounds::{DIGITS, omega};
 use super::impacts::floor;
-use super::{Notes, RISE, SchemeSetting, sprung};
+use super::{Notes, SchemeSetting, sprung};
 use crate::ground::Ground;
 use crate::math;
 use crate::rock::Vec3;
 use crate::simulation::{Stop, Trajectory};
+use crate::solver::CORNER_WAY;
 use crate::study::bench::{
     BlockForm, GRAVITY_M_S2, GROUND, MadeBlock, SETUP, Setup, terrain, with_springs,
 };
 use crate::study::cases::meshes::{bumpy, fold};
 use crate::terrain::Terrain;
-use nalgebra::Rotation3;
+use nalgebra::{Quaternion, Rotation3, UnitQuaternion};
 
 /// Radius of the balls over the shortest side (–).
 const BALL: f64 = 0.05;
@@ -35,13 +37,18 @@ const PRESSED: f64 = 0.03;
 /// … and a fixed step is so much of their `1/√(p_N/m)` (rad), of which there are about so many.
 const PHASE: f64 = 0.3;
 const STEPS: f64 = 4000.0;
+/// Points of a path, at most: three to an impact, or as many as there are of these.
+const POINTS: f64 = 2e5;
 
 /// A case in which nothing strikes faster than `speed_m_s`, as a scheme can follow it: the rigid limit has no springs.
 fn followed(way: &SchemeSetting, setup: &Setup, speed_m_s: f64) -> (SchemeSetting, Setup) {
     let ball_m = setup.block.map_or(setup.rock.radius_m, |block| block.ball_m);
     let omega = speed_m_s / (PRESSED * ball_m);
     let normal_stiffness_n_m = setup.rock.mass_kg() * omega * omega;
-    let stiff = Setup { ground: with_springs(setup.ground, normal_stiffness_n_m), ..*setup };
+    // an impact must not fall between the points of a path, where one is asked for
+    let path_step_s = setup.path_step_s.map(|_| (1.0 / omega).max(setup.longest_s / POINTS));
+    let ground = with_springs(setup.ground, normal_stiffness_n_m);
+    let stiff = Setup { ground, path_step_s, ..*setup };
     if !way.scheme.has_fixed_step() {
         return (*way, stiff);
     }
@@ -52,10 +59,32 @@ fn followed(way: &SchemeSetting, setup: &Setup, speed_m_s: f64) -> (SchemeSettin
     (SchemeSetting { fineness, ..*way }, Setup { longest_s, ..stiff })
 }
 
-/// Lowest height of the centre over z = 0 on a kept path (m).
-fn lowest(journey: &Trajectory, on: &Terrain) -> f64 {
-    let heights = journey.path.iter().map(|point| point.motion.position_m.z + on.origin_m.z);
-    heights.fold(f64::INFINITY, f64::min)
+/// How deep under z = 0 the lowest of its balls was on a kept path (m); no number without a block.
+fn sunk_m(setup: &Setup, journey: &Trajectory, on: &Terrain) -> f64 {
+    let Some(made) = setup.block else { return f64::NAN };
+    let block = made.drawn(&setup.rock).block;
+    let depths = journey.path.iter().map(|point| {
+        let [w, x, y, z] = point.attitude.unwrap_or([f64::NAN; 4]);
+        let turn = UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z));
+        let down = turn.inverse() * -Vec3::z();
+        block.support_m(&down) - (point.motion.position_m.z + on.origin_m.z)
+    });
+    depths.fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// How deep a ball may be (m) where nothing strikes faster than `speed_m_s`.
+///
+/// A corner presses its spring in by no more than `v/ω` and twice the weight: less than the block's mass moves with it. The path
+/// within a step is drawn, with the attitude of the step's end: as far off as corners go in a step, `PHASE` of `v/ω` with a
+/// fixed one. The rigid limit brings corners to the surface in the middle of a step, from which they go on for half of that.
+fn may_sink_m(way: &SchemeSetting, setup: &Setup, speed_m_s: f64) -> f64 {
+    let step_m = CORNER_WAY * setup.block.map_or(f64::NAN, |block| block.ball_m);
+    let swing_m = speed_m_s / omega(setup);
+    if !sprung(way) {
+        return 0.5 * step_m;
+    }
+    let drawn_m = if way.scheme.has_fixed_step() { PHASE * swing_m } else { step_m };
+    swing_m + 2.0 * setup.pressed_m(0.0) + drawn_m
 }
 
 /// From a cube to a sheet and to a needle: none sinks in, all come to rest as flat as they are.
@@ -78,21 +107,27 @@ pub(super) fn flat(way: &SchemeSetting, notes: &mut Notes) {
             ..boxed(sides_m, 0.2)
         };
         let setting = format!("{sides_m:?} m");
-        let (way, setup) = &followed(way, &setup, 8.0);
+        let fastest = 8.0;
+        let (way, setup) = &followed(way, &setup, fastest);
         let journey = notes.follow(way, &setting, setup, &floor);
-        let sunk = 0.5 * shortest - lowest(&journey, &floor);
-        // a tenth of the balls: steps are as long as these move three tenths of a ball
-        let deep = 0.1 * BALL;
-        notes.hold(way, &setting, "sinks in, over the shortest side", sunk / shortest, deep);
+        let (sunk, deep) = (sunk_m(setup, &journey, &floor), may_sink_m(way, setup, fastest));
+        notes.hold(way, &setting, "sinks in (m)", sunk, deep);
         // a fixed step cannot leap over rest
         if way.scheme.has_fixed_step() {
             continue;
         }
         let stirs = f64::from(u8::from(journey.stop != Stop::AtRest));
         notes.hold(way, &setting, "does not come to rest (0 = no)", stirs, 0.0);
-        let lies = (journey.end.position_m.z - 0.5 * shortest).abs() / shortest;
-        let law = "height of the centre at rest off that of a face, over the shortest side";
-        notes.hold(way, &setting, law, lies, deep);
+        let lies = (journey.end.position_m.z - 0.5 * shortest).abs();
+        // all of the weight on one of its corners
+        let pressed = if sprung(way) { setup.pressed_m(0.0) } else { deep };
+        notes.hold(
+            way,
+            &setting,
+            "height of the centre at rest off that of a face (m)",
+            lies,
+            pressed,
+        );
     }
 }
 
@@ -117,17 +152,19 @@ pub(super) fn sizes(way: &SchemeSetting, notes: &mut Notes) {
             path_step_s: Some(0.02 * size_m / speed),
             ..boxed([size_m, 0.8 * size_m, 0.5 * size_m], 0.1 * size_m)
         };
-        let (way, setup) = &followed(way, &setup, 3.0 * speed);
+        let fastest = 3.0 * speed;
+        let (way, setup) = &followed(way, &setup, fastest);
         let journey = notes.follow(way, setting, setup, on);
-        let deep = (0.25 * size_m - lowest(&journey, on)) / size_m;
-        notes.hold(way, setting, "sinks in, over the longest side", deep, 2e-3);
+        let (sunk, deep) = (sunk_m(setup, &journey, on), may_sink_m(way, setup, fastest));
+        notes.hold(way, setting, "sinks in (m)", sunk, deep);
         let struck = f64::from(u8::from(journey.impact_count == 0));
         notes.hold(way, setting, "strikes nothing (0 = no)", struck, 0.0);
     }
 }
 
 /// e = 1 without friction keeps all energy, from a level to a narrow valley, of every shape. Left out with `reference`, whose errors go up as
-/// well as down: 8e-9 of the energy up in these two seconds, where [`RISE`] is 1e-9.
+/// well as down: 8e-9 of the energy up in these two seconds, where all else
+/// keeps [`DIGITS`].
 pub(super) fn elastic(way: &SchemeSetting, notes: &mut Notes) {
     if way.scheme.of([false, false, true, false]) {
         return;
@@ -159,8 +196,8 @@ pub(super) fn elastic(way: &SchemeSetting, notes: &mut Notes) {
             let spent = ledger.friction_j + ledger.damping_j + ledger.remainder_j.abs();
             let scale = journey.extremes.total_j;
             let law = "energy lost or gained where nothing takes any, over all";
-            let bound = if sprung(way) { 0.02 } else { 10.0 * RISE };
-            notes.hold(way, &setting, law, spent / scale, bound);
+            // an impact that takes nothing is given the energy that it had
+            notes.hold(way, &setting, law, spent / scale, DIGITS);
         }
     }
 }
@@ -185,10 +222,11 @@ pub(super) fn fast(way: &SchemeSetting, notes: &mut Notes) {
             let setup = Setup { centre_m: setup.centre_m - Vec3::x() * 20.0, ..setup };
             let setting = format!("{setting}, e {e}");
             // the speeds of corners
-            let (way, setup) = &followed(way, &setup, v.norm() + 0.7 * spin.norm());
+            let fastest = v.norm() + 0.7 * spin.norm();
+            let (way, setup) = &followed(way, &setup, fastest);
             let journey = notes.follow(way, &setting, setup, &floor);
-            let sunk = 0.025 - lowest(&journey, &floor);
-            notes.hold(way, &setting, "sinks in, over the shortest side", sunk / 0.05, 1e-2);
+            let (sunk, deep) = (sunk_m(setup, &journey, &floor), may_sink_m(way, setup, fastest));
+            notes.hold(way, &setting, "sinks in (m)", sunk, deep);
         }
     }
 }
@@ -215,11 +253,12 @@ pub(super) fn friction(way: &SchemeSetting, notes: &mut Notes) {
                     path_step_s: Some(0.01),
                     ..flat
                 };
-                let (way, setup) = &followed(way, &setup, 8.0);
+                let fastest = 8.0;
+                let (way, setup) = &followed(way, &setup, fastest);
                 let setting = format!("friction {friction}°, e {e}, leaning {lean} rad");
                 let journey = notes.follow(way, &setting, setup, &floor);
-                let sunk = (0.5 * sides_m[2] - lowest(&journey, &floor)) / sides_m[2];
-                notes.hold(way, &setting, "sinks in, over the shortest side", sunk, 0.1 * BALL);
+                let deep = may_sink_m(way, setup, fastest);
+                notes.hold(way, &setting, "sinks in (m)", sunk_m(setup, &journey, &floor), deep);
             }
         }
     }

@@ -1,23 +1,26 @@
 //! Steps and tolerances to their ends, and what the printed scheme does without memory.
 
+use super::bounds::{Blow, DIGITS, omega};
 use super::impacts::{floor, rebound_m_s};
-use super::{Notes, RISE, SchemeSetting};
-use crate::ground::{Ground, damping_ratio, normal_impact};
+use super::{Notes, SchemeSetting};
+use crate::ground::Ground;
 use crate::math;
 use crate::rock::Vec3;
 use crate::simulation::{Scratch, Stop};
 use crate::solver::dda::own_restitution;
 use crate::study::bench::{GRAVITY_M_S2, GROUND, SETUP, Setup, settings, terrain};
 use crate::terrain::make;
+use std::f64::consts::PI;
 
 /// Speed of the impacts (m/s): at the longest step still less than a tenth of the radius a step.
 const SPEED_M_S: f64 = 1.0;
 
 /// An impact at every step from 1e-7 to 1e-2 s (tolerance from 1e-7 to 1e-2 m/s): the fixed step leaves by itself what its
-/// formula says, whatever the step; the others keep the closed form within their tolerance, the rigid map exactly.
+/// formula says, whatever the step; the others keep the closed form, the rigid map its own, to the last digits whatever the
+/// tolerance.
 pub(super) fn steps(way: &SchemeSetting, notes: &mut Notes) {
     let floor = floor();
-    let omega = (GROUND.normal_stiffness_n_m / SETUP.rock.mass_kg()).sqrt();
+    let omega = omega(&SETUP);
     for power in -7..=-2 {
         let way = &SchemeSetting { fineness: 10f64.powi(power), ..*way };
         let unit = way.scheme.fineness_unit();
@@ -35,19 +38,16 @@ pub(super) fn steps(way: &SchemeSetting, notes: &mut Notes) {
         };
         let journey = notes.follow_captured(way, &setting, &setup, &floor, Some(0.02));
         let rebound = rebound_m_s(&journey, &setup) / SPEED_M_S;
-        let closed_form = {
-            let impact = normal_impact(SPEED_M_S, omega, damping_ratio(0.5), GRAVITY_M_S2);
-            impact.rebound_m_s.unwrap_or(0.0) / SPEED_M_S
-        };
+        let closed_form = Blow::of(&setup, SPEED_M_S, 0.5).closed_form() / SPEED_M_S;
         let resolved = "rebound over speed is that of the closed form";
         let own = own_restitution(way.fineness * omega);
+        // every step rounds
+        let rounded = f64::EPSILON * PI / (way.fineness * omega);
         let (law, exact, bound) = way.scheme.of([
-            ("rebound over speed is what the step leaves", own, 1e-9),
-            // as the exact cases have it: second order under a third-order local error
-            (resolved, closed_form, 0.5 * math::pow(way.fineness, 2.0 / 3.0)),
-            // h³ ~ tolerance^(3/4): the rock lifts off within a step, where the law has a kink
-            (resolved, closed_form, 4.0 * math::pow(way.fineness, 0.75)),
-            ("rebound over speed is e", 0.5, 1e-9),
+            ("rebound over speed is what the step leaves", own, DIGITS + rounded),
+            (resolved, closed_form, DIGITS),
+            (resolved, closed_form, DIGITS),
+            ("rebound over speed is e", 0.5, DIGITS),
         ]);
         notes.hold(way, &setting, law, (rebound - exact).abs(), bound);
     }
@@ -85,7 +85,7 @@ pub(super) fn memory(way: &SchemeSetting, notes: &mut Notes) {
             let law = "slip off T/(p_s Δt), without memory, or 0 (m/s)";
             notes.hold(way, &setting, law, (slip - creep).abs(), 0.01 * creep + 1e-6);
             let rise = journey.ledger.rise_j / journey.extremes.total_j;
-            notes.hold(way, &setting, "energy rise over energy", rise, RISE);
+            notes.hold(way, &setting, "energy rise over energy", rise, DIGITS);
         }
     }
 }

@@ -1,12 +1,13 @@
 //! Meshes that are awkward: edges, corners, walls, slivers, seams, far away.
 
+use super::bounds::{DIGITS, rests_within, strikes_within};
 use super::{Notes, SchemeSetting, sprung};
 use crate::math;
 use crate::rock::{Rock, Vec3};
-use crate::simulation::Stop;
+use crate::simulation::{Stop, Trajectory};
 use crate::study::bench::{GRAVITY_M_S2, ROCK, SETUP, Setup, terrain};
-use crate::terrain::make;
 use crate::terrain::stl::Facet;
+use crate::terrain::{Terrain, make};
 
 fn square(corner: Vec3, a: Vec3, b: Vec3) -> Vec<Facet> {
     vec![[corner, corner + a, corner + a + b], [corner, corner + a + b, corner + b]]
@@ -25,20 +26,28 @@ fn dropped() -> Setup {
 /// Dropped exactly onto an edge and onto a corner: it goes down a flank, and no energy comes from nowhere.
 pub(super) fn edge_and_corner(way: &SchemeSetting, notes: &mut Notes) {
     let above = Setup { centre_m: Vec3::new(0.0, 0.0, 1.0), longest_s: 0.6, ..SETUP };
+    let watched = Setup { path_step_s: Some(2e-4), ..above };
+    let deep = strikes_within(way, &above, (2.0 * GRAVITY_M_S2 * 0.5).sqrt());
     let roof = terrain(make::ridge(4.0, 1.0));
-    let end = notes.follow(way, "edge", &above, &roof).end.position_m;
-    notes.hold(way, "edge", "deeper than the edge allows (m)", 0.5 - end.norm(), 0.01);
+    let edge = deepest_m(&notes.follow(way, "edge", &watched, &roof), &roof);
+    notes.hold(way, "edge", "deeper than the edge allows (m)", edge, deep);
     // level: on the seam of two triangles, and on a corner where six meet
     let planes = [false, true].map(|has_corner| terrain(level(has_corner)));
     for (setting, plane) in ["seam of a plane", "corner in a plane"].into_iter().zip(&planes) {
         let end = notes.follow(way, setting, &above, plane).end;
         let sideways = math::hypot(end.position_m.x, end.position_m.y)
             + math::hypot(end.velocity_m_s.x, end.velocity_m_s.y);
-        notes.hold(way, setting, "sideways (m, m/s)", sideways, 1e-12);
+        notes.hold(way, setting, "sideways (m, m/s)", sideways, DIGITS);
     }
     let tip = terrain(make::tetrahedron(6.0));
-    let end = notes.follow(way, "corner", &above, &tip).end.position_m;
-    notes.hold(way, "corner", "deeper than the corner allows (m)", 0.5 - end.norm(), 0.01);
+    let corner = deepest_m(&notes.follow(way, "corner", &watched, &tip), &tip);
+    notes.hold(way, "corner", "deeper than the corner allows (m)", corner, deep);
+}
+
+/// How deep the origin has been in a rock on its kept path (m).
+fn deepest_m(journey: &Trajectory, on: &Terrain) -> f64 {
+    let nearest = journey.path.iter().map(|point| (point.motion.position_m + on.origin_m).norm());
+    journey.rock.radius_m - nearest.fold(f64::INFINITY, f64::min)
 }
 
 /// A level square, split along the diagonal through the origin, or four of them about it.
@@ -91,12 +100,14 @@ pub(super) fn narrow_groove(way: &SchemeSetting, notes: &mut Notes) {
     // both springs of both contacts share the load: p_N along the normal, p_s = p_N/4 across
     let (cos2, sin2) = (height * height / 0.25, half * half / 0.25);
     let sinks = if sprung(way) { setup.pressed_m(0.0) / (2.0 * (cos2 + 0.25 * sin2)) } else { 0.0 };
+    // the borders turn about it as it sinks: the square of that is left out
+    let bound = 2.0 * sinks * sinks / height + DIGITS;
     notes.hold(
         way,
         "",
         "height off √(R² − b²) less what the springs give (m)",
         (end.position_m.z - height + sinks).abs(),
-        1e-6,
+        bound,
     );
 }
 
@@ -111,7 +122,7 @@ pub(super) fn degenerate(way: &SchemeSetting, notes: &mut Notes) {
     let first = notes.follow(way, "clean", &dropped(), &clean).end;
     let second = notes.follow(way, "with slivers and doubles", &dropped(), &dirty).end;
     let off = (first.position_m - second.position_m).norm();
-    notes.hold(way, "", "end moved (m)", off, 1e-9);
+    notes.hold(way, "", "end moved (m)", off, DIGITS);
 }
 
 /// All triangles the other way round: the same bits.
@@ -122,8 +133,9 @@ pub(super) fn flipped(way: &SchemeSetting, notes: &mut Notes) {
     let first = notes.follow(way, "as it is", &setup, &terrain(facets)).end;
     let second = notes.follow(way, "inside out", &setup, &terrain(inside_out)).end;
     let off = (first.position_m - second.position_m).norm();
-    // the same surface in another order of corners: rounding, grown over some impacts
-    notes.hold(way, "", "end moved (m)", off, 1e-6);
+    // the same surface in another order of corners: rounding of places, which each of four impacts makes ten times as large
+    let rounded = f64::EPSILON * setup.centre_m.norm();
+    notes.hold(way, "", "end moved (m)", off, 1e4 * rounded);
 }
 
 /// Two sheets that run through each other at 10°: a rock rolls into the wedge between them and stays above both.
@@ -138,7 +150,13 @@ pub(super) fn conflicting_sheets(way: &SchemeSetting, notes: &mut Notes) {
     };
     let end = notes.follow(way, "", &setup, &terrain(both)).end.position_m;
     let over_tilted = end.z * math::cos(tilt) + end.y * math::sin(tilt);
-    notes.hold(way, "", "depth in one of the sheets (m)", 0.5 - end.z.min(over_tilted), 0.01);
+    notes.hold(
+        way,
+        "",
+        "depth in one of the sheets (m)",
+        0.5 - end.z.min(over_tilted),
+        rests_within(way, &setup),
+    );
 }
 
 /// A thousand kilometres away: the same journey, as far as coordinates there have digits.
@@ -150,8 +168,9 @@ pub(super) fn offset(way: &SchemeSetting, notes: &mut Notes) {
     let moved = Setup { centre_m: setup.centre_m + far, ..setup };
     let first = notes.follow(way, "here", &setup, &terrain(here)).end.position_m;
     let second = notes.follow(way, "there", &moved, &terrain(there)).end.position_m;
-    // corners are off by 1e-10 m there; a few impacts multiply that
-    notes.hold(way, "", "end moved (m)", (second - far - first).norm(), 1e-8);
+    // corners and places are rounded there; a few impacts multiply that
+    let bound = 4.0 * f64::EPSILON * far.norm();
+    notes.hold(way, "", "end moved (m)", (second - far - first).norm(), bound);
 }
 
 /// A boulder of 10 m on triangles of 0.1 m.
@@ -166,8 +185,8 @@ pub(super) fn small_triangles(way: &SchemeSetting, notes: &mut Notes) {
         way,
         "",
         "sideways (m)",
-        math::hypot(end.position_m.x, end.position_m.y) - math::hypot(0.1f64, 0.2),
-        1e-9,
+        math::hypot(end.position_m.x - 0.1, end.position_m.y - 0.2),
+        DIGITS,
     );
 }
 
@@ -194,5 +213,6 @@ pub(super) fn one_triangle(way: &SchemeSetting, notes: &mut Notes) {
     }
     let on_it = Setup { centre_m: Vec3::new(0.0, 0.0, 0.6), velocity_m_s: Vec3::zeros(), ..setup };
     let end = notes.follow(way, "dropped on it", &on_it, &lone).end;
-    notes.hold(way, "dropped on it", "fell through (m)", 0.49 - end.position_m.z, 0.0);
+    let deep = setup.rock.radius_m - end.position_m.z;
+    notes.hold(way, "dropped on it", "rests within 2 m g/p_N (m)", deep, rests_within(way, &setup));
 }

@@ -1,7 +1,9 @@
 //! Rocks that touch each other: mass ratios, one centre for two. The rigid scheme knows rocks alone.
 
-use super::{Notes, RISE, SchemeSetting, is_finite, same_bits};
+use super::bounds::{Blow, DIGITS, impact_error};
+use super::{Notes, SchemeSetting, is_finite, same_bits};
 use crate::contact::pair::Strength;
+use crate::ground::damping_ratio;
 use crate::math;
 use crate::plan::{Recorders, RestRule};
 use crate::release::Release;
@@ -89,13 +91,18 @@ pub(super) fn stack(way: &SchemeSetting, notes: &mut Notes) {
         let [a, b] = &falls[..] else { continue };
         let ends = [a, b].map(|fall| fall.end.position_m.z);
         let found = [RADIUS_M - ends[0], 2.0 * RADIUS_M - (ends[1] - ends[0])];
-        let off = (0..2).map(|k| (found[k] - pens[k]).abs() - 0.01 * pens[k]).fold(0.0, f64::max);
-        // geometry and forces of a stage agree to 1e-9 of the radius
-        let law = "springs off weight over stiffness by more than 1 % (m)";
-        let bound = if is_rigid { RIGID_OVERLAP } else { 1e-9 };
-        notes.hold(way, &setting, law, off, bound * RADIUS_M);
+        let off = (0..2).map(|k| (found[k] - pens[k]).abs()).fold(0.0, f64::max);
+        // geometry and forces of an implicit stage agree to 1e-9 of the radius, and its sweeps leave a thousandth of the forces
+        let stage = 1e-9 + 1e-3 * pens[0] / RADIUS_M;
+        let bound = way.scheme.of([DIGITS, stage, stage, RIGID_OVERLAP]);
+        notes.hold(way, &setting, "springs off weight over stiffness (m)", off, bound * RADIUS_M);
         let fastest = [a, b].map(|fall| fall.end.velocity_m_s.norm());
-        notes.hold(way, &setting, "speed at the end (m/s)", fastest[0].max(fastest[1]), 1e-4);
+        // places are rounded, and over a step that is a speed; what the rigid limit leaves of an overlap comes within the second
+        let placed = 4.0 * f64::EPSILON * z[1] / way.fineness;
+        // sweeps over masses up to 1e9 apart leave a hundred-thousandth of the weight: so much of `g` for a second
+        let swept = 1e-5 * GRAVITY_M_S2;
+        let bound = way.scheme.of([placed, swept, swept, RIGID_OVERLAP * RADIUS_M]);
+        notes.hold(way, &setting, "speed at the end (m/s)", fastest[0].max(fastest[1]), bound);
     }
 }
 
@@ -113,23 +120,28 @@ pub(super) fn head_on(way: &SchemeSetting, notes: &mut Notes) {
         let v = [a, b].map(|fall| fall.end.velocity_m_s.z);
         let expected = [(m - 0.5 * n) / (m + n), 1.5 * m / (m + n)];
         let off = (v[0] - expected[0]).abs().max((v[1] - expected[1]).abs());
-        // the light one's oscillation decides: a dozen steps at the local error, or ω Δt of the fixed step
-        let light = m * n / (m + n);
-        let phase = way.fineness * (GROUND.normal_stiffness_n_m / light).sqrt();
-        let bound = way.scheme.of([phase, 3.0 * way.fineness, 100.0 * way.fineness, 1e-9]);
-        // where a step does not resolve the impact, restitution is anything between none and all
-        notes.hold(
-            way,
-            &setting,
-            "velocities off momentum and restitution (m/s)",
-            off,
-            bound.min(1.0),
-        );
+        // the light one's oscillation decides
+        let omega = (GROUND.normal_stiffness_n_m * (m + n) / (m * n)).sqrt();
+        let phase = way.fineness * omega;
+        let lasting = 40.0 * way.fineness;
+        let bound = way.scheme.of([phase.min(0.5), impact_error(way, omega), lasting, DIGITS]);
+        notes.hold(way, &setting, "velocities off momentum and restitution (m/s)", off, bound);
+        if way.scheme.has_fixed_step() {
+            let blow = Blow { speed: 1.0, omega, zeta: damping_ratio(0.5), gravity: 0.0 };
+            let (left, _) =
+                blow.stepped(way.fineness, f64::INFINITY, 4.0 / omega + 4.0 * way.fineness);
+            let law = "rebound is what the steps leave (m/s)";
+            // places are rounded where the room is 50 m wide
+            let placed = 4.0 * f64::EPSILON * ROOM_M / way.fineness;
+            notes.hold(way, &setting, law, (v[1] - v[0] - left).abs(), placed);
+        }
         let momentum = (m * (v[0] - 1.0) + n * v[1]).abs() / m;
-        // the heavy one's velocity is a billionth of the light one's: so many of sixteen digits are left
-        notes.hold(way, &setting, "momentum lost, over momentum", momentum, 1e-10);
+        // the matrix of a fixed step has masses beside springs, `(ω Δt)²` times as large: so many digits are lost
+        let lost = if way.scheme.has_fixed_step() { 4.0 * phase * phase } else { 0.0 };
+        let bound = DIGITS + lost * f64::EPSILON;
+        notes.hold(way, &setting, "momentum lost, over momentum", momentum, bound);
         let energy = (m * v[0] * v[0] + n * v[1] * v[1]) / m - 1.0;
-        notes.hold(way, &setting, "energy rise over energy", energy, RISE);
+        notes.hold(way, &setting, "energy rise over energy", energy, DIGITS);
     }
 }
 
@@ -144,9 +156,12 @@ pub(super) fn coincident(way: &SchemeSetting, notes: &mut Notes) {
         |fall: &Trajectory| math::hypot(fall.end.velocity_m_s.x, fall.end.velocity_m_s.y);
     notes.hold(way, "", "sideways (m/s)", sideways(a).max(sideways(b)), 0.0);
     let (up, down) = (a.end.velocity_m_s.z, b.end.velocity_m_s.z);
-    notes.hold(way, "", "momentum, over that of one", (up + down).abs(), 1e-12);
-    notes.hold(way, "", "energy rise over energy", up * up - 1.0, RISE);
+    notes.hold(way, "", "momentum, over that of one", (up + down).abs(), DIGITS);
+    notes.hold(way, "", "energy rise over energy", up * up - 1.0, DIGITS);
 }
+
+/// How far they are (m).
+const ROOM_M: f64 = 50.0;
 
 /// Two far triangles: room to fly in.
 fn far() -> Vec<crate::terrain::stl::Facet> {
@@ -154,5 +169,5 @@ fn far() -> Vec<crate::terrain::stl::Facet> {
         let p = Vec3::repeat(at);
         [p, p + Vec3::x(), p + Vec3::y()]
     };
-    vec![corner(-50.0), corner(50.0)]
+    vec![corner(-ROOM_M), corner(ROOM_M)]
 }

@@ -1,6 +1,6 @@
 //! Stiffness against step: where an impact is accurate, stable, or neither.
 
-use super::RISE;
+use super::bounds::DIGITS;
 use super::impacts::rebound_m_s;
 use crate::ground::{damping_ratio, normal_impact};
 use crate::rock::Vec3;
@@ -101,7 +101,8 @@ fn cell(
     let journey = setup.follow(floor, &settings(scheme, fineness, Some(0.02)), scratch);
     let rebound = rebound_m_s(&journey, &setup) / SPEED_M_S;
     let exact = normal_impact(SPEED_M_S, omega, damping_ratio(0.5), GRAVITY_M_S2).rebound_m_s;
-    let gains = journey.ledger.rise_j > RISE * journey.extremes.total_j || rebound > 1.0 + ACCURATE;
+    let gains =
+        journey.ledger.rise_j > DIGITS * journey.extremes.total_j || rebound > 1.0 + ACCURATE;
     let verdict = if matches!(journey.stop, Stop::Failed(_)) || !rebound.is_finite() || gains {
         Verdict::Unstable
     } else if (rebound - exact.unwrap_or(0.0) / SPEED_M_S).abs() < ACCURATE {
