@@ -7,7 +7,7 @@
 
 mod impacts;
 
-use super::form::{Form, Turned};
+use super::form::{Form, RockInstant, Turned};
 use super::impacts::Struck;
 use super::recorder::{Keep, Recorder};
 use super::rest::RestCriterion;
@@ -161,8 +161,8 @@ impl Roll<'_> {
             if !finite {
                 return Some(Stop::Failed("motion is no longer finite".to_owned()));
             }
-            self.recorder.turned = Some(turned(block, &self.moving));
-            self.recorder.step(to, done.slides);
+            let turned = Some(turned(block, &self.moving));
+            self.recorder.step(RockInstant { motion: to, turned }, done.slides);
             self.leave_impacts();
             let time_up = (done.dt >= left).then_some(Stop::TimeUp);
             let ends = time_up.or_else(|| self.settings.over_budget(&self.recorder.effort));

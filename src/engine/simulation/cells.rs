@@ -4,11 +4,11 @@
 //! rocks (how many passed, percentiles of energy and height) is made elsewhere from these passages;
 //! here each rock has one entry a cell, however often it comes back.
 
-use super::form::{Form, RockInstant, Turned, between};
+use super::form::{Form, RockInstant, between};
 use super::passages::{Passage, Passages};
 use crate::flight::Parabola;
 use crate::plan::MapGrid;
-use crate::rock::{Motion, Vec3};
+use crate::rock::Vec3;
 use crate::terrain::Terrain;
 
 /// One rock in one cell.
@@ -79,18 +79,13 @@ impl<'a> CellPassages<'a> {
     }
 
     /// Notes the cells of a step in contact, which are shorter than cells: its ends hold what it has.
-    pub(super) fn step(
-        &mut self,
-        (terrain, form): (&Terrain, &Form),
-        [from, to]: [&Motion; 2],
-        turned: Option<Turned>,
-    ) {
+    pub(super) fn step(&mut self, (terrain, form): (&Terrain, &Form), ends: [&RockInstant; 2]) {
         let Some(cells) = self.cells else { return };
+        let [from, to] = ends.map(|end| &end.motion);
         // velocity linear within the step: its square has no largest value inside either
         let total_j = |s: f64| {
-            let motion = between(from, to, s);
-            let rotational_j = form.rotational_j(&RockInstant { motion, turned });
-            motion.translational_j(&form.rock) + rotational_j
+            let at = RockInstant::between(ends, s);
+            at.motion.translational_j(&form.rock) + form.rotational_j(&at)
         };
         walk(cells, [&from.position_m, &to.position_m], |cell, s0, s1| {
             // looked for once a cell, where the step comes into it: from below the mesh holds a rock too

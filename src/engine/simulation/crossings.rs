@@ -1,6 +1,6 @@
 //! Where a rock passes evaluation lines: exact on the parabola of a flight and on the cubic of a step.
 
-use super::form::{Form, RockInstant, Turned, between};
+use super::form::{Form, RockInstant};
 use crate::flight::Parabola;
 use crate::math;
 use crate::plan::{EvaluationLine, Footprint, LinePiece};
@@ -106,16 +106,12 @@ impl<'a> Crossings<'a> {
         );
     }
 
-    /// Notes the lines that a step in contact passes; a block stands as at the end of it.
-    pub(super) fn step(
-        &mut self,
-        (terrain, form): (&Terrain, &Form),
-        [from, to]: [&Motion; 2],
-        turned: Option<Turned>,
-    ) {
+    /// Notes the lines that a step in contact passes.
+    pub(super) fn step(&mut self, (terrain, form): (&Terrain, &Form), ends: [&RockInstant; 2]) {
         if self.lines.is_empty() {
             return;
         }
+        let [from, to] = ends.map(|end| &end.motion);
         // Hermite data of the step as a Bézier curve: the path lies within the hull of these four points
         let third = (to.time_s - from.time_s) / 3.0;
         let hull = [
@@ -129,7 +125,7 @@ impl<'a> Crossings<'a> {
             (terrain, form),
             hull,
             |piece| roots(hull.map(|point| piece.side_m(point))),
-            |s| RockInstant { motion: between(from, to, s), turned },
+            |s| RockInstant::between(ends, s),
         );
     }
 

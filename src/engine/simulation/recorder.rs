@@ -6,7 +6,7 @@
 
 use super::cells::{CellPassage, CellPassages};
 use super::crossings::{Crossing, Crossings};
-use super::form::{Form, RockInstant, Turned, between};
+use super::form::{Form, RockInstant, Turned};
 use super::impacts::{Impacts, ImpactsMark, Struck};
 use super::stretches::{Stretch, Stretches};
 use super::{Effort, Extremes, Ledger, PathPoint, PathState, Stop, Trajectory};
@@ -216,23 +216,24 @@ impl<'a> Recorder<'a> {
     }
 
     /// Goes along one step in contact to `to`.
-    pub(super) fn step(&mut self, to: Motion, slides: bool) {
+    pub(super) fn step(&mut self, to: impl Into<RockInstant>, slides: bool) {
         self.step_as(to, if slides { PathState::Sliding } else { PathState::Sticking });
     }
 
     /// Goes along one step in `state` to `to`.
-    pub(super) fn step_as(&mut self, to: Motion, state: PathState) {
-        let from = std::mem::replace(&mut self.now, to);
+    pub(super) fn step_as(&mut self, to: impl Into<RockInstant>, state: PathState) {
+        let (from, to) = (self.instant(), to.into());
+        (self.now, self.turned) = (to.motion, to.turned);
         // a step in contact is noted from where it began to where it ended
-        self.crossings.step((self.terrain, &self.form), [&from, &to], self.turned);
-        self.passages.step((self.terrain, &self.form), [&from, &to], self.turned);
-        let dt = to.time_s - from.time_s;
-        while self.next_point_s <= to.time_s {
-            let s = if dt > 0.0 { (self.next_point_s - from.time_s) / dt } else { 1.0 };
-            // within a step the cubic of its ends; see `between`
-            let motion = between(&from, &to, s.clamp(0.0, 1.0));
-            let motion = Motion { time_s: self.next_point_s, ..motion };
-            self.point(&RockInstant { motion, turned: self.turned }, state);
+        self.crossings.step((self.terrain, &self.form), [&from, &to]);
+        self.passages.step((self.terrain, &self.form), [&from, &to]);
+        let (from_s, to_s) = (from.motion.time_s, to.motion.time_s);
+        while self.next_point_s <= to_s {
+            let dt = to_s - from_s;
+            let s = if dt > 0.0 { (self.next_point_s - from_s) / dt } else { 1.0 };
+            let mut at = RockInstant::between([&from, &to], s.clamp(0.0, 1.0));
+            at.motion.time_s = self.next_point_s;
+            self.point(&at, state);
         }
         // in a world a flying rock is carried along by the steps of its island: it has a height
         // there
@@ -245,7 +246,7 @@ impl<'a> Recorder<'a> {
         } else {
             0.0
         };
-        self.stretches.step(&to, height_m.max(0.0));
+        self.stretches.step(&to.motion, height_m.max(0.0));
         self.note_speed();
     }
 

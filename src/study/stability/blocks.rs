@@ -74,17 +74,15 @@ fn sunk_m(setup: &Setup, journey: &Trajectory, on: &Terrain) -> f64 {
 
 /// How deep a ball may be (m) where nothing strikes faster than `speed_m_s`.
 ///
-/// A corner presses its spring in by no more than `v/ω` and twice the weight: less than the block's mass moves with it. The path
-/// within a step is drawn, with the attitude of the step's end: as far off as corners go in a step, `PHASE` of `v/ω` with a
-/// fixed one. The rigid limit brings corners to the surface in the middle of a step, from which they go on for half of that.
+/// A corner presses its spring in by no more than `v/ω` and twice the weight: less than the block's mass moves with it. A fixed
+/// step sees it `PHASE` of `v/ω` too late. The rigid limit brings corners to the surface in the middle of a step, from which
+/// they go on for half of that.
 fn may_sink_m(way: &SchemeSetting, setup: &Setup, speed_m_s: f64) -> f64 {
-    let step_m = CORNER_WAY * setup.block.map_or(f64::NAN, |block| block.ball_m);
-    let swing_m = speed_m_s / omega(setup);
     if !sprung(way) {
-        return 0.5 * step_m;
+        return 0.5 * CORNER_WAY * setup.block.map_or(f64::NAN, |block| block.ball_m);
     }
-    let drawn_m = if way.scheme.has_fixed_step() { PHASE * swing_m } else { step_m };
-    swing_m + 2.0 * setup.pressed_m(0.0) + drawn_m
+    let late = if way.scheme.has_fixed_step() { PHASE } else { 0.0 };
+    (1.0 + late) * speed_m_s / omega(setup) + 2.0 * setup.pressed_m(0.0)
 }
 
 /// From a cube to a sheet and to a needle: none sinks in, all come to rest as flat as they are.
