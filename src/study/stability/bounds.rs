@@ -62,7 +62,7 @@ pub(super) fn captured_restitution() -> f64 {
 
 /// An impact on a level plane.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Blow {
+pub(super) struct SpringImpact {
     /// Approach (m/s).
     pub(super) speed: f64,
     /// Oscillation (rad/s).
@@ -73,7 +73,7 @@ pub(super) struct Blow {
     pub(super) gravity: f64,
 }
 
-impl Blow {
+impl SpringImpact {
     /// A blow by its restitution (–), 0 for none: no dashpot where there is all.
     pub(super) fn of(setup: &Setup, speed: f64, e: f64) -> Self {
         let zeta = damping_ratio(e);

@@ -1,6 +1,6 @@
 //! Steps and tolerances to their ends, and what the printed scheme does without memory.
 
-use super::bounds::{Blow, DIGITS, omega};
+use super::bounds::{DIGITS, SpringImpact, omega};
 use super::impacts::{floor, rebound_m_s};
 use super::{Notes, SchemeSetting};
 use crate::ground::Ground;
@@ -38,7 +38,7 @@ pub(super) fn steps(way: &SchemeSetting, notes: &mut Notes) {
         };
         let journey = notes.follow_captured(way, &setting, &setup, &floor, Some(0.02));
         let rebound = rebound_m_s(&journey, &setup) / SPEED_M_S;
-        let closed_form = Blow::of(&setup, SPEED_M_S, 0.5).closed_form() / SPEED_M_S;
+        let closed_form = SpringImpact::of(&setup, SPEED_M_S, 0.5).closed_form() / SPEED_M_S;
         let resolved = "rebound over speed is that of the closed form";
         let own = own_restitution(way.fineness * omega);
         // every step rounds

@@ -1,6 +1,6 @@
 //! What is no plane: folds, noise, triangles far smaller than the rock. Energy is watched at the end of every step.
 
-use super::bounds::{Blow, DIGITS, impact_error, omega};
+use super::bounds::{DIGITS, SpringImpact, impact_error, omega};
 use super::impacts::rebound_m_s;
 use super::{Notes, SchemeSetting, sprung};
 use crate::flight::{FlightEnd, Parabola, time_of_impact};
@@ -212,7 +212,7 @@ pub(super) fn larger_than_cells(way: &SchemeSetting, notes: &mut Notes) {
         let journey = notes.follow(way, &setting, &setup, &ground);
         let failed = matches!(journey.stop, Stop::Failed(_));
         if sprung(way) && !failed {
-            let blow = Blow::of(&setup, 10.0, 0.5);
+            let blow = SpringImpact::of(&setup, 10.0, 0.5);
             let right = blow.closed_form();
             let off = (rebound_m_s(&journey, &setup) / right - 1.0).abs();
             // a face is inclined by noise over cell at the most: its normal is short of upright by half the square of that, and

@@ -1,7 +1,7 @@
 //! One rock, one plane: stiffness, size, speed, restitution, friction to their ends.
 
 use super::bounds::{
-    Blow, DIGITS, captured_restitution, omega, plane_error, rests_within, strikes_within,
+    DIGITS, SpringImpact, captured_restitution, omega, plane_error, rests_within, strikes_within,
 };
 use super::{Notes, SchemeSetting, sprung};
 use crate::ground::{Ground, damping_ratio};
@@ -89,7 +89,7 @@ fn hold_rebound(
     (setup, rebound): (&Setup, f64),
 ) {
     let speed = -setup.velocity_m_s.z;
-    let blow = Blow::of(setup, speed, 0.5);
+    let blow = SpringImpact::of(setup, speed, 0.5);
     let phase = way.fineness * blow.omega;
     let is_captured = speed <= way_capture(way) || blow.never_leaves();
     if way.scheme.has_fixed_step() {
@@ -267,7 +267,7 @@ fn bounces_s(way: &SchemeSetting, setup: &Setup, e: f64) -> f64 {
     let mut speed = (2.0 * GRAVITY_M_S2).sqrt();
     let mut time = speed / GRAVITY_M_S2;
     while speed > SLOW_M_S {
-        let blow = Blow::of(setup, speed, e);
+        let blow = SpringImpact::of(setup, speed, e);
         let (left, contact_s) = match (sprung(way), way.scheme.has_fixed_step()) {
             (false, _) => (e * speed, 0.0),
             (true, true) => blow.stepped(way.fineness, f64::INFINITY, 4.0 / blow.omega),

@@ -1,6 +1,6 @@
 //! Rocks that touch each other: mass ratios, one centre for two. The rigid scheme knows rocks alone.
 
-use super::bounds::{Blow, DIGITS, impact_error};
+use super::bounds::{DIGITS, SpringImpact, impact_error};
 use super::{Notes, SchemeSetting, is_finite, same_bits};
 use crate::contact::pair::Strength;
 use crate::ground::damping_ratio;
@@ -127,7 +127,7 @@ pub(super) fn head_on(way: &SchemeSetting, notes: &mut Notes) {
         let bound = way.scheme.of([phase.min(0.5), impact_error(way, omega), lasting, DIGITS]);
         notes.hold(way, &setting, "velocities off momentum and restitution (m/s)", off, bound);
         if way.scheme.has_fixed_step() {
-            let blow = Blow { speed: 1.0, omega, zeta: damping_ratio(0.5), gravity: 0.0 };
+            let blow = SpringImpact { speed: 1.0, omega, zeta: damping_ratio(0.5), gravity: 0.0 };
             let (left, _) =
                 blow.stepped(way.fineness, f64::INFINITY, 4.0 / omega + 4.0 * way.fineness);
             let law = "rebound is what the steps leave (m/s)";
