@@ -4,6 +4,7 @@ use super::faces::Face;
 use super::index::below;
 use crate::parallel;
 use crate::rock::Vec3;
+use std::sync::{Mutex, PoisonError};
 
 /// Shares of the triangles that are looked at beside each other, each with cells of its own, and the fewest triangles in one.
 const SHARES: usize = 16;
@@ -49,22 +50,24 @@ impl Floor {
             low_m: vec![f32::INFINITY; columns * rows],
         };
         let share = triangles.div_ceil(SHARES).max(LEAST_SHARE);
-        let mut floors = vec![empty.clone(); triangles.div_ceil(share)];
-        parallel::update_shares(&mut floors, 1, |number, floor| {
+        // As many floors of shares at once as there are threads; the lower one of two is the same in any order.
+        let lowest = Mutex::new(empty.clone());
+        parallel::each(triangles.div_ceil(share), &|number| {
+            let mut floor = empty.clone();
             let of_share = number * share..triangles.min((number + 1) * share);
             for face in of_share.filter_map(|t| ground(t as u32)) {
-                floor[0].lower_to(&face, WIDER * longest);
+                floor.lower_to(&face, WIDER * longest);
             }
+            lowest.lock().unwrap_or_else(PoisonError::into_inner).lower(&floor);
         });
-        floors.into_iter().fold(empty, Self::lower)
+        lowest.into_inner().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// The lower one of two, cell by cell.
-    fn lower(mut self, other: Self) -> Self {
-        for (low, other) in self.low_m.iter_mut().zip(other.low_m) {
-            *low = low.min(other);
+    fn lower(&mut self, other: &Self) {
+        for (low, other) in self.low_m.iter_mut().zip(&other.low_m) {
+            *low = low.min(*other);
         }
-        self
     }
 
     /// A height that the slope at (x, y) is not below (m); infinite where there is none.
