@@ -1,7 +1,7 @@
 //! Loops over numbered things on all threads.
 //!
-//! The loop itself is compiled once, whatever runs in it: rayon's own adaptors come anew with every closure, and were two
-//! fifths of what the compiler had to do for the terrain. Things are numbered from 0; what is gathered stands in the order
+//! The loop itself is compiled once, whatever runs in it: rayon's own adaptors come anew with every closure, and were a
+//! quarter of the code that the compiler had to make for the terrain. Things are numbered from 0; what is gathered stands in the order
 //! of the numbers, on any number of threads.
 
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
@@ -49,6 +49,13 @@ pub fn map<T: Clone + Default + Send>(count: usize, of: impl Fn(usize) -> T + Sy
     all
 }
 
+/// The same where each number is a job of its own.
+pub fn map_each<T: Clone + Default + Send>(count: usize, of: impl Fn(usize) -> T + Sync) -> Vec<T> {
+    let mut all = vec![T::default(); count];
+    update_shares(&mut all, 1, |number, item| item[0] = of(number));
+    all
+}
+
 /// What `of` gives for the numbers below `count`, where it gives something.
 pub fn filter_map<T: Clone + Send>(count: usize, of: impl Fn(usize) -> Option<T> + Sync) -> Vec<T> {
     of_shares(count, |numbers| numbers.filter_map(&of).collect::<Vec<T>>()).concat()
@@ -57,6 +64,11 @@ pub fn filter_map<T: Clone + Send>(count: usize, of: impl Fn(usize) -> Option<T>
 /// The numbers below `count` for which `holds`.
 pub fn filter(count: usize, holds: impl Fn(u32) -> bool + Sync) -> Vec<u32> {
     filter_map(count, |number| Some(number as u32).filter(|&number| holds(number)))
+}
+
+/// How many numbers below `count` are such that `holds`.
+pub fn count(count: usize, holds: impl Fn(u32) -> bool + Sync) -> usize {
+    fold(count, &0, |sum, number| sum + usize::from(holds(number as u32)), |a, b| a + b)
 }
 
 /// Adds the numbers below `count` up: those of a share to `nothing` by `add`, the shares by `both`.
@@ -75,11 +87,8 @@ fn of_shares<T: Clone + Default + Send>(
     count: usize,
     of: impl Fn(Range<usize>) -> T + Sync,
 ) -> Vec<T> {
-    let mut shares = vec![T::default(); count.div_ceil(SHARE)];
-    update_shares(&mut shares, 1, |number, share| {
-        share[0] = of(number * SHARE..count.min((number + 1) * SHARE));
-    });
-    shares
+    let of_share = |number| of(number * SHARE..count.min((number + 1) * SHARE));
+    map_each(count.div_ceil(SHARE), of_share)
 }
 
 #[cfg(test)]
@@ -96,6 +105,7 @@ mod tests {
                 filter(count, odd),
                 (0..count as u32).filter(|&k| odd(k)).collect::<Vec<_>>()
             );
+            assert_eq!(super::count(count, odd), count / 2);
             assert_eq!(fold(count, &0, |sum, k| sum + k, |a, b| a + b), (0..count).sum::<usize>());
             let mut list = squares;
             update(&mut list, |k, item| *item -= k * k);

@@ -6,8 +6,8 @@ mod soil;
 use crate::math;
 
 pub use law::{
-    Capture, Damping, Law, NormalImpact, damping_ratio, normal_impact, restitution,
-    tangential_restitution,
+    CAPTURE_DAMPING_RATIO, Capture, Damping, Law, NormalImpact, damping_ratio, normal_impact,
+    restitution, tangential_restitution,
 };
 pub(crate) use law::{
     FixedStepNormal, FrictionElement, FrictionLimits, INSIDE, LinearFriction, NormalElement,

@@ -178,6 +178,11 @@ impl Setup {
         fallen
     }
 
+    /// Oscillation of the rock on one spring, `√(p_N/m)` (rad/s).
+    pub fn omega(&self) -> f64 {
+        (self.ground.normal_stiffness_n_m / self.rock.mass_kg()).sqrt()
+    }
+
     /// How deep the weight presses one spring where the ground is inclined at `angle_rad` (m).
     pub fn pressed_m(&self, angle_rad: f64) -> f64 {
         self.rock.mass_kg() * self.gravity_m_s2 * math::cos(angle_rad)

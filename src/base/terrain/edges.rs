@@ -44,8 +44,7 @@ impl Edges {
         };
         let next = parallel::map(triangles.len(), |t| [0, 1, 2].map(|k| next(3 * t as u32 + k)));
         let mut edges = Self { next, count: 0 };
-        let add = |sum, side| sum + usize::from(edges.is_edge(side as u32));
-        edges.count = parallel::fold(edges.sides(), &0, add, |one, other| one + other);
+        edges.count = parallel::count(edges.sides(), |side| edges.is_edge(side));
         edges
     }
 
@@ -118,8 +117,18 @@ impl Edges {
         (0..3 * self.next.len() as u32).filter(|&side| self.is_edge(side))
     }
 
+    /// What `of` gives for the edges, where it gives something, on all threads.
+    pub(super) fn filter_map<T: Clone + Send>(
+        &self,
+        of: impl Fn(u32) -> Option<T> + Sync,
+    ) -> Vec<T> {
+        parallel::filter_map(self.sides(), |side| {
+            Some(side as u32).filter(|&side| self.is_edge(side)).and_then(&of)
+        })
+    }
+
     /// Sides of all triangles: three each.
-    pub(super) fn sides(&self) -> usize {
+    fn sides(&self) -> usize {
         3 * self.next.len()
     }
 

@@ -21,9 +21,10 @@ mod normal;
 
 use super::Ground;
 use crate::rock::Rock;
-use damping::{CAPTURE_DAMPING_RATIO, along_ratio};
+use damping::along_ratio;
 pub use damping::{
-    Damping, NormalImpact, damping_ratio, normal_impact, restitution, tangential_restitution,
+    CAPTURE_DAMPING_RATIO, Damping, NormalImpact, damping_ratio, normal_impact, restitution,
+    tangential_restitution,
 };
 pub(crate) use friction::{FrictionElement, FrictionLimits, INSIDE, LinearFriction, within};
 pub(crate) use normal::{FixedStepNormal, NormalElement, NormalLine};

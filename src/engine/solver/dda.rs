@@ -32,7 +32,7 @@ use std::f64::consts::PI;
 
 /// Longest way in one step (–, relative to R) where more than one plane is near: features are seen a tenth of the
 /// radius ahead.
-pub(crate) const TRAVEL: f64 = 0.09;
+pub const TRAVEL: f64 = 0.09;
 /// Deepest penetration that still is one (–, relative to R). Where the centre passes the surface `V` turns round and
 /// the contact would push the rock through.
 pub(crate) const DEEPEST: f64 = 0.5;

@@ -35,7 +35,7 @@ pub(crate) const TRAVEL: f64 = 0.15;
 /// A step this short, in radians of the stiffest contact, resolves everything: what it still gains is rounding (–).
 pub(crate) const RESOLVED: f64 = 1e-3;
 /// Gain of energy in one step that is rounding (–).
-pub(crate) const ROUNDING: f64 = 1e-10;
+pub const ROUNDING: f64 = 1e-10;
 /// Rounding of positions, relative to the radius (–).
 pub(crate) const PLACE_ROUNDING: f64 = 1e-11;
 
@@ -85,11 +85,11 @@ pub struct Control {
 ///
 /// 4e-3 times the tolerance, 2e-4 at most: at the default of 0.05 m/s that is 2e-4, and restitution
 /// is right to about as much.
-const IMPACT: (f64, f64) = (4e-3, 2e-4);
+pub const IMPACT: (f64, f64) = (4e-3, 2e-4);
 /// Coarsest tolerance that still changes a step (m/s): beyond it impacts, which carry most of the error, are followed as exactly as at it.
 pub const COARSEST_M_S: f64 = IMPACT.1 / IMPACT.0;
 /// The same for the reference.
-const IMPACT_OF_REFERENCE: f64 = 1e-10;
+pub const IMPACT_OF_REFERENCE: f64 = 1e-10;
 /// Local error allowed in lasting contact, whatever is asked for (–, relative to √(g R), the speed of a rock that tips over
 /// an edge).
 const PIVOT: f64 = 0.02;

@@ -1,6 +1,6 @@
 //! The errors that schemes may have.
 
-use super::{Case, CaseKind, Setup};
+use super::{Case, CaseKind};
 use crate::math;
 use crate::solver::Settings;
 
@@ -46,9 +46,9 @@ impl Case {
     /// Half of `√(p_N/m)` of its rock (rad/s), at least that of the usual sphere. Two corners of the box that is thrown are two springs on
     /// 0.336 of its mass: `√(2/0.336)` times as fast.
     fn half_omega_rad_s(&self) -> f64 {
-        let Setup { ground, rock, block, .. } = (self.setup)(true);
-        let faster = if block.is_some() { CORNERS_FASTER } else { 1.0 };
-        HALF_OMEGA_RAD_S.max(0.5 * faster * (ground.normal_stiffness_n_m / rock.mass_kg()).sqrt())
+        let setup = (self.setup)(true);
+        let faster = if setup.block.is_some() { CORNERS_FASTER } else { 1.0 };
+        HALF_OMEGA_RAD_S.max(0.5 * faster * setup.omega())
     }
 
     /// How much the motion multiplies an error: every impact on an edge by about three.

@@ -17,7 +17,7 @@ type PivotState = [f64; 6];
 pub(super) fn on_springs(setup: &Setup, angle_rad: f64, t: f64) -> (f64, f64) {
     let pressed = setup.pressed_m(angle_rad);
     let mut state = [setup.rock.radius_m - pressed, angle_rad, 0.0, 0.0, 0.0, 0.0];
-    let omega = (setup.ground.normal_stiffness_n_m / setup.rock.mass_kg()).sqrt();
+    let omega = setup.omega();
     let steps = (t * omega * STEPS_PER_RADIAN).ceil();
     let h = t / steps;
     let law = PivotLaw::of(setup);

@@ -1,6 +1,6 @@
 //! Blocks at their ends: flat, slender, small and large beside the triangles, fast, elastic, rough.
 
-use super::bounds::{DIGITS, omega};
+use super::bounds::DIGITS;
 use super::impacts::floor;
 use super::{Notes, SchemeSetting, sprung};
 use crate::ground::Ground;
@@ -82,7 +82,7 @@ fn may_sink_m(way: &SchemeSetting, setup: &Setup, speed_m_s: f64) -> f64 {
         return 0.5 * CORNER_WAY * setup.block.map_or(f64::NAN, |block| block.ball_m);
     }
     let late = if way.scheme.has_fixed_step() { PHASE } else { 0.0 };
-    (1.0 + late) * speed_m_s / omega(setup) + 2.0 * setup.pressed_m(0.0)
+    (1.0 + late) * speed_m_s / setup.omega() + 2.0 * setup.pressed_m(0.0)
 }
 
 /// From a cube to a sheet and to a needle: none sinks in, all come to rest as flat as they are.

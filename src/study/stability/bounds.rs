@@ -1,7 +1,10 @@
 //! What a scheme may be off by, from the numbers of a case.
 
 use super::{SchemeSetting, sprung};
-use crate::ground::{NormalImpact, damping_ratio, normal_impact, restitution};
+use crate::ground::{
+    CAPTURE_DAMPING_RATIO, NormalImpact, damping_ratio, normal_impact, restitution,
+};
+use crate::solver::step_control::{IMPACT, IMPACT_OF_REFERENCE};
 use crate::study::bench::Setup;
 use std::f64::consts::TAU;
 
@@ -11,30 +14,17 @@ pub(super) const DIGITS: f64 = 1e-12;
 /// The rigid limit holds a sphere on a plane to this (–, relative to R): ten times what a flight takes for touching, the
 /// square root of 1e-12 R² being no distance to a plane that it comes to at a right angle.
 pub(super) const HOLDS: f64 = 1e-10;
-/// Damping ratio of what is captured (–).
-const CAPTURED: f64 = 2.0;
 /// Implicit steps of an impact: of half a period at three tenths of a radian each, and of the reference at the fourth order.
 const IMPACT_STEPS: [f64; 2] = [10.0, 40.0];
-/// Error of such a step over the speed of the impact (–): by 1 m/s of tolerance, and of the reference.
-const IMPACT_ERRORS: [f64; 2] = [4e-3, 1e-10];
-/// Coarser tolerances than this change no impact (m/s).
-const COARSEST: f64 = 0.05;
-
-/// Oscillation of a rock on one spring (rad/s).
-pub(super) fn omega(setup: &Setup) -> f64 {
-    (setup.ground.normal_stiffness_n_m / setup.rock.mass_kg()).sqrt()
-}
-
 /// What the speed after an impact on several planes is off by, over the speed before (–): the phase of a fixed step, which is
-/// first order, or as many errors as there are steps. The rigid limit rounds.
+/// first order, or as many of the errors that a step is allowed as there are steps. The rigid limit rounds.
 pub(super) fn impact_error(way: &SchemeSetting, omega: f64) -> f64 {
-    let tolerance = way.fineness.min(COARSEST);
     let [steps, fine_steps] = IMPACT_STEPS;
-    let [by_tolerance, fine] = IMPACT_ERRORS;
+    let (by_tolerance, coarsest) = IMPACT;
     way.scheme.of([
         way.fineness * omega,
-        steps * by_tolerance * tolerance,
-        fine_steps * fine,
+        steps * (by_tolerance * way.fineness).min(coarsest),
+        fine_steps * IMPACT_OF_REFERENCE,
         DIGITS,
     ])
 }
@@ -51,13 +41,13 @@ pub(super) fn rests_within(way: &SchemeSetting, setup: &Setup) -> f64 {
 
 /// How deep an impact at `speed_m_s` may press it (m): `v/ω`, and twice the weight.
 pub(super) fn strikes_within(way: &SchemeSetting, setup: &Setup, speed_m_s: f64) -> f64 {
-    let pressed = if sprung(way) { speed_m_s / omega(setup) } else { 0.0 };
+    let pressed = if sprung(way) { speed_m_s / setup.omega() } else { 0.0 };
     pressed + rests_within(way, setup)
 }
 
 /// What spring and dashpot of a captured impact give back (–): they swing it out once, however slow.
 pub(super) fn captured_restitution() -> f64 {
-    restitution(CAPTURED)
+    restitution(CAPTURE_DAMPING_RATIO)
 }
 
 /// An impact on a level plane.
@@ -77,12 +67,12 @@ impl SpringImpact {
     /// A blow by its restitution (–), 0 for none: no dashpot where there is all.
     pub(super) fn of(setup: &Setup, speed: f64, e: f64) -> Self {
         let zeta = damping_ratio(e);
-        Self { speed, omega: omega(setup), zeta, gravity: setup.gravity_m_s2 }
+        Self { speed, omega: setup.omega(), zeta, gravity: setup.gravity_m_s2 }
     }
 
     /// The same if it is captured.
     pub(super) fn captured(self) -> Self {
-        Self { zeta: self.zeta.max(CAPTURED), ..self }
+        Self { zeta: self.zeta.max(CAPTURE_DAMPING_RATIO), ..self }
     }
 
     fn exact(&self) -> NormalImpact {

@@ -1,6 +1,6 @@
 //! Steps and tolerances to their ends, and what the printed scheme does without memory.
 
-use super::bounds::{DIGITS, SpringImpact, omega};
+use super::bounds::{DIGITS, SpringImpact};
 use super::impacts::{floor, rebound_m_s};
 use super::{Notes, SchemeSetting};
 use crate::ground::Ground;
@@ -20,7 +20,7 @@ const SPEED_M_S: f64 = 1.0;
 /// tolerance.
 pub(super) fn steps(way: &SchemeSetting, notes: &mut Notes) {
     let floor = floor();
-    let omega = omega(&SETUP);
+    let omega = SETUP.omega();
     for power in -7..=-2 {
         let way = &SchemeSetting { fineness: 10f64.powi(power), ..*way };
         let unit = way.scheme.fineness_unit();

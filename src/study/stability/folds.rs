@@ -1,6 +1,6 @@
 //! What is no plane: folds, noise, triangles far smaller than the rock. Energy is watched at the end of every step.
 
-use super::bounds::{DIGITS, SpringImpact, impact_error, omega};
+use super::bounds::{DIGITS, SpringImpact, impact_error};
 use super::impacts::rebound_m_s;
 use super::{Notes, SchemeSetting, sprung};
 use crate::flight::{FlightEnd, Parabola, time_of_impact};
@@ -10,14 +10,12 @@ use crate::rock::{Rock, Vec3};
 use crate::simulation::Stop;
 use crate::solver::body::Body;
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
+use crate::solver::step_control::ROUNDING;
 use crate::solver::{Stepper, advance};
 use crate::study::bench::{GROUND, ROCK, SETUP, Setup, settings, terrain, with_springs};
 use crate::study::cases::meshes::{bumpy, fold};
 use crate::terrain::Terrain;
 use std::f64::consts::PI;
-
-/// Share of its energy that an implicit step may gain (–).
-const GAINS: f64 = 1e-10;
 
 /// What the energy of a rock did, springs included.
 struct Energy {
@@ -131,7 +129,7 @@ fn conserve(
     setting: &str,
     (setup, terrain, turn): (&Setup, &Terrain, f64),
 ) {
-    let omega = omega(setup);
+    let omega = setup.omega();
     let energy = watch(way, setup, terrain, Some(0.0));
     let (change, rise) =
         energy.map_or((f64::NAN, f64::NAN), |energy| ((energy.kept - 1.0).abs(), energy.rise));
@@ -240,6 +238,6 @@ pub(super) fn slides(way: &SchemeSetting, notes: &mut Notes) {
     let across = (0.2f64.powi(2) + 0.04f64.powi(2)) / 16.0;
     let turned = 4.0 * way.fineness / setup.rock.radius_m;
     // a step that gains more than the second is refused
-    let bound = way.scheme.of([across * turned, GAINS, GAINS, DIGITS]);
+    let bound = way.scheme.of([across * turned, ROUNDING, ROUNDING, DIGITS]);
     notes.hold(way, "R/cell 5, 1 mm uneven", law, rise, bound);
 }

@@ -1,22 +1,20 @@
 //! One rock, one plane: stiffness, size, speed, restitution, friction to their ends.
 
 use super::bounds::{
-    DIGITS, SpringImpact, captured_restitution, omega, plane_error, rests_within, strikes_within,
+    DIGITS, SpringImpact, captured_restitution, plane_error, rests_within, strikes_within,
 };
 use super::{Notes, SchemeSetting, sprung};
 use crate::ground::{Ground, damping_ratio};
 use crate::math;
 use crate::rock::{Rock, Vec3};
 use crate::simulation::Trajectory;
-use crate::solver::dda::own_restitution;
+use crate::solver::dda::{TRAVEL, own_restitution};
 use crate::study::bench::{GRAVITY_M_S2, GROUND, ROCK, SETUP, Setup, terrain, with_springs};
 use crate::terrain::Terrain;
 use crate::terrain::make;
 
 /// Contact oscillation per step (rad) below which a fixed step resolves an impact.
 const RESOLVED: f64 = 0.1;
-/// Longest way of a fixed step beside an edge (–, over the radius).
-const LONGEST_WAY: f64 = 0.09;
 
 /// A level square of two triangles.
 pub(super) fn floor() -> Terrain {
@@ -95,7 +93,7 @@ fn hold_rebound(
     if way.scheme.has_fixed_step() {
         let blow = if is_captured { blow.captured() } else { blow };
         // nor does it go further in a step than it looks ahead
-        let looks_m = LONGEST_WAY * setup.rock.radius_m;
+        let looks_m = TRAVEL * setup.rock.radius_m;
         let (left, _) = blow.stepped(way.fineness, looks_m, setup.longest_s);
         let law = "rebound over speed is what the steps leave";
         // places are rounded: over a step that is a speed
@@ -231,7 +229,7 @@ pub(super) fn restitution(way: &SchemeSetting, notes: &mut Notes) {
     let law = "change of height over ten bounces from 1 m (m)";
     // what the fixed step leaves of each bounce without its weight, which in an impact is g/(ω v) of the spring's force
     let bound = if way.scheme.has_fixed_step() {
-        let left = own_restitution(way.fineness * omega(&setup));
+        let left = own_restitution(way.fineness * setup.omega());
         let struck = f64::from(journey.impact_count);
         1.05 * (1.0 - math::pow(left, 2.0 * struck))
     } else {
@@ -256,9 +254,9 @@ pub(super) fn bounce_to_rest(way: &SchemeSetting, notes: &mut Notes) {
     let expected = bounces_s(way, &setup, 0.9);
     // the rule of rest compares halves of its time; implicit steps take the last swings, which fade by `ζ ω`, for some of one,
     // and the rigid limit may be a step late at either end
-    let swing = 1.0 / (damping_ratio(0.9) * omega(&setup));
+    let swing = 1.0 / (damping_ratio(0.9) * setup.omega());
     let late = 0.5 * setup.rest_time_s + 2.0 * swing;
-    let bound = way.scheme.of([1.0 / omega(&setup), late, late, 2.0 * way.fineness]);
+    let bound = way.scheme.of([1.0 / setup.omega(), late, late, 2.0 * way.fineness]);
     notes.hold(way, "", "time to rest off that of its bounces (s)", (time - expected).abs(), bound);
 }
 
@@ -305,6 +303,6 @@ pub(super) fn no_gravity(way: &SchemeSetting, notes: &mut Notes) {
     };
     let journey = notes.follow(way, "", &setup, &floor);
     let off = (journey.end.velocity_m_s.z - 2.0).abs();
-    let bound = plane_error(way, omega(&setup)) * 4.0;
+    let bound = plane_error(way, setup.omega()) * 4.0;
     notes.hold(way, "", "leaves with e v (m/s)", off, bound);
 }

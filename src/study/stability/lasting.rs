@@ -1,6 +1,6 @@
 //! What shows only after long, or among many.
 
-use super::bounds::{DIGITS, omega};
+use super::bounds::DIGITS;
 use super::{Notes, SchemeSetting, sprung};
 use crate::ground::Ground;
 use crate::math;
@@ -117,7 +117,7 @@ pub(super) fn random_releases(way: &SchemeSetting, notes: &mut Notes) {
 /// Implicit steps err by their tolerance of the speed, for which that of all the energy stands. The rigid limit solves each of
 /// its steps of contact to as many digits.
 fn unaccounted(way: &SchemeSetting, setup: &Setup, journey: &Trajectory) -> f64 {
-    let damped = 1.0 - math::exp(-0.5 * PI * omega(setup) * way.fineness);
+    let damped = 1.0 - math::exp(-0.5 * PI * setup.omega() * way.fineness);
     let speed = (2.0 * journey.released_j / setup.rock.mass_kg()).sqrt();
     let by_tolerance = 2.0 * way.fineness / speed;
     let steps = setup.longest_s / way.fineness;

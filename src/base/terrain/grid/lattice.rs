@@ -45,8 +45,7 @@ impl Lattice {
             (0..own.columns.saturating_sub(1)).flat_map(of_cell)
         };
         // Counted first: every row then knows its place.
-        let mut counts = vec![0; own.rows.saturating_sub(1)];
-        parallel::update_shares(&mut counts, 1, |row, count| count[0] = halves(row).count());
+        let counts = parallel::map_each(own.rows.saturating_sub(1), |row| halves(row).count());
         let mut corners = vec![[0; 3]; counts.iter().sum()];
         let mut free = &mut corners[..];
         let mut places: Vec<&mut [[u32; 3]]> = counts

@@ -20,11 +20,11 @@ const QUANTILES: [f64; 5] = [0.0, 0.05, 0.5, 0.95, 1.0];
 /// One file; `map_origin_m` is the map position of its (0, 0, 0).
 pub(super) fn file(piece: &Piece, map_origin_m: Vec3) -> FileHealth {
     let soup = piece.soup;
-    let is_down = |facet: usize| {
-        area_vector(&soup.facets.at(facet).map(|corner| piece.placed(corner))).z < 0.0
+    let is_down = |facet: u32| {
+        let corners = soup.facets.at(facet as usize).map(|corner| piece.placed(corner));
+        area_vector(&corners).z < 0.0
     };
-    let add = |sum, facet| sum + usize::from(is_down(facet));
-    let down = parallel::fold(soup.facets.len(), &0, add, |one, other| one + other);
+    let down = parallel::count(soup.facets.len(), is_down);
     let mut normals_off = Tally::default();
     for &facet in &soup.normals_off {
         normals_off.add(piece.placed(soup.facets.at(facet as usize)[0]) + map_origin_m);
@@ -74,11 +74,8 @@ enum Odd {
 
 /// The odd edges, located at their middle, by the numbers of their ends.
 pub(super) fn odd_edges(welded: &Welded) -> OddEdges {
-    let with_ends = |side: usize| {
-        let edge = Some(side as u32).filter(|&side| welded.edges.is_edge(side))?;
-        odd(welded, edge).map(|odd| (welded.ends(edge), odd))
-    };
-    let mut found = parallel::filter_map(welded.edges.sides(), with_ends);
+    let with_ends = |edge: u32| odd(welded, edge).map(|odd| (welded.ends(edge), odd));
+    let mut found = welded.edges.filter_map(with_ends);
     found.sort_unstable();
     let mut tallies = OddEdges::default();
     for (ends, odd) in found {
@@ -166,11 +163,7 @@ pub(super) fn area_m2(welded: &Welded) -> f64 {
 
 /// Edge lengths (m) at [`QUANTILES`], by the nearest rank.
 pub(super) fn edge_quantiles_m(welded: &Welded) -> [f64; 5] {
-    let length = |side: usize| {
-        let edge = Some(side as u32).filter(|&side| welded.edges.is_edge(side));
-        edge.map(|edge| welded.edge_m(edge).norm())
-    };
-    let mut lengths = parallel::filter_map(welded.edges.sides(), length);
+    let mut lengths = welded.edges.filter_map(|edge| Some(welded.edge_m(edge).norm()));
     let last = lengths.len().saturating_sub(1) as f64;
     if lengths.is_empty() {
         return [0.0; QUANTILES.len()];

@@ -7,7 +7,7 @@ use std::f64::consts::{PI, TAU};
 /// Below this restitution an impact is plastic (–): the damping ratio of e → 0 grows without bound.
 const PLASTIC_RESTITUTION: f64 = 0.01;
 /// Damping ratio of an impact too slow to rebound; it ends all flutter.
-pub(super) const CAPTURE_DAMPING_RATIO: f64 = 2.0;
+pub const CAPTURE_DAMPING_RATIO: f64 = 2.0;
 /// Damping ratio of a plastic impact; `e(5) = 0.01`.
 const PLASTIC_DAMPING_RATIO: f64 = 5.0;
 
