@@ -7,6 +7,7 @@
 mod annual;
 mod arrival;
 mod barriers;
+mod beta;
 mod classes;
 mod design;
 mod difference;

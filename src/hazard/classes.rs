@@ -1,7 +1,6 @@
 //! Counts over classes of equal ratio: percentiles and exceedance without keeping values.
 
-use super::proportion::NORMAL_95;
-use super::quantile::{Percentile, Ranks, needed};
+use super::quantile::{Below, Bounds, Percentile};
 use crate::frequency::Weights;
 use crate::math;
 use serde::{Deserialize, Serialize};
@@ -118,32 +117,24 @@ impl Counts {
         self.0.iter().map(|(.., count)| *count as usize).sum()
     }
 
-    /// Percentile `p` by its class, with the interval of [`Percentile`]: by ranks where all weigh the same, else
-    /// Woodruff's; none of nothing.
+    /// Percentile `p` by its class, with the interval of [`Percentile`]: by ranks where all weigh the same, else by their weights; none
+    /// of nothing. It reaches to the far ends of its outer classes: where values lie inside a class is not kept.
     pub(super) fn percentile_with_interval(&self, p: f64, weights: &Weights) -> Option<Percentile> {
-        let rocks = self.rocks();
-        if rocks == 0 {
+        if self.0.is_empty() {
             return None;
         }
-        let value = self.interpolated(p, weights);
-        let [low_95, high_95] = if weights.are_equal() {
-            let ranks = Ranks::of(rocks, p);
-            let at = |rank: usize| self.interpolated((rank as f64 - 0.5) / rocks as f64, weights);
-            [ranks.low.map(at), ranks.high.map(at)]
-        } else {
-            let one = |stratum: u16| weights.of_stratum(usize::from(stratum));
-            let each = || self.0.iter();
-            let all: f64 = each().map(|&(_, stratum, n)| one(stratum) * f64::from(n)).sum();
-            let side = |&(class, stratum, n): &(u16, u16, u32)| {
-                let below = f64::from(u8::from(middle_of(class) <= value));
-                f64::from(n) * (one(stratum) * (below - p)).powi(2)
-            };
-            let sd = each().map(side).sum::<f64>().sqrt() / all;
-            let at = |p: f64| (p > 0.0 && p < 1.0).then(|| self.interpolated(p, weights));
-            [at(p - NORMAL_95 * sd), at(p + NORMAL_95 * sd)]
-        };
-        let needs = needed(p);
-        Some(Percentile { value, low_95, high_95, upper_95: None, needs, censored: false })
+        let equal = weights.are_equal();
+        let one = |stratum: u16| if equal { 1.0 } else { weights.of_stratum(usize::from(stratum)) };
+        let groups = self.0.iter().map(|&(_, stratum, count)| (one(stratum), count as usize));
+        let Bounds { low, high, needs, .. } = Below::of(groups).bounds(p);
+        Some(Percentile {
+            value: self.interpolated(p, weights),
+            low_95: low.map(|at| lower_end_of(self.0[at].0)),
+            high_95: high.map(|at| lower_end_of(self.0[at].0 + 1)),
+            upper_95: None,
+            needs,
+            censored: false,
+        })
     }
 }
 

@@ -95,8 +95,11 @@ impl Profile {
     /// The stretches that rocks were in, from the release on, each rock by what it stands for.
     pub fn points(&self, weights: &Weights) -> Vec<ProfilePoint> {
         let of = |counts: &Counts, largest: f64| {
-            let within =
-                |found: Percentile| Percentile { value: found.value.min(largest), ..found };
+            let within = |found: Percentile| Percentile {
+                value: found.value.min(largest),
+                high_95: found.high_95.map(|high| high.min(largest)),
+                ..found
+            };
             Some(StretchStatistic {
                 median: within(counts.percentile_with_interval(0.50, weights)?),
                 p95: within(counts.percentile_with_interval(0.95, weights)?),

@@ -1,7 +1,14 @@
 //! A share of the rocks, with its confidence interval.
 
+use super::beta::quantile;
 use serde::{Deserialize, Serialize};
 
+/// Chance that an interval misses on one side: half of 1 − 95 %.
+pub(super) const ONE_TAIL: f64 = 0.025;
+/// None of `n` seen bounds a share by so much over `n`, with 95 % confidence: `1 − 0.05^(1/n)` at most.
+pub(super) const RULE_OF_THREE: f64 = 3.0;
+/// What is missing to all by no more than rounding (–).
+const ALL: f64 = 1e-12;
 /// Half width of the two-sided 95 % interval of the standard normal distribution (–).
 pub(super) const NORMAL_95: f64 = 1.959_963_984_540_054;
 /// The same of Student's distribution with one degree of freedom, `tan(0.475 π)` (–).
@@ -26,9 +33,10 @@ pub(super) fn student_95(freedom: f64) -> f64 {
 
 /// Share of `count` among `of`, with a 95 % interval.
 ///
-/// The interval is Wilson's (1927, eq. 1). It never leaves 0..1 and stays sound for small shares, where
-/// `p ± 1.96 √(p(1 − p)/n)` does not. Where nothing (or everything) was counted, the free end is the
-/// rule of three: having seen none among `n`, the share is below `3/n` with 95 % confidence.
+/// The interval is that of Clopper and Pearson (1934): the shares with which so few, or so many, would be counted in 2.5 % of all samples. It
+/// holds the truth in at least 95 % of samples, however rare what is counted and however few the rocks; Wilson's (1927), which is
+/// right on average, in 84 % at worst, where one or none is expected. Where nothing (or everything) was counted, the free end is the rule of three, one-sided:
+/// having seen none among `n`, the share is below `3/n` with 95 % confidence.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Proportion {
     /// How many were counted.
@@ -49,31 +57,24 @@ pub struct Proportion {
 impl Proportion {
     /// Share of `count` among `of`; of nothing, nothing is known: 0..1.
     pub fn new(count: usize, of: usize) -> Self {
-        let share = if of == 0 { 0.0 } else { count as f64 / of as f64 };
-        let (low_95, high_95) = match count {
-            _ if of == 0 => (0.0, 1.0),
-            0 => (0.0, rule_of_three(of)),
-            all if all == of => (1.0 - rule_of_three(of), 1.0),
-            _ => wilson(share, of as f64),
-        };
+        let n = of.max(1) as f64;
+        let share = count as f64 / n;
+        Self::weighted((count, of), share, (share * (1.0 - share) / n, 1.0 / n))
+    }
+
+    /// A share of weighted rocks that is known with a variance; one rock stands for `heaviest` of all at most (–).
+    pub(super) fn weighted(
+        (count, of): (usize, usize),
+        share: f64,
+        (variance, heaviest): (f64, f64),
+    ) -> Self {
+        if of == 0 {
+            return Self { count, of, share: 0.0, low_95: 0.0, high_95: 1.0, censored: false };
+        }
+        let [low_95, high_95] = interval_95(share, (variance, heaviest));
         Self { count, of, share, low_95, high_95, censored: false }
     }
-}
 
-impl Proportion {
-    /// A share of weighted rocks: as many of equal weight as would know it equally well say how well it is known.
-    pub(super) fn effective(count: usize, of: usize, share: f64, rocks: f64) -> Self {
-        let (low_95, high_95) = match count {
-            _ if of == 0 => (0.0, 1.0),
-            0 => (0.0, (3.0 / rocks).min(1.0)),
-            all if all == of => ((1.0 - 3.0 / rocks).max(0.0), 1.0),
-            _ => wilson(share, rocks),
-        };
-        Self { count, of, share, low_95, high_95, censored: false }
-    }
-}
-
-impl Proportion {
     /// The same where some rocks may still belong: `far` counts them all. The truth lies between the two.
     #[must_use]
     pub(super) fn up_to(self, far: &Self) -> Self {
@@ -82,16 +83,32 @@ impl Proportion {
     }
 }
 
-/// Upper 95 % bound of a share of which none was seen among `n`: `1 − 0.05^(1/n) ≈ 3/n`.
-fn rule_of_three(n: usize) -> f64 {
-    (3.0 / n as f64).min(1.0)
+/// 95 % interval of a share that is known with a variance, see [`between_tails`]; one-sided where nothing or all is seen.
+pub(super) fn interval_95(share: f64, (variance, heaviest): (f64, f64)) -> [f64; 2] {
+    let open = (RULE_OF_THREE * heaviest).min(1.0);
+    if share <= 0.0 {
+        [0.0, open]
+    } else if share >= 1.0 - ALL {
+        [1.0 - open, 1.0]
+    } else {
+        between_tails(share, (variance, heaviest), ONE_TAIL)
+    }
 }
 
-/// Wilson's score interval: `(p + z²/2n ± z √(p(1 − p)/n + z²/4n²)) / (1 + z²/n)`.
-pub(super) fn wilson(p: f64, n: f64) -> (f64, f64) {
-    let z2 = NORMAL_95 * NORMAL_95;
-    let middle = p + z2 / (2.0 * n);
-    let half = NORMAL_95 * (p * (1.0 - p) / n + z2 / (4.0 * n * n)).sqrt();
-    let scale = 1.0 + z2 / n;
-    ((middle - half) / scale, (middle + half) / scale)
+/// The shares that leave a tail on either side, where one was seen with a variance `σ²` and one rock stands for `h` of all at most.
+///
+/// The ends are quantiles of beta distributions: of `s/w` and `(1 − s + h)/w` the lower, of `(s + h)/w` and `(1 − s)/w` the
+/// upper, `w` being the effective weight of a rock `(σ² + q h²)/(s (1 − s) + q h)`, with `q = s` for the lower and `1 − s` for the upper
+/// end. With equal weights, `h = 1/n` and `σ² = s (1 − s) h`, it is Clopper and Pearson's (1934) of `s n` among `n`; a small share
+/// has Fay and Feuer's (1997, Statistics in Medicine 16, 791), who add one more rock of the heaviest weight, as what was not seen may belong to the
+/// stratum whose rocks stand for most; a large share has the same from the other side. In between it is that of Korn and Graubard (1998, Survey
+/// Methodology 24, 193) with that rock, without which rare heavy rocks break it far too often.
+pub(super) fn between_tails(share: f64, (variance, heaviest): (f64, f64), tail: f64) -> [f64; 2] {
+    let (rest, h) = (1.0 - share, heaviest);
+    let weight = |part: f64| (variance + part * h * h) / (share * rest + part * h);
+    let (low, high) = (weight(share), weight(rest));
+    [
+        if share > 0.0 { quantile(tail, [share / low, (rest + h) / low]) } else { 0.0 },
+        if rest > 0.0 { quantile(1.0 - tail, [(share + h) / high, rest / high]) } else { 1.0 },
+    ]
 }

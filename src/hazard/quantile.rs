@@ -4,16 +4,12 @@
 //! of the values. So the `l`-th and `u`-th smallest value enclose `q_p` with probability `P(l ≤ B < u)`
 //! (Conover, Practical Nonparametric Statistics, section 3.2). The probabilities are summed, not approximated.
 
-use super::proportion::NORMAL_95;
+use super::proportion::{ONE_TAIL, between_tails};
 use crate::math;
 use serde::{Deserialize, Serialize};
 
-/// Chance that an interval misses on one side: half of 1 − 95 %.
-const ONE_TAIL: f64 = 0.025;
 /// Chance that a one-sided bound misses: 1 − 95 %.
 const WHOLE_TAIL: f64 = 0.05;
-/// 95 % quantile of the standard normal distribution (–).
-const NORMAL_ONE_SIDED_95: f64 = 1.644_853_626_951_472_2;
 /// Binomial probabilities below this part of the largest are left out: their sum stays under 1e-15.
 const NEGLIGIBLE: f64 = 1e-22;
 
@@ -85,41 +81,94 @@ impl Percentile {
 
 impl Percentile {
     /// Percentile `p` (0 < p < 1) of weighted values in ascending order: the smallest that at least the share `p` of all
-    /// weight does not exceed; none of nothing.
-    ///
-    /// The interval is Woodruff's (1952): the share of weight below is known to `σ² = Σ w² (1{x ≤ q} − p)² / (Σ w)²`, and
-    /// the values at the shares `p ± 1.96 σ` enclose the percentile. Where such a share is not below 1, or has no rock
-    /// below it, that end is open. For the upper end one more rock of the heaviest weight lies above, as Fay and Feuer (1997) have it for
-    /// rates: that no heavy rock was seen beyond the percentile does not say that none goes there. Of fewer rocks than it needs there is no
-    /// lower end either: the few heavy ones that decide where it lies tell too little of `σ`.
-    /// [`needs`](Self::needs) is as many of these rocks as it takes to be worth enough of equal weight, `(Σ w)² / Σ w²` (Kish 1965).
+    /// weight does not exceed; none of nothing. Its interval is that of [`Below::bounds`].
     pub(super) fn weighted((sorted, weights): (&[f64], &[f64]), p: f64) -> Option<Self> {
-        let all: f64 = weights.iter().sum();
-        let at = |share: f64| {
-            let mut below = 0.0;
-            let reaches = |weight: &f64| {
-                below += weight;
-                below >= share * all
-            };
-            let rank = weights.iter().position(reaches);
-            rank.map_or(sorted.last(), |rank| sorted.get(rank)).copied()
+        let below = Below::of(weights.iter().map(|&weight| (weight, 1)));
+        let value = *sorted.get(below.place(p))?;
+        let Bounds { low, high, upper, needs } = below.bounds(p);
+        let at = |place: Option<usize>| place.map(|place| sorted[place]);
+        let (low_95, high_95, upper_95) = (at(low), at(high), at(upper));
+        Some(Self { value, low_95, high_95, upper_95, needs, censored: false })
+    }
+}
+
+/// What weighs below and up to each of some places in ascending order: of values one by one or in groups.
+pub(super) struct Below {
+    /// Sum of the weights below each place, and of their squares; all of them last.
+    sums: Vec<[f64; 2]>,
+    rocks: usize,
+    /// What the heaviest rock weighs.
+    heaviest: f64,
+}
+
+/// Which places bound a percentile, counted from 0; none where none does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Bounds {
+    /// Lower end of the two-sided 95 % interval.
+    pub(super) low: Option<usize>,
+    /// Upper end of the two-sided 95 % interval.
+    pub(super) high: Option<usize>,
+    /// One-sided 95 % upper bound.
+    pub(super) upper: Option<usize>,
+    /// Rocks of this kind needed for an upper bound.
+    pub(super) needs: usize,
+}
+
+impl Below {
+    /// Of groups of so many rocks of one weight each (weight, rocks); what has the same place has one group, or one after the other.
+    pub(super) fn of(groups: impl Iterator<Item = (f64, usize)>) -> Self {
+        let mut below = Self { sums: vec![[0.0; 2]], rocks: 0, heaviest: 0.0 };
+        let mut last = [0.0; 2];
+        for (weight, rocks) in groups {
+            let n = rocks as f64;
+            last = [last[0] + n * weight, last[1] + n * weight * weight];
+            below.sums.push(last);
+            below.rocks += rocks;
+            below.heaviest = below.heaviest.max(weight);
+        }
+        below
+    }
+
+    /// Sums of weights and of their squares over all.
+    fn whole(&self) -> [f64; 2] {
+        self.sums.last().copied().unwrap_or_default()
+    }
+
+    /// The first place up to which at least the share `p` of all weight lies.
+    pub(super) fn place(&self, p: f64) -> usize {
+        let wanted = p * self.whole()[0];
+        // rounding may keep the last sum from reaching the whole
+        let inner = self.sums.get(1..self.sums.len() - 1).unwrap_or_default();
+        inner.partition_point(|[below, _]| *below < wanted)
+    }
+
+    /// Which places bound percentile `p` with 95 % confidence: those at which the share below, or up to, leaves `p` out of its own
+    /// interval (test inversion, Francisco and Fuller 1991, as Woodruff 1952 but not normal). Of equal weights these are the [`Ranks`]. Equal values
+    /// count one after the other, as if they differed by less than is seen: taken together they would seem to know their share
+    /// better than they do. Of fewer rocks than it [needs](Percentile::needs), so many as are worth enough of equal weight, `(Σ w)² / Σ w²` (Kish 1965),
+    /// there is no lower end either: the few heavy ones that decide where it lies tell too little of how well they do.
+    pub(super) fn bounds(&self, p: f64) -> Bounds {
+        let [whole, squares] = self.whole();
+        let last = self.sums.len() - 1;
+        let ends = |[below, its]: [f64; 2], tail: f64| {
+            let share = (below / whole).min(1.0);
+            let variance = its * (1.0 - share).powi(2) + (squares - its) * share * share;
+            let known = (variance.max(0.0) / (whole * whole), self.heaviest / whole);
+            between_tails(share, known, tail)
         };
-        let value = at(p)?;
-        let side = |(x, w): (&f64, &f64)| (w * (f64::from(u8::from(*x <= value)) - p)).powi(2);
-        let seen = sorted.iter().zip(weights).map(side).sum::<f64>() / (all * all);
-        let worth = worth(weights);
-        let heaviest = weights.iter().copied().fold(0.0, f64::max) / all;
-        let (sd, wider) = (seen.sqrt(), (seen + (p * heaviest).powi(2)).sqrt());
-        let end = |share: f64| (share > 0.0 && share < 1.0).then(|| at(share)).flatten();
-        let needs = (needed(p) as f64 * sorted.len() as f64 / worth - 1e-9).ceil() as usize;
-        Some(Self {
-            value,
-            low_95: end(p - NORMAL_95 * sd).filter(|_| sorted.len() >= needs),
-            high_95: end(p + NORMAL_95 * wider),
-            upper_95: end(p + NORMAL_ONE_SIDED_95 * wider),
+        let upper = |tail: f64| {
+            let place = self.sums[1..].partition_point(|up_to| ends(*up_to, tail)[0] <= p);
+            (place < last).then_some(place)
+        };
+        let worth = whole * whole / squares;
+        let needs = (needed(p) as f64 * self.rocks as f64 / worth - 1e-9).ceil() as usize;
+        let low = self.sums[..last].partition_point(|below| ends(*below, ONE_TAIL)[1] < p);
+        Bounds {
+            low: low.checked_sub(1).filter(|_| self.rocks >= needs),
+            high: upper(ONE_TAIL),
+            upper: upper(WHOLE_TAIL),
             needs,
-            censored: false,
-        })
+        }
     }
 }
 

@@ -4,7 +4,7 @@
 //! strata add (Hantz et al. 2021, Geosciences 11, 158: passage frequency = Σ failure frequency × reach probability).
 //! Every rock may count for more or less than one, by its exposure `y` for instance.
 
-use super::proportion::{Proportion, wilson};
+use super::proportion::{Proportion, RULE_OF_THREE, interval_95};
 use crate::frequency::Weights;
 use serde::{Deserialize, Serialize};
 
@@ -113,10 +113,9 @@ pub(super) struct Limits {
     sparse: Vec<(usize, f64)>,
 }
 
-/// With so many rocks in a stratum or more, what none seen leaves open, `3/n`, lies within Wilson's interval, `z²/(n + z²)`.
+/// With fewer rocks in a stratum what none seen leaves open, `3/n` and all of it below four rocks, may lie beyond what one more rock
+/// of it adds to the upper end, `1 − 0.025^(1/n)`: from nine rocks on it does not, and beside other strata hardly from so many on.
 const MANY: usize = 14;
-/// None of `n` seen bounds a share by so much over `n`, with 95 % confidence.
-const NONE: f64 = 3.0;
 
 impl Limits {
     /// Of passages with at least an energy (J): strata whose largest rock can never have it do not count. `most_j` is the
@@ -138,7 +137,7 @@ impl Limits {
     ) -> Self {
         let few = |at: &usize| weights.strata() > 1 && weights.rocks(*at) < MANY;
         let unseen = |at: usize| {
-            let share = (NONE / weights.rocks(at).max(1) as f64).min(1.0);
+            let share = (RULE_OF_THREE / weights.rocks(at).max(1) as f64).min(1.0);
             (at, most(at) * weights.per_year(at) * share)
         };
         let mut sparse: Vec<(usize, f64)> = strata.clone().filter(few).map(unseen).collect();
@@ -242,7 +241,7 @@ impl<'a> Running<'a> {
         } else {
             0.0
         };
-        // with one stratum the interval of a proportion is Wilson's, which wants p (1 − p)
+        // with one stratum the interval is that of a proportion, which wants p (1 − p)
         let few = if self.weights.strata() == 1 { 1.0 } else { n / (n - 1.0).max(1.0) };
         self.weights.per_year(stratum).powi(2) * (few * spread + full) / n
     }
@@ -283,26 +282,15 @@ impl<'a> Running<'a> {
     }
 }
 
-/// 95 % interval of a sum of weighted counts.
-///
-/// Wilson's score interval with the effective weight of a count, `variance / (λ (1 − λ/most))`: with equal weights it is
-/// that of [`Proportion`]. For the upper end one more rock of the heaviest weight is added to variance and sum, as Fay
-/// and Feuer (1997, Statistics in Medicine 16, 791) do: what was not seen may belong to the stratum whose rocks stand for
-/// most; only strata that can count at all are asked. Nothing seen: three of the heaviest, `3 max f_j/n_j`; the mean weight would be too small a bound where the
-/// rocks to come are of the heaviest stratum. Of strata with a handful of rocks each the largest of which none was seen bounds
-/// the upper end from below, see [`Running::estimate`].
+/// 95 % interval of a sum of weighted counts: that of a [share](interval_95) of the most it can be. Only strata that can count at all are
+/// asked for their heaviest rock. Of strata with a handful of rocks each the largest of which none was seen bounds the upper end from below, see
+/// [`Running::estimate`].
 fn interval(value: f64, variance: f64, &Limits { most, heaviest, .. }: &Limits) -> [f64; 2] {
-    if value <= 0.0 {
-        return [0.0, (NONE * heaviest).min(most)];
+    if most <= 0.0 {
+        return [0.0, 0.0];
     }
-    let spread = value * (1.0 - value / most);
-    if spread <= 1e-12 * most {
-        return [(most - NONE * heaviest).max(0.0), most];
-    }
-    let weight = (variance / spread).max(f64::MIN_POSITIVE);
-    let wider = (variance + heaviest * heaviest) / (spread + heaviest);
-    let share = value / most;
-    [most * wilson(share, most / weight).0, most * wilson(share, most / wider).1]
+    let share = (value / most).clamp(0.0, 1.0);
+    interval_95(share, (variance / (most * most), heaviest / most)).map(|end| most * end)
 }
 
 /// Share of all events that some releases stand for.

@@ -19,17 +19,15 @@ pub(super) fn stopped_at(
     }
     let weight = |rock: &Arrival| weights.of_release(rock.release);
     let all: f64 = rocks.iter().map(weight).sum();
-    let squares: f64 = rocks.iter().map(|rock| weight(rock).powi(2)).sum();
+    let heaviest = rocks.iter().map(weight).fold(0.0, f64::max) / all;
     let share = rocks.iter().filter(is_stopped).map(weight).sum::<f64>() / all;
     // as a ratio of sums it is known to Σ w² (y − p)² / (Σ w)²: worse than by the weights alone where heavy rocks decide it
     let side = |rock: &Arrival| {
         let stopped = f64::from(u8::from(rock.is_stopped(height_m, barrier.capacity_j)));
         (weight(rock) * (stopped - share)).powi(2)
     };
-    let sides: f64 = rocks.iter().map(side).sum();
-    let of_ratio = if sides > 0.0 { share * (1.0 - share) / sides } else { f64::INFINITY };
-    let effective = (all * all / squares).min(all * all * of_ratio);
-    Proportion::effective(count, rocks.len(), share, effective)
+    let variance = rocks.iter().map(side).sum::<f64>() / (all * all);
+    Proportion::weighted((count, rocks.len()), share, (variance, heaviest))
 }
 
 /// Share of all that were released, by what they stand for, that arrive; the `open` ones may.

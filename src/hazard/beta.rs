@@ -1,0 +1,119 @@
+//! The beta distribution: its distribution function and its quantiles, of which exact intervals of shares are made.
+
+use crate::math;
+
+/// Least part of a continued fraction that is taken into account (–).
+const NEGLIGIBLE: f64 = 1e-15;
+/// Most terms of it: of parameters of a thousand million some ten thousand are needed.
+const MOST_TERMS: u32 = 100_000;
+/// Steps in which a quantile is found, at most: those of Halley's method treble the digits, halvings give one bit each.
+const MOST_STEPS: u32 = 100;
+/// Where steps end: the next would be the cube of this (–, of the quantile).
+const NEAR: f64 = 1e-9;
+
+/// Logarithm of the density of beta(a, b) times `x (1 − x)`: `a ln x + b ln(1 − x) − ln B(a, b)`.
+struct Beta {
+    a: f64,
+    b: f64,
+    ln_whole: f64,
+}
+
+impl Beta {
+    fn new(a: f64, b: f64) -> Self {
+        let ln_gamma = libm::lgamma;
+        Self { a, b, ln_whole: ln_gamma(a) + ln_gamma(b) - ln_gamma(a + b) }
+    }
+
+    fn front(&self, x: f64) -> f64 {
+        math::exp(self.a * math::ln(x) + self.b * libm::log1p(-x) - self.ln_whole)
+    }
+
+    /// `I_x(a, b)`, the chance of a value below `x`, 0 < x < 1; `front` is that of `x`.
+    fn below(&self, x: f64, front: f64) -> f64 {
+        let Self { a, b, .. } = *self;
+        if x < (a + 1.0) / (a + b + 2.0) {
+            front * fraction(x, [a, b]) / a
+        } else {
+            1.0 - front * fraction(1.0 - x, [b, a]) / b
+        }
+    }
+}
+
+/// The continued fraction of the incomplete beta function (Olver et al. 2010, NIST Handbook, 8.17.22), from its front by the
+/// method of Lentz as Thompson and Barnett (1986) have it.
+fn fraction(x: f64, [a, b]: [f64; 2]) -> f64 {
+    let kept = |value: f64| if value.abs() < f64::MIN_POSITIVE { f64::MIN_POSITIVE } else { value };
+    let mut d = 1.0 / kept(1.0 - (a + b) * x / (a + 1.0));
+    let (mut c, mut whole) = (1.0, d);
+    for term in 1..MOST_TERMS {
+        let m = f64::from(term);
+        let even = m * (b - m) * x / ((a + 2.0 * m - 1.0) * (a + 2.0 * m));
+        let odd = -(a + m) * (a + b + m) * x / ((a + 2.0 * m) * (a + 2.0 * m + 1.0));
+        let mut factor = 1.0;
+        for coefficient in [even, odd] {
+            d = 1.0 / kept(1.0 + coefficient * d);
+            c = kept(1.0 + coefficient / c);
+            factor = c * d;
+            whole *= factor;
+        }
+        if (factor - 1.0).abs() < NEGLIGIBLE {
+            break;
+        }
+    }
+    whole
+}
+
+/// The value below which beta(a, b) lies with probability `p`: 0 of none to the left (a = 0), 1 of none to the right (b = 0).
+///
+/// By Halley's method on `I_x(a, b) = p`, inside a bracket that every step narrows.
+pub(super) fn quantile(p: f64, [a, b]: [f64; 2]) -> f64 {
+    if a <= 0.0 || b <= 0.0 {
+        return if a <= 0.0 { 0.0 } else { 1.0 };
+    }
+    let beta = Beta::new(a, b);
+    let (mut low, mut high) = (0.0, 1.0);
+    let mut x = start(p, &beta);
+    for _ in 0..MOST_STEPS {
+        let front = beta.front(x);
+        let off = beta.below(x, front) - p;
+        if off < 0.0 { low = x } else { high = x }
+        let newton = off * x * (1.0 - x) / front;
+        let bend = newton * ((a - 1.0) / x - (b - 1.0) / (1.0 - x));
+        let next = x - newton / (1.0 - 0.5 * bend.clamp(-1.0, 1.0));
+        let is_inside = low < next && next < high;
+        let next = if is_inside { next } else { 0.5 * (low + high) };
+        let step = (next - x).abs();
+        x = next;
+        if step <= NEAR * x.min(1.0 - x) {
+            break;
+        }
+    }
+    x
+}
+
+/// Where to begin: a normal value through Wilson and Hilferty's cubes (Abramowitz and Stegun 1964, 26.5.22); for a parameter
+/// below 1 by the tail on that side alone.
+fn start(p: f64, &Beta { a, b, ln_whole }: &Beta) -> f64 {
+    let inside = |x: f64| x.clamp(1e-300, 1.0 - f64::EPSILON);
+    if a < 1.0 || b < 1.0 {
+        let tail = |share: f64, a: f64| math::exp((math::ln(share * a) + ln_whole) / a);
+        let left = tail(p, a);
+        return inside(if left < a / (a + b) { left } else { 1.0 - tail(1.0 - p, b) });
+    }
+    let z = -normal(p);
+    let (u, v) = (1.0 / (2.0 * a - 1.0), 1.0 / (2.0 * b - 1.0));
+    let (third, h) = ((z * z - 3.0) / 6.0, 2.0 / (u + v));
+    let root = z * (third + h).max(0.0).sqrt() / h;
+    let w = root - (v - u) * (third + 5.0 / 6.0 - 2.0 / (3.0 * h));
+    inside(a / (a + b * math::exp(2.0 * w)))
+}
+
+/// Quantile of the standard normal distribution, to 5e-4 (Abramowitz and Stegun 1964, 26.2.23).
+fn normal(p: f64) -> f64 {
+    let tail = p.min(1.0 - p);
+    let t = (-2.0 * math::ln(tail)).sqrt();
+    let over = (0.010_328 * t + 0.802_853) * t + 2.515_517;
+    let under = ((0.001_308 * t + 0.189_269) * t + 1.432_788) * t + 1.0;
+    let far = t - over / under;
+    if p < 0.5 { -far } else { far }
+}
