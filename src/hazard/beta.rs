@@ -76,7 +76,11 @@ pub(super) fn quantile(p: f64, [a, b]: [f64; 2]) -> f64 {
     for _ in 0..MOST_STEPS {
         let front = beta.front(x);
         let off = beta.below(x, front) - p;
-        if off < 0.0 { low = x } else { high = x }
+        if off < 0.0 {
+            low = x
+        } else {
+            high = x
+        }
         let newton = off * x * (1.0 - x) / front;
         let bend = newton * ((a - 1.0) / x - (b - 1.0) / (1.0 - x));
         let next = x - newton / (1.0 - 0.5 * bend.clamp(-1.0, 1.0));

@@ -97,8 +97,6 @@ pub(super) struct Below {
     /// Sum of the weights below each place, and of their squares; all of them last.
     sums: Vec<[f64; 2]>,
     rocks: usize,
-    /// What the heaviest rock weighs.
-    heaviest: f64,
 }
 
 /// Which places bound a percentile, counted from 0; none where none does.
@@ -117,14 +115,13 @@ pub(super) struct Bounds {
 impl Below {
     /// Of groups of so many rocks of one weight each (weight, rocks); what has the same place has one group, or one after the other.
     pub(super) fn of(groups: impl Iterator<Item = (f64, usize)>) -> Self {
-        let mut below = Self { sums: vec![[0.0; 2]], rocks: 0, heaviest: 0.0 };
+        let mut below = Self { sums: vec![[0.0; 2]], rocks: 0 };
         let mut last = [0.0; 2];
         for (weight, rocks) in groups {
             let n = rocks as f64;
             last = [last[0] + n * weight, last[1] + n * weight * weight];
             below.sums.push(last);
             below.rocks += rocks;
-            below.heaviest = below.heaviest.max(weight);
         }
         below
     }
@@ -142,27 +139,27 @@ impl Below {
         inner.partition_point(|[below, _]| *below < wanted)
     }
 
-    /// Which places bound percentile `p` with 95 % confidence: those at which the share below, or up to, leaves `p` out of its own
-    /// interval (test inversion, Francisco and Fuller 1991, as Woodruff 1952 but not normal). Of equal weights these are the [`Ranks`]. Equal values
-    /// count one after the other, as if they differed by less than is seen: taken together they would seem to know their share
-    /// better than they do. Of fewer rocks than it [needs](Percentile::needs), so many as are worth enough of equal weight, `(Σ w)² / Σ w²` (Kish 1965),
-    /// there is no lower end either: the few heavy ones that decide where it lies tell too little of how well they do.
+    /// Which places bound percentile `p` with 95 % confidence: those at which the share below, or up to, leaves `p` out of its own interval
+    /// (test inversion, Francisco and Fuller 1991; Woodruff's of 1952 with exact tails). One more rock has the weight that the rocks
+    /// have by weight, `Σ w²/Σ w`. Of equal weights these are the [`Ranks`].
+    ///
+    /// Equal values count one after the other, as if they differed by less than is seen: together they would seem to know their share better
+    /// than they do. Of fewer rocks than it [needs](Percentile::needs), so many as are worth enough of equal weight, there is no lower end
+    /// either: the few heavy ones that decide where it lies tell too little of how well they do.
     pub(super) fn bounds(&self, p: f64) -> Bounds {
         let [whole, squares] = self.whole();
-        let last = self.sums.len() - 1;
+        let (last, one) = (self.sums.len() - 1, squares / (whole * whole));
         let ends = |[below, its]: [f64; 2], tail: f64| {
             let share = (below / whole).min(1.0);
             let variance = its * (1.0 - share).powi(2) + (squares - its) * share * share;
-            let known = (variance.max(0.0) / (whole * whole), self.heaviest / whole);
-            between_tails(share, known, tail)
+            between_tails(share, (variance.max(0.0) / (whole * whole), one), tail)
         };
         let upper = |tail: f64| {
             let place = self.sums[1..].partition_point(|up_to| ends(*up_to, tail)[0] <= p);
             (place < last).then_some(place)
         };
-        let worth = whole * whole / squares;
-        let needs = (needed(p) as f64 * self.rocks as f64 / worth - 1e-9).ceil() as usize;
         let low = self.sums[..last].partition_point(|below| ends(*below, ONE_TAIL)[1] < p);
+        let needs = (needed(p) as f64 * self.rocks as f64 * one - 1e-9).ceil() as usize;
         Bounds {
             low: low.checked_sub(1).filter(|_| self.rocks >= needs),
             high: upper(ONE_TAIL),

@@ -20,9 +20,9 @@ pub struct Sample {
 pub struct Mean {
     /// Mean.
     pub value: f64,
-    /// Lower end of the interval; none for a single value.
+    /// Lower end of the interval; none for a single value, or where all are equal.
     pub low_95: Option<f64>,
-    /// Upper end of the interval; none for a single value.
+    /// Upper end of the interval; none for a single value, or where all are equal.
     pub high_95: Option<f64>,
     /// Whether some values are only bounds (censored): then the mean is one too, and its interval is open on that side.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
@@ -136,7 +136,9 @@ impl Sample {
         } else {
             value - below
         };
-        let ends = |end: f64| (self.sorted.len() > 1).then_some(end);
+        // equal values say nothing of how far another may lie: none of ten seen to jump is no height of exactly zero
+        let differ = self.sorted.first() < self.sorted.last();
+        let ends = |end: f64| differ.then_some(end);
         let open = self.far.as_ref().map(|(_, open)| *open);
         let mean = Mean {
             value,

@@ -101,11 +101,11 @@ fn the_mean_has_students_interval() {
     assert!(Sample::of([]).mean().is_none());
 }
 
-/// Newcombe, Statistics in Medicine 17 (1998), table I, method 3 (Wilson), to the printed digits.
+/// Newcombe, Statistics in Medicine 17 (1998), table I, method 5 (Clopper and Pearson), to the printed digits.
 #[test]
-fn shares_have_the_intervals_of_wilson() {
+fn shares_have_the_intervals_of_clopper_and_pearson() {
     for (count, of, low, high) in
-        [(81, 263, 0.2553, 0.3662), (15, 148, 0.0624, 0.1605), (1, 29, 0.0061, 0.1718)]
+        [(81, 263, 0.2527, 0.3676), (15, 148, 0.0578, 0.1617), (1, 29, 0.0009, 0.1776)]
     {
         let share = Proportion::new(count, of);
         assert!(

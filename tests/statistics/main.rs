@@ -15,6 +15,7 @@ mod frequency;
 mod geotiff;
 mod gis;
 mod hazard;
+mod intervals;
 mod lines;
 mod meshes;
 mod open;

@@ -1,14 +1,13 @@
 //! Differences between runs whose rocks weigh what they stand for.
 //!
 //! Values are those of [`Sample::weighted`] and of shares of events, and pulls are what their intervals are made of: of a
-//! mean `w (x − mean)/Σw` (delta method), of a percentile `w (1{x > q} − (1 − p))/Σw` with the spread of Woodruff's interval
-//! (1952), of a share `w (1 − k_j/n_j)` of a rock of stratum `j` that counts and `−w k_j/n_j` of one that does not. So each
+//! mean `w (x − mean)/Σw` (delta method), of a percentile `w (1{x > q} − (1 − p))/Σw` with the spread of its interval, of a share `w (1 − k_j/n_j)` of a rock of stratum `j` that counts and `−w k_j/n_j` of one that does not. So each
 //! statistic is that of its own run, and with equal weights the intervals are those of [`super`].
 
 use super::super::proportion::NORMAL_95;
 use super::super::rate::share_of;
 use super::super::sample::Sample;
-use super::{Difference, Reading, Values, variance};
+use super::{Difference, Reading, Values, differ, pulls_of_percentile, variance};
 use crate::frequency::Weights;
 
 /// Releases that count, among which, and what they stand for.
@@ -30,25 +29,19 @@ impl Reading {
         let all: f64 = weighed.iter().map(|(.., weight)| weight).sum();
         let pull =
             |&(release, x, weight): &(usize, f64, f64)| (release, weight * (x - value) / all);
-        let pulls = (weighed.len() > 1).then(|| weighed.iter().map(pull).collect());
-        Some(Self { value, rocks: weighed.len(), pulls })
+        let pulls = differ(values).then(|| weighed.iter().map(pull).collect());
+        Some(Self { value, rocks: weighed.len(), pulls, sides: [1.0; 2] })
     }
 
     /// The weighted percentile `p` (0 < p < 1) of the finite ones; none of nothing.
     pub fn weighted_percentile(values: &[(usize, f64)], weights: &Weights, p: f64) -> Option<Self> {
         let weighed = weighed(values, weights);
         let found = sample(&weighed).percentile(p)?;
-        let side =
-            |x: f64, weight: f64| weight * (f64::from(u8::from(x > found.value)) - (1.0 - p));
-        let pulls = found.low_95.zip(found.high_95).map(|(low, high)| {
-            let squares: f64 = weighed.iter().map(|(_, x, weight)| side(*x, *weight).powi(2)).sum();
-            let deviation = (high - low) / (2.0 * NORMAL_95);
-            let scale = if squares > 0.0 { deviation / squares.sqrt() } else { 0.0 };
-            let pull =
-                |&(release, x, weight): &(usize, f64, f64)| (release, side(x, weight) * scale);
-            weighed.iter().map(pull).collect()
-        });
-        Some(Self { value: found.value, rocks: weighed.len(), pulls })
+        let ends = found.low_95.zip(found.high_95);
+        let pulls = ends.map(|_| pulls_of_percentile(&weighed, found.value, p));
+        let sides = ends.map(|(low, high)| [found.value - low, high - found.value]);
+        let sides = sides.unwrap_or_default().map(|far| far / NORMAL_95);
+        Some(Self { value: found.value, rocks: weighed.len(), pulls, sides })
     }
 }
 
