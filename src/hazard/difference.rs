@@ -6,8 +6,7 @@
 //! pair, and the sum of both sums of squares where they do not.
 //!
 //! The pull on a percentile needs the density there. It comes from the order statistics about the percentile, as in
-//! Price and Bonett (2002, J. Stat. Comput. Simul. 72, 119–124), with the covariance of paired releases, each side by itself: below the percentile
-//! and above it values may lie unlike far apart, of few distinct values most of all (Zou and Donner 2008, Statistics in Medicine 27, 1693). Shares are
+//! Price and Bonett (2002, J. Stat. Comput. Simul. 72, 119–124), with the covariance of paired releases. Shares are
 //! adjusted as in Bonett and Price (2012, J. Educ. Behav. Stat. 37, 479–488) for pairs and in Agresti and Caffo
 //! (2000, Am. Stat. 54, 280–288) without: their intervals stay sound where hardly any rock counts.
 
@@ -31,8 +30,6 @@ pub struct Reading {
     pub rocks: usize,
     /// How much each release moved it; none where there are too few rocks to say.
     pulls: Option<Values>,
-    /// By how much more than the pulls say it is unsure downwards and upwards (–).
-    sides: [f64; 2],
 }
 
 /// What changes from one run to another.
@@ -56,8 +53,8 @@ impl Reading {
         let value = values.iter().map(|(_, x)| x).sum::<f64>() / n;
         let scale = (n / (n - 1.0)).sqrt() / n;
         let pull = |(release, x): &(usize, f64)| (*release, (x - value) * scale);
-        let pulls = differ(&values).then(|| values.iter().map(pull).collect());
-        (!values.is_empty()).then_some(Self { value, rocks: values.len(), pulls, sides: [1.0; 2] })
+        let pulls = (values.len() > 1).then(|| values.iter().map(pull).collect());
+        (!values.is_empty()).then_some(Self { value, rocks: values.len(), pulls })
     }
 
     /// Percentile `p` (0 < p < 1) of the finite ones; none of nothing.
@@ -66,11 +63,10 @@ impl Reading {
         let mut sorted: Vec<f64> = values.iter().map(|(_, x)| *x).collect();
         sorted.sort_unstable_by(f64::total_cmp);
         let value = Percentile::of(&sorted, p)?.value;
-        let sides = deviations(&sorted, p);
         let weighed: Vec<_> = values.iter().map(|&(release, x)| (release, x, 1.0)).collect();
-        let pulls = sides.map(|_| pulls_of_percentile(&weighed, value, p));
-        let sides = sides.unwrap_or_default();
-        Some(Self { value, rocks: values.len(), pulls, sides })
+        let pulls = deviation(&sorted, p)
+            .map(|deviation| pulls_of_percentile(&weighed, (value, p), deviation));
+        Some(Self { value, rocks: values.len(), pulls })
     }
 
     /// The same times a number: a unit, a factor.
@@ -82,19 +78,18 @@ impl Reading {
     }
 }
 
-/// Whether there is a spread to be seen: equal values say nothing of how far another may lie.
-fn differ(values: &[(usize, f64)]) -> bool {
-    values.windows(2).any(|pair| pair[0].1.total_cmp(&pair[1].1).is_ne())
-}
-
 fn finite(values: &[(usize, f64)]) -> Values {
     values.iter().copied().filter(|(_, x)| x.is_finite()).collect()
 }
 
-/// How much each release (release, value, weight) moves percentile `p`, in standard deviations: the part of its weight above the percentile less
-/// what should lie there. Of values that equal it as much lies above as makes the part of all exact, or those that tie would move
-/// nothing.
-fn pulls_of_percentile(weighed: &[(usize, f64, f64)], value: f64, p: f64) -> Values {
+/// How much each release (release, value, weight) moves percentile `p` of a known standard deviation: by the part of its weight above the percentile
+/// less what should lie there. Of values that equal it as much lies above as makes the part of all exact, or those that tie would
+/// move nothing.
+fn pulls_of_percentile(
+    weighed: &[(usize, f64, f64)],
+    (value, p): (f64, f64),
+    deviation: f64,
+) -> Values {
     let weight_if = |is: &dyn Fn(f64) -> bool| -> f64 {
         weighed.iter().filter(|(_, x, _)| is(*x)).map(|(.., weight)| weight).sum()
     };
@@ -109,25 +104,31 @@ fn pulls_of_percentile(weighed: &[(usize, f64, f64)], value: f64, p: f64) -> Val
     let whole = weighed.iter().map(|&(_, x, weight)| weight * part(x)).sum::<f64>() / all;
     let pull = |&(release, x, weight): &(usize, f64, f64)| (release, weight * (part(x) - whole));
     let mut pulls: Values = weighed.iter().map(pull).collect();
-    let norm = pulls.iter().map(|(_, pull)| pull * pull).sum::<f64>().sqrt();
-    if norm > 0.0 {
-        pulls.iter_mut().for_each(|(_, pull)| *pull /= norm);
-    }
+    let squares: f64 = pulls.iter().map(|(_, pull)| pull * pull).sum();
+    let scale = if squares > 0.0 { deviation / squares.sqrt() } else { 0.0 };
+    pulls.iter_mut().for_each(|(_, pull)| *pull *= scale);
     pulls
 }
 
-/// Standard deviations of a percentile downwards and upwards, from the order statistics as far from it as the number of rocks below it varies;
-/// none where there are too few.
+/// Standard deviation of a percentile, from the order statistics as far from it as the number of rocks below it varies; none
+/// where there are too few.
 ///
 /// Whole ranks would bound it with more than 95 %, by up to a fifth too far: it is read between them.
-fn deviations(sorted: &[f64], p: f64) -> Option<[f64; 2]> {
+fn deviation(sorted: &[f64], p: f64) -> Option<f64> {
     let n = sorted.len() as f64;
     let (place, reach) = ((n - 1.0) * p, NORMAL_95 * (n * p * (1.0 - p)).sqrt());
     let (low, high) = (place - reach, place + reach);
     let is_inside = low >= 0.0 && high <= n - 1.0;
-    let value = between(sorted, place);
-    let ends = || [value - between(sorted, low), between(sorted, high) - value];
-    is_inside.then(|| ends().map(|far| far / NORMAL_95))
+    let at = |place: f64| between(sorted, place);
+    is_inside.then(|| deviation_between(at(place), [at(low), at(high)]))
+}
+
+/// Standard deviation of a percentile with the ends of its 95 % interval: a fourth of it, about. Of few distinct values an end may be the
+/// percentile itself; then the other end says how far off it may be, by a whole step and not by half of it.
+fn deviation_between(value: f64, [low, high]: [f64; 2]) -> f64 {
+    let (below, above) = (value - low, high - value);
+    let half = if below > 0.0 && above > 0.0 { 0.5 * (high - low) } else { below.max(above) };
+    half / NORMAL_95
 }
 
 impl Difference {
@@ -135,12 +136,8 @@ impl Difference {
     pub fn between(a: &Reading, b: &Reading, paired: bool) -> Self {
         let value = b.value - a.value;
         let interval = a.pulls.as_ref().zip(b.pulls.as_ref()).map(|(one, other)| {
-            // it is smaller where the second is smaller than seen or the first larger
-            let far = |of_a: usize, of_b: usize| {
-                let (one, other) = (scaled(one, a.sides[of_a]), scaled(other, b.sides[of_b]));
-                NORMAL_95 * variance(&one, &other, paired).sqrt()
-            };
-            (value - far(1, 0), value + far(0, 1))
+            let half = NORMAL_95 * variance(one, other, paired).sqrt();
+            (value - half, value + half)
         });
         Self { a: a.value, b: b.value, value, interval }
     }
@@ -181,10 +178,6 @@ impl Difference {
     pub fn is_clear(&self) -> bool {
         self.interval.is_some_and(|(low, high)| low > 0.0 || high < 0.0)
     }
-}
-
-fn scaled(pulls: &Values, by: f64) -> Values {
-    pulls.iter().map(|(release, pull)| (*release, pull * by)).collect()
 }
 
 /// Variance of a difference from the pulls on both statistics.

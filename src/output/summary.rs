@@ -22,7 +22,7 @@ pub(super) const SUMMARY: &str = "summary.json";
 const DEFINITIONS: [(&str, &str); 13] = [
     (
         "annual",
-        "numbers a year, not conditional on release: passage frequency = sum over classes of size and source of their events a year x share of their rocks that pass (with at least an energy); interval: Wilson's with the effective weight of a rock, upper end as if one more rock of the heaviest class passed, 3 x that weight where none does; return period = 1 / frequency; annual probability = 1 - exp(-frequency); energy of return period T: passed with at least that much once in T years, its interval read off that of the frequency; by_log_rate = derivative by the logarithm of all rates, by_exponent = derivative by the exponents of all power laws with their events of 1 m3 or more kept; saved = passages whose rock a barrier stops before, told to the first that does",
+        "numbers a year, not conditional on release: passage frequency = sum over classes of size and source of their events a year x share of their rocks that pass (with at least an energy); interval: beta quantiles with the effective weight of a rock (Clopper and Pearson, Korn and Graubard), upper end as if one more rock of the heaviest class passed (Fay and Feuer), 3 x that weight where none does; return period = 1 / frequency; annual probability = 1 - exp(-frequency); energy of return period T: passed with at least that much once in T years, its interval read off that of the frequency; by_log_rate = derivative by the logarithm of all rates, by_exponent = derivative by the exponents of all power laws with their events of 1 m3 or more kept; saved = passages whose rock a barrier stops before, told to the first that does",
     ),
     (
         "asked",
@@ -42,7 +42,7 @@ const DEFINITIONS: [(&str, &str); 13] = [
     ),
     (
         "intervals",
-        "95 %: of percentiles by order statistics, whatever the distribution (low_95 and high_95 two-sided, upper_95 one-sided); of means normal, or normal for their logarithm where that would reach below 0; of shares Wilson, 3/n where none was seen. Conditional on release; numbers a year stand under annual only. With sources that sample sizes by importance rocks weigh what they stand for: ratios of sums, intervals by the delta method, of percentiles Woodruff's",
+        "95 %: of percentiles by order statistics, whatever the distribution (low_95 and high_95 two-sided, upper_95 one-sided); of means the outer ends of Student's and Hall's, normal for their logarithm where that would reach below 0, none where all values are equal; of shares Clopper and Pearson, 3/n (one-sided) where none was seen. Conditional on release; numbers a year stand under annual only. With sources that sample sizes by importance rocks weigh what they stand for: ratios of sums, intervals by the delta method, of percentiles Woodruff's",
     ),
     (
         "lines",

@@ -133,7 +133,7 @@ fn sources_add() {
     );
 }
 
-/// With one stratum the interval of a frequency is that of the proportion, Wilson's, times the events a year.
+/// With one stratum the interval of a frequency is that of the proportion, Clopper and Pearson's, times the events a year.
 #[test]
 fn equal_weights_give_the_interval_of_a_proportion() {
     let events =

@@ -113,10 +113,11 @@ fn shares_of_zones_that_weigh_unlike_are_covered() {
     }
 }
 
-/// A net that hardly ever stops the heavy rocks it meets, and few of them come: with Wilson's of the effective number the truth was held in 88 %.
+/// A net that lets hardly any rock through, of two sources that weigh nearly the same: with Wilson's of the effective number the share that it stops lay
+/// in 87 % of the intervals.
 #[test]
-fn a_net_that_few_heavy_rocks_meet_is_covered() {
-    let frequency = strata(&[1.0, 0.05]);
+fn a_net_that_hardly_lets_one_through_is_covered() {
+    let frequency = strata(&[1.0, 0.9]);
     let weights = frequency.weights(400);
     let net = Barrier {
         name: "net".to_owned(),
@@ -125,18 +126,18 @@ fn a_net_that_few_heavy_rocks_meet_is_covered() {
         design: None,
         elsewhere: vec![],
     };
-    let (chances, truth) = ([0.97, 0.3], (0.97 + 0.05 * 0.3) / 1.05);
+    let stops = 0.9975;
     let holds = |seed: &u64| {
         let mut random = stream(*seed, Purpose::Size, 0);
         let mut one = |index: usize| {
-            let (comes, stops) = (unit(&mut random) < 0.15, unit(&mut random));
-            let energy_j = if stops < chances[index % 2] { 1e5 } else { 1e6 };
+            let (comes, luck) = (unit(&mut random) < 0.15, unit(&mut random));
+            let energy_j = if luck < stops { 1e5 } else { 1e6 };
             comes.then(|| Ok::<_, Infallible>(row(index, "net", 1.0, energy_j)))
         };
         let rows: Vec<_> = (0..400).filter_map(&mut one).collect();
         let net = std::slice::from_ref(&net);
         let found = judge(net, rows.into_iter(), (&weights, &OpenRocks::default())).unwrap();
-        (found[0].stopped.low_95..=found[0].stopped.high_95).contains(&truth)
+        (found[0].stopped.low_95..=found[0].stopped.high_95).contains(&stops)
     };
     let found = (0..RUNS).filter(holds).count();
     println!("net: {found} of {RUNS}");
@@ -148,7 +149,7 @@ fn a_net_that_few_heavy_rocks_meet_is_covered() {
 fn a_cell_that_few_rocks_cross_is_covered() {
     let frame =
         MapFrame { west_m: 0.0, south_m: 0.0, cell_m: 1.0, columns: 1, rows: 1, epsg: None };
-    let (rocks, reach, years) = (300, 0.01, 2000.0);
+    let (rocks, reach, years) = (300, 0.005, 2000.0);
     let law = power_law(0.1, 1.2);
     let frequency = Frequency::new(vec![law], vec![], vec![years]);
     let request = AnnualRequest { frequency: Some(frequency.clone()), ..AnnualRequest::default() };
@@ -289,10 +290,6 @@ fn equal_values_leave_the_mean_open() {
     let weighed = Sample::weighted([(0.0, 1.0), (0.0, 0.3), (0.0, 0.1)]).mean().unwrap();
     assert_eq!((weighed.low_95, weighed.high_95), (None, None));
     assert!(Sample::of([0.0, 0.0, 1e-3]).mean().unwrap().low_95.is_some());
-    // read for a difference too: two runs without a jump do not say that there is none
-    let none: Values = (0..10).map(|k| (k, 0.0)).collect();
-    let read = || Reading::mean(&none).unwrap();
-    assert_eq!(Difference::between(&read(), &read(), false).interval, None);
 }
 
 /// One, two and three releases: every end is a number or missing, shares leave most open, and the bound of none or all is not passed by more rocks.

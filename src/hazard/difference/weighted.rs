@@ -7,7 +7,7 @@
 use super::super::proportion::NORMAL_95;
 use super::super::rate::share_of;
 use super::super::sample::Sample;
-use super::{Difference, Reading, Values, differ, pulls_of_percentile, variance};
+use super::{Difference, Reading, Values, deviation_between, pulls_of_percentile, variance};
 use crate::frequency::Weights;
 
 /// Releases that count, among which, and what they stand for.
@@ -29,19 +29,19 @@ impl Reading {
         let all: f64 = weighed.iter().map(|(.., weight)| weight).sum();
         let pull =
             |&(release, x, weight): &(usize, f64, f64)| (release, weight * (x - value) / all);
-        let pulls = differ(values).then(|| weighed.iter().map(pull).collect());
-        Some(Self { value, rocks: weighed.len(), pulls, sides: [1.0; 2] })
+        let pulls = (weighed.len() > 1).then(|| weighed.iter().map(pull).collect());
+        Some(Self { value, rocks: weighed.len(), pulls })
     }
 
     /// The weighted percentile `p` (0 < p < 1) of the finite ones; none of nothing.
     pub fn weighted_percentile(values: &[(usize, f64)], weights: &Weights, p: f64) -> Option<Self> {
         let weighed = weighed(values, weights);
         let found = sample(&weighed).percentile(p)?;
-        let ends = found.low_95.zip(found.high_95);
-        let pulls = ends.map(|_| pulls_of_percentile(&weighed, found.value, p));
-        let sides = ends.map(|(low, high)| [found.value - low, high - found.value]);
-        let sides = sides.unwrap_or_default().map(|far| far / NORMAL_95);
-        Some(Self { value: found.value, rocks: weighed.len(), pulls, sides })
+        let pulls = found.low_95.zip(found.high_95).map(|(low, high)| {
+            let deviation = deviation_between(found.value, [low, high]);
+            pulls_of_percentile(&weighed, (found.value, p), deviation)
+        });
+        Some(Self { value: found.value, rocks: weighed.len(), pulls })
     }
 }
 

@@ -157,7 +157,7 @@ fn mean_height(ground: &GroundRaster, corners: &[[f64; 2]]) -> f64 {
     heights.iter().sum::<f64>() / heights.len() as f64
 }
 
-/// Share of all releases above each of some values, by what each stands for, with Wilson's interval; of rocks that may still
+/// Share of all releases above each of some values, by what each stands for, with its interval; of rocks that may still
 /// come, nobody knows how high.
 fn exceedance(
     values: impl Iterator<Item = (usize, f64)>,

@@ -9,7 +9,7 @@ pub(super) const DE: Glossary = [
     ),
     (
         "95-%-Intervall",
-        "Für Perzentile aus Ordnungsstatistiken, ohne Annahme einer Verteilung; für Anteile das Intervall nach Wilson. Es deckt nur den Zufall der Stichprobe ab.",
+        "Für Perzentile aus Ordnungsstatistiken, ohne Annahme einer Verteilung; für Anteile das exakte Intervall nach Clopper und Pearson. Es deckt nur den Zufall der Stichprobe ab.",
     ),
     (
         "≥ und ≤",
@@ -99,7 +99,7 @@ pub(super) const FR: Glossary = [
     ),
     (
         "Intervalle à 95 %",
-        "Pour les centiles, par statistiques d’ordre, sans loi supposée\u{a0}; pour les parts, l’intervalle de Wilson. Il ne couvre que l’aléa de l’échantillon.",
+        "Pour les centiles, par statistiques d’ordre, sans loi supposée\u{a0}; pour les parts, l’intervalle exact de Clopper et Pearson. Il ne couvre que l’aléa de l’échantillon.",
     ),
     (
         "≥ et ≤",
@@ -186,7 +186,7 @@ pub(super) const IT: Glossary = [
     ),
     (
         "Intervallo al 95 %",
-        "Per i percentili da statistiche d’ordine, senza supporre una distribuzione; per le quote l’intervallo di Wilson. Copre solo il caso nel campione.",
+        "Per i percentili da statistiche d’ordine, senza supporre una distribuzione; per le quote l’intervallo esatto di Clopper e Pearson. Copre solo il caso nel campione.",
     ),
     (
         "≥ e ≤",
@@ -276,7 +276,7 @@ pub(super) const EN: Glossary = [
     ),
     (
         "95 % interval",
-        "For percentiles from order statistics, which assumes no distribution; for shares Wilson's interval. It covers chance in the sample only.",
+        "For percentiles from order statistics, which assumes no distribution; for shares the exact interval of Clopper and Pearson. It covers chance in the sample only.",
     ),
     (
         "≥ and ≤",
