@@ -47,6 +47,7 @@ pub use observed::{
 pub use open::{OpenRock, OpenRocks};
 pub use profile::{Profile, ProfilePoint, StretchStatistic};
 pub use proportion::Proportion;
+pub(crate) use proportion::student_95;
 pub use quantile::{Open, Percentile, Ranks};
 pub use quantity::Quantity;
 pub use rate::{EventRate, share_of, share_up_to};

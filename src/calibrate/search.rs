@@ -24,6 +24,8 @@ const STEPS_INSIDE: f64 = 4.0;
 const FINEST: f64 = 0.002;
 /// How often the ends are drawn again to place the next grid: its ends need no more than that.
 const REDRAWS: usize = 50;
+/// What of those lies outside the next grid on either side (–).
+const TAIL: f64 = 0.025;
 /// Of more quantities: even points in each stage, and the share of the range that they lie in.
 const POINTS: [(usize, f64); 3] = [(200, 1.0), (80, 0.35), (80, 0.12)];
 /// Bases of the even points (Halton's sequence).
@@ -115,7 +117,7 @@ impl<'a> ParameterSearch<'a> {
         if stage == 1 {
             return Some(widened(best.iter().map(|best| [*best; 2]), &self.step, self.vary));
         }
-        let open = self.left_open(ends, REDRAWS);
+        let open = self.left_open(ends, REDRAWS, TAIL);
         let mut axes = ranges.iter().zip(&open).zip(&self.step).zip(self.vary);
         let is_resolved = axes.all(|(((range, open), step), vary)| {
             let is_inside = range[0] <= open[0] && open[1] <= range[1];

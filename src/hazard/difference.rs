@@ -106,7 +106,9 @@ fn pulls_of_percentile(
     let mut pulls: Values = weighed.iter().map(pull).collect();
     let squares: f64 = pulls.iter().map(|(_, pull)| pull * pull).sum();
     let scale = if squares > 0.0 { deviation / squares.sqrt() } else { 0.0 };
-    pulls.iter_mut().for_each(|(_, pull)| *pull *= scale);
+    for (_, pull) in &mut pulls {
+        *pull *= scale;
+    }
     pulls
 }
 

@@ -16,7 +16,7 @@ const STUDENT_95_OF_ONE: f64 = 12.706_204_736_432_1;
 
 /// The same of Student's distribution with so many degrees of freedom (–, from 1 on): Fisher and Cornish's series in their reciprocal
 /// (Abramowitz and Stegun 1964, 26.7.5), off by 1 % for two and by 0.1 % for three.
-pub(super) fn student_95(freedom: f64) -> f64 {
+pub(crate) fn student_95(freedom: f64) -> f64 {
     if freedom < 1.5 {
         return STUDENT_95_OF_ONE;
     }

@@ -70,8 +70,11 @@ fn strata(per_year: &[f64]) -> Frequency {
     Frequency::new(vec![RockSource { name: "wall".to_owned(), law }], vec![], vec![])
 }
 
-/// Runs whose share of all events holds the truth: rates, rocks and chance of each zone.
-fn runs_that_hold(zones: &[(f64, usize, f64)]) -> usize {
+/// Events a year, rocks and chance of a zone.
+type Zone = (f64, usize, f64);
+
+/// Runs whose share of all events holds the truth.
+fn runs_that_hold(zones: &[Zone]) -> usize {
     let rates: Vec<f64> = zones.iter().map(|zone| zone.0).collect();
     let weights = strata(&rates).weights_of(zones.iter().map(|zone| zone.1).collect());
     let truth = zones.iter().map(|zone| zone.0 * zone.2).sum::<f64>() / rates.iter().sum::<f64>();
@@ -89,16 +92,17 @@ fn runs_that_hold(zones: &[(f64, usize, f64)]) -> usize {
     (0..RUNS).filter(holds).count()
 }
 
-/// Zones of unlike weight and size. By Wilson's with the same effective weight 80, 81, 93, 93, 94 and 97 % of the runs held the truth.
+/// Zones of unlike weight and size. By Wilson's with the effective weight of a rock 80, 81, 93, 93, 94 and 97 % of the runs held
+/// the truth.
 #[test]
 fn shares_of_zones_that_weigh_unlike_are_covered() {
-    let three = |chances: [f64; 3]| -> Vec<_> {
+    let three = |chances: [f64; 3]| -> Vec<Zone> {
         [1.0, 0.3, 0.09].into_iter().zip(chances).map(|(rate, p)| (rate, 300, p)).collect()
     };
     let sizes = |p: f64| [50, 500, 5000].map(|rocks| (1.0, rocks, p)).to_vec();
     let many = |p: f64| (0..33).map(|k| (0.7_f64.powi(k), 6, p)).collect();
     let zones = [(10.0, 0.01), (5.0, 0.003), (1.0, 0.1), (0.1, 0.9), (0.01, 0.5)];
-    let cases: [(&str, Vec<(f64, usize, f64)>); 6] = [
+    let cases: [(&str, Vec<Zone>); 6] = [
         ("nearly all, and only of the lightest", three([0.0, 0.0, 0.99])),
         ("nearly all, and only of the heaviest", three([0.99, 0.0, 0.0])),
         ("nearly all, of few heavy ones", sizes(0.9)),
@@ -114,7 +118,7 @@ fn shares_of_zones_that_weigh_unlike_are_covered() {
 }
 
 /// A net that lets hardly any rock through, of two sources that weigh nearly the same: with Wilson's of the effective number the share that it stops lay
-/// in 87 % of the intervals.
+/// in 89 % of the intervals.
 #[test]
 fn a_net_that_hardly_lets_one_through_is_covered() {
     let frequency = strata(&[1.0, 0.9]);
@@ -220,14 +224,15 @@ fn percentiles_of_few_distinct_values_are_covered() {
     // P(x ≤ k) = 1 − e^(−(k + 1)/2)
     let value = |u: f64| (-2.0 * (1.0 - u).ln()).floor();
     let truth =
-        |p: f64| (0..).map(f64::from).find(|k| 1.0 - (-0.5 * (k + 1.0)).exp() >= p).unwrap();
+        |p: f64| (0..100).map(f64::from).find(|k| 1.0 - (-0.5 * (k + 1.0)).exp() >= p).unwrap();
     for (name, weigh, n) in
         [("equal", [1.0; 2], 100), ("nearly equal", [1.0, 0.999], 100), ("unlike", [1.0, 0.1], 400)]
     {
         for p in [0.5, 0.9, 0.95] {
             let holds = |seed: &u64| {
                 let mut random = stream(*seed, Purpose::Impacts, n);
-                let one = |k: usize| (value(unit(&mut random)), weigh[usize::from(k % 5 > 0)]);
+                let one =
+                    |k: usize| (value(unit(&mut random)), weigh[usize::from(!k.is_multiple_of(5))]);
                 let found = Sample::weighted((0..n).map(one)).percentile(p).unwrap();
                 let truth = truth(p);
                 found.low_95.is_none_or(|low| low <= truth)
