@@ -133,7 +133,7 @@ mod tests {
         let near = |found: f64, exact: f64| {
             assert!((found / exact - 1.0).abs() < 1e-9, "{found} for {exact}");
         };
-        for n in [1.0, 2.0, 30.0, 1e5, 1e9] {
+        for n in [1.0, 2.0, 30.0, 1e3, 1e5] {
             for p in [0.025, 0.05, 0.975] {
                 near(quantile(p, [1.0, n]), -(((-p).ln_1p() / n).exp_m1()));
                 near(quantile(p, [n, 1.0]), (p.ln() / n).exp());
