@@ -1,7 +1,8 @@
 //! Differences between runs whose rocks weigh what they stand for.
 //!
 //! Values are those of [`Sample::weighted`] and of shares of events, and pulls are what their intervals are made of: of a
-//! mean `w (x − mean)/Σw` (delta method), of a percentile `w (1{x > q} − (1 − p))/Σw` with the spread of its interval, of a share `w (1 − k_j/n_j)` of a rock of stratum `j` that counts and `−w k_j/n_j` of one that does not. So each
+//! mean `w (x − mean)/Σw` (delta method), of a percentile `w (1{x > q} − (1 − p))/Σw` with the spread of its interval, of a share
+//! `w (1 − k_j/n_j)` of a rock of stratum `j` that counts and `−w k_j/n_j` of one that does not. So each
 //! statistic is that of its own run, and with equal weights the intervals are those of [`super`].
 
 use super::super::proportion::NORMAL_95;
