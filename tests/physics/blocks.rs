@@ -271,6 +271,24 @@ fn blocks_by_the_thousand_on_the_natural_slope() {
     }
 }
 
+/// Plastic blows and long slides of boxes: what friction, dashpots and soil are said to have taken is what the rock has lost, to 0.5 % of the
+/// energy released. Steps of tens of radians said up to 6 % more, and contacts that were found again pressed in took 0.6 % without a word.
+#[test]
+fn what_is_booked_is_what_a_block_loses() {
+    let shapes = shapes();
+    let soft = Ground { restitution: Some(0.0), restitution_half_m_s: None, ..SOIL };
+    let hard = Ground { restitution: Some(0.0), ..HARD };
+    for (triangles, ground, releases) in
+        [(10_000, soft, 60), (100_000, soft, 60), (100_000, hard, 12)]
+    {
+        let slope = slope(triangles);
+        let (scheme, kind, shape) = (Scheme::Adaptive, ShapeKind::Box, shapes[2].2.as_ref());
+        let counts = count(&slope, &Series { scheme, kind, shape, ground }, 0..releases);
+        println!("{triangles} {counts:?}");
+        assert!(counts.worst[1] < 5e-3, "{triangles}: {counts:?}");
+    }
+}
+
 /// `adaptive`, `reference` and `dda` against `rigid`: the same distribution of runout, where chance alone decides between them.
 #[test]
 fn schemes_agree_on_where_blocks_stop() {

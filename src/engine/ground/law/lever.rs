@@ -28,6 +28,14 @@ impl Law {
         law
     }
 
+    /// What an implicit stage of length `h` (s) leaves of a fast motion along the normal (–), of the mass `m_n` that the contact moves:
+    /// `1/(1 + h (p_N h + c_N)/m_n)`.
+    pub(crate) fn left_by_stage(&self, captured: bool, h: f64) -> f64 {
+        let normal = self.normal(captured);
+        let per_mass = self.omega * self.omega / normal.p_n;
+        1.0 / (1.0 + h * (normal.p_n * h + normal.c_n) * per_mass)
+    }
+
     /// Over a stage in which impulses act for `a` and points move for `b` (s): from `F = p pen − (p b + c) u` and `P = a F`.
     pub(crate) fn over_stage(&self, captured: bool, (a, b): (f64, f64)) -> StageCompliance {
         let normal = self.normal(captured);

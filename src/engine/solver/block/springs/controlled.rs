@@ -135,16 +135,15 @@ impl BlockTrial<'_, '_> {
     /// How much more motion, height and springs together hold at the step's end than at its start (J); 0 where that is rounding.
     fn made_j(&self, end: &BlockEnd, dt: f64) -> f64 {
         let (block, body) = (self.block, &self.world.body);
-        let lifted_m = end.moving.pose.centre - self.start.pose.centre;
-        let lifted = -block.mass_kg * body.gravity.dot(&lifted_m);
-        let before = self.start.motion_j(block) + self.footing.springs.stored_j;
+        let stored_j = self.footing.springs.stored_j;
+        let before = self.start.motion_j(block) + stored_j;
         let contacts = self.footing.springs.contacts.iter();
         let force = block.mass_kg * body.gravity.norm()
             + contacts.map(|contact| contact.normal_force).sum::<f64>();
         let unknown = ROUNDING * before + PLACE_ROUNDING * block.radius_m * force;
         let pressed =
             self.footing.pressed_j((block, &end.moving), self.control.tableau.diagonal * dt);
-        let made_j = end.moving.motion_j(block) + lifted + pressed - before;
+        let made_j = gained_j(self.world, block, (self.start, &end.moving)) + pressed - stored_j;
         if made_j > unknown { made_j } else { 0.0 }
     }
 
@@ -163,15 +162,34 @@ impl BlockTrial<'_, '_> {
     }
 }
 
+/// How much more energy of motion and height a block has at the end of a step than at its start (J).
+fn gained_j(world: &ContactEnvironment, block: &Block, (start, end): (&Moving, &Moving)) -> f64 {
+    let lifted_m = end.pose.centre - start.pose.centre;
+    let lifted_j = -block.mass_kg * world.body.gravity.dot(&lifted_m);
+    end.motion_j(block) + lifted_j - start.motion_j(block)
+}
+
 impl Springs {
-    /// Takes the energy that an accepted step has made by its error (J) off the motion, with which the next one begins.
-    fn pay(&mut self, (block, moving): (&Block, &mut Moving), made_j: f64) {
+    /// What a stage of length `way_s` (s) leaves of the fastest motion of the contacts (–).
+    fn left_by_stage(&self, way_s: f64) -> f64 {
+        let left = |one: &BlockHistory| one.law.left_by_stage(one.captured, way_s);
+        self.histories.iter().map(left).fold(1.0, f64::min)
+    }
+
+    /// Takes the energy that an accepted step has made (J) off the motion, with which the next one begins; what contacts have got of it (J).
+    /// What the motion has not `gained` by the step's error, beyond what its contacts gave, is in springs that came up pressed in.
+    fn pay(
+        &mut self,
+        (block, moving): (&Block, &mut Moving),
+        (made_j, gained_j): (f64, f64),
+    ) -> f64 {
         if made_j > 0.0 {
             moving.scale_motion((1.0 - made_j / moving.motion_j(block)).max(0.0).sqrt());
         }
         let first = &mut self.rates[0];
         (first.centre, first.turned) = (moving.v, moving.spin(block));
         self.fresh = true;
+        (made_j - gained_j.max(0.0)).max(0.0)
     }
 }
 
@@ -258,8 +276,8 @@ impl Footing {
         *moving = end.moving;
         self.springs.grow_old(dt);
         let mut done = self.accept((block, moving), (&control, dt));
-        self.springs.pay((block, moving), made_j);
-        done.loss.damping += beyond_j;
+        let gained_j = gained_j(world, block, (&start, moving)) + done.loss.sum();
+        done.loss.damping += beyond_j + self.springs.pay((block, moving), (made_j, gained_j));
         done.unsettled = unsettled;
         self.begin_late(world);
         self.check_depth(block)?;
@@ -273,11 +291,12 @@ impl Footing {
         (control, dt): (&Control, f64),
     ) -> Stepped {
         let tableau = control.tableau;
-        let mut done = Stepped { dt, ..Stepped::default() };
-        for (k, rate) in self.springs.rates[..tableau.stages].iter().enumerate() {
-            done.loss.add(&rate.loss, dt * tableau.work_weight(k));
-        }
         let way_s = tableau.diagonal * dt;
+        let mut done = Stepped { dt, ..Stepped::default() };
+        let left = self.springs.left_by_stage(way_s);
+        for (k, rate) in self.springs.rates[..tableau.stages].iter().enumerate() {
+            done.loss.add(&rate.loss, dt * tableau.damped_work_weight(k, left));
+        }
         self.springs.stored_j = self.pressed_j((block, moving), way_s);
         self.springs.rates.swap(0, tableau.stages - 1);
         self.keep((block, moving), way_s);

@@ -257,6 +257,8 @@ impl Footing {
         (block, moving): (&Block, &Moving),
     ) {
         self.look_at_all(world, (block, &moving.pose), TOUCH * block.radius_m);
+        // what touches here and is not yet known begins here
+        self.springs.known = self.springs.histories.len();
         self.remember(world, (block, moving));
         self.place(world, (block, moving, moving), 0.0, &|footing, k| {
             footing.springs.histories[k].shear
