@@ -9,7 +9,7 @@ const MOST_TERMS: u32 = 100_000;
 /// Steps in which a quantile is found, at most: those of Halley's method treble the digits, halvings give one bit each.
 const MOST_STEPS: u32 = 100;
 /// Where steps end: the next would be the cube of this (–, of the quantile).
-const NEAR: f64 = 1e-9;
+const CONVERGED: f64 = 1e-9;
 
 /// Logarithm of the density of beta(a, b) times `x (1 − x)`: `a ln x + b ln(1 − x) − ln B(a, b)`.
 struct Beta {
@@ -88,7 +88,7 @@ pub(super) fn quantile(p: f64, [a, b]: [f64; 2]) -> f64 {
         let next = if is_inside { next } else { 0.5 * (low + high) };
         let step = (next - x).abs();
         x = next;
-        if step <= NEAR * x.min(1.0 - x) {
+        if step <= CONVERGED * x.min(1.0 - x) {
             break;
         }
     }

@@ -1,6 +1,6 @@
 //! Counts over classes of equal ratio: percentiles and exceedance without keeping values.
 
-use super::quantile::{Below, Bounds, Percentile};
+use super::quantile::{Bounds, Percentile, WeightBelow};
 use crate::frequency::Weights;
 use crate::math;
 use serde::{Deserialize, Serialize};
@@ -126,7 +126,7 @@ impl Counts {
         let equal = weights.are_equal();
         let one = |stratum: u16| if equal { 1.0 } else { weights.of_stratum(usize::from(stratum)) };
         let groups = self.0.iter().map(|&(_, stratum, count)| (one(stratum), count as usize));
-        let Bounds { low, high, needs, .. } = Below::of(groups).bounds(p);
+        let Bounds { low, high, needs, .. } = WeightBelow::of(groups).bounds(p);
         Some(Percentile {
             value: self.interpolated(p, weights),
             low_95: low.map(|at| lower_end_of(self.0[at].0)),

@@ -81,9 +81,9 @@ impl Percentile {
 
 impl Percentile {
     /// Percentile `p` (0 < p < 1) of weighted values in ascending order: the smallest that at least the share `p` of all
-    /// weight does not exceed; none of nothing. Its interval is that of [`Below::bounds`].
+    /// weight does not exceed; none of nothing. Its interval is that of [`WeightBelow::bounds`].
     pub(super) fn weighted((sorted, weights): (&[f64], &[f64]), p: f64) -> Option<Self> {
-        let below = Below::of(weights.iter().map(|&weight| (weight, 1)));
+        let below = WeightBelow::of(weights.iter().map(|&weight| (weight, 1)));
         let value = *sorted.get(below.place(p))?;
         let Bounds { low, high, upper, needs } = below.bounds(p);
         let at = |place: Option<usize>| place.map(|place| sorted[place]);
@@ -93,7 +93,7 @@ impl Percentile {
 }
 
 /// What weighs below and up to each of some places in ascending order: of values one by one or in groups.
-pub(super) struct Below {
+pub(super) struct WeightBelow {
     /// Sum of the weights below each place, and of their squares; all of them last.
     sums: Vec<[f64; 2]>,
     rocks: usize,
@@ -112,7 +112,7 @@ pub(super) struct Bounds {
     pub(super) needs: usize,
 }
 
-impl Below {
+impl WeightBelow {
     /// Of groups of so many rocks of one weight each (weight, rocks); what has the same place has one group, or one after the other.
     pub(super) fn of(groups: impl Iterator<Item = (f64, usize)>) -> Self {
         let mut below = Self { sums: vec![[0.0; 2]], rocks: 0 };
