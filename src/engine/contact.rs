@@ -161,21 +161,19 @@ impl ContactPoints {
 
     /// Forgets those that are not nearer than `reach` (m).
     pub fn keep_nearer(&mut self, reach: f64) {
-        let mut kept = 0;
-        for k in 0..self.len {
-            if self.list[k].distance_m < reach {
-                self.list[kept] = self.list[k];
-                kept += 1;
-            }
-        }
-        self.len = kept;
+        self.retain(|touch| touch.distance_m < reach);
     }
 
     /// Forgets those that are nearer than `reach` (m).
     fn drop_nearer(&mut self, reach: f64) {
+        self.retain(|touch| touch.distance_m >= reach);
+    }
+
+    /// Forgets those that are not `wanted`.
+    pub(crate) fn retain(&mut self, wanted: impl Fn(&ContactPoint) -> bool) {
         let mut kept = 0;
         for k in 0..self.len {
-            if self.list[k].distance_m >= reach {
+            if wanted(&self.list[k]) {
                 self.list[kept] = self.list[k];
                 kept += 1;
             }

@@ -61,18 +61,31 @@ impl ContactEnvironment<'_> {
     /// What the dashpot of touch `k` among others of the same instant takes of its own damping (–).
     #[inline]
     pub(super) fn dashpot_share(&self, touches: &[ContactPoint], k: usize) -> f64 {
-        if touches.len() == 1 { 1.0 } else { dashpot_share(touches, k, self.body.radius) }
+        self.dashpot_share_beside(touches, k, &[])
+    }
+
+    /// The same beside `more` contacts, by their normals.
+    #[inline]
+    pub(super) fn dashpot_share_beside(
+        &self,
+        touches: &[ContactPoint],
+        k: usize,
+        more: &[Vec3],
+    ) -> f64 {
+        if touches.len() + more.len() == 1 {
+            return 1.0;
+        }
+        let pressed = touches
+            .iter()
+            .enumerate()
+            .filter(|(j, other)| *j != k && other.distance_m < self.body.radius);
+        dashpot_share(&touches[k].normal, pressed.map(|(_, other)| &other.normal).chain(more))
     }
 }
 
 /// What each dashpot takes of its own damping where several patches are pressed at once (–):
-/// `1/√(Σ_j max(0, n̂_i·n̂_j)²)` over those pressed. `n` parallel ones damp like one; at right angles nothing changes.
-fn dashpot_share(touches: &[ContactPoint], k: usize, radius: f64) -> f64 {
-    let normal = &touches[k].normal;
-    let others = touches
-        .iter()
-        .enumerate()
-        .filter(|(j, other)| *j != k && other.distance_m < radius)
-        .map(|(_, other)| normal.dot(&other.normal).max(0.0).powi(2));
-    1.0 / (1.0 + others.sum::<f64>()).sqrt()
+/// `1/√(Σ_j max(0, n̂_i·n̂_j)²)` over those pressed, itself and the `others`. `n` parallel ones damp like one; at right angles nothing changes.
+fn dashpot_share<'a>(normal: &Vec3, others: impl Iterator<Item = &'a Vec3>) -> f64 {
+    let along = others.map(|other| normal.dot(other).max(0.0).powi(2));
+    1.0 / (1.0 + along.sum::<f64>()).sqrt()
 }

@@ -12,17 +12,20 @@
 //! an iteration over geometry and contacts, and a rebound is over in `π` radians, a handful of
 //! steps; stiffness enters only by the unit of time.
 
+mod change_time;
+mod changes;
 mod flow;
 
-use super::contact_state::{ContactEnvironment, ContactState, longest_step};
+use super::contact_state::{ContactEnvironment, ContactState};
 use super::impact::LOCAL;
-use super::impact::dormand_prince::{Attempt, Stages, growth};
+use super::impact::dormand_prince::{Attempt, Stages, Tried, growth, three};
 use super::loss::Loss;
+use super::plane_ahead::longest_step;
 use super::stage::End;
 use super::step_control::{Advance, StepError, TRAVEL};
 use crate::contact::TOUCH;
 use crate::contact::history::{ContactHistory, HISTORIES};
-use flow::{Among, LOSSES};
+use flow::{Among, LOSSES, V, WAY};
 
 /// First step of an impact (rad of its oscillation).
 pub(super) const FIRST: f64 = 0.3;
@@ -30,10 +33,12 @@ pub(super) const FIRST: f64 = 0.3;
 /// Beyond about a radian the error estimate of the pair is no longer to be trusted.
 pub(super) const LONGEST_RAD: f64 = 0.9;
 /// Local error allowed where patches meet and part, relative to that on a plane (–): the estimate sees too little of a kink.
-const KINKED: f64 = 0.3;
+pub(super) const KINKED: f64 = 0.3;
 /// Largest error of energy that is balanced (–, relative to motion).
 /// A larger one is no error of steps, and hiding it would hide a fault.
 pub(super) const BALANCED: f64 = 0.1;
+/// A step is not cut for contacts that take the place of others at a smaller or a larger share of it (–).
+const WITHIN: (f64, f64) = (0.02, 0.98);
 /// Shortest step (rad): a contact that begins within a step is met this exactly.
 pub(super) const SHORTEST_RAD: f64 = 1e-9;
 
@@ -56,6 +61,8 @@ struct Accepted {
     dt: f64,
     /// What contacts took, what springs hold counted in (J).
     loss: Loss,
+    /// Whether the rates at its end hold for the next step: the same contacts, and the same normals.
+    is_alike: bool,
 }
 
 /// Whether a whole try of `dt` (s) is accepted by its error (squared, over the one allowed), and the step to try next (s). One that was cut
@@ -104,6 +111,32 @@ impl ContactState {
         if self.impact.h == 0.0 {
             self.impact.h = FIRST / omega;
         }
+        let known = self.histories.len();
+        let scale = (omega, tolerance);
+        let is_done = known <= 2
+            && if world.laws.iter().any(|law| law.rolling.is_on()) {
+                self.steps_among::<2, 21, { LOSSES + 2 }, 6>(world, scale, h_max, done)?
+            } else {
+                self.steps_among::<2, 15, { LOSSES + 2 }, 6>(world, scale, h_max, done)?
+            };
+        if !is_done {
+            // what the crowded try has met is forgotten
+            self.histories.truncate(known);
+            self.steps_among::<HISTORIES, { 9 + 6 * HISTORIES }, { LOSSES + HISTORIES }, { 3 * HISTORIES }>(
+                world, scale, h_max, done,
+            )?;
+        }
+        Ok(())
+    }
+
+    /// How far the next step may go, of an impact in contacts of `omega` (rad/s) and with its error relative to its speed, at most
+    /// `h_max` (s).
+    fn step_bounds(
+        &mut self,
+        world: &ContactEnvironment,
+        (omega, tolerance): (f64, f64),
+        h_max: f64,
+    ) -> StepBounds {
         let c = self.c;
         self.know(world, &c);
         let way = TRAVEL * world.body.radius;
@@ -111,82 +144,49 @@ impl ContactState {
         // a share of the tolerance, as an impact takes a handful of steps; relative to the speed of
         // the impact, so it has no unit of its own
         let allowed = LOCAL * tolerance * self.impact.speed_m_s;
-        let bounds = StepBounds { omega, limit, h_max, allowed };
-        let known = self.histories.len();
-        let mut accepted = None;
-        if known <= 2 {
-            accepted = if world.laws.iter().any(|law| law.rolling.is_on()) {
-                self.step_among::<2, 21, { LOSSES + 2 }, 6>(world, &bounds, done)?
-            } else {
-                self.step_among::<2, 15, { LOSSES + 2 }, 6>(world, &bounds, done)?
-            };
-        }
-        if accepted.is_none() {
-            // what the crowded try has met is forgotten
-            self.histories.truncate(known);
-            accepted = self.step_among::<HISTORIES, { 9 + 6 * HISTORIES }, { LOSSES + HISTORIES }, { 3 * HISTORIES }>(
-                world, &bounds, done,
-            )?;
-        }
-        if let Some(accepted) = accepted {
-            self.impact.left -= omega * accepted.dt;
-            self.accept_impact(world, &accepted, &bounds, done);
-        }
-        Ok(())
+        StepBounds { omega, limit, h_max, allowed }
     }
 
-    /// Tries steps with room for `C` contacts until one is accurate; `None` if there are more of them.
-    ///
-    /// A try that is cut at a kink is shorter, not wrong; one whose error is too large shrinks by
-    /// the usual rule.
-    fn step_among<const C: usize, const N: usize, const Q: usize, const P: usize>(
+    /// Steps with room for `C` contacts, as many as there are in which nothing comes or goes that others must know of; false if there are more
+    /// contacts than that at the first.
+    fn steps_among<const C: usize, const N: usize, const Q: usize, const P: usize>(
         &mut self,
         world: &ContactEnvironment,
-        bounds: &StepBounds,
+        scale: (f64, f64),
+        h_max: f64,
         done: &mut Advance,
-    ) -> Result<Option<Accepted>, StepError> {
-        let StepBounds { omega, limit, h_max, allowed } = *bounds;
-        let mut flow = Among::<C>::new(world, self, (omega, allowed));
-        let y = flow.begin::<N>();
+    ) -> Result<bool, StepError> {
+        let mut bounds = self.step_bounds(world, scale, h_max);
+        let mut flow = Among::<C>::new(world, self, (bounds.omega, bounds.allowed));
         let mut stages = Stages::<N, Q, P>::NONE;
-        flow.rates_of(&y, stages.first());
+        flow.rates_of(0, &flow.begin::<N>(), stages.first());
         // what the present place touches is met whatever becomes of the tries
         flow.state.accept_meetings(world.least_impact_m_s());
-        flow.note_start();
-        let known = flow.state.histories.len();
-        let mut kept = 0.0;
         loop {
-            flow.state.histories.truncate(known);
-            flow.begin_try();
-            let wished = flow.state.impact.h.min(limit);
-            let dt = wished.min(h_max);
-            let is_short = dt * omega < SHORTEST_RAD;
-            let attempt = stages.step(&mut flow, &y, dt, (!is_short).then_some(allowed));
-            if flow.is_crowded && C < HISTORIES {
-                return Ok(None);
-            }
-            done.rejected += 1;
-            let tried = match attempt {
-                Attempt::Whole(tried) => tried,
-                Attempt::Cut(share) => {
-                    flow.state.impact.h = dt * share;
-                    // beyond a kink the law is as smooth as before it: the step before is taken up again
-                    kept = dt.max(kept);
-                    continue;
-                }
+            let Some(accepted) = step_among(&mut flow, &mut stages, &bounds, done)? else {
+                return Ok(done.steps > 0);
             };
-            let (accepted, next_h) = judge((dt, wished), (tried.error2, flow.is_smooth), is_short)?;
-            flow.state.impact.h = if accepted { next_h.max(kept) } else { next_h };
-            if accepted {
-                done.rejected -= 1;
-                let end = flow.end(&tried.y);
-                let mut loss = flow.taken_up(&tried.q);
-                loss.add(&summed(&tried.q), 1.0);
-                flow.remember();
-                return Ok(Some(Accepted { end, dt, loss }));
+            flow.state.impact.left -= bounds.omega * accepted.dt;
+            flow.state.accept_impact(world, &accepted, &bounds, done);
+            if !(accepted.is_alike && flow.state.goes_on_alone(flow.pressed().len())) {
+                return Ok(true);
             }
-            kept = 0.0;
+            bounds = flow.state.step_bounds(world, scale, h_max - done.dt);
+            if bounds.h_max <= 0.0 {
+                return Ok(true);
+            }
+            // the rates of the step's end are those of the next one's start
+            stages.pass();
         }
+    }
+
+    /// Whether an impact in `count` contacts goes on without anything that must be known between its steps.
+    fn goes_on_alone(&self, count: usize) -> bool {
+        self.is_rebounding()
+            && self.histories.len() == count
+            && self.histories.iter().all(|history| history.announced)
+            && !self.may_yield
+            && !self.facets.are_any()
     }
 
     /// Takes over the step's end: motion, memories, losses. The last stage was there.
@@ -263,6 +263,88 @@ impl ContactState {
         }
         (self.impact.gained, self.impact.left) = (0.0, 0.0);
     }
+}
+
+/// Tries steps until one is accurate; `None` if there are more contacts than `C`.
+///
+/// A try that is cut at a kink is shorter, not wrong; one whose error is too large shrinks by
+/// the usual rule.
+fn step_among<const C: usize, const N: usize, const Q: usize, const P: usize>(
+    flow: &mut Among<C>,
+    stages: &mut Stages<N, Q, P>,
+    bounds: &StepBounds,
+    done: &mut Advance,
+) -> Result<Option<Accepted>, StepError> {
+    let StepBounds { omega, limit, h_max, allowed } = *bounds;
+    let y = flow.begin::<N>();
+    flow.note_start();
+    let (known, start) = (flow.state.histories.len(), flow.state.c);
+    let mut kept = 0.0;
+    loop {
+        flow.state.histories.truncate(known);
+        flow.begin_try();
+        let wished = flow.state.impact.h.min(limit);
+        let dt = wished.min(h_max);
+        let is_short = dt * omega < SHORTEST_RAD;
+        let attempt = stages.step(flow, &y, dt, (!is_short).then_some(allowed));
+        if flow.is_crowded && C < HISTORIES {
+            flow.state.histories.truncate(known);
+            return Ok(None);
+        }
+        let tried = match attempt {
+            Attempt::Whole(tried) => tried,
+            Attempt::Cut(share) => {
+                done.rejected += 1;
+                flow.state.impact.h = dt * share;
+                flow.changes.ends_past_exchange = false;
+                // beyond a kink the law is as smooth as before it: the step before is taken up again
+                kept = dt.max(kept);
+                continue;
+            }
+        };
+        let (accepted, next_h) = judge((dt, wished), (tried.error2, true), is_short)?;
+        if !accepted {
+            done.rejected += 1;
+            let path = |share: f64| start + three(&stages.within((&y, &tried), dt, share).0, WAY);
+            let share = flow.exchange_share(path);
+            let share = share.filter(|share| (WITHIN.0..WITHIN.1).contains(share));
+            flow.changes.ends_past_exchange = share.is_some();
+            kept = share.map_or(0.0, |_| dt.max(kept));
+            flow.state.impact.h = share.map_or(next_h, |share| dt * share);
+            continue;
+        }
+        flow.state.impact.h = next_h.max(kept);
+        return Ok(Some(end_of_step(flow, stages, (&y, &tried), dt)));
+    }
+}
+
+/// A step of `dt` (s) from `y` that is accepted as `tried`, or as far as the first contact that begins or ends within it.
+fn end_of_step<const C: usize, const N: usize, const Q: usize, const P: usize>(
+    flow: &mut Among<C>,
+    stages: &mut Stages<N, Q, P>,
+    (y, tried): (&[f64; N], &Tried<N, Q>),
+    dt: f64,
+) -> Accepted {
+    let start = flow.state.c;
+    let path = |share: f64| {
+        let (y, _) = stages.within((y, tried), dt, share);
+        (start + three(&y, WAY), three(&y, V))
+    };
+    let is_alike = !flow.changes.are_any() && flow.holds_its_normals();
+    let change = flow.change_share(dt, path);
+    let (y_end, sums) = match change {
+        Some(share) => stages.within((y, tried), dt, share),
+        None => (tried.y, tried.q),
+    };
+    if change.is_some() {
+        // from now on what has waited presses, and what has ended counts no more
+        flow.rates_of(0, &y_end, stages.first());
+    }
+    let end = flow.end(&y_end);
+    let mut loss = flow.taken_up(&sums);
+    loss.add(&summed(&sums), 1.0);
+    flow.remember();
+    Accepted { end, dt: dt * change.unwrap_or(1.0), loss, is_alike }
 }
 
 /// What contacts took beside what their normal springs hold, from the sums of a step (J).

@@ -51,7 +51,7 @@ mod integrate;
 mod tests;
 
 pub(super) use plane::LOCAL;
-pub(crate) use plane::{BlowTable, Followed, Plane, Rebound, blow_along_a_line};
+pub(crate) use plane::{BlowTable, Followed, Plane, blow_along_a_line};
 pub(super) use rigid_limit::NOTHING;
 pub(crate) use rigid_limit::{FrozenContact, throw};
 

@@ -10,22 +10,26 @@
 //! its memory: they are turned to the normal of the place before they are asked, and their rates
 //! are turned back.
 
+use super::KINKED;
+use super::changes::Changes;
 use crate::contact::TOUCH;
 use crate::contact::history::carry;
 use crate::contact::{ContactPoint, Feature};
 use crate::ground::NormalElement;
 use crate::rock::Vec3;
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
-use crate::solver::impact::dormand_prince::{Flow, Rates, put, three};
+use crate::solver::impact::dormand_prince::{Flow, NODES, Rates, put, three};
 use crate::solver::law::ZERO;
 use crate::solver::law::{Action, ContactPlace};
 use crate::solver::loss::Loss;
 use crate::solver::stage::End;
 
 /// Where the way of the centre begins among the numbers that change; velocity, spin and the springs follow.
-const WAY: usize = 0;
-const V: usize = 3;
+pub(super) const WAY: usize = 0;
+pub(super) const V: usize = 3;
 const W: usize = 6;
+/// The stage at a step's end.
+const LAST: usize = NODES.len() - 1;
 /// Where the springs begin: shear of all `C` contacts, then rolling of all, each with three numbers.
 const SPRINGS: usize = 9;
 /// What is summed up: losses by friction, damping, rolling and to trees. What the normal spring of each contact takes up follows.
@@ -55,6 +59,8 @@ pub(super) struct Among<'a, 'w, const C: usize> {
     pub(super) is_crowded: bool,
     /// Whether the current try has met one face only: no patches, nothing that comes or goes.
     pub(super) is_smooth: bool,
+    /// What comes and what goes within the step.
+    pub(super) changes: Changes,
     /// The one face met at the step's start; [`Feature::NONE`] if it was something else.
     face: Option<Feature>,
     /// Energy in the normal spring of each contact at the step's start (J), if it is known, and which of them have a dashpot.
@@ -94,6 +100,7 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
             scale,
             is_crowded: false,
             is_smooth: true,
+            changes: Changes::NONE,
             face: None,
             began_j: [Some(0.0); C],
             damped: 0,
@@ -128,6 +135,22 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
     /// Begins another try from the same state.
     pub(super) fn begin_try(&mut self) {
         self.is_smooth = true;
+        self.changes.begin_try();
+    }
+
+    /// Looks for the touches at `c`.
+    pub(super) fn look(&mut self, c: &Vec3) {
+        self.look_within(c, self.radius_m() * (1.0 + TOUCH));
+    }
+
+    /// The same, nearer than `reach` (m).
+    pub(super) fn look_within(&mut self, c: &Vec3, reach: f64) {
+        self.state.look(self.world, c, reach);
+    }
+
+    /// Radius of the rock (m).
+    pub(super) fn radius_m(&self) -> f64 {
+        self.world.body.radius
     }
 
     /// Contacts at the state last asked for.
@@ -135,8 +158,9 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
         &self.list[..self.len]
     }
 
-    /// Notes what the normal springs hold at the step's start, the state last asked for.
+    /// Notes the contacts of the step's start, the state last asked for, and what their normal springs hold.
     pub(super) fn note_start(&mut self) {
+        self.changes.begin(&self.state.touches);
         for contact in &self.list[..self.len] {
             self.began_j[contact.place] = contact.known_j(self.world.body.mass);
         }
@@ -160,6 +184,16 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
         taken
     }
 
+    /// Whether the contacts at the state last asked for are those of the memories, with the normals that these know.
+    pub(super) fn holds_its_normals(&self) -> bool {
+        let histories = &self.state.histories;
+        self.len == histories.len()
+            && self.pressed().iter().all(|contact| {
+                let history = &histories[contact.place];
+                (history.feature, history.n) == (contact.touch.feature, contact.at.n)
+            })
+    }
+
     /// Writes the contacts at the state last asked for into their memories.
     /// The pair's last stage is at the step's end, so what was asked for last is the end.
     pub(super) fn remember(&mut self) {
@@ -180,18 +214,20 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
         End { c: self.state.c + three(y, WAY), v: three(y, V), w: three(y, W) }
     }
 
-    /// Writes the rates at `y` over `rates`; its contacts are those of the rock's state then.
+    /// Writes the rates at `y` over `rates`, at stage `node` of a step, 0 at its ends; its contacts are those of the rock's state then.
     pub(super) fn rates_of<const N: usize, const Q: usize, const P: usize>(
         &mut self,
+        node: usize,
         y: &[f64; N],
         rates: &mut Rates<N, Q, P>,
     ) {
-        let Self { world, state, damped, .. } = self;
+        *rates = Rates::NONE;
+        let (c, v, w) = (self.state.c + three(y, WAY), three(y, V), three(y, W));
+        self.look(&c);
+        let Self { world, state, damped, changes, .. } = self;
         let body = &world.body;
         let (by_mass, by_inertia) = (1.0 / body.mass, 1.0 / body.inertia);
-        *rates = Rates::NONE;
-        let (c, v, w) = (state.c + three(y, WAY), three(y, V), three(y, W));
-        state.look(world, &c, body.radius * (1.0 + TOUCH));
+        changes.hold_on(node, &mut state.touches, body.radius);
         let (mut dv, mut dw, mut taken) = (body.gravity, Vec3::zeros(), 0);
         // patches and edges have kinks that the error estimate hardly sees: a step that meets any
         // is held to a tighter error
@@ -200,7 +236,9 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
             _ => Feature::NONE,
         };
         let first = *self.face.get_or_insert(face);
-        self.is_smooth &= face == first && face != Feature::NONE;
+        let is_end = node == LAST && changes.ends_past_exchange;
+        let is_plain = face == first && face != Feature::NONE && !changes.are_any();
+        self.is_smooth &= is_end || is_plain;
         self.len = 0;
         for k in 0..state.touches.len() {
             let touch = state.touches[k];
@@ -218,7 +256,7 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
             let (n, memory) = (touch.normal, &state.histories[place]);
             let law = world.law(touch.triangle);
             // a patch of stiffness |a|² has its dashpot times |a|; parallel patches share theirs
-            let share = world.dashpot_share(&state.touches, k);
+            let share = world.dashpot_share_beside(&state.touches, k, changes.gone());
             let normal = law.normal(memory.captured).of_patch(touch.gain2, share);
             let at = ContactPlace {
                 n,
@@ -272,8 +310,8 @@ impl<const C: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, 
     for Among<'_, '_, C>
 {
     #[inline]
-    fn rates(&mut self, _node: usize, y: &[f64; N], to: &mut Rates<N, Q, P>) {
-        self.rates_of(y, to);
+    fn rates(&mut self, node: usize, y: &[f64; N], to: &mut Rates<N, Q, P>) {
+        self.rates_of(node, y, to);
     }
 
     /// A spring that nothing presses on any more holds nothing: how it relaxes does not matter.
@@ -281,6 +319,8 @@ impl<const C: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, 
     #[inline]
     fn size2(&self, off: &[f64; N]) -> f64 {
         let (omega, allowed) = self.scale;
+        // where patches meet and part the estimate sees too little of a kink
+        let allowed = if self.is_smooth { allowed } else { KINKED * allowed };
         let pressed = self.pressed().iter().filter(|contact| contact.normal_force > 0.0);
         let stretch2 = pressed
             .map(|contact| three(off, SPRINGS + 3 * contact.place).norm_squared())

@@ -36,6 +36,16 @@ const E: [f64; 6] = [
     -1.0 / 40.0,
 ];
 
+/// Weights of the first, third … seventh stage in what is between the ends of a step (Hairer, Nørsett and Wanner 1993, II.6).
+const D: [f64; 6] = [
+    -12_715_105_075.0 / 11_282_082_432.0,
+    87_487_479_700.0 / 32_700_410_799.0,
+    -10_690_763_975.0 / 1_880_347_072.0,
+    701_980_252_875.0 / 199_316_789_632.0,
+    -1_453_857_185.0 / 822_651_844.0,
+    69_997_945.0 / 29_380_423.0,
+];
+
 /// Rates of `N` numbers that change and of `Q` that are only summed up, and `P` places where the law may have a kink.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::solver) struct Rates<const N: usize, const Q: usize, const P: usize> {
@@ -147,6 +157,30 @@ impl<const N: usize, const Q: usize, const P: usize> Stages<N, Q, P> {
     }
 }
 
+impl<const N: usize, const Q: usize, const P: usize> Stages<N, Q, P> {
+    /// Where a step of length `h` from `y` is after this `share` of it (–), of order 4: what is summed up begins at 0.
+    pub(in crate::solver) fn within(
+        &self,
+        (y, tried): (&[f64; N], &Tried<N, Q>),
+        h: f64,
+        share: f64,
+    ) -> ([f64; N], [f64; Q]) {
+        let [k1, _, k3, k4, k5, k6, k7] = &self.0;
+        let y_bent = mixed(&[0.0; N], h, [&k1.y, &k3.y, &k4.y, &k5.y, &k6.y, &k7.y], D);
+        let q_bent = mixed(&[0.0; Q], h, [&k1.q, &k3.q, &k4.q, &k5.q, &k6.q, &k7.q], D);
+        let between = |(from, to): (f64, f64), (first, last): (f64, f64), bent: f64| {
+            let (whole, left) = (to - from, 1.0 - share);
+            let begins = h * first - whole;
+            let ends = whole - h * last - begins;
+            from + share * (whole + left * (begins + share * (ends + left * bent)))
+        };
+        (
+            std::array::from_fn(|i| between((y[i], tried.y[i]), (k1.y[i], k7.y[i]), y_bent[i])),
+            std::array::from_fn(|i| between((0.0, tried.q[i]), (k1.q[i], k7.q[i]), q_bent[i])),
+        )
+    }
+}
+
 /// `y + h Σ a k`.
 #[inline]
 fn mixed<const N: usize, const K: usize>(
@@ -226,5 +260,49 @@ impl<const N: usize, const Q: usize, const P: usize> Stages<N, Q, P> {
         }
         // a kink hardly left at the start is hardly felt: the lesser of both sides counts
         (found.unwrap_or(1.0), beyond.min(first.abs()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// `y'' = −y` with its energy summed up: `(cos, −sin)`, and `∫ sin² = t/2 − sin 2t/4`.
+    struct Swing;
+
+    impl Flow<2, 1, 0> for Swing {
+        fn rates(&mut self, _node: usize, y: &[f64; 2], to: &mut Rates<2, 1, 0>) {
+            (to.y, to.q) = ([y[1], -y[0]], [y[1] * y[1]]);
+        }
+
+        fn size2(&self, off: &[f64; 2]) -> f64 {
+            off[0] * off[0] + off[1] * off[1]
+        }
+    }
+
+    /// Between its ends a step is right to order 4, and its ends are what they are.
+    #[test]
+    fn a_step_is_known_between_its_ends() {
+        let start = [1.0, 0.0];
+        let off = |h: f64| {
+            let mut stages = Stages::<2, 1, 0>::NONE;
+            Swing.rates(0, &start, stages.first());
+            let Attempt::Whole(tried) = stages.step(&mut Swing, &start, h, None) else {
+                unreachable!("nothing is cut where nothing is felt")
+            };
+            assert_eq!(stages.within((&start, &tried), h, 0.0), (start, [0.0]));
+            let end = stages.within((&start, &tried), h, 1.0);
+            assert!((end.0[0] - tried.y[0]).abs() < 1e-15 && (end.1[0] - tried.q[0]).abs() < 1e-15);
+            let worst = |share: f64| {
+                let (y, q) = stages.within((&start, &tried), h, share);
+                let t = share * h;
+                let summed = 0.5 * t - 0.25 * crate::math::sin_cos(2.0 * t).0;
+                let (sine, cosine) = crate::math::sin_cos(t);
+                (y[0] - cosine).abs().max((y[1] + sine).abs()).max((q[0] - summed).abs())
+            };
+            (1..10).map(|k| worst(0.1 * f64::from(k))).fold(0.0, f64::max)
+        };
+        let (coarse, fine) = (off(0.4), off(0.2));
+        assert!(coarse < 3e-5 && coarse / fine > 20.0, "{coarse:e} {fine:e}");
     }
 }

@@ -1,0 +1,96 @@
+//! When, within a step of an impact, a contact begins, ends, or takes the place of another.
+
+use super::changes::{Changes, ContactChange};
+use super::flow::Among;
+use crate::contact::TOUCH;
+use crate::rock::Vec3;
+use crate::solver::impact::dormand_prince::NODES;
+use crate::solver::law::ZERO;
+
+/// Penetration at which a contact has begun, and at which it has ended (–, relative to R) …
+const BEGUN: f64 = 0.5 * TOUCH;
+const ENDED: f64 = -2.0 * TOUCH;
+/// … by so much (–, relative to R).
+const EXACT: f64 = 0.4 * TOUCH;
+/// How far beyond the radius it is looked for contacts that come or go (–, relative to R).
+const AROUND: f64 = 0.05;
+/// Places looked at for it, at most.
+const LOOKS: u32 = 40;
+/// How exactly the place is found where a contact takes the place of another (–, relative to the share of the step before it).
+const EXCHANGED: f64 = 0.01;
+
+impl<const C: usize> Among<'_, '_, C> {
+    /// Share of the step at which the first contact begins or ends (–), on the `path` of centre and velocity over the step's
+    /// share; `None` if none does. `dt` is the step's length (s).
+    pub(super) fn change_share(
+        &mut self,
+        dt: f64,
+        path: impl Fn(f64) -> (Vec3, Vec3),
+    ) -> Option<f64> {
+        let Changes { onset, end, .. } = self.changes;
+        let onset = onset.and_then(|seen| self.share_of((ContactChange::Onset, seen), dt, &path));
+        let end = end.and_then(|seen| self.share_of((ContactChange::End, seen), dt, &path));
+        [onset, end].into_iter().flatten().reduce(f64::min)
+    }
+
+    /// The same of one change, which stage `seen` has seen.
+    ///
+    /// Newton's method along the path, held between the last place before it and the first behind.
+    fn share_of(
+        &mut self,
+        (change, seen): (ContactChange, usize),
+        dt: f64,
+        path: &impl Fn(f64) -> (Vec3, Vec3),
+    ) -> Option<f64> {
+        let radius = self.radius_m();
+        // stages are not on the path: what they see may be a little later, or not at all
+        let mut high = [NODES[seen], 1.0].into_iter().find(|at| {
+            self.beyond_m(change, &path(*at).0).is_none_or(|(beyond, _)| beyond > 0.0)
+        })?;
+        let (mut low, mut at) = (0.0, high);
+        for _ in 0..LOOKS {
+            let (c, v) = path(at);
+            let place = self.beyond_m(change, &c);
+            if place.is_none_or(|(beyond, _)| beyond > 0.0) {
+                high = at;
+            } else {
+                low = at;
+            }
+            let next = match place {
+                Some((beyond, _)) if beyond.abs() <= EXACT * radius => return Some(at),
+                Some((beyond, n)) => at - beyond / (change.sign() * -n.dot(&v) * dt),
+                None => f64::NAN,
+            };
+            at = if next > low && next < high { next } else { 0.5 * (low + high) };
+        }
+        Some(high)
+    }
+
+    /// How far a rock at `c` is beyond a change (m, negative before it), and the normal of its contact; `None` if there is no
+    /// such contact: then it has ended, or not yet begun.
+    fn beyond_m(&mut self, change: ContactChange, c: &Vec3) -> Option<(f64, Vec3)> {
+        let radius = self.radius_m();
+        self.look_within(c, radius * (1.0 + AROUND));
+        let first = self.changes.first(change, &self.state.touches);
+        let beyond = |(distance, n)| match change {
+            ContactChange::Onset => (radius - distance - BEGUN * radius, n),
+            ContactChange::End => (ENDED * radius - (radius - distance), n),
+        };
+        match (first, change) {
+            (None, ContactChange::Onset) => Some((-AROUND * radius, ZERO)),
+            (first, _) => first.map(beyond),
+        }
+    }
+
+    /// Share of the step just beyond which contacts have taken the place of others (–), on the `path` of the centre.
+    pub(super) fn exchange_share(&mut self, path: impl Fn(f64) -> Vec3) -> Option<f64> {
+        let (mut low, mut high) = (0.0, NODES[self.changes.exchange?]);
+        while high - low > EXCHANGED * high {
+            let at = 0.5 * (low + high);
+            self.look(&path(at));
+            let exchanged = self.changes.are_exchanged(&self.state.touches);
+            (low, high) = if exchanged { (low, at) } else { (at, high) };
+        }
+        Some(high)
+    }
+}

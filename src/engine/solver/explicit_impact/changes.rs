@@ -1,0 +1,173 @@
+//! What comes and what goes within a step of an impact.
+//!
+//! Where a contact begins or ends the force jumps: its own dashpot acts from one instant to the next, and the others' dashpots share with
+//! it. No pair of any order sees where that is. So the contacts of a step are those of its start: one that begins waits, one that ends is
+//! still counted, and the step ends where that happens first, found on its own path. Where a contact takes the place of another, from
+//! a face over an edge to the next, forces go on and only their rates jump: it acts at once, and a step whose error is too large for
+//! that is tried anew up to there.
+
+use crate::contact::{ContactPoint, ContactPoints, Feature, MOST};
+use crate::rock::Vec3;
+use crate::solver::law::ZERO;
+
+/// The contacts of a step's start, and the first stages that see others.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Changes {
+    begun: [(Feature, Vec3); MOST],
+    len: usize,
+    /// Whether each of them is a single point.
+    are_single: bool,
+    /// Normals of those that the current stage does not touch any more.
+    gone: [Vec3; MOST],
+    gone_len: usize,
+    /// First stage at which a contact that waits would press, at which one has ended, at which one has taken the place of another.
+    pub(super) onset: Option<usize>,
+    pub(super) end: Option<usize>,
+    pub(super) exchange: Option<usize>,
+    /// Whether the step ends just past an exchange that is known.
+    pub(super) ends_past_exchange: bool,
+}
+
+/// Which change is looked for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum ContactChange {
+    Onset,
+    End,
+}
+
+/// Touches beside those of the step's start.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Compared {
+    Same,
+    /// All of them, and more.
+    More,
+    /// Some of them, and no other.
+    Fewer,
+    /// Anything else.
+    Others,
+}
+
+/// Whether a touch is a single point, no patch.
+#[expect(clippy::float_cmp, reason = "a single point has exactly 1")]
+fn is_single(touch: &ContactPoint) -> bool {
+    touch.gain2 == 1.0
+}
+
+impl Changes {
+    /// None, and no contacts.
+    pub(super) const NONE: Self = Self {
+        begun: [(Feature::NONE, ZERO); MOST],
+        len: 0,
+        are_single: true,
+        gone: [ZERO; MOST],
+        gone_len: 0,
+        onset: None,
+        end: None,
+        exchange: None,
+        ends_past_exchange: false,
+    };
+
+    /// The contacts of the step's start.
+    pub(super) fn begin(&mut self, touches: &ContactPoints) {
+        (self.len, self.are_single) = (touches.len(), touches.iter().all(is_single));
+        for (begun, touch) in self.begun.iter_mut().zip(touches.iter()) {
+            *begun = (touch.feature, touch.normal);
+        }
+    }
+
+    /// Begins another try.
+    pub(super) fn begin_try(&mut self) {
+        (self.onset, self.end, self.exchange) = (None, None, None);
+    }
+
+    /// Whether a stage has seen any.
+    pub(super) fn are_any(&self) -> bool {
+        self.onset.or(self.end).or(self.exchange).is_some()
+    }
+
+    /// Normals of the contacts that have ended since the step's start.
+    pub(super) fn gone(&self) -> &[Vec3] {
+        &self.gone[..self.gone_len]
+    }
+
+    fn has(&self, feature: Feature) -> bool {
+        self.begun[..self.len].iter().any(|begun| begun.0 == feature)
+    }
+
+    /// How many of the touches were there at the step's start.
+    fn still(&self, touches: &ContactPoints) -> usize {
+        touches.iter().filter(|touch| self.has(touch.feature)).count()
+    }
+
+    /// What the touches are to those of the step's start.
+    fn compared(&self, touches: &ContactPoints) -> Compared {
+        let still = self.still(touches);
+        let are_single = touches.iter().all(is_single);
+        match (still == self.len, still == touches.len()) {
+            (true, true) if are_single == self.are_single => Compared::Same,
+            (true, false) if are_single && self.are_single => Compared::More,
+            (false, true) if are_single && self.are_single => Compared::Fewer,
+            _ => Compared::Others,
+        }
+    }
+
+    /// Whether contacts have taken the place of others, or a patch that of single points.
+    pub(super) fn are_exchanged(&self, touches: &ContactPoints) -> bool {
+        self.compared(touches) == Compared::Others
+    }
+
+    /// Makes the touches of stage `node` those of the step's start, for a rock of `radius` (m); those of the ends, 0, are what they are.
+    pub(super) fn hold_on(&mut self, node: usize, touches: &mut ContactPoints, radius: f64) {
+        self.gone_len = 0;
+        if node == 0 {
+            return;
+        }
+        match self.compared(touches) {
+            Compared::Same => {}
+            Compared::Others => self.exchange = self.exchange.or(Some(node)),
+            Compared::Fewer => {
+                self.end = self.end.or(Some(node));
+                let is_gone = |one: &&(Feature, Vec3)| touches.iter().all(|at| at.feature != one.0);
+                for (_, normal) in self.begun[..self.len].iter().filter(is_gone) {
+                    self.gone[self.gone_len] = *normal;
+                    self.gone_len += 1;
+                }
+            }
+            Compared::More => {
+                let mut waits = touches.iter().filter(|touch| !self.has(touch.feature));
+                let presses = waits.any(|touch| touch.distance_m < radius);
+                self.onset = self.onset.or(presses.then_some(node));
+                touches.retain(|touch| self.has(touch.feature));
+            }
+        }
+    }
+
+    /// The contact that comes first, or goes first, by its distance (m) and its normal.
+    pub(super) fn first(
+        &self,
+        change: ContactChange,
+        touches: &ContactPoints,
+    ) -> Option<(f64, Vec3)> {
+        let places = touches.iter().map(|touch| (touch.distance_m, touch.normal, touch.feature));
+        let first = match change {
+            ContactChange::Onset => {
+                places.filter(|touch| !self.has(touch.2)).min_by(|a, b| a.0.total_cmp(&b.0))
+            }
+            ContactChange::End if self.still(touches) < self.len => None,
+            ContactChange::End => {
+                places.filter(|touch| self.has(touch.2)).max_by(|a, b| a.0.total_cmp(&b.0))
+            }
+        };
+        first.map(|(distance, normal, _)| (distance, normal))
+    }
+}
+
+impl ContactChange {
+    /// Whether penetration grows towards it.
+    pub(super) fn sign(self) -> f64 {
+        match self {
+            Self::Onset => 1.0,
+            Self::End => -1.0,
+        }
+    }
+}
