@@ -40,7 +40,11 @@ fn on_planes(
     let first = all.remove(0);
     for other in &all {
         let apart = (other.end.position_m - first.end.position_m).norm();
-        assert!(apart <= 0.1 * row.smooth, "the triangulation moved the rock by {apart:e} m");
+        assert!(
+            apart <= 0.1 * row.smooth,
+            "{}: the triangulation moved the rock by {apart:e} m",
+            row.name
+        );
     }
     first
 }

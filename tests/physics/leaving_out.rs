@@ -151,16 +151,19 @@ fn a_way_on_one_plane_touches_nothing_else() {
             let n = terrain.face(face).n;
             let (s, t) = (between(random, 0.0, 1.0), between(random, 0.0, 1.0));
             let foot = a + (b - a) * (s * (1.0 - t)) + (c - a) * t * (1.0 - s);
-            let along = point(random, 1.0).cross(&n) * between(random, 0.0, 0.15 * radius);
+            // of an impact, and of a step that rolls or slides
+            let longest = if index % 2 == 0 { 0.15 } else { 2.0 };
+            let along = point(random, 1.0).cross(&n) * between(random, 0.0, longest * radius);
             let passage = PressedPath {
                 start: foot + n * radius,
                 along,
                 into: n * -between(random, 0.0, 0.02 * radius),
                 off_m: between(random, 0.0, 0.01 * radius),
-                way_m: 0.3 * radius, // more than any of them gets
+                way_m: along.norm() + 0.15 * radius, // more than any of them gets
             };
             let mut near = Neighbours::default();
-            near.collect(&terrain, &passage.start, radius, 0.35 * radius, 0.1 * radius);
+            let (middle, half) = (passage.start + along * 0.5, 0.5 * along.norm());
+            near.collect(&terrain, &middle, radius, half + 0.2 * radius, 0.1 * radius);
             if !near.is_plane_on(face, &passage) {
                 crossing += 1;
                 continue;

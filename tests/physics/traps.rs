@@ -105,19 +105,59 @@ fn rejected_steps_leave_no_trace() {
     assert!(fallen.ledger.rise_j <= 1e-9 * fallen.released_j);
 }
 
-/// Where only one plane is near, steps are as long as the way through the known features, not a share of the radius.
+/// On a plane steps are as long as it is clear, not a share of the radius, and come to the closed form of what rolls, slides first and
+/// rolls then, or stops.
 #[test]
 fn a_plane_is_crossed_in_long_steps() {
-    let flat = terrain(make::jittered_plane(40.0, 4, 0.0));
-    let fallen = CASE.run(&flat, [[-30.0, 0.3, 0.5], [10.0, 0.0, 0.0], [0.0, 20.0, 0.0]], 5.0);
-    let way = fallen.end.position_m.x + 30.0;
-    assert!(way > 40.0);
-    // steps of a tenth of the radius would be 20 a metre
-    assert!(
-        (fallen.effort.steps as f64) < 12.0 * way,
-        "{} steps over {way} m",
-        fallen.effort.steps
-    );
+    let (friction, rolling, g) = (GROUND.friction_angle_rad.tan(), 0.04, 9.81);
+    let flat = terrain(make::jittered_plane(160.0, 4, 0.0));
+    let radius = CASE.rock.radius_m;
+    for (scheme, tolerance_m_s, off) in
+        [(Scheme::Adaptive, 1e-3, 2e-3), (Scheme::Rigid, 0.05, 2e-3)]
+    {
+        let ground = Ground { rolling_friction: rolling, ..with_springs(GROUND, 1e10) };
+        let case = Case { scheme, tolerance_m_s, ground, step_s: 0.01, ..CASE };
+        // slides until R ω is 5/7 of its speed, less what rolling friction takes meanwhile; rolls to its end then
+        let v = 10.0;
+        let slows = [friction * g, 2.5 * (friction - rolling) * g];
+        let t = v / (slows[0] + slows[1]);
+        let rolls = v - slows[0] * t;
+        let slid_m = v * t - 0.5 * slows[0] * t * t;
+        let whole_m = slid_m + rolls * rolls / (2.0 * rolling * g / 1.4);
+        let fallen = case.run(&flat, [[-60.0, 0.3, radius], [v, 0.0, 0.0], REST], 60.0);
+        assert_eq!(fallen.stop, Stop::AtRest, "{scheme:?}");
+        let way = fallen.end.position_m.x + 60.0;
+        assert!((way / whole_m - 1.0).abs() < off, "{scheme:?} {way} {whole_m}");
+        assert!(fallen.energy_balance_error() < 1e-4, "{}", fallen.energy_balance_error());
+        // steps of 0.15 R would be 13 a metre
+        let steps = fallen.effort.steps as f64;
+        assert!(steps < 5.0 * way, "{scheme:?} {steps} steps over {way} m");
+    }
+}
+
+/// What lies on the plane is met, however long the steps are before: a ridge of 3 cm that rocks come to from different places.
+#[test]
+fn long_steps_do_not_jump_over_a_ridge() {
+    let at = |x: f64, y: f64, z: f64| Vec3::new(x, y, z);
+    let strip = |(x0, z0): (f64, f64), (x1, z1): (f64, f64)| {
+        let [a, b] = [at(x0, -20.0, z0), at(x1, -20.0, z1)];
+        let [c, d] = [at(x1, 20.0, z1), at(x0, 20.0, z0)];
+        vec![[a, b, c], [a, c, d]]
+    };
+    let profile = [(-20.0, 0.0), (0.0, 0.0), (0.05, 0.03), (0.1, 0.0), (20.0, 0.0)];
+    let ridge = terrain(profile.windows(2).flat_map(|ends| strip(ends[0], ends[1])).collect());
+    for scheme in [Scheme::Adaptive, Scheme::Rigid] {
+        let case = Case { scheme, tolerance_m_s: 0.02, step_s: 0.01, ..on(1e9, 0.3) };
+        let radius = case.rock.radius_m;
+        for k in 0..24 {
+            let x = -3.0 - 0.11 * f64::from(k);
+            let v = 0.8 + 0.2 * f64::from(k % 7);
+            let spin = [0.0, v / radius, 0.0];
+            let fallen = case.run(&ridge, [[x, 0.2, radius], [v, 0.0, 0.0], spin], 12.0);
+            let is_struck = fallen.impacts.iter().any(|impact| impact.point_m.z > 1e-3);
+            assert!(is_struck, "{scheme:?} {k}: {:?}", fallen.impacts.first());
+        }
+    }
 }
 
 /// The textbook's damping (which lets the contact pull) would give 0.550 where 0.5 is asked, 0.325 where 0.2 is.

@@ -137,9 +137,9 @@ pub struct ContactState {
 }
 
 /// Features are collected for the rock's centre up to this far from where it was (–, relative to R) …
-const MARGIN: f64 = 0.35;
+pub(super) const MARGIN: f64 = 0.35;
 /// … half of that ahead of it (–) …
-const AHEAD: f64 = 0.17;
+pub(super) const AHEAD: f64 = 0.17;
 /// … at a touch no further than this, if that is enough for the impact (–) …
 const LEAST_MARGIN: f64 = 0.06;
 /// … which goes on for about so many contact times `π/ω` (–) …
@@ -200,8 +200,8 @@ impl ContactState {
         // Nothing of the rock before, not even a guess, may tell.
         self.contacts.iter_mut().for_each(|contact| contact.mode = SlipState::default());
         if !self.near.covers(&c) {
-            let (r, margin) = (world.body.radius, self.way_of_impact(world));
-            self.near.collect(world.terrain, &c, r, margin, SLACK * r);
+            let margin = self.way_of_impact(world);
+            self.collect_within(world, &c, margin);
         }
         self.look(world, &c, world.body.radius * (1.0 + TOUCH));
         // An impact rebounds or not as a whole, by its fastest approach.
@@ -225,9 +225,18 @@ impl ContactState {
     /// Collects the features around `c` and ahead of it along the velocity, so that most of them are still to come.
     pub(crate) fn collect(&mut self, world: &ContactEnvironment, c: &Vec3) {
         let r = world.body.radius;
-        let ahead = c + self.v.cap_magnitude(AHEAD * r);
-        let begun = self.stopwatches.now();
-        self.near.collect(world.terrain, &ahead, r, MARGIN * r, SLACK * r);
+        self.collect_within(world, &(c + self.v.cap_magnitude(AHEAD * r)), MARGIN * r);
+    }
+
+    /// Collects the features for a centre within `margin` (m) of `centre`.
+    pub(super) fn collect_within(
+        &mut self,
+        world: &ContactEnvironment,
+        centre: &Vec3,
+        margin: f64,
+    ) {
+        let (r, begun) = (world.body.radius, self.stopwatches.now());
+        self.near.collect(world.terrain, centre, r, margin, SLACK * r);
         self.stopwatches.stop(TimedPiece::Geometry, begun);
     }
 
@@ -349,20 +358,6 @@ impl ContactState {
     pub fn motion_j(&self, body: &Body) -> f64 {
         0.5 * (body.mass * self.v.norm_squared() + body.inertia * self.w.norm_squared())
     }
-
-    /// Longest step in which the centre stays where its features are known, or goes no further than `travel` (–,
-    /// relative to R), past one plane or among several features (s).
-    pub fn longest_step(&self, world: &ContactEnvironment, travel: f64) -> f64 {
-        let way = travel * world.body.radius;
-        let is_plane = self.near.plane().is_some();
-        let room = if is_plane { self.near.room_m(&self.c).max(way) } else { way };
-        longest_step(&world.body, self.v.norm(), room)
-    }
-}
-
-/// Longest step in which a rock at `speed` goes no further than `room` (s); its weight may speed it up on the way.
-pub(crate) fn longest_step(body: &Body, speed: f64, room: f64) -> f64 {
-    2.0 * room / (speed + (speed * speed + 2.0 * body.gravity.norm() * room).sqrt())
 }
 
 impl ContactState {

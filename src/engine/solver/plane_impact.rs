@@ -7,14 +7,12 @@
 //! it.
 
 use super::contact_state::{ContactEnvironment, ContactState};
-use super::impact::{Followed, Plane, Rebound};
+use super::impact::{Followed, Plane};
 use super::step_control::Advance;
 use crate::contact::TOUCH;
 use crate::contact::neighbours::PressedPath;
 use crate::contact::{ContactPoint, FeatureKind};
 use crate::ground::NormalElement;
-use crate::math;
-use crate::rock::Vec3;
 
 impl ContactState {
     /// All of an impact on one plane, if it is one: nothing else can be touched as far as the rock gets, springs are
@@ -44,7 +42,9 @@ impl ContactState {
         let (n, triangle) = (history.n, history.triangle);
         let plane = Plane::new(&world.body, world.law(triangle), tolerance);
         let Followed::Left(rebound) = plane.follow(&n, &self.v, &self.w) else { return false };
-        let passage = self.passage(&n, &rebound);
+        let change = rebound.velocity_m_s - self.v;
+        let moved = (&rebound.shift_m, &change);
+        let passage = PressedPath::of(&n, self.c, moved, rebound.time_s, rebound.deepest_m);
         // features are collected as far as the rock gets, or the certificate is worth nothing
         let is_known = passage.way_m <= self.near.room_m(&self.c);
         if rebound.time_s > h_max || !is_known || !self.near.is_plane_on(face, &passage) {
@@ -60,27 +60,6 @@ impl ContactState {
         done.rejected = u64::from(rebound.effort.rejected);
         done.loss = rebound.loss.on(world, triangle);
         true
-    }
-}
-
-/// Off the straight way from touch to lift-off is no more than so much of the time times the change of velocity (–): a
-/// constant force takes it an eighth of that away, one that acts at once in the middle a quarter.
-const BULGE: f64 = 0.25;
-
-impl ContactState {
-    /// Where the centre goes in an impact on the plane with normal `n`.
-    fn passage(&self, n: &Vec3, rebound: &Rebound) -> PressedPath {
-        let tangent = |x: &Vec3| x - n * n.dot(x);
-        let along = tangent(&rebound.shift_m);
-        let turned = tangent(&(rebound.velocity_m_s - self.v)).norm();
-        let off_m = BULGE * rebound.time_s * turned;
-        PressedPath {
-            start: self.c,
-            along,
-            into: n * -rebound.deepest_m,
-            off_m,
-            way_m: math::hypot(along.norm() + off_m, rebound.deepest_m),
-        }
     }
 }
 

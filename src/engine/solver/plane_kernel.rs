@@ -14,9 +14,10 @@
 mod trial;
 
 use super::body::Body;
-use super::contact_state::{ContactEnvironment, ContactState, longest_step};
+use super::contact_state::{ContactEnvironment, ContactState};
 use super::friction_rolling::{ContactFrame, SlipState};
 use super::loss::Loss;
+use super::plane_ahead::longest_step;
 use super::plane_state::{
     PlaneForces, PlaneState, ROLL, SHEAR, SIZE, SPEED, SPIN, State, WAY, square, three, two,
 };
@@ -56,8 +57,12 @@ impl ContactState {
             return None;
         }
         // what lies ahead must be known before the face can be certified as alone
-        self.see_ahead(world, h.min(h_max));
         let history = self.histories[0];
+        let (speed, wished) = (self.v.norm(), h.min(h_max));
+        let wished_m = (speed + 0.5 * world.body.gravity.norm() * wished) * wished;
+        let usual_m = TRAVEL * world.body.radius;
+        let way_m = self.way_on_plane_m(world, history.feature.id, (wished_m, usual_m));
+        self.see_ahead(world, h.min(h_max));
         let law = world.law(history.triangle);
         let normal = law.normal(history.captured);
         // from the centre, not from the last step's sum: ways of many steps do not drift off the
@@ -70,8 +75,9 @@ impl ContactState {
         let gravity = self.plane.frame.local(&world.body.gravity);
         let mut trial = PlaneTrial {
             h,
-            limit: self.longest_step(world, TRAVEL),
-            room_s: longest_step(&world.body, self.v.norm(), TRAVEL * world.body.radius),
+            limit: longest_step(&world.body, speed, way_m),
+            usual_s: longest_step(&world.body, speed, usual_m),
+            room_s: longest_step(&world.body, speed, usual_m),
             control,
             world,
             law,

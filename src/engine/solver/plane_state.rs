@@ -101,6 +101,9 @@ impl PlaneForces {
     }
 }
 
+/// Way on one plane that is asked for first (–, relative to R).
+pub(super) const FIRST_REACH: f64 = 0.6;
+
 /// State and rates of a rock on one plane.
 #[derive(Debug)]
 pub struct PlaneState {
@@ -111,6 +114,13 @@ pub struct PlaneState {
     pub(super) rates: [State; STAGES],
     /// Power that goes into friction, damping and rolling at each stage (W).
     pub(super) losses: [Local; STAGES],
+    /// `rigid`: the step to try next (s).
+    pub(super) wished_s: f64,
+    /// Way to ask for next (–, relative to R), and where the last that was short enough was not clear (m).
+    pub(super) reach: f64,
+    pub(super) crowded_at: Vec3,
+    /// Whether soil takes of the rock's speed between steps: they stay short.
+    pub(crate) ploughs: bool,
 }
 
 impl Default for PlaneState {
@@ -121,6 +131,10 @@ impl Default for PlaneState {
             state: [0.0; SIZE],
             rates: [[0.0; SIZE]; STAGES],
             losses: [[0.0; 3]; STAGES],
+            wished_s: f64::INFINITY,
+            reach: FIRST_REACH,
+            crowded_at: Vec3::repeat(f64::INFINITY),
+            ploughs: false,
         }
     }
 }
@@ -128,7 +142,8 @@ impl Default for PlaneState {
 impl PlaneState {
     /// Forgets whose state it holds (before the next contact).
     pub(crate) fn forget(&mut self) {
-        self.on = false;
+        (self.on, self.wished_s) = (false, f64::INFINITY);
+        (self.reach, self.crowded_at) = (FIRST_REACH, Vec3::repeat(f64::INFINITY));
     }
 
     /// Rates at the present state, for the explicit first stage; returns the energy in the springs (J).

@@ -15,6 +15,8 @@
 //! over lift-off and sliding into rolling. What is lost against springs: the time of an impact, and
 //! the penetration at rest, `m g/p_N`.
 
+mod plane_step;
+
 use super::body::Body;
 use super::contact_state::{ContactEnvironment, ContactState};
 use super::friction_rolling::{Answers, ContactFrame, Pair, SlipState};
@@ -194,7 +196,7 @@ impl<'w> Blows<'w> {
     }
 }
 
-/// One impact or one step of at most `h_max` (s) and `longest` (s).
+/// One impact or one step of at most `h_max` (s), which on one plane may be longer than `longest` (s).
 ///
 /// # Errors
 /// [`StepError`] if motion is no longer finite.
@@ -222,7 +224,11 @@ pub fn advance(
         state.is_struck = !state.is_struck;
     } else {
         state.is_struck = false;
-        step(world, state, longest.min(h_max), &mut done);
+        let speed = state.v.norm().max(f64::MIN_POSITIVE);
+        let usual = longest.min(TRAVEL * world.body.radius / speed);
+        if !state.slide_on_plane(world, (usual, longest), h_max, &mut done) {
+            step(world, state, usual.min(h_max), &mut done);
+        }
     }
     let finite = state.c.iter().chain(state.v.iter()).chain(state.w.iter()).all(|x| x.is_finite());
     if finite { Ok(done) } else { Err(StepError::NotFinite) }
@@ -293,7 +299,7 @@ fn step(world: &ContactEnvironment, state: &mut ContactState, longest: f64, done
     let body = &world.body;
     let r = body.radius;
     let (c, v, w) = (state.c, state.v, state.w);
-    let dt = closing(world, state, longest.min(TRAVEL * r / v.norm().max(f64::MIN_POSITIVE)));
+    let dt = closing(world, state, longest);
     // contacts are those of the middle of the step, looked for there
     let middle = c + v * (0.5 * dt);
     state.look_ahead(world, &middle);

@@ -152,6 +152,15 @@ impl RoughFacets {
             })
     }
 
+    /// How far a rock at `c` may go before it can strike a facet (m): nowhere while it meets one, and on rough ground before its first.
+    pub(super) fn way_left_m(&self, c: &Vec3) -> f64 {
+        match (&self.random, &self.tilt, &self.last) {
+            (None, ..) => f64::INFINITY,
+            (_, None, Some(facet)) => (facet.reach_m - (facet.centre - c).norm()).max(0.0),
+            _ => 0.0,
+        }
+    }
+
     /// Whether the rock is turned against one that it has left, or whose time is up at `now_s` (s).
     pub(super) fn is_met(&self, is_free: bool, now_s: f64) -> bool {
         self.tilt.as_ref().is_some_and(|tilt| is_free || now_s >= tilt.until_s)

@@ -5,9 +5,10 @@
 //! `off_m`; a linear function over a rectangle has its extremes at the corners, so each test is a
 //! few scalar products.
 
-use super::{NearSaddle, Neighbours, SLACK};
+use super::{NearFace, NearSaddle, Neighbours, SLACK};
 use crate::contact::closest::segments_distance2;
 use crate::contact::{ContactPoint, ContactPoints, Feature, FeatureKind};
+use crate::math;
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
 
@@ -26,7 +27,27 @@ pub struct PressedPath {
     pub way_m: f64,
 }
 
+/// Off the straight way between its ends no path is more than so much of its time times the change of velocity along the plane (–): a
+/// constant force takes it an eighth of that away, one that acts at once in the middle a quarter.
+const BULGE: f64 = 0.25;
+
 impl PressedPath {
+    /// The path from `start` that shifts the centre by `shift` (m) within `dt` (s) while its velocity changes by `change` (m/s), on the plane
+    /// with unit normal `n`; it gets no deeper than `deepest_m` below the start.
+    pub fn of(
+        n: &Vec3,
+        start: Vec3,
+        (shift, change): (&Vec3, &Vec3),
+        dt: f64,
+        deepest_m: f64,
+    ) -> Self {
+        let tangent = |x: &Vec3| x - n * n.dot(x);
+        let along = tangent(shift);
+        let off_m = BULGE * dt * tangent(change).norm();
+        let way_m = math::hypot(along.norm() + off_m, deepest_m);
+        Self { start, along, into: n * -deepest_m, off_m, way_m }
+    }
+
     /// Least and largest value of a linear function over the rectangle of `along` and `into`.
     /// `d·(start + s along + t into)` over `0 ≤ s, t ≤ 1`.
     fn range(&self, direction: &Vec3, at_start: f64) -> (f64, f64) {
@@ -65,11 +86,19 @@ impl PressedPath {
 }
 
 impl Neighbours {
+    /// How far the centre may go from `centre` in `direction`, a unit vector, before it must be collected anew (m).
+    pub fn room_ahead_m(&self, centre: &Vec3, direction: &Vec3) -> f64 {
+        let from = centre - self.centre;
+        let towards = -direction.dot(&from);
+        let across2 = from.norm_squared() - towards * towards;
+        towards + (self.margin * self.margin - across2).max(0.0).sqrt()
+    }
+
     /// Whether a rock on its `passage` touches nothing but the plane of `face`, however many triangles that is.
     pub fn is_plane_on(&self, face: u32, passage: &PressedPath) -> bool {
         let Some(own) = self.faces.iter().find(|own| own.id == face) else { return false };
         // other triangles of the same plane are no obstacle: their seams are not felt
-        let in_plane = |p: &Vec3| own.n.dot(&(p - own.a)).abs() <= SLACK * self.radius;
+        let in_plane = |p: &Vec3| self.is_in_plane(own, p);
         let rays_of = |rays: (u32, u32)| &self.rays[rays.0 as usize..rays.1 as usize];
         let lies_flat = |rays: (u32, u32)| {
             let rays = rays_of(rays);
@@ -88,8 +117,7 @@ impl Neighbours {
         // a face is harmless if it lies in the same plane (either winding), is never near, or never
         // holds the foot
         self.faces.iter().all(|other| {
-            let turned = (other.n - own.n).norm_squared().min((other.n + own.n).norm_squared());
-            turned <= SLACK * SLACK && in_plane(&other.a)
+            self.is_coplanar(own, other)
                 || !passage.comes_nearer_to_plane((&other.n, &other.a), reach)
                 || (0..3).any(|k| passage.stays_beyond(&other.out[k], other.rim[k]))
         }) && self.edges.iter().all(|edge| {
@@ -111,6 +139,26 @@ impl Neighbours {
             // looked at here
             NearSaddle::Vertex { p, .. } => !passage.comes_nearer((p, &Vec3::zeros()), reach),
         })
+    }
+
+    fn is_in_plane(&self, own: &NearFace, p: &Vec3) -> bool {
+        own.n.dot(&(p - own.a)).abs() <= SLACK * self.radius
+    }
+
+    /// Whether two triangles lie in one plane, with either winding.
+    fn is_coplanar(&self, own: &NearFace, other: &NearFace) -> bool {
+        let turned = (other.n - own.n).norm_squared().min((other.n + own.n).norm_squared());
+        turned <= SLACK * SLACK && self.is_in_plane(own, &other.a)
+    }
+
+    /// Whether the foot of `centre` is on the triangle `face`, or on another of its plane where all that are near are `alike`.
+    pub fn stands_on(&self, face: u32, centre: &Vec3, alike: impl Fn(u32) -> bool) -> bool {
+        let Some(own) = self.faces.iter().find(|own| own.id == face) else { return false };
+        let slack = SLACK * self.radius;
+        let mut plane = self.faces.iter().filter(|other| self.is_coplanar(own, other));
+        own.holds_foot_of(centre, slack)
+            || plane.clone().all(|other| alike(other.id))
+                && plane.any(|other| other.holds_foot_of(centre, slack))
     }
 
     /// Whether a saddle or a maximum of the distance is inside the ball.

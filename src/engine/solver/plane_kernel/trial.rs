@@ -22,6 +22,7 @@ use crate::solver::body::Body;
 use crate::solver::contact_state::ContactEnvironment;
 use crate::solver::friction_rolling::{Answers, Local, Pair, SlipState};
 use crate::solver::loss::Loss;
+use crate::solver::plane_ahead::PlaneStep;
 use crate::solver::plane_state::{
     PlaneForces, PlaneState, ROLL, SHEAR, SIZE, SPEED, SPIN, State, WAY, accelerations, dot, slip,
     square, stored_j, three, two,
@@ -40,6 +41,8 @@ pub(super) struct PlaneTrial<'a, 'w> {
     pub(super) h: &'a mut f64,
     /// The longest step that cannot jump over a feature (s).
     pub(super) limit: f64,
+    /// The longest step that cannot wherever it is (s).
+    pub(super) usual_s: f64,
     /// Time within which steps may follow each other without a look around (s): the same whatever is left out.
     pub(super) room_s: f64,
     /// Tableau and tolerances.
@@ -154,13 +157,13 @@ impl PlaneTrial<'_, '_> {
     /// the place itself.
     #[inline]
     fn objection(&self, dt: f64) -> Option<TryOutcome> {
-        if square(three(&self.end, WAY)) > self.room2 {
+        let centre = self.start + self.plane.frame.out_local(three(&self.end, WAY));
+        if square(three(&self.end, WAY)) > self.room2 && !self.near.covers(&centre) {
             return Some(TryOutcome::Elsewhere);
         }
         if self.near.plane() == Some(self.face) {
             return None;
         }
-        let centre = self.start + self.plane.frame.out_local(three(&self.end, WAY));
         if !self.near.is_over(self.face, &centre) {
             return Some(TryOutcome::Elsewhere);
         }
@@ -192,6 +195,22 @@ impl PlaneTrial<'_, '_> {
             .max(square(three(&off, SPEED)))
             .max(square(three(&off, SPIN)) * self.world.body.radius.powi(2));
         dt * worst2.sqrt() / self.control.tolerance
+    }
+
+    /// Whether the step, as it went, has touched nothing but the plane.
+    #[inline]
+    fn is_certain(&self, dt: f64) -> bool {
+        if dt <= self.usual_s {
+            return true;
+        }
+        let (begun, frame) = (&self.plane.state, &self.plane.frame);
+        let start = self.start + frame.out_local(three(begun, WAY));
+        let since = |at: usize| {
+            let (to, from) = (three(&self.end, at), three(begun, at));
+            frame.out_local([0, 1, 2].map(|k| to[k] - from[k]))
+        };
+        let step = PlaneStep { face: self.face, n: frame.out_local([0.0, 0.0, 1.0]), start };
+        step.is_certain((self.world, self.near), (&since(WAY), &since(SPEED)), dt)
     }
 
     /// Motion, height and springs at the step's end (J).
@@ -304,6 +323,10 @@ impl TrialStep for PlaneTrial<'_, '_> {
         if dt * self.law.omega_rad_s() > RESOLVED && self.gains() {
             return TryOutcome::Gains;
         }
-        TryOutcome::Error(error)
+        if self.is_certain(dt) {
+            TryOutcome::Error(error)
+        } else {
+            TryOutcome::Cut(self.usual_s / dt)
+        }
     }
 }

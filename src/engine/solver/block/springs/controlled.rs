@@ -7,8 +7,8 @@ use super::{BlockHistory, BlockRates, Springs};
 use crate::body::Block;
 use crate::contact::history::carry;
 use crate::rock::Vec3;
-use crate::solver::contact_state::longest_step;
 use crate::solver::environment::ContactEnvironment;
+use crate::solver::plane_ahead::longest_step;
 use crate::solver::step_control::{
     Control, ONSET, PLACE_ROUNDING, RESOLVED, ROUNDING, StepError, TrialStep, TryOutcome, settle,
 };

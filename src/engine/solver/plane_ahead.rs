@@ -1,0 +1,118 @@
+//! How far a rock that rolls or slides on one plane may go in one step.
+//!
+//! On a plane nothing changes but the motion: a step may be as long as its error allows, where it is certain that nothing else is
+//! touched on the way. That is asked twice: of the straight way before a step is tried, which decides how long it may be, and of the way
+//! that it took. Everywhere else a step goes no further than a share of the radius, so that it cannot jump over a feature.
+
+use super::body::Body;
+use super::contact_state::{AHEAD, ContactEnvironment, ContactState, MARGIN};
+use super::plane_state::FIRST_REACH;
+use crate::contact::neighbours::{Neighbours, PressedPath};
+use crate::rock::Vec3;
+
+/// Longest way on one plane in one step (–, relative to R): from [`FIRST_REACH`] on it doubles where the plane is clear, and is halved where it
+/// is not.
+const LONGEST: f64 = 2.0;
+/// A way is not worth asking for where it is less than so many times that of steps elsewhere (–) …
+const WORTH: f64 = 1.5;
+/// … and not again so near to where none was clear (–, relative to R).
+const AGAIN: f64 = 0.3;
+/// How far off the straight way the path is taken to be before it is known (–, relative to its length).
+const OFF: f64 = 0.05;
+
+/// One step on a plane.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct PlaneStep {
+    /// The plane's face.
+    pub(super) face: u32,
+    /// Its unit normal, from the mesh to the centre.
+    pub(super) n: Vec3,
+    /// Where the step begins (m).
+    pub(super) start: Vec3,
+}
+
+impl PlaneStep {
+    /// Whether a rock that shifts by `shift` (m) within `dt` (s), while its velocity changes by `change` (m/s), has touched
+    /// nothing but the plane, and stands on the same ground at the end.
+    pub(super) fn is_certain(
+        &self,
+        (world, near): (&ContactEnvironment, &Neighbours),
+        (shift, change): (&Vec3, &Vec3),
+        dt: f64,
+    ) -> bool {
+        if near.plane() == Some(self.face) {
+            return true;
+        }
+        let sunk_m = (-self.n.dot(shift)).max(0.0);
+        let path = PressedPath::of(&self.n, self.start, (shift, change), dt, sunk_m);
+        let is_alike = |triangle| world.ground_of(triangle) == world.ground_of(self.face);
+        near.is_plane_on(self.face, &path)
+            && near.stands_on(self.face, &(self.start + shift), is_alike)
+    }
+}
+
+impl ContactState {
+    /// Longest step in which the centre stays where its features are known, or goes no further than `travel` (–,
+    /// relative to R), past one plane or among several features (s).
+    pub fn longest_step(&self, world: &ContactEnvironment, travel: f64) -> f64 {
+        let way = travel * world.body.radius;
+        let is_plane = self.near.plane().is_some();
+        let room = if is_plane { self.near.room_m(&self.c).max(way) } else { way };
+        longest_step(&world.body, self.v.norm(), room)
+    }
+
+    /// Sees to it that the features on a straight `way` (m) from where the rock is are known, and a little beside it.
+    fn see_along(&mut self, world: &ContactEnvironment, way: &Vec3) {
+        if self.near.covers(&self.c) && self.near.covers(&(self.c + way)) {
+            return;
+        }
+        let (r, length) = (world.body.radius, way.norm());
+        let ahead = (0.5 * length).max(AHEAD * r);
+        let centre = self.c + way * (ahead / length.max(f64::MIN_POSITIVE));
+        self.collect_within(world, &centre, ahead + (MARGIN - AHEAD) * r);
+    }
+
+    /// How far the rock may go on the plane of `face` in one step (m), `wished` at most; `least` is what it may go wherever it is.
+    pub(super) fn way_on_plane_m(
+        &mut self,
+        world: &ContactEnvironment,
+        face: u32,
+        (wished_m, least): (f64, f64),
+    ) -> f64 {
+        let (radius, speed) = (world.body.radius, self.v.norm());
+        // what it strikes next decides where the step ends
+        let to_facet = self.facets.way_left_m(&self.c);
+        let most = wished_m.min(self.plane.reach * radius).min(to_facet);
+        let is_again = (self.c - self.plane.crowded_at).norm_squared() < (AGAIN * radius).powi(2);
+        if most < WORTH * least || speed == 0.0 || is_again || self.plane.ploughs {
+            return least;
+        }
+        let direction = self.v / speed;
+        self.see_along(world, &(direction * most));
+        let most = most.min(self.near.room_ahead_m(&self.c, &direction));
+        if self.is_clear(face, &(direction * most)) {
+            self.plane.reach = (2.0 * most / radius).clamp(FIRST_REACH, LONGEST);
+            return most.max(least);
+        }
+        self.plane.reach *= 0.5;
+        if self.plane.reach * radius < WORTH * least {
+            (self.plane.reach, self.plane.crowded_at) = (FIRST_REACH, self.c);
+        }
+        least
+    }
+
+    /// Whether nothing but the plane of `face` is touched on a straight way (m) from where the rock is.
+    fn is_clear(&self, face: u32, way: &Vec3) -> bool {
+        if self.near.plane() == Some(face) {
+            return true;
+        }
+        let (start, into, off_m) = (self.c, Vec3::zeros(), OFF * way.norm());
+        let way_m = way.norm() + off_m;
+        self.near.is_plane_on(face, &PressedPath { start, along: *way, into, off_m, way_m })
+    }
+}
+
+/// Longest step in which a rock at `speed` goes no further than `room` (s); its weight may speed it up on the way.
+pub(crate) fn longest_step(body: &Body, speed: f64, room: f64) -> f64 {
+    2.0 * room / (speed + (speed * speed + 2.0 * body.gravity.norm() * room).sqrt())
+}

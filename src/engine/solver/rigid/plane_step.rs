@@ -1,0 +1,191 @@
+//! A long step of a rock that slides or rolls on one plane.
+//!
+//! With one normal, impulses in the limit of stiff springs depend on a step's length only where friction changes its direction, slipping ends,
+//! or the rock comes to rest. So a step is taken whole and in two halves: where both agree it is as long as the plane is clear, and what is
+//! kept are the halves.
+
+use super::{HELD, ImpulsiveContact, push_out, remember};
+use crate::contact::ContactPoint;
+use crate::rock::Vec3;
+use crate::solver::contact_state::{ContactEnvironment, ContactState};
+use crate::solver::friction_rolling::SlipState;
+use crate::solver::loss::Loss;
+use crate::solver::plane_ahead::{PlaneStep, longest_step};
+use crate::solver::step_control::Advance;
+
+/// Longest step on a plane over the longest elsewhere (–).
+const LONGER: f64 = 10.0;
+/// A step is worth trying where it is longer than elsewhere by so much (–) …
+const WORTH: f64 = 2.0;
+/// … and gets on by so much (–, relative to R): whether a slow rock rests is asked after every step.
+const LEAST_WAY: f64 = 0.05;
+/// By how much the next may be longer, after one that was taken and after one that was not tried (–).
+const GROWTH: (f64, f64) = (2.0, 1.5);
+/// Difference between a step as a whole and in halves, of velocities and of places (–, relative to what gravity gives in the longest step
+/// elsewhere): a small part of what such a step is off, where friction turns and where slipping or rolling ends.
+const ERROR: (f64, f64) = (0.02, 0.001);
+
+/// Motion on the plane at some time, and what it has taken since the step's start.
+#[derive(Debug, Clone, Copy)]
+struct Slide {
+    c: Vec3,
+    v: Vec3,
+    w: Vec3,
+    /// Height over the plane less the radius (m).
+    gap: f64,
+    loss: Loss,
+    /// Which of friction and rolling friction has held.
+    mode: SlipState,
+}
+
+/// The one plane that holds the rock.
+struct PlaneContact<'a, 'w> {
+    world: &'a ContactEnvironment<'w>,
+    touch: ContactPoint,
+}
+
+impl PlaneContact<'_, '_> {
+    /// The motion after `dt` (s), with the mean velocity on the way; `None` if nothing pushes.
+    fn after(&self, from: &Slide, dt: f64) -> Option<Slide> {
+        let Self { world, touch } = self;
+        let (body, n) = (&world.body, touch.normal);
+        let target = -(from.gap / dt).max(n.dot(&from.v)).max(0.0);
+        let law = world.law(touch.triangle);
+        let mut blow = ImpulsiveContact { n, law, target, ..ImpulsiveContact::NONE };
+        let free = from.v + body.gravity * dt;
+        blow.solve(body, &free, &from.w);
+        if blow.normal_force <= 0.0 {
+            return None;
+        }
+        let (dv, dw) = blow.effect(body);
+        let (v, w) = (free + dv, from.w + dw);
+        let (mean_v, mean_w) = (0.5 * (from.v + v), 0.5 * (from.w + w));
+        let mut loss = from.loss;
+        loss.add(&blow.loss(body, &mean_v, &mean_w), 1.0);
+        let gap = from.gap + n.dot(&mean_v) * dt;
+        Some(Slide { c: from.c + mean_v * dt, v, w, gap, loss, mode: blow.mode })
+    }
+
+    /// The same in two halves, if both ways agree to a part of the error of steps of `usual` (s); else, where slipping or rolling ends within
+    /// the step, when it does (s).
+    fn settled(&self, from: &Slide, dt: f64, usual: f64) -> Result<Slide, Option<f64>> {
+        let whole = self.after(from, dt).ok_or(None)?;
+        let half = self.after(from, 0.5 * dt).ok_or(None)?;
+        let end = self.after(&half, 0.5 * dt).ok_or(None)?;
+        let body = &self.world.body;
+        let is_smooth = half.goes_on_as(&whole) && half.goes_on_as(&end);
+        let error = if is_smooth { ERROR.0 } else { ERROR.1 };
+        let allowed = error * body.gravity.norm() * usual;
+        let off2 = (whole.v - end.v)
+            .norm_squared()
+            .max((whole.w - end.w).norm_squared() * body.radius * body.radius)
+            .max((whole.c - end.c).norm_squared() / (usual * usual));
+        if off2 <= allowed * allowed {
+            return Ok(end);
+        }
+        Err(self.ends(from, &half).map(|halves| 0.5 * dt * halves).filter(|_| !is_smooth))
+    }
+
+    /// After how many halves of the step what slips or rolls comes to an end, if it goes on as in the first.
+    fn ends(&self, from: &Slide, half: &Slide) -> Option<f64> {
+        let (body, n) = (&self.world.body, &self.touch.normal);
+        let slip = |slide: &Slide| body.slip(n, &slide.v, &slide.w).norm();
+        let [before, after] = match half.mode {
+            SlipState::Slide | SlipState::Both(_) => [from, half].map(slip),
+            SlipState::Roll(_) => [from, half].map(|slide| slide.w.norm()),
+            SlipState::Stick => return None,
+        };
+        (after < before).then(|| before / (before - after))
+    }
+}
+
+impl Slide {
+    /// Whether the same slips or rolls.
+    fn goes_on_as(&self, other: &Self) -> bool {
+        std::mem::discriminant(&self.mode) == std::mem::discriminant(&other.mode)
+    }
+}
+
+impl ContactState {
+    /// A step on the plane that holds the rock, at most `h_max` (s) long; whether there was one that is longer than those elsewhere,
+    /// `usual` (s).
+    pub(super) fn slide_on_plane(
+        &mut self,
+        world: &ContactEnvironment,
+        (usual, longest): (f64, f64),
+        h_max: f64,
+        done: &mut Advance,
+    ) -> bool {
+        let (speed, body) = (self.v.norm(), &world.body);
+        let least = WORTH * usual;
+        let wished = self.plane.wished_s.min(LONGER * longest).min(h_max);
+        if wished < least || speed * wished < LEAST_WAY * body.radius {
+            self.plane.wished_s *= GROWTH.1;
+            return false;
+        }
+        let Some(contact) = self.plane_contact(world) else { return false };
+        let face = contact.touch.feature.id;
+        let way = (speed + 0.5 * body.gravity.norm() * wished) * wished;
+        let clear =
+            longest_step(body, speed, self.way_on_plane_m(world, face, (way, usual * speed)));
+        let from = Slide {
+            c: self.c,
+            v: self.v,
+            w: self.w,
+            gap: contact.touch.distance_m - body.radius,
+            loss: Loss::default(),
+            mode: SlipState::default(),
+        };
+        let step = PlaneStep { face, n: contact.touch.normal, start: self.c };
+        let (tried, mut is_cut) = (wished.min(clear), false);
+        let mut dt = tried;
+        while dt >= least || is_cut {
+            self.sweeps += 3;
+            match contact.settled(&from, dt, usual) {
+                Ok(end) => {
+                    let moved = (&(end.c - from.c), &(end.v - from.v));
+                    if step.is_certain((world, &self.near), moved, dt) {
+                        self.slide_to(world, (&end, contact.touch.triangle), dt, done);
+                        self.plane.wished_s = if is_cut { tried } else { GROWTH.0 * dt };
+                        return true;
+                    }
+                    is_cut = false;
+                    dt *= 0.5;
+                }
+                // from there on it goes on as something else
+                Err(Some(ends)) if ends < dt && !is_cut => (dt, is_cut) = (ends, true),
+                Err(_) => (dt, is_cut) = (0.5 * dt, false),
+            }
+            done.rejected += 1;
+        }
+        self.plane.wished_s = usual;
+        false
+    }
+
+    /// Takes over the end of a step of `dt` (s) on the plane of a triangle.
+    fn slide_to(
+        &mut self,
+        world: &ContactEnvironment,
+        (end, triangle): (&Slide, u32),
+        dt: f64,
+        done: &mut Advance,
+    ) {
+        (self.c, self.v, self.w) = (end.c, end.v, end.w);
+        (done.loss, done.dt) = (end.loss.on(world, triangle), dt);
+        push_out(world, self);
+        remember(world, self, |_| true);
+    }
+
+    /// The plane of the ground that alone holds the rock, by the last look.
+    fn plane_contact<'a, 'w>(
+        &self,
+        world: &'a ContactEnvironment<'w>,
+    ) -> Option<PlaneContact<'a, 'w>> {
+        let reach = world.body.radius * (1.0 + HELD);
+        let mut held = self.touches.iter().filter(|touch| touch.distance_m <= reach);
+        let touch = *held.next()?;
+        let is_plane =
+            held.next().is_none() && touch.is_on_plane() && !world.terrain.is_tree(touch.triangle);
+        is_plane.then_some(PlaneContact { world, touch })
+    }
+}
