@@ -40,6 +40,10 @@ impl PlaneStep {
         (shift, change): (&Vec3, &Vec3),
         dt: f64,
     ) -> bool {
+        let end = self.start + shift;
+        if !near.covers(&end) {
+            return false;
+        }
         if near.plane() == Some(self.face) {
             return true;
         }
@@ -47,7 +51,7 @@ impl PlaneStep {
         let path = PressedPath::of(&self.n, self.start, (shift, change), dt, sunk_m);
         let is_alike = |triangle| world.ground_of(triangle) == world.ground_of(self.face);
         near.is_plane_on(self.face, &path)
-            && near.stands_on(self.face, &(self.start + shift), is_alike)
+            && near.stands_on(self.face, &end, is_alike)
     }
 }
 
