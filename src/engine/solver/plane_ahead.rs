@@ -50,8 +50,7 @@ impl PlaneStep {
         let sunk_m = (-self.n.dot(shift)).max(0.0);
         let path = PressedPath::of(&self.n, self.start, (shift, change), dt, sunk_m);
         let is_alike = |triangle| world.ground_of(triangle) == world.ground_of(self.face);
-        near.is_plane_on(self.face, &path)
-            && near.stands_on(self.face, &end, is_alike)
+        near.is_plane_on(self.face, &path) && near.stands_on(self.face, &end, is_alike)
     }
 }
 
