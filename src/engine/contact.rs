@@ -110,9 +110,15 @@ impl ContactPoint {
     /// Then `n` is constant and `d` linear in `c`, so the contact is a linear spring: closed forms
     /// and plane kernels apply.
     #[inline]
-    #[expect(clippy::float_cmp, reason = "a single point has exactly 1")]
     pub fn is_on_plane(&self) -> bool {
-        self.feature.kind == FeatureKind::Face && self.gain2 == 1.0
+        self.feature.kind == FeatureKind::Face && self.is_single()
+    }
+
+    /// Whether it is one point, no patch of several.
+    #[inline]
+    #[expect(clippy::float_cmp, reason = "a single point has exactly 1")]
+    pub(crate) fn is_single(&self) -> bool {
+        self.gain2 == 1.0
     }
 }
 

@@ -75,8 +75,21 @@ impl ContactState {
         self.collect_within(world, &centre, ahead + (MARGIN - AHEAD) * r);
     }
 
+    /// Longest step on the plane of `face` (s), about `wished_s` at most where it is longer than that of a way of `least` (m), which the rock may
+    /// go wherever it is.
+    pub(super) fn longest_on_plane_s(
+        &mut self,
+        world: &ContactEnvironment,
+        face: u32,
+        (wished_s, least): (f64, f64),
+    ) -> f64 {
+        let (body, speed) = (&world.body, self.v.norm());
+        let wished_m = (speed + 0.5 * body.gravity.norm() * wished_s) * wished_s;
+        longest_step(body, speed, self.way_on_plane_m(world, face, (wished_m, least)))
+    }
+
     /// How far the rock may go on the plane of `face` in one step (m), `wished` at most; `least` is what it may go wherever it is.
-    pub(super) fn way_on_plane_m(
+    fn way_on_plane_m(
         &mut self,
         world: &ContactEnvironment,
         face: u32,

@@ -58,11 +58,10 @@ impl ContactState {
         }
         // what lies ahead must be known before the face can be certified as alone
         let history = self.histories[0];
-        let (speed, wished) = (self.v.norm(), h.min(h_max));
-        let wished_m = (speed + 0.5 * world.body.gravity.norm() * wished) * wished;
-        let usual_m = TRAVEL * world.body.radius;
-        let way_m = self.way_on_plane_m(world, history.feature.id, (wished_m, usual_m));
-        self.see_ahead(world, h.min(h_max));
+        let (wished_s, usual_m) = (h.min(h_max), TRAVEL * world.body.radius);
+        let limit = self.longest_on_plane_s(world, history.feature.id, (wished_s, usual_m));
+        self.see_ahead(world, wished_s);
+        let usual_s = longest_step(&world.body, self.v.norm(), usual_m);
         let law = world.law(history.triangle);
         let normal = law.normal(history.captured);
         // from the centre, not from the last step's sum: ways of many steps do not drift off the
@@ -75,9 +74,9 @@ impl ContactState {
         let gravity = self.plane.frame.local(&world.body.gravity);
         let mut trial = PlaneTrial {
             h,
-            limit: longest_step(&world.body, speed, way_m),
-            usual_s: longest_step(&world.body, speed, usual_m),
-            room_s: longest_step(&world.body, speed, usual_m),
+            limit,
+            usual_s,
+            room_s: usual_s,
             control,
             world,
             law,

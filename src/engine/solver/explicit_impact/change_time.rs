@@ -42,26 +42,31 @@ impl<const C: usize> Among<'_, '_, C> {
         dt: f64,
         path: &impl Fn(f64) -> (Vec3, Vec3),
     ) -> Option<f64> {
-        let radius = self.radius_m();
+        let exact = EXACT * self.radius_m();
+        let is_beyond = |place: Option<(f64, Vec3)>| place.is_none_or(|(beyond, _)| beyond > 0.0);
+        let mut look = |at: f64| {
+            let (c, v) = path(at);
+            (self.beyond_m(change, &c), v)
+        };
         // stages are not on the path: what they see may be a little later, or not at all
-        let mut high = [NODES[seen], 1.0].into_iter().find(|at| {
-            self.beyond_m(change, &path(*at).0).is_none_or(|(beyond, _)| beyond > 0.0)
-        })?;
+        let places = [NODES[seen], 1.0].into_iter();
+        let (mut high, mut seen) =
+            places.map(|at| (at, look(at))).find(|(_, (place, _))| is_beyond(*place))?;
         let (mut low, mut at) = (0.0, high);
         for _ in 0..LOOKS {
-            let (c, v) = path(at);
-            let place = self.beyond_m(change, &c);
-            if place.is_none_or(|(beyond, _)| beyond > 0.0) {
+            let (place, v) = seen;
+            if is_beyond(place) {
                 high = at;
             } else {
                 low = at;
             }
             let next = match place {
-                Some((beyond, _)) if beyond.abs() <= EXACT * radius => return Some(at),
+                Some((beyond, _)) if beyond.abs() <= exact => return Some(at),
                 Some((beyond, n)) => at - beyond / (change.sign() * -n.dot(&v) * dt),
                 None => f64::NAN,
             };
             at = if next > low && next < high { next } else { 0.5 * (low + high) };
+            seen = look(at);
         }
         Some(high)
     }

@@ -47,12 +47,6 @@ enum Compared {
     Others,
 }
 
-/// Whether a touch is a single point, no patch.
-#[expect(clippy::float_cmp, reason = "a single point has exactly 1")]
-fn is_single(touch: &ContactPoint) -> bool {
-    touch.gain2 == 1.0
-}
-
 impl Changes {
     /// None, and no contacts.
     pub(super) const NONE: Self = Self {
@@ -69,7 +63,7 @@ impl Changes {
 
     /// The contacts of the step's start.
     pub(super) fn begin(&mut self, touches: &ContactPoints) {
-        (self.len, self.are_single) = (touches.len(), touches.iter().all(is_single));
+        (self.len, self.are_single) = (touches.len(), touches.iter().all(ContactPoint::is_single));
         for (begun, touch) in self.begun.iter_mut().zip(touches.iter()) {
             *begun = (touch.feature, touch.normal);
         }
@@ -102,7 +96,7 @@ impl Changes {
     /// What the touches are to those of the step's start.
     fn compared(&self, touches: &ContactPoints) -> Compared {
         let still = self.still(touches);
-        let are_single = touches.iter().all(is_single);
+        let are_single = touches.iter().all(ContactPoint::is_single);
         match (still == self.len, still == touches.len()) {
             (true, true) if are_single == self.are_single => Compared::Same,
             (true, false) if are_single && self.are_single => Compared::More,

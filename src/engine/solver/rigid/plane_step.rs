@@ -10,7 +10,7 @@ use crate::rock::Vec3;
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
 use crate::solver::friction_rolling::SlipState;
 use crate::solver::loss::Loss;
-use crate::solver::plane_ahead::{PlaneStep, longest_step};
+use crate::solver::plane_ahead::PlaneStep;
 use crate::solver::step_control::Advance;
 
 /// Longest step on a plane over the longest elsewhere (–).
@@ -125,9 +125,7 @@ impl ContactState {
         }
         let Some(contact) = self.plane_contact(world) else { return false };
         let face = contact.touch.feature.id;
-        let way = (speed + 0.5 * body.gravity.norm() * wished) * wished;
-        let clear =
-            longest_step(body, speed, self.way_on_plane_m(world, face, (way, usual * speed)));
+        let clear = self.longest_on_plane_s(world, face, (wished, usual * speed));
         let from = Slide {
             c: self.c,
             v: self.v,
