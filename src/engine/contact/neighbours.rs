@@ -8,6 +8,7 @@
 //! ball too – a hollow edge that holds the foot of the centre on both its faces, or a vertex among such – can several
 //! minima belong together: then `contact::patch` tells.
 
+mod close;
 mod offered;
 mod pressed;
 mod collect;
@@ -20,6 +21,7 @@ use super::{ContactPoint, ContactPoints, Feature};
 use crate::contact::FeatureKind;
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
+use close::ShortWay;
 pub use pressed::PressedPath;
 
 /// Inclusive tests, relative to the radius (–): a point on a border must not fall between two features.
@@ -103,6 +105,38 @@ impl NearFace {
     }
 }
 
+/// Features that may touch, kind by kind; the lists keep their memory from look to look.
+#[derive(Debug, Default)]
+struct NearFeatures {
+    faces: Vec<NearFace>,
+    edges: Vec<NearEdge>,
+    corners: Vec<NearCorner>,
+    saddles: Vec<NearSaddle>,
+    /// All triangles within reach; only looked at when a border or a saddle is near.
+    sheets: Vec<u32>,
+}
+
+impl NearFeatures {
+    /// With room for what is usually near.
+    fn with_room() -> Self {
+        Self {
+            faces: Vec::with_capacity(64),
+            edges: Vec::with_capacity(64),
+            corners: Vec::with_capacity(64),
+            saddles: Vec::with_capacity(64),
+            sheets: Vec::with_capacity(256),
+        }
+    }
+
+    fn clear(&mut self) {
+        self.faces.clear();
+        self.edges.clear();
+        self.corners.clear();
+        self.saddles.clear();
+        self.sheets.clear();
+    }
+}
+
 /// The features a rock can touch while its centre stays within a margin of a place.
 #[derive(Debug)]
 pub struct Neighbours {
@@ -114,18 +148,16 @@ pub struct Neighbours {
     radius: f64,
     /// Radius, slack and margin together (m): what lies farther from `centre` can touch no rock within the margin.
     reach: f64,
-    /// Features that may touch, kind by kind; the lists keep their memory from look to look.
-    faces: Vec<NearFace>,
-    edges: Vec<NearEdge>,
-    corners: Vec<NearCorner>,
-    saddles: Vec<NearSaddle>,
+    /// Features that may touch there.
+    all: NearFeatures,
+    /// Those of them that may touch on a short way, and where that is.
+    close: NearFeatures,
+    around: ShortWay,
     /// Work space for what is pressed into around saddles.
     patches: PatchScratch,
     /// Directions that belong to edges and vertices, one after the other: normals of faces, or edges at a vertex.
     /// One list for all keeps them side by side in memory, and spares an allocation for each edge.
     rays: Vec<Vec3>,
-    /// All triangles within reach; only looked at when a border or a saddle is near.
-    sheets: Vec<u32>,
     /// Stems that have given way: they touch nothing any more.
     pub gone: Vec<u32>,
     /// Triangles tested so far.
@@ -135,13 +167,10 @@ pub struct Neighbours {
 impl Default for Neighbours {
     fn default() -> Self {
         Self {
-            faces: Vec::with_capacity(64),
-            edges: Vec::with_capacity(64),
-            corners: Vec::with_capacity(64),
-            saddles: Vec::with_capacity(64),
+            all: NearFeatures::with_room(),
+            close: NearFeatures::with_room(),
             patches: PatchScratch::with_room(),
             rays: Vec::with_capacity(512),
-            sheets: Vec::with_capacity(256),
             ..Self::empty()
         }
     }
@@ -155,13 +184,11 @@ impl Neighbours {
             margin: 0.0,
             radius: 0.0,
             reach: 0.0,
-            faces: Vec::new(),
-            edges: Vec::new(),
-            corners: Vec::new(),
-            saddles: Vec::new(),
+            all: NearFeatures::default(),
+            close: NearFeatures::default(),
+            around: ShortWay::NONE,
             patches: PatchScratch::default(),
             rays: Vec::new(),
-            sheets: Vec::new(),
             gone: Vec::new(),
             tested: 0,
         }
@@ -184,12 +211,9 @@ impl Neighbours {
     ) {
         (self.centre, self.margin, self.radius) = (*centre, margin, radius);
         self.reach = radius + slack + margin;
-        self.faces.clear();
-        self.edges.clear();
-        self.corners.clear();
-        self.saddles.clear();
+        self.all.clear();
         self.rays.clear();
-        self.sheets.clear();
+        self.around = ShortWay::NONE;
         // O(log n + k) in the n triangles of the mesh: the tree is walked once per margin, not once per step
         terrain.index.near(centre, self.reach, |start, count| {
             for t in start..start + count {
@@ -219,14 +243,11 @@ impl Neighbours {
     /// The one face that can touch within the margin, if nothing else can: a certificate that geometry is a plane there.
     #[inline]
     pub fn plane(&self) -> Option<u32> {
-        match &self.faces[..] {
+        let NearFeatures { faces, edges, corners, saddles, .. } = &self.all;
+        match &faces[..] {
             // a plane of several triangles has several faces here, and no certificate: that is
             // asked of `is_plane_on`
-            [face]
-                if self.edges.is_empty() && self.corners.is_empty() && self.saddles.is_empty() =>
-            {
-                Some(face.id)
-            }
+            [face] if edges.is_empty() && corners.is_empty() && saddles.is_empty() => Some(face.id),
             _ => None,
         }
     }
@@ -243,24 +264,25 @@ impl Neighbours {
     ) {
         touches.clear();
         self.patches.clear();
+        let near = self.within((centre, reach));
         // faces before edges before vertices: on a flat mesh the same point is found on several, and the face keeps it
-        for face in &self.faces {
+        for face in &near.faces {
             if let Some(height) = self.height_over(face, centre, reach) {
                 self.merge(face.touch(height), centre, touches);
             }
         }
-        for edge in &self.edges {
+        for edge in &near.edges {
             if let Some(touch) = self.on_edge(terrain, edge, centre, reach) {
                 self.merge(touch, centre, touches);
             }
         }
-        for corner in &self.corners {
+        for corner in &near.corners {
             if let Some(touch) = self.on_corner(terrain, corner, centre, reach) {
                 self.merge(touch, centre, touches);
             }
         }
-        if self.has_saddle(terrain, centre) {
-            self.gather(terrain, centre, touches);
+        if self.has_saddle(terrain, &near.saddles, centre) {
+            self.gather(terrain, (centre, reach), touches);
         }
     }
 
@@ -268,7 +290,7 @@ impl Neighbours {
     #[inline]
     pub fn is_over(&self, face: u32, centre: &Vec3) -> bool {
         let slack = SLACK * self.radius;
-        self.faces.iter().any(|own| own.id == face && own.holds_foot_of(centre, slack))
+        self.all.faces.iter().any(|own| own.id == face && own.holds_foot_of(centre, slack))
     }
 
     /// Whether a rock at `centre` comes nearer than `reach` (m) to nothing but `face`.
@@ -277,11 +299,12 @@ impl Neighbours {
     /// triangles near.
     #[inline]
     pub fn is_alone(&self, terrain: &Terrain, face: u32, (centre, reach): (&Vec3, f64)) -> bool {
-        let (mut faces, mut edges) = (self.faces.iter(), self.edges.iter());
+        let (mut faces, mut edges) = (self.all.faces.iter(), self.all.edges.iter());
         faces.all(|other| other.id == face || self.height_over(other, centre, reach).is_none())
-            && !self.has_saddle(terrain, centre)
+            && !self.has_saddle(terrain, &self.all.saddles, centre)
             && edges.all(|edge| self.on_edge(terrain, edge, centre, reach).is_none())
             && self
+                .all
                 .corners
                 .iter()
                 .all(|corner| self.on_corner(terrain, corner, centre, reach).is_none())
@@ -365,7 +388,7 @@ impl Neighbours {
         distance: f64,
     ) -> bool {
         let near = SAME * self.radius;
-        self.sheets.iter().any(|&t| {
+        self.all.sheets.iter().any(|&t| {
             let corners = terrain.corners_m(t);
             let gap = |p: &Vec3| (p - closest_on(&corners, p)).norm();
             gap(nearest) <= near && gap(centre) < distance * (1.0 - 1e-12)

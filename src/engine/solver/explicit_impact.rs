@@ -25,6 +25,7 @@ use super::stage::End;
 use super::step_control::{Advance, StepError, TRAVEL};
 use crate::contact::TOUCH;
 use crate::contact::history::{ContactHistory, HISTORIES};
+use change_time::AROUND;
 use flow::{Among, LOSSES, V, WAY};
 
 /// First step of an impact (rad of its oscillation).
@@ -39,6 +40,9 @@ pub(super) const KINKED: f64 = 0.3;
 pub(super) const BALANCED: f64 = 0.1;
 /// A step is not cut for contacts that take the place of others at a smaller or a larger share of it (–).
 const WITHIN: (f64, f64) = (0.02, 0.98);
+/// How much farther than its speed takes it a step may come (–), and for how many steps what is touched is chosen at a time.
+const AHEAD: f64 = 1.25;
+const STEPS_AHEAD: f64 = 4.0;
 /// Shortest step (rad): a contact that begins within a step is met this exactly.
 pub(super) const SHORTEST_RAD: f64 = 1e-9;
 
@@ -140,7 +144,11 @@ impl ContactState {
         let c = self.c;
         self.know(world, &c);
         let way = TRAVEL * world.body.radius;
-        let limit = longest_step(&world.body, self.v.norm(), way).min(LONGEST_RAD / omega);
+        let speed = self.v.norm();
+        let limit = longest_step(&world.body, speed, way).min(LONGEST_RAD / omega);
+        let next_m = AHEAD * speed * limit;
+        let reach = world.body.radius * (1.0 + AROUND);
+        self.near.come_close(world.terrain, &c, (next_m, STEPS_AHEAD * next_m), reach);
         // a share of the tolerance, as an impact takes a handful of steps; relative to the speed of
         // the impact, so it has no unit of its own
         let allowed = LOCAL * tolerance * self.impact.speed_m_s;

@@ -29,7 +29,7 @@ impl Neighbours {
         (t, face): (u32, &Face),
         (to, height): (Vec3, f64),
     ) {
-        self.sheets.push(t);
+        self.all.sheets.push(t);
         // how far the foot of the centre may come while the centre moves within the margin
         let near = self.margin + SLACK * self.radius;
         let brim = &terrain.features.brims[t as usize];
@@ -65,7 +65,7 @@ impl Neighbours {
         let sides = [face.e1, face.e2 - face.e1, -face.e2];
         let out = sides.map(|side| side.cross(&face.n).normalize());
         let rim = [0, 1, 2].map(|k| out[k].dot(&corners[k]));
-        self.faces.push(NearFace { id: t, a: face.a, n: face.n, out, rim });
+        self.all.faces.push(NearFace { id: t, a: face.a, n: face.n, out, rim });
     }
 
     /// Those of the edges and corners on a triangle's brim that can be touched from the side on which the centre is, and
@@ -142,7 +142,7 @@ impl Neighbours {
             }
         }
         let rays = (first as u32, self.rays.len() as u32);
-        self.saddles.push(NearSaddle::Edge { a, along, length, rays });
+        self.all.saddles.push(NearSaddle::Edge { a, along, length, rays });
     }
 
     /// Takes the vertices of one triangle that the ball can press into.
@@ -153,7 +153,7 @@ impl Neighbours {
             let p = terrain.vertices_m[id as usize];
             let reach = self.radius + self.margin;
             if (self.centre - p).norm_squared() < reach * reach {
-                self.saddles.push(NearSaddle::Vertex { id, p });
+                self.all.saddles.push(NearSaddle::Vertex { id, p });
             }
         }
     }
@@ -185,7 +185,7 @@ impl Neighbours {
             self.rays.push(outward);
         }
         let (rays, at_border) = ((first as u32, self.rays.len() as u32), edges.is_border(edge));
-        self.edges.push(NearEdge {
+        self.all.edges.push(NearEdge {
             id: edge,
             triangle: edge / 3,
             a,
@@ -215,6 +215,6 @@ impl Neighbours {
         }
         let rays = (first as u32, self.rays.len() as u32);
         let at_border = terrain.features.is_border_vertex(id, terrain.mesh());
-        self.corners.push(NearCorner { id, triangle: owner, p, rays, at_border });
+        self.all.corners.push(NearCorner { id, triangle: owner, p, rays, at_border });
     }
 }

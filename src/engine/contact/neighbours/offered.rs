@@ -37,7 +37,7 @@ pub(crate) struct Peak<'a> {
 impl Neighbours {
     /// How far (m) a foot that moves with `u` (m/s) stays on a face; 0 where it is none of those collected.
     pub(crate) fn way_over(&self, face: u32, (foot, u): (&Vec3, &Vec3)) -> f64 {
-        let Some(face) = self.faces.iter().find(|near| near.id == face) else { return 0.0 };
+        let Some(face) = self.all.faces.iter().find(|near| near.id == face) else { return 0.0 };
         let leaves_s = (0..3).filter_map(|k| {
             let speed = face.out[k].dot(u);
             (speed > 0.0).then(|| (face.rim[k] - face.out[k].dot(foot)).max(0.0) / speed)
@@ -47,7 +47,7 @@ impl Neighbours {
 
     /// The edges that can be touched from where the centre is, with unit directions out of their triangles.
     pub(crate) fn sharp_edges(&self) -> impl Iterator<Item = SharpEdge<'_>> {
-        self.edges.iter().map(|edge| SharpEdge {
+        self.all.edges.iter().map(|edge| SharpEdge {
             feature: Feature { kind: FeatureKind::Edge, id: edge.id },
             triangle: edge.triangle,
             a: edge.a,
@@ -60,7 +60,7 @@ impl Neighbours {
 
     /// The vertices that can be touched from where the centre is, with unit directions along their edges.
     pub(crate) fn peaks(&self) -> impl Iterator<Item = Peak<'_>> {
-        self.corners.iter().map(|corner| Peak {
+        self.all.corners.iter().map(|corner| Peak {
             feature: Feature { kind: FeatureKind::Vertex, id: corner.id },
             triangle: corner.triangle,
             p: corner.p,
@@ -83,6 +83,6 @@ impl Neighbours {
     /// All triangles within reach.
     /// Also those that own nothing that stands out: a corner may touch their faces.
     pub(crate) fn triangles(&self) -> &[u32] {
-        &self.sheets
+        &self.all.sheets
     }
 }

@@ -96,7 +96,7 @@ impl Neighbours {
 
     /// Whether a rock on its `passage` touches nothing but the plane of `face`, however many triangles that is.
     pub fn is_plane_on(&self, face: u32, passage: &PressedPath) -> bool {
-        let Some(own) = self.faces.iter().find(|own| own.id == face) else { return false };
+        let Some(own) = self.all.faces.iter().find(|own| own.id == face) else { return false };
         // other triangles of the same plane are no obstacle: their seams are not felt
         let in_plane = |p: &Vec3| self.is_in_plane(own, p);
         let rays_of = |rays: (u32, u32)| &self.rays[rays.0 as usize..rays.1 as usize];
@@ -116,20 +116,20 @@ impl Neighbours {
         let reach = self.radius;
         // a face is harmless if it lies in the same plane (either winding), is never near, or never
         // holds the foot
-        self.faces.iter().all(|other| {
+        self.all.faces.iter().all(|other| {
             self.is_coplanar(own, other)
                 || !passage.comes_nearer_to_plane((&other.n, &other.a), reach)
                 || (0..3).any(|k| passage.stays_beyond(&other.out[k], other.rim[k]))
-        }) && self.edges.iter().all(|edge| {
+        }) && self.all.edges.iter().all(|edge| {
             // an edge: never near, never with the centre outside of all its faces, or flat in the
             // plane itself
             !passage.comes_nearer((&edge.a, &(edge.along * edge.length)), reach)
                 || !may_stand(edge.rays, &edge.a, true)
                 || !edge.at_border && lies_flat(edge.rays) && in_plane(&edge.a)
-        }) && self.corners.iter().all(|corner| {
+        }) && self.all.corners.iter().all(|corner| {
             !passage.comes_nearer((&corner.p, &Vec3::zeros()), reach)
                 || !corner.at_border && lies_flat(corner.rays) && in_plane(&corner.p)
-        }) && self.saddles.iter().all(|saddle| match saddle {
+        }) && self.all.saddles.iter().all(|saddle| match saddle {
             NearSaddle::Edge { a, along, length, rays } => {
                 !passage.comes_nearer((a, &(along * *length)), reach)
                     || rays.0 < rays.1 && !may_stand(*rays, a, false)
@@ -153,9 +153,9 @@ impl Neighbours {
 
     /// Whether the foot of `centre` is on the triangle `face`, or on another of its plane where all that are near are `alike`.
     pub fn stands_on(&self, face: u32, centre: &Vec3, alike: impl Fn(u32) -> bool) -> bool {
-        let Some(own) = self.faces.iter().find(|own| own.id == face) else { return false };
+        let Some(own) = self.all.faces.iter().find(|own| own.id == face) else { return false };
         let slack = SLACK * self.radius;
-        let mut plane = self.faces.iter().filter(|other| self.is_coplanar(own, other));
+        let mut plane = self.all.faces.iter().filter(|other| self.is_coplanar(own, other));
         own.holds_foot_of(centre, slack)
             || plane.clone().all(|other| alike(other.id))
                 && plane.any(|other| other.holds_foot_of(centre, slack))
@@ -166,8 +166,13 @@ impl Neighbours {
     /// Decides whether single nearest points will do (the usual case) or patches must be summed;
     /// asked at every stage, so it is cheap.
     #[inline]
-    pub(super) fn has_saddle(&self, terrain: &Terrain, centre: &Vec3) -> bool {
-        self.saddles.iter().any(|saddle| match saddle {
+    pub(super) fn has_saddle(
+        &self,
+        terrain: &Terrain,
+        saddles: &[NearSaddle],
+        centre: &Vec3,
+    ) -> bool {
+        saddles.iter().any(|saddle| match saddle {
             NearSaddle::Edge { a, along, length, rays } => {
                 let to = centre - a;
                 let s = along.dot(&to);
@@ -197,13 +202,18 @@ impl Neighbours {
 
     /// Puts the patches in place of the touches that the ball presses into.
     #[cold]
-    pub(super) fn gather(&mut self, terrain: &Terrain, centre: &Vec3, touches: &mut ContactPoints) {
+    pub(super) fn gather(
+        &mut self,
+        terrain: &Terrain,
+        (centre, reach): (&Vec3, f64),
+        touches: &mut ContactPoints,
+    ) {
         // what does not reach the ball yet stays as it is: a patch is only what is pressed in
         touches.drop_nearer(self.radius);
         let mut patches = std::mem::take(&mut self.patches);
         patches.find(
             terrain,
-            &self.sheets,
+            &self.within((centre, reach)).sheets,
             (centre, self.radius),
             |touch, nearest: &ContactPoint| {
                 let features = &terrain.features;

@@ -1,0 +1,105 @@
+//! What may touch on a short way, of all that was collected.
+//!
+//! Features are collected for a good part of the radius, as that is not cheap; an impact goes a few millimetres, and asks some
+//! thirty times what is touched. What its way cannot reach is passed over: the answers are the same, to the bit.
+
+use super::{NearFeatures, NearSaddle, Neighbours, SLACK};
+use crate::contact::closest::closest_on;
+use crate::rock::Vec3;
+use crate::terrain::Terrain;
+
+/// By how much a way is taken longer than it is (–, relative to the radius): more than rounding and the slack of all tests.
+const ROUNDING: f64 = 1e-6;
+
+/// Where the centre of a rock stays for a short while.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ShortWay {
+    centre: Vec3,
+    /// How far it gets from there (m).
+    way_m: f64,
+    /// How far from the centre touches are asked for, at most (m).
+    reach: f64,
+}
+
+impl ShortWay {
+    /// Nowhere.
+    pub(super) const NONE: Self =
+        Self { centre: Vec3::new(0.0, 0.0, 0.0), way_m: -1.0, reach: 0.0 };
+
+    /// Whether `point` is on it, and `beyond_m` farther.
+    fn holds(&self, point: &Vec3, beyond_m: f64) -> bool {
+        let room = self.way_m - beyond_m;
+        room >= 0.0 && (point - self.centre).norm_squared() <= room * room
+    }
+}
+
+impl Neighbours {
+    /// The features that may be nearer than `reach` (m) to a centre: few where it is on the short way that is known.
+    #[inline]
+    pub(super) fn within(&self, (centre, reach): (&Vec3, f64)) -> &NearFeatures {
+        let is_close = reach <= self.around.reach && self.around.holds(centre, 0.0);
+        if is_close { &self.close } else { &self.all }
+    }
+
+    /// Makes ready for touches nearer than `reach` on a way from `centre` of `next_m`, and of `way_m` in all (m).
+    pub fn come_close(
+        &mut self,
+        terrain: &Terrain,
+        centre: &Vec3,
+        (next_m, way_m): (f64, f64),
+        reach: f64,
+    ) {
+        if reach <= self.around.reach && self.around.holds(centre, next_m) {
+            return;
+        }
+        self.around = ShortWay { centre: *centre, way_m, reach };
+        let mut close = std::mem::take(&mut self.close);
+        close.clear();
+        self.choose(terrain, &mut close);
+        self.close = close;
+    }
+
+    /// Chooses what may touch on the short way: every test of [`Neighbours::touches`], with the way allowed for.
+    fn choose(&self, terrain: &Terrain, close: &mut NearFeatures) {
+        let ShortWay { centre, way_m, reach } = &self.around;
+        let way = way_m + ROUNDING * self.radius;
+        let farthest = reach + way;
+        let rays_of = |rays: (u32, u32)| &self.rays[rays.0 as usize..rays.1 as usize];
+        let is_on = |s: f64, length: f64| s >= -way && s <= length + way;
+        close.faces.extend(self.all.faces.iter().filter(|face| {
+            face.n.dot(&(centre - face.a)).abs() < farthest && face.holds_foot_of(centre, way)
+        }));
+        close.edges.extend(self.all.edges.iter().filter(|edge| {
+            let to = centre - edge.a;
+            let s = edge.along.dot(&to);
+            is_on(s, edge.length)
+                && (to - edge.along * s).norm_squared() < farthest * farthest
+                && rays_of(edge.rays).iter().all(|out| out.dot(&to) > -way - SLACK * farthest)
+        }));
+        close.corners.extend(self.all.corners.iter().filter(|corner| {
+            let to = centre - corner.p;
+            to.norm_squared() < farthest * farthest
+                && rays_of(corner.rays).iter().all(|ray| ray.dot(&to) < way + SLACK * farthest)
+        }));
+        close.saddles.extend(self.all.saddles.iter().filter(|saddle| match saddle {
+            NearSaddle::Edge { a, along, length, rays } => {
+                let to = centre - a;
+                let s = along.dot(&to);
+                is_on(s, *length)
+                    && (to - along * s).norm_squared() < farthest * farthest
+                    && rays_of(*rays).iter().all(|out| out.dot(&to) < way)
+            }
+            NearSaddle::Vertex { p, .. } => (centre - p).norm_squared() < farthest * farthest,
+        }));
+        // a patch is where a saddle is: without one the triangles are not asked for
+        if !close.saddles.is_empty() {
+            close.sheets.extend(self.all.sheets.iter().filter(|&&t| {
+                let face = terrain.face(t);
+                face.n.dot(&(centre - face.a)).abs() < farthest && {
+                    let nearest = closest_on(&terrain.corners_m(t), centre);
+                    (centre - nearest).norm_squared() < farthest * farthest
+                }
+            }));
+        }
+    }
+}
