@@ -9,6 +9,7 @@
 //! minima belong together: then `contact::patch` tells.
 
 mod close;
+mod features;
 mod offered;
 mod pressed;
 mod collect;
@@ -22,6 +23,7 @@ use crate::contact::FeatureKind;
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
 use close::ShortWay;
+use features::{NearCorner, NearEdge, NearFace, NearFeatures, NearSaddle};
 pub use pressed::PressedPath;
 
 /// Inclusive tests, relative to the radius (–): a point on a border must not fall between two features.
@@ -30,112 +32,6 @@ const SLACK: f64 = 1e-9;
 /// Feet closer than this times the radius, with normals within it, are one contact (–). Loose enough for the
 /// rounding of map coordinates, which bends flat edges by 1e-9.
 pub(super) const SAME: f64 = 1e-6;
-
-/// A face that the foot of a centre within the margin can lie on. The three sides are planes through its edges, so
-/// that the test whether it holds a foot is three dot products.
-#[derive(Debug, Clone, Copy)]
-struct NearFace {
-    id: u32,
-    /// First corner (m).
-    a: Vec3,
-    /// Unit normal.
-    n: Vec3,
-    /// Unit vectors in the plane of the face, out of it across each side.
-    out: [Vec3; 3],
-    /// `out[k] · x ≤ rim[k]` inside.
-    rim: [f64; 3],
-}
-
-/// A convex edge, or one at a border, that the centre can stand outside of.
-#[derive(Debug, Clone, Copy)]
-struct NearEdge {
-    id: u32,
-    triangle: u32,
-    /// Its first end (m).
-    a: Vec3,
-    /// Unit vector towards the other end.
-    along: Vec3,
-    /// Its length (m).
-    length: f64,
-    /// Range of outward face normals in `rays`.
-    rays: (u32, u32),
-    /// Whether only one face is on it: then another sheet may run through it.
-    at_border: bool,
-}
-
-/// A vertex that stands out from all its edges for some centre within the margin.
-#[derive(Debug, Clone, Copy)]
-struct NearCorner {
-    id: u32,
-    triangle: u32,
-    /// Where it is (m).
-    p: Vec3,
-    /// Range of edge directions in `rays`.
-    rays: (u32, u32),
-    /// Whether a border of the mesh runs through it.
-    at_border: bool,
-}
-
-/// A place where the distance may have a saddle or a maximum inside the ball.
-#[derive(Debug, Clone, Copy)]
-enum NearSaddle {
-    /// A hollow edge from `a`, with its direction and length (m) and its range of outward face normals in `rays`.
-    Edge { a: Vec3, along: Vec3, length: f64, rays: (u32, u32) },
-    /// A vertex.
-    Vertex { id: u32, p: Vec3 },
-}
-
-impl NearFace {
-    /// Whether the foot of `point` lies inside, or at most `slack` (m) outside.
-    #[inline]
-    fn holds_foot_of(&self, point: &Vec3, slack: f64) -> bool {
-        (0..3).all(|k| self.out[k].dot(point) <= self.rim[k] + slack)
-    }
-
-    /// The touch of a centre at `height` (m).
-    #[inline]
-    fn touch(&self, height: f64) -> ContactPoint {
-        ContactPoint {
-            feature: Feature { kind: FeatureKind::Face, id: self.id },
-            triangle: self.id,
-            normal: if height < 0.0 { -self.n } else { self.n },
-            distance_m: height.abs(),
-            gain2: 1.0,
-        }
-    }
-}
-
-/// Features that may touch, kind by kind; the lists keep their memory from look to look.
-#[derive(Debug, Default)]
-struct NearFeatures {
-    faces: Vec<NearFace>,
-    edges: Vec<NearEdge>,
-    corners: Vec<NearCorner>,
-    saddles: Vec<NearSaddle>,
-    /// All triangles within reach; only looked at when a border or a saddle is near.
-    sheets: Vec<u32>,
-}
-
-impl NearFeatures {
-    /// With room for what is usually near.
-    fn with_room() -> Self {
-        Self {
-            faces: Vec::with_capacity(64),
-            edges: Vec::with_capacity(64),
-            corners: Vec::with_capacity(64),
-            saddles: Vec::with_capacity(64),
-            sheets: Vec::with_capacity(256),
-        }
-    }
-
-    fn clear(&mut self) {
-        self.faces.clear();
-        self.edges.clear();
-        self.corners.clear();
-        self.saddles.clear();
-        self.sheets.clear();
-    }
-}
 
 /// The features a rock can touch while its centre stays within a margin of a place.
 #[derive(Debug)]

@@ -25,7 +25,6 @@ use super::stage::End;
 use super::step_control::{Advance, StepError, TRAVEL};
 use crate::contact::TOUCH;
 use crate::contact::history::{ContactHistory, HISTORIES};
-use change_time::AROUND;
 use flow::{Among, LOSSES, V, WAY};
 
 /// First step of an impact (rad of its oscillation).
@@ -147,7 +146,7 @@ impl ContactState {
         let speed = self.v.norm();
         let limit = longest_step(&world.body, speed, way).min(LONGEST_RAD / omega);
         let next_m = AHEAD * speed * limit;
-        let reach = world.body.radius * (1.0 + AROUND);
+        let reach = world.body.radius * (1.0 + TOUCH);
         self.near.come_close(world.terrain, &c, (next_m, STEPS_AHEAD * next_m), reach);
         // a share of the tolerance, as an impact takes a handful of steps; relative to the speed of
         // the impact, so it has no unit of its own
@@ -179,10 +178,11 @@ impl ContactState {
             if !(accepted.is_alike && flow.state.goes_on_alone(flow.pressed().len())) {
                 return Ok(true);
             }
-            bounds = flow.state.step_bounds(world, scale, h_max - done.dt);
-            if bounds.h_max <= 0.0 {
+            let left_s = h_max - done.dt;
+            if left_s <= 0.0 || flow.state.bounce(world, scale.1, left_s, done) {
                 return Ok(true);
             }
+            bounds = flow.state.step_bounds(world, scale, left_s);
             // the rates of the step's end are those of the next one's start
             stages.pass();
         }
@@ -259,7 +259,7 @@ impl ContactState {
     /// Velocity and spin are scaled by one factor, so the direction of the rebound does not change.
     /// An impact with `e = 1` and no friction then keeps its energy to rounding. Where no ground has
     /// friction nothing can turn the rock, and the velocity alone is scaled.
-    fn balance(&mut self, world: &ContactEnvironment) {
+    pub(super) fn balance(&mut self, world: &ContactEnvironment) {
         let (body, gained) = (&world.body, self.impact.gained);
         let turns = world.laws.iter().any(|law| law.limits().caps(1.0) != (0.0, 0.0));
         let motion =

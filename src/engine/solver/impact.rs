@@ -50,8 +50,10 @@ mod integrate;
 #[cfg(test)]
 mod tests;
 
+#[cfg(test)]
+use plane::Followed;
 pub(super) use plane::LOCAL;
-pub(crate) use plane::{BlowTable, Followed, Plane, blow_along_a_line};
+pub(crate) use plane::{BlowTable, NormalPassage, Plane, PressedIn, Rebound, blow_along_a_line};
 pub(super) use rigid_limit::NOTHING;
 pub(crate) use rigid_limit::{FrozenContact, throw};
 

@@ -9,7 +9,7 @@ use crate::rock::Vec3;
 use crate::terrain::Terrain;
 
 /// By how much a way is taken longer than it is (–, relative to the radius): more than rounding and the slack of all tests.
-const ROUNDING: f64 = 1e-6;
+const LONGER: f64 = 1e-6;
 
 /// Where the centre of a rock stays for a short while.
 #[derive(Debug, Clone, Copy)]
@@ -62,7 +62,7 @@ impl Neighbours {
     /// Chooses what may touch on the short way: every test of [`Neighbours::touches`], with the way allowed for.
     fn choose(&self, terrain: &Terrain, close: &mut NearFeatures) {
         let ShortWay { centre, way_m, reach } = &self.around;
-        let way = way_m + ROUNDING * self.radius;
+        let way = way_m + LONGER * self.radius;
         let farthest = reach + way;
         let rays_of = |rays: (u32, u32)| &self.rays[rays.0 as usize..rays.1 as usize];
         let is_on = |s: f64, length: f64| s >= -way && s <= length + way;

@@ -13,7 +13,7 @@ const ENDED: f64 = -2.0 * TOUCH;
 /// … by so much (–, relative to R).
 const EXACT: f64 = 0.4 * TOUCH;
 /// How far beyond the radius it is looked for contacts that come or go (–, relative to R).
-pub(super) const AROUND: f64 = 0.05;
+const AROUND: f64 = 0.05;
 /// Places looked at for it, at most.
 const LOOKS: u32 = 40;
 /// How exactly the place is found where a contact takes the place of another (–, relative to the share of the step before it).

@@ -35,8 +35,7 @@ struct Force<const D: usize> {
 }
 
 impl<const D: usize> Force<D> {
-    fn new(swing: NormalMotion, gamma: f64) -> Self {
-        let now = swing.onset(gamma);
+    fn new(&Span { swing, begin: now, gamma, .. }: &Span) -> Self {
         let series = Series::new(now, swing.zeta, gamma);
         Self { swing, gamma, now, nodes: [now[0]; 6], series }
     }
@@ -85,6 +84,8 @@ impl<P: ForcedFlow<N, Q, K>, const N: usize, const Q: usize, const K: usize, con
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Span {
     pub(super) swing: NormalMotion,
+    /// Force and its rate at the start.
+    pub(super) begin: [f64; 2],
     pub(super) gamma: f64,
     /// Length (1/ω).
     pub(super) length: f64,
@@ -107,7 +108,7 @@ pub(super) fn run<
     span: &Span,
     effort: &mut ImpactEffort,
 ) -> ([f64; N], [f64; Q]) {
-    let mut force = Force::<D>::new(span.swing, span.gamma);
+    let mut force = Force::<D>::new(span);
     let over_allowed2 = 1.0 / (span.allowed * span.allowed);
     // a strong dashpot makes the force's series short-lived
     let longest = LONGEST / (2.0 * span.swing.zeta).max(1.0);

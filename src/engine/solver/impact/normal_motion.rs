@@ -69,9 +69,47 @@ impl NormalMotion {
         [2.0 * zeta, 1.0 - 2.0 * zeta * (2.0 * zeta - gamma)]
     }
 
+    /// Force and its rate at the penetration `x` and the speed `inwards` into the plane.
+    #[inline]
+    pub(super) fn force_at(&self, (x, inwards): (f64, f64), gamma: f64) -> [f64; 2] {
+        let damping = 2.0 * self.zeta;
+        [x + damping * inwards, inwards + damping * (gamma - damping * inwards - x)]
+    }
+
+    /// Penetration and speed into the plane after a time `t` from a start with this force and rate, and gravity.
+    pub(super) fn place_at(&self, from: ([f64; 2], f64), t: f64) -> (f64, f64) {
+        let damping = 2.0 * self.zeta;
+        let [force, rate] = self.force(from, t);
+        let inwards = rate - damping * (from.1 - force);
+        (force - damping * inwards, inwards)
+    }
+
     /// How the rock leaves; `None` if gravity keeps it.
     pub(super) fn exit(&self, gamma: f64) -> Option<Exit> {
-        let (lift, rate) = self.lift_nearby(gamma).or_else(|| self.lift_anywhere(gamma))?;
+        let lift = self
+            .lift_nearby(gamma)
+            .or_else(|| self.lift_anywhere((self.onset(gamma), gamma), self.contact))?;
+        let exit = self.exit_at(lift, gamma)?;
+        // Without damping nothing is lost, and no rounding may say otherwise.
+        Some(if self.zeta == 0.0 { Exit { speed: 1.0, ..exit } } else { exit })
+    }
+
+    /// How a rock leaves that is pushed with `begin`, force and rate, and swings; `None` if gravity keeps it, or nothing pushes.
+    pub(super) fn exit_from(&self, begin: [f64; 2], gamma: f64) -> Option<Exit> {
+        let [force, rate] = begin;
+        if force <= 0.0 {
+            return None;
+        }
+        // u = f − γ is a free swing: it is 0 where S'/S + ζ = −u'/u − ζ
+        let guess = time_at(self.zeta, -rate / (force - gamma) - self.zeta);
+        let from = (begin, gamma);
+        let near = self.lift_near((guess, self.force(from, guess)), gamma);
+        let falls = near.filter(|(lift, rate)| *lift > 0.0 && *rate < 0.0);
+        self.exit_at(falls.or_else(|| self.lift_anywhere(from, guess))?, gamma)
+    }
+
+    /// How the rock leaves that lifts off then, the force falling at that rate.
+    fn exit_at(&self, (lift, rate): (f64, f64), gamma: f64) -> Option<Exit> {
         // where f = 0: x' = f' − 2ζγ, so the rock rises at −x', still pressed in by x = −2ζ x'
         let up = 2.0 * self.zeta * gamma - rate;
         let x = 2.0 * self.zeta * up;
@@ -80,8 +118,7 @@ impl NormalMotion {
         if up <= 0.0 || left <= 0.0 {
             return None;
         }
-        // Without damping nothing is lost, and no rounding may say otherwise.
-        let speed = if self.zeta == 0.0 { 1.0 } else { left.sqrt() };
+        let speed = left.sqrt();
         // x = up·t − γ t²/2 for the time of the way out, without cancellation
         Some(Exit { lift, out: 2.0 * x / (up + speed), speed })
     }
@@ -96,8 +133,15 @@ impl NormalMotion {
             return None;
         }
         // at t_c the free swing has S + 2ζS' = 0 and S' = −e, so there f = γ (1 + e) and f' = −e
-        let series = Series::<TERMS>::new([gamma * (1.0 + e), -e], zeta, gamma);
-        let mut t = late;
+        self.lift_near((self.contact, [gamma * (1.0 + e), -e]), gamma)
+    }
+
+    /// The same near a time at which force and rate are known.
+    #[inline]
+    fn lift_near(&self, (at, [force, rate]): (f64, [f64; 2]), gamma: f64) -> Option<(f64, f64)> {
+        let zeta = self.zeta;
+        let series = Series::<TERMS>::new([force, rate], zeta, gamma);
+        let mut t = -force / rate;
         for _ in 0..8 {
             let [force, rate] = series.both(t);
             let change = force / rate;
@@ -107,22 +151,22 @@ impl NormalMotion {
             }
         }
         let is_near = t.abs() * (2.0 * zeta).max(1.0) <= NEAR;
-        is_near.then(|| (self.contact + t, series.both(t)[1]))
+        is_near.then(|| (at + t, series.both(t)[1]))
     }
 
-    /// The same, wherever it is: between the touch and the force's first trough.
-    fn lift_anywhere(&self, gamma: f64) -> Option<(f64, f64)> {
+    /// The same, wherever it is: between the start and the force's first trough. `from` is force and rate at the start, and gravity.
+    fn lift_anywhere(&self, from: ([f64; 2], f64), guess: f64) -> Option<(f64, f64)> {
         // the force rises, falls and has its first trough; if it is below 0 there, it has crossed 0
         // just once before
-        let mut hi = self.trough(gamma);
-        if hi.is_none() && gamma < 0.0 {
+        let mut hi = self.trough(from);
+        if hi.is_none() && from.1 < 0.0 {
             // Nothing holds the rock: the force falls to less than zero at last.
-            hi = (0..60).map(|k| 2f64.powi(k)).find(|t| self.force(gamma, *t)[0] <= 0.0);
+            hi = (0..60).map(|k| 2f64.powi(k)).find(|t| self.force(from, *t)[0] <= 0.0);
         }
-        let (mut lo, mut hi) = (0.0, hi.filter(|t| self.force(gamma, *t)[0] <= 0.0)?);
-        let mut t = if self.contact < hi { self.contact } else { 0.5 * hi };
+        let (mut lo, mut hi) = (0.0, hi.filter(|t| self.force(from, *t)[0] <= 0.0)?);
+        let mut t = if guess > 0.0 && guess < hi { guess } else { 0.5 * hi };
         for _ in 0..NEWTON {
-            let [force, rate] = self.force(gamma, t);
+            let [force, rate] = self.force(from, t);
             if force > 0.0 {
                 lo = t;
             } else {
@@ -136,14 +180,12 @@ impl NormalMotion {
                 break;
             }
         }
-        Some((t, self.force(gamma, t)[1]))
+        Some((t, self.force(from, t)[1]))
     }
 
-    /// When the force has its first trough, if it has one: `f' = a S' − β S`, `a = 1 − 2ζβ`, `β = 2ζ − γ`.
-    fn trough(&self, gamma: f64) -> Option<f64> {
-        let zeta = self.zeta;
-        let beta = 2.0 * zeta - gamma;
-        let a = 1.0 - 2.0 * zeta * beta;
+    /// When the force has its first trough, if it has one: `f' = a S' − β S`, `a` its rate and `β = f − γ` at the start.
+    fn trough(&self, ([force, a], gamma): ([f64; 2], f64)) -> Option<f64> {
+        let (zeta, beta) = (self.zeta, force - gamma);
         if 1.0 - zeta * zeta > CRITICAL {
             let wd = (1.0 - zeta * zeta).sqrt();
             // a S' − β S = 0 for a damped swing: a sine whose phase is known, the first time at
@@ -156,11 +198,11 @@ impl NormalMotion {
         (a < 0.0 && y * y > zeta * zeta - 1.0 && y > 0.0).then(|| time_at(zeta, y))
     }
 
-    /// Force and its rate at any time.
-    fn force(&self, gamma: f64, t: f64) -> [f64; 2] {
-        let (zeta, [s, ds]) = (self.zeta, answer(self.zeta, t));
-        let whole = s + 2.0 * zeta * ds;
-        [whole + gamma * (1.0 - ds), ds - (2.0 * zeta - gamma) * whole]
+    /// Force and its rate at any time: `f − γ = β (S' + 2ζ S) + a S`, written so that a large `γ` costs no digits of a small time.
+    fn force(&self, ([force, a], gamma): ([f64; 2], f64), t: f64) -> [f64; 2] {
+        let (damping, [s, ds]) = (2.0 * self.zeta, answer(self.zeta, t));
+        let swing = force * (ds + damping * s) + (a - damping * gamma) * s;
+        [swing + gamma * (1.0 - ds), a * ds - (force - gamma) * s]
     }
 
     /// Largest penetration of an impact that leaves: where `S' = −γ S`.

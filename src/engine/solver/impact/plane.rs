@@ -5,6 +5,7 @@
 //! along the plane under its force; then the free way out of the slab.
 
 mod blow_table;
+mod passage;
 mod straight;
 
 use super::ImpactEffort;
@@ -15,10 +16,11 @@ use crate::ground::Law;
 use crate::math;
 use crate::rock::Vec3;
 use crate::solver::body::Body;
-use crate::solver::friction_rolling::{Along, ContactFrame, Local};
+use crate::solver::friction_rolling::{Along, Local};
 use crate::solver::loss::Loss;
 
 pub(crate) use blow_table::BlowTable;
+pub(crate) use passage::{NormalPassage, PressedIn};
 pub(crate) use straight::blow_along_a_line;
 
 /// From this tolerance on a shorter series of the force is accurate enough (–).
@@ -61,10 +63,10 @@ pub(crate) struct Rebound {
     pub(crate) velocity_m_s: Vec3,
     /// Spin (rad/s).
     pub(crate) spin_rad_s: Vec3,
-    /// Largest penetration (m).
-    pub(crate) deepest_m: f64,
     /// Energy lost by kind (J), each ≥ 0: together exactly the energy before less that after, height included.
     pub(crate) loss: Loss,
+    /// How it is pressed in yet, if only a part of the way was followed.
+    pub(crate) pressed: Option<PressedIn>,
     /// What it cost.
     pub(crate) effort: ImpactEffort,
 }
@@ -77,6 +79,9 @@ pub(super) struct Along2 {
     pub(super) w: Local,
     /// Way.
     pub(super) way: Along,
+    /// What the springs of shear and rolling hold yet, as speeds.
+    pub(super) shear: Along,
+    pub(super) roll: Local,
     /// Lost by slipping, shear and rolling.
     pub(super) lost: Local,
 }
@@ -124,41 +129,10 @@ impl Plane {
     /// Follows a rock that has just touched the plane with unit normal `n`, with velocity `v` (m/s), `n·v < 0`, and spin `w`
     /// (rad/s).
     pub(crate) fn follow(&self, n: &Vec3, v: &Vec3, w: &Vec3) -> Followed {
-        let frame = ContactFrame::of(n);
-        let [vx, vy, vn] = frame.local(v);
-        let speed = -vn;
-        let (over, over_force) = (1.0 / speed, 1.0 / (self.omega * speed));
-        // gravity in units of acceleration ω v_n
-        let [gx, gy, gn] = frame.local(&self.body.gravity).map(|g| g * over_force);
-        let Some(exit) = self.swing.exit(-gn) else { return Followed::Stays };
-        let mut effort = ImpactEffort::default();
-        let start = Start {
-            v: [vx * over, vy * over],
-            w: frame.local(w).map(|w| w * (over * self.body.radius)),
-            gravity: [gx, gy],
-            gamma: -gn,
-            allowed: LOCAL * self.tolerance * v.norm() * over,
-        };
-        let along = self.along(&start, &exit, &mut effort);
-        let unit_j = self.body.mass * speed * speed;
-        // normal energy (1 − speed²)/2: dashpot, and weight over the way of the slab is none, as it
-        // comes out where it went in
-        let pressed = 0.5 * (1.0 - exit.speed * exit.speed).max(0.0);
-        let (scale, spin) = (speed / self.omega, speed / self.body.radius);
-        Followed::Left(Rebound {
-            time_s: (exit.lift + exit.out) / self.omega,
-            shift_m: frame.out_along(along.way.map(|x| x * scale)),
-            velocity_m_s: frame.out_local([along.v[0], along.v[1], exit.speed].map(|v| v * speed)),
-            spin_rad_s: if self.rubs() { frame.out_local(along.w.map(|w| w * spin)) } else { *w },
-            deepest_m: self.swing.deepest(-gn) * scale,
-            loss: Loss {
-                friction: along.lost[0] * unit_j,
-                damping: (pressed + along.lost[1]) * unit_j,
-                rolling: along.lost[2] * unit_j,
-                trees: 0.0,
-            },
-            effort,
-        })
+        match self.passage(n, v, 0.0) {
+            Some(passage) => Followed::Left(self.pass(&passage, (v, w), &PressedIn::NOT)),
+            None => Followed::Stays,
+        }
     }
 
     fn rubs(&self) -> bool {
@@ -176,7 +150,7 @@ impl Plane {
             let t = exit.lift;
             let way = [0, 1].map(|k| (start.v[k] + 0.5 * start.gravity[k] * t) * t);
             let v = [0, 1].map(|k| start.v[k] + start.gravity[k] * t);
-            Along2 { v, w: start.w, way, lost: [0.0; 3] }
+            Along2 { v, w: start.w, way, shear: [0.0; 2], roll: [0.0; 3], lost: [0.0; 3] }
         };
         // after lift-off: free flight along the surface too, until the penetration is 0
         for k in 0..2 {
@@ -189,7 +163,8 @@ impl Plane {
 
     fn span(&self, start: &Start, length: f64) -> Span {
         let Self { swing, first, .. } = *self;
-        Span { swing, gamma: start.gamma, length, first, allowed: start.allowed }
+        let Start { begin, gamma, allowed, .. } = *start;
+        Span { swing, begin, gamma, length, first, allowed }
     }
 
     /// `1 / (1 + m R²/I)` and its parts: what a blow along the surface does to slip, by mass and by inertia.
@@ -205,13 +180,15 @@ impl Plane {
         let turns = self.turns();
         let lightness = 1.0 + turns;
         let u = [start.v[0] - start.w[1], start.v[1] + start.w[0]];
-        let (y, slipping, ways) = if start.gravity.iter().all(|g| *g == 0.0) {
-            self.slips_along_a_line(u, start, t, effort)
+        let is_straight = start.gravity.iter().chain(&start.shear).all(|x| *x == 0.0);
+        let (y, slipping, ways) = if is_straight && start.leaves {
+            let (u, slipping, ways) = self.slips_along_a_line(u, start, t, effort);
+            ([u[0], u[1], 0.0, 0.0], slipping, ways)
         } else {
             let flow = Shear { element: self.shear, lightness, gravity: start.gravity };
             let (y, [slipping, ways @ ..]) =
-                self.run(&flow, [u[0], u[1], 0.0, 0.0], start, t, effort);
-            ([y[0], y[1]], slipping, ways)
+                self.run(&flow, [u[0], u[1], start.shear[0], start.shear[1]], start, t, effort);
+            (y, slipping, ways)
         };
         let g = start.gravity;
         // slip without friction, less slip as it came out, is what the impulse did to the contact
@@ -225,6 +202,8 @@ impl Plane {
             v: [0, 1].map(|k| start.v[k] + g[k] * t - blow[k]),
             w: [start.w[0] - turns * blow[1], start.w[1] + turns * blow[0], start.w[2]],
             way,
+            shear: start.kept([y[2], y[3]]),
+            roll: [0.0; 3],
             lost: [0.0; 3],
         };
         // The work of the shear force: its impulse times the mean slip, less what gravity brought in between.
@@ -246,13 +225,22 @@ impl Plane {
             gravity: start.gravity,
         };
         let ([vx, vy], [wx, wy, wz]) = (start.v, start.w);
-        let begin = [vx, vy, wx, wy, wz, 0.0, 0.0, 0.0, 0.0, 0.0];
+        let ([sx, sy], [rx, ry, rz]) = (start.shear, start.roll);
+        let begin = [vx, vy, wx, wy, wz, sx, sy, rx, ry, rz];
         let (y, [slipping, x, z, rolling, shear]) = self.run(&flow, begin, start, t, effort);
-        let mut end =
-            Along2 { v: [y[0], y[1]], w: [y[2], y[3], y[4]], way: [x, z], lost: [0.0; 3] };
+        let mut end = Along2 {
+            v: [y[0], y[1]],
+            w: [y[2], y[3], y[4]],
+            way: [x, z],
+            shear: start.kept([y[5], y[6]]),
+            roll: start.kept([y[7], y[8], y[9]]),
+            lost: [0.0; 3],
+        };
         let lost = self.settle(start, &mut end);
+        let [held_shear, held_roll] = self.given_back((&start.shear, &start.roll), &end);
         let slipping = slipping.max(0.0);
-        end.lost = shared(lost, [slipping, (shear - slipping).max(0.0), rolling.max(0.0)]);
+        let (shear, rolling) = (shear + held_shear - slipping, rolling + held_roll);
+        end.lost = shared(lost, [slipping, shear.max(0.0), rolling.max(0.0)]);
         end
     }
 
@@ -273,12 +261,21 @@ impl Plane {
         }
     }
 
-    /// What was lost along the surface: energy before and what gravity brought less energy after. Where the error of the steps
-    /// would make that a gain, motion after is slowed by so much.
+    /// What springs of shear and rolling give back that hold so much at the start.
+    fn given_back(&self, (shear, roll): (&Along, &Local), end: &Along2) -> [f64; 2] {
+        let [shear, kept_shear] = [shear, &end.shear].map(|s| self.shear.held(s));
+        let [roll, kept_roll] = [roll, &end.roll].map(|s| self.rolling.held(s));
+        [shear - kept_shear, roll - kept_roll]
+    }
+
+    /// What was lost along the surface: energy before, what springs give back and what gravity brought less energy after. Where the
+    /// error of the steps would make that a gain, motion after is slowed by so much.
     fn settle(&self, start: &Start, end: &mut Along2) -> f64 {
         let over = 1.0 / self.turns();
         let energy = |v: Along, w: Local| 0.5 * (dot(v, v) + over * dot(w, w));
         let before = energy(start.v, start.w) + dot(start.gravity, end.way);
+        let given_back = self.given_back((&start.shear, &start.roll), end);
+        let before = before + given_back.iter().sum::<f64>();
         let after = energy(end.v, end.w);
         if after > before {
             let slower = (before.max(0.0) / after).sqrt();
@@ -301,13 +298,27 @@ pub(super) fn shared<const N: usize>(lost: f64, parts: [f64; N]) -> [f64; N] {
     }
 }
 
-/// Where an impact starts, in units of radius, approach speed and `1/ω`.
+/// Where an impact starts, in units of radius, speed and `1/ω`.
 struct Start {
     v: Along,
     w: Local,
+    /// What the springs of shear and rolling hold, as the speeds at which their dashpots would.
+    shear: Along,
+    roll: Local,
     gravity: Along,
     /// Gravity into the plane.
     gamma: f64,
+    /// Normal force and its rate.
+    begin: [f64; 2],
+    /// Whether the rock is followed until it leaves: what springs hold then is lost.
+    leaves: bool,
     /// Local error allowed.
     allowed: f64,
+}
+
+impl Start {
+    /// What springs keep at the end.
+    fn kept<const N: usize>(&self, s: [f64; N]) -> [f64; N] {
+        if self.leaves { [0.0; N] } else { s }
+    }
 }

@@ -50,6 +50,22 @@ impl SliderElement {
         self.damping > 0.0
     }
 
+    /// What a spring stretched by `ξ` has as a speed, `s = k ξ/c`.
+    pub(super) fn stretched<const N: usize>(&self, stretch: [f64; N]) -> [f64; N] {
+        stretch.map(|x| x * self.rate)
+    }
+
+    /// The stretch of a spring that has `s`.
+    pub(super) fn stretch<const N: usize>(&self, s: [f64; N]) -> [f64; N] {
+        if self.is_on() { s.map(|s| s / self.rate) } else { [0.0; N] }
+    }
+
+    /// Energy `k ξ²/2` of the spring that has `s`.
+    pub(super) fn held(&self, s: &[f64]) -> f64 {
+        let square: f64 = s.iter().map(|s| s * s).sum();
+        if square > 0.0 { 0.5 * self.damping * square / self.rate } else { 0.0 }
+    }
+
     /// `p` and its shortening for what is asked, under the force `f`: `p = asked × share`, and both sizes.
     #[inline]
     pub(super) fn share(&self, asked2: f64, f: f64) -> (f64, f64, f64) {

@@ -2,6 +2,7 @@
 
 mod frozen;
 mod oracle;
+mod passage;
 mod plane;
 mod straight;
 

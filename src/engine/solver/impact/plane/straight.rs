@@ -45,8 +45,12 @@ impl Plane {
         let start = Start {
             v: [u, 0.0],
             w: [0.0; 3],
+            shear: [0.0; 2],
+            roll: [0.0; 3],
             gravity: [0.0; 2],
             gamma: 0.0,
+            begin: self.swing.onset(0.0),
+            leaves: true,
             allowed: LOCAL * self.tolerance * (1.0 + u * u).sqrt(),
         };
         let (after, _) = self.along_a_line(u, &start, length, &mut ImpactEffort::default());

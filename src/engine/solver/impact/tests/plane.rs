@@ -24,6 +24,12 @@ fn drop((body, law): &(Body, Law), speed: f64) -> Followed {
     Plane::new(body, law, 1e-10).follow(&Vec3::z(), &v, &Vec3::zeros())
 }
 
+/// Largest penetration of the same (m).
+fn deepest_m((body, law): &(Body, Law), speed: f64) -> f64 {
+    let v = Vec3::new(0.0, 0.0, -speed);
+    Plane::new(body, law, 1e-10).passage(&Vec3::z(), &v, 0.0).unwrap().deepest_m()
+}
+
 /// The greater difference of velocity and of spin times radius, relative to the speed of the impact.
 fn apart(body: &Body, [v, w]: [Vec3; 2], [v1, w1]: [Vec3; 2], speed: f64) -> f64 {
     (v - v1).norm().max((w - w1).norm() * body.radius) / speed
@@ -53,7 +59,8 @@ fn without_weight_restitution_is_the_one_asked_for() {
         let out = left(drop(&case, 5.0));
         assert!((out.velocity_m_s.z / 5.0 - e).abs() < 1e-12, "{e}: {}", out.velocity_m_s.z / 5.0);
         // the largest penetration is √e v/ω
-        assert!((out.deepest_m * case.1.omega_rad_s() / 5.0 - e.sqrt()).abs() < 1e-12, "{e}");
+        let deep = deepest_m(&case, 5.0) * case.1.omega_rad_s() / 5.0;
+        assert!((deep - e.sqrt()).abs() < 1e-12, "{e}");
     }
 }
 
@@ -93,11 +100,11 @@ fn a_dropped_rock_bounces_as_the_closed_form_says() {
         let out = left(drop(&case, v));
         let up = out.velocity_m_s.z;
         assert!((up / v - first).abs() < 1e-13, "{}", up / v);
-        assert!((out.deepest_m - deep).abs() < 1e-15, "{}", out.deepest_m);
+        assert!((deepest_m(&case, v) - deep).abs() < 1e-15);
         let again = left(drop(&case, up));
         assert!((again.velocity_m_s.z / up - second).abs() < 1e-13);
         if p_n > 1e8 {
-            assert!((again.deepest_m - 0.001_862_426_602_864_5).abs() < 1e-15);
+            assert!((deepest_m(&case, up) - 0.001_862_426_602_864_5).abs() < 1e-15);
             // second impact at 0.90552616278489 s
             let second_s = v / G + out.time_s + 2.0 * up / G;
             assert!((second_s - 0.905_526_162_784_89).abs() < 1e-13, "{second_s}");

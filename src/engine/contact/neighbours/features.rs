@@ -1,0 +1,110 @@
+//! The features that a rock may touch, as they are kept for the tests of each place.
+
+use crate::contact::{ContactPoint, Feature, FeatureKind};
+use crate::rock::Vec3;
+
+/// A face that the foot of a centre within the margin can lie on. The three sides are planes through its edges, so
+/// that the test whether it holds a foot is three dot products.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct NearFace {
+    pub(super) id: u32,
+    /// First corner (m).
+    pub(super) a: Vec3,
+    /// Unit normal.
+    pub(super) n: Vec3,
+    /// Unit vectors in the plane of the face, out of it across each side.
+    pub(super) out: [Vec3; 3],
+    /// `out[k] · x ≤ rim[k]` inside.
+    pub(super) rim: [f64; 3],
+}
+
+/// A convex edge, or one at a border, that the centre can stand outside of.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct NearEdge {
+    pub(super) id: u32,
+    pub(super) triangle: u32,
+    /// Its first end (m).
+    pub(super) a: Vec3,
+    /// Unit vector towards the other end.
+    pub(super) along: Vec3,
+    /// Its length (m).
+    pub(super) length: f64,
+    /// Range of outward face normals in `rays`.
+    pub(super) rays: (u32, u32),
+    /// Whether only one face is on it: then another sheet may run through it.
+    pub(super) at_border: bool,
+}
+
+/// A vertex that stands out from all its edges for some centre within the margin.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct NearCorner {
+    pub(super) id: u32,
+    pub(super) triangle: u32,
+    /// Where it is (m).
+    pub(super) p: Vec3,
+    /// Range of edge directions in `rays`.
+    pub(super) rays: (u32, u32),
+    /// Whether a border of the mesh runs through it.
+    pub(super) at_border: bool,
+}
+
+/// A place where the distance may have a saddle or a maximum inside the ball.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum NearSaddle {
+    /// A hollow edge from `a`, with its direction and length (m) and its range of outward face normals in `rays`.
+    Edge { a: Vec3, along: Vec3, length: f64, rays: (u32, u32) },
+    /// A vertex.
+    Vertex { id: u32, p: Vec3 },
+}
+
+impl NearFace {
+    /// Whether the foot of `point` lies inside, or at most `slack` (m) outside.
+    #[inline]
+    pub(super) fn holds_foot_of(&self, point: &Vec3, slack: f64) -> bool {
+        (0..3).all(|k| self.out[k].dot(point) <= self.rim[k] + slack)
+    }
+
+    /// The touch of a centre at `height` (m).
+    #[inline]
+    pub(super) fn touch(&self, height: f64) -> ContactPoint {
+        ContactPoint {
+            feature: Feature { kind: FeatureKind::Face, id: self.id },
+            triangle: self.id,
+            normal: if height < 0.0 { -self.n } else { self.n },
+            distance_m: height.abs(),
+            gain2: 1.0,
+        }
+    }
+}
+
+/// Features that may touch, kind by kind; the lists keep their memory from look to look.
+#[derive(Debug, Default)]
+pub(super) struct NearFeatures {
+    pub(super) faces: Vec<NearFace>,
+    pub(super) edges: Vec<NearEdge>,
+    pub(super) corners: Vec<NearCorner>,
+    pub(super) saddles: Vec<NearSaddle>,
+    /// All triangles within reach; only looked at when a border or a saddle is near.
+    pub(super) sheets: Vec<u32>,
+}
+
+impl NearFeatures {
+    /// With room for what is usually near.
+    pub(super) fn with_room() -> Self {
+        Self {
+            faces: Vec::with_capacity(64),
+            edges: Vec::with_capacity(64),
+            corners: Vec::with_capacity(64),
+            saddles: Vec::with_capacity(64),
+            sheets: Vec::with_capacity(256),
+        }
+    }
+
+    pub(super) fn clear(&mut self) {
+        self.faces.clear();
+        self.edges.clear();
+        self.corners.clear();
+        self.saddles.clear();
+        self.sheets.clear();
+    }
+}

@@ -1,0 +1,180 @@
+//! The way of a rock through an impact on a plane, from the touch or from any place within it.
+//!
+//! The normal motion is a closed form whatever it begins with: how long the impact still lasts, how deep the rock may get and how
+//! fast it leaves are known before anything is followed along the plane.
+
+use super::{LOCAL, Plane, Rebound, Start};
+use crate::math;
+use crate::rock::Vec3;
+use crate::solver::friction_rolling::{ContactFrame, Local};
+use crate::solver::impact::ImpactEffort;
+use crate::solver::impact::normal_motion::Exit;
+use crate::solver::loss::Loss;
+
+/// How far a rock is in a plane, and what the springs of its contact hold.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PressedIn {
+    /// Penetration (m).
+    pub(crate) depth_m: f64,
+    /// Stretch of the shear spring (m) and of the rolling spring (rad).
+    pub(crate) shear_m: Vec3,
+    pub(crate) roll_rad: Vec3,
+}
+
+impl PressedIn {
+    /// Not yet: it has just touched.
+    pub(crate) const NOT: Self = Self {
+        depth_m: 0.0,
+        shear_m: Vec3::new(0.0, 0.0, 0.0),
+        roll_rad: Vec3::new(0.0, 0.0, 0.0),
+    };
+}
+
+/// The normal motion until the penetration is zero again, or for a part of that time, in units of a speed and of `1/ω`.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct NormalPassage {
+    frame: ContactFrame,
+    omega: f64,
+    /// The unit of speed (m/s).
+    speed: f64,
+    /// Gravity, against the normal the last.
+    gravity: Local,
+    /// Penetration and speed into the plane.
+    depth: f64,
+    inwards: f64,
+    /// Force and its rate.
+    begin: [f64; 2],
+    exit: Exit,
+    /// Penetration at the end.
+    left: f64,
+    deepest: f64,
+}
+
+impl NormalPassage {
+    /// How long it takes (s).
+    pub(crate) fn time_s(&self) -> f64 {
+        (self.exit.lift + self.exit.out) / self.omega
+    }
+
+    /// Penetration that is not passed (m).
+    pub(crate) fn deepest_m(&self) -> f64 {
+        self.deepest * self.speed / self.omega
+    }
+
+    /// Normal impulse over the mass (m/s).
+    pub(crate) fn blow_m_s(&self) -> f64 {
+        (self.inwards + self.exit.speed + self.gravity[2].max(0.0) * self.exit.lift) * self.speed
+    }
+}
+
+impl Plane {
+    /// The way of a rock with velocity `v` (m/s) through the plane with unit normal `n`, into which it is pressed by `depth_m`; `None` if
+    /// gravity keeps it, or nothing pushes it any more.
+    pub(crate) fn passage(&self, n: &Vec3, v: &Vec3, depth_m: f64) -> Option<NormalPassage> {
+        let frame = ContactFrame::of(n);
+        let inwards_m_s = -n.dot(v);
+        let is_touch = depth_m == 0.0;
+        let speed =
+            if is_touch { inwards_m_s } else { math::hypot(inwards_m_s, self.omega * depth_m) };
+        let (over, over_force) = (1.0 / speed, 1.0 / (self.omega * speed));
+        // gravity in units of acceleration ω times the speed
+        let [gx, gy, gn] = frame.local(&self.body.gravity).map(|g| g * over_force);
+        let (gamma, swing) = (-gn, &self.swing);
+        let (depth, inwards) =
+            if is_touch { (0.0, 1.0) } else { (depth_m * self.omega * over, inwards_m_s * over) };
+        let begin =
+            if is_touch { swing.onset(gamma) } else { swing.force_at((depth, inwards), gamma) };
+        let exit = if is_touch { swing.exit(gamma) } else { swing.exit_from(begin, gamma) }?;
+        // about the place where gravity is balanced the swing gets no wider
+        let deepest = if is_touch {
+            swing.deepest(gamma)
+        } else {
+            gamma + math::hypot(depth - gamma, inwards)
+        };
+        let gravity = [gx, gy, gamma];
+        Some(NormalPassage {
+            frame,
+            omega: self.omega,
+            speed,
+            gravity,
+            depth,
+            inwards,
+            begin,
+            exit,
+            left: 0.0,
+            deepest,
+        })
+    }
+
+    /// The first part of a passage, a `share` of the time until the rock lifts off.
+    pub(crate) fn part(&self, passage: &NormalPassage, share: f64) -> NormalPassage {
+        let lift = share * passage.exit.lift;
+        let (left, inwards) = self.swing.place_at((passage.begin, passage.gravity[2]), lift);
+        NormalPassage { exit: Exit { lift, out: 0.0, speed: -inwards }, left, ..*passage }
+    }
+
+    /// Follows what happens along the plane to a rock with velocity `v` (m/s) and spin `w` (rad/s) on its `passage`.
+    ///
+    /// Losses are what motion and height lose: what springs give back is taken off, as it was counted among them when it went in.
+    pub(crate) fn pass(
+        &self,
+        passage: &NormalPassage,
+        (v, w): (&Vec3, &Vec3),
+        pressed: &PressedIn,
+    ) -> Rebound {
+        let NormalPassage {
+            frame,
+            speed,
+            gravity: [gx, gy, gamma],
+            depth,
+            inwards,
+            exit,
+            left,
+            ..
+        } = *passage;
+        let (over, radius) = (1.0 / speed, self.body.radius);
+        let (stretch, turn) = (self.omega * over, self.omega * over * radius);
+        let (shear, roll) = (frame.along(&pressed.shear_m), frame.local(&pressed.roll_rad));
+        let start = Start {
+            v: frame.along(v).map(|v| v * over),
+            w: frame.local(w).map(|w| w * (over * radius)),
+            shear: self.shear.stretched(shear.map(|x| x * stretch)),
+            roll: self.rolling.stretched(roll.map(|x| x * turn)),
+            gravity: [gx, gy],
+            gamma,
+            begin: passage.begin,
+            leaves: left == 0.0,
+            // a rock that stands still at its deepest has the speed that its springs give it
+            allowed: LOCAL * self.tolerance * v.norm().max(speed) * over,
+        };
+        let mut effort = ImpactEffort::default();
+        let along = self.along(&start, &exit, &mut effort);
+        let unit_j = self.body.mass * speed * speed;
+        // normal energy: dashpot, and weight over the way out
+        let held = 0.5 * (depth * depth - left * left);
+        let motion = 0.5 * (inwards * inwards - exit.speed * exit.speed);
+        let damped = (motion + held - gamma * (depth - left)).max(0.0);
+        let [held_shear, held_roll] = self.given_back((&start.shear, &start.roll), &along);
+        let (scale, spin) = (speed / self.omega, speed / radius);
+        let [x, y] = along.way.map(|x| x * scale);
+        let after = PressedIn {
+            depth_m: left * scale,
+            shear_m: frame.out_along(self.shear.stretch(along.shear).map(|x| x / stretch)),
+            roll_rad: frame.out_local(self.rolling.stretch(along.roll).map(|x| x / turn)),
+        };
+        Rebound {
+            time_s: passage.time_s(),
+            shift_m: frame.out_local([x, y, (depth - left) * scale]),
+            velocity_m_s: frame.out_local([along.v[0], along.v[1], exit.speed].map(|v| v * speed)),
+            spin_rad_s: if self.rubs() { frame.out_local(along.w.map(|w| w * spin)) } else { *w },
+            loss: Loss {
+                friction: along.lost[0] * unit_j,
+                damping: (damped - held + along.lost[1] - held_shear) * unit_j,
+                rolling: (along.lost[2] - held_roll) * unit_j,
+                trees: 0.0,
+            },
+            pressed: (!start.leaves).then_some(after),
+            effort,
+        }
+    }
+}

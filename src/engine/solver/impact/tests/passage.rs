@@ -1,0 +1,78 @@
+//! An impact on a plane that is taken up from any place within it.
+
+use super::{G, case, ground, motion_j, uniforms};
+use crate::ground::Law;
+use crate::rock::Vec3;
+use crate::solver::body::Body;
+use crate::solver::impact::{Plane, PressedIn};
+use nalgebra::Rotation3;
+
+/// Rocks, grounds and motions of all kinds: restitution from 0.05 to 1, with and without friction and rolling friction, weight aslant.
+fn cases() -> impl Iterator<Item = ((Body, Law), [Vec3; 2])> {
+    let mut uniform = uniforms(7);
+    (0..60).map(move |k| {
+        let rolling = if k % 2 == 0 { 0.2 } else { 0.0 };
+        let mut ground = ground(1e7 * 10f64.powf(4.0 * uniform()), 1.0 - 0.95 * uniform(), rolling);
+        if k % 5 == 0 {
+            ground.restitution = Some(1.0);
+            ground.friction_angle_rad = 0.0;
+            ground.rolling_friction = 0.0;
+        }
+        let (body, law) = case(&ground, 0.05 + uniform(), G);
+        let aslant = Rotation3::from_euler_angles(uniform(), uniform(), 0.0);
+        let body = Body { gravity: aslant * body.gravity, ..body };
+        let mut one = |most: f64| most * (2.0 * uniform() - 1.0);
+        let (v, w) = (Vec3::new(one(9.0), one(9.0), 0.0), Vec3::new(one(9.0), one(9.0), one(9.0)));
+        let v = v - Vec3::z() * (0.5 + one(0.4) + 4.0 * one(1.0).abs());
+        ((body, law), [v, w / body.radius])
+    })
+}
+
+/// In two or three parts it goes the way that it goes at once, takes the same, and each part takes what motion and height lose.
+#[test]
+fn an_impact_in_parts_is_that_at_once() {
+    let n = Vec3::z();
+    for ((body, law), [v, w]) in cases() {
+        let plane = Plane::new(&body, &law, 1e-9);
+        let Some(whole) = plane.passage(&n, &v, 0.0) else { continue };
+        let at_once = plane.pass(&whole, (&v, &w), &PressedIn::NOT);
+        let unit_j = motion_j(&body, &v, &w);
+        for shares in [&[0.03][..], &[0.5], &[0.97], &[0.3, 0.6]] {
+            let (mut motion, mut pressed, mut shift, mut time_s) =
+                ((v, w), PressedIn::NOT, Vec3::zeros(), 0.0);
+            let mut lost = [0.0; 3];
+            for share in shares.iter().copied().chain([1.0]) {
+                let rest = plane.passage(&n, &motion.0, pressed.depth_m);
+                let rest = rest.unwrap_or_else(|| panic!("{shares:?} {share} {motion:?} {pressed:?} {whole:?} {plane:?}"));
+                let passage = if share < 1.0 { plane.part(&rest, share) } else { rest };
+                let out = plane.pass(&passage, (&motion.0, &motion.1), &pressed);
+                assert!(pressed.depth_m <= whole.deepest_m() * (1.0 + 1e-9));
+                let before_j = motion_j(&body, &motion.0, &motion.1);
+                motion = (out.velocity_m_s, out.spin_rad_s);
+                let height_j = body.mass * body.gravity.dot(&out.shift_m);
+                let gone_j = before_j + height_j - motion_j(&body, &motion.0, &motion.1);
+                assert!((gone_j - out.loss.sum()).abs() < 1e-12 * unit_j);
+                assert_eq!(out.pressed.is_some(), share < 1.0);
+                pressed = out.pressed.unwrap_or(PressedIn::NOT);
+                assert!((pressed.depth_m + (shift + out.shift_m).z).abs() < 1e-15);
+                shift += out.shift_m;
+                time_s += out.time_s;
+                for (sum, part) in
+                    lost.iter_mut().zip([out.loss.friction, out.loss.damping, out.loss.rolling])
+                {
+                    *sum += part;
+                }
+            }
+            let off = (motion.0 - at_once.velocity_m_s)
+                .norm()
+                .max((motion.1 - at_once.spin_rad_s).norm() * body.radius);
+            assert!(off < 3e-8 * v.norm(), "{shares:?}: {off:e}");
+            assert!((time_s - at_once.time_s).abs() < 1e-12 * time_s, "{shares:?}");
+            assert!((shift - at_once.shift_m).norm() < 3e-8 * v.norm() * time_s, "{shares:?}");
+            let all = [at_once.loss.friction, at_once.loss.damping, at_once.loss.rolling];
+            for (sum, part) in lost.iter().zip(all) {
+                assert!((sum - part).abs() < 1e-7 * unit_j, "{shares:?}: {lost:?} {all:?}");
+            }
+        }
+    }
+}
