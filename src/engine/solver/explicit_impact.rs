@@ -33,7 +33,7 @@ pub(super) const FIRST: f64 = 0.3;
 /// Beyond about a radian the error estimate of the pair is no longer to be trusted.
 pub(super) const LONGEST_RAD: f64 = 0.9;
 /// Local error allowed where patches meet and part, relative to that on a plane (–): the estimate sees too little of a kink.
-pub(super) const KINKED: f64 = 0.3;
+const KINKED: f64 = 0.3;
 /// Largest error of energy that is balanced (–, relative to motion).
 /// A larger one is no error of steps, and hiding it would hide a fault.
 pub(super) const BALANCED: f64 = 0.1;
@@ -310,7 +310,7 @@ fn step_among<const C: usize, const N: usize, const Q: usize, const P: usize>(
                 continue;
             }
         };
-        let (accepted, next_h) = judge((dt, wished), (tried.error2, true), is_short)?;
+        let (accepted, next_h) = judge((dt, wished), (tried.error2, flow.is_smooth), is_short)?;
         if !accepted {
             done.rejected += 1;
             let path = |share: f64| start + three(&stages.within((&y, &tried), dt, share).0, WAY);

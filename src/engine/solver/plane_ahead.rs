@@ -65,7 +65,7 @@ impl ContactState {
     }
 
     /// Sees to it that the features on a straight `way` (m) from where the rock is are known, and a little beside it.
-    fn see_along(&mut self, world: &ContactEnvironment, way: &Vec3) {
+    pub(super) fn see_along(&mut self, world: &ContactEnvironment, way: &Vec3) {
         if self.near.covers(&self.c) && self.near.covers(&(self.c + way)) {
             return;
         }

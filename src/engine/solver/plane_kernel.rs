@@ -60,7 +60,7 @@ impl ContactState {
         let history = self.histories[0];
         let (wished_s, usual_m) = (h.min(h_max), TRAVEL * world.body.radius);
         let limit = self.longest_on_plane_s(world, history.feature.id, (wished_s, usual_m));
-        self.see_ahead(world, wished_s);
+        self.see_along(world, &(self.v * wished_s).cap_magnitude(usual_m));
         let usual_s = longest_step(&world.body, self.v.norm(), usual_m);
         let law = world.law(history.triangle);
         let normal = law.normal(history.captured);
@@ -113,15 +113,6 @@ impl ContactState {
         done.loss = done.loss.on(world, history.triangle);
         self.take_plane(law, press, stored);
         Some(Ok(()))
-    }
-
-    /// Sees to it that the features where a step of `dt` goes are known, and a little beyond.
-    fn see_ahead(&mut self, world: &ContactEnvironment, dt: f64) {
-        let way = (self.v * dt).cap_magnitude(TRAVEL * world.body.radius);
-        if !(self.near.covers(&self.c) && self.near.covers(&(self.c + way))) {
-            let c = self.c;
-            self.collect(world, &c);
-        }
     }
 
     /// Penetration into the plane of the one contact (m).

@@ -10,7 +10,6 @@
 //! its memory: they are turned to the normal of the place before they are asked, and their rates
 //! are turned back.
 
-use super::KINKED;
 use super::changes::Changes;
 use crate::contact::TOUCH;
 use crate::contact::history::carry;
@@ -319,8 +318,6 @@ impl<const C: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, 
     #[inline]
     fn size2(&self, off: &[f64; N]) -> f64 {
         let (omega, allowed) = self.scale;
-        // where patches meet and part the estimate sees too little of a kink
-        let allowed = if self.is_smooth { allowed } else { KINKED * allowed };
         let pressed = self.pressed().iter().filter(|contact| contact.normal_force > 0.0);
         let stretch2 = pressed
             .map(|contact| three(off, SPRINGS + 3 * contact.place).norm_squared())

@@ -43,7 +43,9 @@ fn an_impact_in_parts_is_that_at_once() {
             let mut lost = [0.0; 3];
             for share in shares.iter().copied().chain([1.0]) {
                 let rest = plane.passage(&n, &motion.0, pressed.depth_m);
-                let rest = rest.unwrap_or_else(|| panic!("{shares:?} {share} {motion:?} {pressed:?} {whole:?} {plane:?}"));
+                let rest = rest.unwrap_or_else(|| {
+                    panic!("{shares:?} {share} {motion:?} {pressed:?} {whole:?} {plane:?}")
+                });
                 let passage = if share < 1.0 { plane.part(&rest, share) } else { rest };
                 let out = plane.pass(&passage, (&motion.0, &motion.1), &pressed);
                 assert!(pressed.depth_m <= whole.deepest_m() * (1.0 + 1e-9));
