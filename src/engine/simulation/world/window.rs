@@ -363,6 +363,12 @@ impl<'a> IslandWindow<'a> {
 
     /// Puts to sleep what has been quiet for long enough together with all that it touches.
     fn fall_asleep(&mut self) {
+        let quiet = |body: &WorldBody| {
+            body.state == BodyState::Moving && !body.member.flying && body.calm.rests()
+        };
+        if !self.bodies.iter().any(|body| quiet(body)) {
+            return;
+        }
         // rocks that hold each other fall asleep together or not at all: one that still moves would pull on the others
         let mut islands = Partition::alone(self.bodies.len());
         for pair_history in self.pair_histories.iter().filter(|pair_history| pair_history.is_held())
@@ -370,11 +376,7 @@ impl<'a> IslandWindow<'a> {
             islands.join(pair_history.a, pair_history.b);
         }
         for list in islands.lists() {
-            let quiet = |k: &u32| {
-                let body = &self.bodies[*k as usize];
-                body.state == BodyState::Moving && !body.member.flying && body.calm.rests()
-            };
-            if list.iter().all(quiet) {
+            if list.iter().all(|k| quiet(&self.bodies[*k as usize])) {
                 for k in list {
                     self.bodies[k as usize].state = BodyState::Asleep;
                 }

@@ -85,7 +85,7 @@ impl<'a> Island<'a> {
             stirred: ActiveSet::default(),
             tolerance: 0.0,
             onset: Onset::default(),
-            pair_rates: vec![[Vec3::zeros(); STAGES]; pair_histories.len()],
+            pair_rates: Vec::new(),
             pair_forces,
             global: Global::default(),
             rigid: RigidIsland::default(),

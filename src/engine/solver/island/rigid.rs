@@ -33,6 +33,7 @@ use crate::terrain::Terrain;
 pub(crate) use contacts::blows_of;
 use contacts::{BallContact, GroundContact, StepBody};
 use impacts::{ImpactScene, PendingImpact};
+use position_correction::NearPair;
 use std::collections::BinaryHeap;
 use std::sync::Arc;
 use sweeps::Leaning;
@@ -58,12 +59,14 @@ pub(super) struct RigidIsland {
     of_rocks: ContactsOfRocks,
     /// Contacts that one of their rocks has changed since.
     asked: ContactQueue,
+    /// Rocks that the current sweep has stirred.
+    stirred: Vec<usize>,
     lean: Leaning,
     /// What the normal impulses of sustained contacts took in this step (J).
     taken_j: f64,
     places: Vec<Vec3>,
-    /// Distance of the centres of every pair that is left alone (m).
-    allowed_m: Vec<f64>,
+    /// Pairs that may get into each other while rocks are moved apart.
+    near: Vec<NearPair>,
     /// Smallest capture speed (m/s).
     capture_m_s: f64,
     /// Length of the current step (s).

@@ -29,6 +29,8 @@ pub(super) struct StepBody {
     pub(super) blows: u32,
     /// How often it was set in another motion.
     pub(super) times: u32,
+    /// Sweep that stirred it last.
+    pub(super) stirred: u64,
     /// Sweep of the position correction in which it was moved last.
     pub(super) shifted: u32,
     /// Whether a contact pushed it, and whether it was moved out of something.
@@ -50,6 +52,7 @@ impl StepBody {
             since_s: 0.0,
             blows: 0,
             times: 1,
+            stirred: 0,
             shifted: 0,
             pushed: false,
             moved: false,

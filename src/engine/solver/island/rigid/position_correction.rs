@@ -24,9 +24,20 @@ const SWEEPS: u32 = 30;
 /// alone besides (–): in a heap each is pushed back by the next (successive over-relaxation, Young 1954), and what was moved
 /// to the brim would be moved again. Two rocks alone have parted in the first sweep.
 const BEYOND: (f64, f64) = (0.5, 0.3);
+/// Way of a rock up to which it gets into none but the pairs that were near at first (–, relative to its radius). Where one is
+/// moved farther, twice as much is looked at.
+const ROOM: f64 = 0.01;
 /// Way of a rock for which the touches with the mesh that are known are taken for planes (–, relative to its radius). Over an
 /// edge that is off by half the square of it.
 const FLAT: f64 = 3e-4;
+
+/// Two rocks that may get into each other while rocks are moved.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct NearPair {
+    ends: [usize; 2],
+    /// Distance of the centres that is left alone (m).
+    allowed_m: f64,
+}
 
 impl PairHistory {
     /// Distance of two centres that is left alone (m): what weight would press in anyway is left, as without it contacts of a
@@ -48,31 +59,49 @@ impl RigidIsland {
     pub(super) fn part(&mut self, scene: &mut ImpactScene) {
         self.places.clear();
         self.places.extend(self.balls.iter().map(|ball| ball.c));
-        self.allowed_m.clear();
-        let balls = &self.balls;
-        self.allowed_m.extend(scene.pair_histories.iter().map(|pair_history| {
-            pair_history.allowed_m([pair_history.a, pair_history.b].map(|k| &balls[k as usize]))
-        }));
+        let mut room = ROOM;
+        self.find_near(scene.pair_histories, room);
         for sweep in 1..=SWEEPS {
-            let mut moved = self.part_pairs(scene.pair_histories, sweep);
+            let mut moved = self.part_pairs(sweep);
+            let mut farthest = 0.0f64;
             for k in 0..self.balls.len() {
                 if self.balls[k].is_stirred(sweep) {
                     moved |= self.push_out(scene, k, sweep);
+                    let ball = &self.balls[k];
+                    let way2 = (ball.c - self.places[k]).norm_squared();
+                    farthest = farthest.max(way2 / (ball.body.radius * ball.body.radius));
                 }
             }
             if !moved {
                 break;
             }
+            if farthest > room * room {
+                room = 2.0 * farthest.sqrt();
+                self.find_near(scene.pair_histories, room);
+            }
         }
         self.pay_for_height();
     }
 
+    /// Lists the pairs that overlap or may do so before a rock has gone farther than `room` times its radius.
+    fn find_near(&mut self, pair_histories: &[PairHistory], room: f64) {
+        self.near.clear();
+        for pair_history in pair_histories {
+            let ends = [pair_history.a as usize, pair_history.b as usize];
+            let [a, b] = ends.map(|k| &self.balls[k]);
+            let apart = self.places[ends[0]] - self.places[ends[1]];
+            let reach = (a.body.radius + b.body.radius) * (1.0 + room);
+            if apart.norm_squared() <= reach * reach {
+                self.near.push(NearPair { ends, allowed_m: pair_history.allowed_m([a, b]) });
+            }
+        }
+    }
+
     /// Moves the rocks of every pair apart that overlaps; whether there was one.
-    fn part_pairs(&mut self, pair_histories: &[PairHistory], sweep: u32) -> bool {
+    fn part_pairs(&mut self, sweep: u32) -> bool {
         let mut moved = false;
         let beyond = if sweep > 1 { BEYOND } else { (0.0, 0.0) };
-        for (pair_history, &allowed) in pair_histories.iter().zip(&self.allowed_m) {
-            let ends = [pair_history.a as usize, pair_history.b as usize];
+        for &NearPair { ends, allowed_m: allowed } in &self.near {
             let Ok([a, b]) = self.balls.get_disjoint_mut(ends) else { continue };
             if !(a.is_stirred(sweep) || b.is_stirred(sweep))
                 || (a.c - b.c).norm_squared() >= allowed * allowed

@@ -101,6 +101,7 @@ impl RigidIsland {
         for k in 0..most {
             self.sweeps += 1;
             change = self.sweep(k % 2 == 1);
+            self.ask_again();
             if change <= 1.0 {
                 break;
             }
@@ -167,17 +168,12 @@ impl RigidIsland {
             let ball = &mut self.balls[ground_contact.ball];
             ground_contact.push_on(step, ball);
             ball.times += 1;
-            let end = ground_contact.ball;
-            self.ask(end);
         } else {
             let ball_contact = &mut self.ball_contacts[k - ground_contacts];
-            let ends = ball_contact.ends;
-            if let Ok([a, b]) = self.balls.get_disjoint_mut(ends) {
+            if let Ok([a, b]) = self.balls.get_disjoint_mut(ball_contact.ends) {
                 ball_contact.push_on(step, a, b);
                 (a.times, b.times) = (a.times + 1, b.times + 1);
             }
-            self.ask(ends[0]);
-            self.ask(ends[1]);
         }
     }
 
@@ -223,11 +219,27 @@ impl RigidIsland {
         self.of_rocks.lay(&ends, self.balls.len());
     }
 
-    /// Asks the contacts of a rock that was stirred: all others have seen their rocks as they are, and a sweep costs what
-    /// happens and not what is there.
+    /// Asks the contacts of a rock when a sweep stirs it first: all others have seen their rocks as they are, and a sweep
+    /// costs what happens and not what is there.
+    fn stir(&mut self, ball: usize) {
+        let stirred = &mut self.balls[ball].stirred;
+        if *stirred != self.sweeps {
+            *stirred = self.sweeps;
+            self.stirred.push(ball);
+            self.ask(ball);
+        }
+    }
+
     fn ask(&mut self, ball: usize) {
         for contact in self.of_rocks.of(ball) {
             self.asked.add(contact);
+        }
+    }
+
+    /// Asks the contacts of all rocks that the sweep has stirred: some were solved before the last change.
+    fn ask_again(&mut self) {
+        while let Some(ball) = self.stirred.pop() {
+            self.ask(ball);
         }
     }
 
@@ -242,7 +254,7 @@ impl RigidIsland {
         ground_contact.seen = ball.times;
         let end = ground_contact.ball;
         if change > STIRS {
-            self.ask(end);
+            self.stir(end);
         }
         change
     }
@@ -259,8 +271,8 @@ impl RigidIsland {
         ball_contact.seen = [a.times, b.times];
         let ends = ball_contact.ends;
         if change > STIRS {
-            self.ask(ends[0]);
-            self.ask(ends[1]);
+            self.stir(ends[0]);
+            self.stir(ends[1]);
         }
         change
     }
