@@ -43,9 +43,9 @@ use sweeps::Leaning;
 pub const TRAVEL: f64 = 0.2;
 
 /// Work space of the rigid steps of an island.
-/// Kept from step to step, so that a step of a thousand rocks allocates next to nothing.
+/// Kept from step to step and handed on from island to island, so that a step of a thousand rocks allocates next to nothing.
 #[derive(Debug, Default)]
-pub(super) struct RigidIsland {
+pub(crate) struct RigidIsland {
     balls: Vec<StepBody>,
     ground_contacts: Vec<GroundContact>,
     ball_contacts: Vec<BallContact>,
@@ -112,7 +112,7 @@ impl RigidIsland {
     }
 
     /// With the blows of a world whose rocks are of one material.
-    pub(super) fn of_material(blows: Option<Arc<BlowTable>>) -> Self {
+    pub(crate) fn of_material(blows: Option<Arc<BlowTable>>) -> Self {
         Self { blows, ..Self::default() }
     }
 

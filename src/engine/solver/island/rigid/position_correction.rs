@@ -63,24 +63,30 @@ impl RigidIsland {
         self.find_near(scene.pair_histories, room);
         for sweep in 1..=SWEEPS {
             let mut moved = self.part_pairs(sweep);
-            let mut farthest = 0.0f64;
+            let mut far = false;
             for k in 0..self.balls.len() {
                 if self.balls[k].is_stirred(sweep) {
                     moved |= self.push_out(scene, k, sweep);
                     let ball = &self.balls[k];
-                    let way2 = (ball.c - self.places[k]).norm_squared();
-                    farthest = farthest.max(way2 / (ball.body.radius * ball.body.radius));
+                    far |= (ball.c - self.places[k]).norm_squared()
+                        > (room * ball.body.radius).powi(2);
                 }
             }
             if !moved {
                 break;
             }
-            if farthest > room * room {
-                room = 2.0 * farthest.sqrt();
+            if far {
+                room = 2.0 * self.farthest();
                 self.find_near(scene.pair_histories, room);
             }
         }
         self.pay_for_height();
+    }
+
+    /// Farthest way of a rock so far, over its radius (–).
+    fn farthest(&self) -> f64 {
+        let ways = self.balls.iter().zip(&self.places);
+        ways.map(|(ball, from)| (ball.c - from).norm() / ball.body.radius).fold(0.0, f64::max)
     }
 
     /// Lists the pairs that overlap or may do so before a rock has gone farther than `room` times its radius.

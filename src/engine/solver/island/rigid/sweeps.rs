@@ -284,7 +284,7 @@ pub(super) struct Leaning {
     of: Vec<One>,
     list: Vec<u32>,
     /// Number of the current sweep.
-    map: u32,
+    map: u64,
     /// Square of the changes of the one before.
     square: f64,
 }
@@ -297,17 +297,17 @@ struct One {
     /// The direction.
     way: Impulses,
     /// Sweep of which `start` is, and after which `way` was found.
-    begun: u32,
-    led: u32,
+    begun: u64,
+    led: u64,
 }
 
 impl Leaning {
     fn begin(&mut self, count: usize) {
+        // numbers of sweeps go on: what is left of others is older than the sweep before
+        self.map += 2;
         let none = One { start: Impulses::NONE, way: Impulses::NONE, begun: 0, led: 0 };
-        self.of.clear();
-        self.of.resize(count, none);
+        self.of.resize(count.max(self.of.len()), none);
         self.list.clear();
-        self.map = 2;
         self.square = 0.0;
     }
 
