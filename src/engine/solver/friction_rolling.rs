@@ -36,6 +36,11 @@ impl ContactFrame {
     }
 
     #[inline]
+    pub(crate) fn normal(&self) -> &Vec3 {
+        &self.n
+    }
+
+    #[inline]
     pub(crate) fn along(&self, x: &Vec3) -> Along {
         [self.s.dot(x), self.t.dot(x)]
     }

@@ -310,11 +310,14 @@ fn meetings_by_gaps(
         gap <= (allowed[a as usize] + allowed[b as usize]) * dt
     };
     let known = pairs.iter().copied().zip(gaps.iter().copied());
+    let apart_m_s =
+        |&(a, b): &(u32, u32)| (places[a as usize].velocity - places[b as usize].velocity).norm();
+    let apart_m_s: Vec<f64> = pairs.iter().map(apart_m_s).collect();
     for _ in 0..handed_on {
         let before = allowed.clone();
         // what one rock may get from the other is added to what it may do by itself; `before` keeps
         // the order of pairs out of the result
-        for ((a, b), gap) in known.clone() {
+        for (((a, b), gap), apart_m_s) in known.clone().zip(&apart_m_s) {
             if !meets(&before, (a, b), gap) {
                 continue;
             }
@@ -322,7 +325,7 @@ fn meetings_by_gaps(
                 let (own, its) = (&places[k], &places[other]);
                 // an elastic hit: twice the velocity of the common centre of mass
                 let share = 2.0 * its.mass / (own.mass + its.mass);
-                let closing = (own.velocity - its.velocity).norm() + before[other];
+                let closing = apart_m_s + before[other];
                 allowed[k] = allowed[k].max(own.dv_bound + late * share * closing);
             }
         }

@@ -5,7 +5,7 @@ use crate::contact::pair::{PairHistory, between};
 use crate::ground::{FrictionLimits, Law};
 use crate::rock::Vec3;
 use crate::solver::body::Body;
-use crate::solver::friction_rolling::SlipState;
+use crate::solver::friction_rolling::{ContactFrame, SlipState};
 use crate::solver::impact::{BlowTable, FrozenContact, blow_along_a_line, throw};
 use crate::solver::island::pair_contact::Twist;
 use crate::solver::rigid::rub;
@@ -269,6 +269,7 @@ pub(super) struct GroundContact {
     pub(super) triangle: u32,
     /// Unit normal from the mesh to the centre.
     pub(super) n: Vec3,
+    frame: ContactFrame,
     /// What friction and rolling friction bear.
     pub(super) limits: FrictionLimits,
     /// Normal speed wanted after the impulse (m/s).
@@ -298,6 +299,7 @@ impl GroundContact {
             feature,
             triangle,
             n,
+            frame: ContactFrame::of(&n),
             limits: law.limits(),
             target: 0.0,
             normal_force: 0.0,
@@ -356,7 +358,7 @@ impl GroundContact {
             return;
         }
         let caps = self.limits.caps(self.normal_force);
-        (self.shear_force, self.turn) = rub(body, &self.n, caps, (v, w), &mut self.mode);
+        (self.shear_force, self.turn) = rub(body, &self.frame, caps, (v, w), &mut self.mode);
     }
 
     /// Finds the impulses for a motion that holds the present ones, and acts with what they change by; how much that

@@ -192,21 +192,10 @@ impl RigidIsland {
     /// Contacts with the mesh come first, then those between rocks.
     fn sweep_contact(&mut self, k: usize) -> f64 {
         self.asked.remove(k);
-        let ground_contacts = self.ground_contacts.len();
-        let start = if k < ground_contacts {
-            self.ground_contacts[k].impulses()
-        } else {
-            self.ball_contacts[k - ground_contacts].impulses()
-        };
-        let change = if k < ground_contacts {
-            self.sweep_ground_contact(k)
-        } else {
-            self.sweep_ball_contact(k - ground_contacts)
-        };
-        if change > STIRS {
-            self.lean.note(k, start);
+        match k.checked_sub(self.ground_contacts.len()) {
+            None => self.sweep_ground_contact(k),
+            Some(place) => self.sweep_ball_contact(k, place),
         }
-        change
     }
 
     /// The contacts of every rock.
@@ -245,32 +234,38 @@ impl RigidIsland {
 
     fn sweep_ground_contact(&mut self, k: usize) -> f64 {
         let ground_contact = &mut self.ground_contacts[k];
-        let ball = &mut self.balls[ground_contact.ball];
+        let end = ground_contact.ball;
+        let ball = &mut self.balls[end];
         if ground_contact.seen == ball.times {
             return 0.0;
         }
+        let start = ground_contact.impulses();
         let change = ground_contact.solve(ball) / ball.allowed_m_s;
-        ball.times += u32::from(change > STIRS);
+        let stirs = change > STIRS;
+        ball.times += u32::from(stirs);
         ground_contact.seen = ball.times;
-        let end = ground_contact.ball;
-        if change > STIRS {
+        if stirs {
+            self.lean.note(k, start);
             self.stir(end);
         }
         change
     }
 
-    fn sweep_ball_contact(&mut self, k: usize) -> f64 {
-        let ball_contact = &mut self.ball_contacts[k];
-        let Ok([a, b]) = self.balls.get_disjoint_mut(ball_contact.ends) else { return 0.0 };
+    /// The contact with number `k` of all that stands at `place` among those between rocks.
+    fn sweep_ball_contact(&mut self, k: usize, place: usize) -> f64 {
+        let ball_contact = &mut self.ball_contacts[place];
+        let ends = ball_contact.ends;
+        let Ok([a, b]) = self.balls.get_disjoint_mut(ends) else { return 0.0 };
         if ball_contact.seen == [a.times, b.times] {
             return 0.0;
         }
+        let start = ball_contact.impulses();
         let change = ball_contact.solve(a, b) / a.allowed_m_s.min(b.allowed_m_s);
-        let stirred = u32::from(change > STIRS);
-        (a.times, b.times) = (a.times + stirred, b.times + stirred);
+        let stirs = change > STIRS;
+        (a.times, b.times) = (a.times + u32::from(stirs), b.times + u32::from(stirs));
         ball_contact.seen = [a.times, b.times];
-        let ends = ball_contact.ends;
-        if change > STIRS {
+        if stirs {
+            self.lean.note(k, start);
             self.stir(ends[0]);
             self.stir(ends[1]);
         }
