@@ -26,7 +26,7 @@ const SWEEPS: u32 = 30;
 const BEYOND: (f64, f64) = (0.5, 0.3);
 /// Way of a rock up to which it gets into none but the pairs that were near at first (–, relative to its radius). Where one is
 /// moved farther, twice as much is looked at.
-const ROOM: f64 = 0.01;
+const ROOM: f64 = 0.005;
 /// Way of a rock for which the touches with the mesh that are known are taken for planes (–, relative to its radius). Over an
 /// edge that is off by half the square of it.
 const FLAT: f64 = 3e-4;
@@ -68,8 +68,8 @@ impl RigidIsland {
                 if self.balls[k].is_stirred(sweep) {
                     moved |= self.push_out(scene, k, sweep);
                     let ball = &self.balls[k];
-                    far |= (ball.c - self.places[k]).norm_squared()
-                        > (room * ball.body.radius).powi(2);
+                    let way2 = (ball.c - self.places[k]).norm_squared();
+                    far |= way2 > (room * ball.body.radius).powi(2);
                 }
             }
             if !moved {
@@ -133,6 +133,9 @@ impl RigidIsland {
         let IslandBody { state, body, laws, .. } = &mut *scene.members[k];
         let world = ContactEnvironment { terrain: scene.terrain, body: *body, laws };
         let off = state.look_ahead_near(&world, &ball.c, FLAT * body.radius);
+        if state.touches.is_empty() {
+            return false;
+        }
         let out = state.touches.iter().fold(Vec3::zeros(), |sum, touch| {
             let missing = body.radius - touch.distance_m - (sum + off).dot(&touch.normal);
             sum + touch.normal * missing.max(0.0)
