@@ -20,7 +20,7 @@ pub(crate) type Local = [f64; 3];
 pub(crate) struct ContactFrame {
     s: Vec3,
     t: Vec3,
-    n: Vec3,
+    pub(crate) n: Vec3,
 }
 
 impl ContactFrame {
@@ -33,11 +33,6 @@ impl ContactFrame {
         let s = Vec3::new(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x);
         let t = Vec3::new(b, sign + n.y * n.y * a, -n.y);
         Self { s, t, n: *n }
-    }
-
-    #[inline]
-    pub(crate) fn normal(&self) -> &Vec3 {
-        &self.n
     }
 
     #[inline]

@@ -124,7 +124,7 @@ pub(crate) fn rub(
 ) -> (Vec3, Vec3) {
     let pair = Pair {
         answers: &Answers::rigid(body.radius),
-        a: frame.along(&(body.slip(frame.normal(), v, w) * (body.mass_along()))),
+        a: frame.along(&(body.slip(&frame.n, v, w) * (body.mass_along()))),
         d: frame.local(&(w * body.inertia)),
         caps,
     };

@@ -245,8 +245,7 @@ impl<'a> BodyWorld<'a> {
         missed || !deviated.is_empty()
     }
 
-    /// The rocks that are in the world.
-    /// Asleep or moving; the lists of a window count places among these.
+    /// The rocks that are in the world, asleep or moving; the lists of a window count places among these.
     fn present(&self) -> Vec<u32> {
         let count = self.bodies.len() as u32;
         (0..count).filter(|&k| !matches!(self.body(k).state, BodyState::Gone(_))).collect()
