@@ -23,7 +23,7 @@ const SWEEPS: u32 = 30;
 /// From the second sweep on rocks are moved so much farther than until they no longer overlap, and by so much of what is left
 /// alone besides (–): in a heap each is pushed back by the next (successive over-relaxation, Young 1954), and what was moved
 /// to the brim would be moved again. Two rocks alone have parted in the first sweep.
-const BEYOND: (f64, f64) = (0.5, 0.3);
+const BEYOND: (f64, f64) = (0.8, 0.3);
 /// Way of a rock up to which it gets into none but the pairs that were near at first (–, relative to its radius). Where one is
 /// moved farther, twice as much is looked at.
 const ROOM: f64 = 0.005;
