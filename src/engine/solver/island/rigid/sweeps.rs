@@ -21,19 +21,16 @@ const SWEEPS: (u32, u32) = (1000, 3000);
 const SWEEPS_AFTER: u32 = 30;
 /// Jumps after which the impulses have not settled.
 const JUMPS: u32 = 4;
-/// Change of speed at a contact in one sweep below which it has settled: over what its weight alone gains in the step, and
-/// over the speed of the fastest of its rocks and their neighbours (–).
-const SETTLED: (f64, f64) = (5e-3, 3e-2);
+/// Change of speed at a contact in one sweep below which it has settled, and stirs its rocks no more: over what its weight alone
+/// gains in the step, and over the speed of the fastest of its rocks and their neighbours (–).
+const SETTLED: (f64, f64) = (3e-3, 1.8e-2);
 /// The first of them where an island is small: there it costs next to nothing to tell friction that just holds from friction
 /// that just does not (–).
-const SETTLED_FEW: f64 = 1e-3;
+const SETTLED_FEW: f64 = 6e-4;
 /// Rocks of a small island, at most.
 pub(super) const FEW: usize = 64;
 /// The same over the capture speed, where there is hardly any weight (–).
 const SETTLED_OF_CAPTURE: f64 = 1e-6;
-/// Part of that from which a change stirs the rocks (–). What is passed over adds up; with a fifth a heap takes half as many
-/// solutions of contacts more, most of them in few steps, and loses its energy no faster.
-const STIRS: f64 = 0.5;
 
 impl RigidIsland {
     /// Sweeps until nothing changes any more, helped along by jumps; whether that came about. A jump that does not bring
@@ -241,7 +238,7 @@ impl RigidIsland {
         }
         let start = ground_contact.impulses();
         let change = ground_contact.solve(ball) / ball.allowed_m_s;
-        let stirs = change > STIRS;
+        let stirs = change > 1.0;
         ball.times += u32::from(stirs);
         ground_contact.seen = ball.times;
         if stirs {
@@ -261,7 +258,7 @@ impl RigidIsland {
         }
         let start = ball_contact.impulses();
         let change = ball_contact.solve(a, b) / a.allowed_m_s.min(b.allowed_m_s);
-        let stirs = change > STIRS;
+        let stirs = change > 1.0;
         (a.times, b.times) = (a.times + u32::from(stirs), b.times + u32::from(stirs));
         ball_contact.seen = [a.times, b.times];
         if stirs {
