@@ -20,7 +20,7 @@ pub(crate) type Local = [f64; 3];
 pub(crate) struct ContactFrame {
     s: Vec3,
     t: Vec3,
-    n: Vec3,
+    pub(crate) n: Vec3,
 }
 
 impl ContactFrame {

@@ -38,4 +38,4 @@ pub use assembly::Island;
 pub use body::{BodySlot, IslandBody, Memory};
 pub use outcome::{Done, Given, Hit};
 pub use rigid::TRAVEL;
-pub(crate) use rigid::blows_of;
+pub(crate) use rigid::{RigidIsland, blows_of};

@@ -83,7 +83,8 @@ impl ImpulsiveContact<'_> {
             return;
         }
         let caps = self.law.limits().caps(self.normal_force);
-        (self.shear_force, self.turn) = rub(body, &self.n, caps, (v, w), &mut self.mode);
+        let frame = ContactFrame::of(&self.n);
+        (self.shear_force, self.turn) = rub(body, &frame, caps, (v, w), &mut self.mode);
     }
 
     /// Change of velocity and spin.
@@ -109,22 +110,21 @@ impl ImpulsiveContact<'_> {
     }
 }
 
-/// Impulses along the surface with normal `n` (N s) and of rolling (N m s) on a rock with velocity `v` and spin `w`
+/// Impulses along the surface with the frame `frame` (N s) and of rolling (N m s) on a rock with velocity `v` and spin `w`
 /// without them; `caps` are the largest of both. The mode found before is tried first.
 ///
 /// The stick solution: `2/7 m` is the contact point's mass along the surface, `I ω` stops all
 /// rotation; `Pair` couples both and cuts them.
 pub(crate) fn rub(
     body: &Body,
-    n: &Vec3,
+    frame: &ContactFrame,
     caps: (f64, f64),
     (v, w): (&Vec3, &Vec3),
     mode: &mut SlipState,
 ) -> (Vec3, Vec3) {
-    let frame = ContactFrame::of(n);
     let pair = Pair {
         answers: &Answers::rigid(body.radius),
-        a: frame.along(&(body.slip(n, v, w) * (body.mass_along()))),
+        a: frame.along(&(body.slip(&frame.n, v, w) * (body.mass_along()))),
         d: frame.local(&(w * body.inertia)),
         caps,
     };

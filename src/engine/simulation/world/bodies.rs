@@ -19,7 +19,7 @@ use crate::simulation::Trajectory;
 use crate::simulation::settings::RunSettings;
 use crate::solver::impact::BlowTable;
 use crate::solver::island::broad_phase::{Ball, overlapping};
-use crate::solver::island::{TRAVEL, blows_of};
+use crate::solver::island::{RigidIsland, TRAVEL, blows_of};
 use rayon::prelude::*;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -61,6 +61,8 @@ pub(super) struct BodyWorld<'a> {
     pub(super) statistics: WorldStats,
     /// Blows between two of its rocks, in the rigid limit.
     blows: Option<Arc<BlowTable>>,
+    /// Work space of islands: the first island is given what the first had before.
+    spare: Vec<RigidIsland>,
 }
 
 impl<'a> BodyWorld<'a> {
@@ -80,6 +82,7 @@ impl<'a> BodyWorld<'a> {
             now_s: 0.0,
             statistics: WorldStats::default(),
             blows: None,
+            spare: Vec::new(),
         };
         if world.is_rigid() && world.bodies.len() > 1 {
             let [a, b] = [0, 1].map(|k| &world.body(k).member.body);
@@ -209,7 +212,7 @@ impl<'a> BodyWorld<'a> {
         let mut missed = false;
         // what was not lent stays
         self.pair_histories.retain(|pair_history| pair_history.a != pair_history.b);
-        for job in done {
+        for job in done.into_iter().rev() {
             missed |= job.missed;
             self.statistics.add(&job.statistics);
             self.take_back(job);
@@ -242,8 +245,7 @@ impl<'a> BodyWorld<'a> {
         missed || !deviated.is_empty()
     }
 
-    /// The rocks that are in the world.
-    /// Asleep or moving; the lists of a window count places among these.
+    /// The rocks that are in the world, asleep or moving; the lists of a window count places among these.
     fn present(&self) -> Vec<u32> {
         let count = self.bodies.len() as u32;
         (0..count).filter(|&k| !matches!(self.body(k).state, BodyState::Gone(_))).collect()
@@ -362,7 +364,8 @@ impl<'a> BodyWorld<'a> {
             let bodies = ids.iter().filter_map(|&k| self.bodies[k as usize].take()).collect();
             let times_s = (self.now_s, end_s);
             let mut job = IslandWindow::new(self.settings, ids, bodies, pair_histories, times_s);
-            job.blows.clone_from(&self.blows);
+            job.rigid =
+                self.spare.pop().unwrap_or_else(|| RigidIsland::of_material(self.blows.clone()));
             jobs.push(job);
         }
         jobs
@@ -370,7 +373,8 @@ impl<'a> BodyWorld<'a> {
 
     /// Puts rocks and held pairs of an island back; pairs that have let go, and those of rocks that left, are
     /// forgotten.
-    fn take_back(&mut self, job: IslandWindow<'a>) {
+    fn take_back(&mut self, mut job: IslandWindow<'a>) {
+        self.spare.push(std::mem::take(&mut job.rigid));
         let (ids, bodies, pair_histories) = job.into_parts();
         for pair_history in pair_histories.into_iter().filter(PairHistory::is_held) {
             let (a, b) = (ids[pair_history.a as usize], ids[pair_history.b as usize]);

@@ -306,27 +306,32 @@ fn meetings_by_gaps(
 ) -> Meetings {
     let mut allowed: Vec<f64> =
         places.iter().map(|place| place.dv_bound.max(place.predicted_dv)).collect();
-    let meet = |allowed: &[f64]| -> Vec<(u32, u32)> {
-        let meets = |((a, b), gap): &(&(u32, u32), &f64)| {
-            **gap <= (allowed[*a as usize] + allowed[*b as usize]) * dt
-        };
-        pairs.iter().zip(gaps).filter(meets).map(|(pair, _)| *pair).collect()
+    let meets = |allowed: &[f64], (a, b): (u32, u32), gap: f64| {
+        gap <= (allowed[a as usize] + allowed[b as usize]) * dt
     };
+    let known = pairs.iter().copied().zip(gaps.iter().copied());
+    let apart_m_s =
+        |&(a, b): &(u32, u32)| (places[a as usize].velocity - places[b as usize].velocity).norm();
+    let apart_m_s: Vec<f64> = pairs.iter().map(apart_m_s).collect();
     for _ in 0..handed_on {
         let before = allowed.clone();
         // what one rock may get from the other is added to what it may do by itself; `before` keeps
         // the order of pairs out of the result
-        for (a, b) in meet(&before) {
+        for (((a, b), gap), apart_m_s) in known.clone().zip(&apart_m_s) {
+            if !meets(&before, (a, b), gap) {
+                continue;
+            }
             for (k, other) in [(a as usize, b as usize), (b as usize, a as usize)] {
                 let (own, its) = (&places[k], &places[other]);
                 // an elastic hit: twice the velocity of the common centre of mass
                 let share = 2.0 * its.mass / (own.mass + its.mass);
-                let closing = (own.velocity - its.velocity).norm() + before[other];
+                let closing = apart_m_s + before[other];
                 allowed[k] = allowed[k].max(own.dv_bound + late * share * closing);
             }
         }
     }
-    let pairs = meet(&allowed);
+    let pairs: Vec<_> =
+        known.filter(|&(pair, gap)| meets(&allowed, pair, gap)).map(|(pair, _)| pair).collect();
     let islands = joined(&pairs, places.len());
     Meetings { pairs, islands, allowed }
 }

@@ -14,12 +14,10 @@ use super::{BodyState, WorldBody, WorldStats};
 use crate::contact::pair::{PairHistory, PairImpact, meeting_s};
 use crate::simulation::Stop;
 use crate::simulation::settings::RunSettings;
-use crate::solver::impact::BlowTable;
 use crate::solver::island::partition::Partition;
-use crate::solver::island::{Done, Given, Island};
+use crate::solver::island::{Done, Given, Island, RigidIsland};
 use crate::solver::loss::Loss;
 use crate::solver::step_control::{ONSET, StepError};
-use std::sync::Arc;
 
 /// A gap between two rocks that is rounding of their flight (–, relative to the sum of their radii).
 ///
@@ -56,8 +54,8 @@ pub(super) struct IslandWindow<'a> {
     pub(super) missed: bool,
     /// What the island cost, counted.
     pub(super) statistics: WorldStats,
-    /// Blows between two rocks of the world's material.
-    pub(super) blows: Option<Arc<BlowTable>>,
+    /// Work space of rigid steps.
+    pub(super) rigid: RigidIsland,
 }
 
 impl<'a> IslandWindow<'a> {
@@ -79,7 +77,7 @@ impl<'a> IslandWindow<'a> {
             goes_back: true,
             missed: false,
             statistics: WorldStats::default(),
-            blows: None,
+            rigid: RigidIsland::default(),
         }
     }
 
@@ -279,8 +277,8 @@ impl<'a> IslandWindow<'a> {
         // the solver borrows the rocks' state; the journeys stay here
         let members = self.bodies.iter_mut().map(|body| body.member.lend()).collect();
         let pair_histories = std::mem::take(&mut self.pair_histories);
-        let mut island = Island::new(self.settings.terrain, members, pair_histories)
-            .of_material(self.blows.clone());
+        let mut island = Island::new(self.settings.terrain, members, pair_histories);
+        island.rigid = std::mem::take(&mut self.rigid);
         island.h = h;
         island
     }
@@ -288,7 +286,7 @@ impl<'a> IslandWindow<'a> {
     /// Takes rocks and pairs back from the solver, with the step that each may begin with next time, and the speed
     /// (m/s) `F/(m ω)` that its pressed springs could give it: how far it might be thrown when a neighbour lets go.
     fn dissolve(&mut self, island: Island<'a>) {
-        self.pair_histories = island.pair_histories;
+        (self.pair_histories, self.rigid) = (island.pair_histories, island.rigid);
         for (body, member) in self.bodies.iter_mut().zip(island.members) {
             body.h = if member.flying { f64::INFINITY } else { island.h };
             body.pressed_m_s = member.pressed_m_s(self.settings.terrain);
@@ -363,6 +361,12 @@ impl<'a> IslandWindow<'a> {
 
     /// Puts to sleep what has been quiet for long enough together with all that it touches.
     fn fall_asleep(&mut self) {
+        let quiet = |body: &WorldBody| {
+            body.state == BodyState::Moving && !body.member.flying && body.calm.rests()
+        };
+        if !self.bodies.iter().any(|body| quiet(body)) {
+            return;
+        }
         // rocks that hold each other fall asleep together or not at all: one that still moves would pull on the others
         let mut islands = Partition::alone(self.bodies.len());
         for pair_history in self.pair_histories.iter().filter(|pair_history| pair_history.is_held())
@@ -370,11 +374,7 @@ impl<'a> IslandWindow<'a> {
             islands.join(pair_history.a, pair_history.b);
         }
         for list in islands.lists() {
-            let quiet = |k: &u32| {
-                let body = &self.bodies[*k as usize];
-                body.state == BodyState::Moving && !body.member.flying && body.calm.rests()
-            };
-            if list.iter().all(quiet) {
+            if list.iter().all(|k| quiet(&self.bodies[*k as usize])) {
                 for k in list {
                     self.bodies[k as usize].state = BodyState::Asleep;
                 }

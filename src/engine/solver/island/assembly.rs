@@ -15,11 +15,9 @@ use crate::ground::Law;
 use crate::rock::Vec3;
 use crate::solver::Settings;
 use crate::solver::contact_state::{ContactEnvironment, Onset};
-use crate::solver::impact::BlowTable;
 use crate::solver::step_control::{self, Control, ONSET, StepError, TRAVEL};
 use crate::solver::tableau::{STAGES, TR_BDF2};
 use crate::terrain::Terrain;
-use std::sync::Arc;
 
 /// Overload at which a bond does not simply break: the step is cut to find the moment.
 const OVERLOAD: f64 = 0.05;
@@ -56,7 +54,7 @@ pub struct Island<'a> {
     /// The global system of fixed steps.
     pub(super) global: Global,
     /// Work space of rigid steps.
-    pub(super) rigid: RigidIsland,
+    pub(crate) rigid: RigidIsland,
 }
 
 impl<'a> Island<'a> {
@@ -85,18 +83,12 @@ impl<'a> Island<'a> {
             stirred: ActiveSet::default(),
             tolerance: 0.0,
             onset: Onset::default(),
-            pair_rates: vec![[Vec3::zeros(); STAGES]; pair_histories.len()],
+            pair_rates: Vec::new(),
             pair_forces,
             global: Global::default(),
             rigid: RigidIsland::default(),
             pair_histories,
         }
-    }
-
-    /// The same, with the blows of two rocks of the material that all are of.
-    #[must_use]
-    pub(crate) fn of_material(self, blows: Option<Arc<BlowTable>>) -> Self {
-        Self { rigid: RigidIsland::of_material(blows), ..self }
     }
 
     /// One accepted step of at most `h_max` (s).

@@ -33,6 +33,7 @@ use crate::terrain::Terrain;
 pub(crate) use contacts::blows_of;
 use contacts::{BallContact, GroundContact, StepBody};
 use impacts::{ImpactScene, PendingImpact};
+use position_correction::NearPair;
 use std::collections::BinaryHeap;
 use std::sync::Arc;
 use sweeps::Leaning;
@@ -42,9 +43,9 @@ use sweeps::Leaning;
 pub const TRAVEL: f64 = 0.2;
 
 /// Work space of the rigid steps of an island.
-/// Kept from step to step, so that a step of a thousand rocks allocates next to nothing.
+/// Kept from step to step and handed on from island to island, so that a step of a thousand rocks allocates next to nothing.
 #[derive(Debug, Default)]
-pub(super) struct RigidIsland {
+pub(crate) struct RigidIsland {
     balls: Vec<StepBody>,
     ground_contacts: Vec<GroundContact>,
     ball_contacts: Vec<BallContact>,
@@ -58,12 +59,14 @@ pub(super) struct RigidIsland {
     of_rocks: ContactsOfRocks,
     /// Contacts that one of their rocks has changed since.
     asked: ContactQueue,
+    /// Rocks that the current sweep has stirred.
+    stirred: Vec<usize>,
     lean: Leaning,
     /// What the normal impulses of sustained contacts took in this step (J).
     taken_j: f64,
     places: Vec<Vec3>,
-    /// Distance of the centres of every pair that is left alone (m).
-    allowed_m: Vec<f64>,
+    /// Pairs that may get into each other while rocks are moved apart.
+    near: Vec<NearPair>,
     /// Smallest capture speed (m/s).
     capture_m_s: f64,
     /// Length of the current step (s).
@@ -109,7 +112,7 @@ impl RigidIsland {
     }
 
     /// With the blows of a world whose rocks are of one material.
-    pub(super) fn of_material(blows: Option<Arc<BlowTable>>) -> Self {
+    pub(crate) fn of_material(blows: Option<Arc<BlowTable>>) -> Self {
         Self { blows, ..Self::default() }
     }
 

@@ -17,7 +17,7 @@ use crate::contact::history::carry;
 use crate::rock::Vec3;
 use crate::solver::contact_state::ContactEnvironment;
 use crate::solver::stage::{AGREED, PASSES};
-use crate::solver::tableau::Tableau;
+use crate::solver::tableau::{STAGES, Tableau};
 
 /// Gap below which two rocks may press each other whatever their motion (–, relative to the smaller radius): far more than the
 /// passes of a stage leave open.
@@ -157,6 +157,7 @@ impl Island<'_> {
             state.rates_now(&world);
             member.given[0] = Given::default();
         }
+        self.pair_rates.resize(self.pair_histories.len(), [Vec3::zeros(); STAGES]);
         for (k, pair_history) in self.pair_histories.iter_mut().enumerate() {
             self.pair_rates[k][0] = Vec3::zeros();
             let ends = [pair_history.a as usize, pair_history.b as usize];

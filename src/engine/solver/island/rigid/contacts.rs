@@ -5,7 +5,7 @@ use crate::contact::pair::{PairHistory, between};
 use crate::ground::{FrictionLimits, Law};
 use crate::rock::Vec3;
 use crate::solver::body::Body;
-use crate::solver::friction_rolling::SlipState;
+use crate::solver::friction_rolling::{ContactFrame, SlipState};
 use crate::solver::impact::{BlowTable, FrozenContact, blow_along_a_line, throw};
 use crate::solver::island::pair_contact::Twist;
 use crate::solver::rigid::rub;
@@ -29,6 +29,8 @@ pub(super) struct StepBody {
     pub(super) blows: u32,
     /// How often it was set in another motion.
     pub(super) times: u32,
+    /// Sweep that stirred it last.
+    pub(super) stirred: u64,
     /// Sweep of the position correction in which it was moved last.
     pub(super) shifted: u32,
     /// Whether a contact pushed it, and whether it was moved out of something.
@@ -50,6 +52,7 @@ impl StepBody {
             since_s: 0.0,
             blows: 0,
             times: 1,
+            stirred: 0,
             shifted: 0,
             pushed: false,
             moved: false,
@@ -266,6 +269,7 @@ pub(super) struct GroundContact {
     pub(super) triangle: u32,
     /// Unit normal from the mesh to the centre.
     pub(super) n: Vec3,
+    frame: ContactFrame,
     /// What friction and rolling friction bear.
     pub(super) limits: FrictionLimits,
     /// Normal speed wanted after the impulse (m/s).
@@ -295,6 +299,7 @@ impl GroundContact {
             feature,
             triangle,
             n,
+            frame: ContactFrame::of(&n),
             limits: law.limits(),
             target: 0.0,
             normal_force: 0.0,
@@ -353,7 +358,7 @@ impl GroundContact {
             return;
         }
         let caps = self.limits.caps(self.normal_force);
-        (self.shear_force, self.turn) = rub(body, &self.n, caps, (v, w), &mut self.mode);
+        (self.shear_force, self.turn) = rub(body, &self.frame, caps, (v, w), &mut self.mode);
     }
 
     /// Finds the impulses for a motion that holds the present ones, and acts with what they change by; how much that

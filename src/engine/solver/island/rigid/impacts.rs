@@ -113,11 +113,15 @@ impl RigidIsland {
     fn expect_pair(&mut self, scene: &ImpactScene, place: usize) {
         let pair_history = &scene.pair_histories[place];
         let [a, b] = [pair_history.a, pair_history.b].map(|k| &self.balls[k as usize]);
-        let (apart, closing) = (a.c - b.c, a.v - b.v);
+        let apart = a.c - b.c;
         let reach = a.body.radius + b.body.radius;
         let (distance2, widest) = (apart.norm_squared(), reach * (1.0 + TOUCH));
+        if distance2 > widest * widest {
+            return;
+        }
+        let closing = a.v - b.v;
         let along = apart.dot(&closing);
-        if distance2 > widest * widest || along >= 0.0 {
+        if along >= 0.0 {
             return;
         }
         // |d − u s| = reach with the smaller cancellation; both parts of the root are positive

@@ -23,10 +23,21 @@ const SWEEPS: u32 = 30;
 /// From the second sweep on rocks are moved so much farther than until they no longer overlap, and by so much of what is left
 /// alone besides (–): in a heap each is pushed back by the next (successive over-relaxation, Young 1954), and what was moved
 /// to the brim would be moved again. Two rocks alone have parted in the first sweep.
-const BEYOND: (f64, f64) = (0.5, 0.3);
+const BEYOND: (f64, f64) = (0.8, 0.3);
+/// Way of a rock up to which it gets into none but the pairs that were near at first (–, relative to its radius). Where one is
+/// moved farther, twice as much is looked at.
+const ROOM: f64 = 0.005;
 /// Way of a rock for which the touches with the mesh that are known are taken for planes (–, relative to its radius). Over an
 /// edge that is off by half the square of it.
 const FLAT: f64 = 3e-4;
+
+/// Two rocks that may get into each other while rocks are moved.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct NearPair {
+    ends: [usize; 2],
+    /// Distance of the centres that is left alone (m).
+    allowed_m: f64,
+}
 
 impl PairHistory {
     /// Distance of two centres that is left alone (m): what weight would press in anyway is left, as without it contacts of a
@@ -48,31 +59,55 @@ impl RigidIsland {
     pub(super) fn part(&mut self, scene: &mut ImpactScene) {
         self.places.clear();
         self.places.extend(self.balls.iter().map(|ball| ball.c));
-        self.allowed_m.clear();
-        let balls = &self.balls;
-        self.allowed_m.extend(scene.pair_histories.iter().map(|pair_history| {
-            pair_history.allowed_m([pair_history.a, pair_history.b].map(|k| &balls[k as usize]))
-        }));
+        let mut room = ROOM;
+        self.find_near(scene.pair_histories, room);
         for sweep in 1..=SWEEPS {
-            let mut moved = self.part_pairs(scene.pair_histories, sweep);
+            let mut moved = self.part_pairs(sweep);
+            let mut far = false;
             for k in 0..self.balls.len() {
                 if self.balls[k].is_stirred(sweep) {
                     moved |= self.push_out(scene, k, sweep);
+                    let ball = &self.balls[k];
+                    let way2 = (ball.c - self.places[k]).norm_squared();
+                    far |= way2 > (room * ball.body.radius).powi(2);
                 }
             }
             if !moved {
                 break;
             }
+            if far {
+                room = 2.0 * self.farthest();
+                self.find_near(scene.pair_histories, room);
+            }
         }
         self.pay_for_height();
     }
 
+    /// Farthest way of a rock so far, over its radius (–).
+    fn farthest(&self) -> f64 {
+        let ways = self.balls.iter().zip(&self.places);
+        ways.map(|(ball, from)| (ball.c - from).norm() / ball.body.radius).fold(0.0, f64::max)
+    }
+
+    /// Lists the pairs that overlap or may do so before a rock has gone farther than `room` times its radius.
+    fn find_near(&mut self, pair_histories: &[PairHistory], room: f64) {
+        self.near.clear();
+        for pair_history in pair_histories {
+            let ends = [pair_history.a as usize, pair_history.b as usize];
+            let [a, b] = ends.map(|k| &self.balls[k]);
+            let apart = self.places[ends[0]] - self.places[ends[1]];
+            let reach = (a.body.radius + b.body.radius) * (1.0 + room);
+            if apart.norm_squared() <= reach * reach {
+                self.near.push(NearPair { ends, allowed_m: pair_history.allowed_m([a, b]) });
+            }
+        }
+    }
+
     /// Moves the rocks of every pair apart that overlaps; whether there was one.
-    fn part_pairs(&mut self, pair_histories: &[PairHistory], sweep: u32) -> bool {
+    fn part_pairs(&mut self, sweep: u32) -> bool {
         let mut moved = false;
         let beyond = if sweep > 1 { BEYOND } else { (0.0, 0.0) };
-        for (pair_history, &allowed) in pair_histories.iter().zip(&self.allowed_m) {
-            let ends = [pair_history.a as usize, pair_history.b as usize];
+        for &NearPair { ends, allowed_m: allowed } in &self.near {
             let Ok([a, b]) = self.balls.get_disjoint_mut(ends) else { continue };
             if !(a.is_stirred(sweep) || b.is_stirred(sweep))
                 || (a.c - b.c).norm_squared() >= allowed * allowed
@@ -98,6 +133,9 @@ impl RigidIsland {
         let IslandBody { state, body, laws, .. } = &mut *scene.members[k];
         let world = ContactEnvironment { terrain: scene.terrain, body: *body, laws };
         let off = state.look_ahead_near(&world, &ball.c, FLAT * body.radius);
+        if state.touches.is_empty() {
+            return false;
+        }
         let out = state.touches.iter().fold(Vec3::zeros(), |sum, touch| {
             let missing = body.radius - touch.distance_m - (sum + off).dot(&touch.normal);
             sum + touch.normal * missing.max(0.0)

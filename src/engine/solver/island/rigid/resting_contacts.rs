@@ -101,9 +101,15 @@ impl RigidIsland {
         for (k, pair_history) in pair_histories.iter().enumerate() {
             let [a, b] = [pair_history.a, pair_history.b].map(|k| &self.balls[k as usize]);
             let at = [a, b].map(|ball| ball.c + ball.v * (0.5 * dt));
+            let capture = capture_m_s(&pair_history.law);
+            // no gap that is wider is one of a sustained contact: 1 of it closes, and half of it opens before the middle
+            let widest = a.body.radius + b.body.radius + 2.0 * dt * capture;
+            if (at[0] - at[1]).norm_squared() > widest * widest {
+                continue;
+            }
             let (n, distance) = between(&at[0], &at[1]);
             let gap = distance - a.body.radius - b.body.radius;
-            let (speed, capture) = (n.dot(&(a.v - b.v)), capture_m_s(&pair_history.law));
+            let speed = n.dot(&(a.v - b.v));
             let start = (gap - 0.5 * dt * speed, speed);
             if !is_sustained(start, capture, dt) {
                 continue;

@@ -21,19 +21,16 @@ const SWEEPS: (u32, u32) = (1000, 3000);
 const SWEEPS_AFTER: u32 = 30;
 /// Jumps after which the impulses have not settled.
 const JUMPS: u32 = 4;
-/// Change of speed at a contact in one sweep below which it has settled: over what its weight alone gains in the step, and
-/// over the speed of the fastest of its rocks and their neighbours (–).
-const SETTLED: (f64, f64) = (5e-3, 3e-2);
+/// Change of speed at a contact in one sweep below which it has settled, and stirs its rocks no more: over what its weight alone
+/// gains in the step, and over the speed of the fastest of its rocks and their neighbours (–).
+const SETTLED: (f64, f64) = (3e-3, 1.8e-2);
 /// The first of them where an island is small: there it costs next to nothing to tell friction that just holds from friction
 /// that just does not (–).
-const SETTLED_FEW: f64 = 1e-3;
+const SETTLED_FEW: f64 = 6e-4;
 /// Rocks of a small island, at most.
 pub(super) const FEW: usize = 64;
 /// The same over the capture speed, where there is hardly any weight (–).
 const SETTLED_OF_CAPTURE: f64 = 1e-6;
-/// Part of that from which a change stirs the rocks (–). What is passed over adds up; with a fifth a heap takes half as many
-/// solutions of contacts more, most of them in few steps, and loses its energy no faster.
-const STIRS: f64 = 0.5;
 
 impl RigidIsland {
     /// Sweeps until nothing changes any more, helped along by jumps; whether that came about. A jump that does not bring
@@ -101,6 +98,7 @@ impl RigidIsland {
         for k in 0..most {
             self.sweeps += 1;
             change = self.sweep(k % 2 == 1);
+            self.ask_again();
             if change <= 1.0 {
                 break;
             }
@@ -167,17 +165,12 @@ impl RigidIsland {
             let ball = &mut self.balls[ground_contact.ball];
             ground_contact.push_on(step, ball);
             ball.times += 1;
-            let end = ground_contact.ball;
-            self.ask(end);
         } else {
             let ball_contact = &mut self.ball_contacts[k - ground_contacts];
-            let ends = ball_contact.ends;
-            if let Ok([a, b]) = self.balls.get_disjoint_mut(ends) {
+            if let Ok([a, b]) = self.balls.get_disjoint_mut(ball_contact.ends) {
                 ball_contact.push_on(step, a, b);
                 (a.times, b.times) = (a.times + 1, b.times + 1);
             }
-            self.ask(ends[0]);
-            self.ask(ends[1]);
         }
     }
 
@@ -196,21 +189,10 @@ impl RigidIsland {
     /// Contacts with the mesh come first, then those between rocks.
     fn sweep_contact(&mut self, k: usize) -> f64 {
         self.asked.remove(k);
-        let ground_contacts = self.ground_contacts.len();
-        let start = if k < ground_contacts {
-            self.ground_contacts[k].impulses()
-        } else {
-            self.ball_contacts[k - ground_contacts].impulses()
-        };
-        let change = if k < ground_contacts {
-            self.sweep_ground_contact(k)
-        } else {
-            self.sweep_ball_contact(k - ground_contacts)
-        };
-        if change > STIRS {
-            self.lean.note(k, start);
+        match k.checked_sub(self.ground_contacts.len()) {
+            None => self.sweep_ground_contact(k),
+            Some(place) => self.sweep_ball_contact(k, place),
         }
-        change
     }
 
     /// The contacts of every rock.
@@ -223,44 +205,66 @@ impl RigidIsland {
         self.of_rocks.lay(&ends, self.balls.len());
     }
 
-    /// Asks the contacts of a rock that was stirred: all others have seen their rocks as they are, and a sweep costs what
-    /// happens and not what is there.
+    /// Asks the contacts of a rock when a sweep stirs it first: all others have seen their rocks as they are, and a sweep
+    /// costs what happens and not what is there.
+    fn stir(&mut self, ball: usize) {
+        let stirred = &mut self.balls[ball].stirred;
+        if *stirred != self.sweeps {
+            *stirred = self.sweeps;
+            self.stirred.push(ball);
+            self.ask(ball);
+        }
+    }
+
     fn ask(&mut self, ball: usize) {
         for contact in self.of_rocks.of(ball) {
             self.asked.add(contact);
         }
     }
 
+    /// Asks the contacts of all rocks that the sweep has stirred: some were solved before the last change.
+    fn ask_again(&mut self) {
+        while let Some(ball) = self.stirred.pop() {
+            self.ask(ball);
+        }
+    }
+
     fn sweep_ground_contact(&mut self, k: usize) -> f64 {
         let ground_contact = &mut self.ground_contacts[k];
-        let ball = &mut self.balls[ground_contact.ball];
+        let end = ground_contact.ball;
+        let ball = &mut self.balls[end];
         if ground_contact.seen == ball.times {
             return 0.0;
         }
+        let start = ground_contact.impulses();
         let change = ground_contact.solve(ball) / ball.allowed_m_s;
-        ball.times += u32::from(change > STIRS);
+        let stirs = change > 1.0;
+        ball.times += u32::from(stirs);
         ground_contact.seen = ball.times;
-        let end = ground_contact.ball;
-        if change > STIRS {
-            self.ask(end);
+        if stirs {
+            self.lean.note(k, start);
+            self.stir(end);
         }
         change
     }
 
-    fn sweep_ball_contact(&mut self, k: usize) -> f64 {
-        let ball_contact = &mut self.ball_contacts[k];
-        let Ok([a, b]) = self.balls.get_disjoint_mut(ball_contact.ends) else { return 0.0 };
+    /// The contact with number `k` of all that stands at `place` among those between rocks.
+    fn sweep_ball_contact(&mut self, k: usize, place: usize) -> f64 {
+        let ball_contact = &mut self.ball_contacts[place];
+        let ends = ball_contact.ends;
+        let Ok([a, b]) = self.balls.get_disjoint_mut(ends) else { return 0.0 };
         if ball_contact.seen == [a.times, b.times] {
             return 0.0;
         }
+        let start = ball_contact.impulses();
         let change = ball_contact.solve(a, b) / a.allowed_m_s.min(b.allowed_m_s);
-        let stirred = u32::from(change > STIRS);
-        (a.times, b.times) = (a.times + stirred, b.times + stirred);
+        let stirs = change > 1.0;
+        (a.times, b.times) = (a.times + u32::from(stirs), b.times + u32::from(stirs));
         ball_contact.seen = [a.times, b.times];
-        let ends = ball_contact.ends;
-        if change > STIRS {
-            self.ask(ends[0]);
-            self.ask(ends[1]);
+        if stirs {
+            self.lean.note(k, start);
+            self.stir(ends[0]);
+            self.stir(ends[1]);
         }
         change
     }
@@ -272,7 +276,7 @@ pub(super) struct Leaning {
     of: Vec<One>,
     list: Vec<u32>,
     /// Number of the current sweep.
-    map: u32,
+    map: u64,
     /// Square of the changes of the one before.
     square: f64,
 }
@@ -285,17 +289,17 @@ struct One {
     /// The direction.
     way: Impulses,
     /// Sweep of which `start` is, and after which `way` was found.
-    begun: u32,
-    led: u32,
+    begun: u64,
+    led: u64,
 }
 
 impl Leaning {
     fn begin(&mut self, count: usize) {
+        // numbers of sweeps go on: what is left of others is older than the sweep before
+        self.map += 2;
         let none = One { start: Impulses::NONE, way: Impulses::NONE, begun: 0, led: 0 };
-        self.of.clear();
-        self.of.resize(count, none);
+        self.of.resize(count.max(self.of.len()), none);
         self.list.clear();
-        self.map = 2;
         self.square = 0.0;
     }
 
