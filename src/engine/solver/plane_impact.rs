@@ -10,11 +10,11 @@
 use super::contact_state::{ContactEnvironment, ContactState};
 use super::impact::{NormalPassage, Plane, PressedIn, Rebound};
 use super::law::{Action, ContactPlace};
+use super::plane_kernel::is_on_face;
 use super::step_control::Advance;
 use crate::contact::TOUCH;
 use crate::contact::history::ContactHistory;
 use crate::contact::neighbours::PressedPath;
-use crate::contact::{ContactPoint, FeatureKind};
 use crate::ground::NormalElement;
 use crate::rock::Vec3;
 
@@ -59,26 +59,26 @@ impl ContactState {
         }
     }
 
-    /// The one contact of a rock that rebounds from the inside of a face, and how far it is in; `None` if there is another, or none. A
-    /// stem that may break is stepped, so that it can break on time.
+    /// The one contact of a rock that rebounds from a face, and how far it is in; `None` if there is another, or none. A stem that may
+    /// break is stepped, so that it can break on time.
+    ///
+    /// Where it is tells how far it is in: touches may have been looked for elsewhere.
     fn pressed_in_plane(&self, world: &ContactEnvironment) -> Option<(ContactHistory, PressedIn)> {
-        let [history] = &self.histories[..] else { return None };
-        let is_face = history.feature.kind == FeatureKind::Face;
-        if !is_face || history.captured || !NormalElement::has_closed_form() || self.may_yield {
+        if !is_on_face(world, self) || self.may_yield || !NormalElement::has_closed_form() {
             return None;
         }
-        if !history.closed {
+        let (history, depth_m) = (self.histories[0], self.sunk(world));
+        let is_sunk = depth_m > 2.0 * TOUCH * world.body.radius;
+        match (history.closed, is_sunk) {
+            _ if history.captured => None,
             // it has just begun: the closed form is that from penetration 0
-            let is_sunk = self.touches.iter().any(|touch| sunk_m(world, touch) > 0.0);
-            return (!is_sunk).then_some((*history, PressedIn::NOT));
+            (false, false) => Some((history, PressedIn::NOT)),
+            (true, true) if history.announced => {
+                let pressed = PressedIn { depth_m, shear_m: history.shear, roll_rad: history.roll };
+                Some((history, pressed))
+            }
+            _ => None,
         }
-        let [touch] = &self.touches[..] else { return None };
-        let is_same = touch.is_on_plane() && touch.feature == history.feature;
-        let depth_m = world.body.radius - touch.distance_m;
-        (is_same && sunk_m(world, touch) > 0.0 && history.announced).then_some((
-            *history,
-            PressedIn { depth_m, shear_m: history.shear, roll_rad: history.roll },
-        ))
     }
 
     /// Where and how the rock is after a `passage` on which it touches nothing but the plane, if that is so.
@@ -88,26 +88,32 @@ impl ContactState {
         (plane, passage): (&Plane, &NormalPassage),
         (history, pressed): (&ContactHistory, &PressedIn),
     ) -> Option<Rebound> {
-        let n = &history.n;
+        let (n, face) = (&history.n, history.feature.id);
         // the way is enclosed between the deepest place and the surface, from which the rock has come
         let surface = self.c + n * pressed.depth_m;
-        let encloses = |shift: &Vec3, change: &Vec3| {
-            PressedPath::of(n, surface, (shift, change), passage.time_s(), passage.deepest_m())
+        let encloses = |shift: &Vec3, change_m_s: f64| {
+            let (time_s, deepest_m) = (passage.time_s(), passage.deepest_m());
+            PressedPath::of(n, surface, (shift, change_m_s), time_s, deepest_m)
         };
-        let slip = world.body.slip(n, &self.v, &self.w);
-        let rubbed = world.law(history.triangle).limits().caps(passage.blow_m_s()).0;
-        let change = slip.cap_magnitude(rubbed.min(STOPS * slip.norm()));
-        let straight = encloses(&(self.v * passage.time_s()), &change);
+        let slip_m_s = world.body.slip(n, &self.v, &self.w).norm();
+        let rubbed_m_s = world.law(history.triangle).limits().caps(passage.blow_m_s()).0;
+        // springs at rest change the velocity one way; stretched ones may turn it round, by all that friction bears
+        let is_whole = pressed.depth_m == 0.0 && passage.leaves();
+        let most_m_s = rubbed_m_s + world.body.gravity.norm() * passage.time_s();
+        let likely_m_s = if is_whole { rubbed_m_s.min(STOPS * slip_m_s) } else { most_m_s };
+        let straight = encloses(&(self.v * passage.time_s()), likely_m_s);
         if straight.way_m + pressed.depth_m > self.near.room_m(&self.c) {
             let c = self.c;
             self.collect(world, &c);
         }
-        if !self.is_alone_on(history.feature.id, &straight) {
+        if !self.is_alone_on(face, &straight) {
             return None;
         }
         let rebound = plane.pass(passage, (&self.v, &self.w), pressed);
-        let taken = encloses(&rebound.shift_m, &(rebound.velocity_m_s - self.v));
-        self.is_alone_on(history.feature.id, &taken).then_some(rebound)
+        let change = rebound.velocity_m_s - self.v;
+        let along_m_s = (change - n * n.dot(&change)).norm();
+        let change_m_s = if is_whole { along_m_s } else { most_m_s };
+        self.is_alone_on(face, &encloses(&rebound.shift_m, change_m_s)).then_some(rebound)
     }
 
     /// Whether nothing but the plane of `face` is touched on a `path`, as far as features are known.
@@ -134,6 +140,9 @@ impl ContactState {
         };
         let law = world.law(triangle);
         self.impact.pass(law.omega_rad_s() * rebound.time_s);
+        if self.impact.left <= 0.0 {
+            self.balance(world);
+        }
         let history = &mut self.histories[0];
         let at = ContactPlace {
             n: history.n,
@@ -146,12 +155,5 @@ impl ContactState {
         history.normal_force = action.normal[0];
         history.slides = law.shear.slides2(action.asked2[0], action.normal[0]);
         history.closed = true;
-        let c = self.c;
-        self.look(world, &c, world.body.radius * (1.0 + TOUCH));
     }
-}
-
-/// How far a touch is pressed in (m), by more than rounding.
-fn sunk_m(world: &ContactEnvironment, touch: &ContactPoint) -> f64 {
-    (world.body.radius - touch.distance_m - 2.0 * TOUCH * world.body.radius).max(0.0)
 }

@@ -28,7 +28,7 @@ use crate::rock::Vec3;
 use trial::PlaneTrial;
 
 /// Whether the rock's one contact is the face that its one memory belongs to.
-fn is_on_face(world: &ContactEnvironment, rock: &ContactState) -> bool {
+pub(super) fn is_on_face(world: &ContactEnvironment, rock: &ContactState) -> bool {
     let [history] = &rock.histories[..] else { return false };
     if history.feature.kind != FeatureKind::Face {
         return false;
@@ -117,7 +117,7 @@ impl ContactState {
 
     /// Penetration into the plane of the one contact (m).
     /// `R − n·(c − a)`, positive when pressed in.
-    fn sunk(&self, world: &ContactEnvironment) -> f64 {
+    pub(super) fn sunk(&self, world: &ContactEnvironment) -> f64 {
         let history = &self.histories[0];
         let corner = world.terrain.face(history.feature.id).a;
         world.body.radius - history.n.dot(&(self.c - corner))

@@ -27,23 +27,22 @@ pub struct PressedPath {
     pub way_m: f64,
 }
 
-/// Off the straight way between its ends no path is more than so much of its time times the change of velocity along the plane (–): a
-/// constant force takes it an eighth of that away, one that acts at once in the middle a quarter.
+/// Off the straight way between its ends no path is more than so much of its time times all that its velocity along the plane changes by on
+/// the way (–): a constant force takes it half of that away, one that acts at once in the middle all of it.
 const BULGE: f64 = 0.25;
 
 impl PressedPath {
-    /// The path from `start` that shifts the centre by `shift` (m) within `dt` (s) while its velocity changes by `change` (m/s), on the plane
-    /// with unit normal `n`; it gets no deeper than `deepest_m` below the start.
+    /// The path from `start` that shifts the centre by `shift` (m) within `dt` (s) while its velocity along the plane with unit normal `n`
+    /// changes by `change_m_s` in all; it gets no deeper than `deepest_m` below the start.
     pub fn of(
         n: &Vec3,
         start: Vec3,
-        (shift, change): (&Vec3, &Vec3),
+        (shift, change_m_s): (&Vec3, f64),
         dt: f64,
         deepest_m: f64,
     ) -> Self {
-        let tangent = |x: &Vec3| x - n * n.dot(x);
-        let along = tangent(shift);
-        let off_m = BULGE * dt * tangent(change).norm();
+        let along = shift - n * n.dot(shift);
+        let off_m = BULGE * dt * change_m_s;
         let way_m = math::hypot(along.norm() + off_m, deepest_m);
         Self { start, along, into: n * -deepest_m, off_m, way_m }
     }

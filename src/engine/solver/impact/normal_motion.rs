@@ -22,6 +22,8 @@ use std::f64::consts::TAU;
 const TERMS: usize = 14;
 /// So far around it (–, in units of its shortest time) they give every digit.
 const NEAR: f64 = 0.3;
+/// Last change of a time that is found (1/ω).
+const FOUND: f64 = 1e-13;
 /// Steps of Newton's rule at most, with halving where it would leave its bracket.
 const NEWTON: u32 = 80;
 /// Damping below this is none (–): what a search for that of `e = 1` leaves.
@@ -141,14 +143,18 @@ impl NormalMotion {
     fn lift_near(&self, (at, [force, rate]): (f64, [f64; 2]), gamma: f64) -> Option<(f64, f64)> {
         let zeta = self.zeta;
         let series = Series::<TERMS>::new([force, rate], zeta, gamma);
-        let mut t = -force / rate;
+        let (mut t, mut change) = (-force / rate, f64::INFINITY);
         for _ in 0..8 {
             let [force, rate] = series.both(t);
-            let change = force / rate;
+            change = force / rate;
             t -= change;
             if change.abs() <= 1e-14 {
                 break;
             }
+        }
+        // where the force falls to zero much later, or never, the rule wanders
+        if change.is_nan() || change.abs() > FOUND {
+            return None;
         }
         let is_near = t.abs() * (2.0 * zeta).max(1.0) <= NEAR;
         is_near.then(|| (at + t, series.both(t)[1]))

@@ -56,6 +56,11 @@ impl NormalPassage {
         (self.exit.lift + self.exit.out) / self.omega
     }
 
+    /// Whether the rock is out at its end.
+    pub(crate) fn leaves(&self) -> bool {
+        self.left == 0.0
+    }
+
     /// Penetration that is not passed (m).
     pub(crate) fn deepest_m(&self) -> f64 {
         self.deepest * self.speed / self.omega
@@ -143,7 +148,7 @@ impl Plane {
             gravity: [gx, gy],
             gamma,
             begin: passage.begin,
-            leaves: left == 0.0,
+            leaves: passage.leaves(),
             // a rock that stands still at its deepest has the speed that its springs give it
             allowed: LOCAL * self.tolerance * v.norm().max(speed) * over,
         };
@@ -153,7 +158,13 @@ impl Plane {
         // normal energy: dashpot, and weight over the way out
         let held = 0.5 * (depth * depth - left * left);
         let motion = 0.5 * (inwards * inwards - exit.speed * exit.speed);
-        let damped = (motion + held - gamma * (depth - left)).max(0.0);
+        let damped = motion + held - gamma * (depth - left);
+        // in units of what weight alone would press in
+        debug_assert!(
+            damped >= -1e-9 * (1.0 + gamma * gamma),
+            "a spring that gives energy: {passage:?}"
+        );
+        let damped = damped.max(0.0);
         let [held_shear, held_roll] = self.given_back((&start.shear, &start.roll), &along);
         let (scale, spin) = (speed / self.omega, speed / radius);
         let [x, y] = along.way.map(|x| x * scale);

@@ -78,3 +78,42 @@ fn an_impact_in_parts_is_that_at_once() {
         }
     }
 }
+
+/// A rock lifts off where the force first falls to zero, wherever it is taken up and however long gravity holds it; where it never does so, no
+/// passage is told. One that ends too early makes energy of what the spring still holds.
+#[test]
+fn a_rock_lifts_off_where_the_force_first_falls_to_zero() {
+    let mut uniform = uniforms(3);
+    let (mut passages, mut stays) = (0, 0);
+    for _ in 0..4000 {
+        let restitution = 0.01f64.powf(uniform());
+        let ground = ground(1e6 * 10f64.powf(3.0 * uniform()), restitution, 0.0);
+        let (body, law) = case(&ground, 0.1 + 2.0 * uniform(), G);
+        let plane = Plane::new(&body, &law, 1e-4);
+        // from what weight presses in to many times that, on the way in or out
+        let weight_m = G / law.omega_rad_s().powi(2);
+        let depth_m = weight_m * 10f64.powf(3.5 * uniform() - 1.0);
+        let speed = depth_m * law.omega_rad_s() * 2.0 * uniform();
+        let v = Vec3::z() * if uniform() < 0.3 { speed } else { -speed };
+        let pressed = PressedIn { depth_m, ..PressedIn::NOT };
+        let Some(whole) = plane.passage(&Vec3::z(), &v, depth_m) else {
+            stays += 1;
+            continue;
+        };
+        passages += 1;
+        let normal = law.normal(false);
+        let force = |share: f64| {
+            let part = plane.part(&whole, share);
+            let out = plane.pass(&part, (&v, &Vec3::zeros()), &pressed);
+            normal.pull_or_push(out.pressed.unwrap().depth_m, out.velocity_m_s.z)
+        };
+        let start = force(1e-6);
+        assert!((1..40).all(|k| force(f64::from(k) / 40.0) > 0.0), "{whole:?}");
+        assert!(force(1.0 - 1e-9).abs() < 1e-6 * start.max(law.stored_j(1.0, 0.0, 0.0) * weight_m));
+        let out = plane.pass(&whole, (&v, &Vec3::zeros()), &pressed);
+        let had_j = motion_j(&body, &v, &Vec3::zeros()) + law.stored_j(depth_m, 0.0, 0.0);
+        let has_j = motion_j(&body, &out.velocity_m_s, &Vec3::zeros());
+        assert!(has_j + body.mass * G * out.shift_m.z <= had_j * (1.0 + 1e-9), "{whole:?}");
+    }
+    assert!(passages > 1000 && stays > 300, "{passages} {stays}");
+}
