@@ -168,13 +168,19 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
     /// What the normal springs have taken up since the step's start (J), at its end, the state last asked for.
     ///
     /// Known from the two ends where they push at both, whatever patches came and went between them: the energy of a place is
-    /// continuous. A spring whose dashpot has let it go has not given back what it held: there the sums over the step tell.
+    /// continuous. What was absorbed by a patch holds nothing by itself. A spring whose dashpot has let it go has not given back what it
+    /// held: there the sums over the step tell.
     pub(super) fn taken_up<const Q: usize>(&self, sums: &[f64; Q]) -> Loss {
         let mut taken = Loss::default();
         for (place, history) in self.state.histories.iter().enumerate().take(C) {
             let end = self.pressed().iter().find(|contact| contact.place == place);
-            let gone_j = (self.damped & (1 << place) == 0).then_some(0.0);
-            let ended_j = end.map_or(gone_j, |contact| contact.known_j(self.world.body.mass));
+            let is_absorbed =
+                || self.state.near.patch_holding(self.world.terrain, history.feature).is_some();
+            let gives_back = || self.damped & (1 << place) == 0 || is_absorbed();
+            let ended_j = match end {
+                Some(contact) => contact.known_j(self.world.body.mass),
+                None => gives_back().then_some(0.0),
+            };
             let known = self.began_j[place].zip(ended_j).map(|(began, ended)| ended - began);
             let damping = known.unwrap_or(sums[LOSSES + place]);
             let triangle = end.map_or(history.triangle, |contact| contact.touch.triangle);
