@@ -7,11 +7,10 @@
 //! **One plane, with weight** (schemes `adaptive` and `reference`):
 //!
 //! ```text
-//! let plane = Plane::new(&body, law, 1e-4); // once for a rock and a ground; 1e-10 for `reference`
-//! match plane.follow(&n, &v, &w) {          // first touch: penetration 0, n·v < 0, springs at rest, not captured
-//!     Followed::Left(out) => …,             // time, shift, velocity, spin, deepest, losses where penetration is 0 again
-//!     Followed::Stays => …,                 // gravity keeps it: step on from the touch
-//! }
+//! let plane = Plane::new(&body, law, 1e-4);          // once for a rock and a ground; 1e-10 for `reference`
+//! let passage = plane.passage(&n, &v, depth_m)?;     // 0 at the first touch; None: gravity keeps it, step on from there
+//! let out = plane.pass(&passage, (&v, &w), &pressed); // time, shift, velocity, spin, losses where penetration is 0 again
+//! let first = plane.part(&passage, 0.5);             // the first half of the time alone
 //! ```
 //!
 //! Normal motion is a closed form (`normal_motion.rs`); slip, spin and springs are integrated by an
@@ -50,8 +49,6 @@ mod integrate;
 #[cfg(test)]
 mod tests;
 
-#[cfg(test)]
-use plane::Followed;
 pub(super) use plane::LOCAL;
 pub(crate) use plane::{BlowTable, NormalPassage, Plane, PressedIn, Rebound, blow_along_a_line};
 pub(super) use rigid_limit::NOTHING;

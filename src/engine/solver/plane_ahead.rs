@@ -48,7 +48,7 @@ impl PlaneStep {
             return true;
         }
         let sunk_m = (-self.n.dot(shift)).max(0.0);
-        let change_m_s = (change - self.n * self.n.dot(change)).norm();
+        let change_m_s = PressedPath::tangent(&self.n, change).norm();
         let path = PressedPath::of(&self.n, self.start, (shift, change_m_s), dt, sunk_m);
         let is_alike = |triangle| world.ground_of(triangle) == world.ground_of(self.face);
         near.is_plane_on(self.face, &path) && near.stands_on(self.face, &end, is_alike)

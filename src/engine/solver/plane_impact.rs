@@ -110,8 +110,7 @@ impl ContactState {
             return None;
         }
         let rebound = plane.pass(passage, (&self.v, &self.w), pressed);
-        let change = rebound.velocity_m_s - self.v;
-        let along_m_s = (change - n * n.dot(&change)).norm();
+        let along_m_s = PressedPath::tangent(n, &(rebound.velocity_m_s - self.v)).norm();
         let change_m_s = if is_whole { along_m_s } else { most_m_s };
         self.is_alone_on(face, &encloses(&rebound.shift_m, change_m_s)).then_some(rebound)
     }

@@ -3,6 +3,7 @@
 //! Features are collected for a good part of the radius, as that is not cheap; an impact goes a few millimetres, and asks some
 //! thirty times what is touched. What its way cannot reach is passed over: the answers are the same, to the bit.
 
+use super::features::may_meet;
 use super::{NearFeatures, NearSaddle, Neighbours, SLACK};
 use crate::contact::closest::closest_on;
 use crate::rock::Vec3;
@@ -65,15 +66,12 @@ impl Neighbours {
         let way = way_m + LONGER * self.radius;
         let farthest = reach + way;
         let rays_of = |rays: (u32, u32)| &self.rays[rays.0 as usize..rays.1 as usize];
-        let is_on = |s: f64, length: f64| s >= -way && s <= length + way;
         close.faces.extend(self.all.faces.iter().filter(|face| {
             face.n.dot(&(centre - face.a)).abs() < farthest && face.holds_foot_of(centre, way)
         }));
         close.edges.extend(self.all.edges.iter().filter(|edge| {
             let to = centre - edge.a;
-            let s = edge.along.dot(&to);
-            is_on(s, edge.length)
-                && (to - edge.along * s).norm_squared() < farthest * farthest
+            may_meet(&to, (&edge.along, edge.length), (way, farthest))
                 && rays_of(edge.rays).iter().all(|out| out.dot(&to) > -way - SLACK * farthest)
         }));
         close.corners.extend(self.all.corners.iter().filter(|corner| {
@@ -84,9 +82,7 @@ impl Neighbours {
         close.saddles.extend(self.all.saddles.iter().filter(|saddle| match saddle {
             NearSaddle::Edge { a, along, length, rays } => {
                 let to = centre - a;
-                let s = along.dot(&to);
-                is_on(s, *length)
-                    && (to - along * s).norm_squared() < farthest * farthest
+                may_meet(&to, (along, *length), (way, farthest))
                     && rays_of(*rays).iter().all(|out| out.dot(&to) < way)
             }
             NearSaddle::Vertex { p, .. } => (centre - p).norm_squared() < farthest * farthest,

@@ -5,6 +5,7 @@
 //! tests of each place (`touches`) are made on what is left. On a slope of triangles as large as
 //! the rock that is some ten triangles, and of their edges and vertices hardly any.
 
+use super::features::may_meet;
 use super::{NearCorner, NearEdge, NearFace, NearSaddle, Neighbours, SLACK};
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
@@ -160,7 +161,7 @@ impl Neighbours {
 
     /// Takes an edge; `face` is the first triangle on it.
     ///
-    /// `along` is its unit vector, `s` the coordinate of the foot on it. Left out where the foot
+    /// `along` is its unit vector. Left out where the foot
     /// stays beyond its ends, the line farther than the reach, or the centre behind one of its
     /// faces, for all places within the margin.
     fn take_edge(&mut self, terrain: &Terrain, (edge, face): (u32, &Face)) {
@@ -168,8 +169,7 @@ impl Neighbours {
         let length = (b - a).norm();
         let along = (b - a) / length;
         let to = self.centre - a;
-        let s = along.dot(&to);
-        if s < -self.margin || s > length + self.margin || (to - along * s).norm() > self.reach {
+        if !may_meet(&to, (&along, length), (self.margin, self.reach)) {
             return;
         }
         let first = self.rays.len();

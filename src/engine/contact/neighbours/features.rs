@@ -57,6 +57,14 @@ pub(super) enum NearSaddle {
     Vertex { id: u32, p: Vec3 },
 }
 
+/// Whether a rock whose centre is `to` (m) from the start of an edge of so much along its unit direction may touch it from nearer than `reach`
+/// while the centre moves up to `way` (m): its foot on the edge, and the line no farther.
+#[inline]
+pub(super) fn may_meet(to: &Vec3, (along, length): (&Vec3, f64), (way, reach): (f64, f64)) -> bool {
+    let s = along.dot(to);
+    s >= -way && s <= length + way && (to - along * s).norm_squared() <= reach * reach
+}
+
 impl NearFace {
     /// Whether the foot of `point` lies inside, or at most `slack` (m) outside.
     #[inline]

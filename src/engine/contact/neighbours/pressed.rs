@@ -41,10 +41,15 @@ impl PressedPath {
         dt: f64,
         deepest_m: f64,
     ) -> Self {
-        let along = shift - n * n.dot(shift);
+        let along = Self::tangent(n, shift);
         let off_m = BULGE * dt * change_m_s;
         let way_m = math::hypot(along.norm() + off_m, deepest_m);
         Self { start, along, into: n * -deepest_m, off_m, way_m }
+    }
+
+    /// The part of a vector along the plane with unit normal `n`.
+    pub fn tangent(n: &Vec3, x: &Vec3) -> Vec3 {
+        x - n * n.dot(x)
     }
 
     /// Least and largest value of a linear function over the rectangle of `along` and `into`.

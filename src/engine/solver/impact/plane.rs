@@ -43,16 +43,7 @@ pub(crate) struct Plane {
     first: f64,
 }
 
-/// How an impact on a plane ended.
-#[derive(Debug, Clone, Copy)]
-pub(crate) enum Followed {
-    /// The rock has left the plane.
-    Left(Rebound),
-    /// Gravity keeps it in contact: nothing has been followed.
-    Stays,
-}
-
-/// Motion after an impact, where the penetration is zero again.
+/// Motion after an impact, where the penetration is zero again, or after a part of it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Rebound {
     /// Time since the touch (s).
@@ -127,12 +118,10 @@ impl Plane {
     }
 
     /// Follows a rock that has just touched the plane with unit normal `n`, with velocity `v` (m/s), `n·v < 0`, and spin `w`
-    /// (rad/s).
-    pub(crate) fn follow(&self, n: &Vec3, v: &Vec3, w: &Vec3) -> Followed {
-        match self.passage(n, v, 0.0) {
-            Some(passage) => Followed::Left(self.pass(&passage, (v, w), &PressedIn::NOT)),
-            None => Followed::Stays,
-        }
+    /// (rad/s), until it has left the plane; `None` if gravity keeps it in contact.
+    pub(crate) fn follow(&self, n: &Vec3, v: &Vec3, w: &Vec3) -> Option<Rebound> {
+        let passage = self.passage(n, v, 0.0)?;
+        Some(self.pass(&passage, (v, w), &PressedIn::NOT))
     }
 
     fn rubs(&self) -> bool {

@@ -17,7 +17,7 @@ mod rates;
 
 use super::dormand_prince::{Attempt, Stages, growth};
 use super::plane::FIRST;
-use super::plane::{Followed, LOCAL, Plane, shared};
+use super::plane::{LOCAL, Plane, shared};
 use super::{ImpactEffort, Settled};
 use crate::contact::MOST;
 use crate::ground::Law;
@@ -141,7 +141,7 @@ fn alone(
     // one that gives nothing back has its damping at least doubled over critical, and its rest of
     // rebound taken away below
     let plane = Plane::of_patch(&body, law, (contact.captured, contact.stiffness_scale), tolerance);
-    let Followed::Left(rebound) = plane.follow(n, v, w) else {
+    let Some(rebound) = plane.follow(n, v, w) else {
         // Without weight nothing keeps it but a speed too small to be squared.
         end.velocity_m_s -= n * n.dot(v);
         return end;

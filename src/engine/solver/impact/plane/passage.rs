@@ -87,14 +87,13 @@ impl Plane {
         let (gamma, swing) = (-gn, &self.swing);
         let (depth, inwards) =
             if is_touch { (0.0, 1.0) } else { (depth_m * self.omega * over, inwards_m_s * over) };
-        let begin =
-            if is_touch { swing.onset(gamma) } else { swing.force_at((depth, inwards), gamma) };
-        let exit = if is_touch { swing.exit(gamma) } else { swing.exit_from(begin, gamma) }?;
-        // about the place where gravity is balanced the swing gets no wider
-        let deepest = if is_touch {
-            swing.deepest(gamma)
+        let (begin, exit, deepest) = if is_touch {
+            (swing.onset(gamma), swing.exit(gamma)?, swing.deepest(gamma))
         } else {
-            gamma + math::hypot(depth - gamma, inwards)
+            let begin = swing.force_at((depth, inwards), gamma);
+            // about the place where gravity is balanced the swing gets no wider
+            let deepest = gamma + math::hypot(depth - gamma, inwards);
+            (begin, swing.exit_from(begin, gamma)?, deepest)
         };
         let gravity = [gx, gy, gamma];
         Some(NormalPassage {

@@ -4,7 +4,7 @@ use super::{G, case, ground, motion_j, uniforms};
 use crate::ground::Law;
 use crate::rock::Vec3;
 use crate::solver::body::Body;
-use crate::solver::impact::{BlowTable, Followed, Plane, blow_along_a_line};
+use crate::solver::impact::{BlowTable, Plane, blow_along_a_line};
 
 /// Tolerance that leaves rounding and little more (–).
 const FINE: f64 = 1e-10;
@@ -20,9 +20,7 @@ fn in_two_directions(
     let v = along * slip - Vec3::z() * approach;
     let body = Body { gravity: along * 1e-200, ..*body };
     let plane = Plane::of_patch(&body, law, (captured, 1.0), FINE);
-    let Followed::Left(out) = plane.follow(&Vec3::z(), &v, &Vec3::zeros()) else {
-        panic!("it stays")
-    };
+    let Some(out) = plane.follow(&Vec3::z(), &v, &Vec3::zeros()) else { panic!("it stays") };
     let after = out.velocity_m_s;
     let kept = if captured { 0.0 } else { after.z };
     [kept + approach, slip - along.dot(&after)]
