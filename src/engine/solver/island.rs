@@ -15,7 +15,6 @@
 
 mod accept;
 mod pair_contact;
-mod block_factor;
 mod contact_queue;
 mod dda_step;
 mod dda_system;
@@ -26,7 +25,6 @@ mod newton_step;
 mod dda_contact;
 mod body;
 mod impact_tolerance;
-mod ordering;
 mod outcome;
 mod active_set;
 mod rigid;
@@ -36,6 +34,6 @@ mod sweeps;
 
 pub use assembly::Island;
 pub use body::{BodySlot, IslandBody, Memory};
-pub use outcome::{Done, Given, Hit};
+pub use outcome::{Done, Hit};
 pub use rigid::TRAVEL;
 pub(crate) use rigid::{RigidIsland, blows_of};

@@ -3,7 +3,7 @@
 //! The state of a rock alone (`ContactState`) with what an island adds: the base and guess of the
 //! stage in hand, motions with and without contact forces, and what it gives to other rocks.
 
-use super::outcome::{Done, Given};
+use super::outcome::Done;
 use super::pair_contact::Twist;
 use crate::contact::Feature;
 use crate::contact::history::ContactHistory;
@@ -15,6 +15,7 @@ use crate::solver::contact_state::{ContactEnvironment, ContactState};
 use crate::solver::dda_system::contact::DdaContact;
 use crate::solver::impact_progress::ImpactProgress;
 use crate::solver::law::StageContact;
+use crate::solver::loss::Given;
 use crate::solver::roughness::RoughFacets;
 use crate::solver::stage::End;
 use crate::solver::stem_load::StemLoad;

@@ -210,7 +210,7 @@ impl DdaPairContact {
         let overload = |bond: &Bond| bond.overload(law, self.normal_force, shear_force.norm());
         let breaks = self.bond.as_ref().is_some_and(|bond| overload(bond) > 0.0);
         if breaks {
-            super::pair_contact::break_bond(pair_history);
+            pair_history.break_bond();
         }
         breaks
     }

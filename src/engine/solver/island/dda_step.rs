@@ -13,7 +13,7 @@
 use super::assembly::Island;
 use super::body::IslandBody;
 use super::dda_contact::DdaPairContact;
-use super::outcome::{Done, Given};
+use super::outcome::Done;
 use crate::contact::ContactPoint;
 use crate::contact::submatrix::Vec6;
 use crate::rock::Vec3;
@@ -23,7 +23,7 @@ use crate::solver::dda::{DEEPEST, compliance, free_motion, knows};
 use crate::solver::dda_system::contact::{DdaContact, StepConstants};
 use crate::solver::dda_system::slider::Change;
 use crate::solver::dda_system::{ROUNDS, SOLVES};
-use crate::solver::loss::Loss;
+use crate::solver::loss::{Given, Loss};
 use crate::solver::step_control::StepError;
 use crate::terrain::Terrain;
 

@@ -6,10 +6,10 @@
 //! `K_kk` of a rock is `2M/Δt²` with its contacts; `K_kl` couples two rocks that touch. The matrix
 //! is symmetric and positive definite, so blocks are factorised without pivoting.
 
-use super::block_factor::{Below, Blocks, Factor};
 use super::body::BodySlot;
 use super::dda_contact::DdaPairContact;
 use crate::contact::submatrix::{Mat6, Vec6, inertia};
+use crate::solver::block_factor::{Below, Blocks, Factor};
 use nalgebra::Cholesky;
 
 /// What is kept between solves.
