@@ -5,7 +5,7 @@
 //!
 //! ```text
 //! adaptive, reference   stage, sweeps, newton_step     forces by nonlinear Gauss–Seidel, helped by Newton jumps
-//! dda                   dda_step, dda_system           the paper's global system, Eq. (4), and open–close iteration
+//! dda                   dda_step, and dda beside       the paper's global system, Eq. (4), and open–close iteration
 //! rigid                 rigid/                         impulses at velocity level, impacts in the order of their times
 //! ```
 //!
@@ -17,12 +17,10 @@ mod accept;
 mod pair_contact;
 mod contact_queue;
 mod dda_step;
-mod dda_system;
 pub mod broad_phase;
 mod assembly;
 pub mod partition;
 mod newton_step;
-mod dda_contact;
 mod body;
 mod impact_tolerance;
 mod outcome;
