@@ -67,6 +67,12 @@ impl Feature {
     pub const NONE: Self = Self { kind: FeatureKind::Face, id: u32::MAX };
 }
 
+impl Default for Feature {
+    fn default() -> Self {
+        Self::NONE
+    }
+}
+
 /// Where a ball touches the mesh or presses into it: a patch (`contact::patch`), nearly always a single nearest point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactPoint {

@@ -22,6 +22,7 @@ mod plane_ahead;
 mod plane_impact;
 pub mod dda;
 pub(crate) mod dda_system;
+mod block_factor;
 mod impact_progress;
 pub(crate) mod plane_state;
 mod stem_load;

@@ -10,6 +10,7 @@ mod chant_sura;
 mod contact;
 mod dda;
 mod dda_energy;
+mod dda_island;
 mod exact_edge;
 mod exact_plane;
 mod heap;

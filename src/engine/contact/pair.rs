@@ -6,7 +6,7 @@
 //! Mech. Min. Sci. 41, 2004, parallel bond) without its moments: a bond carries force and shear,
 //! but does not resist bending or twist.
 
-use crate::ground::Law;
+use crate::ground::{Law, within};
 use crate::rock::Vec3;
 use std::f64::consts::PI;
 
@@ -183,6 +183,15 @@ impl PairHistory {
         let over =
             |bond: &Bond| bond.overload(&self.law, self.normal_force, self.shear_force.norm());
         self.bond.as_ref().map_or(0.0, over)
+    }
+
+    /// Breaks the bond: the contact keeps what friction can hold; the rest of its stretch is lost.
+    pub(crate) fn break_bond(&mut self) {
+        (self.bond, self.captured) = (None, true);
+        self.normal_force = self.normal_force.max(0.0);
+        let (slider, pressed) = (self.law.shear, self.normal_force);
+        self.shear = within(self.shear, slider.longest_stretch(pressed));
+        self.shear_force = slider.capped(self.shear_force, pressed);
     }
 
     /// The rocks no longer touch.

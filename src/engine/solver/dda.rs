@@ -17,25 +17,36 @@
 //! whose `ω` is large, lose more than large ones: an artefact of the step, not of the rock. From `z
 //! = 2` on an impact is turned round in one step, and from 4 on that of an impact which begins within
 //! a step is anything between nothing and all of its speed.
+//!
+//! A rock alone and the rocks of an island take one step, that of `n ≥ 1` rocks; a rock alone has no pairs, and takes no memory.
+//!
+//! ```text
+//! step         open–close iteration over all contacts
+//! body         one rock: what it meets, what its contacts take, how it goes on
+//! pairs        contacts between rocks, and the system of all, Eq. (4)
+//! dda_system   beside this: a rock's contacts, their submatrices and states, its block of the system
+//! ```
+
+mod body;
+mod pairs;
+mod step;
 
 use super::Settings;
-use super::body::Body;
 use super::contact_state::{ContactEnvironment, ContactState};
-use super::dda_system::contact::{DdaContact, StepConstants};
 use super::loss::Loss;
 use super::step_control::{Advance, StepError};
-use crate::contact::submatrix::Vec6;
-use crate::contact::{ContactPoint, MOST};
 use crate::math;
-use crate::rock::Vec3;
+pub(super) use body::DdaBody;
+pub(super) use pairs::DdaPairs;
 use std::f64::consts::PI;
+pub(super) use step::DdaStep;
 
 /// Longest way in one step (–, relative to R) where more than one plane is near: features are seen a tenth of the
 /// radius ahead.
 pub const TRAVEL: f64 = 0.09;
 /// Deepest penetration that still is one (–, relative to R). Where the centre passes the surface `V` turns round and
 /// the contact would push the rock through.
-pub(crate) const DEEPEST: f64 = 0.5;
+pub(super) const DEEPEST: f64 = 0.5;
 /// Contact oscillation per step (rad) from which an impact is turned round within one step: the longer, the livelier.
 pub const SINGLE_STEP_PHASE: f64 = 2.0;
 
@@ -60,7 +71,7 @@ pub fn own_restitution(phase: f64) -> f64 {
     math::pow(1.0 + q, -0.5 * steps) * ((q / (8.0 - q)).sqrt() * sine - cosine)
 }
 
-/// The fixed step of one contact episode.
+/// The fixed step of a rock alone through one contact episode.
 #[derive(Debug)]
 pub struct Fixed {
     step_s: f64,
@@ -72,9 +83,7 @@ pub struct Fixed {
 impl Fixed {
     /// Begins an episode.
     pub fn new(settings: &Settings, world: &ContactEnvironment, state: &mut ContactState) -> Self {
-        let c = state.c;
-        state.look_ahead(world, &c);
-        let stored = state.stored_j(world);
+        let stored = DdaBody::looking(*world, state).stored;
         Self { step_s: settings.step_s, shear_memory: settings.shear_memory, stored }
     }
 
@@ -91,139 +100,14 @@ impl Fixed {
         // cut by events and by the way that has been looked ahead; the phase of a cut step is
         // smaller, so it damps less
         let dt = self.step_s.min(h_max).min(state.longest_step(world, TRAVEL));
-        let step = StepConstants {
-            dt,
-            free: free_motion(world, state, dt),
-            radius: world.body.radius,
-            compliance: compliance(&world.body, dt),
-            shear_memory: self.shear_memory,
-        };
-        meet(world, &step, state);
-        let (added, settled) = solve(world, &step, state).ok_or(StepError::NotFinite)?;
-        let d = step.free + added;
-        let mut done = Advance { dt, steps: 1, unsettled: !settled, ..Advance::default() };
-        for contact in state.scratch.contacts() {
-            if contact.depth(&d) > DEEPEST * step.radius {
-                return Err(StepError::SankIn);
-            }
-            done.loss.add(&contact.loss(&d).on(world, contact.triangle), 1.0);
-        }
-        carry_on(world, state, &d, &(added * (2.0 / dt)), dt);
-        let stored = state.stored_j(world);
-        done.loss.add(&stored, 1.0);
-        done.loss.add(&self.stored, -1.0);
-        self.stored = stored;
-        Ok(done)
+        let bodies = &mut [DdaBody::new(*world, state, self.stored)];
+        let (pairs, pair_histories) = (&mut DdaPairs::default(), &mut []);
+        let done = DdaStep { bodies, pairs, pair_histories }.advance((dt, self.shear_memory))?;
+        let [DdaBody { state, stored, loss, .. }] = bodies;
+        state.sweeps += u64::from(done.solves);
+        self.stored = *stored;
+        Ok(Advance { dt, loss: *loss, steps: 1, unsettled: !done.settled, ..Advance::default() })
     }
-}
-
-/// A displacement and a rotation as the six unknowns of Eq. (1).
-fn six(a: &Vec3, b: &Vec3) -> Vec6 {
-    Vec6::new(a.x, a.y, a.z, b.x, b.y, b.z)
-}
-
-/// Displacement and rotation over `dt` without contacts.
-/// `D₀ = V₀ Δt + g Δt²/2`; a free sphere keeps its spin.
-pub(crate) fn free_motion(world: &ContactEnvironment, state: &ContactState, dt: f64) -> Vec6 {
-    six(&(state.v * dt + world.body.gravity * (0.5 * dt * dt)), &(state.w * dt))
-}
-
-/// Way of the touched point per newton along the surface (m/N), turn of the sphere per newton metre, over `dt`.
-///
-/// `Δt²/(2m) + R² Δt²/(2I)`: displacement is force times half the square of the step over the mass,
-/// and the contact point also turns.
-pub(crate) fn compliance(body: &Body, dt: f64) -> (f64, f64) {
-    let turn = 0.5 * dt * dt / body.inertia;
-    (0.5 * dt * dt / body.mass + body.radius * body.radius * turn, turn)
-}
-
-/// Makes the touches of the step's start into contacts.
-///
-/// Normals stay those of the start for the whole step: on an edge that makes every order of the
-/// rule first order.
-fn meet(world: &ContactEnvironment, step: &StepConstants, state: &mut ContactState) {
-    (state.scratch.count, state.scratch.taken) = (0, 0);
-    for k in 0..state.touches.len() {
-        add_contact(world, step, state, (k, state.touches[k].distance_m));
-    }
-}
-
-/// Makes touch `k` of the last look into a contact, its plane being so far from the centre at the step's start (m).
-fn add_contact(
-    world: &ContactEnvironment,
-    step: &StepConstants,
-    state: &mut ContactState,
-    (k, distance_m): (usize, f64),
-) {
-    let v = state.v;
-    let history = state.history_of(world, k, state.scratch.taken, &v);
-    let touch = ContactPoint { distance_m, ..state.touches[k] };
-    let law = world.law_of(&state.touches, k);
-    let scratch = &mut state.scratch;
-    scratch.contacts[scratch.count] =
-        DdaContact::new(step, &law, &touch, (history, &state.histories[history]));
-    scratch.count += 1;
-    scratch.taken |= 1 << history;
-}
-
-/// Solves the step, and solves it again with the contacts that it ran into: a rock that rolls into a fold would
-/// otherwise find itself inside the other flank and be thrown out with energy from nowhere.
-///
-/// Ends with the touches of the step's end.
-/// Ends: each round adds a contact, and there are no more than `MOST`.
-fn solve(
-    world: &ContactEnvironment,
-    step: &StepConstants,
-    state: &mut ContactState,
-) -> Option<(Vec6, bool)> {
-    loop {
-        let (added, settled) = state.scratch.settle(world, step, &mut state.sweeps)?;
-        let d = step.free + added;
-        let way: Vec3 = d.fixed_rows::<3>(0).into();
-        let end = state.c + way;
-        state.look_ahead(world, &end);
-        let touches = state.touches;
-        let before = state.scratch.count;
-        for (k, touch) in touches.iter().enumerate() {
-            let is_inside = touch.distance_m < step.radius && state.scratch.count < MOST;
-            if is_inside && !knows(state.scratch.contacts(), touch, &touches, &d) {
-                add_contact(world, step, state, (k, touch.distance_m - touch.normal.dot(&way)));
-            }
-        }
-        if state.scratch.count == before {
-            return Some((added, settled));
-        }
-    }
-}
-
-/// Whether a touch of the step's end took part in it, by itself or as the part of the surface that it came from.
-pub(crate) fn knows(
-    contacts: &[DdaContact],
-    touch: &ContactPoint,
-    touches: &[ContactPoint],
-    d: &Vec6,
-) -> bool {
-    contacts.iter().any(|contact| {
-        contact.feature == touch.feature
-            || contact.leads_to(touch, d)
-                && touches.iter().all(|other| other.feature != contact.feature)
-    })
-}
-
-/// Moves the rock by `d`, and changes its velocity by what contacts added.
-/// `V₁ = 2D/Δt − V₀ = V₀ + g Δt + 2E/Δt`, as `D = D₀ + E`: what no contact acts on is not rounded.
-fn carry_on(world: &ContactEnvironment, state: &mut ContactState, d: &Vec6, kick: &Vec6, dt: f64) {
-    for history in state.histories.iter_mut() {
-        history.closed = false;
-    }
-    for contact in state.scratch.contacts() {
-        contact.remember(d, &mut state.histories[contact.history]);
-    }
-    state.merge_lost(world);
-    state.histories.retain(|history| history.closed);
-    state.c += d.fixed_rows::<3>(0);
-    state.v += world.body.gravity * dt + kick.fixed_rows::<3>(0);
-    state.w += kick.fixed_rows::<3>(3);
 }
 
 #[cfg(test)]

@@ -1,150 +1,151 @@
-//! The system of a fixed step and its open–close iteration.
+//! One rock's part of the system of a fixed step: its contacts with the mesh, and its block.
 //!
-//! A contact is open, sticks or slips; with these states given the step is one linear system,
-//! `(2M/Δt² + K) E = F − K D₀`, paper Eq. (4) for one sphere. Solve, judge each contact by the
-//! displacements that came out, and solve again until none changes. The paper leaves open what
-//! happens if that never ends: with lagged friction it
-//! failed in 7 to 26 % of the steps of a stiff heap of 48 spheres, and energy appeared from nowhere.
+//! A contact is open, sticks or slips; with these states given the step is one linear system, paper Eq. (4),
+//! `(2M/Δt² + K) E = F − K D₀`: a block of 6×6 a rock, `2M/Δt²` and the contacts with the mesh, and the blocks of
+//! contacts between rocks. What is here knows nothing of a rock's motion beyond the step.
 
 pub(crate) mod contact;
+pub(crate) mod pair_contact;
 pub(crate) mod slider;
 
-use super::environment::ContactEnvironment;
-use crate::contact::MOST;
+use super::body::Body;
+use crate::contact::history::ContactHistory;
 use crate::contact::submatrix::{Mat6, Vec6, inertia};
-use contact::{ContactMatrixTerms, DdaContact, StepConstants};
+use crate::contact::{ContactPoint, MOST};
+use crate::ground::Law;
+use contact::{ContactMatrixTerms, DdaContact};
 use nalgebra::{Cholesky, U6};
 use slider::Change;
 
-/// Changes of state in the open–close iteration (Shi's practice; the paper states no limit) …
-pub(crate) const ROUNDS: u32 = 6;
-/// … and solves with friction forces brought to agree, which need no new matrix.
-///
-/// Direction and cap of friction follow from the solution, so they are iterated too.
-pub(crate) const SOLVES: u32 = 40;
-
-/// Work space of the steps.
-#[derive(Debug)]
-pub struct DdaScratch {
-    pub(super) contacts: [DdaContact; MOST],
-    pub(super) count: usize,
-    /// Memories that belong to the contacts.
-    pub(super) taken: u32,
-    system: DdaSystem,
+/// What is the same for all contacts of a rock in a step.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct StepConstants {
+    /// Length (s).
+    pub(crate) dt: f64,
+    /// Whether shear springs keep their stretch; if not, friction is that of the last step's end, as printed.
+    pub(crate) shear_memory: bool,
+    /// Displacement and rotation without contacts, `D₀`.
+    pub(crate) free: Vec6,
+    /// Radius of the sphere (m).
+    pub(crate) radius: f64,
+    /// Way of the touched point per newton along the surface (m/N) and turn of the sphere per newton metre.
+    compliance: (f64, f64),
 }
 
-impl Default for DdaScratch {
-    fn default() -> Self {
-        Self {
-            contacts: [DdaContact::NONE; MOST],
-            count: 0,
-            taken: 0,
-            system: DdaSystem::default(),
-        }
+impl StepConstants {
+    /// Those of a body that would move by `free` over `dt` (s).
+    ///
+    /// `Δt²/(2m) + R² Δt²/(2I)`: displacement is force times half the square of the step over the mass,
+    /// and the contact point also turns.
+    pub(crate) fn new(body: &Body, free: Vec6, (dt, shear_memory): (f64, bool)) -> Self {
+        let turn = 0.5 * dt * dt / body.inertia;
+        let way = 0.5 * dt * dt / body.mass + body.radius * body.radius * turn;
+        Self { dt, shear_memory, free, radius: body.radius, compliance: (way, turn) }
     }
 }
 
+/// A rock in a fixed step: its contacts with the mesh, its displacement, and its block of the system.
+///
+/// The block is made anew only when it has changed. In lasting contact neither step nor states change, so a whole slide of a
+/// rock alone needs one factorisation of 6×6.
+#[derive(Debug, Default)]
+pub struct DdaScratch {
+    pub(super) step: StepConstants,
+    contacts: [DdaContact; MOST],
+    count: usize,
+    /// Memories that belong to the contacts.
+    pub(super) taken: u32,
+    /// What contacts add to the free displacement, `E`, and both together, `D = D₀ + E`, Eq. (1).
+    pub(super) added: Vec6,
+    pub(super) d: Vec6,
+    /// Of what the block was made: inertia, and contacts in their states.
+    inertia: Mat6,
+    terms: [ContactMatrixTerms; MOST],
+    terms_count: usize,
+    /// What the contacts add to the block.
+    springs: Mat6,
+    /// Factor of the block; `None` if nobody has asked for it, or if there is none.
+    factor: Option<Cholesky<f64, U6>>,
+}
+
 impl DdaScratch {
+    /// Begins a step without contacts.
+    pub(super) fn begin(&mut self, body: &Body, step: StepConstants) {
+        (self.step, self.count, self.taken) = (step, 0, 0);
+        let inertia = inertia(body.mass, body.inertia, step.dt);
+        if self.inertia != inertia {
+            (self.inertia, self.factor) = (inertia, None);
+        }
+    }
+
+    /// Adds the contact of a touch and its memory.
+    pub(super) fn add(&mut self, law: &Law, touch: &ContactPoint, left: (usize, &ContactHistory)) {
+        self.contacts[self.count] = DdaContact::with_mesh(&self.step, law, touch, left);
+        self.count += 1;
+        self.taken |= 1 << left.0;
+    }
+
     pub(super) fn contacts(&self) -> &[DdaContact] {
         &self.contacts[..self.count]
     }
 
-    /// Open–close iteration: what contacts add to the free displacement, and whether their states settled.
-    ///
-    /// A step that does not settle is solved by [`Self::stick`]. `None` if it has no solution.
-    pub(super) fn settle(
-        &mut self,
-        world: &ContactEnvironment,
-        step: &StepConstants,
-        sweeps: &mut u64,
-    ) -> Option<(Vec6, bool)> {
-        let contacts = &mut self.contacts[..self.count];
-        let inertia = inertia(world.body.mass, world.body.inertia, step.dt);
-        let mut rounds = 0;
-        for _ in 0..SOLVES {
-            *sweeps += 1;
-            let added = self.system.solve(&inertia, &step.free, contacts)?;
-            let d = step.free + added;
-            // the largest change of all contacts decides: a changed mode needs a new matrix, a
-            // changed load only a new right side
-            match contacts.iter_mut().map(|contact| contact.judge(&d)).max() {
-                None | Some(Change::None) => return Some((added, true)),
-                Some(Change::Load) => {}
-                Some(Change::Mode) => rounds += 1,
-            }
-            if rounds == ROUNDS {
-                break;
-            }
-        }
-        self.stick(&inertia, &step.free, sweeps).map(|added| (added, false))
+    /// `2M/Δt² + K` of the contacts with the mesh, as [`Self::load`] has brought it up to date.
+    pub(super) fn block(&self) -> Mat6 {
+        self.springs + self.inertia
     }
 
-    /// The step without the search for states: contacts that begin inside hold and stick, even if they pull for this
-    /// one step; those that begin apart are smooth. That always has a solution, and no force in it adds energy.
-    ///
-    /// Of those that begin apart one at a time changes, the last first, which cannot go round in circles (Murty 1974).
-    fn stick(&mut self, inertia: &Mat6, free: &Vec6, sweeps: &mut u64) -> Option<Vec6> {
-        let contacts = &mut self.contacts[..self.count];
-        contacts.iter_mut().for_each(DdaContact::stick);
-        let mut added = Vec6::zeros();
-        for _ in 0..SOLVES {
-            *sweeps += 1;
-            added = self.system.solve(inertia, free, contacts)?;
-            let d = free + added;
-            if !contacts.iter_mut().rev().any(|contact| contact.open_or_close_apart(&d)) {
-                break;
-            }
+    /// Brings the block up to the states of the contacts, and gives `F − K D₀`: the unknown is what contacts add to the
+    /// free displacement.
+    pub(super) fn load(&mut self) -> Vec6 {
+        let contacts = &self.contacts[..self.count];
+        let terms = || contacts.iter().map(DdaContact::terms);
+        if !self.terms[..self.terms_count].iter().copied().eq(terms()) {
+            self.terms_count = contacts.len();
+            self.terms.iter_mut().zip(terms()).for_each(|(known, now)| *known = now);
+            self.springs = terms().fold(Mat6::zeros(), |sum, one| sum + one.stiffness());
+            self.factor = None;
         }
-        Some(added)
-    }
-}
-
-/// The matrix of a step; it is made anew only when it has changed.
-///
-/// In lasting contact neither step nor states change, so a whole slide needs one factorisation of
-/// 6×6.
-#[derive(Debug)]
-pub(super) struct DdaSystem {
-    inertia: Mat6,
-    shapes: [ContactMatrixTerms; MOST],
-    count: usize,
-    /// What the contacts add to the matrix.
-    springs: Mat6,
-    /// Factor of inertia and contacts; `None` if there is none.
-    factor: Option<Cholesky<f64, U6>>,
-}
-
-impl Default for DdaSystem {
-    fn default() -> Self {
-        Self {
-            inertia: Mat6::zeros(),
-            shapes: [ContactMatrixTerms::NONE; MOST],
-            count: 0,
-            springs: Mat6::zeros(),
-            factor: None,
-        }
-    }
-}
-
-impl DdaSystem {
-    /// Cholesky: inertia is positive definite and springs add `Vᵀ V` terms, so the matrix always
-    /// is.
-    fn solve(&mut self, inertia: &Mat6, free: &Vec6, contacts: &[DdaContact]) -> Option<Vec6> {
-        let shapes = || contacts.iter().map(DdaContact::shape);
-        let same = self.shapes[..self.count].iter().copied().eq(shapes());
-        if !same || self.inertia != *inertia {
-            self.inertia = *inertia;
-            self.count = contacts.len();
-            self.shapes.iter_mut().zip(shapes()).for_each(|(known, shape)| *known = shape);
-            self.springs = shapes().fold(Mat6::zeros(), |sum, shape| sum + shape.stiffness());
-            self.factor = Cholesky::new(self.springs + inertia);
-        }
-        // F − K D₀: the unknown is what contacts add to the free displacement
-        let mut load = -(self.springs * free);
+        let mut load = -(self.springs * self.step.free);
         for contact in contacts {
             contact.add_load(&mut load);
         }
+        load
+    }
+
+    /// Solves the step of a rock that no other touches: its block is all of the system. `None` if it has no solution.
+    ///
+    /// Cholesky: inertia is positive definite and springs add `Vᵀ V` terms, so the matrix always
+    /// is.
+    pub(super) fn solve(&mut self) -> Option<()> {
+        let mut load = self.load();
+        if self.factor.is_none() {
+            self.factor = Cholesky::new(self.block());
+        }
         self.factor.as_ref()?.solve_mut(&mut load);
-        load.iter().all(|x| x.is_finite()).then_some(load)
+        self.take(load)
+    }
+
+    /// Takes a solution; `None` if it is none.
+    pub(super) fn take(&mut self, added: Vec6) -> Option<()> {
+        (self.added, self.d) = (added, self.step.free + added);
+        added.iter().all(|x| x.is_finite()).then_some(())
+    }
+
+    /// Judges its contacts by the displacement that came out; the largest change of all counts.
+    pub(super) fn judge(&mut self) -> Change {
+        let contacts = self.contacts[..self.count].iter_mut();
+        let judged = contacts.map(|contact| contact.judge(&contact.ways(&self.d)));
+        judged.max().unwrap_or(Change::None)
+    }
+
+    /// Ends the search for the states of its contacts.
+    pub(super) fn stick(&mut self) {
+        self.contacts[..self.count].iter_mut().for_each(DdaContact::stick);
+    }
+
+    /// Opens or closes one contact that begins apart, the last that asks for it; whether there is any.
+    pub(super) fn open_or_close_one_apart(&mut self) -> bool {
+        let mut contacts = self.contacts[..self.count].iter_mut().rev();
+        contacts.any(|contact| contact.open_or_close_apart(&contact.ways(&self.d)))
     }
 }

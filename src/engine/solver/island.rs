@@ -5,7 +5,7 @@
 //!
 //! ```text
 //! adaptive, reference   stage, sweeps, newton_step     forces by nonlinear Gauss–Seidel, helped by Newton jumps
-//! dda                   dda_step, dda_system           the paper's global system, Eq. (4), and open–close iteration
+//! dda                   dda_step, and dda beside       the paper's global system, Eq. (4), and open–close iteration
 //! rigid                 rigid/                         impulses at velocity level, impacts in the order of their times
 //! ```
 //!
@@ -15,18 +15,14 @@
 
 mod accept;
 mod pair_contact;
-mod block_factor;
 mod contact_queue;
 mod dda_step;
-mod dda_system;
 pub mod broad_phase;
 mod assembly;
 pub mod partition;
 mod newton_step;
-mod dda_contact;
 mod body;
 mod impact_tolerance;
-mod ordering;
 mod outcome;
 mod active_set;
 mod rigid;
@@ -36,6 +32,6 @@ mod sweeps;
 
 pub use assembly::Island;
 pub use body::{BodySlot, IslandBody, Memory};
-pub use outcome::{Done, Given, Hit};
+pub use outcome::{Done, Hit};
 pub use rigid::TRAVEL;
 pub(crate) use rigid::{RigidIsland, blows_of};

@@ -163,7 +163,7 @@ pub fn advance(
     if !state.fresh {
         state.rates_now(world);
     }
-    let limit = travel_limit(world, state);
+    let limit = travel_limit(world, state, TRAVEL);
     let (omega, known) = (stiffest(world, state), state.histories.len());
     let mut trial = RockTrial {
         world,
@@ -272,10 +272,14 @@ pub(crate) fn pressed_j(state: &ContactState, end: &End, hh: f64) -> f64 {
 }
 
 /// Longest step that cannot jump over a feature (s).
-pub(crate) fn travel_limit(world: &ContactEnvironment, state: &mut ContactState) -> f64 {
+pub(crate) fn travel_limit(
+    world: &ContactEnvironment,
+    state: &mut ContactState,
+    travel: f64,
+) -> f64 {
     let c = state.c;
     state.know(world, &c);
-    state.longest_step(world, TRAVEL)
+    state.longest_step(world, travel)
 }
 
 /// One step: where it ends and its error relative to the tolerance; `None` if a stage does not settle.

@@ -173,7 +173,7 @@ impl Slider {
 }
 
 /// What sliders bear, where impulses take the place of forces: the limits of friction (–) and of rolling friction (m).
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct FrictionLimits {
     pub(super) shear: f64,
     pub(super) rolling: f64,

@@ -214,16 +214,13 @@ impl From<BondLine> for NormalLine {
 }
 
 /// Spring and dashpot over a step of fixed length: forces by ways (N/m).
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct FixedStepNormal {
     spring: f64,
     damper: f64,
 }
 
 impl FixedStepNormal {
-    /// None.
-    pub(crate) const NONE: Self = Self { spring: 0.0, damper: 0.0 };
-
     /// Force at a penetration `depth` at the step's end and `inside` at its start (m, the latter ≥ 0): the dashpot works from the
     /// touch on.
     #[inline]
@@ -237,16 +234,11 @@ impl FixedStepNormal {
         self.spring + self.damper
     }
 
-    /// Stiffness by which a gap (m), negative where bodies overlap, acts as a load (N/m).
+    /// Stiffness by which a gap (m), negative where bodies overlap, acts as a load (N/m): what the dashpot has done before the
+    /// touch is not its work.
     #[inline]
-    pub(crate) fn load_stiffness(&self, gap: f64) -> f64 {
-        if gap < 0.0 { self.spring } else { self.stiffness() }
-    }
-
-    /// The part of the force that does not change with the way (N): what the dashpot has done before the touch is not its work.
-    #[inline]
-    pub(crate) fn constant(&self, gap: f64, inside: f64) -> f64 {
-        self.spring * gap + self.damper * (gap + inside)
+    pub(crate) fn load_stiffness(&self, is_inside: bool) -> f64 {
+        if is_inside { self.spring } else { self.stiffness() }
     }
 
     /// Energy that the dashpot takes on the way from `inside` to `depth` (J).

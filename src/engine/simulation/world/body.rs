@@ -14,8 +14,8 @@ use crate::simulation::rock_in_contact::RockInContact;
 use crate::simulation::settings::RunSettings;
 use crate::simulation::{PathState, Stop, Trajectory};
 use crate::solver::contact_state::ContactEnvironment;
-use crate::solver::island::{Given, Hit, IslandBody};
-use crate::solver::loss::Loss;
+use crate::solver::island::{Hit, IslandBody};
+use crate::solver::loss::{Given, Loss};
 use crate::solver::step_control::ONSET;
 
 impl<'a> WorldBody<'a> {

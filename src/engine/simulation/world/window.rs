@@ -15,8 +15,8 @@ use crate::contact::pair::{PairHistory, PairImpact, meeting_s};
 use crate::simulation::Stop;
 use crate::simulation::settings::RunSettings;
 use crate::solver::island::partition::Partition;
-use crate::solver::island::{Done, Given, Island, RigidIsland};
-use crate::solver::loss::Loss;
+use crate::solver::island::{Done, Island, RigidIsland};
+use crate::solver::loss::{Given, Loss};
 use crate::solver::step_control::{ONSET, StepError};
 
 /// A gap between two rocks that is rounding of their flight (–, relative to the sum of their radii).

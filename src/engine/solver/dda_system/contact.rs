@@ -1,10 +1,11 @@
-//! One contact inside a fixed step: its submatrices, and the judgement of its state.
+//! One contact inside a fixed step, of a sphere with the mesh or of two spheres: its submatrices, and the judgement of its state.
 
+use super::StepConstants;
 use super::slider::{Change, DdaSlider, along};
 use crate::contact::TOUCH;
 use crate::contact::history::{ContactHistory, SAME_GRIP, carry};
 use crate::contact::submatrix::{
-    Mat6, Vec6, displacement, friction_load, gap, moment_load, normal_load, normal_row,
+    Mat3x6, Mat6, Vec6, displacement, friction_load, gap, moment_load, normal_load, normal_row,
     normal_stiffness, rolling_stiffness, shear_load, shear_stiffness, slip, touching_point,
 };
 use crate::contact::{ContactPoint, Feature};
@@ -12,24 +13,9 @@ use crate::ground::{FixedStepNormal, FrictionLimits, Law};
 use crate::rock::Vec3;
 use crate::solver::loss::Loss;
 
-/// What is the same for all contacts of a step.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct StepConstants {
-    /// Length (s).
-    pub dt: f64,
-    /// Displacement and rotation without contacts.
-    pub free: Vec6,
-    /// Radius of the sphere (m).
-    pub radius: f64,
-    /// Way of the touched point per newton along the surface (m/N) and turn of the sphere per newton metre.
-    pub compliance: (f64, f64),
-    /// Whether shear springs keep their stretch; if not, friction is that of the last step's end, as printed.
-    pub shear_memory: bool,
-}
-
-/// What of a contact the matrix is made of.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct ContactMatrixTerms {
+/// What of a contact with the mesh the matrix is made of.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(super) struct ContactMatrixTerms {
     v: Vec3,
     p1: Vec3,
     normal: f64,
@@ -38,17 +24,8 @@ pub(crate) struct ContactMatrixTerms {
 }
 
 impl ContactMatrixTerms {
-    /// No contact.
-    pub(crate) const NONE: Self = Self {
-        v: Vec3::new(0.0, 0.0, 0.0),
-        p1: Vec3::new(0.0, 0.0, 0.0),
-        normal: 0.0,
-        shear: 0.0,
-        roll: 0.0,
-    };
-
-    /// Its stiffness.
-    pub(crate) fn stiffness(&self) -> Mat6 {
+    /// Its stiffness, Eqs. (10) and (13).
+    pub(super) fn stiffness(&self) -> Mat6 {
         let row = normal_row(&self.v);
         normal_stiffness(self.normal, &row)
             + shear_stiffness(self.shear, &displacement(&self.p1), &row)
@@ -56,57 +33,70 @@ impl ContactMatrixTerms {
     }
 }
 
-/// One contact of a step.
+/// What a contact sees of the displacements of a step.
 #[derive(Debug, Clone, Copy)]
+pub(crate) struct ContactWays {
+    /// Penetration at the end (m), negative when apart.
+    pub(crate) depth: f64,
+    /// Slip of the touched point (m), Eq. (16), of the first sphere relative to the second.
+    pub(super) slip: Vec3,
+    /// Rotation.
+    turn: Vec3,
+}
+
+/// One contact of a step.
+#[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct DdaContact {
     /// Its memory.
-    pub history: usize,
+    pub(crate) history: usize,
     /// Where on the mesh.
-    pub feature: Feature,
+    pub(crate) feature: Feature,
     /// Triangle whose ground answers.
-    pub triangle: u32,
-    /// `V`, from the centre to the touched point.
-    v: Vec3,
-    /// `P1` from the centre (m).
-    p1: Vec3,
-    radius: f64,
-    /// `λ` at the step's start (m).
-    gap: f64,
-    element: FixedStepNormal,
-    limits: FrictionLimits,
-    /// Normal force at the end of the last step (N).
-    push_before: f64,
-    /// Normal force (N).
-    pub normal_force: f64,
+    pub(crate) triangle: u32,
+    /// Radius, the smaller one of two (m).
+    pub(crate) radius: f64,
+    /// `V`, from the centre to the touched point or the other centre, frozen at the step's start.
+    pub(super) v: Vec3,
+    /// `P1` from the centre (m), Eq. (5), and the same of the second sphere.
+    pub(super) points: [Vec3; 2],
+    /// `λ` at the step's start (m), Eq. (7).
+    pub(super) gap: f64,
+    /// Whether it pulls as well as it pushes, and never slides.
+    pub(super) bonded: bool,
+    pub(super) normal: FixedStepNormal,
+    pub(super) limits: FrictionLimits,
+    pub(super) shear: DdaSlider,
+    pub(super) roll: DdaSlider,
+    /// Whether the shear spring remembers; without, as printed.
+    pub(super) shear_memory: bool,
+    /// Normal force at the end of the last step (N): the printed scheme caps friction by it.
+    pub(super) push_before: f64,
+    /// Normal force of the last judgement (N), positive when pressing.
+    pub(super) normal_force: f64,
     /// Not open.
-    pub presses: bool,
-    pub shear: DdaSlider,
-    pub roll: DdaSlider,
-    shear_memory: bool,
+    pub(super) presses: bool,
 }
 
 impl DdaContact {
-    /// No contact.
-    pub(crate) const NONE: Self = Self {
-        history: 0,
-        feature: Feature::NONE,
-        triangle: 0,
-        v: Vec3::new(0.0, 0.0, 0.0),
-        p1: Vec3::new(0.0, 0.0, 0.0),
-        radius: 0.0,
-        gap: 0.0,
-        element: FixedStepNormal::NONE,
-        limits: FrictionLimits::NONE,
-        push_before: 0.0,
-        normal_force: 0.0,
-        presses: false,
-        shear: DdaSlider::NONE,
-        roll: DdaSlider::NONE,
-        shear_memory: true,
-    };
+    /// The elements of a law over the step; a unit of shear force takes `compliance` (m/N) off the way.
+    pub(super) fn new(
+        step: &StepConstants,
+        law: &Law,
+        captured: bool,
+        (shear, turn): (f64, f64),
+    ) -> Self {
+        Self {
+            normal: law.normal_over_step(captured, step.dt),
+            limits: law.limits(),
+            shear: DdaSlider::new(&law.shear, step.dt, shear),
+            roll: DdaSlider::new(&law.rolling, step.dt, turn),
+            shear_memory: step.shear_memory,
+            ..Self::default()
+        }
+    }
 
-    /// The contact of a touch and its memory (number `k`), in the state in which it was left or will likely be.
-    pub(crate) fn new(
+    /// The contact of a touch and its memory (number `k`).
+    pub(super) fn with_mesh(
         step: &StepConstants,
         law: &Law,
         touch: &ContactPoint,
@@ -118,50 +108,61 @@ impl DdaContact {
             history: k,
             feature: touch.feature,
             triangle: touch.triangle,
-            v,
-            p1,
             radius: step.radius,
+            v,
+            points: [p1, Vec3::zeros()],
             gap: gap(&v, &p1, &(v * touch.distance_m)),
-            element: law.normal_over_step(history.captured, step.dt),
-            limits: law.limits(),
-            push_before: history.normal_force,
-            shear: DdaSlider::new(&law.shear, step.dt, step.compliance.0),
-            roll: DdaSlider {
-                stretch: history.roll,
-                ..DdaSlider::new(&law.rolling, step.dt, step.compliance.1)
-            },
-            shear_memory: step.shear_memory,
-            ..Self::NONE
+            ..Self::new(step, law, history.captured, step.compliance)
         };
-        if step.shear_memory {
-            contact.shear.stretch = carry(history.shear, &history.n, &touch.normal);
-        } else {
-            contact.shear.damper = 0.0;
-        }
-        contact.presses = history.closed || contact.depth(&step.free) > 0.0;
-        contact.expect(&step.free, history);
+        contact.roll.stretch = history.roll;
+        let stretch = carry(history.shear, &history.n, &touch.normal);
+        let free = contact.ways(&step.free);
+        let left = (history.normal_force, stretch);
+        contact.begin((history.closed, history.slides), left, &free);
         contact
     }
 
-    /// Begins with the sliders' state that the free motion and the last normal force suggest.
-    fn expect(&mut self, free: &Vec6, history: &ContactHistory) {
-        if history.normal_force <= 0.0 {
+    /// Begins in the state in which it was left, open or closed and sliding or not, with its normal force (N) and stretch (m), or in
+    /// that which these and the free motion suggest.
+    pub(super) fn begin(
+        &mut self,
+        (closed, slides): (bool, bool),
+        (push, stretch): (f64, Vec3),
+        free: &ContactWays,
+    ) {
+        self.push_before = push;
+        if self.shear_memory {
+            self.shear.stretch = stretch;
+        } else {
+            self.shear.damper = 0.0;
+        }
+        self.presses = closed || free.depth > 0.0;
+        if push <= 0.0 || self.bonded {
             return;
         }
-        let (way, turn) = self.ways(free);
-        let cap = self.limits.caps(history.normal_force).0;
+        let (cap, roll_cap) = self.limits.caps(push);
         if self.shear_memory {
-            self.shear.judge(&way, &Vec3::zeros(), cap);
-        } else if history.slides {
-            (self.shear.slides, self.shear.friction) = (true, along(&way) * cap);
+            self.shear.judge(&free.slip, &Vec3::zeros(), cap);
+        } else if slides {
+            (self.shear.slides, self.shear.friction) = (true, along(&free.slip) * cap);
         }
         if self.limits.has_rolling() {
-            self.roll.judge(&turn, &Vec3::zeros(), self.limits.caps(history.normal_force).1);
+            self.roll.judge(&free.turn, &Vec3::zeros(), roll_cap);
         }
     }
 
-    /// Penetration after the displacement `d` (m), negative when apart.
-    pub(crate) fn depth(&self, d: &Vec6) -> f64 {
+    /// What it sees of the displacement `d` of its sphere.
+    pub(crate) fn ways(&self, d: &Vec6) -> ContactWays {
+        self.see(d, &(displacement(&self.points[0]) * d))
+    }
+
+    /// What it sees of the displacements `d` of a sphere and `u` of the touched point, or of those relative to the other sphere's.
+    pub(super) fn see(&self, d: &Vec6, u: &Vec3) -> ContactWays {
+        let turn = d.fixed_rows::<3>(3).into();
+        ContactWays { depth: self.depth(d), slip: slip(&self.v, u), turn }
+    }
+
+    fn depth(&self, d: &Vec6) -> f64 {
         normal_row(&self.v).dot(d) - self.gap
     }
 
@@ -171,152 +172,158 @@ impl DdaContact {
         -self.v.dot(&touch.normal) > SAME_GRIP && deeper <= TOUCH * self.radius
     }
 
-    /// Slip of the touched point, Eq. (16), and rotation.
-    fn ways(&self, d: &Vec6) -> (Vec3, Vec3) {
-        (slip(&self.v, &(displacement(&self.p1) * d)), d.fixed_rows::<3>(3).into())
-    }
-
-    /// Penetration at the start (m), 0 when apart.
+    /// Penetration at the start (m), 0 when apart: the dashpot begins at the touch.
     fn inside(&self) -> f64 {
-        (-self.gap).max(0.0)
+        if self.bonded { -self.gap } else { (-self.gap).max(0.0) }
     }
 
-    /// Normal force after `d` (N): spring and dashpot, the dashpot working from the touch on.
+    /// Normal force at a depth (N): spring and dashpot, the dashpot working from the touch on; negative only in a bond.
     ///
     /// Counted from the touch the force grows steadily from nothing as the rock gets in, so every set of contacts has
     /// one state that fits; a dashpot that worked on the way there would leave none.
-    fn normal_force(&self, d: &Vec6) -> f64 {
-        self.element.force(self.depth(d), self.inside())
+    pub(super) fn pull_or_push(&self, depth: f64) -> f64 {
+        self.normal.force(depth, self.inside())
+    }
+
+    /// Shear force (N) and rolling moment (N m), against slip and turn.
+    pub(super) fn forces(&self, ways: &ContactWays) -> (Vec3, Vec3) {
+        if !self.presses {
+            return (Vec3::zeros(), Vec3::zeros());
+        }
+        let has_rolling = self.limits.has_rolling();
+        let moment = if has_rolling { self.roll.force(&ways.turn) } else { Vec3::zeros() };
+        (self.shear.force(&ways.slip), moment)
     }
 
     /// Its springs and dashpots in force.
-    pub(crate) fn shape(&self) -> ContactMatrixTerms {
-        let of = |slider: &DdaSlider, acts: bool| {
-            if acts && !slider.slides { slider.spring + slider.damper } else { 0.0 }
-        };
-        ContactMatrixTerms {
-            v: self.v,
-            p1: self.p1,
-            normal: if self.presses { self.element.stiffness() } else { 0.0 },
-            shear: of(&self.shear, self.presses),
-            roll: of(&self.roll, self.presses && self.limits.has_rolling()),
+    pub(super) fn terms(&self) -> ContactMatrixTerms {
+        let [normal, shear] = self.stiffnesses();
+        let roll = self.roll.stiffness(self.presses && self.limits.has_rolling());
+        ContactMatrixTerms { v: self.v, p1: self.points[0], normal, shear, roll }
+    }
+
+    /// Stiffness in force along `V` and along the surface (N/m).
+    pub(super) fn stiffnesses(&self) -> [f64; 2] {
+        let normal = if self.presses { self.normal.stiffness() } else { 0.0 };
+        [normal, self.shear.stiffness(self.presses)]
+    }
+
+    /// Load of the normal element, Eq. (11).
+    pub(super) fn normal_load(&self) -> Vec6 {
+        let stiff = self.normal.load_stiffness(self.bonded || self.gap < 0.0);
+        normal_load(stiff, self.gap, &normal_row(&self.v))
+    }
+
+    /// Load of the shear element, Eq. (14), or of friction, Eqs. (17) and (18).
+    pub(super) fn shear_load(&self, t: &Mat3x6) -> Vec6 {
+        if self.shear.slides {
+            friction_load(t, &self.shear.friction)
+        } else {
+            shear_load(self.shear.spring, t, &self.shear.stretch)
         }
     }
 
-    /// Adds its loads to `F`.
-    pub(crate) fn add_load(&self, f: &mut Vec6) {
+    /// Adds the loads of a contact with the mesh to `F`.
+    pub(super) fn add_load(&self, f: &mut Vec6) {
         if !self.presses {
             return;
         }
-        let t = displacement(&self.p1);
-        let stiff = self.element.load_stiffness(self.gap);
-        *f += normal_load(stiff, self.gap, &normal_row(&self.v));
-        *f += if self.shear.slides {
-            friction_load(&t, &self.shear.friction)
-        } else {
-            shear_load(self.shear.spring, &t, &self.shear.stretch)
-        };
+        *f += self.normal_load();
+        *f += self.shear_load(&displacement(&self.points[0]));
         if self.limits.has_rolling() {
             *f -= moment_load(&self.roll.force(&Vec3::zeros()));
         }
     }
 
-    /// Opens or closes as the normal force after the displacement `d` asks; whether that changed anything.
-    pub(crate) fn open_or_close(&mut self, d: &Vec6) -> bool {
-        self.normal_force = self.normal_force(d).max(0.0);
-        std::mem::replace(&mut self.presses, self.normal_force > 0.0) != self.presses
+    /// Takes the normal force at a depth; whether it presses there. A contact without bond is open where it would pull.
+    fn press(&mut self, depth: f64) -> bool {
+        let force = self.pull_or_push(depth);
+        self.normal_force = if self.bonded { force } else { force.max(0.0) };
+        self.bonded || force > 0.0
     }
 
-    /// Compares its state with the displacement `d` that came out, and changes it where they do not agree.
-    pub(crate) fn judge(&mut self, d: &Vec6) -> Change {
-        let (shear_force, rolling_moment) = self.forces(d);
-        let mut change = if self.open_or_close(d) { Change::Mode } else { Change::None };
-        if self.presses {
-            let (way, turn) = self.ways(d);
-            let cap = self.limits.caps(self.normal_force).0;
-            change = change.max(if self.shear_memory {
-                self.shear.judge(&way, &shear_force, cap)
-            } else {
-                let before = self.limits.caps(self.push_before).0;
-                self.shear.judge_as_printed(&way, cap, before)
-            });
-            if self.limits.has_rolling() {
-                change = change.max(self.roll.judge(
-                    &turn,
-                    &rolling_moment,
-                    self.limits.caps(self.normal_force).1,
-                ));
-            }
+    /// Opens or closes as the normal force asks; whether that changed anything.
+    fn open_or_close(&mut self, depth: f64) -> bool {
+        let presses = self.press(depth);
+        std::mem::replace(&mut self.presses, presses) != presses
+    }
+
+    /// Compares its state with the displacements that came out, and changes it where they do not agree.
+    /// Forces are those of the solution in hand, before it opens or closes.
+    pub(crate) fn judge(&mut self, ways: &ContactWays) -> Change {
+        let (shear_force, moment) = self.forces(ways);
+        let change = if self.open_or_close(ways.depth) { Change::Mode } else { Change::None };
+        if !self.presses || self.bonded {
+            return change;
         }
-        change
+        let (cap, roll_cap) = self.limits.caps(self.normal_force);
+        let change = change.max(if self.shear_memory {
+            self.shear.judge(&ways.slip, &shear_force, cap)
+        } else {
+            self.shear.judge_as_printed(&ways.slip, cap, self.limits.caps(self.push_before).0)
+        });
+        if !self.limits.has_rolling() {
+            return change;
+        }
+        change.max(self.roll.judge(&ways.turn, &moment, roll_cap))
     }
 
     /// Ends the search for its state: closed and sticking for this step if it begins inside, else without friction.
     pub(crate) fn stick(&mut self) {
         let apart = self.begins_apart();
         self.presses |= !apart;
-        self.shear.slides = apart || !self.limits.has_friction();
+        self.shear.slides = apart || !self.limits.has_friction() && !self.bonded;
         self.roll.slides = apart;
         (self.shear.friction, self.roll.friction) = (Vec3::zeros(), Vec3::zeros());
     }
 
+    /// A bond is there at any distance.
     fn begins_apart(&self) -> bool {
-        self.gap > TOUCH * self.radius
+        self.gap > TOUCH * self.radius && !self.bonded
     }
 
     /// After [`Self::stick`]: opens or closes if it begins apart; whether that changed anything.
-    pub(crate) fn open_or_close_apart(&mut self, d: &Vec6) -> bool {
+    pub(crate) fn open_or_close_apart(&mut self, ways: &ContactWays) -> bool {
         if self.begins_apart() {
-            return self.open_or_close(d);
+            return self.open_or_close(ways.depth);
         }
-        self.normal_force = self.normal_force(d).max(0.0);
+        self.press(ways.depth);
         false
     }
 
-    /// Shear force and rolling moment after `d`.
-    fn forces(&self, d: &Vec6) -> (Vec3, Vec3) {
-        let (way, turn) = self.ways(d);
-        if !self.presses {
-            (Vec3::zeros(), Vec3::zeros())
-        } else if self.limits.has_rolling() {
-            (self.shear.force(&way), self.roll.force(&turn))
-        } else {
-            (self.shear.force(&way), Vec3::zeros())
-        }
-    }
-
-    /// Energy that its dashpots and sliders take over `d` (J).
-    pub(crate) fn loss(&self, d: &Vec6) -> Loss {
-        let (shear_force, rolling_moment) = self.forces(d);
-        let (way, turn) = self.ways(d);
-        let damping = self.element.loss_j(self.presses, self.depth(d), self.inside());
+    /// Energy that its dashpots and sliders take (J).
+    pub(crate) fn loss(&self, ways: &ContactWays) -> Loss {
+        let (shear_force, moment) = self.forces(ways);
+        let damping = self.normal.loss_j(self.presses, ways.depth, self.inside());
         let mut loss = Loss { damping, ..Loss::default() };
         if self.shear_memory {
-            let (friction, damping) = self.shear.loss(&way, &shear_force);
+            let (friction, damping) = self.shear.loss(&ways.slip, &shear_force);
             loss.friction = friction;
             loss.damping += damping;
         } else if self.shear.slides {
-            loss.friction = shear_force.dot(&way);
+            loss.friction = shear_force.dot(&ways.slip);
         }
         if self.limits.has_rolling() {
-            let (slider, dashpot) = self.roll.loss(&turn, &rolling_moment);
+            let (slider, dashpot) = self.roll.loss(&ways.turn, &moment);
             loss.rolling = slider + dashpot;
         }
         loss
     }
 
+    /// Whether it was closed at the step's end, whether it slid, and the stretch that its shear spring has left (m).
+    pub(super) fn left(&self, ways: &ContactWays) -> (bool, bool, Vec3) {
+        let stretch =
+            if self.shear_memory { self.shear.end(&self.forces(ways).0) } else { Vec3::zeros() };
+        (self.presses || ways.depth > 0.0, self.presses && self.shear.slides, stretch)
+    }
+
     /// Writes what it remembers of the step into its memory.
-    pub(crate) fn remember(&self, d: &Vec6, history: &mut ContactHistory) {
-        let (shear_force, rolling_moment) = self.forces(d);
+    pub(crate) fn remember(&self, ways: &ContactWays, history: &mut ContactHistory) {
         (history.feature, history.triangle, history.n) = (self.feature, self.triangle, -self.v);
-        if self.shear_memory {
-            history.shear = self.shear.end(&shear_force);
-        }
-        if self.limits.has_rolling() {
-            history.roll = self.roll.end(&rolling_moment);
-        }
+        (history.closed, history.slides, history.shear) = self.left(ways);
         history.normal_force = self.normal_force;
-        history.slides = self.presses && self.shear.slides;
-        history.closed = self.presses || self.depth(d) > 0.0;
+        if self.limits.has_rolling() {
+            history.roll = self.roll.end(&self.forces(ways).1);
+        }
     }
 }

@@ -27,7 +27,7 @@ pub(crate) enum Change {
 }
 
 /// A spring beside a dashpot, in series with a slider: shear (m, N) or rolling (rad, N m).
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct DdaSlider {
     /// Stretch at the step's start.
     pub stretch: Vec3,
@@ -44,25 +44,20 @@ pub(crate) struct DdaSlider {
 }
 
 impl DdaSlider {
-    /// None.
-    pub(crate) const NONE: Self = Self {
-        stretch: Vec3::new(0.0, 0.0, 0.0),
-        spring: 0.0,
-        damper: 0.0,
-        compliance: 0.0,
-        slides: false,
-        friction: Vec3::new(0.0, 0.0, 0.0),
-    };
-
     /// A friction element over a step of length `dt` (s), at rest.
     pub(crate) fn new(element: &FrictionElement, dt: f64, compliance: f64) -> Self {
         let [spring, damper] = element.over_step(dt);
-        Self { spring, damper, compliance, ..Self::NONE }
+        Self { spring, damper, compliance, ..Self::default() }
     }
 
     /// Force after `way`, should it stick.
     pub(crate) fn sticking(&self, way: &Vec3) -> Vec3 {
         self.stretch * self.spring + way * (self.spring + self.damper)
+    }
+
+    /// Its stiffness while it `acts` (N/m): nothing while it slides.
+    pub(crate) fn stiffness(&self, acts: bool) -> f64 {
+        if acts && !self.slides { self.spring + self.damper } else { 0.0 }
     }
 
     pub(crate) fn force(&self, way: &Vec3) -> Vec3 {

@@ -7,13 +7,13 @@
 
 use super::assembly::Island;
 use super::body::IslandBody;
-use super::outcome::{Done, Given};
-use super::pair_contact::break_bond;
+use super::outcome::Done;
 use crate::contact::history::carry;
 use crate::contact::pair::{PairHistory, PairImpact, between};
 use crate::math;
 use crate::rock::Vec3;
 use crate::solver::contact_state::ContactEnvironment;
+use crate::solver::loss::Given;
 use crate::solver::loss::Loss;
 use crate::solver::step_control;
 use crate::solver::tableau::Tableau;
@@ -108,7 +108,7 @@ impl Island<'_> {
                     .slides(pair_history.shear_force.norm(), pair_history.normal_force);
             // forces jump as a bond lets go: the next step must begin with rates of its own
             if pair_history.overload() > 0.0 {
-                break_bond(pair_history);
+                pair_history.break_bond();
                 self.pair_forces[k] = (pair_history.normal_force, pair_history.shear_force);
                 self.fresh = false;
                 broken += 1;

@@ -6,7 +6,6 @@
 
 use super::active_set::ActiveSet;
 use super::body::{BodySlot, IslandBody};
-use super::dda_system::Global;
 use super::outcome::Done;
 use super::pair_contact::{PairContact, Twist};
 use super::rigid::RigidIsland;
@@ -15,7 +14,8 @@ use crate::ground::Law;
 use crate::rock::Vec3;
 use crate::solver::Settings;
 use crate::solver::contact_state::{ContactEnvironment, Onset};
-use crate::solver::step_control::{self, Control, ONSET, StepError, TRAVEL};
+use crate::solver::dda::DdaPairs;
+use crate::solver::step_control::{self, Control, ONSET, StepError};
 use crate::solver::tableau::{STAGES, TR_BDF2};
 use crate::terrain::Terrain;
 
@@ -51,8 +51,8 @@ pub struct Island<'a> {
     pub(super) pair_rates: Vec<[Vec3; STAGES]>,
     /// Forces of the last solution.
     pub(super) pair_forces: Vec<(f64, Vec3)>,
-    /// The global system of fixed steps.
-    pub(super) global: Global,
+    /// Contacts between rocks in fixed steps, and their system.
+    pub(super) dda_pairs: DdaPairs,
     /// Work space of rigid steps.
     pub(crate) rigid: RigidIsland,
 }
@@ -85,7 +85,7 @@ impl<'a> Island<'a> {
             onset: Onset::default(),
             pair_rates: Vec::new(),
             pair_forces,
-            global: Global::default(),
+            dda_pairs: DdaPairs::default(),
             rigid: RigidIsland::default(),
             pair_histories,
         }
@@ -200,13 +200,14 @@ impl<'a> Island<'a> {
         if omega > 0.0 { omega } else { all.fold(1.0, f64::max) }
     }
 
-    /// Longest step in which nothing jumps over a feature or another rock (s).
-    pub(super) fn travel_limit(&mut self) -> f64 {
+    /// Longest step in which no rock goes further than `travel` (–, relative to R) and nothing jumps over a feature or another
+    /// rock (s).
+    pub(super) fn travel_limit(&mut self, travel: f64) -> f64 {
         let mut limit = f64::INFINITY;
         for member in self.members.iter_mut().filter(|member| !member.flying) {
             let IslandBody { state, body, laws, .. } = &mut **member;
             let world = ContactEnvironment { terrain: self.terrain, body: *body, laws };
-            limit = limit.min(step_control::travel_limit(&world, state));
+            limit = limit.min(step_control::travel_limit(&world, state, travel));
         }
         for pair_history in &self.pair_histories {
             let [a, b] = [pair_history.a, pair_history.b].map(|k| &self.members[k as usize]);
@@ -215,7 +216,7 @@ impl<'a> Island<'a> {
             }
             // two rocks may close their gap and press in by a part of the smaller radius, no more
             let gap = (a.state.c - b.state.c).norm() - a.body.radius - b.body.radius;
-            let room = TRAVEL * a.body.radius.min(b.body.radius) + gap.max(0.0);
+            let room = travel * a.body.radius.min(b.body.radius) + gap.max(0.0);
             let speed = (a.state.v - b.state.v).norm();
             if speed > 0.0 {
                 limit = limit.min(room / speed);

@@ -3,18 +3,17 @@
 //! The state of a rock alone (`ContactState`) with what an island adds: the base and guess of the
 //! stage in hand, motions with and without contact forces, and what it gives to other rocks.
 
-use super::outcome::{Done, Given};
+use super::outcome::Done;
 use super::pair_contact::Twist;
 use crate::contact::Feature;
 use crate::contact::history::ContactHistory;
-use crate::contact::submatrix::Vec6;
 use crate::ground::Law;
 use crate::rock::Vec3;
 use crate::solver::body::Body;
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
-use crate::solver::dda_system::contact::DdaContact;
 use crate::solver::impact_progress::ImpactProgress;
 use crate::solver::law::StageContact;
+use crate::solver::loss::Given;
 use crate::solver::roughness::RoughFacets;
 use crate::solver::stage::End;
 use crate::solver::stem_load::StemLoad;
@@ -58,10 +57,6 @@ pub struct IslandBody {
     pub(super) given: [Given; STAGES],
     /// Memories at the step's start: a try that is thrown away goes back to them.
     pub(super) known: usize,
-    /// Contacts with the mesh in a fixed step.
-    pub(super) joints: Vec<DdaContact>,
-    /// Displacement in a fixed step: free, and what contacts add.
-    pub(super) ways: [Vec6; 2],
 }
 
 /// What a rock is and remembers between two steps: all that later steps depend on.
@@ -136,8 +131,6 @@ impl IslandBody {
             kept: Vec::new(),
             given: [Given::default(); STAGES],
             known: 0,
-            joints: Vec::new(),
-            ways: [Vec6::zeros(); 2],
         }
     }
 

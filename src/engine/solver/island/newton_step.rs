@@ -13,12 +13,12 @@
 //! rows:    N = ± (n, 0),   S = (± Q, lever n×)          of one end, so s = Σ N x and u = Σ S x
 //! ```
 
-use super::block_factor::{Below, Blocks, Factor};
 use super::body::{BodySlot, IslandBody};
 use super::pair_contact::{PairContact, Twist};
 use crate::contact::submatrix::{Mat3x6, Mat6, Vec6};
 use crate::ground::{LinearFriction, NormalLine};
 use crate::rock::Vec3;
+use crate::solver::block_factor::{Below, Blocks, Factor};
 use crate::solver::law::StageContact;
 use nalgebra::{DMatrix, DVector, Matrix3};
 

@@ -1,38 +1,7 @@
 //! What a step of an island did.
 
 use crate::rock::Vec3;
-use crate::solver::loss::Loss;
-
-/// Energy that a rock gives away through its contacts with other rocks (J), or power (W).
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Given {
-    /// Its half of what those contacts take.
-    pub lost: f64,
-    /// Handed on to the other rocks, negative if received.
-    pub passed_on: f64,
-}
-
-impl Given {
-    /// Of the two ends of a contact, from the work that each does on it.
-    ///
-    /// `lost` is half of the sum for each; what is left is equal and opposite, so that `passed_on`
-    /// adds up to 0 over a world.
-    pub(super) fn of_ends([a, b]: [f64; 2]) -> [Self; 2] {
-        let lost = 0.5 * (a + b);
-        [Self { lost, passed_on: a - lost }, Self { lost, passed_on: b - lost }]
-    }
-
-    /// Adds `other` times `factor`.
-    pub(super) fn add(&mut self, other: &Self, factor: f64) {
-        self.lost += factor * other.lost;
-        self.passed_on += factor * other.passed_on;
-    }
-
-    /// All of it.
-    pub fn sum(&self) -> f64 {
-        self.lost + self.passed_on
-    }
-}
+use crate::solver::loss::{Given, Loss};
 
 /// What one step did.
 #[derive(Debug, Clone, Default)]

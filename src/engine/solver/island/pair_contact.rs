@@ -5,7 +5,6 @@ use crate::contact::pair::{Bond, PairHistory, PairImpact, between};
 use crate::ground::{Law, NormalElement, NormalLine};
 use crate::rock::Vec3;
 use crate::solver::body::Body;
-use crate::solver::law::within;
 
 /// A velocity and a spin.
 pub(super) type Twist = (Vec3, Vec3);
@@ -194,14 +193,4 @@ impl PairContact {
     pub(super) fn stretch(&self, h: f64) -> Vec3 {
         self.law.shear.stretch_after(&self.shear_force, &self.shear, h)
     }
-}
-
-/// A broken bond keeps what friction can hold; the rest of its stretch is lost.
-pub(super) fn break_bond(pair_history: &mut PairHistory) {
-    pair_history.bond = None;
-    pair_history.captured = true;
-    pair_history.normal_force = pair_history.normal_force.max(0.0);
-    let (slider, pressed) = (pair_history.law.shear, pair_history.normal_force);
-    pair_history.shear = within(pair_history.shear, slider.longest_stretch(pressed));
-    pair_history.shear_force = slider.capped(pair_history.shear_force, pressed);
 }

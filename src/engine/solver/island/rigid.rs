@@ -20,12 +20,13 @@ mod sweeps;
 
 use super::body::{BodySlot, IslandBody};
 use super::contact_queue::{ContactQueue, ContactsOfRocks};
-use super::outcome::{Done, Given, Hit};
+use super::outcome::{Done, Hit};
 use crate::contact::pair::{PairHistory, between};
 use crate::rock::Vec3;
 use crate::solver::contact_state::ContactEnvironment;
 use crate::solver::impact::BlowTable;
 use crate::solver::law::capture_m_s;
+use crate::solver::loss::Given;
 use crate::solver::loss::Loss;
 use crate::solver::rigid::{HELD, remember};
 use crate::solver::step_control::StepError;

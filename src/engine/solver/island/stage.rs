@@ -10,12 +10,12 @@
 
 use super::assembly::Island;
 use super::body::IslandBody;
-use super::outcome::Given;
 use super::pair_contact::PairContact;
 use super::pair_contact::TOUCH;
 use crate::contact::history::carry;
 use crate::rock::Vec3;
 use crate::solver::contact_state::ContactEnvironment;
+use crate::solver::loss::Given;
 use crate::solver::stage::{AGREED, PASSES};
 use crate::solver::tableau::{STAGES, Tableau};
 

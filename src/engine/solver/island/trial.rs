@@ -11,7 +11,7 @@ use crate::contact::pair::{PairHistory, between};
 use crate::solver::contact_state::{ContactEnvironment, Onset};
 use crate::solver::law::StageContact;
 use crate::solver::step_control::{
-    self, Begun, Control, ONSET, OnsetSearch, StepError, TrialStep, TryOutcome,
+    self, Begun, Control, ONSET, OnsetSearch, StepError, TRAVEL, TrialStep, TryOutcome,
 };
 
 /// Speed that a spring may still give a rock as its contact opens within a step (–, relative to that of its impact): 4e-4 of
@@ -72,7 +72,7 @@ impl TrialStep for IslandTrial<'_, '_> {
     }
 
     fn limit(&mut self) -> f64 {
-        self.island.travel_limit()
+        self.island.travel_limit(TRAVEL)
     }
 
     fn omega(&self) -> f64 {

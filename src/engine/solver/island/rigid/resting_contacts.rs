@@ -15,8 +15,8 @@ use crate::contact::pair::{PairHistory, between};
 use crate::rock::Vec3;
 use crate::solver::contact_state::ContactEnvironment;
 use crate::solver::island::body::BodySlot;
-use crate::solver::island::outcome::Given;
 use crate::solver::law::capture_m_s;
+use crate::solver::loss::Given;
 use crate::terrain::Terrain;
 
 /// Whether a contact with this gap (m) and normal speed (m/s) at the start of a step of length `dt` (s) is a sustained

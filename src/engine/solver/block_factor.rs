@@ -13,9 +13,11 @@
 //! and half of the work falls away. No pivoting between blocks: diagonal blocks carry inertia and
 //! are far from singular. Cost: O(fill) products of 6×6.
 
-use super::ordering::Ordering;
+mod ordering;
+
 use crate::contact::submatrix::{Mat6, Vec6};
 use nalgebra::{Cholesky, Const, LU};
+use ordering::Ordering;
 
 /// A block below the diagonal: row and column among the rocks, row > column.
 pub(super) type Below = (usize, usize, Mat6);
@@ -72,9 +74,15 @@ struct Walk {
 }
 
 impl Factor {
-    /// Solves a system for `load` in place, six numbers a rock; `None` where a pivot is singular, or not positive
-    /// definite in a symmetric system.
+    /// Solves a system for `load` in place, six numbers a rock; `None` where [`Self::factorise`] finds none.
     pub(super) fn solve(&mut self, blocks: Blocks, load: &mut [f64]) -> Option<()> {
+        self.factorise(blocks)?;
+        self.substitute(load)
+    }
+
+    /// Factorises a system for [`Self::substitute`]; `None` where a pivot is singular, or not positive definite in a
+    /// symmetric system.
+    pub(super) fn factorise(&mut self, blocks: Blocks) -> Option<()> {
         let known = self.joined.iter();
         let same = self.ordering.place.len() == blocks.diagonal.len()
             && self.joined.len() == blocks.below.len()
@@ -83,8 +91,7 @@ impl Factor {
             self.analyse(blocks);
         }
         self.fill(blocks);
-        self.factorise(blocks)?;
-        self.substitute(load)
+        self.eliminate(blocks)
     }
 
     /// Finds order and pattern anew, and the place of each block in it.
@@ -123,7 +130,7 @@ impl Factor {
     }
 
     /// Column by column, each after those that reach it.
-    fn factorise(&mut self, blocks: Blocks) -> Option<()> {
+    fn eliminate(&mut self, blocks: Blocks) -> Option<()> {
         let Self { ordering: Ordering { place, starts, rows }, lower, upper, walk, .. } = self;
         let symmetric = blocks.above.is_none();
         let mut diagonal = vec![Mat6::zeros(); place.len()];
@@ -166,7 +173,7 @@ impl Factor {
 
     /// `L y = b`, then `U x = y`.
     /// The load is put in the order of elimination first, and the solution taken out of it.
-    fn substitute(&self, load: &mut [f64]) -> Option<()> {
+    pub(super) fn substitute(&self, load: &mut [f64]) -> Option<()> {
         let Ordering { place, starts, rows } = &self.ordering;
         let mut x = vec![Vec6::zeros(); place.len()];
         for (&at, six) in place.iter().zip(load.chunks_exact(6)) {

@@ -1,0 +1,144 @@
+//! The contacts between the rocks of a fixed step, and the system of the rocks that they join.
+//!
+//! `(2M/Δt² + K) E = F − K D₀` in blocks of 6×6, paper Eq. (4): `K_kk` of a rock is `2M/Δt²` with its contacts, `K_kl`
+//! couples two rocks that touch. The matrix is symmetric and positive definite, so blocks are factorised without
+//! pivoting; the pattern is kept as long as the same rocks touch, and the numbers while only loads change.
+
+use super::DEEPEST;
+use super::body::DdaBody;
+use crate::contact::pair::PairHistory;
+use crate::contact::submatrix::{Mat6, Vec6};
+use crate::solver::block_factor::{Below, Blocks, Factor};
+use crate::solver::dda_system::pair_contact::DdaPairContact;
+use crate::solver::dda_system::slider::Change;
+use crate::solver::loss::Given;
+use crate::solver::step_control::StepError;
+
+/// The contacts between rocks; a rock alone has none, and no memory is taken for it.
+#[derive(Debug, Default)]
+pub(in crate::solver) struct DdaPairs {
+    pairs: Vec<DdaPairContact>,
+    /// Place of each rock among those that pairs join; `None` for one that no other touches.
+    places: Vec<Option<usize>>,
+    factor: Option<Box<Factor>>,
+}
+
+impl DdaPairs {
+    /// Contacts that are closed or may close within the step.
+    pub(super) fn meet(&mut self, bodies: &[DdaBody], pair_histories: &[PairHistory]) {
+        let over = |(k, pair_history): (usize, &PairHistory)| {
+            let ends = [pair_history.a, pair_history.b].map(|end| &bodies[end as usize]);
+            let steps = ends.map(|end| &end.state.scratch.step);
+            DdaPairContact::over((k, pair_history), steps, ends.map(|end| &end.state.c))
+        };
+        self.pairs.clear();
+        self.pairs.extend(pair_histories.iter().enumerate().filter_map(over));
+        self.places.clear();
+        if !self.pairs.is_empty() {
+            self.places.resize(bodies.len(), None);
+        }
+        self.pairs.iter().flat_map(|pair| pair.ends).for_each(|end| self.places[end] = Some(0));
+        // numbered among themselves: the pattern has no empty rows
+        self.places.iter_mut().flatten().enumerate().for_each(|(k, place)| *place = k);
+    }
+
+    /// Solves Eq. (4): rocks that no other touches each for itself, the others together, with a matrix made anew if contacts
+    /// have changed it. `None` if there is no solution.
+    pub(super) fn solve(&mut self, bodies: &mut [DdaBody], is_new: bool) -> Option<()> {
+        let mut load = Vec::new();
+        for (k, body) in bodies.iter_mut().enumerate() {
+            if self.places.get(k).is_some_and(Option::is_some) {
+                load.extend(body.state.scratch.load().iter());
+            } else {
+                body.state.scratch.solve()?;
+            }
+        }
+        if self.pairs.is_empty() {
+            return Some(());
+        }
+        if is_new {
+            self.factorise(bodies)?;
+        }
+        for pair in &self.pairs {
+            let free = pair.ways(pair.ends.map(|end| &bodies[end].state.scratch.step.free));
+            for (k, end) in pair.ends.into_iter().enumerate() {
+                let own = load[6 * self.places[end]?..].iter_mut();
+                own.zip(&pair.load(k, &free)).for_each(|(sum, load)| *sum += load);
+            }
+        }
+        self.factor.as_ref()?.substitute(&mut load)?;
+        let joined = bodies.iter_mut().zip(&self.places).filter(|(_, place)| place.is_some());
+        let mut solved = joined.zip(load.chunks_exact(6));
+        solved.try_for_each(|((body, _), x)| body.state.scratch.take(Vec6::from_column_slice(x)))
+    }
+
+    /// Factorises the blocks of the rocks that are joined and of the contacts between them.
+    ///
+    /// Pairs stand in ascending order of their ends, and so do the blocks below the diagonal by
+    /// column and row.
+    fn factorise(&mut self, bodies: &[DdaBody]) -> Option<()> {
+        let joined = bodies.iter().zip(&self.places).filter(|(_, place)| place.is_some());
+        let mut diagonal: Vec<Mat6> = joined.map(|(body, _)| body.state.scratch.block()).collect();
+        let mut below: Vec<Below> = Vec::with_capacity(self.pairs.len());
+        for pair in &self.pairs {
+            let [a, b] = pair.ends.map(|end| self.places[end]);
+            let (a, b) = (a?, b?);
+            diagonal[a] += pair.stiffness(0, 0);
+            diagonal[b] += pair.stiffness(1, 1);
+            below.push((b, a, pair.stiffness(1, 0)));
+        }
+        let blocks = Blocks { diagonal: &diagonal, below: &below, above: None };
+        self.factor.get_or_insert_default().factorise(blocks)
+    }
+
+    /// Judges each by the displacements that came out; the largest change.
+    pub(super) fn judge(&mut self, bodies: &[DdaBody]) -> Change {
+        let pairs = self.pairs.iter_mut();
+        let judged = pairs.map(|pair| pair.contact.judge(&pair.ways(d(pair, bodies))));
+        judged.max().unwrap_or(Change::None)
+    }
+
+    /// Ends the search for their states.
+    pub(super) fn stick(&mut self) {
+        self.pairs.iter_mut().for_each(|pair| pair.contact.stick());
+    }
+
+    /// Opens or closes one that begins apart, the last that asks for it; whether there is any.
+    pub(super) fn open_or_close_one_apart(&mut self, bodies: &[DdaBody]) -> bool {
+        let mut pairs = self.pairs.iter_mut().rev();
+        pairs.any(|pair| pair.contact.open_or_close_apart(&pair.ways(d(pair, bodies))))
+    }
+
+    /// Writes their state into their memory, and books what each end gave the other (J); how many bonds broke.
+    ///
+    /// Energy: the work of a contact on each of its ends; what they do not get back is lost in it,
+    /// half to each.
+    ///
+    /// # Errors
+    /// [`StepError::SankIn`] if a contact is deeper than the springs are meant for: the step is too long for them.
+    pub(super) fn book(
+        &self,
+        bodies: &mut [DdaBody],
+        pair_histories: &mut [PairHistory],
+    ) -> Result<u64, StepError> {
+        pair_histories.iter_mut().for_each(PairHistory::part);
+        let mut broken = 0;
+        for pair in &self.pairs {
+            let d = d(pair, bodies);
+            if pair.ways(d).depth > DEEPEST * pair.contact.radius {
+                return Err(StepError::SankIn);
+            }
+            let given = Given::of_ends(pair.given_j(d));
+            broken += u64::from(pair.remember(d, &mut pair_histories[pair.contact.history]));
+            for (end, given) in pair.ends.into_iter().zip(given) {
+                bodies[end].given.add(&given, 1.0);
+            }
+        }
+        Ok(broken)
+    }
+}
+
+/// Displacements of a pair's ends.
+fn d<'b>(pair: &DdaPairContact, bodies: &'b [DdaBody]) -> [&'b Vec6; 2] {
+    pair.ends.map(|end| &bodies[end].state.scratch.d)
+}
