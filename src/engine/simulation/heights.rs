@@ -161,7 +161,7 @@ impl Heights<'_> {
     /// A parabola over which the lowest point does not come within a span of time (s).
     ///
     /// The lowest corner of a block in the middle of the span is one of those among which the lowest is sought: its way is
-    /// `z·ρ + z·(ω × ρ) τ` and at most [`Top::bend`](crate::flight::top::Top::bend) `|ρ| τ²/2` more. Over long spans the largest ball inside the block says more.
+    /// `z·ρ + z·(ω × ρ) τ` and at most `bend |ρ| τ²/2` (`Top::bend`) more. Over long spans the largest ball inside the block says more.
     fn ceiling(&self, [from_s, to_s]: [f64; 2]) -> Parabola {
         let mut path = *self.flight.path;
         let least_m = self.form.least_below_m();
