@@ -21,10 +21,12 @@ mod merge;
 mod options;
 pub mod read;
 pub mod patches;
+pub mod section;
 pub mod seen;
 pub mod stems;
 pub mod stl;
 pub mod walls;
+pub mod way;
 pub mod weld;
 
 use crate::parallel;
@@ -206,7 +208,7 @@ impl Terrain {
         let (mut best, mut of) = (f64::NEG_INFINITY, None);
         self.index.along_vertical((x_m, y_m), under_m, |start, count| {
             for t in start..start + count {
-                let height = self.height_of(t, x_m, y_m);
+                let height = section::height_of(&self.face(t), x_m, y_m);
                 if height > best && height <= under_m && !self.is_tree(t) {
                     (best, of) = (height, Some(t));
                 }
@@ -216,21 +218,6 @@ impl Terrain {
             let face = self.face(triangle);
             (best, face.e1.cross(&face.e2).normalize())
         })
-    }
-
-    /// Height at which the vertical through (x, y) meets a triangle, −∞ if it does not (m).
-    fn height_of(&self, triangle: u32, x: f64, y: f64) -> f64 {
-        let face = self.face(triangle);
-        let (dx, dy) = (x - face.a.x, y - face.a.y);
-        let det = face.e1.x * face.e2.y - face.e1.y * face.e2.x;
-        let (u, v) = (dx * face.e2.y - dy * face.e2.x, face.e1.x * dy - face.e1.y * dx);
-        let slack = -1e-11 * det.abs();
-        let (u, v, whole) = if det < 0.0 { (-u, -v, -det) } else { (u, v, det) };
-        if whole > 0.0 && u >= slack && v >= slack && whole - u - v >= slack {
-            face.a.z + (u * face.e1.z + v * face.e2.z) / whole
-        } else {
-            f64::NEG_INFINITY
-        }
     }
 }
 

@@ -134,6 +134,12 @@ impl Block {
         let most = self.core.corners.iter().map(|p| p.dot(along)).fold(f64::MIN, f64::max);
         most + self.ball_m
     }
+
+    /// How far it reaches at least, along any direction (m): the radius of the largest ball about its centre inside it.
+    pub fn least_support_m(&self) -> f64 {
+        let nearest = self.core.faces.iter().map(|face| face.level).fold(f64::INFINITY, f64::min);
+        nearest + self.ball_m
+    }
 }
 
 #[cfg(test)]

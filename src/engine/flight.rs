@@ -20,7 +20,7 @@ mod parabola_box;
 pub mod top;
 mod touching;
 
-use crate::rock::Vec3;
+use crate::rock::{Motion, Vec3};
 use crate::terrain::Terrain;
 use crate::terrain::index::{BvhNode, Child, WAITING};
 use parabola_box::ParabolaBox;
@@ -41,6 +41,15 @@ pub struct Parabola {
 }
 
 impl Parabola {
+    /// The one through two moments between which nothing was touched, bent as its velocity changes.
+    pub fn between(from: &Motion, to: &Motion, radius: f64) -> Self {
+        let dt = to.time_s - from.time_s;
+        let gravity = ((from.velocity_m_s.z - to.velocity_m_s.z) / dt).max(0.0);
+        let mut velocity = (to.position_m - from.position_m) / dt;
+        velocity.z += 0.5 * gravity * dt;
+        Self { start: from.position_m, velocity, gravity, radius }
+    }
+
     /// Centre at time `t` (s).
     /// `c0 + v0 t − g t²/2 ẑ`.
     #[inline]
@@ -57,6 +66,14 @@ impl Parabola {
         let mut v = self.velocity;
         v.z -= self.gravity * t;
         v
+    }
+
+    /// When, within a span of time (s), the centre is highest over ground that rises below it at `rise_m_s` (m/s): where it climbs as
+    /// fast, or at an end.
+    #[inline]
+    pub fn highest_over(&self, rise_m_s: f64, [from_s, to_s]: [f64; 2]) -> f64 {
+        // of a NaN (no gravity and no climb) `max` leaves the first end
+        ((self.velocity.z - rise_m_s) / self.gravity).max(from_s).min(to_s)
     }
 }
 

@@ -7,6 +7,7 @@ mod crossings;
 mod driver;
 mod fall;
 mod form;
+mod heights;
 mod impacts;
 mod passages;
 mod recorder;

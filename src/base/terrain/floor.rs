@@ -2,6 +2,7 @@
 
 use super::faces::Face;
 use super::index::below;
+use super::way::cells_under;
 use crate::parallel;
 use crate::rock::Vec3;
 use std::sync::{Mutex, PoisonError};
@@ -71,10 +72,25 @@ impl Floor {
     }
 
     /// A height that the slope at (x, y) is not below (m); infinite where there is none.
-    #[inline]
     pub fn under(&self, x_m: f64, y_m: f64) -> f64 {
-        let cell = self.row(y_m) * self.columns + self.column(x_m);
-        self.low_m.get(cell).map_or(f64::INFINITY, |&low| f64::from(low))
+        let mut lowest = f64::INFINITY;
+        self.along([[x_m, y_m]; 2], |low, _, _| lowest = low);
+        lowest
+    }
+
+    /// Calls `pass` with every cell under the straight way between two places in plan view: a height (m, local) that the slope in it is not
+    /// below, infinite where there is none, and the shares of the way at which the cell is entered and left. Beside the mesh it is that of
+    /// the nearest cell.
+    #[inline]
+    pub fn along(&self, ends: [[f64; 2]; 2], mut pass: impl FnMut(f64, f64, f64)) {
+        let place =
+            |[x, y]: [f64; 2]| [(x - self.west_m) * self.per_m, (y - self.south_m) * self.per_m];
+        let inside = |at: i64, count: usize| (at.max(0) as usize).min(count.saturating_sub(1));
+        cells_under(ends.map(place), |[column, row], from, to| {
+            let cell = inside(row, self.rows) * self.columns + inside(column, self.columns);
+            let low = self.low_m.get(cell).map_or(f64::INFINITY, |&low| f64::from(low));
+            pass(low, from, to);
+        });
     }
 
     /// Memory that it takes (bytes).

@@ -140,9 +140,15 @@ impl Index {
     /// Calls `visit(start, count)` for every leaf whose box the vertical through (x, y) meets not above `under` (m).
     #[inline]
     pub fn along_vertical(&self, (x, y): (f64, f64), under: f64, visit: impl FnMut(u32, u32)) {
-        let lo = [below(x), below(y), f32::NEG_INFINITY];
-        let hi = [above(x), above(y), above(under)];
-        self.walk((lo, hi), visit);
+        self.over_way([[x, y]; 2], under, visit);
+    }
+
+    /// Calls `visit(start, count)` for every leaf whose box meets the box around a straight way in plan view not above `under` (m).
+    #[inline]
+    pub fn over_way(&self, [from, to]: [[f64; 2]; 2], under: f64, visit: impl FnMut(u32, u32)) {
+        let lo = [0, 1].map(|k| below(from[k].min(to[k])));
+        let hi = [0, 1].map(|k| above(from[k].max(to[k])));
+        self.walk(([lo[0], lo[1], f32::NEG_INFINITY], [hi[0], hi[1], above(under)]), visit);
     }
 
     #[inline]

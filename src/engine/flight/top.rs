@@ -120,6 +120,19 @@ impl Top {
     pub fn energy_j(&self) -> f64 {
         0.5 * self.spin(&self.start).dot(&self.momentum)
     }
+
+    /// Largest size of `ω × (ω × ρ) + ω̇ × ρ` over the length of `ρ` (1/s²): bounds how fast the way of a point bends.
+    ///
+    /// From both constants of the motion, `2E` and `ℓ²`. No `(I − I_min)(I_max − I)` is negative, so
+    /// `I_min I_max |ω|² ≤ 2E (I_min + I_max) − ℓ²`; and by Euler's equations
+    /// `I_min |ω̇| ≤ |ℓ × ω|`, where `|ℓ × ω|² = ℓ²ω² − (2E)²`. About a principal axis both are equalities.
+    pub(crate) fn bend(&self) -> f64 {
+        let [low, high] =
+            [f64::min, f64::max].map(|pick| self.inertia.into_iter().reduce(pick).unwrap_or(1.0));
+        let (energy2, momentum2) = (2.0 * self.energy_j(), self.momentum.norm_squared());
+        let spin2 = ((energy2 * (low + high) - momentum2) / (low * high)).max(0.0);
+        spin2 + (momentum2 * spin2 - energy2 * energy2).max(0.0).sqrt() / low
+    }
 }
 
 /// `R I⁻¹ Rᵀ ℓ` (rad/s).

@@ -5,11 +5,12 @@
 //! here each rock has one entry a cell, however often it comes back.
 
 use super::form::{Form, RockInstant, between};
+use super::heights::Heights;
 use super::passages::{Passage, Passages};
-use crate::flight::Parabola;
 use crate::plan::MapGrid;
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
+use crate::terrain::way::cells_under;
 
 /// One rock in one cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,45 +37,33 @@ impl<'a> CellPassages<'a> {
         Self { cells, found: Passages::new() }
     }
 
-    /// Notes the cells below a flight of `dt` (s).
+    /// Notes the cells below a flight.
     ///
-    /// The speed along a parabola has no largest value inside: the ends of its part in a cell hold it exactly. The
-    /// height is taken at both ends and in the middle of that part.
-    pub(super) fn fly(
-        &mut self,
-        (terrain, form): (&Terrain, &Form),
-        flight: &Parabola,
-        dt: f64,
-        at: impl Fn(f64) -> RockInstant,
-    ) {
+    /// The speed along a parabola has no largest value inside: the ends of its part in a cell hold it exactly.
+    pub(super) fn fly(&mut self, heights: &Heights) {
         let Some(cells) = self.cells else { return };
-        let from = at(0.0);
-        let rotational_j = form.rotational_j(&from);
-        let from = &from.motion;
+        let Heights { terrain, form, flight } = *heights;
+        let rotational_j = form.rotational_j(&flight.at(0.0));
         // m |v|²/2 of the parabola, plus the rotational energy, which no flight changes
-        let total_j =
-            |t: f64| 0.5 * form.rock.mass_kg() * flight.velocity(t).norm_squared() + rotational_j;
-        // lowest point of the rock over the ground below; where there is no ground there is no
-        // height
-        let height_m = |t: f64| {
-            let centre = flight.centre(t);
-            let ground = terrain.ground_under(centre.x, centre.y, centre.z);
-            ground.map(|ground| (centre.z - form.below_m(&at(t)) - ground).max(0.0))
+        let total_j = |t: f64| {
+            0.5 * form.rock.mass_kg() * flight.path.velocity(t).norm_squared() + rotational_j
         };
-        let end = flight.centre(dt);
+        let [from, to] = [0.0, flight.lasts_s].map(|t| flight.path.centre(t));
         // in plan view the flight is straight and even, so a share of the way is the same share of
         // the time
-        walk(cells, [&from.position_m, &end], |cell, s0, s1| {
-            let (t0, t1) = (s0 * dt, s1 * dt);
-            let middle = 0.5 * (t0 + t1);
-            let heights_m = [t0, middle, t1].map(height_m);
-            // fallen through a hole of the mesh, it passes no cell any more
-            let has_ground = heights_m.iter().any(Option::is_some);
-            if !has_ground && terrain.is_under_slope(&flight.centre(middle)) {
+        walk(cells, [&from, &to], |cell, s0, s1| {
+            let [t0, t1] = [s0, s1].map(|share| share * flight.lasts_s);
+            let total_j = total_j(t0).max(total_j(t1));
+            let known_m = self.found.last().filter(|last| last.cell == cell).map(|l| l.height_m);
+            let top = heights.largest([t0, t1], known_m.unwrap_or(f64::NEG_INFINITY));
+            // where there is no ground there is no height; fallen through a hole of the mesh, it
+            // passes no cell any more
+            let is_lost = || terrain.is_under_slope(&flight.path.centre(0.5 * (t0 + t1)));
+            if top.is_none() && known_m.is_none() && is_lost() {
                 return;
             }
-            let height_m = heights_m.into_iter().flatten().fold(0.0, f64::max);
-            self.found.add(CellPassage { cell, total_j: total_j(t0).max(total_j(t1)), height_m });
+            let height_m = top.map_or(0.0, |top| top.height_m.max(0.0));
+            self.found.add(CellPassage { cell, total_j, height_m });
         });
     }
 
@@ -111,40 +100,13 @@ impl Passage for CellPassage {
 }
 
 /// Calls `pass` with every cell under the straight way between two places and the shares of the way at which it is
-/// entered and left (Amanatides and Woo 1987).
-///
-/// Steps from edge to edge, never cell by cell with a test: it visits exactly the cells under the
-/// way, and the parts add up to 1.
+/// entered and left.
 fn walk(cells: &MapGrid, ends: [&Vec3; 2], mut pass: impl FnMut(u32, f64, f64)) {
-    let [from, to] = ends.map(|end| cells.place(end.x, end.y));
-    let mut at = from.map(|x| x.floor() as i64);
-    let last = to.map(|x| x.floor() as i64);
-    let way = [to[0] - from[0], to[1] - from[1]];
-    let step = way.map(|x| if x > 0.0 { 1 } else { -1 });
-    // share of the way at which the next line of the grid is met along one axis
-    let edge = |axis: usize, at: i64| {
-        let edge = if way[axis] > 0.0 { at + 1 } else { at };
-        if way[axis] == 0.0 { f64::INFINITY } else { (edge as f64 - from[axis]) / way[axis] }
-    };
-    // so many edges lie between first and last cell: counting them ends the walk, not a comparison
-    // of rounded numbers
-    let mut left = (last[0] - at[0]).unsigned_abs() + (last[1] - at[1]).unsigned_abs();
-    let mut entered = 0.0;
-    loop {
-        let next = [edge(0, at[0]), edge(1, at[1])];
-        // an axis that has arrived is not stepped along any more, whatever rounding says
-        let axis = usize::from(at[0] == last[0] || at[1] != last[1] && next[1] < next[0]);
-        let leaves = if left == 0 { 1.0 } else { next[axis].clamp(entered, 1.0) };
-        if let Some(cell) = cells.cell(at[0], at[1]) {
+    cells_under(ends.map(|end| cells.place(end.x, end.y)), |[column, row], entered, leaves| {
+        if let Some(cell) = cells.cell(column, row) {
             pass(cell, entered, leaves);
         }
-        if left == 0 {
-            return;
-        }
-        at[axis] += step[axis];
-        entered = leaves;
-        left -= 1;
-    }
+    });
 }
 
 #[cfg(test)]

@@ -1,7 +1,6 @@
 //! Where a rock passes evaluation lines: exact on the parabola of a flight and on the cubic of a step.
 
-use super::form::{Form, RockInstant};
-use crate::flight::Parabola;
+use super::form::{Form, RockFlight, RockInstant};
 use crate::math;
 use crate::plan::{EvaluationLine, Footprint, LinePiece};
 use crate::rock::{Motion, Vec3};
@@ -78,20 +77,13 @@ impl<'a> Crossings<'a> {
         self.found
     }
 
-    /// Notes the lines that a flight of `dt` (s) passes, with the rock as `at` says after a time (s). Seen from above a flight
-    /// is straight and even: the moment follows from one division.
-    pub(super) fn fly(
-        &mut self,
-        (terrain, form): (&Terrain, &Form),
-        flight: &Parabola,
-        dt: f64,
-        at: impl Fn(f64) -> RockInstant,
-    ) {
+    /// Notes the lines that a flight passes. Seen from above it is straight and even: the moment follows from one division.
+    pub(super) fn fly(&mut self, (terrain, form): (&Terrain, &Form), flight: &RockFlight) {
         if self.lines.is_empty() {
             return;
         }
         // in plan view a parabola is a straight line: two distances to the line of a piece give the share of the way
-        let (a, b) = (flat(&at(0.0).motion.position_m), flat(&flight.centre(dt)));
+        let [a, b] = [0.0, flight.lasts_s].map(|t| flat(&flight.path.centre(t)));
         self.pass(
             (terrain, form),
             [a, a, b, b],
@@ -102,7 +94,7 @@ impl<'a> Crossings<'a> {
                 let crosses = (start > 0.0) != (end > 0.0);
                 crosses.then(|| start / (start - end)).into_iter().collect()
             },
-            |s| at(s * dt),
+            |s| flight.at(s * flight.lasts_s),
         );
     }
 

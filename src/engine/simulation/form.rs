@@ -27,6 +27,19 @@ pub(super) struct RockInstant {
     pub(super) turned: Option<Turned>,
 }
 
+/// A rock in free flight.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct RockFlight<'a> {
+    /// How it began.
+    pub(super) start: Motion,
+    /// Way of its centre.
+    pub(super) path: &'a Parabola,
+    /// How a block turns; none for a sphere.
+    pub(super) top: Option<&'a Top>,
+    /// How long it flies (s).
+    pub(super) lasts_s: f64,
+}
+
 /// The rock itself.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Form<'a> {
@@ -66,25 +79,27 @@ pub(super) fn quaternion(turn: &Rotation3<f64>) -> [f64; 4] {
     [turn.w, turn.i, turn.j, turn.k].map(|x| x * sign)
 }
 
-impl RockInstant {
-    /// The rock after `t` (s) of a flight that began with `start`; a block turns as `top` does.
-    pub(super) fn in_flight(start: &Motion, flight: &Parabola, top: Option<&Top>, t: f64) -> Self {
+impl RockFlight<'_> {
+    /// The rock after `t` (s).
+    pub(super) fn at(&self, t: f64) -> RockInstant {
         // the attitude is a closed form of the time (`Top`); the energy of rotation is constant in
         // flight
-        let turned = top.map(|top| {
+        let turned = self.top.map(|top| {
             let attitude = top.attitude(t);
             (top.spin(&attitude), Turned { attitude, rotational_j: top.energy_j() })
         });
         let motion = Motion {
-            time_s: start.time_s + t,
-            position_m: flight.centre(t),
-            velocity_m_s: flight.velocity(t),
+            time_s: self.start.time_s + t,
+            position_m: self.path.centre(t),
+            velocity_m_s: self.path.velocity(t),
             // a sphere keeps its spin in flight: nothing turns it
-            spin_rad_s: turned.map_or(start.spin_rad_s, |(spin, _)| spin),
+            spin_rad_s: turned.map_or(self.start.spin_rad_s, |(spin, _)| spin),
         };
-        Self { motion, turned: turned.map(|(_, turned)| turned) }
+        RockInstant { motion, turned: turned.map(|(_, turned)| turned) }
     }
+}
 
+impl RockInstant {
     /// The rock at share `s` of a step in contact between two instants: see [`between`] and
     /// [`Turned::between`].
     pub(super) fn between([from, to]: [&Self; 2], s: f64) -> Self {
@@ -118,6 +133,21 @@ impl Form<'_> {
     /// The radius of a sphere; for a block the support downwards.
     pub(super) fn below_m(&self, at: &RockInstant) -> f64 {
         self.reach_m(at, &-Vec3::z())
+    }
+
+    /// How far the lowest point lies below the centre at least, however it is turned (m).
+    pub(super) fn least_below_m(&self) -> f64 {
+        self.block.map_or(self.rock.radius_m, Block::least_support_m)
+    }
+
+    /// How far the lowest corner of a block lies below the centre (m), and how fast it sinks against it (m/s).
+    pub(super) fn sinking(block: &Block, at: &RockInstant) -> Option<(f64, f64)> {
+        let turned = at.turned.as_ref()?;
+        let down = turned.attitude.inverse_transform_vector(&-Vec3::z());
+        let corners = block.core.corners.iter().map(|corner| (corner.dot(&down), corner));
+        let (below_m, lowest) = corners.max_by(|a, b| a.0.total_cmp(&b.0))?;
+        let sinks_m_s = -at.motion.spin_rad_s.cross(&(turned.attitude * lowest)).z;
+        Some((below_m + block.ball_m, sinks_m_s))
     }
 
     /// Radius of the circle that it may cover on the map (m).

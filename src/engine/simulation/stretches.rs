@@ -3,13 +3,11 @@
 //! Stretches are rings about the release point, not pieces of the path: a rock that turns back
 //! passes its own stretch again. They make the profiles of speed and height over distance.
 
-use super::form::{Form, RockInstant};
+use super::heights::Heights;
 use super::passages::{Passage, Passages};
-use crate::flight::Parabola;
 use crate::math;
 use crate::rock::{Motion, Vec3};
 use crate::scene::Corner;
-use crate::terrain::Terrain;
 
 /// One rock in one stretch.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,11 +36,6 @@ impl Stretches {
         Self { step_m, from_m: [at.x, at.y], found: Passages::new() }
     }
 
-    /// Whether somebody asks.
-    pub(super) fn is_asked(&self) -> bool {
-        self.step_m.is_some()
-    }
-
     /// Notes a place with the speed and the height there.
     /// `⌊distance/step⌋` is the stretch.
     pub(super) fn note(&mut self, at: &Vec3, speed_m_s: f64, height_m: f64) {
@@ -53,56 +46,34 @@ impl Stretches {
 
     /// Notes the end of a step in contact, and the stretches that it passes over.
     /// A stretch that a step passes over entirely gets the values of the step's end.
-    pub(super) fn step(&mut self, to: &Motion, height_m: f64) {
+    pub(super) fn step(&mut self, to: &Motion) {
         let before = self.found.last().map(|last| last.number);
         let speed_m_s = to.velocity_m_s.norm();
-        self.note(&to.position_m, speed_m_s, height_m);
+        self.note(&to.position_m, speed_m_s, 0.0);
         let (Some(before), Some(now)) = (before, self.found.last().copied()) else { return };
         // steps are shorter than stretches as a rule: seldom is one passed over
         let between = before.min(now.number) + 1..before.max(now.number);
         self.found.extend(between.map(|number| Stretch { number, ..now }));
     }
 
-    /// Notes the stretches below a flight of `dt` (s).
+    /// Notes the stretches below a flight.
     ///
-    /// The speed along a parabola has no largest value inside: the ends of its part in a stretch hold it exactly. The
-    /// height is taken where a stretch ends and in the middle of each part; at its two ends a flight touches.
-    pub(super) fn fly(
-        &mut self,
-        (terrain, form): (&Terrain, &Form),
-        flight: &Parabola,
-        dt: f64,
-        at: impl Fn(f64) -> RockInstant,
-    ) {
+    /// The speed along a parabola has no largest value inside: the ends of its part in a stretch hold it exactly.
+    pub(super) fn fly(&mut self, heights: &Heights) {
         let Some(step_m) = self.step_m else { return };
-        let height_m = |t: f64, known_m: f64| {
-            let centre = flight.centre(t);
-            let low = centre.z - form.below_m(&at(t));
-            // what lies under the lowest ground around is not looked for
-            if low - terrain.floor.under(centre.x, centre.y) <= known_m {
-                return known_m;
-            }
-            let ground = terrain.ground_under(centre.x, centre.y, centre.z);
-            ground.map_or(known_m, |ground| known_m.max(low - ground))
-        };
-        let speed_m_s = |t: f64| flight.velocity(t).norm();
-        let (from, to) = (flight.centre(0.0), flight.centre(dt));
+        let flight = heights.flight;
+        let [from, to] = [0.0, flight.lasts_s].map(|t| flight.path.centre(t));
         let place = [from.x - self.from_m[0], from.y - self.from_m[1]];
         let way = [to.x - from.x, to.y - from.y];
-        let mut before = 0.0;
+        let speed_m_s = |t: f64| flight.path.velocity(t).norm();
         walk(place, way, step_m, |number, s0, s1| {
-            let (t0, t1) = (s0 * dt, s1 * dt);
+            let [t0, t1] = [s0, s1].map(|share| share * flight.lasts_s);
             // a height known for this stretch spares the search for lower ones
             let last = self.found.last().filter(|last| last.number == number);
-            let known_m = last.map_or(before, |last| last.height_m.max(before));
-            let mut highest_m = height_m(0.5 * (t0 + t1), known_m);
-            before = 0.0;
-            if s1 < 1.0 {
-                before = height_m(t1, 0.0);
-                highest_m = highest_m.max(before);
-            }
+            let known_m = last.map_or(0.0, |last| last.height_m);
+            let height_m = heights.largest([t0, t1], known_m).map_or(known_m, |top| top.height_m);
             let speed_m_s = speed_m_s(t0).max(speed_m_s(t1));
-            self.found.add(Stretch { number, speed_m_s, height_m: highest_m });
+            self.found.add(Stretch { number, speed_m_s, height_m });
         });
     }
 }

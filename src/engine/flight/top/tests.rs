@@ -155,3 +155,24 @@ fn a_short_turn_is_the_closed_form() {
     assert!(top([1.0, 1.0, 2.0], Vec3::x()).short(Rotation3::identity(), 1.0).is_none());
     assert!(top(BOX, Vec3::zeros()).short(Rotation3::identity(), 1.0).is_none());
 }
+
+/// No point of a body moves on a way that bends more than is said, and about a principal axis exactly so.
+#[test]
+fn the_bend_bounds_the_acceleration_of_every_point() {
+    let starts = [Vec3::new(3.0, -4.0, 5.0), Vec3::new(0.1, 6.0, 0.1), Vec3::new(0.0, 0.0, 5.0)];
+    for (start, inertia) in starts.into_iter().flat_map(|s| [(s, BOX), (s, [1.0, 3.0, 3.5])]) {
+        let top = top(inertia, start);
+        let mut most = 0.0_f64;
+        for k in 0..400 {
+            let attitude = top.attitude(0.01 * f64::from(k));
+            let turned = |off: f64| top.attitude(0.01 * f64::from(k) + off).matrix() * 1.0;
+            // central difference of the rotation: its norm is the largest acceleration over the length
+            let h = 1e-4;
+            let second = (turned(h) + turned(-h) - attitude.matrix() * 2.0) / (h * h);
+            most = most.max(second.svd(false, false).singular_values.max());
+        }
+        assert!(most <= top.bend() * (1.0 + 1e-5), "{most} {}", top.bend());
+        let is_steady = start.x.abs() < f64::EPSILON;
+        assert!(most > if is_steady { 0.999 } else { 0.3 } * top.bend(), "{most} {}", top.bend());
+    }
+}
