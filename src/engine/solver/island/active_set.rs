@@ -5,8 +5,9 @@
 
 use super::contact_queue::{ContactQueue, ContactsOfRocks};
 
-/// Part of that below which a change counts as settled however fast changes die out (–).
-pub(super) const SETTLED_AT_ONCE: f64 = 1e-4;
+/// Part of what is allowed below which a change counts as settled however fast changes die out, and stirs nothing, in an island of a few
+/// rocks and in a larger one (–): what is passed over adds up.
+const SETTLED_AT_ONCE: (f64, f64) = (1e-4, 1e-2);
 /// In an island of no more rocks than this all contacts are asked in every sweep: little would be saved, and every digit counts.
 const SMALL: usize = 4;
 
@@ -41,8 +42,14 @@ impl ActiveSet {
         }
     }
 
-    fn is_small(&self) -> bool {
+    /// Whether the island has a few rocks only.
+    pub(super) fn is_small(&self) -> bool {
         self.lately.len() <= SMALL
+    }
+
+    /// Part of what is allowed below which a change is none (–).
+    pub(super) fn nothing(&self) -> f64 {
+        if self.is_small() { SETTLED_AT_ONCE.0 } else { SETTLED_AT_ONCE.1 }
     }
 
     /// Begins another sweep.
@@ -78,7 +85,7 @@ impl ActiveSet {
         let [now, before, earlier] = self.changes;
         let share = f64::max(now / before, before / earlier);
         let knows = earlier.is_finite() && share < 1.0;
-        now <= SETTLED_AT_ONCE || knows && now <= 1.0 && now * share <= 1.0 - share
+        now <= self.nothing() || knows && now <= 1.0 && now * share <= 1.0 - share
     }
 
     /// Contact `k` is solved for the motions of its rocks.

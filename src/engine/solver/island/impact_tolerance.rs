@@ -87,11 +87,15 @@ impl IslandBody {
         self.crowd > 1
     }
 
+    /// Local error allowed to it in an impact (–, relative to its speed), where `relative` is that of two bodies alone.
+    pub(super) fn allowed_share(&self, relative: f64) -> f64 {
+        if self.is_in_heap() { IN_A_HEAP * relative } else { relative }
+    }
+
     /// Local error allowed to it (m/s), `relative` to the speed of an impact (–).
     pub(super) fn allowed_m_s(&self, relative: f64) -> f64 {
-        let share = if self.is_in_heap() { IN_A_HEAP * relative } else { relative };
         if self.struck_m_s > 0.0 {
-            self.lasting_m_s.min(share * self.struck_m_s)
+            self.lasting_m_s.min(self.allowed_share(relative) * self.struck_m_s)
         } else {
             self.lasting_m_s
         }

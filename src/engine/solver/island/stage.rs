@@ -23,6 +23,11 @@ use crate::solver::tableau::{STAGES, Tableau};
 /// passes of a stage leave open.
 const NEAR: f64 = 1e-6;
 
+/// Change of a centre (–, relative to the radius) up to which geometry and forces may agree in an island of more than a few rocks …
+const AGREED_OF_MANY: f64 = 1e-6;
+/// … if what the turn of the normals by it does to a velocity is no more than this (–, relative to the local error allowed).
+const TURNED: f64 = 1e-2;
+
 impl Island<'_> {
     /// Solves implicit stage `i` of a step of length `h` and stores its rates.
     ///
@@ -57,8 +62,14 @@ impl Island<'_> {
                 // the stage's end with the forces just found
                 let c = member.base.c + motion.0 * hh;
                 // every rock must agree: a contact of one decides the forces on its neighbours
-                let allowed = AGREED * member.body.radius;
-                agreed &= (c - member.guess).norm() <= allowed;
+                let allowed = if self.stirred.is_small() {
+                    AGREED
+                } else {
+                    // normals turn by the change over the radius, and with them what contacts have given
+                    let pushed_m_s = (motion.0 - member.free.0).norm().max(f64::MIN_POSITIVE);
+                    (TURNED * self.tolerance / pushed_m_s).clamp(AGREED, AGREED_OF_MANY)
+                };
+                agreed &= (c - member.guess).norm() <= allowed * member.body.radius;
                 member.guess = c;
                 member.look(self.terrain);
             }

@@ -9,7 +9,6 @@
 //! step's tolerance. Absolute forces would not do: a newton is nothing for a block and everything
 //! for a pebble.
 
-use super::active_set::SETTLED_AT_ONCE;
 use super::assembly::Island;
 use super::body::IslandBody;
 use super::newton_step::jump;
@@ -23,8 +22,6 @@ const JUMPS: usize = 10;
 /// Change of velocity by a change of force that is still to come, relative to the step's tolerance, below which the force
 /// has settled (–).
 const SETTLED: f64 = 1e-2;
-/// Part of that from which a change stirs the rocks: what is passed over adds up (–).
-const STIRS: f64 = 1e-4;
 /// Change of a force, relative to itself, that is rounding (–).
 const ROUNDING: f64 = 1e-11;
 
@@ -128,6 +125,7 @@ impl Island<'_> {
     }
 
     fn sweep_ground_contacts(&mut self, k: usize, h: f64) {
+        let nothing = self.stirred.nothing();
         let IslandBody { state, body, .. } = &mut *self.members[k];
         let now = &mut self.motions[k];
         let count = state.contact_count;
@@ -145,11 +143,10 @@ impl Island<'_> {
             let change = change.max((contact.rolling_moment - before.2).norm() / body.radius);
             // a force that changes the velocity by SETTLED · tolerance in a stage
             let allowed = SETTLED * self.tolerance * body.mass / h;
-            worst =
-                worst.max(change / allowed.max(ROUNDING / SETTLED_AT_ONCE * contact.normal_force));
+            worst = worst.max(change / allowed.max(ROUNDING / nothing * contact.normal_force));
         }
         self.stirred.note(worst);
-        let stirs = worst > STIRS;
+        let stirs = worst > nothing;
         if stirs {
             self.stirred.stir(k);
         }
@@ -180,9 +177,10 @@ impl Island<'_> {
         }
         let allowed = SETTLED * self.tolerance / (h * pair.inv_m);
         // whichever is larger: a change that matters to the velocity, or rounding of a large force
-        let worst = change / allowed.max(ROUNDING / SETTLED_AT_ONCE * pair.normal_force.abs());
+        let nothing = self.stirred.nothing();
+        let worst = change / allowed.max(ROUNDING / nothing * pair.normal_force.abs());
         self.stirred.note(worst);
-        if worst > STIRS {
+        if worst > nothing {
             for end in ends {
                 self.stirred.stir(end);
             }

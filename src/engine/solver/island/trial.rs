@@ -17,6 +17,8 @@ use crate::solver::step_control::{
 /// Speed that a spring may still give a rock as its contact opens within a step (–, relative to that of its impact): 4e-4 of
 /// the energy, and the step that passes the kink misses a part of that.
 const LET_GO: f64 = 0.02;
+/// Speed missed behind a kink that is left as it is (–, relative to the local error allowed).
+const MISSED: f64 = 0.3;
 /// Most cuts of a step for contacts that open within it.
 const MOST_CUTS: u32 = 4;
 /// Shortest part of a try to which one that opens cuts it (–): it is found by a straight line from force to force.
@@ -43,15 +45,16 @@ impl IslandTrial<'_, '_> {
         };
         let is_met = self.island.is_met();
         if is_met {
-            let begun = Begun::within(dt, (self.control.impact, self.omega));
-            if let Some(share) = self.onsets.cut(&self.island.begun(begun, hh), rad) {
+            let begun = Begun::within(dt, self.omega);
+            let begun = self.island.begun(begun, hh, self.control.impact);
+            if let Some(share) = self.onsets.cut(&begun, rad) {
                 return TryOutcome::Cut(share);
             }
         }
         if error > 1.0 || error.is_nan() {
             return TryOutcome::Error(error);
         }
-        let opens = self.island.opens(hh);
+        let opens = self.island.opens((dt, hh), self.control.impact);
         if opens < 1.0 && self.cuts < MOST_CUTS {
             self.cuts += 1;
             return TryOutcome::Cut(opens.max(LEAST_CUT));
@@ -121,17 +124,22 @@ impl Island<'_> {
         self.onset.is_met || self.members.iter().any(|member| member.state.onset.is_met)
     }
 
-    /// Where in the present try the first impact begins that it runs into.
-    fn begun(&self, mut begun: Begun, hh: f64) -> Begun {
+    /// Where in the present try the first impact begins that it runs into; `relative` is the local error allowed to one of two bodies
+    /// alone (–).
+    fn begun(&self, mut begun: Begun, hh: f64, relative: f64) -> Begun {
         for member in self.members.iter().map(|slot| &**slot) {
-            member.state.see_begun(&mut begun, (&member.end, hh), member.body.radius);
+            let how = (member.allowed_share(relative), member.body.radius);
+            member.state.see_begun(&mut begun, (&member.end, hh), how);
         }
         for pair in self.pairs.iter().filter(|pair| pair.waits) {
             let [a, b] = pair.ends.map(|end| &self.members[end]);
             let apart_m_s = self.apart_m_s(pair);
-            let gap_m = between(&a.state.c, &b.state.c).1 - a.body.radius - b.body.radius;
-            let pressed = (pair.pen_at(apart_m_s, hh), -apart_m_s);
-            begun.see(pressed, gap_m.max(0.0), a.body.radius.min(b.body.radius));
+            let (n, distance) = between(&a.state.c, &b.state.c);
+            let start =
+                (distance - a.body.radius - b.body.radius, -n.dot(&(a.state.v - b.state.v)));
+            let end = (pair.pen_at(apart_m_s, hh), -apart_m_s);
+            let allowed = a.allowed_share(relative).max(b.allowed_share(relative));
+            begun.see(end, start, (allowed, a.body.radius.min(b.body.radius)));
         }
         begun
     }
@@ -142,25 +150,33 @@ impl Island<'_> {
         pair.speed([&ends[0], &ends[1]])
     }
 
-    /// The share (–) of the present try after which the first contact opens that still presses with a part of its impact; 1 if none does.
-    fn opens(&self, hh: f64) -> f64 {
-        let rocks = self.members.iter().map(|member| member.opens(hh)).fold(1.0, f64::min);
+    /// The share (–) of the present try of `dt` (s) after which the first contact opens that still presses with a part of its impact; 1
+    /// if none does. `relative` is the local error allowed in an impact (–).
+    fn opens(&self, (dt, hh): (f64, f64), relative: f64) -> f64 {
+        let rocks = self.members.iter().map(|member| member.opens((dt, hh), relative));
+        let rocks = rocks.fold(1.0, f64::min);
         let mut pairs = self.pairs.iter().peekable();
         let of_pair = |(k, history): (usize, &PairHistory)| {
             let pair = pairs.next_if(|pair| pair.pair_history == k);
-            let (before, impact_m_s) = (history.normal_force, history.impact.speed_m_s);
-            if impact_m_s <= 0.0 || history.bond.is_some() {
+            if history.impact.speed_m_s <= 0.0 || history.bond.is_some() {
                 return 1.0;
             }
-            let inv_m = [history.a, history.b].map(|k| 1.0 / self.members[k as usize].body.mass);
-            let gives_m_s = before * (inv_m[0] + inv_m[1]) / history.law.omega_rad_s();
+            let ends = [history.a, history.b].map(|k| &self.members[k as usize]);
             let pulls = |pair: &PairContact| {
                 let apart_m_s = self.apart_m_s(pair);
                 pair.normal.pull_or_push(pair.pen_at(apart_m_s, hh), apart_m_s)
             };
+            let before = history.normal_force;
             // rocks that are so far apart that they are not asked have been let go halfway
             let after = pair.map_or(-before, pulls);
-            opening((before, after), (gives_m_s, impact_m_s))
+            let inv_m = ends.map(|end| 1.0 / end.body.mass).iter().sum::<f64>();
+            let allowed_m_s = ends.map(|end| end.allowed_m_s(relative));
+            let kink = Kink {
+                forces: (before, after),
+                gives_m_s: before * inv_m / history.law.omega_rad_s(),
+                missed_m_s: after * inv_m * dt,
+            };
+            kink.share(history.impact.speed_m_s, allowed_m_s[0].min(allowed_m_s[1]))
         };
         self.pair_histories.iter().enumerate().map(of_pair).fold(rocks, f64::min)
     }
@@ -184,16 +200,32 @@ impl Island<'_> {
     }
 }
 
-/// The share (–) of a try after which a contact opens whose force (N) is so much before and would be so much after it, negative if it
-/// could pull; `gives_m_s` is the speed that its spring gives yet of an impact of `impact_m_s`. 1 if it does not, or gives little.
-fn opening((before, after): (f64, f64), (gives_m_s, impact_m_s): (f64, f64)) -> f64 {
-    let is_late = after < 0.0 && gives_m_s > LET_GO * impact_m_s;
-    if is_late { before / (before - after) } else { 1.0 }
+/// What a contact does over a try within which it may open.
+struct Kink {
+    /// Its force before the try and, negative if it could pull, after it (N).
+    forces: (f64, f64),
+    /// Speed that its spring gives yet (m/s).
+    gives_m_s: f64,
+    /// Speed that the force after the try would take away in its whole length (m/s).
+    missed_m_s: f64,
+}
+
+impl Kink {
+    /// The share (–) of the try after which it opens; 1 if it does not, if it gives little of an impact of `impact_m_s`, or so late in the
+    /// try that what the step misses behind the kink is less than is `allowed_m_s`.
+    fn share(&self, impact_m_s: f64, allowed_m_s: f64) -> f64 {
+        let (before, after) = self.forces;
+        let share = before / (before - after);
+        // the force behind the kink on the mean, over the part of the try that is left
+        let missed_m_s = -0.5 * self.missed_m_s * (1.0 - share);
+        let is_late = after < 0.0 && self.gives_m_s > LET_GO * impact_m_s;
+        if is_late && missed_m_s > MISSED * allowed_m_s { share } else { 1.0 }
+    }
 }
 
 impl IslandBody {
     /// The same of its contacts with the mesh.
-    fn opens(&self, hh: f64) -> f64 {
+    fn opens(&self, (dt, hh): (f64, f64), relative: f64) -> f64 {
         let (state, end) = (&self.state, &self.end);
         if !state.is_rebounding() {
             return 1.0;
@@ -202,8 +234,12 @@ impl IslandBody {
             let before = state.histories[contact.history].normal_force;
             let depth_m = contact.pen_at(&end.v, hh);
             let after = contact.normal.pull_or_push(depth_m, contact.n.dot(&end.v));
-            let gives_m_s = before / (self.body.mass * contact.law.omega_rad_s());
-            opening((before, after), (gives_m_s, state.impact.speed_m_s))
+            let kink = Kink {
+                forces: (before, after),
+                gives_m_s: before / (self.body.mass * contact.law.omega_rad_s()),
+                missed_m_s: after * dt / self.body.mass,
+            };
+            kink.share(state.impact.speed_m_s, self.allowed_m_s(relative))
         };
         self.contacts().iter().map(of_contact).fold(1.0, f64::min)
     }

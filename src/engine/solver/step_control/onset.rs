@@ -14,6 +14,9 @@ pub(crate) const MOST_CUTS: u32 = 12;
 /// A step this short ends where an impact begins, as exactly as anybody can tell (rad of the stiffest contact).
 pub(crate) const MET: f64 = 1e-8;
 
+/// Looks at the way of a try for where an impact begins on it: Newton's method is at rounding by then.
+const LOOKS: u32 = 6;
+
 /// How the tries of one step meet the impacts that begin within it.
 #[derive(Debug)]
 pub(crate) struct OnsetSearch {
@@ -52,35 +55,72 @@ impl OnsetSearch {
 #[derive(Debug)]
 pub(crate) struct Begun {
     dt: f64,
-    /// Penetration (m) at which one has just begun, by its speed of approach over `omega` (–, rad/s).
-    begins: (f64, f64),
+    /// The stiffest contact (rad/s).
+    omega: f64,
     is_at_end: bool,
     share: f64,
 }
 
 impl Begun {
-    /// In a try of `dt` (s), to a share of the speed of an impact (–) with a stiffest contact (rad/s).
-    pub(crate) const fn within(dt: f64, begins: (f64, f64)) -> Self {
-        Self { dt, begins, is_at_end: false, share: 1.0 }
+    /// In a try of `dt` (s) with a stiffest contact of `omega` (rad/s).
+    pub(crate) const fn within(dt: f64, omega: f64) -> Self {
+        Self { dt, omega, is_at_end: false, share: 1.0 }
     }
 
-    /// A contact of a rock of a radius (m) that has come up is pressed in at the try's end (m) and comes at a speed (m/s); at its start
-    /// there was a gap (m), 0 if that is not known.
-    pub(crate) fn see(&mut self, (pressed_m, comes_m_s): (f64, f64), gap_m: f64, radius_m: f64) {
-        let (share, omega) = self.begins;
-        let begins_m = (share * comes_m_s / omega).max(PLACE_ROUNDING * radius_m);
+    /// A contact of a rock of a radius (m) that has come up is pressed in at the try's `end` (m) and comes at a speed (m/s); at its
+    /// `start` there was a gap (m), not above 0 if that is not known, and it came at a speed. It has just begun while it is pressed in by
+    /// no more than `allowed` (–), the local error relative to the speed of the impact, of what that speed presses in.
+    pub(crate) fn see(
+        &mut self,
+        end: (f64, f64),
+        start: (f64, f64),
+        (allowed, radius_m): (f64, f64),
+    ) {
+        let ((pressed_m, comes_m_s), (gap_m, _)) = (end, start);
+        let begins_m = (allowed * comes_m_s / self.omega).max(PLACE_ROUNDING * radius_m);
         self.is_at_end |= pressed_m > 0.0;
         if pressed_m > begins_m {
             // a little behind its beginning, so that the next step begins with it
-            let since_s = (pressed_m - 0.5 * begins_m) / comes_m_s;
-            let begins = if comes_m_s > 0.0 { 1.0 - since_s / self.dt } else { 0.0 };
-            // what glances comes more slowly, or leaves again: it lies on the line from gap to penetration
-            let between = gap_m / (gap_m + pressed_m);
-            let share = if begins > 0.0 { begins } else { between };
-            // one that was apart has not popped up, however near it was
-            let least = if gap_m > 0.0 { 2.0 * MET / (self.dt * self.begins.1) } else { share };
-            self.share = self.share.min(share.max(least));
+            let wanted_m = 0.5 * begins_m;
+            let share = if gap_m > 0.0 {
+                // one that was apart has not popped up, however near it was
+                self.share_on_way(end, start, wanted_m).max(2.0 * MET / (self.dt * self.omega))
+            } else if comes_m_s > 0.0 {
+                1.0 - (pressed_m - wanted_m) / (comes_m_s * self.dt)
+            } else {
+                0.0
+            };
+            self.share = self.share.min(share);
         }
+    }
+
+    /// Where it is pressed in by `wanted_m` on the cubic through both ends and their speeds: a share of the try (–).
+    ///
+    /// Newton's method, kept between the ends, from the straight line of the end: what has come up presses nothing in the try, so its
+    /// way is smooth.
+    fn share_on_way(
+        &self,
+        (pressed_m, comes_m_s): (f64, f64),
+        (gap_m, came_m_s): (f64, f64),
+        wanted_m: f64,
+    ) -> f64 {
+        let (from, to) = (-gap_m - wanted_m, pressed_m - wanted_m);
+        let (first, last) = (came_m_s * self.dt, comes_m_s * self.dt);
+        let bent = [first + last - 2.0 * (to - from), 3.0 * (to - from) - 2.0 * first - last];
+        let (mut low, mut high) = (0.0, 1.0);
+        let mut at = if last > to { 1.0 - to / last } else { from / (from - to) };
+        for _ in 0..LOOKS {
+            let beyond = from + at * (first + at * (bent[1] + at * bent[0]));
+            if beyond > 0.0 {
+                high = at
+            } else {
+                low = at
+            }
+            let slope = first + at * (2.0 * bent[1] + at * 3.0 * bent[0]);
+            let next = at - beyond / slope;
+            at = if next > low && next < high { next } else { 0.5 * (low + high) };
+        }
+        at
     }
 
     /// The share (–) of it, 1 or more where what has come up has hardly begun, not positive where it has been there from the start.
@@ -91,12 +131,20 @@ impl Begun {
 }
 
 impl ContactState {
-    /// Sees what of a rock of a radius (m) has come up in the present try, which ends at `end`; `hh` is the part of it that its last
-    /// stage is implicit in (s).
-    pub(crate) fn see_begun(&self, begun: &mut Begun, (end, hh): (&End, f64), radius_m: f64) {
+    /// Sees what of a rock has come up in the present try, which ends at `end`; `hh` is the part of it that its last stage is implicit
+    /// in (s). With the local error allowed in an impact, relative to its speed (–), and the radius of the rock (m).
+    pub(crate) fn see_begun(
+        &self,
+        begun: &mut Begun,
+        (end, hh): (&End, f64),
+        (allowed, radius_m): (f64, f64),
+    ) {
         let contacts = &self.contacts[..self.contact_count];
         for contact in contacts.iter().filter(|it| self.histories[it.history].met_m_s > 0.0) {
-            begun.see((contact.pen_at(&end.v, hh), -contact.n.dot(&end.v)), 0.0, radius_m);
+            let (pressed_m, way_m) = (contact.pen_at(&end.v, hh), end.c - self.c);
+            // what is met at the end is taken for a plane back to the start
+            let start = (-contact.n.dot(&way_m) - pressed_m, -contact.n.dot(&self.v));
+            begun.see((pressed_m, -contact.n.dot(&end.v)), start, (allowed, radius_m));
         }
     }
 }
@@ -108,8 +156,9 @@ impl RockTrial<'_, '_> {
         if !self.state.onset.is_met {
             return None;
         }
-        let mut begun = Begun::within(dt, (self.control.impact, self.omega));
-        self.state.see_begun(&mut begun, (end, hh), self.world.body.radius);
+        let mut begun = Begun::within(dt, self.omega);
+        let (allowed, radius_m) = (self.control.impact, self.world.body.radius);
+        self.state.see_begun(&mut begun, (end, hh), (allowed, radius_m));
         self.onsets.cut(&begun, dt * self.omega)
     }
 }
