@@ -111,11 +111,7 @@ impl Begun {
         let mut at = if last > to { 1.0 - to / last } else { from / (from - to) };
         for _ in 0..LOOKS {
             let beyond = from + at * (first + at * (bent[1] + at * bent[0]));
-            if beyond > 0.0 {
-                high = at
-            } else {
-                low = at
-            }
+            (low, high) = if beyond > 0.0 { (low, at) } else { (at, high) };
             let slope = first + at * (2.0 * bent[1] + at * 3.0 * bent[0]);
             let next = at - beyond / slope;
             at = if next > low && next < high { next } else { 0.5 * (low + high) };
