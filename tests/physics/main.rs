@@ -16,6 +16,7 @@ mod exact_plane;
 mod heap;
 mod impact_ledger;
 mod ledger;
+mod many_rocks;
 mod leaving_out;
 mod oracle_contact;
 mod oracle_flight;
