@@ -137,10 +137,8 @@ impl ContactState {
     ) {
         let contacts = &self.contacts[..self.contact_count];
         for contact in contacts.iter().filter(|it| self.histories[it.history].met_m_s > 0.0) {
-            let (pressed_m, way_m) = (contact.pen_at(&end.v, hh), end.c - self.c);
-            // what is met at the end is taken for a plane back to the start
-            let start = (-contact.n.dot(&way_m) - pressed_m, -contact.n.dot(&self.v));
-            begun.see((pressed_m, -contact.n.dot(&end.v)), start, (allowed, radius_m));
+            let met = (contact.pen_at(&end.v, hh), -contact.n.dot(&end.v));
+            begun.see(met, (0.0, 0.0), (allowed, radius_m));
         }
     }
 }
