@@ -15,10 +15,11 @@ fn scene(seed: u32, along_m_s: f64) -> String {
     let slope = fs::canonicalize("terrain/quick_slope.stl").unwrap();
     let springs = "normal_stiffness_n_m = 1e8\nshear_stiffness_n_m = 0.25e8\nfriction_angle_deg = 32.0\nrestitution = 0.35\n";
     format!(
-        "title = \"A crowd\"\nseed = {seed}\n[[terrain]]\nmesh = {slope:?}\nground = \"rock\"\n[grounds.rock]\n{springs}rolling_friction = 0.35\n\
+        "title = \"A crowd\"\nseed = {seed}\n[[terrain]]\nmesh = \"{}\"\nground = \"rock\"\n[grounds.rock]\n{springs}rolling_friction = 0.35\n\
          [rocks]\ndensity_kg_m3 = 2700.0\nradius_m = 0.2\n[rocks.contact]\n{springs}tensile_strength_pa = 0.0\ncohesion_pa = 0.0\n\
          [release]\ncount = 125\ntogether = true\nvelocity_m_s = [0.0, {along_m_s}, 0.5]\nspin_rad_s = [0.0, 0.0, 0.0]\n\
-         points_m = [{points}]\n[record]\npaths = 0\n"
+         points_m = [{points}]\n[record]\npaths = 0\n",
+        slope.display()
     )
 }
 

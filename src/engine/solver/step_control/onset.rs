@@ -86,7 +86,7 @@ impl Begun {
                 // one that was apart has not popped up, however near it was
                 self.share_on_way(end, start, wanted_m).max(2.0 * MET / (self.dt * self.omega))
             } else if comes_m_s > 0.0 {
-                1.0 - (pressed_m - wanted_m) / (comes_m_s * self.dt)
+                1.0 - (pressed_m - wanted_m) / comes_m_s / self.dt
             } else {
                 0.0
             };
