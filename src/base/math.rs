@@ -41,6 +41,29 @@ pub fn runge_kutta_4<const N: usize>(
     std::array::from_fn(|i| state[i] + h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]))
 }
 
+/// Halvings in search of a crossing: to rounding.
+const HALVINGS: u32 = 50;
+
+/// Where between 0 and 1 the cubic with a value and a slope at both ends (Hermite's) crosses zero, downwards or upwards, by bisection.
+/// The values are of either side; of several crossings it finds one.
+pub fn hermite_crossing([x0, d0]: [f64; 2], [x1, d1]: [f64; 2], down: bool) -> f64 {
+    let (b, a) = (3.0 * (x1 - x0) - 2.0 * d0 - d1, d0 + d1 - 2.0 * (x1 - x0));
+    let is_before = |t: f64| {
+        let x = x0 + t * (d0 + t * (b + t * a));
+        if down { x >= 0.0 } else { x <= 0.0 }
+    };
+    let (mut lo, mut hi) = (0.0, 1.0);
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (lo + hi);
+        if is_before(middle) {
+            lo = middle;
+        } else {
+            hi = middle;
+        }
+    }
+    0.5 * (lo + hi)
+}
+
 /// The nearest number with so many significant digits.
 pub fn rounded(value: f64, digits: usize) -> f64 {
     format!("{:.*e}", digits.max(1) - 1, value).parse().unwrap_or(value)

@@ -271,7 +271,7 @@ pub(crate) fn pressed_j(state: &ContactState, end: &End, hh: f64) -> f64 {
     stored.sum()
 }
 
-/// Longest step that cannot jump over a feature (s).
+/// Longest step in which the rock goes no further than `travel` (–, relative to R), so that it cannot jump over a feature (s).
 pub(crate) fn travel_limit(
     world: &ContactEnvironment,
     state: &mut ContactState,

@@ -6,15 +6,14 @@
 //! friction, with its stretch cut back to Coulomb's cone, so that nothing it held becomes motion.
 
 use super::assembly::Island;
-use super::body::IslandBody;
+use super::body::{IslandBody, note_flights};
 use super::outcome::Done;
 use crate::contact::history::carry;
 use crate::contact::pair::{PairHistory, PairImpact, between};
 use crate::math;
 use crate::rock::Vec3;
 use crate::solver::contact_state::ContactEnvironment;
-use crate::solver::loss::Given;
-use crate::solver::loss::Loss;
+use crate::solver::loss::{Given, Loss};
 use crate::solver::step_control;
 use crate::solver::tableau::Tableau;
 use nalgebra::Matrix3;
@@ -46,16 +45,7 @@ impl Island<'_> {
             member.given[0] = member.given[tableau.stages - 1];
         }
         done.broken = self.accept_ties(tableau, dt);
-        for member in &mut self.members {
-            // free of the mesh; contacts with rocks are looked at next
-            member.flying = member.state.is_free();
-        }
-        for pair_history in self.pair_histories.iter().filter(|pair_history| pair_history.is_held())
-        {
-            for k in [pair_history.a, pair_history.b] {
-                self.members[k as usize].flying = false;
-            }
-        }
+        note_flights(&mut self.members, &self.pair_histories);
         self.keep_spin(before);
         done
     }

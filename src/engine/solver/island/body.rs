@@ -7,6 +7,7 @@ use super::outcome::Done;
 use super::pair_contact::Twist;
 use crate::contact::Feature;
 use crate::contact::history::ContactHistory;
+use crate::contact::pair::PairHistory;
 use crate::ground::Law;
 use crate::rock::Vec3;
 use crate::solver::body::Body;
@@ -274,6 +275,18 @@ impl IslandBody {
         self.kept.extend(
             contacts.iter().map(|s| (s.feature, s.normal_force, s.shear_force, s.rolling_moment)),
         );
+    }
+}
+
+/// Notes which rocks fly: those that touch neither the mesh nor another rock.
+pub(super) fn note_flights(members: &mut [BodySlot], pair_histories: &[PairHistory]) {
+    for member in &mut *members {
+        member.flying = member.state.is_free();
+    }
+    for pair_history in pair_histories.iter().filter(|pair_history| pair_history.is_held()) {
+        for k in [pair_history.a, pair_history.b] {
+            members[k as usize].flying = false;
+        }
     }
 }
 

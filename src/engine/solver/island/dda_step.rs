@@ -1,7 +1,7 @@
 //! Scheme `dda` for an island: the paper's step at a fixed time step for all of its rocks, see `dda`.
 
 use super::assembly::Island;
-use super::body::IslandBody;
+use super::body::{IslandBody, note_flights};
 use super::outcome::Done;
 use crate::solver::Settings;
 use crate::solver::contact_state::ContactEnvironment;
@@ -27,15 +27,7 @@ impl Island<'_> {
             DdaStep { bodies, pairs, pair_histories }.advance((dt, settings.shear_memory))?;
         self.sweeps += u64::from(done.solves);
         let (losses, given) = bodies.iter().map(|body| (body.loss, body.given)).unzip();
-        for member in &mut self.members {
-            member.flying = member.state.is_free();
-        }
-        for pair_history in self.pair_histories.iter().filter(|pair_history| pair_history.is_held())
-        {
-            for k in [pair_history.a, pair_history.b] {
-                self.members[k as usize].flying = false;
-            }
-        }
+        note_flights(&mut self.members, &self.pair_histories);
         let (unsettled, broken) = (!done.settled, done.broken);
         Ok(Done { dt, losses, given, unsettled, broken, ..Done::default() })
     }

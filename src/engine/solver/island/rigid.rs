@@ -18,7 +18,7 @@ mod impacts;
 mod resting_contacts;
 mod sweeps;
 
-use super::body::{BodySlot, IslandBody};
+use super::body::{BodySlot, IslandBody, note_flights};
 use super::contact_queue::{ContactQueue, ContactsOfRocks};
 use super::outcome::{Done, Hit};
 use crate::contact::pair::{PairHistory, between};
@@ -180,11 +180,7 @@ impl RigidIsland {
             }
             member.land_on(terrain, ball);
         }
-        for pair_history in pair_histories.iter().filter(|pair_history| pair_history.is_held()) {
-            for k in [pair_history.a, pair_history.b] {
-                members[k as usize].flying = false;
-            }
-        }
+        note_flights(members, pair_histories);
     }
 }
 
@@ -248,7 +244,6 @@ impl IslandBody {
         (state.c, state.v, state.w) = (ball.c, ball.v, ball.w);
         remember(&world, state, |_| ball.pushed);
         state.is_struck = false;
-        self.flying = state.is_free();
     }
 }
 

@@ -135,8 +135,8 @@ impl Island<'_> {
             let [a, b] = pair.ends.map(|end| &self.members[end]);
             let apart_m_s = self.apart_m_s(pair);
             let (n, distance) = between(&a.state.c, &b.state.c);
-            let start =
-                (distance - a.body.radius - b.body.radius, -n.dot(&(a.state.v - b.state.v)));
+            let gap_m = distance - a.body.radius - b.body.radius;
+            let start = (gap_m > 0.0).then(|| (gap_m, -n.dot(&(a.state.v - b.state.v))));
             let end = (pair.pen_at(apart_m_s, hh), -apart_m_s);
             let allowed = a.allowed_share(relative).max(b.allowed_share(relative));
             begun.see(end, start, (allowed, a.body.radius.min(b.body.radius)));
@@ -171,12 +171,9 @@ impl Island<'_> {
             let after = pair.map_or(-before, pulls);
             let inv_m = ends.map(|end| 1.0 / end.body.mass).iter().sum::<f64>();
             let allowed_m_s = ends.map(|end| end.allowed_m_s(relative));
-            let kink = Kink {
-                forces: (before, after),
-                gives_m_s: before * inv_m / history.law.omega_rad_s(),
-                missed_m_s: after * inv_m * dt,
-            };
-            kink.share(history.impact.speed_m_s, allowed_m_s[0].min(allowed_m_s[1]))
+            let omega = history.law.omega_rad_s();
+            Kink { forces: (before, after), inv_m, omega, dt }
+                .share(history.impact.speed_m_s, allowed_m_s[0].min(allowed_m_s[1]))
         };
         self.pair_histories.iter().enumerate().map(of_pair).fold(rocks, f64::min)
     }
@@ -200,25 +197,27 @@ impl Island<'_> {
     }
 }
 
-/// What a contact does over a try within which it may open.
+/// A contact over a try of `dt` (s) within which it may open.
 struct Kink {
     /// Its force before the try and, negative if it could pull, after it (N).
     forces: (f64, f64),
-    /// Speed that its spring gives yet (m/s).
-    gives_m_s: f64,
-    /// Speed that the force after the try would take away in its whole length (m/s).
-    missed_m_s: f64,
+    /// One over the mass that it moves (1/kg).
+    inv_m: f64,
+    /// Its frequency (rad/s).
+    omega: f64,
+    dt: f64,
 }
 
 impl Kink {
-    /// The share (–) of the try after which it opens; 1 if it does not, if it gives little of an impact of `impact_m_s`, or so late in the
-    /// try that what the step misses behind the kink is less than is `allowed_m_s`.
+    /// The share (–) of the try after which it opens; 1 if it does not, if its spring gives little of an impact of `impact_m_s`, or so
+    /// late in the try that what the step misses behind the kink is less than is `allowed_m_s`.
     fn share(&self, impact_m_s: f64, allowed_m_s: f64) -> f64 {
         let (before, after) = self.forces;
         let share = before / (before - after);
+        let gives_m_s = before * self.inv_m / self.omega;
         // the force behind the kink on the mean, over the part of the try that is left
-        let missed_m_s = -0.5 * self.missed_m_s * (1.0 - share);
-        let is_late = after < 0.0 && self.gives_m_s > LET_GO * impact_m_s;
+        let missed_m_s = -0.5 * after * self.inv_m * self.dt * (1.0 - share);
+        let is_late = after < 0.0 && gives_m_s > LET_GO * impact_m_s;
         if is_late && missed_m_s > MISSED * allowed_m_s { share } else { 1.0 }
     }
 }
@@ -234,12 +233,9 @@ impl IslandBody {
             let before = state.histories[contact.history].normal_force;
             let depth_m = contact.pen_at(&end.v, hh);
             let after = contact.normal.pull_or_push(depth_m, contact.n.dot(&end.v));
-            let kink = Kink {
-                forces: (before, after),
-                gives_m_s: before / (self.body.mass * contact.law.omega_rad_s()),
-                missed_m_s: after * dt / self.body.mass,
-            };
-            kink.share(state.impact.speed_m_s, self.allowed_m_s(relative))
+            let (inv_m, omega) = (1.0 / self.body.mass, contact.law.omega_rad_s());
+            Kink { forces: (before, after), inv_m, omega, dt }
+                .share(state.impact.speed_m_s, self.allowed_m_s(relative))
         };
         self.contacts().iter().map(of_contact).fold(1.0, f64::min)
     }

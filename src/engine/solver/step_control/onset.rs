@@ -6,6 +6,7 @@
 //! island by implicit ones, which are short and held to the speed of the impact.
 
 use super::{ONSET, PLACE_ROUNDING, RockTrial};
+use crate::math;
 use crate::solver::contact_state::ContactState;
 use crate::solver::stage::End;
 
@@ -13,9 +14,6 @@ use crate::solver::stage::End;
 pub(crate) const MOST_CUTS: u32 = 12;
 /// A step this short ends where an impact begins, as exactly as anybody can tell (rad of the stiffest contact).
 pub(crate) const MET: f64 = 1e-8;
-
-/// Looks at the way of a try for where an impact begins on it: Newton's method is at rounding by then.
-const LOOKS: u32 = 6;
 
 /// How the tries of one step meet the impacts that begin within it.
 #[derive(Debug)]
@@ -68,23 +66,29 @@ impl Begun {
     }
 
     /// A contact of a rock of a radius (m) that has come up is pressed in at the try's `end` (m) and comes at a speed (m/s); at its
-    /// `start` there was a gap (m), not above 0 if that is not known, and it came at a speed. It has just begun while it is pressed in by
+    /// `start`, if that is known, there was a gap (m), above 0, and it came at a speed. It has just begun while it is pressed in by
     /// no more than `allowed` (–), the local error relative to the speed of the impact, of what that speed presses in.
     pub(crate) fn see(
         &mut self,
         end: (f64, f64),
-        start: (f64, f64),
+        start: Option<(f64, f64)>,
         (allowed, radius_m): (f64, f64),
     ) {
-        let ((pressed_m, comes_m_s), (gap_m, _)) = (end, start);
+        let (pressed_m, comes_m_s) = end;
         let begins_m = (allowed * comes_m_s / self.omega).max(PLACE_ROUNDING * radius_m);
         self.is_at_end |= pressed_m > 0.0;
         if pressed_m > begins_m {
             // a little behind its beginning, so that the next step begins with it
             let wanted_m = 0.5 * begins_m;
-            let share = if gap_m > 0.0 {
+            let share = if let Some((gap_m, came_m_s)) = start {
+                // what has come up presses nothing in the try, so its way is smooth
+                let [from, to] = [
+                    [-gap_m - wanted_m, came_m_s * self.dt],
+                    [pressed_m - wanted_m, comes_m_s * self.dt],
+                ];
+                let share = math::hermite_crossing(from, to, false);
                 // one that was apart has not popped up, however near it was
-                self.share_on_way(end, start, wanted_m).max(2.0 * MET / (self.dt * self.omega))
+                share.max(2.0 * MET / (self.dt * self.omega))
             } else if comes_m_s > 0.0 {
                 1.0 - (pressed_m - wanted_m) / comes_m_s / self.dt
             } else {
@@ -92,31 +96,6 @@ impl Begun {
             };
             self.share = self.share.min(share);
         }
-    }
-
-    /// Where it is pressed in by `wanted_m` on the cubic through both ends and their speeds: a share of the try (–).
-    ///
-    /// Newton's method, kept between the ends, from the straight line of the end: what has come up presses nothing in the try, so its
-    /// way is smooth.
-    fn share_on_way(
-        &self,
-        (pressed_m, comes_m_s): (f64, f64),
-        (gap_m, came_m_s): (f64, f64),
-        wanted_m: f64,
-    ) -> f64 {
-        let (from, to) = (-gap_m - wanted_m, pressed_m - wanted_m);
-        let (first, last) = (came_m_s * self.dt, comes_m_s * self.dt);
-        let bent = [first + last - 2.0 * (to - from), 3.0 * (to - from) - 2.0 * first - last];
-        let (mut low, mut high) = (0.0, 1.0);
-        let mut at = if last > to { 1.0 - to / last } else { from / (from - to) };
-        for _ in 0..LOOKS {
-            let beyond = from + at * (first + at * (bent[1] + at * bent[0]));
-            (low, high) = if beyond > 0.0 { (low, at) } else { (at, high) };
-            let slope = first + at * (2.0 * bent[1] + at * 3.0 * bent[0]);
-            let next = at - beyond / slope;
-            at = if next > low && next < high { next } else { 0.5 * (low + high) };
-        }
-        at
     }
 
     /// The share (–) of it, 1 or more where what has come up has hardly begun, not positive where it has been there from the start.
@@ -138,7 +117,7 @@ impl ContactState {
         let contacts = &self.contacts[..self.contact_count];
         for contact in contacts.iter().filter(|it| self.histories[it.history].met_m_s > 0.0) {
             let met = (contact.pen_at(&end.v, hh), -contact.n.dot(&end.v));
-            begun.see(met, (0.0, 0.0), (allowed, radius_m));
+            begun.see(met, None, (allowed, radius_m));
         }
     }
 }

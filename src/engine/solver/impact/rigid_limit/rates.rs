@@ -7,6 +7,7 @@
 use super::contacts::{Contacts, SwitchTime};
 use super::{FrozenContact, LONGEST_STEP, NOTHING};
 use crate::contact::MOST;
+use crate::math;
 use crate::rock::Vec3;
 use crate::solver::body::Body;
 use crate::solver::impact::dormand_prince::{Flow, Rates, put, three};
@@ -17,8 +18,6 @@ const V: [usize; 3] = [3, 4, 5];
 pub(super) const W: [usize; 3] = [6, 7, 8];
 /// Where the springs begin: shear of all `K` contacts, then rolling of all, each with three numbers.
 const SPRINGS: usize = 9;
-/// Halvings of a step in search of the moment of touch.
-const HALVINGS: u32 = 50;
 
 /// Velocity.
 pub(super) fn speed_of<const N: usize>(y: &[f64; N]) -> Vec3 {
@@ -169,7 +168,11 @@ impl<const K: usize> ContactRates<K> {
             // at the surface and hardly moving: the crossing is at the start, and only the mode is
             // wrong
             let slow = self.pressed[k] && x <= nothing && rate <= nothing;
-            let at = if slow { 0.0 } else { root([x, rate * h], [x1, rate1 * h], self.pressed[k]) };
+            let at = if slow {
+                0.0
+            } else {
+                math::hermite_crossing([x, rate * h], [x1, rate1 * h], self.pressed[k])
+            };
             if first.is_none_or(|(found, _)| at < found) {
                 first = Some((at, k));
             }
@@ -266,24 +269,4 @@ impl<const K: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, 
         }
         sum / (self.allowed * self.allowed)
     }
-}
-
-/// Where between 0 and 1 the cubic with values and slopes given at both ends crosses zero, downwards or upwards.
-/// Hermite's cubic of penetration and rate at both ends of the step.
-fn root([x0, d0]: [f64; 2], [x1, d1]: [f64; 2], down: bool) -> f64 {
-    let (b, a) = (3.0 * (x1 - x0) - 2.0 * d0 - d1, d0 + d1 - 2.0 * (x1 - x0));
-    let is_before = |t: f64| {
-        let x = x0 + t * (d0 + t * (b + t * a));
-        if down { x >= 0.0 } else { x <= 0.0 }
-    };
-    let (mut lo, mut hi) = (0.0, 1.0);
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (lo + hi);
-        if is_before(middle) {
-            lo = middle;
-        } else {
-            hi = middle;
-        }
-    }
-    0.5 * (lo + hi)
 }
