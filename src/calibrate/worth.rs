@@ -48,8 +48,8 @@ pub struct SiteMeasure {
     pub measured: f64,
     /// Of the computed ends.
     pub computed: f64,
-    /// 95 % interval of computed less measured, from measured ends drawn again: lower end. None of what cannot be below 0:
-    /// its words say what chance alone comes to.
+    /// 95 % interval of computed less measured, from measured ends drawn again, of standard deviations from their kurtosis: lower end.
+    /// None of what cannot be below 0: its words say what chance alone comes to; none of too few ends.
     pub low_95: Option<f64>,
     /// Its upper end.
     pub high_95: Option<f64>,
@@ -130,9 +130,15 @@ impl ParameterSearch<'_> {
                     let (low_95, high_95) = (None, None);
                     return SiteMeasure { scene, what, measured, computed: own, low_95, high_95 };
                 }
-                let differences = again.iter().map(|figures| figures[at].2 - figures[at].1);
-                let tail = tail_of(site.effective());
-                let [low_95, high_95] = middle(differences.collect(), tail).map(Some);
+                let worth = site.effective();
+                let deviation = EndSpread::deviation_95(what, site.measured(), worth);
+                let drawn = || {
+                    let off = again.iter().map(|figures| figures[at].2 - figures[at].1);
+                    middle(off.collect(), tail_of(worth)).map(Some)
+                };
+                let less = |measured: f64| own - measured;
+                let [low_95, high_95] =
+                    deviation.map_or_else(drawn, |[low, high]| [high.map(less), low.map(less)]);
                 let what = what.to_owned();
                 SiteMeasure { scene, what, measured, computed: own, low_95, high_95 }
             };

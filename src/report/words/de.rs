@@ -319,7 +319,7 @@ pub(super) static WORDS: Words = Words {
     told_note: "An allen {ends} gemessenen Endpunkten angepasste Werte, mit 95-%-Intervallen aus erneut gezogenen Endpunkten; Würfe eines Blocks ähneln sich, sie sind {worth} unabhängige wert.",
     fitted: "angepasst",
     ends_title: "Endpunkte der Anpassung",
-    ends_note: "Gerechnet minus gemessen mit 95-%-Intervall, aus erneut gezogenen gemessenen Endpunkten.",
+    ends_note: "Gerechnet minus gemessen mit 95-%-Intervall, aus erneut gezogenen gemessenen Endpunkten; von Standardabweichungen aus der Wölbung der Endpunkte (Bonett 2006).",
     difference: "Unterschied",
     // Plausibility
     check_failed: "{name}: {found}",

@@ -319,7 +319,7 @@ pub(super) static WORDS: Words = Words {
     told_note: "Valeurs calées sur les {ends} arrêts mesurés, avec intervalles à 95 % par rééchantillonnage\u{a0}; les lancers d’un même bloc se ressemblent et en valent {worth} indépendants.",
     fitted: "calé",
     ends_title: "Arrêts du calage",
-    ends_note: "Calculé moins mesuré avec intervalle à 95 %, par rééchantillonnage des arrêts mesurés.",
+    ends_note: "Calculé moins mesuré avec intervalle à 95 %, par rééchantillonnage des arrêts mesurés\u{a0}; des écarts types d’après l’aplatissement des arrêts (Bonett 2006).",
     difference: "différence",
     // Plausibility
     check_failed: "{name}\u{a0}: {found}",

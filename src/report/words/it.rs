@@ -319,7 +319,7 @@ pub(super) static WORDS: Words = Words {
     told_note: "Valori adattati su tutti i {ends} arresti misurati, con intervalli al 95 % da ricampionamento; i lanci di uno stesso blocco si somigliano e ne valgono {worth} indipendenti.",
     fitted: "adattato",
     ends_title: "Arresti dell’adattamento",
-    ends_note: "Calcolato meno misurato con intervallo al 95 %, da ricampionamento degli arresti misurati.",
+    ends_note: "Calcolato meno misurato con intervallo al 95 %, da ricampionamento degli arresti misurati; delle deviazioni standard dalla curtosi degli arresti (Bonett 2006).",
     difference: "differenza",
     // Plausibility
     check_failed: "{name}: {found}",
