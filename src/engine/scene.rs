@@ -38,7 +38,7 @@ pub use blocks::{BlockRow, BothSizes, SizeFrom};
 pub use calibrate::{
     CalibrateTable, CalibrationScore, FittedValue, MeasuredEnds, VaryKey, VaryTable,
 };
-pub use catalogue::{CATALOGUE, KnownGround, catalogue, known_ground};
+pub use catalogue::{CATALOGUE, KnownGround, KnownValue, catalogue, known_ground};
 pub use drawn::{BarrierEntry, LineEntry};
 pub use files::InputFile;
 pub use frequency::{ClassTable, FrequencyTable, SourceTable};

@@ -15,8 +15,9 @@ use crate::terrain::stems::Stems;
 pub(super) fn catalogued(scene: &Scene) -> Vec<String> {
     let taken = |(name, ground): (&String, &GroundTable)| {
         let known = known_ground(ground.like.as_deref()?)?;
+        let beside = known.beside.map_or_else(String::new, |beside| format!("; beside {beside}"));
         Some(format!(
-            "{name} like {}: {} unless written in the scene; {}",
+            "{name} like {}: {} unless written in the scene{beside}; {}",
             known.name,
             known.values(),
             known.source
@@ -94,7 +95,8 @@ fn endless_rolling(scene: &Scene) -> impl Iterator<Item = String> {
     let lies = |name: &str| scene.terrain.iter().any(|mesh| mesh.ground == name);
     scene.grounds.iter().filter_map(move |(name, ground)| {
         let known = known_ground(ground.like.as_deref()?)?;
-        (ground.rolling_friction.is_none() && lies(name)).then(|| {
+        let is_endless = ground.rolling_friction.is_none() && lies(name) && scene.has_spheres();
+        is_endless.then(|| {
             format!(
                 "[grounds.{name}] like {}: its source has no rolling friction, and without any nothing stops a sphere that rolls; write rolling_friction",
                 known.name

@@ -1,6 +1,6 @@
 //! `[grounds.NAME]`.
 
-use super::catalogue::{CATALOGUE, known_ground};
+use super::catalogue::{CATALOGUE, KnownValue, known_ground};
 use super::check::{Allowed, Checked, Complaint, drawn, number, suggest};
 use crate::ground::{Scar, SlipFriction};
 use crate::random::Distribution;
@@ -11,7 +11,7 @@ use serde::{Deserialize, Deserializer};
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table [grounds.NAME]")]
 pub struct GroundTable {
-    /// A ground of the catalogue that gives restitution and rolling friction where they are absent here.
+    /// A ground of the catalogue that gives restitution, rolling friction, roughness and soil where they are absent here.
     pub like: Option<String>,
     /// Normal contact spring `p_N` (N/m), positive.
     pub normal_stiffness_n_m: Distribution,
@@ -48,10 +48,13 @@ impl GroundTable {
             let names = CATALOGUE.map(|ground| ground.name);
             return Err(Complaint::about("like", suggest(name, &names)));
         };
-        let drawn = |range: [f64; 2]| Distribution::uniform(range).ok();
-        self.restitution = self.restitution.take().or_else(|| drawn(known.restitution));
-        self.rolling_friction =
-            self.rolling_friction.take().or_else(|| known.rolling_friction.and_then(drawn));
+        let fill = |own: &mut Option<Distribution>, known: Option<KnownValue>| {
+            *own = own.take().or_else(|| known.and_then(KnownValue::distribution));
+        };
+        fill(&mut self.restitution, Some(known.restitution));
+        fill(&mut self.rolling_friction, known.rolling_friction);
+        fill(&mut self.roughness_deg, known.roughness_deg);
+        self.scar = self.scar.take().or(known.scar);
         Ok(())
     }
 

@@ -58,8 +58,8 @@ const HEAD: &str = "\
 ";
 
 const GROUND: &str = "
-# FILL IN: what the slope is made of. Physics has no default. `rockfall grounds` lists values from the literature with
-# their sources; `like` takes restitution and rolling friction from there. Any value may be a distribution, as in
+# FILL IN: what the slope is made of. Physics has no default. `rockfall grounds` lists values from the literature and from a
+# field test with their sources; `like` takes restitution and rolling friction from there. Any value may be a distribution, as in
 # { uniform = [0.3, 0.5] }.
 [grounds.slope]
 # like = \"rstone/debris\"
