@@ -4,7 +4,10 @@
 use crate::common;
 
 use crate::pairs::{free, momentum, space};
+use crate::patch::fold;
+use common::GROUND;
 use common::together::{Sphere, WORLD, World, energy_j};
+use rockfall::ground::Ground;
 use rockfall::simulation::Trajectory;
 
 /// Momentum and angular momentum differ by rounding, of the largest single ones.
@@ -90,5 +93,45 @@ fn a_cradle_hands_on() {
         }
         momenta_are_kept(&falls);
         assert_eq!(census.unsettled, 0);
+    }
+}
+
+/// Two rocks that strike both sides of a hollow fold at once, neighbours and yet no touch between them, leave it as each does alone: both
+/// sides answer in one blow. One side after the other would throw them out sideways.
+#[test]
+fn rocks_of_an_island_strike_both_sides_of_a_fold_at_once() {
+    for (e, friction_angle_rad) in [(1.0, 0.0), (0.6, 0.4)] {
+        for angle in [0.6f64, 1.0, 1.8] {
+            let terrain = fold(angle);
+            let ground = Ground {
+                restitution: Some(e),
+                friction_angle_rad,
+                rolling_friction: 0.1,
+                ..GROUND
+            };
+            let world = World { ground, restitution: e, friction_angle_rad, ..WORLD };
+            let height = 0.5 / (0.5 * angle).cos() + 0.3;
+            // along the fold too, and turning, so that friction has something to do
+            let sphere = |y: f64| -> Sphere {
+                (0.5, 2700.0, [0.0, y, height], [0.0, 0.4, -2.0], [1.0, 0.0, 0.0])
+            };
+            let (together, census) = world.run(&terrain, &[sphere(0.0), sphere(1.0 + 2e-4)], 0.4);
+            let (alone, _) = world.run(&terrain, &[sphere(0.0)], 0.4);
+            assert_eq!(census.unsettled, 0);
+            for fall in &together {
+                let [own, one] = [fall, &alone[0]].map(|fall| fall.end);
+                assert!(one.velocity_m_s.z > 0.1, "{angle}: it has not left the fold");
+                let off = (own.velocity_m_s - one.velocity_m_s).norm();
+                // followed to a tolerance, in islands of a few rocks that of a rock alone
+                assert!(off < 1e-3, "{e} {angle}: {} for {}", own.velocity_m_s, one.velocity_m_s);
+                assert!((own.spin_rad_s - one.spin_rad_s).norm() < 4e-3, "{e} {angle}");
+                assert_eq!(fall.impacts.len(), alone[0].impacts.len(), "{e} {angle}");
+                let [own, one] = [fall, &alone[0]].map(|fall| {
+                    let ledger = &fall.ledger;
+                    ledger.friction_j + ledger.damping_j + ledger.rolling_j
+                });
+                assert!((own - one).abs() < 2e-3 * one.max(1.0), "{e} {angle}: {own} {one} J");
+            }
+        }
     }
 }

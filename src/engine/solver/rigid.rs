@@ -27,7 +27,7 @@ use super::roughness;
 use super::step_control::{Advance, StepError, TRAVEL};
 use crate::contact::TOUCH;
 use crate::contact::history::ContactHistory;
-use crate::contact::{ContactPoint, MOST};
+use crate::contact::{ContactPoint, ContactPoints, MOST};
 use crate::ground::Law;
 use crate::rock::Vec3;
 
@@ -247,7 +247,7 @@ fn hits(world: &ContactEnvironment, state: &ContactState) -> bool {
 }
 
 /// Whether a rock with velocity `v` hits a touch too fast to be captured.
-fn is_fast(world: &ContactEnvironment, touch: &ContactPoint, v: &Vec3) -> bool {
+pub(super) fn is_fast(world: &ContactEnvironment, touch: &ContactPoint, v: &Vec3) -> bool {
     -touch.normal.dot(v) >= capture_m_s(world.law(touch.triangle))
 }
 
@@ -268,19 +268,28 @@ fn strike(world: &ContactEnvironment, state: &mut ContactState) {
     }
 }
 
-/// The impact: the limit of stiff springs of the same law, with the geometry of the instant ([`super::impact`]). Contacts too
-/// slow to rebound take part and give nothing back.
-fn impact(world: &ContactEnvironment, state: &mut ContactState, done: &mut Advance) {
-    let (v, w, touches) = (state.v, state.w, state.touches);
+/// The touches of a rock with velocity `v` as contacts of one impact: those too slow to rebound take part and give nothing back.
+pub(super) fn frozen<'w>(
+    world: &'w ContactEnvironment,
+    touches: &ContactPoints,
+    v: &Vec3,
+) -> [FrozenContact<'w>; MOST] {
     let mut struck = [FrozenContact::none(); MOST];
     for (struck, touch) in struck.iter_mut().zip(touches.iter()) {
         *struck = FrozenContact {
             normal: touch.normal,
             law: world.law(touch.triangle),
             stiffness_scale: touch.gain2,
-            captured: !is_fast(world, touch, &v),
+            captured: !is_fast(world, touch, v),
         };
     }
+    struck
+}
+
+/// The impact: the limit of stiff springs of the same law, with the geometry of the instant ([`super::impact`]).
+fn impact(world: &ContactEnvironment, state: &mut ContactState, done: &mut Advance) {
+    let (v, w, touches) = (state.v, state.w, state.touches);
+    let struck = frozen(world, &touches, &v);
     let thrown = throw(&world.body, &struck[..touches.len()], (&v, &w), IMPACT);
     (state.v, state.w) = (thrown.velocity_m_s, thrown.spin_rad_s);
     for (loss, touch) in thrown.loss.iter().zip(touches.iter()) {

@@ -6,7 +6,7 @@ use crate::ground::{FrictionLimits, Law};
 use crate::rock::Vec3;
 use crate::solver::body::Body;
 use crate::solver::friction_rolling::{ContactFrame, SlipState};
-use crate::solver::impact::{BlowTable, FrozenContact, blow_along_a_line, throw};
+use crate::solver::impact::{BlowTable, blow_along_a_line};
 use crate::solver::island::pair_contact::Twist;
 use crate::solver::rigid::rub;
 
@@ -332,22 +332,6 @@ impl GroundContact {
         (self.normal_force, self.shear_force, self.turn) = (next.0, next.1, next.2);
         let load = change.load(&ball.body);
         ball.take(&load);
-    }
-
-    /// Impulses of an impact at velocity `v` and spin `w`: the limit of stiff springs, the same as for a rock alone.
-    pub(super) fn impact(
-        &mut self,
-        (body, law, tolerance): (&Body, &Law, f64),
-        (v, w): (&Vec3, &Vec3),
-        captured: bool,
-    ) {
-        let struck = FrozenContact { normal: self.n, law, stiffness_scale: 1.0, captured };
-        let thrown = throw(body, &[struck], (v, w), tolerance);
-        let load = (thrown.velocity_m_s - v) * body.mass;
-        self.normal_force = self.n.dot(&load).max(0.0);
-        self.shear_force = load - self.n * self.n.dot(&load);
-        self.turn =
-            (thrown.spin_rad_s - w) * body.inertia + self.n.cross(&self.shear_force) * body.radius;
     }
 
     /// Impulses for velocity `v` and spin `w` without this contact's own.

@@ -7,20 +7,22 @@
 //! step, and each takes energy.
 
 use super::RigidIsland;
-use super::contacts::{BallContact, GroundContact, StepBody};
+use super::contacts::{BallContact, StepBody};
 use super::sweeps::FEW;
 use crate::contact::ContactPoint;
 use crate::contact::pair::PairHistory;
 use crate::rock::Vec3;
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
+use crate::solver::impact::throw;
 use crate::solver::island::body::{BodySlot, IslandBody};
 use crate::solver::island::outcome::Hit;
-use crate::solver::island::pair_contact::TOUCH;
+use crate::solver::island::pair_contact::{TOUCH, Twist};
 use crate::solver::law::capture_m_s;
-use crate::solver::loss::Given;
-use crate::solver::rigid::{HELD, IMPACT};
+use crate::solver::loss::{Given, Loss};
+use crate::solver::rigid::{HELD, IMPACT, frozen, is_fast};
 use crate::solver::roughness::Meeting;
 use crate::terrain::Terrain;
+use nalgebra::Rotation3;
 use std::cmp::Reverse;
 
 /// Blows on one rock in one step from which on they do not rebound …
@@ -218,34 +220,58 @@ impl RigidIsland {
             .iter()
             .min_by(|a, b| a.normal.dot(&v).total_cmp(&b.normal.dot(&v)))
             .copied();
-        if let Some(touch) = hit {
-            if let Some(broken) = state.broken_by(&world, &touch, (&v, &ball.w)) {
-                ball.v += broken.motion.0 - v;
-                ball.c += (broken.motion.0 - v) * s;
-                ball.w = broken.motion.1;
-                self.losses[k].trees += broken.taken_j;
-                self.hits.push(hit_of(k, &touch, (&at, body.radius), -touch.normal.dot(&v)));
-                state.fell_broken(&world, &broken);
-                ball.is_struck(s);
-                return;
-            }
-            let law = world.law(touch.triangle);
-            let meeting = Meeting { n: touch.normal, triangle: touch.triangle, c: at, v };
-            let facet = state.facets.struck(&world, &meeting);
-            let normal = facet.map_or(touch.normal, |turn| turn * touch.normal);
-            let mut ground_contact =
-                GroundContact::new(k, (touch.feature, touch.triangle), normal, law);
-            let is_slow = -normal.dot(&v) < capture_m_s(law);
-            let captured = is_slow || ball.blows >= LIVELY;
-            ground_contact.impact((body, law, tolerance), (&v, &ball.w), captured);
-            let before = (ball.v, ball.w);
-            ball.take_late(&ground_contact.load(body), s);
-            let mean = mean_late(ball, &before, s);
-            self.losses[k].add(&ground_contact.loss(&world, &mean), 1.0);
-            self.hits.push(hit_of(k, &touch, (&at, body.radius), -normal.dot(&v)));
+        let Some(touch) = hit else { return ball.is_struck(s) };
+        if let Some(broken) = state.broken_by(&world, &touch, (&v, &ball.w)) {
+            ball.v += broken.motion.0 - v;
+            ball.c += (broken.motion.0 - v) * s;
+            ball.w = broken.motion.1;
+            self.losses[k].trees += broken.taken_j;
+            self.hits.push(hit_of(k, &touch, (&at, body.radius), -touch.normal.dot(&v)));
+            state.fell_broken(&world, &broken);
+            return ball.is_struck(s);
         }
+        let how = (ball.blows >= LIVELY, tolerance);
+        let mut note = |other: &ContactPoint, loss: &Loss, approach_m_s: Option<f64>| {
+            self.losses[k].add(loss, 1.0);
+            let hit = |approach_m_s| hit_of(k, other, (&at, body.radius), approach_m_s);
+            self.hits.extend(approach_m_s.map(hit));
+        };
+        let after = throw_off(&world, state, (&touch, &at), (&v, &ball.w), how, &mut note);
+        let load = ((after.0 - v) * body.mass, (after.1 - ball.w) * body.inertia);
+        ball.take_late(&load, s);
         ball.is_struck(s);
     }
+}
+
+/// Velocity and spin after the impact of a rock, with its centre at `c`, on all that it touches at the instant at which it comes to
+/// `touch`; as a rock alone it is turned against a facet, and back. Gives nothing back if it is `dead`. Notes of every contact what
+/// it took, and of those struck the approach (m/s).
+fn throw_off(
+    world: &ContactEnvironment,
+    state: &mut ContactState,
+    (touch, c): (&ContactPoint, &Vec3),
+    (v, w): (&Vec3, &Vec3),
+    (dead, tolerance): (bool, f64),
+    note: &mut impl FnMut(&ContactPoint, &Loss, Option<f64>),
+) -> Twist {
+    let meeting = Meeting { n: touch.normal, triangle: touch.triangle, c: *c, v: *v };
+    let turn = state.facets.struck(world, &meeting).unwrap_or_else(Rotation3::identity);
+    let [met, spin] = [v, w].map(|x| turn.inverse() * x);
+    // how near something is at that instant is known as well as the parabola is the way of the rock
+    let reach = touch.distance_m.max(world.body.radius) + HELD * world.body.radius;
+    let mut touches = state.touches;
+    touches.keep_nearer(reach);
+    let mut struck = frozen(world, &touches, &met);
+    for contact in &mut struck {
+        contact.captured |= dead;
+    }
+    let thrown = throw(&world.body, &struck[..touches.len()], (&met, &spin), tolerance);
+    for (loss, other) in thrown.loss.iter().zip(touches.iter()) {
+        let is_struck = other.feature == touch.feature || is_fast(world, other, &met);
+        let approach_m_s = is_struck.then(|| -other.normal.dot(&met));
+        note(other, &loss.on(world, other.triangle), approach_m_s);
+    }
+    (turn * thrown.velocity_m_s, turn * thrown.spin_rad_s)
 }
 
 impl StepBody {
