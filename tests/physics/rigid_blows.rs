@@ -5,9 +5,10 @@ use crate::common;
 
 use crate::pairs::{free, momentum, space};
 use crate::patch::fold;
-use common::GROUND;
-use common::together::{Sphere, WORLD, World, energy_j};
+use common::together::{Sphere, WORLD, World, energy_j, plane};
+use common::{GROUND, terrain};
 use rockfall::ground::Ground;
+use rockfall::rock::Vec3;
 use rockfall::simulation::Trajectory;
 
 /// Momentum and angular momentum differ by rounding, of the largest single ones.
@@ -133,5 +134,49 @@ fn rocks_of_an_island_strike_both_sides_of_a_fold_at_once() {
                 assert!((own - one).abs() < 2e-3 * one.max(1.0), "{e} {angle}: {own} {one} J");
             }
         }
+    }
+}
+
+/// Rocks that strike the ground one after the other within a step have each its own impacts, whoever comes first.
+#[test]
+fn impacts_of_every_rock_of_an_island_are_noted() {
+    let sphere =
+        |x: f64, z: f64| -> Sphere { (0.5, 2700.0, [x, 0.0, z], [0.0, 0.0, -2.0], [0.0; 3]) };
+    let two = [sphere(0.0, 0.9), sphere(1.0 + 2e-4, 0.89)];
+    for order in [[0, 1], [1, 0]] {
+        let (falls, _) = WORLD.run(&plane(), &order.map(|k| two[k]), 0.4);
+        for fall in &falls {
+            let [impact] = &fall.impacts[..] else { panic!("{:?}", fall.impacts) };
+            assert!((impact.speed_in_m_s - 2.0).abs() < 1e-9 && fall.end.velocity_m_s.z > 0.9);
+        }
+    }
+}
+
+/// Two rocks that roll down a valley one behind the other, neighbours and yet no touch between them, roll as each alone does: on two sides
+/// friction may hold what the sides could carry, and what it holds must not stay from step to step. It did, they pressed less, and
+/// rolled a quarter farther against rolling friction.
+#[test]
+fn neighbours_roll_down_a_valley_as_each_alone() {
+    let at = |x: f64, y: f64| {
+        Vec3::new(x, y, x.abs() * 30f64.to_radians().tan() - y * 20f64.to_radians().tan())
+    };
+    let (a, b, c) = (at(-5.0, -5.0), at(0.0, -5.0), at(5.0, -5.0));
+    let (d, e, f) = (at(-5.0, 60.0), at(0.0, 60.0), at(5.0, 60.0));
+    let valley = terrain(vec![[a, b, e], [a, e, d], [b, c, f], [b, f, e]]);
+    let ground =
+        Ground { friction_angle_rad: 0.6, restitution: Some(0.4), rolling_friction: 0.2, ..GROUND };
+    let world = World { gravity_m_s2: 9.81, ground, ..WORLD };
+    let sphere = |y: f64| -> Sphere {
+        let height = 0.3 / 30f64.to_radians().cos() / 20f64.to_radians().cos() + 0.01;
+        (0.3, 2700.0, [0.0, y, height - y * 20f64.to_radians().tan()], [0.0, 0.5, -0.18], [0.0; 3])
+    };
+    let (together, census) = world.run(&valley, &[sphere(0.0), sphere(-0.601)], 6.0);
+    assert_eq!(census.unsettled, 0);
+    for (fall, y) in together.iter().zip([0.0, -0.601]) {
+        let (alone, _) = world.run(&valley, &[sphere(y)], 6.0);
+        let [own, one] =
+            [fall, &alone[0]].map(|fall| fall.end.position_m.y - fall.start.position_m.y);
+        // steps of a hundredth of a second in both
+        assert!(one > 10.0 && (own - one).abs() < 0.01 * one, "{own} for {one} m");
     }
 }

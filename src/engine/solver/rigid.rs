@@ -39,9 +39,9 @@ pub(crate) const IMPACT: f64 = 2e-5;
 /// the facet is struck there is none.
 const ONTO_FACET: f64 = 0.5;
 /// Sweeps over the contacts, at most.
-const SWEEPS: u32 = 100;
+pub(super) const SWEEPS: u32 = 100;
 /// Change of an impulse, relative to the largest, below which the sweeps have settled (–).
-const SETTLED: f64 = 1e-12;
+pub(super) const SETTLED: f64 = 1e-12;
 
 /// One contact and its impulses.
 #[derive(Debug, Clone, Copy)]

@@ -14,7 +14,7 @@ pub struct Done {
     pub given: Vec<Given>,
     /// Steps tried and thrown away.
     pub rejected: u64,
-    /// Impacts on the mesh (`rigid`; with the others the memory of a contact tells).
+    /// Impacts on the mesh, rock by rock (`rigid`; with the others the memory of a contact tells).
     pub hits: Vec<Hit>,
     /// Whether contact states did not settle (`dda`, `rigid`).
     pub unsettled: bool,

@@ -101,6 +101,8 @@ impl RigidIsland {
         self.part(&mut scene);
         let finite = self.balls.iter().all(StepBody::is_finite);
         self.take_over(terrain, (members, pair_histories), dt);
+        // blows fall in the order of their times, and are noted rock by rock
+        self.hits.sort_by_key(|hit| hit.rock);
         let done = Done {
             dt,
             losses: std::mem::take(&mut self.losses),

@@ -33,6 +33,8 @@ pub(super) struct StepBody {
     pub(super) stirred: u64,
     /// Sweep of the position correction in which it was moved last.
     pub(super) shifted: u32,
+    /// Whether another rock touches it.
+    pub(super) has_neighbour: bool,
     /// Whether a contact pushed it, and whether it was moved out of something.
     pub(super) pushed: bool,
     pub(super) moved: bool,
@@ -54,6 +56,7 @@ impl StepBody {
             times: 1,
             stirred: 0,
             shifted: 0,
+            has_neighbour: false,
             pushed: false,
             moved: false,
         }
@@ -321,6 +324,11 @@ impl GroundContact {
 
     pub(super) fn impulses(&self) -> Impulses {
         Impulses(self.normal_force, self.shear_force, self.turn)
+    }
+
+    /// Without impulses.
+    pub(super) fn forget(&mut self) {
+        (self.normal_force, self.shear_force, self.turn) = (0.0, Vec3::zeros(), Vec3::zeros());
     }
 
     /// Adds to its impulses what the cone allows, and acts with that.

@@ -17,6 +17,7 @@ use crate::solver::contact_state::ContactEnvironment;
 use crate::solver::island::body::BodySlot;
 use crate::solver::law::capture_m_s;
 use crate::solver::loss::Given;
+use crate::solver::rigid::{SETTLED, SWEEPS};
 use crate::terrain::Terrain;
 
 /// Whether a contact with this gap (m) and normal speed (m/s) at the start of a step of length `dt` (s) is a sustained
@@ -50,7 +51,9 @@ impl RigidIsland {
         for ball in &mut self.balls {
             ball.v += ball.body.gravity * dt;
         }
+        self.begin_anew_alone();
         self.start_warm();
+        self.settle_alone();
         let settled = self.settle((members, pair_histories), dt);
         self.go_on(terrain, members, dt);
         settled
@@ -121,6 +124,39 @@ impl RigidIsland {
                 (pair_history.shear_force - n * n.dot(&pair_history.shear_force)) * dt,
             );
             self.ball_contacts.push(ball_contact);
+        }
+    }
+
+    /// Forgets the impulses of rocks that only the mesh touches. Between several sides friction may hold what the sides could carry: what
+    /// it holds would stay from step to step, and they would press less.
+    fn begin_anew_alone(&mut self) {
+        for ball_contact in &self.ball_contacts {
+            ball_contact.ends.into_iter().for_each(|k| self.balls[k].has_neighbour = true);
+        }
+        for ground_contact in &mut self.ground_contacts {
+            if !self.balls[ground_contact.ball].has_neighbour {
+                ground_contact.forget();
+            }
+        }
+    }
+
+    /// Settles the contacts of rocks that only the mesh touches, as those of a rock alone.
+    fn settle_alone(&mut self) {
+        let of_rocks = self.ground_contacts.chunk_by_mut(|one, other| one.ball == other.ball);
+        for contacts in of_rocks.filter(|contacts| contacts.len() > 1) {
+            let ball = &mut self.balls[contacts[0].ball];
+            if ball.has_neighbour {
+                continue;
+            }
+            for _ in 0..SWEEPS {
+                self.sweeps += 1;
+                let change = contacts.iter_mut().map(|contact| contact.solve(ball));
+                let change = change.fold(0.0, f64::max);
+                let largest = contacts.iter().map(|contact| contact.normal_force);
+                if change <= SETTLED * largest.fold(0.0, f64::max) * ball.inv.0 {
+                    break;
+                }
+            }
         }
     }
 
