@@ -7,7 +7,7 @@ use super::figure::{Drawing, WIDTH_PX};
 use super::format;
 use super::model::{ProfileStretch, ProfileView, Report, ReportStretch};
 use super::panel::{FOOT_PX, Panel, align};
-use super::side_view::name_marks;
+use super::side_view::{more_above_px, name_marks};
 use super::svg::path::PaperFrame;
 use super::words::{Words, fill};
 
@@ -34,7 +34,7 @@ pub(super) fn draw(report: &Report, view: &ProfileView) -> Drawing {
     let panels = panels(view, shown, words);
     let size = (WIDTH_PX, panels[1].frame.bottom + FOOT_PX);
     let svg = paint("profile", size, words.profile_title, |canvas| {
-        key(canvas, &panels[0].frame, words);
+        key(canvas, panels[0].frame.left, words);
         for (panel, (of, _)) in panels.iter().zip(shown) {
             draw_panel(canvas, panel, view, of);
         }
@@ -66,6 +66,11 @@ fn panels(view: &ProfileView, shown: [(ProfilePanel, &str); 2], words: &Words) -
     });
     let [a, b] = &mut panels;
     align([a, b]);
+    let more = more_above_px(&panels[0], &view.marks);
+    for panel in &mut panels {
+        panel.frame.top += more;
+        panel.frame.bottom += more;
+    }
     panels
 }
 
@@ -100,8 +105,9 @@ fn steps(view: &ProfileView, of: impl Fn(&ProfileStretch) -> f64) -> Vec<(f64, f
     view.stretches.iter().flat_map(ends).collect()
 }
 
-fn key(canvas: &Canvas<'_>, frame: &PaperFrame, words: &Words) {
-    let (y, mut left) = (frame.top - 30.0, frame.left);
+/// What the lines are, above all names.
+fn key(canvas: &Canvas<'_>, mut left: f64, words: &Words) {
+    let y = TOP_PX - 30.0;
     for (name, pen) in [(words.median, MEDIAN), ("P95", P95), (words.maximum, MAXIMUM)] {
         canvas.line(&[(left, y), (left + 18.0, y)], pen);
         canvas.text(&Label::new(name, (left + 23.0, y)).coloured(GREY));

@@ -1,10 +1,11 @@
 //! The fall seen from the side.
 
 mod along;
+mod names;
 
 use super::axis::Axis;
-use super::canvas::{Canvas, Label, Pen, SMALL, fitted, paint};
-use super::colour::{BLUE, DARK_GREEN, INK};
+use super::canvas::{Canvas, Pen, paint};
+use super::colour::BLUE;
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
 use super::model::{MapMark, Path, Report};
@@ -13,6 +14,7 @@ use super::svg::path::{PaperFrame, Spot};
 use super::words::fill;
 use crate::math;
 use along::FallLine;
+pub(super) use names::{more_above_px, name_marks};
 use plotters::style::RGBColor;
 
 /// Room above the profile for the names of lines and barriers (px).
@@ -32,7 +34,7 @@ pub(super) fn draw(report: &Report) -> Drawing {
     let width = view.ground.frame.right + (WIDTH_PX - RIGHT_PX);
     let svg = paint("side", (width, height), report.words().side_title, |canvas| {
         view.profile(canvas, report, &line);
-        view.marks(canvas, report, &line);
+        name_marks(canvas, std::slice::from_ref(&view.ground), &view.marks);
     });
     Drawing { svg, caption: caption(report, &line) }
 }
@@ -51,9 +53,10 @@ fn caption(report: &Report, line: &FallLine) -> String {
     )
 }
 
-/// The panel and what it shows.
+/// The panel and what it shows, with the lines and barriers in it by rising distance (m).
 struct View {
     ground: Panel,
+    marks: Vec<(f64, MapMark)>,
 }
 
 impl View {
@@ -66,7 +69,11 @@ impl View {
         let mut ground = Panel::new(frame, x, Axis::linear(z.0, z.1, words.elevation_axis));
         ground.frame.left = ground.room_left();
         to_scale(&mut ground);
-        Self { ground }
+        let marks = marks_within(report, line, (ground.x.low, ground.x.high));
+        let more = more_above_px(&ground, &marks);
+        ground.frame.top += more;
+        ground.frame.bottom += more;
+        Self { ground, marks }
     }
 
     fn profile(&self, canvas: &Canvas<'_>, report: &Report, line: &FallLine) {
@@ -94,69 +101,15 @@ impl View {
         }
         panel.axes(canvas);
     }
-
-    /// Where lines and barriers stand, named above.
-    fn marks(&self, canvas: &Canvas<'_>, report: &Report, line: &FallLine) {
-        let place = |mark: &MapMark| Some((line.meets(&mark.corners_m)?, mark.clone()));
-        let mut marks: Vec<(f64, MapMark)> = report.marks.iter().filter_map(place).collect();
-        marks.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let inside = self.ground.x.low..=self.ground.x.high;
-        let shown = marks.into_iter().filter(|(at, _)| inside.contains(at));
-        let shown: Vec<(f64, MapMark)> = shown.collect();
-        name_marks(canvas, std::slice::from_ref(&self.ground), &shown);
-    }
 }
 
-/// Where lines and barriers stand, through all panels, named above the first.
-pub(super) fn name_marks(canvas: &Canvas<'_>, panels: &[Panel], marks: &[(f64, MapMark)]) {
-    let Some(first) = panels.first() else { return };
-    let look = |mark: &MapMark| match mark.barrier {
-        Some(_) => (DARK_GREEN, Pen::full(DARK_GREEN, 1.6)),
-        None => (INK, Pen::full(INK, 0.9).dotted()),
-    };
-    // all lines before the first name: none runs through a name
-    for (at, mark) in marks {
-        for panel in panels {
-            panel.upright(canvas, *at, look(mark).1);
-        }
-    }
-    let place = |at: f64| first.at(at, first.y.low).0;
-    let lines: Vec<f64> = marks.iter().map(|(at, _)| place(*at)).collect();
-    for (at, mark) in marks {
-        name_above(canvas, (&first.frame, &lines), (place(*at), &mark.name), look(mark).0);
-    }
-}
-
-/// The name of a mark above the frame, or in it where a neighbour's stands above already: between the `lines`, or across one
-/// where there is no room between them.
-fn name_above(
-    canvas: &Canvas<'_>,
-    (frame, lines): (&PaperFrame, &[f64]),
-    (x, name): (f64, &str),
-    colour: RGBColor,
-) {
-    let words = fitted(name, SMALL, 0.4 * frame.width());
-    let rows = [frame.top - 9.0, frame.top + 10.0, frame.top + 24.0, frame.top + 38.0];
-    let candidates = rows.into_iter().flat_map(|y| {
-        [
-            Label::new(words.clone(), (x, y)).centred(),
-            Label::new(words.clone(), (x - 4.0, y)).right(),
-            Label::new(words.clone(), (x + 4.0, y)),
-        ]
-    });
-    let free = |label: &Label| {
-        let room = label.frame();
-        room.left >= frame.left && room.right <= frame.right && canvas.is_free(&room)
-    };
-    let crossed = |label: &Label| {
-        let room = label.frame();
-        let through = |line: &f64| (room.left - 2.0..=room.right + 2.0).contains(line);
-        room.bottom > frame.top && lines.iter().any(through)
-    };
-    let (across, between): (Vec<Label>, Vec<Label>) = candidates.filter(free).partition(crossed);
-    if let Some(label) = between.into_iter().chain(across).next() {
-        canvas.text_on_rim(&label.coloured(colour));
-    }
+/// Lines and barriers that cross the fall line in a range (m), by rising distance along it.
+fn marks_within(report: &Report, line: &FallLine, (from, to): (f64, f64)) -> Vec<(f64, MapMark)> {
+    let place = |mark: &MapMark| Some((line.meets(&mark.corners_m)?, mark.clone()));
+    let mut marks: Vec<(f64, MapMark)> = report.marks.iter().filter_map(place).collect();
+    marks.retain(|(at, _)| (from..=to).contains(at));
+    marks.sort_by(|a, b| a.0.total_cmp(&b.0));
+    marks
 }
 
 /// Gives the profile one scale in both directions: what is too high for the page becomes narrower.
