@@ -5,7 +5,7 @@ mod year;
 pub(super) use year::draw as draw_year;
 
 use super::axis::{Axis, round_step};
-use super::canvas::{Canvas, Label, NORMAL, Pen, SMALL, paint, text_width};
+use super::canvas::{Canvas, Label, NORMAL, Pen, SMALL, fitted, paint, text_width};
 use super::colour::{self, INK, ORANGE, SKY, VERMILLION};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
@@ -191,7 +191,8 @@ fn draw_layers(
         for (k, (panel, layer)) in panels.iter().zip(layers).enumerate() {
             let at = (panel.frame.left, panel.frame.top - 9.0);
             canvas.text(&Label::new(layer.title.clone(), at).bold().sized(NORMAL));
-            let names = site::places(canvas, panel, report, |mark| mark.name.clone());
+            let names =
+                site::places(canvas, panel, report, |mark, width| fitted(&mark.name, SMALL, width));
             canvas.clip(&format!("part{k}"), &panel.frame, || {
                 if let Some(shaded) = ground {
                     shaded.draw(canvas, panel);

@@ -1,6 +1,6 @@
 //! What stands on the map beside the rocks: release zone, evaluation lines and barriers, with their names.
 
-use super::canvas::{Canvas, Label, Pen, SMALL, fitted};
+use super::canvas::{Canvas, Label, Pen, SMALL, fitted, text_width};
 use super::colour::{GREEN, INK, WHITE};
 use super::format;
 use super::model::{MapMark, Report, ReportQuantity};
@@ -110,26 +110,37 @@ fn teeth(part: &[Spot]) -> Vec<Vec<Spot>> {
     part.windows(2).flat_map(tooth).collect()
 }
 
-/// Name of a mark, with height and capacity of a barrier.
-pub(super) fn in_words(mark: &MapMark) -> String {
-    let Some((height_m, capacity_j)) = mark.barrier else { return mark.name.clone() };
-    let (unit, size) = ReportQuantity::Total.unit(capacity_j);
-    format!(
-        "{}: {}\u{2009}m, {}\u{2009}{unit}",
-        mark.name,
-        format::significant(height_m, 2),
-        format::significant(capacity_j / size, 3)
-    )
+/// Name of a mark, with height and capacity of a barrier, in a width (px): a name may be cut, a number may not.
+pub(super) fn in_words(mark: &MapMark, width_px: f64) -> String {
+    let Some(numbers) = mark.barrier.map(|(height_m, capacity_j)| size(height_m, capacity_j))
+    else {
+        return fitted(&mark.name, SMALL, width_px);
+    };
+    let numbers = format!(": {numbers}");
+    fitted(&mark.name, SMALL, width_px - text_width(&numbers, SMALL)) + &numbers
 }
 
-/// Finds room for the names of lines and barriers beside them and keeps it free; they are drawn with [`names`] when all
-/// else is. `said` gives the words of each.
+/// Height and capacity of a barrier, as figures and tables say them.
+pub(super) fn size(height_m: f64, capacity_j: f64) -> String {
+    let (unit, size) = ReportQuantity::Total.unit(capacity_j);
+    let capacity = format::significant(capacity_j / size, 3);
+    format!("{}\u{2009}m, {capacity}\u{2009}{unit}", format::plain(height_m))
+}
+
+/// A name and, where it stands farther from its line, the stroke that leads there.
+pub(super) struct PlacedName {
+    label: Label,
+    stroke: Option<[Spot; 2]>,
+}
+
+/// Finds room for the names of lines and barriers and keeps it free; they are drawn with [`names`] when all else is.
+/// `said` gives the words of each that fit a width (px).
 pub(super) fn places(
     canvas: &Canvas<'_>,
     panel: &Panel,
     report: &Report,
-    said: impl Fn(&MapMark) -> String,
-) -> Vec<Label> {
+    said: impl Fn(&MapMark, f64) -> String,
+) -> Vec<PlacedName> {
     let inner = PaperFrame {
         left: panel.frame.left + 3.0,
         right: panel.frame.right - 3.0,
@@ -137,25 +148,66 @@ pub(super) fn places(
         bottom: panel.frame.bottom - 3.0,
     };
     let place = |mark: &MapMark| {
-        let words = fitted(&said(mark), SMALL, 0.6 * panel.frame.width());
+        let words = said(mark, 0.6 * panel.frame.width());
         let colour = if mark.barrier.is_some() { super::colour::DARK_GREEN } else { INK };
-        let parts = on_paper(panel, mark);
-        let named = parts.iter().filter(|part| length(part) > LEAST_NAMED_PX);
-        let candidates = named.flat_map(|part| beside(part, &words));
-        let free = candidates.map(|label| label.bold().coloured(colour)).filter(|label| {
-            let frame = label.frame();
-            inner.contains(&frame) && canvas.is_free(&frame)
-        });
-        // a name on another's line would be read as that one's
-        let others = |label: &Label| {
-            let of_others = report.marks.iter().filter(|other| other.name != mark.name);
-            of_others.filter(|other| crosses(panel, other, &label.frame())).count()
+        let styled =
+            |name: PlacedName| PlacedName { label: name.label.bold().coloured(colour), ..name };
+        let is_free = |name: &PlacedName| {
+            let room = name.label.frame();
+            inner.contains(&room)
+                && canvas.is_free(&room)
+                && name.stroke.is_none_or(|stroke| canvas.is_free(&around(stroke)))
         };
-        let found = free.min_by_key(others)?;
-        canvas.take(found.frame());
+        // a name on another's line would be read as that one's
+        let others = |name: &PlacedName| {
+            let of_others = report.marks.iter().filter(|other| other.name != mark.name);
+            of_others.filter(|other| crosses(panel, other, &name.label.frame())).count()
+        };
+        let candidates = candidates(panel, mark, &words).into_iter().map(styled);
+        let found = candidates.filter(is_free).min_by_key(others)?;
+        canvas.take(found.label.frame());
+        if let Some(stroke) = found.stroke {
+            canvas.take(around(stroke));
+        }
         Some(found)
     };
     report.marks.iter().filter_map(place).collect()
+}
+
+/// Room of an upright stroke.
+fn around([from, to]: [Spot; 2]) -> PaperFrame {
+    let (top, bottom) = (from.1.min(to.1), from.1.max(to.1));
+    PaperFrame { left: from.0 - 0.5, right: from.0 + 0.5, top, bottom }
+}
+
+/// Places for the name of a mark, the nearest first.
+fn candidates(panel: &Panel, mark: &MapMark, words: &str) -> Vec<PlacedName> {
+    let parts = on_paper(panel, mark);
+    let corners = || mark.corners_m.iter().map(|&[x, y]| panel.at(x, y));
+    let is_whole = corners().all(|corner| panel.frame.holds(corner));
+    let named = parts.iter().filter(|part| is_whole || length(part) > LEAST_NAMED_PX);
+    let near = named.clone().flat_map(|part| beside(part, words));
+    let near = near.map(|label| PlacedName { label, stroke: None });
+    near.chain(named.flat_map(|part| farther(part, words))).collect()
+}
+
+/// Distances from a line at which a name with a stroke may stand (px).
+const FARTHER_PX: [f64; 5] = [22.0, 36.0, 50.0, 64.0, 78.0];
+
+/// Places for a name above and below both ends and the middle, each with an upright stroke to the line.
+fn farther(part: &[Spot], words: &str) -> Vec<PlacedName> {
+    let (Some(&first), Some(&last)) = (part.first(), part.last()) else { return Vec::new() };
+    let middle = (0.5 * (first.0 + last.0), 0.5 * (first.1 + last.1));
+    let middle = if part.len() > 2 { part[part.len() / 2] } else { middle };
+    let steps = FARTHER_PX.into_iter().flat_map(|by| [-by, by]);
+    let at = |by: f64| {
+        [middle, first, last].into_iter().flat_map(move |(x, y)| {
+            let label = || Label::new(words, (x, y + by));
+            let stroke = Some([(x, y), (x, y + by - 7.0 * by.signum())]);
+            [label().centred(), label(), label().right()].map(|label| PlacedName { label, stroke })
+        })
+    };
+    steps.flat_map(at).collect()
 }
 
 fn length(part: &[Spot]) -> f64 {
@@ -190,9 +242,14 @@ fn beside(part: &[Spot], words: &str) -> Vec<Label> {
 }
 
 /// Writes the names.
-pub(super) fn names(canvas: &Canvas<'_>, labels: &[Label]) {
-    for label in labels {
-        canvas.text_on_rim(label);
+pub(super) fn names(canvas: &Canvas<'_>, names: &[PlacedName]) {
+    for stroke in names.iter().filter_map(|name| name.stroke) {
+        canvas.line(&stroke, Pen { opacity: 0.8, ..Pen::full(WHITE, 2.8) });
+        canvas.line(&stroke, Pen::full(INK, 0.8));
+        canvas.disc(stroke[0], 1.8, INK);
+    }
+    for name in names {
+        canvas.text_on_rim(&name.label);
     }
 }
 
