@@ -62,11 +62,21 @@ fn question(report: &Report) -> String {
     let mut asked = words.question.to_owned();
     for (text, names) in [(words.question_lines, lines), (words.question_barriers, barriers)] {
         if !names.is_empty() {
-            asked += &fill(text, &[("names", &names.join(", "))]);
+            asked += &fill(text, &[("names", &first_of(&names))]);
         }
     }
     let mark = if words.code == "fr" { "\u{a0}?" } else { "?" };
     format!("<p class=\"question\">{}{mark}</p>\n", escape(&asked))
+}
+
+/// Names that one sentence still holds; of more it has one less, and says how many there are.
+const MOST_NAMES: usize = 4;
+
+fn first_of(names: &[String]) -> String {
+    if names.len() <= MOST_NAMES {
+        return names.join(", ");
+    }
+    format!("{}, … ({})", names[..MOST_NAMES - 1].join(", "), names.len())
 }
 
 fn warnings(report: &Report) -> String {
@@ -78,4 +88,16 @@ fn warnings(report: &Report) -> String {
         escape(report.words().read_first),
         list(&report.text.warnings.iter().map(|text| format::sentence(text)).collect::<Vec<_>>())
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sentence_names_no_more_lines_than_it_holds() {
+        let names: Vec<String> = ["a", "b", "c", "d", "e"].map(str::to_owned).into();
+        assert_eq!(first_of(&names[..4]), "a, b, c, d");
+        assert_eq!(first_of(&names), "a, b, c, … (5)");
+    }
 }
