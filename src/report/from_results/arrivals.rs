@@ -1,7 +1,7 @@
 //! The first tables of the page: what arrives at each line, and at each barrier.
 
-use super::super::format;
 use super::super::model::{About, Estimate, EstimateTable, ReportQuantity};
+use super::super::site;
 use super::super::words::{Words, fill};
 use super::lines::{of_share, shown};
 use super::{of_percentile, percentile_of};
@@ -10,6 +10,8 @@ use crate::output::Results;
 
 /// The percentile of the headline (–).
 const P: f64 = 0.95;
+/// Letters up to which the names of several barriers stand in a row of the table.
+const LONGEST: usize = 40;
 
 /// One table over the lines in this order, one over the barriers; each where there are some.
 pub(super) fn tables(results: &Results, words: &Words, order: &[String]) -> Vec<EstimateTable> {
@@ -20,9 +22,10 @@ fn of(statistic: &Statistic) -> Option<Estimate> {
     Some(of_percentile(statistic.percentiles.get("p95")?, (statistic.rocks, None)))
 }
 
-/// A unit of energy for a whole table.
+/// A unit of energy for a whole table: kJ where it has no number.
 fn energy_unit(estimates: impl Iterator<Item = f64>) -> (&'static str, f64) {
-    ReportQuantity::Total.unit(estimates.filter(|value| value.is_finite()).fold(0.0, f64::max))
+    let largest = estimates.filter(|value| value.is_finite()).reduce(f64::max);
+    largest.map_or(("kJ", 1e3), |largest| ReportQuantity::Total.unit(largest))
 }
 
 fn percent(share: Estimate) -> Estimate {
@@ -75,7 +78,12 @@ fn lines(results: &Results, words: &Words, order: &[String]) -> Option<EstimateT
 }
 
 fn behind(at: &Residual, words: &Words, size: f64) -> (String, Vec<Option<Estimate>>) {
-    let name = fill(words.line_with, &[("name", &at.line), ("barriers", &at.behind.join(", "))]);
+    let barriers = at.behind.join(", ");
+    let name = if at.behind.len() > 1 && barriers.chars().count() > LONGEST {
+        format!("{}{}", at.line, words.and_with)
+    } else {
+        fill(words.line_with, &[("name", &at.line), ("barriers", &barriers)])
+    };
     let cells = vec![
         Some(percent(of_share(&at.with.reach))),
         None,
@@ -89,18 +97,12 @@ fn behind(at: &Residual, words: &Words, size: f64) -> (String, Vec<Option<Estima
 fn barriers(results: &Results, words: &Words) -> Option<EstimateTable> {
     let all = &results.summary.barriers;
     let design = |one: &BarrierSummary| one.design_values.as_ref().map(|design| design.energy_j);
-    let energies = all.iter().flat_map(|one| {
-        [of(&one.energy_j).map(|at| at.value), design(one), Some(one.barrier.capacity_j)]
-    });
+    let energies = all.iter().flat_map(|one| [of(&one.energy_j).map(|at| at.value), design(one)]);
     let (unit, size) = energy_unit(energies.flatten());
     let row = |one: &BarrierSummary| {
         let barrier = &one.barrier;
-        let name = format!(
-            "{} ({} m, {} {unit})",
-            barrier.name,
-            format::plain(barrier.height_m),
-            format::significant(barrier.capacity_j / size, 3)
-        );
+        let name =
+            format!("{} ({})", barrier.name, site::size(barrier.height_m, barrier.capacity_j));
         // of rocks that weigh differently: what is not stopped
         let passing = if results.hazard.weights().is_some() {
             let stopped = of_share(&one.stopped);

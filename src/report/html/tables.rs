@@ -60,7 +60,11 @@ fn in_short_unit(row: &EstimateRow) -> (Estimate, &str) {
     if row.unit != "J" {
         return (row.estimate, &row.unit);
     }
-    let (unit, size) = energy_unit(row.estimate.value);
+    let (unit, size) = match row.estimate.is {
+        // no number, whose size would tell
+        Is::Lacking(_) => ("kJ", 1e3),
+        _ => energy_unit(row.estimate.value),
+    };
     (row.estimate.over(size), unit)
 }
 
