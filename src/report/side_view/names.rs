@@ -18,12 +18,21 @@ const GAP_PX: f64 = 4.0;
 /// Longest name over the width of the frame (–).
 const LONGEST: f64 = 0.4;
 
+/// Where a name stands as seen from its line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Side {
+    Above,
+    Left,
+    Right,
+}
+
 /// One name: its ends across (px), its row from below, and where a stroke leads up to it.
 #[derive(Debug, Clone, PartialEq)]
 struct Name {
     words: String,
     left: f64,
     right: f64,
+    side: Side,
     row: usize,
     stroke: Option<f64>,
 }
@@ -57,10 +66,17 @@ impl NamesAbove {
     fn draw(&self, canvas: &Canvas<'_>, top: f64, (at, colour, pen): (usize, RGBColor, Pen)) {
         let Some(name) = self.0.get(at).and_then(Option::as_ref) else { return };
         let y = top - FIRST_PX - ROW_PX * name.row as f64;
+        let label = |x: f64| Label::new(name.words.clone(), (x, y)).coloured(colour);
+        // in a narrower font than the widest one a name still stands at its line
+        let label = match name.side {
+            Side::Above => label(0.5 * (name.left + name.right)).centred(),
+            Side::Left => label(name.right).right(),
+            Side::Right => label(name.left),
+        };
         if let Some(x) = name.stroke {
             canvas.line(&[(x, top), (x, y - 0.5 * SMALL)], pen);
         }
-        canvas.text_on_rim(&Label::new(name.words.clone(), (name.left, y)).coloured(colour));
+        canvas.text_on_rim(&label);
     }
 }
 
@@ -70,36 +86,58 @@ fn in_one_row(frame: &PaperFrame, marks: &[(f64, &str)]) -> Option<Vec<Option<Na
     for &(x, name) in marks {
         let words = fitted(name, SMALL, LONGEST * frame.width());
         let width = text_width(&words, SMALL);
-        let lefts = [x - 0.5 * width, x - GAP_PX - width, x + GAP_PX];
-        let is_free = |left: &f64| {
+        let places = [
+            (x - 0.5 * width, Side::Above),
+            (x - GAP_PX - width, Side::Left),
+            (x + GAP_PX, Side::Right),
+        ];
+        let is_free = |(left, _): &(f64, Side)| {
+            let right = left + width;
             let is_clear =
-                row.iter().all(|one| one.right + GAP_PX < *left || left + width < one.left);
-            *left >= frame.left && left + width <= frame.right && is_clear
+                row.iter().all(|one| one.right + GAP_PX < *left || right + GAP_PX < one.left);
+            *left >= frame.left && right <= frame.right && is_clear
         };
-        let left = lefts.into_iter().find(is_free)?;
-        row.push(Name { words, left, right: left + width, row: 0, stroke: None });
+        let (left, side) = places.into_iter().find(is_free)?;
+        row.push(Name { words, left, right: left + width, side, row: 0, stroke: None });
     }
     Some(row.into_iter().map(Some).collect())
 }
 
-/// Each name ends left of its stroke, in the lowest row above every stroke that it covers.
+/// Each name stands right of its line where there is room up to the next one; else it ends left of its stroke, in the lowest
+/// row above every stroke that it covers.
 fn rising(frame: &PaperFrame, marks: &[(f64, &str)]) -> Vec<Option<Name>> {
     let mut found: Vec<Option<Name>> = Vec::new();
-    for &(x, name) in marks {
-        let right = x - GAP_PX;
-        let words = fitted(name, SMALL, (LONGEST * frame.width()).min(right - GAP_PX).max(0.0));
-        let left = right - text_width(&words, SMALL);
-        let is_free = |row: &usize| {
-            found.iter().flatten().all(|one| {
-                let is_clear = one.row != *row || one.right + GAP_PX < left;
-                let is_above = one.stroke.is_none_or(|at| at < left - GAP_PX) || *row > one.row;
-                is_clear && is_above
-            })
-        };
-        let row = (0..MOST_ROWS).find(is_free);
-        found.push(row.map(|row| Name { words, left, right, row, stroke: Some(x) }));
+    for (k, &(x, name)) in marks.iter().enumerate() {
+        let next = marks.get(k + 1).map_or(frame.right, |(next, _)| *next);
+        let one = right_of(x, name, next).or_else(|| left_of(x, name, frame, &found));
+        found.push(one);
     }
     found
+}
+
+/// A whole name in the lowest row between its line and the next one.
+fn right_of(x: f64, name: &str, next: f64) -> Option<Name> {
+    let left = x + GAP_PX;
+    let right = left + text_width(name, SMALL);
+    let words = name.to_owned();
+    let one = Name { words, left, right, side: Side::Right, row: 0, stroke: None };
+    (right + GAP_PX < next).then_some(one)
+}
+
+/// A name left of its stroke, clear of those found.
+fn left_of(x: f64, name: &str, frame: &PaperFrame, found: &[Option<Name>]) -> Option<Name> {
+    let right = x - GAP_PX;
+    let words = fitted(name, SMALL, (LONGEST * frame.width()).min(right - GAP_PX).max(0.0));
+    let left = right - text_width(&words, SMALL);
+    let is_free = |row: &usize| {
+        found.iter().flatten().all(|one| {
+            let is_clear = one.row != *row || one.right + GAP_PX < left;
+            let is_above = one.stroke.is_none_or(|at| at < left - GAP_PX) || *row > one.row;
+            is_clear && is_above
+        })
+    };
+    let row = (0..MOST_ROWS).find(is_free)?;
+    Some(Name { words, left, right, side: Side::Left, row, stroke: Some(x) })
 }
 
 /// Where lines and barriers stand, through all panels, named above the first.
@@ -169,10 +207,11 @@ mod tests {
         let found = names(&marks);
         assert_eq!(found.len(), marks.len());
         for (k, one) in found.iter().enumerate() {
-            let x = one.stroke.unwrap();
-            assert!(one.left >= 0.0 && one.right < x, "{one:?}");
+            let x = one.stroke.unwrap_or(one.left);
+            assert!(one.left >= 0.0 && (one.right < x || one.row == 0), "{one:?}");
             for other in &found[k + 1..] {
-                let is_over = one.row == other.row && one.right > other.left;
+                let is_over =
+                    one.row == other.row && one.right > other.left && other.right > one.left;
                 assert!(!is_over, "{one:?} over {other:?}");
                 let is_struck = other.left < x && x < other.right && one.row >= other.row;
                 assert!(!is_struck, "stroke of {one:?} through {other:?}");
