@@ -102,7 +102,13 @@ impl<'a> DistributionPanel<'a> {
         let above = PaperFrame { top: self.panel.frame.top - head_px, ..self.panel.frame };
         head(canvas, &above, self.quantity.name(said), &words.join(" · "));
         if self.bins.is_empty() {
-            self.panel.nothing(canvas, if total == 0 { said.no_release } else { said.no_finite });
+            let why = match self.largest {
+                _ if total == 0 => said.no_release,
+                // a logarithmic axis has no place for 0
+                largest if largest == 0.0 && self.quantity.is_energy() => said.none_above_zero,
+                _ => said.no_finite,
+            };
+            self.panel.nothing(canvas, why);
         }
     }
 

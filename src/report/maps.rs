@@ -134,13 +134,15 @@ fn draw_reach(report: &Report, maps: &CellMap, ground: Option<&Shaded>) -> Drawi
     let caption = fill(
         words.maps_caption,
         &[
-            ("cell", &format::plain(maps.cell_m)),
+            ("cell", &format::plain(maps.cell_m / f64::from(maps.joined.max(1)))),
             ("weak", &weak),
             ("medium", &medium),
             ("strong", &strong),
         ],
     );
-    Drawing { svg, caption: caption + &lacks(report, maps) }
+    let joined = fill(words.maps_joined, &[("n", &maps.joined)]);
+    let joined = if maps.joined > 1 { joined } else { String::new() };
+    Drawing { svg, caption: caption + &joined + &lacks(report, maps) }
 }
 
 /// What a 95th percentile of few rocks is worth, and which rocks are missing; nothing where nothing lacks.

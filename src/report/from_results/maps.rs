@@ -28,6 +28,7 @@ pub(super) fn maps(results: &Results) -> Result<Option<CellMap>> {
         west_m: frame.west_m,
         south_m: frame.south_m,
         cell_m: frame.cell_m * f64::from(times),
+        joined: times,
         columns: frame.columns.div_ceil(times),
         reach: drawn(read(Layer::Reach)?),
         intensity_cells,

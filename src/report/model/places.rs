@@ -242,8 +242,10 @@ pub struct CellMap {
     pub west_m: f64,
     /// Southern edge, map coordinates (m).
     pub south_m: f64,
-    /// Side of a cell (m).
+    /// Side of a drawn cell (m).
     pub cell_m: f64,
+    /// Cells of the files along the side of a drawn one.
+    pub joined: u32,
     /// Number of columns; cell 0 is the most south-western, rows run east.
     pub columns: u32,
     /// Share of the releases that pass (–).

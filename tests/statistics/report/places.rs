@@ -102,6 +102,7 @@ fn maps() -> CellMap {
         west_m: EAST_M + 20.0,
         south_m: NORTH_M,
         cell_m: 2.5,
+        joined: 1,
         columns: 40,
         reach: layer(|cell| 1e-4 * f64::from(1 + cell % 3000)),
         intensity: layer(|cell| f64::from(1 + cell % 3)),
