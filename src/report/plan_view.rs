@@ -31,6 +31,10 @@ const NARROWEST_PX: f64 = 360.0;
 const LOWEST_PX: f64 = 190.0;
 /// Column right of the map for north arrow and colour bar (px).
 const RIGHT_PX: f64 = 84.0;
+/// Least extent of a map over that of the ground (–): rocks that lie still are seen where they lie.
+const LEAST: f64 = 0.05;
+/// Least upper end of the speed scale (m/s): what only settles is not drawn as if it moved.
+const SLOWEST_M_S: f64 = 0.1;
 /// Paper around what is shown, as a share of its size.
 const MARGIN: f64 = 0.06;
 /// How far beside the rocks lines and barriers are followed, as a share of the size of what is shown.
@@ -130,9 +134,16 @@ fn extent(report: &Report) -> (Range, Range) {
             ((g.west_m, g.east_m()), (g.south_m, g.north_m()))
         });
     }
-    let size = (x.1 - x.0).max(y.1 - y.0);
-    let size = if size > 1e-6 { size } else { 1.0 };
-    let margin = MARGIN * size;
+    let everything = (f64::NEG_INFINITY, f64::INFINITY);
+    let least = report
+        .ground
+        .as_ref()
+        .map_or(0.0, |g| LEAST * (g.east_m() - g.west_m).max(g.north_m() - g.south_m));
+    let least = if least > 1e-6 { least } else { 0.1 };
+    if (x.1 - x.0).max(y.1 - y.0) < least {
+        (x, y) = (grown(x, least, everything), grown(y, least, everything));
+    }
+    let margin = MARGIN * (x.1 - x.0).max(y.1 - y.0);
     ((x.0 - margin, x.1 + margin), (y.0 - margin, y.1 + margin))
 }
 
@@ -164,7 +175,7 @@ fn grown(range: Range, wanted: f64, limits: Range) -> Range {
 /// Round upper end of the speed scale (m/s).
 fn fastest_m_s(report: &Report) -> f64 {
     let speeds = report.paths.iter().flat_map(|path| path.points.iter().map(|p| p.speed_m_s));
-    Axis::from_zero(speeds, "").high
+    Axis::from_zero(speeds.chain([SLOWEST_M_S]), "").high
 }
 
 /// The paths, thinned, one group a speed class, slow ones below.
