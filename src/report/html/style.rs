@@ -57,6 +57,12 @@ pre { margin: 0; padding: 10px 12px; background: #f5f5f3; font: 12.5px/1.5 'Libe
 dt { font-weight: bold; margin-top: 8px; }
 dd { margin: 0 0 4px 0; }
 footer { margin-top: 40px; padding-top: 8px; border-top: 1px solid #bbb; font-size: 12px; overflow-wrap: anywhere; }
+@media screen and (max-width: 640px) {
+  main { padding: 16px 12px 32px; }
+  figure { overflow-x: auto; }
+  figure svg { max-width: none; min-width: 560px; }
+  nav ol { columns: 1; }
+}
 @media screen and (min-width: 1240px) {
   .front, .site { margin-left: -150px; margin-right: -150px; }
   .front { display: flow-root; }
