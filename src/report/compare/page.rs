@@ -121,6 +121,13 @@ fn table(group: &Group, comparison: &Comparison) -> String {
     )
 }
 
+/// A change in per cent, with its sign as the change itself has one.
+fn signed_percent(share: f64) -> String {
+    let said = format::percent(share, 1);
+    let is_zero = !said.bytes().any(|byte| (b'1'..=b'9').contains(&byte));
+    if share > 0.0 && !is_zero { format!("+{said}") } else { said }
+}
+
 fn table_row(row: &ComparedStatistic, words: &Words) -> String {
     let name = match row.unit {
         "" => row.name_in(words),
@@ -130,7 +137,7 @@ fn table_row(row: &ComparedStatistic, words: &Words) -> String {
     let count = |k: usize| format::decimal(row.rocks[k] as f64, 0);
     let share = match row.difference.a {
         0.0 => format::NO_NUMBER.to_owned(),
-        a => format::percent(row.difference.value / a.abs(), 1),
+        a => signed_percent(row.difference.value / a.abs()),
     };
     let verdict = match row.difference.interval {
         None => "",
