@@ -7,8 +7,9 @@ use super::colour::{GREY, INK};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
 use super::histogram::EqualBins;
-use super::model::{Report, ReportQuantity, kilo};
+use super::model::{Is, Report, ReportQuantity, kilo};
 use super::panel::{FOOT_PX, Panel};
+use super::runout;
 use super::svg::path::PaperFrame;
 
 /// What is shown, left to right, top to bottom.
@@ -93,7 +94,12 @@ impl<'a> DistributionPanel<'a> {
         self.bins.bars(canvas, &self.panel);
         let mut words = self.percentiles(canvas);
         if total > 0 {
-            words.push(format!("{} {}", said.max, format::short(self.largest / self.unit_size)));
+            // rocks that would have gone on: their angle is an upper bound
+            let is_bound =
+                self.quantity == ReportQuantity::ReachAngle && runout::open_rocks(self.report) > 0;
+            let sign = format::sign(if is_bound { Is::AtMost } else { Is::Value });
+            let most = format::short(self.largest / self.unit_size);
+            words.push(format!("{} {sign}{most}", said.max));
         }
         self.panel.axes(canvas);
         if self.bins.beyond > 0 {

@@ -1,6 +1,6 @@
 //! Whether the whole looks like rockfall: what was looked at, what was found, what is known from the field.
 
-use super::model::{Check, Is, ReleaseEnd, Report};
+use super::model::{Check, Estimate, Is, ReleaseEnd, Report};
 use super::raster::GroundRaster;
 use super::reach_angle;
 use super::words::fill;
@@ -45,7 +45,7 @@ fn check(name: &str, found: String, passes: bool) -> Check {
 }
 
 fn reach(report: &Report) -> Option<Check> {
-    let (median, is) = reach_angle::median(report)?;
+    let Estimate { value: median, is, .. } = reach_angle::median(report)?;
     // an upper bound above the bands proves nothing wrong
     let passes = reach_angle::is_observed(median) || (is == Is::AtMost && median > 40.0);
     let words = report.words();

@@ -6,7 +6,7 @@ use super::colour::{INK, ORANGE, VERMILLION};
 use super::distributions::DistributionPanel;
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
-use super::model::{Is, Report, ReportQuantity};
+use super::model::{Estimate, Is, Report, ReportQuantity};
 use super::panel::{FOOT_PX, Panel};
 use super::svg::path::PaperFrame;
 use super::words::{Words, fill};
@@ -18,11 +18,11 @@ const TOP_PX: f64 = 48.0;
 /// Opacity of each band.
 const SHADES: [f64; 2] = [0.16, 0.34];
 
-/// The median; none without rocks.
-pub(super) fn median(report: &Report) -> Option<(f64, Is)> {
+/// The median (degrees); none without rocks.
+pub(super) fn median(report: &Report) -> Option<Estimate> {
     let known = report.quantiles.get(&ReportQuantity::ReachAngle)?;
     let found = known.iter().find(|q| (q.probability - 0.5).abs() < 1e-9)?;
-    found.at.value.is_finite().then_some((found.at.value, found.at.is))
+    found.at.value.is_finite().then_some(found.at)
 }
 
 /// Whether a median lies where those of some observed events lie.
@@ -46,13 +46,23 @@ pub(super) fn draw(report: &Report) -> Drawing {
         angles.draw(canvas, 36.0);
         key(canvas, &angles.panel, words);
     });
-    let verdict = median(report).map_or(String::new(), |(at, is)| {
-        let text = if is_observed(at) { words.median_inside } else { words.median_outside };
-        let at = format!("{}{}", format::sign(is), format::significant(at, 3));
-        fill(text, &[("median", &at)])
-    });
+    let verdict = median(report).map_or(String::new(), |at| verdict(&at, words));
     let caption = fill(words.reach_caption, &[("verdict", &verdict)]);
     Drawing { svg, caption: caption.trim_end().to_owned() }
+}
+
+/// Whether the median lies where others were observed. One that may be lower by any amount says nothing, unless even
+/// its bound is below them.
+fn verdict(median: &Estimate, words: &Words) -> String {
+    let is_open = median.is == Is::AtMost && !median.low.is_finite();
+    let may_be_observed = OBSERVED.iter().any(|(low, _)| median.value >= *low);
+    if is_open && may_be_observed {
+        let at = format::significant(median.value, 3);
+        return fill(words.open().median, &[("median", &at)]);
+    }
+    let text = if is_observed(median.value) { words.median_inside } else { words.median_outside };
+    let at = format!("{}{}", format::sign(median.is), format::significant(median.value, 3));
+    fill(text, &[("median", &at)])
 }
 
 fn shaded(canvas: &Canvas<'_>, panel: &Panel, &(low, high): &(f64, f64), shade: f64) {
@@ -76,5 +86,27 @@ fn key(canvas: &Canvas<'_>, panel: &Panel, words: &Words) {
         let band = fill(words.band, &[("name", &name), ("low", low), ("high", high)]);
         x += 22.0 + text_width(&band, SMALL) + 22.0;
         canvas.text(&Label::new(band, (patch.right + 5.0, y)));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Language;
+
+    /// Three rocks of four have left: nobody knows how flat their way would have become.
+    #[test]
+    fn an_open_median_is_not_said_to_be_observed() {
+        let words = Words::of(Language::En);
+        let said = |value: f64, low: f64| {
+            let at = Estimate { is: Is::AtMost, ..Estimate::new(value, low, value + 0.1) };
+            verdict(&at, words)
+        };
+        assert_eq!(
+            said(28.9, 28.7),
+            "The median of ≤\u{2009}28.9° lies where such medians are observed."
+        );
+        assert!(said(28.9, f64::NAN).starts_with("The median is at most 28.9°"));
+        assert!(said(15.0, f64::NAN).contains("outside both"));
     }
 }

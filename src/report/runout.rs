@@ -3,7 +3,7 @@
 use super::axis::Axis;
 use super::by_frequency;
 use super::canvas::{Canvas, Label, Pen, SMALL, paint};
-use super::colour::{BLUE, INK, SKY, VERMILLION};
+use super::colour::{BLUE, GREY, INK, SKY, VERMILLION};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
 use super::histogram::EqualBins;
@@ -49,8 +49,8 @@ pub(super) fn draw(report: &Report) -> Drawing {
     Drawing { svg, caption: caption(report, &bins) }
 }
 
-/// Rocks whose runout is only a lower bound.
-fn open_rocks(report: &Report) -> usize {
+/// Rocks whose runout is only a lower bound, and whose reach angle an upper one.
+pub(super) fn open_rocks(report: &Report) -> usize {
     let is_open = |fall: &&ReleaseEnd| StopKind::from(&fall.stop).is_open();
     report.releases.iter().filter(is_open).count()
 }
@@ -143,7 +143,9 @@ fn exceedance(canvas: &Canvas<'_>, panel: &Panel, report: &Report) {
         .collect();
     panel.line(canvas, &shown, Pen::full(BLUE, 1.6));
     if curve.is_empty() {
-        panel.nothing(canvas, report.words().no_curve);
+        // marks of percentiles fall from the upper left to the lower right
+        let corner = (panel.frame.left + 12.0, panel.frame.bottom - 14.0);
+        canvas.text(&Label::new(report.words().no_curve, corner).coloured(GREY));
     }
 }
 
