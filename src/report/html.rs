@@ -19,9 +19,9 @@ use std::cell::Cell;
 use std::fmt::Write as _;
 use style::STYLE;
 
-/// Text for the page. Digits of one number stay in one line: a thin space breaks, a narrow no-break space does not.
+/// Text for the page. A number stays in one line with its sign for per cent: a thin space breaks, a narrow no-break space does not.
 fn escape(text: &str) -> String {
-    format::escape(text).replace('\u{2009}', "\u{202f}")
+    format::escape(text).replace('\u{2009}', "\u{202f}").replace(" %", "\u{a0}%")
 }
 
 /// What is drawn, in the order of the page.
