@@ -160,8 +160,9 @@ impl Scene {
     /// # Errors
     /// Whatever is wrong with the scene, with file, table, key and line; a file or drawing that cannot be used.
     pub fn read(file: &Path) -> Result<Self> {
-        let text = crate::file::read_text(file)?;
-        let mut scene = Self::parse(&text, file)?;
+        let no_scene = |wrong| source::terrain_instead(file).unwrap_or(wrong);
+        let text = crate::file::read_text(file).map_err(no_scene)?;
+        let mut scene = Self::parse(&text, file).map_err(no_scene)?;
         scene.read_blocks()?;
         let refuse = |wrong| Lookup::of(file, &text).refuse(wrong);
         scene.take_drawn().and_then(|()| scene.take_zone_sources()).map_err(

@@ -9,6 +9,17 @@ use std::path::Path;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+/// Endings of files that hold a terrain, as their programs write them.
+const TERRAINS: [&str; 8] = ["stl", "ply", "obj", "tif", "tiff", "asc", "las", "laz"];
+
+/// What to say of a terrain where a scene is asked for; none of a file that is none, by its name, or is not there.
+pub(super) fn terrain_instead(file: &Path) -> Option<Error> {
+    let ending = file.extension()?.to_str()?.to_ascii_lowercase();
+    let is_terrain = TERRAINS.contains(&ending.as_str()) && file.is_file();
+    let remedy = format!("write a first scene for it: rockfall init {}", file.display());
+    is_terrain.then(|| Error::input(file, "start", "found a terrain, no scene", remedy))
+}
+
 /// A scene's text with the place of every key and value in it.
 pub(super) struct Lookup<'a> {
     file: &'a Path,
@@ -255,4 +266,21 @@ fn collect(
     // a header stands where its table begins, however its last key was reached
     let key = if headed { value.span() } else { key };
     nodes.push(SourceNode { trail, key, value: value.span(), headed });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What a new user types first: `rockfall run slope.stl`.
+    #[test]
+    fn a_terrain_is_told_from_a_broken_scene() {
+        let terrain = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../terrain/quick_slope.stl");
+        let said = terrain_instead(&terrain).map(|error| error.to_string()).unwrap_or_default();
+        assert!(
+            said.contains("found a terrain, no scene; write a first scene for it: rockfall init")
+        );
+        assert!(terrain_instead(Path::new("not_there.stl")).is_none());
+        assert!(terrain_instead(Path::new("Cargo.toml")).is_none());
+    }
 }
