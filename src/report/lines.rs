@@ -7,7 +7,7 @@ use super::colour::{BLUE, DARK_GREEN, GREEN, GREY, INK, SKY, VERMILLION};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
 use super::histogram::EqualBins;
-use super::model::{BandPoint, ReportLine, kilo};
+use super::model::{BandPoint, Estimate, ReportLine, kilo};
 use super::panel::MANY;
 use super::panel::{FOOT_PX, Panel, align};
 use super::svg::path::{PaperFrame, Spot};
@@ -95,7 +95,7 @@ fn caption(words: &Words, line: &ReportLine) -> String {
             words.line_behind,
             &[
                 ("barriers", &behind.barriers.join(", ")),
-                ("reach", &reach),
+                ("reach", &format!("{}{reach}", format::sign(at.is))),
                 ("low", &low),
                 ("high", &high),
             ],
@@ -293,10 +293,12 @@ pub(super) fn retention(lines: &[ReportLine], words: &Words) -> Drawing {
     let longest = 0.36 * WIDTH_PX;
     let names: Vec<String> = lines.iter().map(|line| fitted(&line.name, SMALL, longest)).collect();
     let widest = names.iter().map(|name| text_width(name, SMALL)).fold(0.0, f64::max);
+    let shares: Vec<Label> = lines.iter().map(|line| reach_in_words(line, words)).collect();
+    let room = shares.iter().map(Label::width_px).fold(0.0, f64::max) + 10.0;
     let frame = PaperFrame {
         left: widest + 14.0,
         top: 8.0,
-        right: WIDTH_PX - 150.0,
+        right: WIDTH_PX - room.max(150.0),
         bottom: 8.0 + row_px * rows,
     };
     let ends = lines.iter().flat_map(|line| [line.reach.value, line.reach.high]);
@@ -311,7 +313,8 @@ pub(super) fn retention(lines: &[ReportLine], words: &Words) -> Drawing {
         panel.grid_upright(canvas);
         for (k, line) in lines.iter().enumerate() {
             let y = frame.top + row_px * (k as f64 + 0.5);
-            bar(canvas, &panel, (line, &names[k], y), words);
+            bar(canvas, &panel, (line, &names[k], y));
+            canvas.text(&shares[k].clone().moved((frame.right + 6.0, y)));
         }
         canvas.outline(&frame, Pen::full(INK, 0.8));
         panel.x_axis(canvas);
@@ -319,12 +322,18 @@ pub(super) fn retention(lines: &[ReportLine], words: &Words) -> Drawing {
     Drawing { svg, caption: words.retention_caption.to_owned() }
 }
 
-fn bar(
-    canvas: &Canvas<'_>,
-    panel: &Panel,
-    (line, name, y): (&ReportLine, &str, f64),
-    words: &Words,
-) {
+/// The share that reaches a line, and what is left of it behind barriers; a lower bound has its sign.
+fn reach_in_words(line: &ReportLine, words: &Words) -> Label {
+    let said = |reach: &Estimate| {
+        let share = percent_shown(reach.value);
+        format!("{}{share}", format::sign(reach.is))
+    };
+    let left =
+        line.behind.as_ref().map(|behind| fill(words.left, &[("share", &said(&behind.reach))]));
+    Label::new(said(&line.reach), (0.0, 0.0)).followed_by(left.unwrap_or_default())
+}
+
+fn bar(canvas: &Canvas<'_>, panel: &Panel, (line, name, y): (&ReportLine, &str, f64)) {
     let frame = panel.frame;
     let at = |share: f64| panel.at((100.0 * share).clamp(0.0, panel.x.high), 0.0).0;
     let behind = line.behind.as_ref().map(|behind| behind.reach);
@@ -343,10 +352,6 @@ fn bar(
         canvas.line(&[(at(reach.low), middle), (at(reach.high), middle)], Pen::full(INK, 1.2));
     }
     canvas.text(&Label::new(name, (frame.left - 6.0, y)).right());
-    let reach = percent_shown(line.reach.value);
-    let left = behind
-        .map_or(String::new(), |reach| fill(words.left, &[("share", &percent_shown(reach.value))]));
-    canvas.text(&Label::new(reach, (frame.right + 6.0, y)).followed_by(left));
 }
 
 /// A share in per cent with a digit that is not 0, however small it is.

@@ -31,6 +31,13 @@ impl Label {
         Self { text, tail, at, size_px: SMALL, colour: INK, is_bold: false, turn, anchor }
     }
 
+    /// At another place.
+    #[must_use]
+    pub fn moved(mut self, at: Spot) -> Self {
+        self.at = at;
+        self
+    }
+
     /// Ends at its place.
     #[must_use]
     pub fn right(mut self) -> Self {
