@@ -5,7 +5,7 @@ mod year;
 pub(super) use year::draw as draw_year;
 
 use super::axis::{Axis, round_step};
-use super::canvas::{Canvas, Label, NORMAL, Pen, SMALL, fitted, paint, text_width};
+use super::canvas::{Canvas, Label, NORMAL, Pen, SMALL, bold_width, fitted, paint, text_width};
 use super::colour::{self, INK, ORANGE, SKY, VERMILLION};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
@@ -192,7 +192,8 @@ fn draw_layers(
     paint(name, (WIDTH_PX, bottom), title, |canvas| {
         for (k, (panel, layer)) in panels.iter().zip(layers).enumerate() {
             let at = (panel.frame.left, panel.frame.top - 9.0);
-            canvas.text(&Label::new(layer.title.clone(), at).bold().sized(NORMAL));
+            let title = short_title(&layer.title, panel.frame.left);
+            canvas.text(&Label::new(title, at).bold().sized(NORMAL));
             let names =
                 site::places(canvas, panel, report, |mark, width| fitted(&mark.name, SMALL, width));
             canvas.clip(&format!("part{k}"), &panel.frame, || {
@@ -213,6 +214,14 @@ fn draw_layers(
             key(canvas, panel, layer);
         }
     })
+}
+
+/// A title that ends where its half of the sheet does; the caption has names in full.
+fn short_title(title: &str, left_px: f64) -> String {
+    let half = 0.5 * WIDTH_PX;
+    let room = half - left_px.rem_euclid(half);
+    let bold = bold_width(title, NORMAL) / text_width(title, NORMAL).max(1.0);
+    fitted(title, NORMAL, room / bold.max(1.0))
 }
 
 /// Equal frames over all cells reached, two beside each other, at equal scale; and the height of the sheet.

@@ -60,6 +60,7 @@ fn lines(results: &Results, words: &Words, order: &[String]) -> Option<EstimateT
         rows.push((name, cells));
         rows.extend(residual.map(|at| behind(at, words, size)));
     }
+    let needs = results.hazard.weights().map_or("", |_| words.year().weighed_needs);
     let columns = [
         words.col_reach.to_owned(),
         words.col_speed.to_owned(),
@@ -70,7 +71,7 @@ fn lines(results: &Results, words: &Words, order: &[String]) -> Option<EstimateT
     (!rows.is_empty()).then(|| EstimateTable {
         about: About::Lines,
         title: words.arrives_title.to_owned(),
-        note: words.arrives_note.to_owned(),
+        note: words.arrives_note.to_owned() + needs,
         columns: columns.into(),
         rows,
         ..EstimateTable::default()

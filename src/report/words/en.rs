@@ -357,7 +357,7 @@ pub(super) static WORDS: Words = Words {
     col_by_rate: "change with ln(rate) ({unit})",
     col_by_exponent: "change with exponent ({unit})",
     often_title: "How often a year: {name}",
-    often_note: "Numbers a year unless the column says otherwise: {events} events a year at the sources times the share of their rocks that come. {rocks} rocks, as precise as {effective} of equal weight. 95 % intervals; where none was seen, a one-sided bound. Change with ln(rate): 10 % more events make it 10 % of that more. Probability in a year: 1 − e^−λ.",
+    often_note: "Numbers a year unless the column says otherwise: {events} events a year at the sources times the share of their rocks that come. {rocks} rocks, as precise as {effective} of equal weight. 95 % intervals; where none was seen, a one-sided bound. Change with ln(rate): 10 % more events make it 10 % of that more. Probability in a year: 1 − exp(−λ).",
     returns_title: "Energy of return periods: {name}",
     returns_note: "Passed with at least that energy once in so many years on average; no number where rocks come more seldom. The 95 % interval is that of the frequency, read along the energy; where too few rocks bound it, its upper end is the largest energy that sizes and terrain allow, or open.",
     risk_title: "Risk a year: {name}",
