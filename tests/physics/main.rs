@@ -32,6 +32,7 @@ mod roughness;
 mod schemes_agree;
 mod soil;
 mod stems;
+mod struck_through;
 mod tangential;
 mod traps;
 mod world_ledger;

@@ -43,7 +43,7 @@ pub struct ContactHistory {
     /// All three components, so it holds the spin about the normal (torsion) as well as rolling;
     /// the moment is `−k_r θ`.
     pub roll: Vec3,
-    /// Came in too slowly to rebound: damped for good.
+    /// Came in too slowly to rebound: damped for good, or until another rock strikes through it.
     ///
     /// Below the capture speed a rebound would be smaller than the errors of the steps, and the
     /// rock would flutter for ever.

@@ -185,6 +185,18 @@ impl PairHistory {
         self.bond.as_ref().map_or(0.0, over)
     }
 
+    /// Lets a contact rebound that came up too slowly for it and is pressed together at a speed (m/s) now, if it is struck through;
+    /// whether it is. A bond has no rebound.
+    pub(crate) fn release(&mut self, approach_m_s: f64) -> bool {
+        let is_released = self.captured
+            && self.bond.is_none()
+            && self.law.is_struck_through(self.normal_force, approach_m_s);
+        if is_released {
+            (self.captured, self.impact) = (false, PairImpact::begun(approach_m_s));
+        }
+        is_released
+    }
+
     /// Breaks the bond: the contact keeps what friction can hold; the rest of its stretch is lost.
     pub(crate) fn break_bond(&mut self) {
         (self.bond, self.captured) = (None, true);

@@ -24,6 +24,7 @@ mod newton_step;
 mod body;
 mod impact_tolerance;
 mod outcome;
+mod release;
 mod active_set;
 mod rigid;
 mod stage;

@@ -8,6 +8,9 @@ use super::Law;
 
 /// Stiffness that holds a contact exactly at the surface, over `m/h` (–).
 const HOLD: f64 = 1e7;
+/// Slowest blow that strikes through a loaded contact (–, relative to the speed that its spring could give). A blow that comes through
+/// a long row of rocks presses its last contacts a little before it is there.
+const STRUCK: f64 = 0.1;
 /// Damping ratio that is none (–).
 const ROUNDED: f64 = 1e-9;
 
@@ -156,6 +159,17 @@ impl Law {
     #[inline]
     pub(crate) fn normal(&self, captured: bool) -> NormalElement {
         NormalElement { p_n: self.p_n, c_n: if captured { self.c_n_captured } else { self.c_n } }
+    }
+
+    /// Whether a captured contact that holds a force (N) and is pressed together at a speed (m/s) is struck through: faster than what is
+    /// captured, and not far slower than its spring as it is now could throw what it moves, `F/(m ω)`. Less than that neither opens
+    /// a contact that bears a load nor is more than what a light rock trembles with under a heavy one.
+    ///
+    /// `v ≥ v_capture` and `m ω v ≥ STRUCK (F − c v)`, with `m ω = p_N/ω`.
+    pub(crate) fn is_struck_through(&self, normal_force: f64, approach_m_s: f64) -> bool {
+        let spring_n = normal_force - self.c_n_captured * approach_m_s;
+        approach_m_s >= self.capture_m_s
+            && approach_m_s * self.p_n / self.omega >= STRUCK * spring_n
     }
 
     /// The normal element of a fixed step of length `dt` (s): without dashpots nothing is captured.

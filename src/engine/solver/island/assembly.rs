@@ -107,6 +107,11 @@ impl<'a> Island<'a> {
                 step_control::advance(world, &control, state, h, h_max)
             });
         }
+        if self.release_struck() {
+            // other dashpots from now on, and the blow must be resolved
+            self.fresh = false;
+            self.h = self.h.min(ONSET / self.omega());
+        }
         let control = &self.control(settings);
         // a rock that was turned against a facet, or whose stem has given way, has other rates
         if !self.fresh || self.members.iter().any(|member| !member.state.fresh) {

@@ -16,6 +16,7 @@ impl Island<'_> {
     pub fn advance_fixed(&mut self, settings: &Settings, h_max: f64) -> Result<Done, StepError> {
         // the fixed step, cut only at events and where a rock would pass what has been looked for
         let dt = settings.step_s.min(h_max).min(self.travel_limit(TRAVEL));
+        self.release_struck();
         let Self { terrain, members, pair_histories, dda_pairs: pairs, .. } = self;
         let mut bodies = Vec::with_capacity(members.len());
         for member in members.iter_mut() {

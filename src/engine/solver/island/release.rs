@@ -1,0 +1,50 @@
+//! Contacts that came up too slowly to rebound, and are struck through by a blow.
+//!
+//! Rocks that lie on each other and on the ground have come there slowly: their contacts are captured, and damped so that nothing
+//! flutters. A blow that runs through them is no slow approach. They are a part of it as soon as it presses them together faster
+//! than what is captured, as are those that were a hair open when it came. Without that a blow on a heap, a row or a cradle of rocks
+//! lost most of its energy, with restitution 1 too, or nothing, by a rounding of the gaps.
+
+use super::assembly::Island;
+use super::body::IslandBody;
+use crate::contact::pair::{PairHistory, between};
+use crate::solver::contact_state::ContactEnvironment;
+use crate::terrain::Terrain;
+
+impl Island<'_> {
+    /// Lets captured contacts rebound that are pressed together too fast for it: those of two rocks, and those of rocks that touch
+    /// others with the mesh. Whether there were any.
+    pub(super) fn release_struck(&mut self) -> bool {
+        let Self { terrain, members, pair_histories, .. } = self;
+        let mut is_any = false;
+        for pair_history in pair_histories.iter_mut().filter(|pair| PairHistory::is_held(pair)) {
+            let ends = [pair_history.a, pair_history.b].map(|k| k as usize);
+            let [a, b] = ends.map(|k| &members[k].state);
+            let (n, _) = between(&a.c, &b.c);
+            is_any |= pair_history.release(-n.dot(&(a.v - b.v)));
+            for k in ends {
+                is_any |= members[k].release_ground(terrain);
+            }
+        }
+        is_any
+    }
+}
+
+impl IslandBody {
+    /// The same of its contacts with the mesh.
+    fn release_ground(&mut self, terrain: &Terrain) -> bool {
+        let Self { state, body, laws, .. } = self;
+        let world = ContactEnvironment { terrain, body: *body, laws };
+        let mut is_any = false;
+        for history in state.histories.iter_mut().filter(|one| one.captured && one.closed) {
+            let approach_m_s = -history.n.dot(&state.v);
+            let law = world.law(history.triangle);
+            if law.is_struck_through(history.normal_force, approach_m_s) {
+                history.captured = false;
+                state.impact.meet(approach_m_s, world.least_impact_m_s());
+                is_any = true;
+            }
+        }
+        is_any
+    }
+}
