@@ -182,8 +182,9 @@ impl Sample {
         let Some((far, open)) = &self.far else { return false };
         let (Some(seen), Some(far)) = (self.seen(p), far.seen(p)) else { return false };
         match open {
-            Open::Above => seen.high_95.is_none_or(|high| far.value > high),
-            Open::Below => seen.low_95.is_none_or(|low| far.value < low),
+            // where too few say how far chance reaches, whatever lies beyond the value itself may have decided it
+            Open::Above => far.value > seen.high_95.unwrap_or(seen.value),
+            Open::Below => far.value < seen.low_95.unwrap_or(seen.value),
         }
     }
 
