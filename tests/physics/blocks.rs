@@ -233,6 +233,28 @@ fn no_block_is_lost_on_the_natural_slope() {
     }
 }
 
+/// What a block takes does not depend on the blocks that a worker has followed before: steps that did not settle least of all.
+#[test]
+fn the_effort_of_a_block_is_its_own() {
+    let (slope, shape) = (
+        slope(10_000),
+        Shape::of(&Solid::of(&prism_surface(6, 0.3)), &prism_surface(6, 0.3).points, 0.1),
+    );
+    let shape = shape.unwrap();
+    let ground = Ground { rolling_friction: 0.3, ..HARD };
+    let series =
+        Series { scheme: Scheme::Rigid, kind: ShapeKind::Prism, shape: Some(&shape), ground };
+    let mut shared = Scratch::default();
+    let mut unsettled = 0;
+    for index in 0..60 {
+        let among_others = fall(&slope, &series, index, &mut shared).effort;
+        let alone = fall(&slope, &series, index, &mut Scratch::default()).effort;
+        assert_eq!(among_others, alone, "{index}");
+        unsettled += alone.unsettled;
+    }
+    assert!(unsettled > 0, "nothing that could be counted twice");
+}
+
 /// The same with 100 000 triangles and any number of releases (`ROCKFALL_RELEASES`, from number `ROCKFALL_FROM` on), with the rate on one
 /// thread: every shape on both grounds with `rigid`, or the series that are named
 /// (`ROCKFALL_SERIES="box hard rigid,eota221 hard adaptive"`).

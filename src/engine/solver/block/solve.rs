@@ -332,12 +332,14 @@ pub(crate) fn solve(
 ) -> bool {
     let alone = contacts.len() <= 1 && !turning.is_on();
     let reach = contacts.iter().map(|contact| contact.lever.norm()).fold(0.0, f64::max);
-    let mixes = !turning.is_on() && contacts.len() <= MOST;
+    // a contact at the centre of mass itself has no lever to compare moments with
+    let mixes = contacts.len() <= MOST && reach > 0.0;
     let mut mixing: Option<Mixing> = None;
     for sweep in 0..most {
         *sweeps += 1;
         if mixes && sweep >= BEFORE {
-            mixing.get_or_insert_with(|| Mixing::of(contacts.len())).begin(contacts);
+            let both = (&*contacts, &*turning);
+            mixing.get_or_insert_with(|| Mixing::of(both, reach)).begin(both.0, both.1);
         }
         let (before, mut scale) = ((v, w), f64::MIN_POSITIVE);
         for contact in contacts.iter_mut() {
@@ -356,7 +358,7 @@ pub(crate) fn solve(
             return true;
         }
         if let Some(mixing) = &mut mixing {
-            let (dv, dw) = mixing.mix(mass, contacts);
+            let (dv, dw) = mixing.mix(mass, (&mut *contacts, &mut *turning));
             (v, w) = (v + dv, w + dw);
         }
     }

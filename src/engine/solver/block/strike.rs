@@ -33,6 +33,8 @@ impl Footing {
         if !comes && facet.is_none() {
             return None;
         }
+        // what did not settle before, of this block or of another, is no part of this impact
+        self.unsettled = false;
         // a facet is met as in the schemes with springs: the motion is turned against it, and back
         if let Some(turn) = &facet {
             moving.redirect(block, &turn.inverse());
@@ -78,6 +80,7 @@ impl Footing {
         let mut thrown = moving.clone();
         let loss = self.impulses(world, (block, &mut thrown), false);
         if self.slip_m_s(block, &thrown) > STILL_M_S {
+            self.unsettled = false;
             return None;
         }
         *moving = thrown;

@@ -6,6 +6,7 @@
 //! long as every contact keeps sticking or sliding, few unknowns of the body are left, and few sweeps. What a sweep makes of an impulse
 //! is not changed, nor when it has settled.
 
+use super::super::rolling::Turning;
 use super::{BlockContact, Mass};
 use crate::contact::MOST;
 use crate::rock::Vec3;
@@ -21,16 +22,18 @@ const GROWS: f64 = 2.0;
 /// … and so often before sweeps go on alone.
 const SETBACKS: u32 = 6;
 
-/// The impulses of all contacts.
-type ContactImpulses = [Vec3; MOST];
+/// The impulses of all contacts, and last that of rolling friction over the reach of the contacts (N s).
+type ContactImpulses = [Vec3; MOST + 1];
 
-const NONE: ContactImpulses = [Vec3::new(0.0, 0.0, 0.0); MOST];
+const NONE: ContactImpulses = [Vec3::new(0.0, 0.0, 0.0); MOST + 1];
 
 /// What the last sweeps have done.
 #[derive(Debug)]
 pub(super) struct Mixing {
-    /// How many contacts there are, [`MOST`] at most.
+    /// How many impulses there are: contacts, [`MOST`] at most, and rolling friction.
     count: usize,
+    /// Distance of the farthest contact from the centre of mass (m).
+    reach_m: f64,
     setbacks: u32,
     /// Impulses with which the sweep began.
     began: ContactImpulses,
@@ -63,25 +66,45 @@ fn take(from: &mut ContactImpulses, one: &ContactImpulses, share: f64, count: us
 }
 
 impl Mixing {
-    pub(super) fn of(count: usize) -> Self {
-        Self { count, setbacks: 0, began: NONE, last: None, known: [(NONE, NONE); KEPT], len: 0 }
+    /// For contacts that reach so far from the centre of mass (m), and rolling friction if there is any.
+    pub(super) fn of((contacts, turning): (&[BlockContact], &Turning), reach_m: f64) -> Self {
+        let count = contacts.len() + usize::from(turning.is_on());
+        let known = [(NONE, NONE); KEPT];
+        Self { count, reach_m, setbacks: 0, began: NONE, last: None, known, len: 0 }
     }
 
-    /// A sweep begins with these contacts.
+    /// A sweep begins with these impulses.
     #[inline]
-    pub(super) fn begin(&mut self, contacts: &[BlockContact]) {
-        for (began, contact) in self.began.iter_mut().zip(contacts) {
-            *began = contact.impulse;
-        }
+    pub(super) fn begin(&mut self, contacts: &[BlockContact], turning: &Turning) {
+        self.began = self.gathered(contacts, turning);
     }
 
-    /// After a sweep that has not settled: the contacts take the impulses that the next begins with; the change of velocity and spin.
-    pub(super) fn mix(&mut self, mass: &Mass, contacts: &mut [BlockContact]) -> (Vec3, Vec3) {
+    fn gathered(&self, contacts: &[BlockContact], turning: &Turning) -> ContactImpulses {
+        let mut all = NONE;
+        for (one, contact) in all.iter_mut().zip(contacts) {
+            *one = contact.impulse;
+        }
+        all[contacts.len()] = turning.impulse / self.reach_m;
+        all
+    }
+
+    /// After a sweep that has not settled: contacts and rolling friction take the impulses that the next begins with; the change of
+    /// velocity and spin.
+    pub(super) fn mix(
+        &mut self,
+        mass: &Mass,
+        (contacts, turning): (&mut [BlockContact], &mut Turning),
+    ) -> (Vec3, Vec3) {
         let mut change = (Vec3::zeros(), Vec3::zeros());
         if self.setbacks >= SETBACKS {
             return change;
         }
-        let Some(next) = self.next(contacts) else { return change };
+        let Some(next) = self.next(self.gathered(contacts, turning)) else { return change };
+        if turning.is_on() {
+            let next = next[contacts.len()] * self.reach_m;
+            change.1 += mass.inverse * (next - turning.impulse);
+            turning.impulse = next;
+        }
         for (contact, next) in contacts.iter_mut().zip(&next) {
             // none pulls
             if contact.n.dot(next) < 0.0 {
@@ -95,12 +118,8 @@ impl Mixing {
     }
 
     /// The impulses with which the next sweep begins; `None` = those with which this one ended.
-    fn next(&mut self, contacts: &[BlockContact]) -> Option<ContactImpulses> {
+    fn next(&mut self, ended: ContactImpulses) -> Option<ContactImpulses> {
         let count = self.count;
-        let mut ended = NONE;
-        for (ended, contact) in ended.iter_mut().zip(contacts) {
-            *ended = contact.impulse;
-        }
         let left = less(&ended, &self.began, count);
         let size2 = dot(&left, &left, count);
         let (last_left, last_ended, last_size2) = self.last.replace((left, ended, size2))?;
