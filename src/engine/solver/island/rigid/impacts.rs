@@ -236,7 +236,7 @@ impl RigidIsland {
             let hit = |approach_m_s| hit_of(k, other, (&at, body.radius), approach_m_s);
             self.hits.extend(approach_m_s.map(hit));
         };
-        let after = throw_off(&world, state, (&touch, &at), (&v, &ball.w), how, &mut note);
+        let after = throw_off((&world, state), (&touch, &at), (&v, &ball.w), how, &mut note);
         let load = ((after.0 - v) * body.mass, (after.1 - ball.w) * body.inertia);
         ball.take_late(&load, s);
         ball.is_struck(s);
@@ -247,8 +247,7 @@ impl RigidIsland {
 /// `touch`; as a rock alone it is turned against a facet, and back. Gives nothing back if it is `dead`. Notes of every contact what
 /// it took, and of those struck the approach (m/s).
 fn throw_off(
-    world: &ContactEnvironment,
-    state: &mut ContactState,
+    (world, state): (&ContactEnvironment, &mut ContactState),
     (touch, c): (&ContactPoint, &Vec3),
     (v, w): (&Vec3, &Vec3),
     (dead, tolerance): (bool, f64),
