@@ -357,7 +357,8 @@ pub(crate) fn solve(
         if alone || moved <= (SETTLED * scale / mass.mass).max(rounding_m_s) {
             return true;
         }
-        if let Some(mixing) = &mut mixing {
+        // what the last sweep leaves is what the laws allow
+        if let Some(mixing) = mixing.as_mut().filter(|_| sweep < most / 2) {
             let (dv, dw) = mixing.mix(mass, (&mut *contacts, &mut *turning));
             (v, w) = (v + dv, w + dw);
         }

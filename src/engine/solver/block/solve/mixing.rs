@@ -4,7 +4,8 @@
 //! time, which is near 1 where a face presses on all its corners or friction outweighs the lever. From the last few differences of `f` the
 //! combination is taken that would have left least of it, and the next sweep begins with the same combination of `g`. As
 //! long as every contact keeps sticking or sliding, few unknowns of the body are left, and few sweeps. What a sweep makes of an impulse
-//! is not changed, nor when it has settled.
+//! is not changed, nor when it has settled. The second half of
+//! the sweeps goes on alone, as those that change between two laws without end would otherwise never come nearer.
 
 use super::super::rolling::Turning;
 use super::{BlockContact, Mass};
