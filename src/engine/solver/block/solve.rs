@@ -337,9 +337,11 @@ pub(crate) fn solve(
     let mut mixing: Option<Mixing> = None;
     for sweep in 0..most {
         *sweeps += 1;
-        if mixes && sweep >= BEFORE {
-            let both = (&*contacts, &*turning);
-            mixing.get_or_insert_with(|| Mixing::of(both, reach)).begin(both.0, both.1);
+        // what the last sweeps leave is what the laws allow
+        let learns = mixes && (BEFORE..most / 2).contains(&sweep);
+        if learns {
+            let count = contacts.len() + usize::from(turning.is_on());
+            mixing.get_or_insert_with(|| Mixing::of(count, reach)).begin(contacts, turning);
         }
         let (before, mut scale) = ((v, w), f64::MIN_POSITIVE);
         for contact in contacts.iter_mut() {
@@ -357,8 +359,7 @@ pub(crate) fn solve(
         if alone || moved <= (SETTLED * scale / mass.mass).max(rounding_m_s) {
             return true;
         }
-        // what the last sweep leaves is what the laws allow
-        if let Some(mixing) = mixing.as_mut().filter(|_| sweep < most / 2) {
+        if let Some(mixing) = mixing.as_mut().filter(|_| learns) {
             let (dv, dw) = mixing.mix(mass, (&mut *contacts, &mut *turning));
             (v, w) = (v + dv, w + dw);
         }

@@ -17,14 +17,18 @@ impl Island<'_> {
     pub(super) fn release_struck(&mut self) -> bool {
         let Self { terrain, members, pair_histories, .. } = self;
         let mut is_any = false;
+        let mut touches_others = vec![false; members.len()];
         for pair_history in pair_histories.iter_mut().filter(|pair| PairHistory::is_held(pair)) {
             let ends = [pair_history.a, pair_history.b].map(|k| k as usize);
             let [a, b] = ends.map(|k| &members[k].state);
             let (n, _) = between(&a.c, &b.c);
             is_any |= pair_history.release(-n.dot(&(a.v - b.v)));
             for k in ends {
-                is_any |= members[k].release_ground(terrain);
+                touches_others[k] = true;
             }
+        }
+        for (member, _) in members.iter_mut().zip(touches_others).filter(|(_, touches)| *touches) {
+            is_any |= member.release_ground(terrain);
         }
         is_any
     }

@@ -67,9 +67,8 @@ fn take(from: &mut ContactImpulses, one: &ContactImpulses, share: f64, count: us
 }
 
 impl Mixing {
-    /// For contacts that reach so far from the centre of mass (m), and rolling friction if there is any.
-    pub(super) fn of((contacts, turning): (&[BlockContact], &Turning), reach_m: f64) -> Self {
-        let count = contacts.len() + usize::from(turning.is_on());
+    /// Of so many impulses, of contacts that reach so far from the centre of mass (m).
+    pub(super) fn of(count: usize, reach_m: f64) -> Self {
         let known = [(NONE, NONE); KEPT];
         Self { count, reach_m, setbacks: 0, began: NONE, last: None, known, len: 0 }
     }
