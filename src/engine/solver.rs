@@ -35,6 +35,7 @@ pub(crate) mod multi_contact;
 pub mod law;
 pub mod scheme;
 pub mod rigid;
+mod contact_frame;
 pub(crate) mod friction_rolling;
 pub mod stage;
 pub mod tableau;

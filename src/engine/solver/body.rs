@@ -6,6 +6,9 @@
 use crate::body::Block;
 use crate::rock::{Rock, Vec3};
 
+/// A velocity (m/s) and a spin (rad/s), or an impulse and one of rotation.
+pub(crate) type Twist = (Vec3, Vec3);
+
 /// What of a rock the mechanics needs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Body {

@@ -5,7 +5,8 @@
 //! `(v*, w*)` is one SDDA solve; eliminated contact by contact it needs no matrix.
 
 use super::body::Body;
-use super::friction_rolling::{Answers, ContactFrame, Pair, SlipState};
+use super::contact_frame::ContactFrame;
+use super::friction_rolling::{Answers, Pair, SlipState};
 use crate::contact::Feature;
 use crate::contact::history::ContactHistory;
 pub(crate) use crate::ground::within;

@@ -14,8 +14,9 @@
 mod trial;
 
 use super::body::Body;
+use super::contact_frame::ContactFrame;
 use super::contact_state::{ContactEnvironment, ContactState};
-use super::friction_rolling::{ContactFrame, SlipState};
+use super::friction_rolling::SlipState;
 use super::loss::Loss;
 use super::plane_ahead::longest_step;
 use super::plane_state::{

@@ -1,7 +1,8 @@
 //! A rock on one plane: the fourteen numbers that change along a step, and what presses on it.
 
 use super::body::Body;
-use super::friction_rolling::{Along, ContactFrame, Local, cut, cut_moment};
+use super::contact_frame::{Along, ContactFrame, Local};
+use super::friction_rolling::{cut, cut_moment};
 use super::tableau::STAGES;
 use crate::ground::{Law, NormalElement};
 use crate::rock::Vec3;

@@ -15,21 +15,19 @@
 //! over lift-off and sliding into rolling. What is lost against springs: the time of an impact, and
 //! the penetration at rest, `m g/p_N`.
 
+mod contact;
 mod plane_step;
 
-use super::body::Body;
 use super::contact_state::{ContactEnvironment, ContactState};
-use super::friction_rolling::{Answers, ContactFrame, Pair, SlipState};
 use super::impact::{FrozenContact, throw};
 use super::law::capture_m_s;
-use super::loss::Loss;
 use super::roughness;
 use super::step_control::{Advance, StepError, TRAVEL};
 use crate::contact::TOUCH;
 use crate::contact::history::ContactHistory;
 use crate::contact::{ContactPoint, ContactPoints, MOST};
-use crate::ground::Law;
 use crate::rock::Vec3;
+pub(super) use contact::{GroundContact, settle, sustained_m_s};
 
 /// Touches no further away than this still hold the rock (–, relative to R).
 pub(crate) const HELD: f64 = 1e-4;
@@ -38,161 +36,28 @@ pub(crate) const IMPACT: f64 = 2e-5;
 /// Share of the slowest approach to a facet from which on a turned rock comes to it (–): turning rounds the approach, and once
 /// the facet is struck there is none.
 const ONTO_FACET: f64 = 0.5;
-/// Sweeps over the contacts, at most.
-pub(super) const SWEEPS: u32 = 100;
-/// Change of an impulse, relative to the largest, below which the sweeps have settled (–).
-pub(super) const SETTLED: f64 = 1e-12;
-
-/// One contact and its impulses.
-#[derive(Debug, Clone, Copy)]
-struct ImpulsiveContact<'w> {
-    n: Vec3,
-    law: &'w Law,
-    triangle: u32,
-    /// Normal speed wanted after the impulse (m/s).
-    target: f64,
-    /// Normal impulse (N s), ≥ 0.
-    normal_force: f64,
-    /// Impulse along the surface (N s).
-    shear_force: Vec3,
-    /// Rolling impulse (N m s).
-    turn: Vec3,
-    /// Which of the two are at their caps, as far as is known.
-    mode: SlipState,
-}
-
-impl ImpulsiveContact<'_> {
-    const NONE: Self = Self {
-        n: Vec3::new(0.0, 0.0, 0.0),
-        law: &Law::NONE,
-        triangle: 0,
-        target: 0.0,
-        normal_force: 0.0,
-        shear_force: Vec3::new(0.0, 0.0, 0.0),
-        turn: Vec3::new(0.0, 0.0, 0.0),
-        mode: SlipState::Stick,
-    };
-
-    /// Impulses for velocity `v` and spin `w` without this contact's own.
-    /// `J = max(0, m (target − n·v))`: exact for one contact; for several the sweeps repeat it.
-    fn solve(&mut self, body: &Body, v: &Vec3, w: &Vec3) {
-        let m = body.mass;
-        self.normal_force = (m * (self.target - self.n.dot(v))).max(0.0);
-        if self.normal_force <= 0.0 {
-            (self.shear_force, self.turn) = (Vec3::zeros(), Vec3::zeros());
-            return;
-        }
-        let caps = self.law.limits().caps(self.normal_force);
-        let frame = ContactFrame::of(&self.n);
-        (self.shear_force, self.turn) = rub(body, &frame, caps, (v, w), &mut self.mode);
-    }
-
-    /// Change of velocity and spin.
-    /// `Δv = (J n + j)/m`, `Δω = (M − R n × j)/I`: here `j` and `M` act on the rock.
-    fn effect(&self, body: &Body) -> (Vec3, Vec3) {
-        let dv = (self.n * self.normal_force + self.shear_force) / body.mass;
-        let dw = (self.turn - self.n.cross(&self.shear_force) * body.radius) / body.inertia;
-        (dv, dw)
-    }
-
-    /// Energy that the impulses take (J), at mean velocity `v` and spin `w`.
-    ///
-    /// An impulse works with the mean of the velocities before and after: `J·(v₀ + v₁)/2` is the
-    /// change of kinetic energy exactly.
-    fn loss(&self, body: &Body, v: &Vec3, w: &Vec3) -> Loss {
-        let friction = -self.shear_force.dot(&body.slip(&self.n, v, w));
-        Loss {
-            friction,
-            damping: -self.normal_force * self.n.dot(v),
-            rolling: -self.turn.dot(w),
-            trees: 0.0,
-        }
-    }
-}
-
-/// Impulses along the surface with the frame `frame` (N s) and of rolling (N m s) on a rock with velocity `v` and spin `w`
-/// without them; `caps` are the largest of both. The mode found before is tried first.
-///
-/// The stick solution: `2/7 m` is the contact point's mass along the surface, `I ω` stops all
-/// rotation; `Pair` couples both and cuts them.
-pub(crate) fn rub(
-    body: &Body,
-    frame: &ContactFrame,
-    caps: (f64, f64),
-    (v, w): (&Vec3, &Vec3),
-    mode: &mut SlipState,
-) -> (Vec3, Vec3) {
-    let pair = Pair {
-        answers: &Answers::rigid(body.radius),
-        a: frame.along(&(body.slip(&frame.n, v, w) * (body.mass_along()))),
-        d: frame.local(&(w * body.inertia)),
-        caps,
-    };
-    let (shear_force, turn) = pair.solve(mode);
-    (-frame.out_along(shear_force), -frame.out_local(turn))
-}
-
-/// The contacts of one impact or step.
-/// On the stack, as many as a rock keeps.
-struct Blows<'w> {
-    list: [ImpulsiveContact<'w>; MOST],
+/// The contacts of the last look over one step: on the stack, as many as a rock keeps.
+struct StepContacts {
+    list: [GroundContact; MOST],
     len: usize,
 }
 
-impl<'w> Blows<'w> {
-    /// One blow for each touch of the last look, with the target that `target` names for it.
-    fn of(
-        world: &'w ContactEnvironment,
-        state: &ContactState,
-        target: impl Fn(&ImpulsiveContact, f64) -> f64,
-    ) -> Self {
-        let mut blows = Self { list: [ImpulsiveContact::NONE; MOST], len: state.touches.len() };
-        for (blow, touch) in blows.list.iter_mut().zip(state.touches.iter()) {
-            (blow.n, blow.triangle, blow.law) =
-                (touch.normal, touch.triangle, world.law(touch.triangle));
-            blow.target = target(blow, touch.distance_m);
+impl StepContacts {
+    /// Those of the last look, at the place `middle`, over a step of `dt` (s).
+    fn of(world: &ContactEnvironment, state: &ContactState, middle: &Vec3, dt: f64) -> Self {
+        let mut contacts = Self { list: [GroundContact::NONE; MOST], len: state.touches.len() };
+        for (contact, touch) in contacts.list.iter_mut().zip(state.touches.iter()) {
+            *contact = GroundContact::new(0, touch, world.law(touch.triangle));
+            let n = &touch.normal;
+            let gap = touch.distance_m - world.body.radius - n.dot(&(middle - state.c));
+            contact.target = sustained_m_s(gap, n.dot(&state.v), dt);
         }
-        blows
+        contacts
     }
 
-    /// Sweeps until the impulses settle; returns velocity and spin after them.
-    /// Projected Gauss–Seidel; for one contact the first pass is exact.
-    fn solve(&mut self, body: &Body, v: Vec3, w: Vec3, sweeps: &mut u64) -> (Vec3, Vec3) {
-        let (mut v, mut w) = (v, w);
-        for _ in 0..SWEEPS {
-            *sweeps += 1;
-            let (mut change, mut scale) = (0.0f64, f64::MIN_POSITIVE);
-            for blow in &mut self.list[..self.len] {
-                let (dv, dw) = blow.effect(body);
-                let (vf, wf, before) = (v - dv, w - dw, (blow.normal_force, blow.shear_force));
-                blow.solve(body, &vf, &wf);
-                let (dv, dw) = blow.effect(body);
-                (v, w) = (vf + dv, wf + dw);
-                change = change
-                    .max((blow.normal_force - before.0).abs())
-                    .max((blow.shear_force - before.1).norm());
-                scale = scale.max(blow.normal_force);
-            }
-            if self.len <= 1 || change <= SETTLED * scale {
-                break;
-            }
-        }
-        (v, w)
-    }
-
-    /// Takes over velocity and spin after the impulses and books their losses.
-    fn apply(
-        &self,
-        world: &ContactEnvironment,
-        state: &mut ContactState,
-        (v, w): (Vec3, Vec3),
-        loss: &mut Loss,
-    ) {
-        let (mean_v, mean_w) = (0.5 * (state.v + v), 0.5 * (state.w + w));
-        for blow in &self.list[..self.len] {
-            loss.add(&blow.loss(&world.body, &mean_v, &mean_w).on(world, blow.triangle), 1.0);
-        }
-        (state.v, state.w) = (v, w);
+    /// Those with their impulses.
+    fn all(&mut self) -> &mut [GroundContact] {
+        &mut self.list[..self.len]
     }
 }
 
@@ -306,24 +171,24 @@ fn impact(world: &ContactEnvironment, state: &mut ContactState, done: &mut Advan
 /// after it.
 fn step(world: &ContactEnvironment, state: &mut ContactState, longest: f64, done: &mut Advance) {
     let body = &world.body;
-    let r = body.radius;
     let (c, v, w) = (state.c, state.v, state.w);
     let dt = closing(world, state, longest);
     // contacts are those of the middle of the step, looked for there
     let middle = c + v * (0.5 * dt);
     state.look_ahead(world, &middle);
-    let mut blows = Blows::of(world, state, |blow, distance| {
-        let gap = distance - r - blow.n.dot(&(middle - c));
-        // A push never works on the rock: over an edge, half of the turn is before the middle and half after it.
-        -(gap / dt).max(blow.n.dot(&v)).max(0.0)
-    });
-    let after = blows.solve(body, v + body.gravity * dt, w, &mut state.sweeps);
-    blows.apply(world, state, after, &mut done.loss);
+    let mut contacts = StepContacts::of(world, state, &middle, dt);
+    let contacts = contacts.all();
+    let free = (v + body.gravity * dt, w);
+    (state.v, state.w) = settle(contacts, body, free, &mut state.sweeps);
+    let mean = (0.5 * (v + state.v), 0.5 * (w + state.w));
+    for contact in contacts.iter() {
+        done.loss.add(&contact.loss(body, &mean).on(world, contact.triangle), 1.0);
+    }
     // mean of both velocities: the parabola under weight alone is exact
     state.c = c + (v + state.v) * (0.5 * dt);
     done.dt = dt;
     // without any impulse the rock is free, and the next leap takes over
-    let pushed = blows.list[..blows.len].iter().any(|blow| blow.normal_force > 0.0);
+    let pushed = contacts.iter().any(|contact| contact.normal_force > 0.0);
     push_out(world, state);
     remember(world, state, |_| pushed);
 }

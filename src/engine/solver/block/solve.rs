@@ -13,7 +13,7 @@ use super::rolling::Turning;
 use crate::contact::MOST;
 use crate::ground::FrictionLimits;
 use crate::rock::Vec3;
-use crate::solver::friction_rolling::ContactFrame;
+use crate::solver::contact_frame::ContactFrame;
 use crate::solver::law::within;
 use mixing::{BEFORE, Mixing};
 use nalgebra::{Matrix2, Matrix3, Vector2};

@@ -16,7 +16,7 @@ use crate::ground::Law;
 use crate::math;
 use crate::rock::Vec3;
 use crate::solver::body::Body;
-use crate::solver::friction_rolling::{Along, Local};
+use crate::solver::contact_frame::{Along, Local};
 use crate::solver::loss::Loss;
 
 pub(crate) use blow_table::BlowTable;

@@ -7,12 +7,13 @@
 use super::active_set::ActiveSet;
 use super::body::{BodySlot, IslandBody};
 use super::outcome::Done;
-use super::pair_contact::{PairContact, Twist};
+use super::pair_contact::PairContact;
 use super::rigid::RigidIsland;
 use crate::contact::pair::{PairHistory, between};
 use crate::ground::Law;
 use crate::rock::Vec3;
 use crate::solver::Settings;
+use crate::solver::body::Twist;
 use crate::solver::contact_state::{ContactEnvironment, Onset};
 use crate::solver::dda::DdaPairs;
 use crate::solver::step_control::{self, Control, ONSET, StepError};

@@ -4,13 +4,12 @@
 //! stage in hand, motions with and without contact forces, and what it gives to other rocks.
 
 use super::outcome::Done;
-use super::pair_contact::Twist;
 use crate::contact::Feature;
 use crate::contact::history::ContactHistory;
 use crate::contact::pair::PairHistory;
 use crate::ground::Law;
 use crate::rock::Vec3;
-use crate::solver::body::Body;
+use crate::solver::body::{Body, Twist};
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
 use crate::solver::impact_progress::ImpactProgress;
 use crate::solver::law::StageContact;

@@ -14,11 +14,12 @@
 //! ```
 
 use super::body::{BodySlot, IslandBody};
-use super::pair_contact::{PairContact, Twist};
+use super::pair_contact::PairContact;
 use crate::contact::submatrix::{Mat3x6, Mat6, Vec6};
 use crate::ground::{LinearFriction, NormalLine};
 use crate::rock::Vec3;
 use crate::solver::block_factor::{Below, Blocks, Factor};
+use crate::solver::body::Twist;
 use crate::solver::law::StageContact;
 use nalgebra::{DMatrix, DVector, Matrix3};
 

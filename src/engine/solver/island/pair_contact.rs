@@ -4,10 +4,7 @@ pub(super) use crate::contact::TOUCH;
 use crate::contact::pair::{Bond, PairHistory, PairImpact, between};
 use crate::ground::{Law, NormalElement, NormalLine};
 use crate::rock::Vec3;
-use crate::solver::body::Body;
-
-/// A velocity and a spin.
-pub(super) type Twist = (Vec3, Vec3);
+use crate::solver::body::{Body, Twist};
 
 /// One contact of two rocks: its state at the stage's base and the forces that are sought.
 #[derive(Debug, Clone, Copy)]

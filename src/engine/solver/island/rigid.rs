@@ -28,11 +28,11 @@ use crate::solver::impact::BlowTable;
 use crate::solver::law::capture_m_s;
 use crate::solver::loss::Given;
 use crate::solver::loss::Loss;
-use crate::solver::rigid::{HELD, remember};
+use crate::solver::rigid::{GroundContact, HELD, remember};
 use crate::solver::step_control::StepError;
 use crate::terrain::Terrain;
 pub(crate) use contacts::blows_of;
-use contacts::{BallContact, GroundContact, StepBody};
+use contacts::{BallContact, StepBody};
 use impacts::{ImpactScene, PendingImpact};
 use position_correction::NearPair;
 use std::collections::BinaryHeap;
@@ -171,7 +171,7 @@ impl RigidIsland {
             let member = &mut **member;
             member.kept.clear();
             while let Some(ground_contact) =
-                ground_contacts.next_if(|ground_contact| ground_contact.ball == k)
+                ground_contacts.next_if(|ground_contact| ground_contact.rock == k)
             {
                 let kept = (
                     ground_contact.normal_force / dt,
@@ -246,18 +246,5 @@ impl IslandBody {
         (state.c, state.v, state.w) = (ball.c, ball.v, ball.w);
         remember(&world, state, |_| ball.pushed);
         state.is_struck = false;
-    }
-}
-
-impl GroundContact {
-    /// Energy that the impulses take (J), at a mean velocity and spin.
-    fn loss(&self, world: &ContactEnvironment, (v, w): &(Vec3, Vec3)) -> Loss {
-        let loss = Loss {
-            friction: -self.shear_force.dot(&world.body.slip(&self.n, v, w)),
-            damping: -self.normal_force * self.n.dot(v),
-            rolling: -self.turn.dot(w),
-            trees: 0.0,
-        };
-        loss.on(world, self.triangle)
     }
 }

@@ -12,7 +12,7 @@
 use super::assembly::Island;
 use super::body::IslandBody;
 use super::newton_step::jump;
-use super::pair_contact::Twist;
+use crate::solver::body::Twist;
 
 /// Sweeps before the first jump, and between two of them: at least, for each rock that is stirred, and at most. A jump
 /// costs as much as some hundred contacts.

@@ -19,8 +19,9 @@ use crate::contact::neighbours::Neighbours;
 use crate::ground::{Law, NormalElement};
 use crate::rock::Vec3;
 use crate::solver::body::Body;
+use crate::solver::contact_frame::Local;
 use crate::solver::contact_state::ContactEnvironment;
-use crate::solver::friction_rolling::{Answers, Local, Pair, SlipState};
+use crate::solver::friction_rolling::{Answers, Pair, SlipState};
 use crate::solver::loss::Loss;
 use crate::solver::plane_ahead::PlaneStep;
 use crate::solver::plane_state::{

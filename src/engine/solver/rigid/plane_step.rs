@@ -4,7 +4,7 @@
 //! or the rock comes to rest. So a step is taken whole and in two halves: where both agree it is as long as the plane is clear, and what is
 //! kept are the halves.
 
-use super::{HELD, ImpulsiveContact, push_out, remember};
+use super::{GroundContact, HELD, push_out, remember, sustained_m_s};
 use crate::contact::ContactPoint;
 use crate::rock::Vec3;
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
@@ -49,21 +49,20 @@ impl PlaneContact<'_, '_> {
     fn after(&self, from: &Slide, dt: f64) -> Option<Slide> {
         let Self { world, touch } = self;
         let (body, n) = (&world.body, touch.normal);
-        let target = -(from.gap / dt).max(n.dot(&from.v)).max(0.0);
-        let law = world.law(touch.triangle);
-        let mut blow = ImpulsiveContact { n, law, target, ..ImpulsiveContact::NONE };
+        let mut contact = GroundContact::new(0, touch, world.law(touch.triangle));
+        contact.target = sustained_m_s(from.gap, n.dot(&from.v), dt);
         let free = from.v + body.gravity * dt;
-        blow.solve(body, &free, &from.w);
-        if blow.normal_force <= 0.0 {
+        contact.strike(body, &free, &from.w);
+        if contact.normal_force <= 0.0 {
             return None;
         }
-        let (dv, dw) = blow.effect(body);
+        let (dv, dw) = contact.effect(body);
         let (v, w) = (free + dv, from.w + dw);
-        let (mean_v, mean_w) = (0.5 * (from.v + v), 0.5 * (from.w + w));
+        let mean = (0.5 * (from.v + v), 0.5 * (from.w + w));
         let mut loss = from.loss;
-        loss.add(&blow.loss(body, &mean_v, &mean_w), 1.0);
-        let gap = from.gap + n.dot(&mean_v) * dt;
-        Some(Slide { c: from.c + mean_v * dt, v, w, gap, loss, mode: blow.mode })
+        loss.add(&contact.loss(body, &mean), 1.0);
+        let gap = from.gap + n.dot(&mean.0) * dt;
+        Some(Slide { c: from.c + mean.0 * dt, v, w, gap, loss, mode: contact.mode })
     }
 
     /// The same in two halves, if both ways agree to a part of the error of steps of `usual` (s); else, where slipping or rolling ends within

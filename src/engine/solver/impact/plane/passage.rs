@@ -6,7 +6,7 @@
 use super::{LOCAL, Plane, Rebound, Start};
 use crate::math;
 use crate::rock::Vec3;
-use crate::solver::friction_rolling::{ContactFrame, Local};
+use crate::solver::contact_frame::{ContactFrame, Local};
 use crate::solver::impact::ImpactEffort;
 use crate::solver::impact::normal_motion::Exit;
 use crate::solver::loss::Loss;

@@ -7,7 +7,7 @@ use super::{LOCAL, Plane, Start, dot};
 use crate::ground::Law;
 use crate::rock::Vec3;
 use crate::solver::body::Body;
-use crate::solver::friction_rolling::Along;
+use crate::solver::contact_frame::Along;
 use crate::solver::impact::ImpactEffort;
 use crate::solver::impact::sliders::Straight;
 

@@ -1,14 +1,11 @@
 //! The rocks of an island inside one rigid step, and the impulses of their contacts.
 
-use crate::contact::Feature;
 use crate::contact::pair::{PairHistory, between};
 use crate::ground::{FrictionLimits, Law};
 use crate::rock::Vec3;
-use crate::solver::body::Body;
-use crate::solver::friction_rolling::{ContactFrame, SlipState};
+use crate::solver::body::{Body, Twist};
 use crate::solver::impact::{BlowTable, blow_along_a_line};
-use crate::solver::island::pair_contact::Twist;
-use crate::solver::rigid::rub;
+use crate::solver::rigid::GroundContact;
 
 /// One rock inside a step.
 #[derive(Debug, Clone, Copy)]
@@ -263,94 +260,20 @@ pub(crate) fn blows_of(law: &Law, [a, b]: [&Body; 2]) -> Option<BlowTable> {
     BlowTable::new(&body, &law.without_rolling())
 }
 
-/// The contact of a rock with the mesh and its impulses.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct GroundContact {
-    /// The rock, as a place in the island.
-    pub(super) ball: usize,
-    pub(super) feature: Feature,
-    pub(super) triangle: u32,
-    /// Unit normal from the mesh to the centre.
-    pub(super) n: Vec3,
-    frame: ContactFrame,
-    /// What friction and rolling friction bear.
-    pub(super) limits: FrictionLimits,
-    /// Normal speed wanted after the impulse (m/s).
-    pub(super) target: f64,
-    /// Normal impulse (N s), ≥ 0.
-    pub(super) normal_force: f64,
-    /// Impulse along the surface on the rock (N s).
-    pub(super) shear_force: Vec3,
-    /// Rolling impulse on the rock (N m s).
-    pub(super) turn: Vec3,
-    /// Which of friction and rolling holds.
-    mode: SlipState,
-    /// The count of its rock when it was solved last.
-    pub(super) seen: u32,
-}
-
 impl GroundContact {
-    /// A contact without impulses.
-    pub(super) fn new(
-        ball: usize,
-        (feature, triangle): (Feature, u32),
-        n: Vec3,
-        law: &Law,
-    ) -> Self {
-        Self {
-            ball,
-            feature,
-            triangle,
-            n,
-            frame: ContactFrame::of(&n),
-            limits: law.limits(),
-            target: 0.0,
-            normal_force: 0.0,
-            shear_force: Vec3::zeros(),
-            turn: Vec3::zeros(),
-            mode: SlipState::default(),
-            seen: 0,
-        }
-    }
-
-    /// Impulse and rotational impulse on the rock.
-    #[inline]
-    pub(super) fn load(&self, body: &Body) -> Twist {
-        (
-            self.n * self.normal_force + self.shear_force,
-            self.turn - self.n.cross(&self.shear_force) * body.radius,
-        )
-    }
-
     pub(super) fn impulses(&self) -> Impulses {
         Impulses(self.normal_force, self.shear_force, self.turn)
-    }
-
-    /// Without impulses.
-    pub(super) fn forget(&mut self) {
-        (self.normal_force, self.shear_force, self.turn) = (0.0, Vec3::zeros(), Vec3::zeros());
     }
 
     /// Adds to its impulses what the cone allows, and acts with that.
     pub(super) fn push_on(&mut self, step: &Impulses, ball: &mut StepBody) {
         let next = self.impulses().plus(step).within(&self.limits);
         let change = next.less(&self.impulses());
-        let change =
-            Self { normal_force: change.0, shear_force: change.1, turn: change.2, ..*self };
+        let mut step = *self;
+        (step.normal_force, step.shear_force, step.turn) = (change.0, change.1, change.2);
         (self.normal_force, self.shear_force, self.turn) = (next.0, next.1, next.2);
-        let load = change.load(&ball.body);
+        let load = step.load(&ball.body);
         ball.take(&load);
-    }
-
-    /// Impulses for velocity `v` and spin `w` without this contact's own.
-    pub(super) fn strike(&mut self, body: &Body, v: &Vec3, w: &Vec3) {
-        self.normal_force = (body.mass * (self.target - self.n.dot(v))).max(0.0);
-        if self.normal_force <= 0.0 {
-            (self.shear_force, self.turn) = (Vec3::zeros(), Vec3::zeros());
-            return;
-        }
-        let caps = self.limits.caps(self.normal_force);
-        (self.shear_force, self.turn) = rub(body, &self.frame, caps, (v, w), &mut self.mode);
     }
 
     /// Finds the impulses for a motion that holds the present ones, and acts with what they change by; how much that

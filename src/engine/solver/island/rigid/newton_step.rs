@@ -9,15 +9,16 @@
 //! the heaviest rock.
 
 use super::RigidIsland;
-use super::contacts::{BallContact, GroundContact, StepBody};
+use super::contacts::{BallContact, StepBody};
 use crate::contact::pair::{PairHistory, PairImpact};
 use crate::ground::Law;
 use crate::rock::Vec3;
-use crate::solver::body::Body;
+use crate::solver::body::{Body, Twist};
 use crate::solver::island::body::BodySlot;
 use crate::solver::island::newton_step::jump;
-use crate::solver::island::pair_contact::{PairContact, Twist};
+use crate::solver::island::pair_contact::PairContact;
 use crate::solver::law::StageContact;
+use crate::solver::rigid::GroundContact;
 
 /// Impulse by speed of a spring that stands for a rigid contact, over the largest mass (–).
 const HOLD_BY_SPEED: f64 = 1e7;
@@ -86,7 +87,7 @@ impl RigidIsland {
             member.state.contact_count = 0;
         }
         for ground_contact in &self.ground_contacts {
-            let member = &mut *members[ground_contact.ball];
+            let member = &mut *members[ground_contact.rock];
             let state = &mut member.state;
             // no more contacts than a rock keeps: what is left out is left to the sweeps
             if state.contact_count < state.contacts.len() {
@@ -107,9 +108,9 @@ impl RigidIsland {
         for ground_contact in self
             .ground_contacts
             .iter_mut()
-            .filter(|ground_contact| motions[ground_contact.ball].is_some())
+            .filter(|ground_contact| motions[ground_contact.rock].is_some())
         {
-            ground_contact.give_way(&self.balls[ground_contact.ball], stiffness);
+            ground_contact.give_way(&self.balls[ground_contact.rock], stiffness);
         }
         for ball_contact in &mut self.ball_contacts {
             if ball_contact.ends.iter().any(|&k| motions[k].is_some()) {
@@ -154,7 +155,7 @@ impl GroundContact {
             triangle: self.triangle,
             normal: law.normal(false),
             law,
-            n: self.n,
+            n: *self.n(),
             penetration: self.target,
             normal_force: self.normal_force,
             shear_force: -self.shear_force,
@@ -165,8 +166,8 @@ impl GroundContact {
 
     /// Impulses of the stiff springs at the rock's new motion, cut to the cones.
     fn give_way(&mut self, ball: &StepBody, stiffness: f64) {
-        self.normal_force = (stiffness * (self.target - self.n.dot(&ball.v))).max(0.0);
-        let slip = ball.body.slip(&self.n, &ball.v, &ball.w);
+        self.normal_force = (stiffness * (self.target - self.n().dot(&ball.v))).max(0.0);
+        let slip = ball.body.slip(self.n(), &ball.v, &ball.w);
         let wound = ball.w * (stiffness * ball.body.radius.powi(2));
         self.shear_force = -self.limits.shear(slip * stiffness, self.normal_force);
         self.turn = -self.limits.rolling(wound, self.normal_force);

@@ -10,14 +10,14 @@
 //! the rocks allows, 0.2 R.
 
 use super::RigidIsland;
-use super::contacts::{BallContact, GroundContact, StepBody};
+use super::contacts::{BallContact, StepBody};
 use crate::contact::pair::{PairHistory, between};
 use crate::rock::Vec3;
 use crate::solver::contact_state::ContactEnvironment;
 use crate::solver::island::body::BodySlot;
 use crate::solver::law::capture_m_s;
 use crate::solver::loss::Given;
-use crate::solver::rigid::{SETTLED, SWEEPS};
+use crate::solver::rigid::{GroundContact, settle, sustained_m_s};
 use crate::terrain::Terrain;
 
 /// Whether a contact with this gap (m) and normal speed (m/s) at the start of a step of length `dt` (s) is a sustained
@@ -27,12 +27,6 @@ use crate::terrain::Terrain;
 fn is_sustained((gap, speed): (f64, f64), capture: f64, dt: f64) -> bool {
     let fall = gap.max(0.0);
     speed * speed < capture * capture && fall <= dt * capture
-}
-
-/// Normal speed wanted at the end of a step of length `dt` (s) from the gap in its middle and the speed at its start: an
-/// open gap may close, and over an edge half of the turn is before the middle and half after it. A push never works.
-fn target(gap: f64, speed: f64, dt: f64) -> f64 {
-    -(gap / dt).max(speed).max(0.0)
 }
 
 impl RigidIsland {
@@ -76,14 +70,13 @@ impl RigidIsland {
                 if !is_sustained(start, capture, dt) {
                     continue;
                 }
-                let place = (touch.feature, touch.triangle);
-                let mut ground_contact = GroundContact::new(k, place, touch.normal, law);
-                ground_contact.target = target(gap, speed, dt);
+                let mut ground_contact = GroundContact::new(k, touch, law);
+                ground_contact.target = sustained_m_s(gap, speed, dt);
                 let kept = member.kept.iter().find(|kept| kept.0 == touch.feature);
                 if let Some((_, normal_force, shear_force, turn)) = kept {
                     // impulses of the last step, turned into the present tangent plane: a warm
                     // start saves most sweeps of a heap at rest
-                    let along = shear_force - ground_contact.n * ground_contact.n.dot(shear_force);
+                    let along = shear_force - touch.normal * touch.normal.dot(shear_force);
                     (
                         ground_contact.normal_force,
                         ground_contact.shear_force,
@@ -118,7 +111,7 @@ impl RigidIsland {
                 continue;
             }
             let mut ball_contact = BallContact::new((k, pair_history), [a, b], [&at[0], &at[1]]);
-            ball_contact.target = target(gap, speed, dt);
+            ball_contact.target = sustained_m_s(gap, speed, dt);
             (ball_contact.normal_force, ball_contact.shear_force) = (
                 pair_history.normal_force * dt,
                 (pair_history.shear_force - n * n.dot(&pair_history.shear_force)) * dt,
@@ -134,7 +127,7 @@ impl RigidIsland {
             ball_contact.ends.into_iter().for_each(|k| self.balls[k].has_neighbour = true);
         }
         for ground_contact in &mut self.ground_contacts {
-            if !self.balls[ground_contact.ball].has_neighbour {
+            if !self.balls[ground_contact.rock].has_neighbour {
                 ground_contact.forget();
             }
         }
@@ -142,28 +135,21 @@ impl RigidIsland {
 
     /// Settles the contacts of rocks that only the mesh touches, as those of a rock alone.
     fn settle_alone(&mut self) {
-        let of_rocks = self.ground_contacts.chunk_by_mut(|one, other| one.ball == other.ball);
+        let of_rocks = self.ground_contacts.chunk_by_mut(|one, other| one.rock == other.rock);
         for contacts in of_rocks.filter(|contacts| contacts.len() > 1) {
-            let ball = &mut self.balls[contacts[0].ball];
+            let ball = &mut self.balls[contacts[0].rock];
             if ball.has_neighbour {
                 continue;
             }
-            for _ in 0..SWEEPS {
-                self.sweeps += 1;
-                let change = contacts.iter_mut().map(|contact| contact.solve(ball));
-                let change = change.fold(0.0, f64::max);
-                let largest = contacts.iter().map(|contact| contact.normal_force);
-                if change <= SETTLED * largest.fold(0.0, f64::max) * ball.inv.0 {
-                    break;
-                }
-            }
+            let motion = (ball.v, ball.w);
+            (ball.v, ball.w) = settle(contacts, &ball.body, motion, &mut self.sweeps);
         }
     }
 
     /// Acts with the impulses of the step before.
     pub(super) fn start_warm(&mut self) {
         for ground_contact in &self.ground_contacts {
-            let ball = &mut self.balls[ground_contact.ball];
+            let ball = &mut self.balls[ground_contact.rock];
             let load = ground_contact.load(&ball.body);
             ball.take(&load);
         }
@@ -188,12 +174,15 @@ impl RigidIsland {
         for ground_contact in
             self.ground_contacts.iter().filter(|ground_contact| ground_contact.normal_force > 0.0)
         {
-            let (member, ball) = (&members[ground_contact.ball], &self.balls[ground_contact.ball]);
+            let (member, ball) = (&members[ground_contact.rock], &self.balls[ground_contact.rock]);
             let world = ContactEnvironment { terrain, body: member.body, laws: &member.laws };
             // the work of an impulse is that at the mean velocity, exactly
             let motion = mean(ball);
-            self.losses[ground_contact.ball].add(&ground_contact.loss(&world, &motion), 1.0);
-            self.taken_j -= ground_contact.normal_force * ground_contact.n.dot(&motion.0);
+            self.losses[ground_contact.rock].add(
+                &ground_contact.loss(&world.body, &motion).on(&world, ground_contact.triangle),
+                1.0,
+            );
+            self.taken_j -= ground_contact.normal_force * ground_contact.n().dot(&motion.0);
         }
         for ball_contact in
             self.ball_contacts.iter().filter(|ball_contact| ball_contact.normal_force > 0.0)
@@ -216,7 +205,7 @@ impl RigidIsland {
         for ground_contact in
             self.ground_contacts.iter().filter(|ground_contact| ground_contact.normal_force > 0.0)
         {
-            self.balls[ground_contact.ball].pushed = true;
+            self.balls[ground_contact.rock].pushed = true;
         }
         for ball in &mut self.balls {
             ball.c += mean(ball).0 * dt;

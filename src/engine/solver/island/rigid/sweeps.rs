@@ -149,7 +149,7 @@ impl RigidIsland {
         let ground_contacts = self.ground_contacts.len();
         if k < ground_contacts {
             let ground_contact = &self.ground_contacts[k];
-            let ball = &self.balls[ground_contact.ball];
+            let ball = &self.balls[ground_contact.rock];
             (ground_contact.impulses(), [ball.inv.0, Rock::SLIP_LIGHTNESS * ball.inv.0, ball.inv.1])
         } else {
             let ball_contact = &self.ball_contacts[k - ground_contacts];
@@ -162,7 +162,7 @@ impl RigidIsland {
         let ground_contacts = self.ground_contacts.len();
         if k < ground_contacts {
             let ground_contact = &mut self.ground_contacts[k];
-            let ball = &mut self.balls[ground_contact.ball];
+            let ball = &mut self.balls[ground_contact.rock];
             ground_contact.push_on(step, ball);
             ball.times += 1;
         } else {
@@ -198,7 +198,7 @@ impl RigidIsland {
     /// The contacts of every rock.
     fn lay_contacts(&mut self) {
         let ground_contacts =
-            self.ground_contacts.iter().map(|ground_contact| [ground_contact.ball; 2]);
+            self.ground_contacts.iter().map(|ground_contact| [ground_contact.rock; 2]);
         let ends: Vec<[usize; 2]> = ground_contacts
             .chain(self.ball_contacts.iter().map(|ball_contact| ball_contact.ends))
             .collect();
@@ -231,7 +231,7 @@ impl RigidIsland {
 
     fn sweep_ground_contact(&mut self, k: usize) -> f64 {
         let ground_contact = &mut self.ground_contacts[k];
-        let end = ground_contact.ball;
+        let end = ground_contact.rock;
         let ball = &mut self.balls[end];
         if ground_contact.seen == ball.times {
             return 0.0;

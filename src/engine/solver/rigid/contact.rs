@@ -1,0 +1,164 @@
+//! A contact of a rock with the mesh in the limit of stiff springs, and its impulses: of a rock alone and of one among others.
+
+use crate::contact::{ContactPoint, Feature};
+use crate::ground::{FrictionLimits, Law};
+use crate::rock::Vec3;
+use crate::solver::body::{Body, Twist};
+use crate::solver::contact_frame::ContactFrame;
+use crate::solver::friction_rolling::{Answers, Pair, SlipState};
+use crate::solver::law::ZERO;
+use crate::solver::loss::Loss;
+
+/// Sweeps over the contacts of one rock, at most.
+const SWEEPS: u32 = 100;
+/// Change of an impulse, relative to the largest, below which they have settled (–).
+const SETTLED: f64 = 1e-12;
+
+/// One contact with the mesh and its impulses.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct GroundContact {
+    /// The rock, as a place in its island; 0 where it is alone.
+    pub(crate) rock: usize,
+    pub(crate) feature: Feature,
+    pub(crate) triangle: u32,
+    frame: ContactFrame,
+    /// What friction and rolling friction bear.
+    pub(crate) limits: FrictionLimits,
+    /// Normal speed wanted after the impulse (m/s).
+    pub(crate) target: f64,
+    /// Normal impulse (N s), ≥ 0.
+    pub(crate) normal_force: f64,
+    /// Impulse along the surface on the rock (N s).
+    pub(crate) shear_force: Vec3,
+    /// Rolling impulse on the rock (N m s).
+    pub(crate) turn: Vec3,
+    /// Which of friction and rolling friction holds, as far as is known.
+    pub(crate) mode: SlipState,
+    /// Among others: the count of its rock when it was solved last.
+    pub(crate) seen: u32,
+}
+
+impl GroundContact {
+    /// None, on a level.
+    pub(crate) const NONE: Self = Self {
+        rock: 0,
+        feature: Feature::NONE,
+        triangle: 0,
+        frame: ContactFrame::LEVEL,
+        limits: FrictionLimits::NONE,
+        target: 0.0,
+        normal_force: 0.0,
+        shear_force: ZERO,
+        turn: ZERO,
+        mode: SlipState::Stick,
+        seen: 0,
+    };
+
+    /// The contact of a rock where it touches, without impulses.
+    pub(crate) fn new(rock: usize, touch: &ContactPoint, law: &Law) -> Self {
+        Self {
+            rock,
+            feature: touch.feature,
+            triangle: touch.triangle,
+            frame: ContactFrame::of(&touch.normal),
+            limits: law.limits(),
+            ..Self::NONE
+        }
+    }
+
+    /// Unit normal from the mesh to the centre.
+    #[inline]
+    pub(crate) const fn n(&self) -> &Vec3 {
+        &self.frame.n
+    }
+
+    /// Without impulses.
+    pub(crate) fn forget(&mut self) {
+        (self.normal_force, self.shear_force, self.turn) = (0.0, Vec3::zeros(), Vec3::zeros());
+    }
+
+    /// Finds the impulses for velocity `v` and spin `w` without this contact's own.
+    ///
+    /// `J = max(0, m (target − n·v))`: exact for one contact; for several sweeps repeat it.
+    pub(crate) fn strike(&mut self, body: &Body, v: &Vec3, w: &Vec3) {
+        self.normal_force = (body.mass * (self.target - self.n().dot(v))).max(0.0);
+        if self.normal_force <= 0.0 {
+            self.forget();
+            return;
+        }
+        // The stick solution: `2/7 m` is the mass of a sphere's contact point along the surface, `I ω` stops all rotation; `Pair`
+        // couples both and cuts them.
+        let pair = Pair {
+            answers: &Answers::rigid(body.radius),
+            a: self.frame.along(&(body.slip(self.n(), v, w) * body.mass_along())),
+            d: self.frame.local(&(w * body.inertia)),
+            caps: self.limits.caps(self.normal_force),
+        };
+        let (along, turn) = pair.solve(&mut self.mode);
+        (self.shear_force, self.turn) = (-self.frame.out_along(along), -self.frame.out_local(turn));
+    }
+
+    /// Impulse (N s) and rotational impulse (N m s) on the rock.
+    #[inline]
+    pub(crate) fn load(&self, body: &Body) -> Twist {
+        (
+            self.n() * self.normal_force + self.shear_force,
+            self.turn - self.n().cross(&self.shear_force) * body.radius,
+        )
+    }
+
+    /// What its impulses change of the rock's velocity and spin.
+    pub(crate) fn effect(&self, body: &Body) -> Twist {
+        let (push, turn) = self.load(body);
+        (push / body.mass, turn / body.inertia)
+    }
+
+    /// Energy that the impulses take (J), at mean velocity and spin.
+    ///
+    /// An impulse works with the mean of the velocities before and after: `J·(v₀ + v₁)/2` is the
+    /// change of kinetic energy exactly.
+    pub(crate) fn loss(&self, body: &Body, (v, w): &Twist) -> Loss {
+        Loss {
+            friction: -self.shear_force.dot(&body.slip(self.n(), v, w)),
+            damping: -self.normal_force * self.n().dot(v),
+            rolling: -self.turn.dot(w),
+            trees: 0.0,
+        }
+    }
+}
+
+/// Normal speed wanted at the end of a step of length `dt` (s) of a contact with the gap `gap` (m) and the normal speed `speed` (m/s): an
+/// open gap may close, and a push never works on the rock: over an edge, half of the turn of the normal is before the middle of the step
+/// and half after it.
+pub(crate) fn sustained_m_s(gap: f64, speed: f64, dt: f64) -> f64 {
+    -(gap / dt).max(speed).max(0.0)
+}
+
+/// Sweeps over the contacts of one rock until their impulses settle, beginning with those that they have; `v` and `w` are its motion with
+/// these, and what is returned is that afterwards (projected Gauss–Seidel; for one contact the first sweep is exact).
+pub(crate) fn settle(
+    contacts: &mut [GroundContact],
+    body: &Body,
+    (mut v, mut w): Twist,
+    sweeps: &mut u64,
+) -> Twist {
+    for _ in 0..SWEEPS {
+        *sweeps += 1;
+        let (mut change, mut scale) = (0.0f64, f64::MIN_POSITIVE);
+        for contact in &mut *contacts {
+            let (dv, dw) = contact.effect(body);
+            let (free, before) = ((v - dv, w - dw), (contact.normal_force, contact.shear_force));
+            contact.strike(body, &free.0, &free.1);
+            let (dv, dw) = contact.effect(body);
+            (v, w) = (free.0 + dv, free.1 + dw);
+            change = change
+                .max((contact.normal_force - before.0).abs())
+                .max((contact.shear_force - before.1).norm());
+            scale = scale.max(contact.normal_force);
+        }
+        if contacts.len() <= 1 || change <= SETTLED * scale {
+            break;
+        }
+    }
+    (v, w)
+}
