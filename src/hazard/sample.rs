@@ -113,6 +113,14 @@ impl Sample {
         self.weights.as_ref().map_or(self.sorted.len() as f64, |weights| worth(weights))
     }
 
+    /// The largest value, and whether it is only a bound; none of nothing. Where the truth lies above bounds, any of them may be the
+    /// largest; where it lies below, one that is not the largest decides nothing.
+    pub fn largest(&self) -> Option<(f64, bool)> {
+        let most = *self.sorted.last()?;
+        let far = self.far.as_ref().and_then(|(far, _)| far.sorted.last());
+        Some((most, far.is_some_and(|far| far.total_cmp(&most).is_ne())))
+    }
+
     /// The values in ascending order.
     pub fn values(&self) -> &[f64] {
         &self.sorted

@@ -94,9 +94,10 @@ impl<'a> DistributionPanel<'a> {
         self.bins.bars(canvas, &self.panel);
         let mut words = self.percentiles(canvas);
         if total > 0 {
-            // rocks that would have gone on: their angle is an upper bound
-            let is_bound =
-                self.quantity == ReportQuantity::ReachAngle && runout::open_rocks(self.report) > 0;
+            // the angle of a rock that would have gone on is an upper bound; below that of one at rest it decides nothing
+            let mut ended = self.report.releases.iter().filter(|release| !runout::is_open(release));
+            let is_bound = self.quantity == ReportQuantity::ReachAngle
+                && !ended.any(|release| self.quantity.of(release) >= self.largest);
             let sign = format::sign(if is_bound { Is::AtMost } else { Is::Value });
             let most = format::short(self.largest / self.unit_size);
             words.push(format!("{} {sign}{most}", said.max));

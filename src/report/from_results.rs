@@ -164,12 +164,17 @@ fn of_percentile(found: &Percentile, (rocks, open): (usize, Option<Open>)) -> Es
     if rocks < found.needs {
         return Estimate::lacking(found.needs - rocks);
     }
-    let is = match (found.censored, open) {
+    let is = bounded(found.censored, open);
+    Estimate { is, ..estimate(found.value, found.low_95, found.high_95) }
+}
+
+/// What a number is that bounds decide or not, where the truth lies on the side `open` of them.
+const fn bounded(is_bound: bool, open: Option<Open>) -> Is {
+    match (is_bound, open) {
         (true, Some(Open::Below)) => Is::AtMost,
         (true, _) => Is::AtLeast,
         (false, _) => Is::Value,
-    };
-    Estimate { is, ..estimate(found.value, found.low_95, found.high_95) }
+    }
 }
 
 /// Percentile `p` (0..1) of a sample whose true values may be open on one side; none of nothing.
@@ -301,15 +306,14 @@ fn statistics_table(
     let most_j = energies.map(|(.., sample, _)| largest(sample)).fold(0.0, f64::max);
     let rows = rows.iter().map(|(name, like, sample, open)| {
         let (unit, size) = like.unit(if like.is_energy() { most_j } else { largest(sample) });
-        let is = match (sample.bounds() > 0, open) {
-            (true, Some(Open::Below)) => Is::AtMost,
-            (true, _) => Is::AtLeast,
-            (false, _) => Is::Value,
-        };
-        let mean = sample
-            .mean()
-            .map(|mean| Estimate { is, ..estimate(mean.value, mean.low_95, mean.high_95) });
-        let most = sample.values().last().map(|&most| Estimate { is, ..Estimate::plain(most) });
+        let mean = sample.mean().map(|mean| Estimate {
+            is: bounded(sample.bounds() > 0, *open),
+            ..estimate(mean.value, mean.low_95, mean.high_95)
+        });
+        let most = sample.largest().map(|(most, is_bound)| Estimate {
+            is: bounded(is_bound, *open),
+            ..Estimate::plain(most)
+        });
         let middle =
             PERCENTS.map(|percent| percentile_of(sample, f64::from(percent) / 100.0, *open));
         let cells = [mean].into_iter().chain(middle).chain([most]);

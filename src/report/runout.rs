@@ -51,8 +51,12 @@ pub(super) fn draw(report: &Report) -> Drawing {
 
 /// Rocks whose runout is only a lower bound, and whose reach angle an upper one.
 pub(super) fn open_rocks(report: &Report) -> usize {
-    let is_open = |fall: &&ReleaseEnd| StopKind::from(&fall.stop).is_open();
-    report.releases.iter().filter(is_open).count()
+    report.releases.iter().filter(|release| is_open(release)).count()
+}
+
+/// Whether a rock would have gone on.
+pub(super) fn is_open(release: &ReleaseEnd) -> bool {
+    StopKind::from(&release.stop).is_open()
 }
 
 /// Says beside the end of a curve why it ends: beyond, rocks that left the terrain decide.

@@ -222,6 +222,20 @@ fn rocks_that_left_the_terrain_leave_the_far_end_open() {
     assert!(curve[first].value <= 81.0, "{}", curve[first].value);
 }
 
+/// A bound is the largest value only where the truth may be larger, or where it is larger than every value that is known.
+#[test]
+fn a_bound_below_the_largest_value_decides_nothing() {
+    let largest = |bounds: [bool; 3], open| {
+        let values = [30.0, 35.0, 40.0].into_iter().zip(bounds).map(|(x, bound)| (x, 1.0, bound));
+        Sample::censored(values, open).largest().unwrap()
+    };
+    assert_eq!(largest([true, true, false], Open::Below), (40.0, false));
+    assert_eq!(largest([false, false, true], Open::Below), (40.0, true));
+    assert_eq!(largest([true, false, false], Open::Above), (40.0, true));
+    assert_eq!(largest([false; 3], Open::Above), (40.0, false));
+    assert!(Sample::of([]).largest().is_none());
+}
+
 /// One rock of a hundred left at 10 m and may have come anywhere: between the percentile of what was seen and that with
 /// it at the far end lies all that it can do, P90 from 90.1 to 91.1.
 #[test]
