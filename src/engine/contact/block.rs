@@ -8,7 +8,7 @@
 //! | corner | face, edge, vertex | that of a ball |
 //! | edge | edge | feet inside both; the normal outside of every triangle at the mesh's edge, its opposite between the block's two faces |
 //! | edge | vertex | foot inside the block's edge; the vertex behind none of its own edges; the same of the block |
-//! | face | vertex | foot inside the face; the vertex behind none of its own edges |
+//! | face | vertex | foot inside the face; the vertex behind none of its own edges, and none of them goes straight on in another |
 //!
 //! Only edges and vertices that stand out of the mesh take part, so most pairs need no test at all.
 
@@ -236,6 +236,10 @@ impl Placed<'_> {
                     found,
                 );
             }
+        }
+        // a face that lies on a straight edge is held where its own edges cross that edge, however many vertices divide it
+        if peak.is_straight(DIRECTION_SLACK) {
+            return;
         }
         let before = self.corners.len() + self.block.core.ridges.len();
         for (k, face) in self.block.core.faces.iter().enumerate() {

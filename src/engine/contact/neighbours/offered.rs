@@ -34,6 +34,16 @@ pub(crate) struct Peak<'a> {
     pub(crate) at_border: bool,
 }
 
+impl Peak<'_> {
+    /// Whether an edge goes straight on through the vertex, to a sine of `slack` (–): such a vertex only divides an edge, and stands out no further.
+    pub(crate) fn is_straight(&self, slack: f64) -> bool {
+        let goes_on = |one: &Vec3| {
+            self.edges.iter().any(|other| (one + other).norm_squared() <= slack * slack)
+        };
+        self.edges.iter().any(goes_on)
+    }
+}
+
 impl Neighbours {
     /// How far (m) a foot that moves with `u` (m/s) stays on a face; 0 where it is none of those collected.
     pub(crate) fn way_over(&self, face: u32, (foot, u): (&Vec3, &Vec3)) -> f64 {
