@@ -11,12 +11,14 @@
 //!             c₁ = c₀ + Δt (v₀ + v₁)/2
 //! ```
 //!
+//! What the rock comes to faster than it is captured bears nothing before it is met: the step ends there, and an impact follows.
 //! Geometry is that of the middle of the step: second order where nothing switches, first order
 //! over lift-off and sliding into rolling. What is lost against springs: the time of an impact, and
 //! the penetration at rest, `m g/p_N`.
 
 mod contact;
 mod plane_step;
+mod sustained;
 
 use super::contact_state::{ContactEnvironment, ContactState};
 use super::impact::{FrozenContact, throw};
@@ -36,30 +38,6 @@ pub(crate) const IMPACT: f64 = 2e-5;
 /// Share of the slowest approach to a facet from which on a turned rock comes to it (–): turning rounds the approach, and once
 /// the facet is struck there is none.
 const ONTO_FACET: f64 = 0.5;
-/// The contacts of the last look over one step: on the stack, as many as a rock keeps.
-struct StepContacts {
-    list: [GroundContact; MOST],
-    len: usize,
-}
-
-impl StepContacts {
-    /// Those of the last look, at the place `middle`, over a step of `dt` (s).
-    fn of(world: &ContactEnvironment, state: &ContactState, middle: &Vec3, dt: f64) -> Self {
-        let mut contacts = Self { list: [GroundContact::NONE; MOST], len: state.touches.len() };
-        for (contact, touch) in contacts.list.iter_mut().zip(state.touches.iter()) {
-            *contact = GroundContact::new(0, touch, world.law(touch.triangle));
-            let n = &touch.normal;
-            let gap = touch.distance_m - world.body.radius - n.dot(&(middle - state.c));
-            contact.target = sustained_m_s(gap, n.dot(&state.v), dt);
-        }
-        contacts
-    }
-
-    /// Those with their impulses.
-    fn all(&mut self) -> &mut [GroundContact] {
-        &mut self.list[..self.len]
-    }
-}
 
 /// One impact or one step of at most `h_max` (s), which on one plane may be longer than `longest` (s).
 ///
@@ -92,7 +70,7 @@ pub fn advance(
         let speed = state.v.norm().max(f64::MIN_POSITIVE);
         let usual = longest.min(TRAVEL * world.body.radius / speed);
         if !state.slide_on_plane(world, (usual, longest), h_max, &mut done) {
-            step(world, state, usual.min(h_max), &mut done);
+            sustained::step(world, state, usual.min(h_max), &mut done);
         }
     }
     let finite = state.c.iter().chain(state.v.iter()).chain(state.w.iter()).all(|x| x.is_finite());
@@ -163,72 +141,6 @@ fn impact(world: &ContactEnvironment, state: &mut ContactState, done: &mut Advan
     done.steps = u64::from(thrown.effort.steps).max(1);
     done.rejected = u64::from(thrown.effort.rejected);
     remember(world, state, |_| true);
-}
-
-/// One step of sustained contact.
-///
-/// A step may slide over an edge: half of the turn of the normal lies before its middle and half
-/// after it.
-fn step(world: &ContactEnvironment, state: &mut ContactState, longest: f64, done: &mut Advance) {
-    let body = &world.body;
-    let (c, v, w) = (state.c, state.v, state.w);
-    let dt = closing(world, state, longest);
-    // contacts are those of the middle of the step, looked for there
-    let middle = c + v * (0.5 * dt);
-    state.look_ahead(world, &middle);
-    let mut contacts = StepContacts::of(world, state, &middle, dt);
-    let contacts = contacts.all();
-    let free = (v + body.gravity * dt, w);
-    (state.v, state.w) = settle(contacts, body, free, &mut state.sweeps);
-    let mean = (0.5 * (v + state.v), 0.5 * (w + state.w));
-    for contact in contacts.iter() {
-        done.loss.add(&contact.loss(body, &mean).on(world, contact.triangle), 1.0);
-    }
-    // mean of both velocities: the parabola under weight alone is exact
-    state.c = c + (v + state.v) * (0.5 * dt);
-    done.dt = dt;
-    // without any impulse the rock is free, and the next leap takes over
-    let pushed = contacts.iter().any(|contact| contact.normal_force > 0.0);
-    push_out(world, state);
-    remember(world, state, |_| pushed);
-}
-
-/// Cuts a step where a gap to a touch of the last look closes faster than the capture speed: the impact comes at the end
-/// of the step.
-fn closing(world: &ContactEnvironment, state: &ContactState, dt: f64) -> f64 {
-    let r = world.body.radius;
-    state.touches.iter().filter(|touch| is_fast(world, touch, &state.v)).fold(dt, |dt, touch| {
-        let gap = touch.distance_m - r;
-        if gap > TOUCH * r { dt.min(gap / -touch.normal.dot(&state.v)) } else { dt }
-    })
-}
-
-/// Moves a rock that got into the mesh out along the normals; the height it gains is paid by its motion.
-///
-/// The depth is the error of the step. Lifting the rock out for nothing would create energy at
-/// every step of a slide over rough ground.
-fn push_out(world: &ContactEnvironment, state: &mut ContactState) {
-    let (r, before) = (world.body.radius, state.c);
-    for _ in 0..4 {
-        let c = state.c;
-        state.look_ahead_again(world, &c);
-        // each normal adds what the ones before it have not moved out already
-        let out = state.touches.iter().fold(Vec3::zeros(), |sum, touch| {
-            let missing = r - touch.distance_m - sum.dot(&touch.normal);
-            sum + touch.normal * missing.max(0.0)
-        });
-        if out.norm() <= TOUCH * r {
-            break;
-        }
-        state.c += out;
-    }
-    let lifted = -world.body.mass * world.body.gravity.dot(&(state.c - before));
-    let motion = state.motion_j(&world.body);
-    if lifted > 0.0 && motion > 0.0 {
-        let kept = ((motion - lifted) / motion).max(0.0).sqrt();
-        state.v *= kept;
-        state.w *= kept;
-    }
 }
 
 /// Keeps a memory for every touch that still holds the rock, so that impacts are counted and rest is seen.

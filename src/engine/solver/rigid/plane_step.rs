@@ -4,7 +4,9 @@
 //! or the rock comes to rest. So a step is taken whole and in two halves: where both agree it is as long as the plane is clear, and what is
 //! kept are the halves.
 
-use super::{GroundContact, HELD, push_out, remember, sustained_m_s};
+use super::contact::{GroundContact, sustained_m_s};
+use super::sustained::push_out;
+use super::{HELD, remember};
 use crate::contact::ContactPoint;
 use crate::rock::Vec3;
 use crate::solver::contact_state::{ContactEnvironment, ContactState};

@@ -1,0 +1,144 @@
+//! One step of sustained contact: what holds the rock bears it, and what it comes to within the step ends the step.
+
+use super::contact::{GroundContact, settle, sustained_m_s};
+use super::{is_fast, remember};
+use crate::contact::{ContactPoint, MOST, TOUCH};
+use crate::rock::Vec3;
+use crate::solver::body::Twist;
+use crate::solver::contact_state::{ContactEnvironment, ContactState};
+use crate::solver::step_control::Advance;
+
+/// How often a step is cut to where the rock comes to the next surface, at most: each cut knows the motion on the way better.
+const CUTS: u32 = 6;
+
+/// A step as it is tried.
+struct HeldStep {
+    /// Its length (s).
+    dt: f64,
+    /// What holds the rock in its middle, with the impulses: on the stack, as many as a rock keeps.
+    contacts: [GroundContact; MOST],
+    len: usize,
+    /// Motion at its end.
+    after: Twist,
+}
+
+/// One step of at most `longest` (s).
+///
+/// A step may slide over an edge: half of the turn of the normal lies before its middle and half
+/// after it.
+pub(super) fn step(
+    world: &ContactEnvironment,
+    state: &mut ContactState,
+    longest: f64,
+    done: &mut Advance,
+) {
+    let mut tried = hold(world, state, closing(world, state, longest));
+    for _ in 0..CUTS {
+        let Some(met_s) = meets_s(world, state, &tried) else { break };
+        tried = hold(world, state, met_s);
+    }
+    let (v, w) = (state.v, state.w);
+    (state.v, state.w) = tried.after;
+    let mean = (0.5 * (v + state.v), 0.5 * (w + state.w));
+    for contact in tried.contacts() {
+        done.loss.add(&contact.loss(&world.body, &mean).on(world, contact.triangle), 1.0);
+    }
+    // mean of both velocities: the parabola under weight alone is exact
+    state.c += mean.0 * tried.dt;
+    done.dt = tried.dt;
+    // without any impulse the rock is free, and the next leap takes over
+    let pushed = tried.contacts().iter().any(|contact| contact.normal_force > 0.0);
+    push_out(world, state);
+    remember(world, state, |_| pushed);
+}
+
+/// A step of `dt` (s) with the contacts of its middle, looked for there. What the rock comes to faster than it is captured does nothing before it
+/// is met.
+fn hold(world: &ContactEnvironment, state: &mut ContactState, dt: f64) -> HeldStep {
+    let half = state.v * (0.5 * dt);
+    let middle = state.c + half;
+    state.look_ahead(world, &middle);
+    let free = (state.v + world.body.gravity * dt, state.w);
+    let mut step = HeldStep { dt, contacts: [GroundContact::NONE; MOST], len: 0, after: free };
+    for touch in state.touches.iter() {
+        // what is touched when the step begins is not come to so fast: that were an impact
+        if is_fast(world, touch, &state.v) {
+            continue;
+        }
+        let gap = gap_at_start(world, touch, &half);
+        let mut contact = GroundContact::new(0, touch, world.law(touch.triangle));
+        contact.target = sustained_m_s(gap, touch.normal.dot(&state.v), dt);
+        step.contacts[step.len] = contact;
+        step.len += 1;
+    }
+    let contacts = &mut step.contacts[..step.len];
+    step.after = settle(contacts, &world.body, free, &mut state.sweeps);
+    step
+}
+
+impl HeldStep {
+    fn contacts(&self) -> &[GroundContact] {
+        &self.contacts[..self.len]
+    }
+}
+
+/// How far a touch of the middle of a step was at its start (m): the rock has moved by `half` since.
+fn gap_at_start(world: &ContactEnvironment, touch: &ContactPoint, half: &Vec3) -> f64 {
+    touch.distance_m - world.body.radius - touch.normal.dot(half)
+}
+
+/// Cuts a step where a gap to a touch of the last look, that at its start, closes faster than the capture speed.
+fn closing(world: &ContactEnvironment, state: &ContactState, dt: f64) -> f64 {
+    let ahead = state.touches.iter().filter(|touch| is_fast(world, touch, &state.v));
+    ahead.fold(dt, |dt, touch| {
+        let gap = touch.distance_m - world.body.radius;
+        if gap > TOUCH * world.body.radius { dt.min(gap / -touch.normal.dot(&state.v)) } else { dt }
+    })
+}
+
+/// When the rock comes to the first of what is ahead (s), if that is within the step, with the acceleration of the step. Beside an edge or a
+/// corner, whose normal turns on the way, this is a guess; where it tells nothing it is half of the step.
+fn meets_s(world: &ContactEnvironment, state: &ContactState, tried: &HeldStep) -> Option<f64> {
+    let (half, least) = (state.v * (0.5 * tried.dt), TOUCH * world.body.radius);
+    let ahead = state.touches.iter().filter(|touch| is_fast(world, touch, &state.v));
+    let met_s = ahead.filter_map(|touch| {
+        let gap = gap_at_start(world, touch, &half);
+        let [speed, end] = [state.v, tried.after.0].map(|v| -touch.normal.dot(&v));
+        if 0.5 * (speed + end) * tried.dt <= gap + least {
+            return None;
+        }
+        // `speed² + 2 a gap` with the mean acceleration `a`: negative where it turns back before
+        let met2 = speed * speed + 2.0 * gap * (end - speed) / tried.dt;
+        let met_s = 2.0 * gap / (speed + met2.max(0.0).sqrt());
+        (met2 >= 0.0).then(|| if gap > least { met_s } else { 0.5 * tried.dt })
+    });
+    met_s.reduce(f64::min)
+}
+
+/// Moves a rock that got into the mesh out along the normals; the height it gains is paid by its motion.
+///
+/// The depth is the error of the step. Lifting the rock out for nothing would create energy at
+/// every step of a slide over rough ground.
+pub(super) fn push_out(world: &ContactEnvironment, state: &mut ContactState) {
+    let (r, before) = (world.body.radius, state.c);
+    for _ in 0..4 {
+        let c = state.c;
+        state.look_ahead_again(world, &c);
+        // each normal adds what the ones before it have not moved out already
+        let out = state.touches.iter().fold(Vec3::zeros(), |sum, touch| {
+            let missing = r - touch.distance_m - sum.dot(&touch.normal);
+            sum + touch.normal * missing.max(0.0)
+        });
+        if out.norm() <= TOUCH * r {
+            break;
+        }
+        state.c += out;
+    }
+    let lifted = -world.body.mass * world.body.gravity.dot(&(state.c - before));
+    let motion = state.motion_j(&world.body);
+    if lifted > 0.0 && motion > 0.0 {
+        let kept = ((motion - lifted) / motion).max(0.0).sqrt();
+        state.v *= kept;
+        state.w *= kept;
+    }
+}
