@@ -77,7 +77,7 @@ impl StudyQuantity {
             Of::Rock(quantity) => quantity.of(row),
             Of::HeightAt(line) => at(line, |crossing, _| crossing.height_m),
             Of::EnergyAt(line) => at(line, |crossing, rock| {
-                crossing.motion.translational_j(rock) + crossing.motion.rotational_j(rock)
+                crossing.motion.translational_j(rock) + crossing.rotational_j
             }),
         }
     }
