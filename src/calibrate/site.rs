@@ -69,6 +69,7 @@ impl CalibrationSite {
         (releases, parts): (usize, usize),
         score: CalibrationScore,
     ) -> Result<Self> {
+        scene.refuse_world("`calibrate`")?;
         let ends = scene.calibrate.as_ref().map(CalibrateTable::measured);
         let (measured, blocks, part) = match &ends {
             Some(ends) => {

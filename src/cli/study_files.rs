@@ -71,15 +71,10 @@ pub(crate) fn conservation(
     done: impl Fn(&str),
 ) -> Result<(String, bool)> {
     let mut asked = Scene::read(scene)?;
+    asked.refuse_world("`study stability`")?;
     asked.release.count = releases.unwrap_or(asked.release.count);
     let (terrain, _) = asked.read_terrain()?;
     let plan = Plan::compile(&asked, terrain)?;
-    if plan.rock_against_rock.is_kept() {
-        return Err(Error::Request(format!(
-            "{}: [release] together = true: conservation is studied rock by rock; leave together out",
-            scene.display()
-        )));
-    }
     let count = plan.count;
     let ensemble = Ensemble::new(threads)?;
     let tenths = Cell::new(0);
@@ -101,6 +96,7 @@ pub(crate) fn conservation(
 /// Studies a scene and says what was found in a few sentences.
 pub(crate) fn scene_errors(options: &StudyOptions, done: impl Fn(String)) -> Result<String> {
     let mut asked = Scene::read(&options.scene)?;
+    asked.refuse_world("`study error`")?;
     asked.release.count = options.releases.unwrap_or(asked.release.count);
     let (terrain, _) = asked.read_terrain()?;
     let plan = Plan::compile(&asked, terrain)?;

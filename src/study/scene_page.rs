@@ -69,7 +69,7 @@ pub fn sentence(study: &SceneStudy, statistic: &StudyStatistic, wanted: Option<f
     else {
         if statistic.open > 0 && (statistic.own.censored || study.releases >= statistic.own.needs) {
             return format!(
-                "{head}: only a bound. {} of {} rocks left the terrain, ran out of time or failed, and no number of releases makes it narrower; give terrain that reaches farther.",
+                "{head}: only a bound. {} of {} rocks left the terrain, ran out of time or failed, and no number of releases makes it narrower; give terrain that reaches farther, or a longer [solver] longest_s.",
                 statistic.open, study.releases
             );
         }

@@ -172,3 +172,82 @@ fn errors_of_a_scene_are_told_apart() {
     let faults = boxes::faults(&drawn, "error.svg");
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
+
+/// Energies at a line are those of the rocks that cross it in a run, blocks with their own inertia: each percentile of the table is the
+/// value of one of them. With that of a sphere it was that of none.
+#[test]
+fn energies_of_blocks_at_a_line_are_those_of_the_run() {
+    let dir = tempfile::tempdir().unwrap();
+    let terrain = fs::canonicalize("terrain").unwrap();
+    let scene = fs::read_to_string("examples/blocks.toml").unwrap()
+        + "\n[[lines]]\nname = \"here\"\npoints_m = [[0.0, 12.0], [40.0, 14.0]]\n";
+    let file = dir.path().join("blocks.toml");
+    fs::write(&file, scene.replace("../terrain", terrain.to_str().unwrap())).unwrap();
+    let (asked, out) = (file.to_str().unwrap(), dir.path().join("out"));
+    for command in
+        [&["run", asked, "--releases", "40"][..], &["study", "error", asked, "--releases", "40"]]
+    {
+        let (code, said, _) = rockfall(command, &out.join(command[0]));
+        assert_eq!(code, Some(0), "{said}");
+    }
+    let table = |file: &str| csv::Reader::from_path(out.join(file)).unwrap();
+    let number = |row: &csv::StringRecord, k: usize| row[k].parse::<f64>().unwrap();
+    let mut crossings = table("run/crossings.csv");
+    let energies: Vec<f64> = crossings
+        .records()
+        .map(Result::unwrap)
+        .map(|row| number(&row, 6) + number(&row, 7))
+        .collect();
+    let mut studied = table("study/error.csv");
+    // under the scene's own setting
+    let values: Vec<f64> = studied
+        .records()
+        .map(Result::unwrap)
+        .filter(|row| &row[0] == "energy_at_line_1" && &row[16] == "0.3")
+        .map(|row| number(&row, 11))
+        .collect();
+    assert!(energies.len() > 20 && !values.is_empty());
+    for value in values {
+        let nearest =
+            energies.iter().map(|energy| (energy / value - 1.0).abs()).fold(1.0, f64::min);
+        assert!(nearest < 1e-12, "{value} is nobody's energy: {nearest:e}");
+    }
+}
+
+/// What follows every rock alone refuses a world: its rocks would fall through each other.
+#[test]
+fn a_world_is_not_followed_rock_by_rock() {
+    let dir = tempfile::tempdir().unwrap();
+    let terrain = fs::canonicalize("terrain").unwrap();
+    let scene = fs::read_to_string("examples/quick.toml").unwrap();
+    let world = scene.replace("../terrain", terrain.to_str().unwrap()).replace(
+        "[release]",
+        "[rocks.contact]\nnormal_stiffness_n_m = 1e8\nshear_stiffness_n_m = 0.25e8\nfriction_angle_deg = 30.0\nrestitution = 0.4\n\
+         tensile_strength_pa = 0.0\ncohesion_pa = 0.0\n\n[release]\ntogether = true",
+    ) + "\n[calibrate]\ndeposits = \"ends.csv\"\n[[calibrate.vary]]\nground = \"rock\"\nkey = \"friction_angle_deg\"\nfrom = 20.0\nto = 40.0\nbefore = 30.0\n";
+    let file = dir.path().join("world.toml");
+    fs::write(&file, world).unwrap();
+    fs::write(
+        dir.path().join("ends.csv"),
+        "release_x_m,release_y_m,x_m,y_m\n5.0,4.0,6.0,30.0\n5.0,4.0,7.0,31.0\n",
+    )
+    .unwrap();
+    let asked = file.to_str().unwrap();
+    for command in
+        [&["study", "error", asked][..], &["study", "stability", asked], &["calibrate", asked]]
+    {
+        let done = Command::new(env!("CARGO_BIN_EXE_rockfall"))
+            .args(command)
+            .args(["--releases", "8", "--out"])
+            .arg(dir.path().join("out"))
+            .output()
+            .unwrap();
+        let said = String::from_utf8_lossy(&done.stderr);
+        assert_eq!(done.status.code(), Some(2), "{command:?}: {said}");
+        assert!(
+            said.contains("world.toml: [release] together: found true; leave it out"),
+            "{said}"
+        );
+        assert!(!dir.path().join("out").exists(), "{command:?} left something behind");
+    }
+}
