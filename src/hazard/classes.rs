@@ -33,14 +33,6 @@ pub(super) fn lower_end_of(class: u16) -> f64 {
     if class == 0 { 0.0 } else { SMALLEST * math::pow(RATIO, f64::from(class) - 1.0) }
 }
 
-/// How far a value lies up its class (–), 0..1: 0 at its lower, 1 at its upper end.
-pub(super) fn place_in_class(value: f64) -> f64 {
-    match class_of(value) {
-        0 => (value / SMALLEST).clamp(0.0, 1.0),
-        class => (math::ln(value / lower_end_of(class)) / math::ln(RATIO)).clamp(0.0, 1.0),
-    }
-}
-
 impl Counts {
     /// Adds the value of a rock of a stratum.
     pub(super) fn add(&mut self, value: f64, stratum: u16) {

@@ -4,11 +4,13 @@
 //! [classes](super::classes) of equal ratio. Counts and largest values are the same in whatever order rocks arrive, so a
 //! resumed run gives the same maps.
 
-use super::classes::Counts;
+mod cell;
+
 use super::rate::proportion;
 use super::row::StopKind;
 use crate::frequency::Weights;
 use crate::simulation::CellPassage;
+use cell::MapCell;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -43,101 +45,6 @@ impl MapFrame {
     /// Number of cells.
     pub fn cells(&self) -> usize {
         self.columns as usize * self.rows as usize
-    }
-}
-
-/// What is known of one cell.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-#[serde(from = "PackedCell", into = "PackedCell")]
-struct MapCell {
-    passages: u32,
-    deposits: u32,
-    largest_j: f64,
-    largest_m: f64,
-    totals_j: Counts,
-    heights_m: Counts,
-    /// Rocks with a total energy of at least each of [`INTENSITY_J`].
-    above: [StratumCounts; 2],
-}
-
-/// A cell on the disk: in the order of its fields, without their names, which would be most of it.
-type PackedCell = (u32, u32, f64, f64, Counts, Counts, [StratumCounts; 2]);
-
-impl From<PackedCell> for MapCell {
-    fn from(packed: PackedCell) -> Self {
-        let (passages, deposits, largest_j, largest_m, totals_j, heights_m, above) = packed;
-        Self { passages, deposits, largest_j, largest_m, totals_j, heights_m, above }
-    }
-}
-
-impl From<MapCell> for PackedCell {
-    fn from(cell: MapCell) -> Self {
-        let MapCell { passages, deposits, largest_j, largest_m, totals_j, heights_m, above } = cell;
-        (passages, deposits, largest_j, largest_m, totals_j, heights_m, above)
-    }
-}
-
-impl MapCell {
-    fn join(&mut self, other: &Self) {
-        self.passages += other.passages;
-        self.deposits += other.deposits;
-        self.largest_j = self.largest_j.max(other.largest_j);
-        self.largest_m = self.largest_m.max(other.largest_m);
-        self.totals_j.join(&other.totals_j);
-        self.heights_m.join(&other.heights_m);
-        for (rocks, others) in self.above.iter_mut().zip(&other.above) {
-            for &(stratum, count) in &others.0 {
-                rocks.add(stratum, count);
-            }
-        }
-    }
-
-    /// Swiss class of the 95th percentile of energy, counted and not read from classes of values: it reaches a limit when
-    /// less than 95 % of all weight stays below. Of `n` rocks of equal weight at least `n − ⌈0.95 n⌉ + 1` must reach it
-    /// then. The largest would grow with the number of releases.
-    fn intensity(&self, weights: &Weights) -> f64 {
-        let reaches = |above: &&StratumCounts| {
-            if weights.are_equal() {
-                let rank = (0.95 * f64::from(self.passages)).ceil().max(1.0);
-                let needed = (f64::from(self.passages) - rank + 1.0).max(1.0);
-                return f64::from(above.rocks()) >= needed;
-            }
-            let strata = self.totals_j.entries().iter();
-            let all = strata.map(|&(_, s, n)| weights.of_stratum(usize::from(s)) * f64::from(n));
-            let all: f64 = all.sum();
-            all - above.weight(weights) < 0.95 * all
-        };
-        1.0 + self.above.iter().filter(reaches).count() as f64
-    }
-}
-
-/// Rocks of each stratum, by rising stratum.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-struct StratumCounts(Vec<(u16, u32)>);
-
-impl StratumCounts {
-    fn add(&mut self, stratum: u16, count: u32) {
-        match self.0.binary_search_by_key(&stratum, |(stratum, _)| *stratum) {
-            Ok(at) => self.0[at].1 += count,
-            Err(at) => self.0.insert(at, (stratum, count)),
-        }
-    }
-
-    fn rocks(&self) -> u32 {
-        self.0.iter().map(|(_, count)| count).sum()
-    }
-
-    fn weight(&self, weights: &Weights) -> f64 {
-        let each = self.0.iter();
-        each.map(|&(s, n)| weights.of_stratum(usize::from(s)) * f64::from(n)).sum()
-    }
-
-    /// What they stand for, over what all releases stand for.
-    fn share(&self, weights: &Weights) -> f64 {
-        if weights.are_equal() {
-            return f64::from(self.rocks()) / weights.all_rocks().max(1) as f64;
-        }
-        proportion(weights, self.0.iter().map(|&(stratum, count)| (stratum, count as usize))).share
     }
 }
 
@@ -246,6 +153,8 @@ impl Layer {
 pub struct Maps {
     /// Where the cells lie.
     pub frame: MapFrame,
+    /// Energies (J) above which rocks are counted: those of [`INTENSITY_J`], then what else is asked for.
+    above_j: Vec<f64>,
     cells: BTreeMap<u32, MapCell>,
 }
 
@@ -254,9 +163,20 @@ pub struct Maps {
 pub struct MapState(Vec<(u32, MapCell)>);
 
 impl Maps {
-    /// Goes on from what earlier rocks left.
-    pub fn new(frame: MapFrame, state: MapState) -> Self {
-        Self { frame, cells: state.0.into_iter().collect() }
+    /// Goes on from what earlier rocks left; `energies_j` (J) are those whose frequency is asked for.
+    pub fn new(frame: MapFrame, energies_j: &[f64], state: MapState) -> Self {
+        let mut above_j = INTENSITY_J.to_vec();
+        above_j.extend(energies_j.iter().filter(|joule| !INTENSITY_J.contains(joule)));
+        Self { frame, above_j, cells: state.0.into_iter().collect() }
+    }
+
+    /// Number of an energy (J) above which rocks are counted; none of one that was not asked for.
+    pub(super) fn number_of(&self, joule: f64) -> Option<usize> {
+        self.above_j.iter().position(|one| one.total_cmp(&joule).is_eq())
+    }
+
+    fn known(&mut self, number: u32) -> &mut MapCell {
+        self.cells.entry(number).or_insert_with(|| MapCell::new(self.above_j.len()))
     }
 
     /// Cells that rocks have passed so far.
@@ -272,7 +192,7 @@ impl Maps {
     /// Adds what other rocks left.
     pub fn join(&mut self, other: MapState) {
         for (number, cell) in other.0 {
-            self.cells.entry(number).or_default().join(&cell);
+            self.known(number).join(&cell);
         }
     }
 
@@ -284,27 +204,29 @@ impl Maps {
         (stop, end_m): (StopKind, [f64; 3]),
     ) {
         for passage in passages {
-            let cell = self.cells.entry(passage.cell).or_default();
+            let energies = self.above_j.len();
+            let new = || MapCell::new(energies);
+            let cell = self.cells.entry(passage.cell).or_insert_with(new);
             cell.passages += 1;
             cell.largest_j = cell.largest_j.max(passage.total_j);
             cell.largest_m = cell.largest_m.max(passage.height_m);
             cell.totals_j.add(passage.total_j, stratum);
             cell.heights_m.add(passage.height_m, stratum);
-            for (rocks, limit) in cell.above.iter_mut().zip(INTENSITY_J) {
-                if passage.total_j >= limit {
+            for (rocks, limit) in cell.above.iter_mut().zip(&self.above_j) {
+                if passage.total_j >= *limit {
                     rocks.add(stratum, 1);
                 }
             }
         }
         if let (StopKind::AtRest, Some(cell)) = (stop, self.frame.cell(end_m)) {
-            self.cells.entry(cell).or_default().deposits += 1;
+            self.known(cell).deposits += 1;
         }
     }
 
-    /// Counts of total energy of the cells that rocks pass, rising.
-    pub(super) fn energies(&self) -> impl Iterator<Item = (u32, &Counts)> + '_ {
+    /// The cells that rocks pass, rising by number.
+    pub(super) fn passed(&self) -> impl Iterator<Item = (u32, &MapCell)> + '_ {
         let came = self.cells.iter().filter(|(_, cell)| cell.passages > 0);
-        came.map(|(number, cell)| (*number, &cell.totals_j))
+        came.map(|(number, cell)| (*number, cell))
     }
 
     /// Values of one layer where rocks came, with the numbers of their cells, rising.
@@ -336,7 +258,7 @@ mod tests {
     fn a_cell_counts_each_rock_once() {
         let frame =
             MapFrame { west_m: 100.0, south_m: 50.0, cell_m: 2.0, columns: 3, rows: 2, epsg: None };
-        let mut maps = Maps::new(frame, MapState::default());
+        let mut maps = Maps::new(frame, &[], MapState::default());
         for (total_j, height_m) in [(29.9e3, 0.5), (30e3, 0.0), (299e3, 2.0)] {
             let passages = [CellPassage { cell: 4, total_j, height_m }];
             maps.add(0, &passages, (StopKind::AtRest, [103.0, 53.0 - height_m, 7.0]));
@@ -362,7 +284,7 @@ mod tests {
         let frame =
             MapFrame { west_m: 0.0, south_m: 0.0, cell_m: 1.0, columns: 1, rows: 1, epsg: None };
         for (wild, class) in [(0, 1.0), (1, 1.0), (5, 1.0), (6, 3.0)] {
-            let mut maps = Maps::new(frame, MapState::default());
+            let mut maps = Maps::new(frame, &[], MapState::default());
             for k in 0..100 {
                 let total_j = if k < wild { 1e6 } else { 1e3 };
                 let passage = CellPassage { cell: 0, total_j, height_m: 0.0 };

@@ -78,12 +78,6 @@ impl Sums {
         Self { rocks, y, y2: y, score: 0.0 }
     }
 
-    /// A share of so many rocks: which of them is not known.
-    pub(super) fn part(rocks: u32, share: f64) -> Self {
-        let y = share * f64::from(rocks);
-        Self { rocks, y, y2: y, score: 0.0 }
-    }
-
     /// The same, of rocks whose frequency changes so with the exponent on average.
     pub(super) fn scoring(self, mean: f64) -> Self {
         Self { score: self.y * mean, ..self }

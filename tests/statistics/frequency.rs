@@ -48,7 +48,7 @@ fn maps_carry_the_derivatives_of_the_closed_case() {
     let frequency = asked.frequency.clone().unwrap();
     let frame =
         MapFrame { west_m: 0.0, south_m: 0.0, cell_m: 1.0, columns: 1, rows: 1, epsg: None };
-    let mut maps = Maps::new(frame, MapState::default());
+    let mut maps = Maps::new(frame, frequency.energies_j(), MapState::default());
     for row in crossings(&asked, 8, releases) {
         let passage = CellPassage { cell: 0, total_j: row.total_j(), height_m: 0.0 };
         let stratum = u16::try_from(frequency.stratum_of(row.index)).unwrap();
@@ -71,7 +71,7 @@ fn maps_carry_the_derivatives_of_the_closed_case() {
     // without power law nothing changes with an exponent
     let law = FrequencyLaw::Events { per_year: 0.1 };
     let plain = self::asked(vec![RockSource { name: "wall".to_owned(), law }]);
-    let maps = Maps::new(frame, MapState::default());
+    let maps = Maps::new(frame, frequency.energies_j(), MapState::default());
     assert!(
         year_maps(&maps, &plain, &Weights::equal(releases))
             .iter()

@@ -164,7 +164,7 @@ fn a_cell_that_few_rocks_cross_is_covered() {
     let truths = [("frequency_per_year", rate), ("energy_T2000_j", 540e3 * volume)];
     let mut inside = [0; 2];
     for seed in 0..RUNS {
-        let mut maps = Maps::new(frame, MapState::default());
+        let mut maps = Maps::new(frame, &[], MapState::default());
         let mut random = stream(seed, Purpose::Size, 0);
         for index in 0..rocks {
             let volume = frequency.stratum(index).quantile_m3(unit(&mut random)).unwrap();

@@ -1,6 +1,5 @@
 //! Passages a year cell by cell.
 
-use super::super::classes::{Counts, class_of, place_in_class};
 use super::super::maps::Maps;
 use super::super::rate::{Limits, Running, Sums};
 use super::curve::{Ceilings, curve, return_energy};
@@ -26,17 +25,18 @@ pub struct YearMap {
 /// with the ends of its 95 % interval and with its derivatives by rate and exponent, and levels of hazard; none without
 /// sources. A frequency is its own derivative by the logarithm of the rates; without power law there is none by the exponent.
 ///
-/// Above an energy inside a class of counts (ratio 1.05) rocks are taken as even in the logarithm over that class; of the
-/// sizes in a stratum (a factor of 2.2 in volume) the derivative by the exponent takes the mean.
+/// Of the sizes in a stratum (a factor of 2.2 in volume) the derivative by the exponent takes the mean. Energies of return periods are read
+/// from classes of energy (ratio 1.05).
 pub fn year_maps(maps: &Maps, asked: &AnnualRequest, weights: &Weights) -> Vec<YearMap> {
     let Some(frequency) = &asked.frequency else { return Vec::new() };
     let scores: Vec<Option<f64>> = frequency.strata().iter().map(Stratum::mean_score).collect();
     let has_exponent = scores.iter().any(Option::is_some);
     let (energies, periods) = (frequency.energies_j(), frequency.return_periods_years());
     let ceilings = Ceilings::of(weights, &asked.most_j);
-    let least = || [0.0].iter().chain(energies);
-    let limits: Vec<Limits> =
-        least().map(|joule| Limits::above(weights, &asked.most_j, *joule)).collect();
+    let limits = |joule: f64| Limits::above(weights, &asked.most_j, joule);
+    let any = limits(0.0);
+    let above: Vec<(Option<usize>, Limits)> =
+        energies.iter().map(|&joule| (maps.number_of(joule), limits(joule))).collect();
     let sums = |stratum: u16, sums: Sums| match scores[usize::from(stratum)] {
         Some(mean) => sums.scoring(mean),
         None => sums,
@@ -44,16 +44,22 @@ pub fn year_maps(maps: &Maps, asked: &AnnualRequest, weights: &Weights) -> Vec<Y
     let mut running = Running::new(weights);
     let mut layers = Layers::of(frequency, has_exponent);
     let mut levels = Vec::new();
-    for (cell, counts) in maps.energies() {
+    for (number, cell) in maps.passed() {
         let mut values = Vec::with_capacity(layers.0.len());
-        for (least_j, limits) in least().zip(&limits) {
+        let mut add = |rocks: &mut dyn Iterator<Item = (u16, u32)>, limits: &Limits| {
             running.clear();
-            add_above(counts, *least_j, (&mut running, &sums));
+            rocks.for_each(|(stratum, n)| running.add(stratum, &sums(stratum, Sums::many(n))));
             values.extend(running.estimate(limits));
             values.extend(has_exponent.then(|| running.by_exponent()));
+        };
+        let entries = cell.energies().entries();
+        add(&mut entries.iter().map(|&(_, stratum, n)| (stratum, n)), &any);
+        for (energy, limits) in &above {
+            let rocks = energy.map_or(&[][..], |energy| cell.above(energy));
+            add(&mut rocks.iter().copied(), limits);
         }
         running.clear();
-        let falling = counts.entries().iter().rev();
+        let falling = entries.iter().rev();
         let falling = falling.map(|&(class, s, n)| (class, s, sums(s, Sums::many(n))));
         let points = curve(falling, &mut running, &ceilings);
         let energy = |years: f64| return_energy(&points, &ceilings, years, has_exponent);
@@ -65,9 +71,9 @@ pub fn year_maps(maps: &Maps, asked: &AnnualRequest, weights: &Weights) -> Vec<Y
             values.push(or_none(found.by_log_rate));
             values.extend(has_exponent.then(|| or_none(found.by_exponent)));
         }
-        layers.push(cell, values);
+        layers.push(number, values);
         if let Some(matrix) = &asked.matrix {
-            levels.push((cell, f64::from(matrix.level(|years| energy(years).energy_j))));
+            levels.push((number, f64::from(matrix.level(|years| energy(years).energy_j))));
         }
     }
     let level = YearMap { values: levels, ..YearMap::of(Matrix::FILE, "Level of hazard", "") };
@@ -126,18 +132,47 @@ impl Matrix {
     pub const FILE: &str = "hazard_level";
 }
 
-/// Adds the rocks with at least an energy (J); `sums` says how the frequency of a stratum changes.
-fn add_above(
-    counts: &Counts,
-    least_j: f64,
-    (running, sums): (&mut Running<'_>, &impl Fn(u16, Sums) -> Sums),
-) {
-    let (cut, part) = (class_of(least_j), 1.0 - place_in_class(least_j));
-    for &(class, stratum, n) in counts.entries() {
-        if class > cut || class == cut && part >= 1.0 {
-            running.add(stratum, &sums(stratum, Sums::many(n)));
-        } else if class == cut {
-            running.add(stratum, &sums(stratum, Sums::part(n, part)));
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frequency::{Class, FrequencyLaw, RockSource};
+    use crate::hazard::{Layer, MapFrame, MapState, StopKind};
+    use crate::simulation::CellPassage;
+
+    /// By hand: rocks of 29.9, 30.1, 49.9 and 50 kJ, each for 1/100 a year, pass a cell. Above an energy they are counted, whichever class of
+    /// values it lies in: rocks of a class that the energy cuts counted by a part each, 0.0225 for 0.03 a year above 30 kJ and 0.0132 for 0.01 above 50 kJ.
+    #[test]
+    fn rocks_above_an_energy_are_counted() {
+        let class = Class { volume_m3: [1.0, 1.0], per_year: 0.04 };
+        let law = FrequencyLaw::Classes(vec![class]);
+        let source = RockSource { name: "wall".to_owned(), law };
+        let frequency = Frequency::new(vec![source], vec![30e3, 50e3], vec![]);
+        let frame =
+            MapFrame { west_m: 0.0, south_m: 0.0, cell_m: 1.0, columns: 1, rows: 1, epsg: None };
+        let mut maps = Maps::new(frame, frequency.energies_j(), MapState::default());
+        for total_j in [29.9e3, 30.1e3, 49.9e3, 50e3] {
+            let passage = CellPassage { cell: 0, total_j, height_m: 0.0 };
+            maps.add(0, &[passage], (StopKind::LeftTerrain, [9.0; 3]));
         }
+        let weights = frequency.weights(4);
+        let asked = AnnualRequest { frequency: Some(frequency), ..AnnualRequest::default() };
+        let layers = year_maps(&maps, &asked, &weights);
+        let value = |file: &str| {
+            layers.iter().find(|layer| layer.file == file).map(|layer| layer.values[0].1)
+        };
+        for (file, rocks) in [
+            ("frequency_per_year", 4.0),
+            ("frequency_above_30kj_per_year", 3.0),
+            ("frequency_above_50kj_per_year", 1.0),
+        ] {
+            assert!(
+                (value(file).unwrap() - 0.01 * rocks).abs() < 1e-15,
+                "{file}: {:?}",
+                value(file)
+            );
+        }
+        // and so does the share that is conditional on release
+        let share = maps.values(Layer::ExceedsWeak, &weights).next().unwrap().1;
+        assert!((0.04 * share - value("frequency_above_30kj_per_year").unwrap()).abs() < 1e-15);
     }
 }
