@@ -16,15 +16,18 @@ const LIMITS: usize = 5;
 /// Decades that hold them.
 const DECADES: i32 = 3;
 
-/// What is shown of the maps: layer, name, unit, size of the unit in SI.
-const SHOWN: [(hazard::Layer, &str, &str, f64); 4] = [
-    (hazard::Layer::Reach, "Reach probability", "%", 0.01),
-    (hazard::Layer::EnergyP95, "Total energy, 95 %", "kJ", 1e3),
-    (hazard::Layer::HeightP95, "Bounce height, 95 %", "m", 1.0),
-    (hazard::Layer::Deposits, "Deposits in a cell", "rocks", 1.0),
+/// What is shown of the maps: layer, name, unit, size of the unit in SI, and whether it counts rocks.
+const SHOWN: [(hazard::Layer, &str, &str, f64, bool); 4] = [
+    (hazard::Layer::Reach, "Reach probability", "%", 0.01, false),
+    (hazard::Layer::EnergyP95, "Total energy, 95 %", "kJ", 1e3, false),
+    (hazard::Layer::HeightP95, "Bounce height, 95 %", "m", 1.0, false),
+    (hazard::Layer::Deposits, "Deposits in a cell", "rocks", 1.0, true),
 ];
+/// Least limit between classes of a count: below it are one and two.
+const FEW: f64 = 3.0;
 
-/// A layer: the class of every cell, rows from north to south; 0 where no rock came.
+/// A layer: the class of every cell, rows from north to south; 0 where no rock came, and where none is counted. Where rocks only roll
+/// the height is 0, which is a value.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 struct ViewLayer {
     name: &'static str,
@@ -50,14 +53,15 @@ impl MapLayers {
         let Some(frame) = results.summary.maps else { return Ok(None) };
         let every = (frame.columns.max(frame.rows) as usize).div_ceil(LONGEST).max(1);
         let mut layers = Vec::new();
-        for (layer, name, unit, size) in SHOWN {
+        for (layer, name, unit, size, counts) in SHOWN {
             let path = results.dir.join("maps").join(layer.file()).with_extension("asc");
-            let values = coarsened(&Grid::read(&path)?, every);
-            let limits = limits(values.iter().map(|value| value / size).fold(0.0, f64::max));
-            let above =
-                |value: f64| limits.iter().filter(|limit| value / size >= **limit).count() as u32;
-            let class = |value: &f64| if *value > 0.0 { 1 + above(*value) } else { 0 };
-            let classes = values.iter().map(class).collect();
+            let values: Vec<Option<f64>> = coarsened(&Grid::read(&path)?, every)
+                .map(|value| value.filter(|value| *value > 0.0 || !counts).map(|v| v / size))
+                .collect();
+            let most = values.iter().flatten().copied().fold(0.0, f64::max);
+            let limits = if counts { limits_of_counts(most) } else { limits(most) };
+            let class = |value: f64| 1 + limits.iter().filter(|limit| value >= **limit).count();
+            let classes = values.into_iter().map(|value| value.map_or(0, class) as u32).collect();
             layers.push(ViewLayer { name, unit, limits, classes });
         }
         Ok(Some(Self { frame, every, layers }))
@@ -88,17 +92,23 @@ impl MapLayers {
     }
 }
 
-/// Values row by row from the north, the largest of so many cells each way; 0 where there is none.
-fn coarsened(grid: &Grid, every: usize) -> Vec<f64> {
+/// Values row by row from the north, the largest of so many cells each way; none where no cell has one.
+fn coarsened(grid: &Grid, every: usize) -> impl Iterator<Item = Option<f64>> {
     let (columns, rows) = (grid.columns.div_ceil(every), grid.rows.div_ceil(every));
-    let mut values = vec![0.0; columns * rows];
+    let mut values = vec![None; columns * rows];
     for row in 0..grid.rows {
         for column in 0..grid.columns {
-            let cell: &mut f64 = &mut values[row / every * columns + column / every];
-            *cell = cell.max(grid.value(column, row).unwrap_or(0.0));
+            let cell: &mut Option<f64> = &mut values[row / every * columns + column / every];
+            let both = [*cell, grid.value(column, row)].into_iter().flatten();
+            *cell = both.reduce(f64::max);
         }
     }
-    values
+    values.into_iter()
+}
+
+/// Limits between classes of numbers of rocks: no rock is a fraction.
+fn limits_of_counts(most: f64) -> Vec<f64> {
+    limits(most.max(FEW)).into_iter().filter(|limit| *limit >= FEW).collect()
 }
 
 /// The last few of 1, 3, 10, 30 … below a value.
@@ -116,7 +126,15 @@ fn limits(most: f64) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::limits;
+    use super::{limits, limits_of_counts};
+
+    /// Of 12 rocks at most the classes are below 3, 3 to 10, 10 and more; of one rock, too, none is below 1.
+    #[test]
+    fn numbers_of_rocks_have_no_class_below_one() {
+        assert_eq!(limits_of_counts(12.0), [3.0, 10.0]);
+        assert_eq!(limits_of_counts(1.0), [3.0]);
+        assert_eq!(limits_of_counts(0.0), [3.0]);
+    }
 
     #[test]
     fn limits_are_round_and_hold_the_swiss_ones() {

@@ -81,7 +81,7 @@ function legend(scene, shown, layer, contour) {
     const { name, unit, limits } = scene.maps.layers[layer];
     made("h3", box, `${T(name)} (${T(unit)})`);
     for (let k = limits.length; k >= 0; k--) {
-      const text = k === 0 ? T("below {x}", { x: written(limits[0] ?? 0, 1) }) : k === limits.length ? T("{x} and more", { x: written(limits[k - 1], 1) }) : T("{low} to {high}", { low: written(limits[k - 1], 1), high: written(limits[k], 1) });
+      const text = limits.length === 0 ? written(0, 1) : k === 0 ? T("below {x}", { x: written(limits[0], 1) }) : k === limits.length ? T("{x} and more", { x: written(limits[k - 1], 1) }) : T("{low} to {high}", { low: written(limits[k - 1], 1), high: written(limits[k], 1) });
       entry(layerColour(k, limits.length), "field", text);
     }
   }
