@@ -75,7 +75,8 @@ fn in_words(estimate: &Estimate, words: &Words) -> (String, String) {
         let text = format::counted(rocks, words.more_rock_one, words.more_rock_many);
         return (format::NO_NUMBER.to_owned(), fill(text, &[("n", &rocks)]));
     }
-    let sign = format::sign(estimate.is);
+    // what has no value, as the return period of what never came, is no bound either
+    let sign = if estimate.value.is_nan() { "" } else { format::sign(estimate.is) };
     let width = estimate.high - estimate.low;
     if estimate.value == 0.0 && estimate.high > 0.0 {
         // none seen: what matters is how many there may be
@@ -164,6 +165,14 @@ fn table_cell(estimate: Option<&Estimate>, words: &Words) -> String {
 mod tests {
     use super::*;
     use crate::scene::Language;
+
+    /// The return period of what no rock did is at least that of the upper end of its frequency, and no number of its own: it was "≤ –".
+    #[test]
+    fn what_has_no_value_has_no_sign() {
+        let years = Estimate { is: Is::AtMost, ..Estimate::new(f64::NAN, 51.2, f64::NAN) };
+        let (value, interval) = in_words(&years, Words::of(Language::En));
+        assert_eq!((value.as_str(), interval.as_str()), (format::NO_NUMBER, "at least 51.2"));
+    }
 
     /// Five digits tell most intervals; of a share that is nearly whole they would leave none.
     #[test]
