@@ -139,6 +139,13 @@ pub enum PathState {
     Sticking,
 }
 
+impl PathState {
+    /// Of a rock in contact.
+    pub(crate) fn in_contact(slides: bool) -> Self {
+        if slides { Self::Sliding } else { Self::Sticking }
+    }
+}
+
 /// One impact: a touch with a normal approach speed above the capture speed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Impact {

@@ -23,6 +23,7 @@ mod boxes;
 mod bad_input;
 mod belongs;
 mod blocks;
+mod bonded;
 mod bounded;
 mod bounded_worlds;
 mod calibrate;

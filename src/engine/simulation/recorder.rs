@@ -204,11 +204,16 @@ impl<'a> Recorder<'a> {
 
     /// Goes along one step in contact to `to`.
     pub(super) fn step(&mut self, to: impl Into<RockInstant>, slides: bool) {
-        self.step_as(to, if slides { PathState::Sliding } else { PathState::Sticking });
+        self.step_as(to, PathState::in_contact(slides), false);
     }
 
-    /// Goes along one step in `state` to `to`.
-    pub(super) fn step_as(&mut self, to: impl Into<RockInstant>, state: PathState) {
+    /// Goes along one step in `state` to `to`; off the ground a rock has a height above it, also one that others hold.
+    pub(super) fn step_as(
+        &mut self,
+        to: impl Into<RockInstant>,
+        state: PathState,
+        is_off_ground: bool,
+    ) {
         let (from, to) = (self.instant(), to.into());
         (self.now, self.turned) = (to.motion, to.turned);
         // a step in contact is noted from where it began to where it ended
@@ -221,9 +226,8 @@ impl<'a> Recorder<'a> {
             at.motion.time_s = self.next_point_s;
             self.point(&at, state);
         }
-        if state == PathState::Flight && lasts_s > 0.0 {
-            // in a world a flying rock is carried along by the steps of its island: it has a height
-            // there
+        if is_off_ground && lasts_s > 0.0 {
+            // in a world a flying rock is carried along by the steps of its island, and so is one that hangs on others or lies on them
             let path = Parabola::between(&from.motion, &to.motion, self.form.rim_m());
             let start = from.motion;
             self.note_heights(&RockFlight { start, path: &path, top: None, lasts_s });

@@ -69,7 +69,7 @@ impl<'a> WorldBody<'a> {
             self.state = BodyState::Moving;
             // its path gets the time asleep as one step at rest
             let now = Motion { time_s: now_s, ..self.recorder.now };
-            self.recorder.step_as(now, PathState::Sticking);
+            self.recorder.step_as(now, PathState::Sticking, false);
         }
         if self.member.flying && self.lands.is_none() {
             self.look_ahead(settings);
@@ -205,7 +205,7 @@ impl<'a> WorldBody<'a> {
         // neither the mesh nor another rock took or gave anything in this step
         let is_untouched = given == Given::default() && loss == Loss::default();
         if was_flying && self.member.flying && is_untouched {
-            self.recorder.step_as(to, PathState::Flight);
+            self.recorder.step_as(to, PathState::Flight, true);
             return;
         }
         self.touch(settings, to, (loss, given), (slides, was_flying));
@@ -232,7 +232,7 @@ impl<'a> WorldBody<'a> {
         // its impacts are listed as hits
         self.member.state.histories.iter_mut().for_each(|history| history.announced = true);
         if self.member.flew && self.member.flying && !self.member.was_touched {
-            self.recorder.step_as(to, PathState::Flight);
+            self.recorder.step_as(to, PathState::Flight, true);
             return;
         }
         let flew = self.member.flew;
@@ -283,7 +283,9 @@ impl<'a> WorldBody<'a> {
         let dt = to.time_s - self.recorder.now.time_s;
         // one slipping contact, with mesh or rock, makes the step "sliding"
         let slides = slides || self.member.state.histories.iter().any(|history| history.slides);
-        self.recorder.step(to, slides);
+        // others alone hold it
+        let is_off_ground = self.member.state.is_free();
+        self.recorder.step_as(to, PathState::in_contact(slides), is_off_ground);
         self.recorder.pay(&loss);
         self.recorder.ledger.others_j += given.lost;
         self.recorder.ledger.passed_on_j += given.passed_on;
