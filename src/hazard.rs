@@ -228,7 +228,8 @@ impl Hazard {
     /// Rocks that ended so, as a share of all releases.
     pub fn ended(&self, stop: StopKind) -> Proportion {
         let count = self.stops.get(&stop).map_or(0, EndCounts::count);
-        let weights = self.frequency.as_ref().map(|one| one.weights(self.rocks()));
+        // of the releases that are there: a part of a run, or one rock of it, begins in any stratum
+        let weights = self.frequency.as_ref().map(|one| one.weights_of(self.by_stratum(|_| true)));
         match weights.filter(|weights| !weights.are_equal()) {
             None => Proportion::new(count, self.rocks()),
             Some(weights) => {
