@@ -156,7 +156,9 @@ fn table_cell(estimate: Option<&Estimate>, words: &Words) -> String {
     let below = if interval == format::NO_NUMBER {
         String::new()
     } else {
-        format!("<br><small>{interval}</small>")
+        // how many rocks are missing is said in words, which take two lines rather than push the last column off the page
+        let words = if matches!(estimate.is, Is::Lacking(_)) { " class=\"lacking\"" } else { "" };
+        format!("<br><small{words}>{interval}</small>")
     };
     format!("<td class=\"number\">{value}{below}</td>")
 }
@@ -172,6 +174,15 @@ mod tests {
         let years = Estimate { is: Is::AtMost, ..Estimate::new(f64::NAN, 51.2, f64::NAN) };
         let (value, interval) = in_words(&years, Words::of(Language::En));
         assert_eq!((value.as_str(), interval.as_str()), (format::NO_NUMBER, "at least 51.2"));
+    }
+
+    /// What is missing is said in words that may take two lines: five columns of them pushed the largest values of 24 rocks off the page.
+    #[test]
+    fn what_is_missing_may_take_two_lines() {
+        let estimate = Estimate { is: Is::Lacking(35), ..Estimate::new(1.0, 0.5, 2.0) };
+        let cell = |is| table_cell(Some(&Estimate { is, ..estimate }), Words::of(Language::En));
+        assert!(cell(Is::Lacking(35)).contains("<small class=\"lacking\">35 more"));
+        assert!(cell(Is::Value).contains("<small>0.5"));
     }
 
     /// Five digits tell most intervals; of a share that is nearly whole they would leave none.
