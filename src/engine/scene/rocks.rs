@@ -107,15 +107,40 @@ impl RockContact {
     }
 }
 
-/// Radii for the estimates of the plan (m) where the sources have volumes of their own: ends and middle of every stratum, as often as
-/// it comes.
+/// Parts of a stratum whose ends stand for its sizes in the plan: they tell the median rock to a few per mille.
+const PARTS: u32 = 20;
+
+/// Radii for the estimates of the plan (m) where the sources have volumes of their own: evenly spread over the rocks of every stratum,
+/// its smallest and largest among them, as often as it comes.
 fn radii_m(frequency: &Frequency) -> Option<Distribution> {
-    let shares = [0.0, 0.5, 1.0];
     let radii = frequency.strata().iter().flat_map(|stratum| {
-        let volumes = shares.map(|p| Some((stratum.quantile_m3(p)?, stratum.per_year)));
-        volumes.into_iter().flatten()
+        let shares = (0..=PARTS).map(|part| f64::from(part) / f64::from(PARTS));
+        shares.filter_map(|p| Some((stratum.quantile_m3(p)?, stratum.per_year)))
     });
     let (radii, weights): (Vec<f64>, Vec<f64>) =
         radii.map(|(volume, weight)| (radius_of_m3(volume), weight)).unzip();
     Distribution::values(radii, Some(weights)).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frequency::{Class, FrequencyLaw, RockSource};
+
+    /// Half of the events a year are of rocks above V: 0.01 (V^−0.7 − 5^−0.7) + 0.004 + 0.03 (1 − ln(V/0.05)/ln 10) = 0.0927 at V = 0.06767 m³,
+    /// R = 0.2528 m. Ends and middle of the strata alone said 0.235 m.
+    #[test]
+    fn the_median_of_the_plan_is_that_of_the_sources() {
+        let source = |law| RockSource { name: String::new(), law };
+        let law =
+            FrequencyLaw::PowerLaw { per_year_at_1m3: 0.01, exponent: 0.7, volume_m3: [0.02, 5.0] };
+        let class = |volume_m3, per_year| Class { volume_m3, per_year };
+        let classes = vec![class([2.0, 2.0], 0.004), class([0.05, 0.5], 0.03)];
+        let sources = vec![source(law), source(FrequencyLaw::Classes(classes))];
+        let radii = radii_m(&Frequency::new(sources, vec![], vec![])).expect("volumes");
+        assert!((radii.quantile(0.5) / 0.2528 - 1.0).abs() < 0.01, "{}", radii.quantile(0.5));
+        let (least, largest) = radii.support();
+        assert!((least - radius_of_m3(0.02)).abs() < 1e-12);
+        assert!((largest - radius_of_m3(5.0)).abs() < 1e-12);
+    }
 }
