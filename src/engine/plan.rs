@@ -20,11 +20,11 @@ pub use recorders::{EvaluationLine, Footprint, LinePiece, MapGrid, Recorders};
 pub use stiffness::{FastWarning, OwnDissipation};
 
 use crate::contact::pair::Strength;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::ground::Ground;
 use crate::random::Distribution;
-use crate::release::{self, Lost, Release, Releases};
-use crate::scene::{self, BarrierTable, InputFile, Language, ObjectTable, Polyline, RecordTable};
+use crate::release::{Lost, Release, Releases};
+use crate::scene::{self, BarrierTable, InputFile, Language, ObjectTable, RecordTable};
 use crate::scene::{MeasuredEnds, Scene};
 use crate::solver::Settings;
 use crate::terrain::{Terrain, health::Health, patches::Patched, stems::Stems};
@@ -220,7 +220,9 @@ impl Plan {
         stiffness::flutter(&step, &mut warnings);
         let year = annual::year(scene, &terrain, &mut warnings)?;
         let objects = annual::objects(scene, &mut warnings);
-        let lines = evaluation_lines(scene, &terrain)?;
+        let mut lines = recorders::evaluation_lines(scene, &terrain)?;
+        lines.extend(annual::evaluation_lines(scene, &terrain)?);
+        let lines = Some(lines).filter(|lines| !lines.is_empty());
         annual::over_release(&tried.made, lines.as_deref(), &mut warnings);
         let longest_s = scene.solver.longest_s.unwrap_or(LONGEST_S);
         stiffness::too_short(&step, longest_s, &mut warnings);
@@ -368,31 +370,6 @@ fn paths(record: &RecordTable) -> Part<Paths> {
     let first = record.paths.unwrap_or(PATHS);
     let step_s = record.path_step_s.unwrap_or(PATH_STEP_S);
     Part::when((first > 0).then_some(Paths { first, step_s }), "[record] paths = 0")
-}
-
-fn evaluation_lines(scene: &Scene, terrain: &Terrain) -> Result<Option<Vec<EvaluationLine>>> {
-    let lines = scene.lines.iter().map(|line| ("lines", &line.name, &line.points_m));
-    let barriers =
-        scene.barriers.iter().map(|barrier| ("barriers", &barrier.name, &barrier.points_m));
-    let (low, high) = terrain.index.bounds();
-    let evaluation_line = |(table, name, line): (&str, &String, &Polyline)| {
-        let evaluation_line = EvaluationLine::new(name, line, terrain.origin_m);
-        if evaluation_line.is_near([low.x, low.y], [high.x, high.y]) {
-            return Ok(evaluation_line);
-        }
-        // A forgotten map origin, most likely: no rock would ever cross it.
-        let (place, found) =
-            (format!("[[{table}]] \"{name}\" points_m"), "found no terrain near it");
-        Err(Error::input(&scene.file, place, found, release::outside(terrain)))
-    };
-    let mut all: Vec<EvaluationLine> =
-        lines.chain(barriers).map(evaluation_line).collect::<Result<_>>()?;
-    let elsewhere = scene.barriers.iter().flat_map(BarrierTable::elsewhere);
-    all.extend(
-        elsewhere.map(|(_, name, line)| EvaluationLine::new(&name, &line, terrain.origin_m)),
-    );
-    all.extend(annual::evaluation_lines(scene, terrain)?);
-    Ok(Some(all).filter(|all| !all.is_empty()))
 }
 
 fn can_exceed_0(value: Option<&Distribution>) -> bool {

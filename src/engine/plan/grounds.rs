@@ -37,15 +37,21 @@ pub(super) fn stems(scene: &Scene, terrain: &Terrain) -> Result<Option<Stems>> {
     })
 }
 
-/// Refuses meshes so small that nothing can fall on them: their unit is another, most likely.
+/// From the lowest to the highest ground there is less on Earth (m): 8 849 m from the sea to the summit of Mount Everest.
+const HIGHEST_M: f64 = 1e4;
+
+/// Refuses meshes so small that nothing can fall on them, or so high that no mountain is: their unit is another, most likely.
 pub(super) fn check_size(scene: &Scene, terrain: &Terrain) -> Result<()> {
     let (low, high) = terrain.index.bounds();
-    let size_m = (high - low).max();
-    if size_m >= NO_WIDTH_M {
+    let (size_m, height_m) = ((high - low).max(), high.z - low.z);
+    let found = if size_m < NO_WIDTH_M {
+        format!("found meshes of {size_m:.1e} m in all")
+    } else if height_m > HIGHEST_M {
+        format!("found meshes that are {height_m:.0} m high in all, more than any mountain")
+    } else {
         return Ok(());
-    }
-    let found = format!("found meshes of {size_m:.1e} m in all");
-    let remedy = "write scale = metres in one unit of the file";
+    };
+    let remedy = "write scale = metres in one unit of the file, 0.001 for millimetres, and leave out what is no ground";
     Err(Error::input(&scene.file, "[[terrain]] scale", found, remedy))
 }
 

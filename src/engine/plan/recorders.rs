@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::math;
+use crate::release;
 use crate::rock::Vec3;
 use crate::scene::{Corner, MapsTable, ObjectTable, Polyline, Scene};
 use crate::terrain::Terrain;
@@ -61,6 +62,44 @@ impl LinePiece {
         let [dx, dy] = self.way_m;
         (x * dx + y * dy) / (dx * dx + dy * dy)
     }
+}
+
+/// Lines of the scene, its barriers and the other places of these.
+///
+/// # Errors
+/// A line that comes nowhere near the terrain: no rock would ever cross it.
+pub(super) fn evaluation_lines(scene: &Scene, terrain: &Terrain) -> Result<Vec<EvaluationLine>> {
+    let (low, high) = terrain.index.bounds();
+    let near = |name: &str, line: &Polyline| {
+        let line = EvaluationLine::new(name, line, terrain.origin_m);
+        line.is_near([low.x, low.y], [high.x, high.y]).then_some(line)
+    };
+    // a forgotten map origin, most likely
+    let refused = |table: &str, name: &str| {
+        let place = format!("[[{table}]] \"{name}\" points_m");
+        Error::input(&scene.file, place, "found no terrain near it", release::outside(terrain))
+    };
+    let mut all = Vec::new();
+    for line in &scene.lines {
+        let found = near(&line.name, &line.points_m);
+        all.push(found.ok_or_else(|| refused("lines", &line.name))?);
+    }
+    for barrier in &scene.barriers {
+        let found = near(&barrier.name, &barrier.points_m);
+        all.push(found.ok_or_else(|| refused("barriers", &barrier.name))?);
+    }
+    for barrier in &scene.barriers {
+        for (offset_m, name, line) in barrier.elsewhere() {
+            let place = format!("[[barriers]] \"{}\" offsets_m", barrier.name);
+            let found = format!("found {offset_m}, where there is no terrain near the line");
+            let remedy = "write distances that stay on the slope";
+            all.push(
+                near(&name, &line)
+                    .ok_or_else(|| Error::input(&scene.file, place, found, remedy))?,
+            );
+        }
+    }
+    Ok(all)
 }
 
 impl EvaluationLine {
