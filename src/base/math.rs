@@ -18,21 +18,6 @@ pub fn sin_cos(angle_rad: f64) -> (f64, f64) {
     libm::sincos(angle_rad)
 }
 
-/// The fifth root of a positive number, to 3e-15 of it, in a fraction of the time of a power: Newton's rule for `y⁻⁵ = x` needs no
-/// division. It begins with the exponent of `x` divided by five (7 % off at most) and squares its error each time.
-pub fn fifth_root(x: f64) -> f64 {
-    let mut y = f64::from_bits(FIFTH_OF_ONE - x.to_bits() / 5);
-    for _ in 0..5 {
-        let y2 = y * y;
-        y += 0.2 * y * (1.0 - x * (y2 * y2 * y));
-    }
-    let y2 = y * y;
-    x * (y2 * y2)
-}
-
-/// Bits of `1` times `1 + 1/5`: from them the bits of a number over five give those of its reciprocal fifth root, roughly.
-const FIFTH_OF_ONE: u64 = 1.0f64.to_bits() / 5 * 6;
-
 /// The turn by an angle (rad) about an axis, right-handed (Rodrigues' formula).
 pub fn turn(axis: &Unit<Vector3<f64>>, angle_rad: f64) -> Rotation3<f64> {
     let (sin, cos) = sin_cos(angle_rad);
@@ -88,16 +73,6 @@ pub fn rounded(value: f64, digits: usize) -> f64 {
 mod tests {
     use super::*;
     type Vec3 = Vector3<f64>;
-
-    #[test]
-    fn fifth_roots_are_those_of_the_power() {
-        for k in -600..600 {
-            let x = exp(0.1 * f64::from(k) + 0.037);
-            let root = fifth_root(x);
-            assert!((root - pow(x, 0.2)).abs() <= 3e-15 * root, "{x} {root}");
-        }
-        assert_eq!((fifth_root(1.0), fifth_root(32.0)), (1.0, 2.0));
-    }
 
     #[test]
     fn sine_and_cosine_at_once_are_those_one_by_one() {

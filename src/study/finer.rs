@@ -28,7 +28,7 @@ pub(super) fn finer(step: &Settings, relative: f64, has_blocks: bool) -> Setting
 
 /// Length of the steps against what refines a scheme: `step ~ tolerance^(1/(p̂+1))` with the order `p̂` of the embedded method.
 fn per_tolerance(step: &Settings) -> f64 {
-    step.scheme.tableau().map_or(1.0, |tableau| 1.0 / f64::from(tableau.error_order))
+    step.scheme.tableau().map_or(1.0, |tableau| tableau.exponent)
 }
 
 #[cfg(test)]

@@ -11,8 +11,6 @@
 //! (second-order SDIRK2: an error of 3.7e-2 where TR-BDF2 has 9.7e-5, a sphere on an edge at 1e13
 //! N/m).
 
-use crate::math;
-
 /// Most stages of a tableau.
 pub const STAGES: usize = 6;
 
@@ -34,8 +32,8 @@ pub struct Tableau {
     /// `b − b̂`, stage by stage; times rates and step it is the error (that of the lower order of
     /// the two).
     pub error: [f64; STAGES],
-    /// Order of the local error that is estimated: 3 or 4.
-    pub error_order: u32,
+    /// `1/(order of the embedded method + 1)`.
+    pub exponent: f64,
     /// Whether the embedded method is the one of higher order: its weights then measure the work done over a step.
     pub embedded_is_finer: bool,
 }
@@ -45,12 +43,6 @@ impl Tableau {
     #[inline]
     pub fn weight(&self, k: usize) -> f64 {
         if k + 1 == self.stages { self.diagonal } else { self.a[self.stages - 1][k] }
-    }
-
-    /// The step over the one whose error were 1, of a step with this error (–).
-    #[inline]
-    pub(crate) fn length_of(&self, error: f64) -> f64 {
-        if self.error_order == 3 { math::cbrt(error) } else { error.sqrt().sqrt() }
     }
 
     /// When stage `k` is, over the step (–).
@@ -94,7 +86,7 @@ pub static TR_BDF2: Tableau = Tableau {
     diagonal: D,
     a: &[&[], &[D], &[W, W]],
     error: [W - (1.0 - W) / 3.0, W - (3.0 * W + 1.0) / 3.0, D - D / 3.0, 0.0, 0.0, 0.0],
-    error_order: 3,
+    exponent: 1.0 / 3.0,
     embedded_is_finer: true,
 };
 
@@ -123,7 +115,7 @@ pub static ESDIRK4: Tableau = Tableau {
         -2260.0 / 8211.0 + 3_700_637.0 / 11_593_932.0,
         0.25 - 61727.0 / 225_920.0,
     ],
-    error_order: 4,
+    exponent: 0.25,
     embedded_is_finer: false,
 };
 

@@ -106,7 +106,7 @@ impl Plane {
             shear: SliderElement::shear(body, law, stiffness),
             rolling: SliderElement::rolling(body, law, stiffness),
             tolerance,
-            first: FIRST * math::fifth_root(tolerance),
+            first: FIRST * math::pow(tolerance, 0.2),
         }
     }
 

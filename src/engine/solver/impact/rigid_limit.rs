@@ -167,7 +167,7 @@ fn several<const K: usize, const N: usize, const Q: usize, const P: usize>(
     let speed = v.norm();
     let flow = ContactRates::<K>::new(body, contacts, LOCAL * tolerance);
     let mut run = ImpactRun::<K, N, Q, P>::new(flow, v / speed, w * (body.radius / speed));
-    end.settled = run.follow(FIRST * math::fifth_root(tolerance));
+    end.settled = run.follow(FIRST * math::pow(tolerance, 0.2));
     end.effort = run.effort;
     let start = (v / speed, w * (body.radius / speed));
     let place = run.flow.contacts.come_to_an_end(start, run.place(), run.flow.nothing());

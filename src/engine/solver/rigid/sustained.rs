@@ -110,7 +110,7 @@ fn meets_s(world: &ContactEnvironment, state: &ContactState, tried: &HeldStep) -
         // `speed² + 2 a gap` with the mean acceleration `a`: negative where it turns back before
         let met2 = speed * speed + 2.0 * gap * (end - speed) / tried.dt;
         let met_s = 2.0 * gap / (speed + met2.max(0.0).sqrt());
-        (met2 >= 0.0).then(|| if gap > least { met_s } else { 0.5 * tried.dt })
+        (met2 >= 0.0).then_some(if gap > least { met_s } else { 0.5 * tried.dt })
     });
     met_s.reduce(f64::min)
 }

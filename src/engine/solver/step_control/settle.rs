@@ -2,6 +2,7 @@
 //! islands.
 
 use super::{Control, StepError};
+use crate::math;
 use crate::solver::tableau::RATIO;
 
 /// The step controller's safety factor (–).
@@ -87,5 +88,5 @@ pub(crate) fn settle(
 }
 
 fn grown(control: &Control, dt: f64, error: f64) -> f64 {
-    dt * (SAFETY / control.tableau.length_of(error)).clamp(RATIO.0, RATIO.1)
+    dt * (SAFETY * math::pow(error, -control.tableau.exponent)).clamp(RATIO.0, RATIO.1)
 }
