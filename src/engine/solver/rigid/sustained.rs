@@ -10,6 +10,8 @@ use crate::solver::step_control::Advance;
 
 /// How often a step is cut to where the rock comes to the next surface, at most: each cut knows the motion on the way better.
 const CUTS: u32 = 6;
+/// A step may end so far beyond what it meets (–, relative to R).
+const MET: f64 = 1e-6;
 
 /// A step as it is tried.
 struct HeldStep {
@@ -99,18 +101,18 @@ fn closing(world: &ContactEnvironment, state: &ContactState, dt: f64) -> f64 {
 /// When the rock comes to the first of what is ahead (s), if that is within the step, with the acceleration of the step. Beside an edge or a
 /// corner, whose normal turns on the way, this is a guess; where it tells nothing it is half of the step.
 fn meets_s(world: &ContactEnvironment, state: &ContactState, tried: &HeldStep) -> Option<f64> {
-    let (half, least) = (state.v * (0.5 * tried.dt), TOUCH * world.body.radius);
+    let (half, radius) = (state.v * (0.5 * tried.dt), world.body.radius);
     let ahead = state.touches.iter().filter(|touch| is_fast(world, touch, &state.v));
     let met_s = ahead.filter_map(|touch| {
         let gap = gap_at_start(world, touch, &half);
         let [speed, end] = [state.v, tried.after.0].map(|v| -touch.normal.dot(&v));
-        if 0.5 * (speed + end) * tried.dt <= gap + least {
+        if 0.5 * (speed + end) * tried.dt <= gap + MET * radius {
             return None;
         }
         // `speed² + 2 a gap` with the mean acceleration `a`: negative where it turns back before
         let met2 = speed * speed + 2.0 * gap * (end - speed) / tried.dt;
         let met_s = 2.0 * gap / (speed + met2.max(0.0).sqrt());
-        (met2 >= 0.0).then_some(if gap > least { met_s } else { 0.5 * tried.dt })
+        (met2 >= 0.0).then_some(if gap > TOUCH * radius { met_s } else { 0.5 * tried.dt })
     });
     met_s.reduce(f64::min)
 }
