@@ -20,6 +20,9 @@ pub(super) const BEFORE: u32 = 2;
 const NOTHING_NEW: f64 = 1e-7;
 /// What is left may grow this much (–) before the differences are forgotten: contacts have changed from sticking to sliding …
 const GROWS: f64 = 2.0;
+/// Impulses that are larger than those with which the sweep ended by more than this (–) are no combination of such: where a contact
+/// that would pull is left out, those beside it grow from sweep to sweep, and velocities would lose their digits …
+const WILD: f64 = 100.0;
 /// … and so often before sweeps go on alone.
 const SETBACKS: u32 = 6;
 
@@ -48,6 +51,11 @@ pub(super) struct Mixing {
 
 fn dot(one: &ContactImpulses, other: &ContactImpulses, count: usize) -> f64 {
     one[..count].iter().zip(&other[..count]).map(|(a, b)| a.dot(b)).sum()
+}
+
+/// Size of the largest of them.
+fn largest(all: &ContactImpulses, count: usize) -> f64 {
+    all[..count].iter().map(Vec3::norm_squared).fold(0.0, f64::max).sqrt()
 }
 
 /// `to − from`.
@@ -133,6 +141,10 @@ impl Mixing {
             let share = dot(own, &rest, count);
             take(&mut rest, own, share, count);
             take(&mut next, end, share, count);
+        }
+        if largest(&next, count) > WILD * largest(&ended, count) {
+            (self.len, self.setbacks) = (0, self.setbacks + 1);
+            return None;
         }
         Some(next)
     }
