@@ -175,8 +175,10 @@ impl Maps {
         self.above_j.iter().position(|one| one.total_cmp(&joule).is_eq())
     }
 
-    fn known(&mut self, number: u32) -> &mut MapCell {
-        self.cells.entry(number).or_insert_with(|| MapCell::new(self.above_j.len()))
+    /// A cell, and the energies (J) above which its rocks are counted.
+    fn known(&mut self, number: u32) -> (&mut MapCell, &[f64]) {
+        let new = || MapCell::new(self.above_j.len());
+        (self.cells.entry(number).or_insert_with(new), &self.above_j)
     }
 
     /// Cells that rocks have passed so far.
@@ -192,7 +194,7 @@ impl Maps {
     /// Adds what other rocks left.
     pub fn join(&mut self, other: MapState) {
         for (number, cell) in other.0 {
-            self.known(number).join(&cell);
+            self.known(number).0.join(&cell);
         }
     }
 
@@ -204,22 +206,20 @@ impl Maps {
         (stop, end_m): (StopKind, [f64; 3]),
     ) {
         for passage in passages {
-            let energies = self.above_j.len();
-            let new = || MapCell::new(energies);
-            let cell = self.cells.entry(passage.cell).or_insert_with(new);
+            let (cell, above_j) = self.known(passage.cell);
             cell.passages += 1;
             cell.largest_j = cell.largest_j.max(passage.total_j);
             cell.largest_m = cell.largest_m.max(passage.height_m);
             cell.totals_j.add(passage.total_j, stratum);
             cell.heights_m.add(passage.height_m, stratum);
-            for (rocks, limit) in cell.above.iter_mut().zip(&self.above_j) {
+            for (rocks, limit) in cell.above.iter_mut().zip(above_j) {
                 if passage.total_j >= *limit {
                     rocks.add(stratum, 1);
                 }
             }
         }
         if let (StopKind::AtRest, Some(cell)) = (stop, self.frame.cell(end_m)) {
-            self.known(cell).deposits += 1;
+            self.known(cell).0.deposits += 1;
         }
     }
 

@@ -339,13 +339,18 @@ fn schemes_agree_on_where_blocks_stop() {
     }
 }
 
+/// A plane that falls along y by 0.7 m a metre.
+fn plane() -> Terrain {
+    let at = |x: f64, y: f64| Vec3::new(x, y, 100.0 - 0.7 * y);
+    let [a, b, c, d] = [at(0.0, 0.0), at(300.0, 0.0), at(300.0, 150.0), at(0.0, 150.0)];
+    terrain(vec![[a, b, c], [a, c, d]])
+}
+
 /// A box that slides down a plane meets the facets of rough ground one after the other, in every scheme: it bounces where it would
 /// slide.
 #[test]
 fn a_sliding_box_meets_facets() {
-    let at = |x: f64, y: f64| Vec3::new(x, y, 100.0 - 0.7 * y);
-    let [a, b, c, d] = [at(0.0, 0.0), at(300.0, 0.0), at(300.0, 150.0), at(0.0, 150.0)];
-    let plane = terrain(vec![[a, b, c], [a, c, d]]);
+    let plane = plane();
     let (_, kind, shape) = &shapes()[2];
     for scheme in [Scheme::Rigid, Scheme::Adaptive] {
         let impacts = [0.0, 0.35].map(|roughness_rad| {
@@ -371,9 +376,7 @@ fn a_sliding_box_meets_facets() {
 /// on a face lost 12 to 56 % of their speed in one step and flew off, spinning.
 #[test]
 fn a_plane_without_friction_holds_no_block_back() {
-    let at = |x: f64, y: f64| Vec3::new(x, y, 100.0 - 0.7 * y);
-    let [a, b, c, d] = [at(0.0, 0.0), at(300.0, 0.0), at(300.0, 150.0), at(0.0, 150.0)];
-    let plane = terrain(vec![[a, b, c], [a, c, d]]);
+    let plane = plane();
     let down = Vec3::new(0.0, 1.0, -0.7).normalize();
     let mut scratch = Scratch::default();
     for (name, kind, shape) in &shapes()[..4] {

@@ -89,10 +89,17 @@ fn gap_at_start(world: &ContactEnvironment, touch: &ContactPoint, half: &Vec3) -
     touch.distance_m - world.body.radius - touch.normal.dot(half)
 }
 
+/// What of the last look the rock comes to faster than it is captured.
+fn ahead<'s>(
+    world: &ContactEnvironment,
+    state: &'s ContactState,
+) -> impl Iterator<Item = &'s ContactPoint> {
+    state.touches.iter().filter(|touch| is_fast(world, touch, &state.v))
+}
+
 /// Cuts a step where a gap to a touch of the last look, that at its start, closes faster than the capture speed.
 fn closing(world: &ContactEnvironment, state: &ContactState, dt: f64) -> f64 {
-    let ahead = state.touches.iter().filter(|touch| is_fast(world, touch, &state.v));
-    ahead.fold(dt, |dt, touch| {
+    ahead(world, state).fold(dt, |dt, touch| {
         let gap = touch.distance_m - world.body.radius;
         if gap > TOUCH * world.body.radius { dt.min(gap / -touch.normal.dot(&state.v)) } else { dt }
     })
@@ -102,17 +109,14 @@ fn closing(world: &ContactEnvironment, state: &ContactState, dt: f64) -> f64 {
 /// corner, whose normal turns on the way, this is a guess; where it tells nothing it is half of the step.
 fn meets_s(world: &ContactEnvironment, state: &ContactState, tried: &HeldStep) -> Option<f64> {
     let (half, radius) = (state.v * (0.5 * tried.dt), world.body.radius);
-    let ahead = state.touches.iter().filter(|touch| is_fast(world, touch, &state.v));
-    let met_s = ahead.filter_map(|touch| {
+    let met_s = ahead(world, state).filter_map(|touch| {
         let gap = gap_at_start(world, touch, &half);
         let [speed, end] = [state.v, tried.after.0].map(|v| -touch.normal.dot(&v));
-        if 0.5 * (speed + end) * tried.dt <= gap + MET * radius {
-            return None;
-        }
         // `speed² + 2 a gap` with the mean acceleration `a`: negative where it turns back before
         let met2 = speed * speed + 2.0 * gap * (end - speed) / tried.dt;
-        let met_s = 2.0 * gap / (speed + met2.max(0.0).sqrt());
-        (met2 >= 0.0).then_some(if gap > TOUCH * radius { met_s } else { 0.5 * tried.dt })
+        let is_met = 0.5 * (speed + end) * tried.dt > gap + MET * radius && met2 >= 0.0;
+        let is_known = gap > TOUCH * radius;
+        is_met.then(|| if is_known { 2.0 * gap / (speed + met2.sqrt()) } else { 0.5 * tried.dt })
     });
     met_s.reduce(f64::min)
 }

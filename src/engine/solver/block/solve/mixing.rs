@@ -132,8 +132,7 @@ impl Mixing {
         let size2 = dot(&left, &left, count);
         let (last_left, last_ended, last_size2) = self.last.replace((left, ended, size2))?;
         if size2 > GROWS * GROWS * last_size2 {
-            (self.len, self.setbacks) = (0, self.setbacks + 1);
-            return None;
+            return self.set_back();
         }
         self.learn(less(&left, &last_left, count), less(&ended, &last_ended, count));
         let (mut rest, mut next) = (left, ended);
@@ -143,10 +142,15 @@ impl Mixing {
             take(&mut next, end, share, count);
         }
         if largest(&next, count) > WILD * largest(&ended, count) {
-            (self.len, self.setbacks) = (0, self.setbacks + 1);
-            return None;
+            return self.set_back();
         }
         Some(next)
+    }
+
+    /// Forgets the differences: the next sweep begins with what this one ended with.
+    fn set_back(&mut self) -> Option<ContactImpulses> {
+        (self.len, self.setbacks) = (0, self.setbacks + 1);
+        None
     }
 
     /// Learns a difference of what sweeps changed, and of where they ended.
