@@ -23,11 +23,13 @@ const LASTS_S: f64 = 0.01;
 /// How near a scheme must come (–, relative to the blow): a contact is captured until it is pressed together at 0.02 m/s.
 const ALLOWED: f64 = 2e-2;
 /// Schemes, each with its tolerance (m/s) or step (s).
-const SCHEMES: [(Scheme, f64); 4] = [
+const SCHEMES: [(Scheme, f64); 6] = [
     (Scheme::Adaptive, 0.05),
     (Scheme::Adaptive, 1e-3),
     (Scheme::Reference, 1e-6),
     (Scheme::Dda, 1e-6),
+    (Scheme::Rigid, 1e-2),
+    (Scheme::Rigid, 1e-4),
 ];
 
 fn world(scheme: Scheme, size: f64, restitution: f64) -> World {

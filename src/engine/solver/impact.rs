@@ -52,7 +52,9 @@ mod tests;
 pub(super) use plane::LOCAL;
 pub(crate) use plane::{BlowTable, NormalPassage, Plane, PressedIn, Rebound, blow_along_a_line};
 pub(super) use rigid_limit::NOTHING;
-pub(crate) use rigid_limit::{FrozenContact, throw};
+pub(crate) use rigid_limit::{
+    BODIES, CONTACTS, ContactEnds, FrozenBody, FrozenCollision, FrozenContact, collide, throw,
+};
 
 /// What following an impact has cost.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]

@@ -124,6 +124,7 @@ pub(super) fn frozen<'w>(
             law: world.law(touch.triangle),
             stiffness_scale: touch.gain2,
             captured: !is_fast(world, touch, v),
+            ..FrozenContact::none()
         };
     }
     struck

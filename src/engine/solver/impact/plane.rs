@@ -229,7 +229,8 @@ impl Plane {
         let [held_shear, held_roll] = self.given_back((&start.shear, &start.roll), &end);
         let slipping = slipping.max(0.0);
         let (shear, rolling) = (shear + held_shear - slipping, rolling + held_roll);
-        end.lost = shared(lost, [slipping, shear.max(0.0), rolling.max(0.0)]);
+        end.lost = [slipping, shear.max(0.0), rolling.max(0.0)];
+        shared(lost, &mut end.lost);
         end
     }
 
@@ -276,14 +277,14 @@ impl Plane {
 
 /// Shares what is known to be lost as the steps have summed it up.
 /// The total is exact, from energies; the parts are sums along the steps and only share it.
-pub(super) fn shared<const N: usize>(lost: f64, parts: [f64; N]) -> [f64; N] {
+pub(super) fn shared(lost: f64, parts: &mut [f64]) {
     let sum: f64 = parts.iter().sum();
     if sum > 0.0 {
-        parts.map(|part| part * (lost / sum))
+        for part in parts {
+            *part *= lost / sum;
+        }
     } else {
-        let mut all = parts;
-        all[1] = lost;
-        all
+        parts[1] = lost;
     }
 }
 

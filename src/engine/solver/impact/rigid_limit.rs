@@ -12,6 +12,7 @@
 //! limit itself, not a large stiffness. The penetration goes to 0 in it, so weight, the turn of
 //! normals and the time of the impact do not matter.
 
+mod bodies;
 mod contacts;
 mod rates;
 
@@ -23,10 +24,11 @@ use crate::contact::MOST;
 use crate::ground::Law;
 use crate::math;
 use crate::rock::Vec3;
-use crate::solver::body::Body;
+use crate::solver::body::{Body, Twist};
 use crate::solver::loss::Loss;
-use contacts::SwitchTime;
-use rates::{ContactRates, W, speed_of};
+pub(crate) use bodies::{BODIES, CONTACTS, FrozenCollision, collide};
+use contacts::{AfterImpact, SwitchTime};
+use rates::ContactRates;
 use std::f64::consts::TAU;
 
 /// One contact of a frozen impact.
@@ -40,6 +42,47 @@ pub(crate) struct FrozenContact<'a> {
     pub(crate) stiffness_scale: f64,
     /// Whether it gives nothing back.
     pub(crate) captured: bool,
+    /// What it joins.
+    pub(crate) ends: ContactEnds,
+}
+
+/// What a contact of a frozen impact joins.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ContactEnds {
+    /// Place of the body into which its normal points.
+    pub(crate) first: usize,
+    /// Place of the other, `None` for the mesh.
+    pub(crate) second: Option<usize>,
+    /// Distances from their centres to the common point that is touched, over their radii (–).
+    pub(crate) levers: [f64; 2],
+}
+
+impl ContactEnds {
+    /// The first body and the mesh.
+    pub(crate) const MESH: Self = Self { first: 0, second: None, levers: [1.0; 2] };
+
+    /// Mass that it moves (kg): that of a body, or the reduced mass of two.
+    fn moved_kg(&self, bodies: &[FrozenBody]) -> f64 {
+        let mass_kg = |k: usize| bodies[k].body.mass;
+        match self.second {
+            Some(second) => 1.0 / (1.0 / mass_kg(self.first) + 1.0 / mass_kg(second)),
+            None => mass_kg(self.first),
+        }
+    }
+
+    /// Whether two contacts with the mesh are of one body, which share their dashpots.
+    fn shares_with(&self, other: &Self) -> bool {
+        self.second.is_none() && other.second.is_none() && self.first == other.first
+    }
+}
+
+/// A body before a frozen impact.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct FrozenBody {
+    /// Mass, inertia, radius.
+    pub(crate) body: Body,
+    /// Velocity (m/s) and spin (rad/s).
+    pub(crate) motion: Twist,
 }
 
 impl FrozenContact<'_> {
@@ -50,6 +93,7 @@ impl FrozenContact<'_> {
             law: &Law::NONE,
             stiffness_scale: 1.0,
             captured: true,
+            ends: ContactEnds::MESH,
         }
     }
 }
@@ -165,51 +209,45 @@ fn several<const K: usize, const N: usize, const Q: usize, const P: usize>(
 ) -> FrozenRebound {
     // |v| is the unit of speed: the tolerance is relative to it
     let speed = v.norm();
-    let flow = ContactRates::<K>::new(body, contacts, LOCAL * tolerance);
-    let mut run = ImpactRun::<K, N, Q, P>::new(flow, v / speed, w * (body.radius / speed));
+    let bodies = [FrozenBody { body: *body, motion: (*v, *w) }];
+    let flow = ContactRates::<1, K>::new(&bodies, contacts, LOCAL * tolerance);
+    let start = (v / speed, w * (body.radius / speed));
+    let mut run = ImpactRun::<1, K, N, Q, P>::new(flow, [start]);
     end.settled = run.follow(FIRST * math::pow(tolerance, 0.2));
     end.effort = run.effort;
-    let start = (v / speed, w * (body.radius / speed));
-    let place = run.flow.contacts.come_to_an_end(start, run.place(), run.flow.nothing());
-    let mut parts = run.parts();
-    for (part, plastic) in parts.iter_mut().zip(place.plastic) {
-        part[1] += plastic;
-    }
+    let [place] = run.motions();
+    let AfterImpact { motions: [place], plastic } =
+        run.flow.contacts.come_to_an_end(start, place, run.flow.nothing());
     // exact energy of the impact; the summed parts only say where it went
-    let lost = run.flow.contacts.energy(start) - run.flow.contacts.energy((place.v, place.w));
-    let unit_j = body.mass * speed * speed;
-    let taken_j: [f64; 3 * MOST] = std::array::from_fn(|k| parts[k / 3][k % 3]);
-    let taken_j = shared(lost.max(0.0) * unit_j, taken_j);
-    for (k, loss) in end.loss.iter_mut().enumerate() {
-        let [friction, damping, rolling] = [taken_j[3 * k], taken_j[3 * k + 1], taken_j[3 * k + 2]];
-        *loss = Loss { friction, damping, rolling, trees: 0.0 };
-    }
+    let lost = run.flow.contacts.energy(0, start) - run.flow.contacts.energy(0, place);
+    let loss_j = run.loss_j(lost.max(0.0) * (body.mass * speed * speed), plastic);
+    end.loss[..K].copy_from_slice(&loss_j);
+    let fastest = run.flow.contacts.fastest;
     end.rebounded = std::array::from_fn(|k| {
         k < contacts.len()
             && !contacts[k].captured
-            && run.fastest[k] > 0.0
-            && contacts[k].normal.dot(&place.v) > 0.0
+            && fastest[k] > 0.0
+            && contacts[k].normal.dot(&place.0) > 0.0
     });
-    (end.velocity_m_s, end.spin_rad_s) = (place.v * speed, place.w * (speed / body.radius));
+    (end.velocity_m_s, end.spin_rad_s) = (place.0 * speed, place.1 * (speed / body.radius));
     end
 }
 
 /// An impact being followed.
-struct ImpactRun<const K: usize, const N: usize, const Q: usize, const P: usize> {
-    flow: ContactRates<K>,
+struct ImpactRun<const B: usize, const K: usize, const N: usize, const Q: usize, const P: usize> {
+    flow: ContactRates<B, K>,
     y: [f64; N],
     sums: [f64; Q],
-    /// Fastest approach of each contact.
-    fastest: [f64; MOST],
     effort: ImpactEffort,
 }
 
-impl<const K: usize, const N: usize, const Q: usize, const P: usize> ImpactRun<K, N, Q, P> {
-    fn new(flow: ContactRates<K>, v: Vec3, w: Vec3) -> Self {
-        let mut y = [0.0; N];
-        y[3..6].copy_from_slice(v.as_slice());
-        y[6..9].copy_from_slice(w.as_slice());
-        Self { flow, y, sums: [0.0; Q], fastest: [0.0; MOST], effort: ImpactEffort::default() }
+impl<const B: usize, const K: usize, const N: usize, const Q: usize, const P: usize>
+    ImpactRun<B, K, N, Q, P>
+{
+    /// From velocities and spins times radius.
+    fn new(flow: ContactRates<B, K>, motions: [Twist; B]) -> Self {
+        let effort = ImpactEffort::default();
+        Self { flow, y: rates::begun(&motions), sums: [0.0; Q], effort }
     }
 
     /// Steps until nothing pushes and nothing comes nearer.
@@ -219,7 +257,7 @@ impl<const K: usize, const N: usize, const Q: usize, const P: usize> ImpactRun<K
     fn follow(&mut self, first: f64) -> Settled {
         let (mut wish, mut kept, mut time) = (first, 0.0, 0.0);
         let softest = self.flow.contacts.softest;
-        let (most, mut quiet) = (MOST_TIME / softest, Quiet::default());
+        let (most, mut quiet) = (MOST_TIME / softest, Quiet::<B>::NONE);
         // Whether the contacts have been changed without a step: once is enough.
         let mut turned = false;
         self.flow.press(&mut self.y);
@@ -238,7 +276,7 @@ impl<const K: usize, const N: usize, const Q: usize, const P: usize> ImpactRun<K
                 self.flow.rates_of(&self.y, stages.first());
                 continue;
             }
-            if quiet.stays(self.place(), time, QUIET * self.flow.allowed) > TAU / softest {
+            if quiet.stays(&self.motions(), time, QUIET * self.flow.allowed) > TAU / softest {
                 return Settled::Jammed;
             }
             let h = wish.min(self.flow.longest);
@@ -292,53 +330,69 @@ impl<const K: usize, const N: usize, const Q: usize, const P: usize> ImpactRun<K
         }
     }
 
-    /// Velocity, and spin times radius.
-    fn place(&self) -> (Vec3, Vec3) {
-        (speed_of(&self.y), W.map(|k| self.y[k]).into())
+    /// Velocities, and spins times radius.
+    fn motions(&self) -> [Twist; B] {
+        std::array::from_fn(|k| {
+            (rates::speed_of::<B, N>(&self.y, k), rates::spin_of::<B, N>(&self.y, k))
+        })
     }
 
     /// Notes how fast the contacts that are pressed come nearer.
     /// The fastest approach of each tells what restitution may give back of it.
     fn note(&mut self) {
-        let v = speed_of(&self.y);
-        for (k, contact) in self.flow.contacts.list().iter().enumerate() {
+        let (y, contacts) = (&self.y, &mut self.flow.contacts);
+        for k in 0..contacts.list().len() {
             if self.flow.pressed[k] {
-                self.fastest[k] = self.fastest[k].max(-contact.n.dot(&v));
+                let approach = -contacts.parting(k, |k| rates::speed_of::<B, N>(y, k));
+                contacts.fastest[k] = contacts.fastest[k].max(approach);
             }
         }
-        self.flow.contacts.fastest = self.fastest;
     }
 
-    /// What friction, dashpots and rolling of each contact have taken.
-    /// Sums along the steps, none below 0: the step's error may make a small one negative.
-    fn parts(&self) -> [[f64; 3]; MOST] {
-        let mut parts = [[0.0; 3]; MOST];
-        for (part, sums) in parts.iter_mut().zip(self.sums.chunks(4)) {
+    /// What each contact has taken of a loss (J), as friction, dashpots and rolling have summed up along the steps and as what gave
+    /// nothing back has taken at the end.
+    fn loss_j(&self, lost_j: f64, plastic: [f64; K]) -> [Loss; K] {
+        let mut parts = [[0.0; 3]; K];
+        for ((part, sums), plastic) in parts.iter_mut().zip(self.sums.chunks(4)).zip(plastic) {
+            // none below 0: the error of the steps may make a small one negative
             let [slipping, shear, rolling, normal] = [sums[0], sums[1], sums[2], sums[3]];
             let slipping = slipping.max(0.0);
             let damping = (shear - slipping).max(0.0) + normal.max(0.0);
-            *part = [slipping, damping, rolling.max(0.0)];
+            *part = [slipping, damping + plastic, rolling.max(0.0)];
         }
-        parts
+        shared(lost_j, parts.as_flattened_mut());
+        let loss = |[friction, damping, rolling]: [f64; 3]| Loss {
+            friction,
+            damping,
+            rolling,
+            trees: 0.0,
+        };
+        parts.map(loss)
     }
 }
 
-/// Since when the motion of a rock has not changed.
+/// Since when the motions have not changed.
 ///
 /// A rock wedged between two contacts keeps its velocity, near 0, while springs and friction hold
 /// each other: no step would end that.
-#[derive(Default)]
-struct Quiet {
+struct Quiet<const B: usize> {
     since: f64,
-    motion: (Vec3, Vec3),
+    motions: [Twist; B],
 }
 
-impl Quiet {
-    /// For how long velocity and spin have been the same, to `allowed`.
-    fn stays(&mut self, (v, w): (Vec3, Vec3), time: f64, allowed: f64) -> f64 {
-        let change2 = (v - self.motion.0).norm_squared().max((w - self.motion.1).norm_squared());
+impl<const B: usize> Quiet<B> {
+    /// Nothing seen yet.
+    const NONE: Self =
+        Self { since: 0.0, motions: [(Vec3::new(0.0, 0.0, 0.0), Vec3::new(0.0, 0.0, 0.0)); B] };
+
+    /// For how long velocities and spins have been the same, to `allowed`.
+    fn stays(&mut self, motions: &[Twist; B], time: f64, allowed: f64) -> f64 {
+        let change2 = |((v, w), (was_v, was_w)): (&Twist, &Twist)| {
+            (v - was_v).norm_squared().max((w - was_w).norm_squared())
+        };
+        let change2 = motions.iter().zip(&self.motions).map(change2).fold(0.0, f64::max);
         if change2 > allowed * allowed {
-            (self.since, self.motion) = (time, (v, w));
+            (self.since, self.motions) = (time, *motions);
         }
         time - self.since
     }

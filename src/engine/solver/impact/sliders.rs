@@ -25,11 +25,14 @@ pub(super) struct SliderElement {
 
 /// Without a dashpot the element has no such form and is left out.
 impl SliderElement {
+    /// None.
+    pub(super) const NONE: Self = Self { damping: 0.0, rate: 0.0, cap: 0.0 };
+
     fn new([stiffness, damping, limit]: [f64; 3]) -> Self {
         if damping > 0.0 && limit > 0.0 {
             Self { damping, rate: stiffness / damping, cap: limit / damping }
         } else {
-            Self { damping: 0.0, rate: 0.0, cap: 0.0 }
+            Self::NONE
         }
     }
 

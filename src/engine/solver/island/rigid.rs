@@ -11,6 +11,7 @@
 //! position_correction   c moved out of what still overlaps, paid for by energy
 //! ```
 
+mod collision;
 mod contacts;
 mod position_correction;
 mod newton_step;
@@ -32,8 +33,8 @@ use crate::solver::rigid::{GroundContact, HELD, remember};
 use crate::solver::step_control::StepError;
 use crate::terrain::Terrain;
 pub(crate) use contacts::blows_of;
-use contacts::{BallContact, StepBody};
-use impacts::{ImpactScene, PendingImpact};
+use contacts::{BallContact, ImpactScene, StepBody};
+use impacts::PendingImpact;
 use position_correction::NearPair;
 use std::collections::BinaryHeap;
 use std::sync::Arc;
@@ -56,6 +57,8 @@ pub(crate) struct RigidIsland {
     due: BinaryHeap<PendingImpact>,
     /// Which pairs had a blow.
     struck: Vec<bool>,
+    /// The rocks of the last blow.
+    in_blow: Vec<usize>,
     /// Pairs or contacts of every rock.
     of_rocks: ContactsOfRocks,
     /// Contacts that one of their rocks has changed since.

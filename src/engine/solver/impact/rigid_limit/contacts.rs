@@ -3,16 +3,16 @@
 //! In these units a contact's stiffness is `p_N |a|²/p_N,max`, its dashpot `c_N |a|/√(p_N,max m)`,
 //! spin is `R ω/|v|`.
 
-use super::FrozenContact;
-use crate::contact::MOST;
+use super::{ContactEnds, FrozenBody, FrozenContact};
 use crate::ground::restitution;
 use crate::rock::Vec3;
-use crate::solver::body::Body;
+use crate::solver::body::{Body, Twist};
 use crate::solver::impact::normal_motion::NONE;
 use crate::solver::impact::sliders::SliderElement;
+use crate::solver::law::capture_m_s;
 
 /// A speed along a normal that is none, in impact speeds (–).
-const REST: f64 = 1e-9;
+pub(super) const REST: f64 = 1e-9;
 /// What a captured contact throws back by its own spring may be so much more than its restitution says (–).
 const ALLOWANCE: f64 = 1.05;
 
@@ -20,28 +20,41 @@ const ALLOWANCE: f64 = 1.05;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ImpactContact {
     pub(super) n: Vec3,
+    pub(super) ends: ContactEnds,
     pub(super) stiffness: f64,
     /// Normal damping when alone.
     pub(super) damping: f64,
     pub(super) shear: SliderElement,
     pub(super) rolling: SliderElement,
     captured: bool,
+    /// Approach below which it gives nothing back, whether it is captured or not.
+    slowest: f64,
     /// Its restitution when alone (–).
     kept: f64,
 }
 
-/// All of them.
+/// One of the bodies, in units of the mass `m₀`.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Contacts {
-    list: [ImpactContact; MOST],
+pub(super) struct ImpactBody {
+    /// `m₀/m` (–).
+    pub(super) lightness: f64,
+    /// `m₀ R²/I` (–).
+    pub(super) turns: f64,
+}
+
+/// Up to `K` contacts of `B` bodies.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Contacts<const B: usize, const K: usize> {
+    list: [ImpactContact; K],
     len: usize,
+    pub(super) bodies: [ImpactBody; B],
+    /// Unit of mass `m₀` (kg): the least that a contact moves.
+    pub(super) mass_kg: f64,
     /// Frequency of the softest.
     /// In units of the stiffest's: `√(k_min/k_max)`, at most 1.
     pub(super) softest: f64,
-    /// `m R²/I` (–).
-    pub(super) turns: f64,
     /// Fastest approach to each so far.
-    pub(super) fastest: [f64; MOST],
+    pub(super) fastest: [f64; K],
 }
 
 /// Where in a step a contact opens or closes.
@@ -55,40 +68,54 @@ pub(super) enum SwitchTime {
 
 /// Motion after the impact.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct AfterImpact {
-    pub(super) v: Vec3,
-    pub(super) w: Vec3,
+pub(super) struct AfterImpact<const B: usize, const K: usize> {
+    /// Velocity, and spin times radius, of every body.
+    pub(super) motions: [Twist; B],
     /// What contacts without rebound have taken at last.
-    pub(super) plastic: [f64; MOST],
+    pub(super) plastic: [f64; K],
 }
 
-impl Contacts {
-    pub(super) fn new(body: &Body, struck: &[FrozenContact]) -> Self {
+impl<const B: usize, const K: usize> Contacts<B, K> {
+    pub(super) fn new(bodies: &[FrozenBody], struck: &[FrozenContact]) -> Self {
         let normal = |struck: &FrozenContact| struck.law.normal(struck.captured);
         let stiffness =
             |struck: &FrozenContact| normal(struck).stiffness_n_m(struck.stiffness_scale);
+        let moved = |struck: &FrozenContact| struck.ends.moved_kg(bodies);
         let stiffest = struck.iter().map(stiffness).fold(0.0, f64::max);
-        let momentum = (stiffest * body.mass).sqrt();
+        let mass_kg = struck.iter().map(moved).fold(f64::INFINITY, f64::min);
+        let momentum = (stiffest * mass_kg).sqrt();
         let contact = |struck: &FrozenContact| {
             let law = struck.law;
             let damping = normal(struck).damping_over(struck.stiffness_scale, momentum);
+            let unit = Body { mass: mass_kg, ..bodies[struck.ends.first].body };
+            // rocks among themselves have no rolling friction
+            let rolls = struck.ends.second.is_none();
+            let rolling = SliderElement::rolling(&unit, law, stiffest);
             ImpactContact {
                 n: struck.normal,
+                ends: struck.ends,
                 stiffness: stiffness(struck) / stiffest,
                 damping: if damping > NONE { damping } else { 0.0 },
-                shear: SliderElement::shear(body, law, stiffest),
-                rolling: SliderElement::rolling(body, law, stiffest),
+                shear: SliderElement::shear(&unit, law, stiffest),
+                rolling: if rolls { rolling } else { SliderElement::NONE },
                 captured: struck.captured,
-                kept: restitution(normal(struck).damping_ratio(body.mass)),
+                slowest: 0.0,
+                kept: restitution(normal(struck).damping_ratio(moved(struck))),
             }
         };
-        let softest = struck.iter().map(stiffness).fold(f64::INFINITY, f64::min) / stiffest;
+        let slowness = |struck: &FrozenContact| stiffness(struck) * (mass_kg / moved(struck));
+        let softest = struck.iter().map(slowness).fold(f64::INFINITY, f64::min) / stiffest;
+        let body = |FrozenBody { body, .. }: &FrozenBody| ImpactBody {
+            lightness: mass_kg / body.mass,
+            turns: mass_kg * body.radius * body.radius / body.inertia,
+        };
         Self {
             list: std::array::from_fn(|k| contact(struck.get(k).unwrap_or(&struck[0]))),
             len: struck.len(),
+            bodies: std::array::from_fn(|k| body(bodies.get(k).unwrap_or(&bodies[0]))),
+            mass_kg,
             softest: softest.sqrt(),
-            turns: body.mass * body.radius * body.radius / body.inertia,
-            fastest: [0.0; MOST],
+            fastest: [0.0; K],
         }
     }
 
@@ -97,20 +124,62 @@ impl Contacts {
         &self.list[..self.len]
     }
 
-    /// Energy of motion.
-    /// `(v² + (Rω)²/(m R²/I))/2`, the unit of energy being `m |v|²`.
-    pub(super) fn energy(&self, (v, w): (Vec3, Vec3)) -> f64 {
-        0.5 * (v.norm_squared() + w.norm_squared() / self.turns)
+    /// Energy of motion of a body.
+    /// `(v² m/m₀ + (Rω)²/(m₀ R²/I))/2`, the unit of energy being `m₀ |v|²`.
+    pub(super) fn energy(&self, body: usize, (v, w): Twist) -> f64 {
+        let ImpactBody { lightness, turns } = self.bodies[body];
+        0.5 * (v.norm_squared() / lightness + w.norm_squared() / turns)
+    }
+
+    /// Speed at which the ends of contact `k` part along its normal.
+    #[inline]
+    pub(super) fn parting(&self, k: usize, v: impl Fn(usize) -> Vec3) -> f64 {
+        let ContactEnds { first, second, .. } = self.list[k].ends;
+        let apart = if B > 1
+            && let Some(second) = second
+        {
+            v(first) - v(second)
+        } else {
+            v(first)
+        };
+        self.list[k].n.dot(&apart)
+    }
+
+    /// Whether a captured contact has not been thrown open by others: what it parts with at the end is its own spring's.
+    pub(super) fn holds(&self, k: usize, parting: f64, nothing: f64) -> bool {
+        let own = ALLOWANCE * self.list[k].kept * self.fastest[k] + nothing;
+        let captured = self.list[k].captured || self.fastest[k] < self.list[k].slowest;
+        captured && parting <= own
+    }
+
+    /// Tells what gives nothing back: what was captured before, and what is pressed together slower than that, in units of `speed`
+    /// (m/s).
+    pub(super) fn capture(&mut self, struck: &[FrozenContact], speed: f64) {
+        for (contact, struck) in self.list.iter_mut().zip(struck) {
+            contact.slowest = capture_m_s(struck.law) / speed;
+        }
     }
 
     /// Whether nothing in them takes energy.
     /// Then the limit is exactly elastic, and so must be the result.
-    fn conserve(&self) -> bool {
+    pub(super) fn conserve(&self) -> bool {
         self.list().iter().all(|contact| {
             contact.damping == 0.0 && !contact.shear.is_on() && !contact.rolling.is_on()
         })
     }
 
+    /// Books energy that ended in the contacts to those that stopped something, by the speeds along their normals that had to go.
+    pub(super) fn share_plastic(taken: f64, stopped: [f64; K], plastic: &mut [f64; K]) {
+        // squares of speeds: the energies that they stood for
+        let sum: f64 = stopped.iter().map(|speed| speed * speed).sum();
+        for (plastic, stopped) in plastic.iter_mut().zip(stopped) {
+            let own = stopped * stopped;
+            *plastic += if sum > 0.0 { taken.max(0.0) * own / sum } else { 0.0 };
+        }
+    }
+}
+
+impl<const K: usize> Contacts<1, K> {
     /// Takes out of the motion what captured contacts gave back of themselves and every approach that is left, and sees to it
     /// that the energy is not more than it was: exactly the same where nothing in the contacts takes any.
     ///
@@ -118,30 +187,28 @@ impl Contacts {
     /// that much is taken from them, not what other contacts threw at the rock.
     pub(super) fn come_to_an_end(
         &self,
-        before: (Vec3, Vec3),
-        (mut v, mut w): (Vec3, Vec3),
+        before: Twist,
+        (mut v, mut w): Twist,
         nothing: f64,
-    ) -> AfterImpact {
-        let mut plastic = [0.0; MOST];
+    ) -> AfterImpact<1, K> {
+        let mut plastic = [0.0; K];
         // each round may press the rock against a contact it had left: at most one more for each
         // contact
         for _ in 0..=self.len {
-            let own = |k: usize| ALLOWANCE * self.list[k].kept * self.fastest[k] + nothing;
-            let stays = |k: usize| self.list[k].captured && self.list[k].n.dot(&v) <= own(k);
-            let held: [bool; MOST] = std::array::from_fn(|k| k < self.len && stays(k));
+            let up = |k: usize| self.list[k].n.dot(&v);
+            let held: [bool; K] =
+                std::array::from_fn(|k| k < self.len && self.holds(k, up(k), nothing));
             let next = self.nearest_allowed(&v, held);
             if next == v {
                 break;
             }
-            self.share_plastic(
-                &v,
-                0.5 * (v.norm_squared() - next.norm_squared()),
-                held,
-                &mut plastic,
-            );
+            let stops = |k: usize| k < self.len && (up(k) < 0.0 || held[k]);
+            let stopped = std::array::from_fn(|k| if stops(k) { up(k) } else { 0.0 });
+            let taken = 0.5 * (v.norm_squared() - next.norm_squared());
+            Self::share_plastic(taken, stopped, &mut plastic);
             v = next;
         }
-        let (was, is) = (self.energy(before), self.energy((v, w)));
+        let (was, is) = (self.energy(0, before), self.energy(0, (v, w)));
         if self.conserve() && plastic.iter().all(|taken| *taken <= nothing * nothing) {
             // Only rounding can have turned the spin.
             w = before.1;
@@ -150,7 +217,7 @@ impl Contacts {
             let slower = (was / is).sqrt();
             (v, w) = (v * slower, w * slower);
         }
-        AfterImpact { v, w, plastic }
+        AfterImpact { motions: [(v, w)], plastic }
     }
 
     /// Closest velocity to `v` that comes nearer to no contact and neither nears nor leaves those that are `held`. In three
@@ -158,7 +225,7 @@ impl Contacts {
     ///
     /// A projection on a convex cone; in the sense of energy the closest is the one that loses
     /// least.
-    fn nearest_allowed(&self, v: &Vec3, held: [bool; MOST]) -> Vec3 {
+    fn nearest_allowed(&self, v: &Vec3, held: [bool; K]) -> Vec3 {
         let is_allowed = |x: &Vec3| {
             self.list().iter().zip(held).all(|(contact, held)| {
                 let up = contact.n.dot(x);
@@ -184,18 +251,5 @@ impl Contacts {
             }
         }
         best
-    }
-
-    /// Books energy that ended in the contacts to those that stopped `v`, by the speeds they stopped.
-    fn share_plastic(&self, v: &Vec3, taken: f64, held: [bool; MOST], plastic: &mut [f64; MOST]) {
-        // square of the speed along each normal that had to go: the energy it stood for
-        let stopped: [f64; MOST] = std::array::from_fn(|k| {
-            let up = if k < self.len { self.list[k].n.dot(v) } else { 0.0 };
-            if up < 0.0 || held[k] { up * up } else { 0.0 }
-        });
-        let sum: f64 = stopped.iter().sum();
-        for (plastic, stopped) in plastic.iter_mut().zip(stopped) {
-            *plastic += if sum > 0.0 { taken.max(0.0) * stopped / sum } else { 0.0 };
-        }
     }
 }

@@ -4,33 +4,44 @@
 //! where that changes the dashpots are shared anew, so steps end there and rates are smooth in
 //! between.
 
-use super::contacts::{Contacts, SwitchTime};
-use super::{FrozenContact, LONGEST_STEP, NOTHING};
-use crate::contact::MOST;
+use super::contacts::{Contacts, ImpactContact, SwitchTime};
+use super::{ContactEnds, FrozenBody, FrozenContact, LONGEST_STEP, NOTHING};
 use crate::math;
 use crate::rock::Vec3;
-use crate::solver::body::Body;
+use crate::solver::body::Twist;
 use crate::solver::impact::dormand_prince::{Flow, Rates, put, three};
 
-/// Where the way of the centre begins among the numbers that change; velocity, spin times radius and the springs follow.
-pub(super) const WAY: usize = 0;
-const V: [usize; 3] = [3, 4, 5];
-pub(super) const W: [usize; 3] = [6, 7, 8];
-/// Where the springs begin: shear of all `K` contacts, then rolling of all, each with three numbers.
-const SPRINGS: usize = 9;
+/// Where the ways of the centres begin among the numbers that change, body by body; velocities, spins times radius and the springs
+/// follow.
+const WAY: usize = 0;
 
-/// Velocity.
-pub(super) fn speed_of<const N: usize>(y: &[f64; N]) -> Vec3 {
-    three(y, V[0])
+/// Velocity of body `k` of `B`.
+pub(super) fn speed_of<const B: usize, const N: usize>(y: &[f64; N], k: usize) -> Vec3 {
+    three(y, 3 * (B + k))
 }
 
-/// Up to `K` contacts and which of them are pressed.
-/// `K` is the room for contacts; `N = 9 + 3 K` numbers without rolling, `9 + 6 K` with.
-pub(super) struct ContactRates<const K: usize> {
-    pub(super) contacts: Contacts,
-    pub(super) pressed: [bool; MOST],
+/// Its spin times radius.
+pub(super) fn spin_of<const B: usize, const N: usize>(y: &[f64; N], k: usize) -> Vec3 {
+    three(y, 3 * (2 * B + k))
+}
+
+/// The numbers at the start of an impact.
+pub(super) fn begun<const B: usize, const N: usize>(motions: &[Twist; B]) -> [f64; N] {
+    let mut y = [0.0; N];
+    for (k, (v, w)) in motions.iter().enumerate() {
+        put(&mut y, 3 * (B + k), v);
+        put(&mut y, 3 * (2 * B + k), w);
+    }
+    y
+}
+
+/// Up to `K` contacts of `B` bodies and which of them are pressed.
+/// `K` is the room for contacts; `N = 9 B + 3 K` numbers without rolling, `9 B + 6 K` with.
+pub(super) struct ContactRates<const B: usize, const K: usize> {
+    pub(super) contacts: Contacts<B, K>,
+    pub(super) pressed: [bool; K],
     /// Normal damping of each among those pressed now.
-    damping: [f64; MOST],
+    damping: [f64; K],
     /// Longest step.
     ///
     /// In radians of the stiffest contact, shorter where a dashpot is so strong that it, and not
@@ -40,16 +51,19 @@ pub(super) struct ContactRates<const K: usize> {
     pub(super) allowed: f64,
 }
 
-impl<const K: usize> ContactRates<K> {
-    pub(super) fn new(body: &Body, struck: &[FrozenContact], allowed: f64) -> Self {
-        let contacts = Contacts::new(body, struck);
+impl<const B: usize, const K: usize> ContactRates<B, K> {
+    /// Where the springs begin: shear of all `K` contacts, then rolling of all, each with three numbers.
+    const SPRINGS: usize = 9 * B;
+
+    pub(super) fn new(bodies: &[FrozenBody], struck: &[FrozenContact], allowed: f64) -> Self {
+        let contacts = Contacts::new(bodies, struck);
         let fastest =
             contacts.list().iter().fold(1.0f64, |rate, contact| rate.max(contact.damping));
         Self {
             contacts,
             // All of them at penetration zero: those that come nearer press at once.
-            pressed: [false; MOST],
-            damping: [0.0; MOST],
+            pressed: [false; K],
+            damping: [0.0; K],
             longest: LONGEST_STEP / fastest,
             allowed,
         }
@@ -64,8 +78,8 @@ impl<const K: usize> ContactRates<K> {
     /// Penetration of contact `k` and its rate.
     /// `x = −n·way`, `x' = −n·v`: at the touch the way is 0.
     fn depth<const N: usize>(&self, k: usize, y: &[f64; N]) -> [f64; 2] {
-        let n = &self.contacts.list()[k].n;
-        [-n.dot(&three(y, WAY)), -n.dot(&speed_of(y))]
+        let way = |k: usize| three(y, WAY + 3 * k);
+        [-self.contacts.parting(k, way), -self.contacts.parting(k, |k| speed_of::<B, N>(y, k))]
     }
 
     /// Finds which contacts are pressed and shares the dashpots among them; springs of those that have opened are at rest.
@@ -90,19 +104,21 @@ impl<const K: usize> ContactRates<K> {
     fn set<const N: usize>(&mut self, k: usize, pressed: bool, y: &mut [f64; N]) {
         self.pressed[k] = pressed;
         if !pressed {
-            y[SPRINGS + 3 * k..SPRINGS + 3 * k + 3].fill(0.0);
-            if N > SPRINGS + 3 * K {
-                let at = SPRINGS + 3 * (K + k);
+            y[Self::SPRINGS + 3 * k..Self::SPRINGS + 3 * k + 3].fill(0.0);
+            if N > Self::SPRINGS + 3 * K {
+                let at = Self::SPRINGS + 3 * (K + k);
                 y[at..at + 3].fill(0.0);
             }
         }
     }
 
-    /// `c_i = c_N/√Σ max(0, n_i·n_j)²` over the contacts pressed.
+    /// `c_i = c_N/√Σ max(0, n_i·n_j)²` over the contacts pressed of one body with the mesh.
     fn share(&mut self) {
         let list = self.contacts.list();
         for (k, contact) in list.iter().enumerate() {
-            let others = list.iter().zip(self.pressed).filter(|(_, pressed)| *pressed);
+            let others = list.iter().zip(self.pressed).filter(|(other, pressed)| {
+                *pressed && (B == 1 || contact.ends.shares_with(&other.ends))
+            });
             // itself included, where it is pressed: a contact alone keeps its dashpot
             let sum: f64 = others.map(|(other, _)| contact.n.dot(&other.n).max(0.0).powi(2)).sum();
             self.damping[k] = contact.damping / sum.max(1.0).sqrt();
@@ -142,10 +158,10 @@ impl<const K: usize> ContactRates<K> {
     /// Lets a free rock fly on for `wait`.
     /// Springs are at rest in flight; which contacts press at the end is found anew.
     pub(super) fn drift<const N: usize>(&mut self, y: &mut [f64; N], wait: f64) {
-        for k in 0..3 {
-            y[WAY + k] += wait * y[V[k]];
+        for k in 0..3 * B {
+            y[WAY + k] += wait * y[3 * B + k];
         }
-        y[SPRINGS..].fill(0.0);
+        y[Self::SPRINGS..].fill(0.0);
         self.press(y);
     }
 
@@ -194,21 +210,29 @@ impl<const K: usize> ContactRates<K> {
         rates: &mut Rates<N, Q, P>,
     ) {
         *rates = Rates::NONE;
-        let rolls = N > SPRINGS + 3 * K;
-        let (v, w, turns) = (speed_of(y), three(y, W[0]), self.contacts.turns);
+        let rolls = N > Self::SPRINGS + 3 * K;
         // unit mass; dw is that of spin times radius, so moments enter times m R²/I
-        let (mut dv, mut dw) = (Vec3::zeros(), Vec3::zeros());
+        let mut gained = [(Vec3::zeros(), Vec3::zeros()); B];
         for (k, contact) in self.contacts.list().iter().enumerate().take(K) {
             if !self.pressed[k] {
                 continue;
             }
-            let (n, at) = (&contact.n, SPRINGS + 3 * k);
+            let (n, at) = (&contact.n, Self::SPRINGS + 3 * k);
+            let ContactEnds { first, second, levers } = contact.ends;
             let asked = self.asked(k, y);
             let normal_force = asked.max(0.0);
             // a contact that opens is a kink too: its "cap" is what it would pull with
             rates.kinks[3 * k] = [normal_force * normal_force, (-asked).max(0.0)];
+            let (mut v, w) = (speed_of::<B, N>(y, first), spin_of::<B, N>(y, first));
+            let mut turning = w;
+            if B > 1
+                && let Some(second) = second
+            {
+                v -= speed_of::<B, N>(y, second);
+                turning = w * levers[0] + spin_of::<B, N>(y, second) * levers[1];
+            }
             let approach = -n.dot(&v);
-            let slip = v + n * approach + n.cross(&w);
+            let slip = v + n * approach + n.cross(&turning);
             // s of the shear element (`sliders`): the speed at which its dashpot would hold what
             // its spring holds
             let held = three(y, at);
@@ -217,14 +241,14 @@ impl<const K: usize> ContactRates<K> {
             let p = asked * share;
             let shear_force = p * contact.shear.damping;
             put(&mut rates.y, at, &((p - held) * contact.shear.rate));
-            dv += n * normal_force - shear_force;
-            dw += n.cross(&shear_force) * turns;
+            let (force, turn) = (n * normal_force - shear_force, n.cross(&shear_force));
+            self.push(&mut gained, contact, (&force, &turn));
             rates.q[4 * k] = contact.shear.damping * cap * slips;
             rates.q[4 * k + 1] = shear_force.dot(&slip);
             rates.q[4 * k + 3] = normal_force * approach;
             rates.kinks[3 * k + 1] = [asked.norm_squared(), cap];
             if rolls {
-                let at = SPRINGS + 3 * (K + k);
+                let at = Self::SPRINGS + 3 * (K + k);
                 // the same of the rolling element, over all three components of the spin
                 let wound = three(y, at);
                 let asked = w + wound;
@@ -233,18 +257,43 @@ impl<const K: usize> ContactRates<K> {
                 let p = asked * share;
                 let rolling_moment = p * contact.rolling.damping;
                 put(&mut rates.y, at, &((p - wound) * contact.rolling.rate));
-                dw -= rolling_moment * turns;
+                gained[first].1 -= rolling_moment * self.contacts.bodies[first].turns;
                 rates.q[4 * k + 2] = rolling_moment.dot(&w);
             }
         }
-        put(&mut rates.y, WAY, &v);
-        put(&mut rates.y, V[0], &dv);
-        put(&mut rates.y, W[0], &dw);
+        for (k, (dv, dw)) in gained.iter().enumerate() {
+            put(&mut rates.y, WAY + 3 * k, &speed_of::<B, N>(y, k));
+            put(&mut rates.y, 3 * (B + k), dv);
+            put(&mut rates.y, 3 * (2 * B + k), dw);
+        }
+    }
+
+    /// Adds a force at a contact, and the moment that goes with it at a lever of one radius, to what its ends gain.
+    #[inline]
+    fn push(
+        &self,
+        gained: &mut [Twist; B],
+        contact: &ImpactContact,
+        (force, turn): (&Vec3, &Vec3),
+    ) {
+        let ContactEnds { first, second, levers } = contact.ends;
+        let bodies = &self.contacts.bodies;
+        if B == 1 {
+            gained[0].0 += force;
+            gained[0].1 += turn * bodies[0].turns;
+            return;
+        }
+        gained[first].0 += force * bodies[first].lightness;
+        gained[first].1 += turn * (levers[0] * bodies[first].turns);
+        if let Some(second) = second {
+            gained[second].0 -= force * bodies[second].lightness;
+            gained[second].1 += turn * (levers[1] * bodies[second].turns);
+        }
     }
 }
 
-impl<const K: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, P>
-    for ContactRates<K>
+impl<const B: usize, const K: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, P>
+    for ContactRates<B, K>
 {
     #[inline]
     fn rates(&mut self, _node: usize, y: &[f64; N], to: &mut Rates<N, Q, P>) {
@@ -255,16 +304,16 @@ impl<const K: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, 
     fn size2(&self, off: &[f64; N]) -> f64 {
         // way, velocity and spin have one unit here; a spring's error counts as the stretch it
         // means
-        let mut sum: f64 = off[..SPRINGS].iter().map(|x| x * x).sum();
+        let mut sum: f64 = off[..Self::SPRINGS].iter().map(|x| x * x).sum();
         for (k, contact) in self.contacts.list().iter().enumerate() {
             let mut add = |at: usize, rate: f64| {
                 if rate > 0.0 {
                     sum += three(off, at).norm_squared() / (rate * rate);
                 }
             };
-            add(SPRINGS + 3 * k, contact.shear.rate);
-            if N > SPRINGS + 3 * K {
-                add(SPRINGS + 3 * (K + k), contact.rolling.rate);
+            add(Self::SPRINGS + 3 * k, contact.shear.rate);
+            if N > Self::SPRINGS + 3 * K {
+                add(Self::SPRINGS + 3 * (K + k), contact.rolling.rate);
             }
         }
         sum / (self.allowed * self.allowed)

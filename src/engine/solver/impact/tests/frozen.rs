@@ -23,7 +23,8 @@ fn touches(contacts: &[FrozenContact]) -> Vec<Touch> {
 }
 
 fn slope(n: [f64; 3], law: &Law) -> FrozenContact<'_> {
-    FrozenContact { normal: Vec3::from(n).normalize(), law, stiffness_scale: 1.0, captured: false }
+    let normal = Vec3::from(n).normalize();
+    FrozenContact { normal, law, captured: false, ..FrozenContact::none() }
 }
 
 fn smooth(e: f64) -> Ground {
@@ -260,8 +261,7 @@ proptest! {
             normal: Vec3::new(*x, *y, z.abs() + 0.02).normalize(),
             law: if k % 2 == 0 { &law } else { &soft },
             stiffness_scale: if k % 3 == 1 { scale } else { 1.0 },
-            captured: caught < 64 && caught >> k & 1 == 1,
-        }).collect();
+            captured: caught < 64 && caught >> k & 1 == 1, ..FrozenContact::none() }).collect();
         let v = (Vec3::from(v) - Vec3::z()) * 10f64.powf(speed);
         let w = Vec3::from(w) * (v.norm() / radius);
         let out = throw(&body, &contacts, (&v, &w), 1e-4);

@@ -1,11 +1,15 @@
 //! The rocks of an island inside one rigid step, and the impulses of their contacts.
 
+use crate::contact::ContactPoint;
 use crate::contact::pair::{PairHistory, between};
 use crate::ground::{FrictionLimits, Law};
 use crate::rock::Vec3;
 use crate::solver::body::{Body, Twist};
 use crate::solver::impact::{BlowTable, blow_along_a_line};
+use crate::solver::island::body::BodySlot;
+use crate::solver::island::outcome::Hit;
 use crate::solver::rigid::GroundContact;
+use crate::terrain::Terrain;
 
 /// One rock inside a step.
 #[derive(Debug, Clone, Copy)]
@@ -72,9 +76,50 @@ impl StepBody {
         self.c += blow.0 * (self.inv.0 * s);
     }
 
+    /// Centre and velocity `s` (s) before the end of the step, on its parabola.
+    pub(super) fn before_end(&self, s: f64) -> (Vec3, Vec3) {
+        let gravity = self.body.gravity;
+        (self.c - (self.v - gravity * (0.5 * s)) * s, self.v - gravity * s)
+    }
+
+    /// Notes that a blow fell `s` (s) before the end of the step.
+    pub(super) fn is_struck(&mut self, s: f64) {
+        self.since_s = s;
+        self.blows += 1;
+        self.pushed = true;
+        self.times += 1;
+    }
+
     /// Work of an impulse at mean velocity `v` and spin `w` (J).
     pub(super) fn work_j((normal_force, turn): &Twist, v: &Vec3, w: &Vec3) -> f64 {
         normal_force.dot(v) + turn.dot(w)
+    }
+}
+
+/// Blows on one rock in one step from which on they do not rebound.
+pub(super) const LIVELY: u32 = 200;
+
+/// What blows act on.
+pub(super) struct ImpactScene<'s> {
+    pub(super) terrain: &'s Terrain,
+    pub(super) members: &'s mut [BodySlot],
+    pub(super) pair_histories: &'s [PairHistory],
+}
+
+/// The impact of rock `k`, with its centre at `c`, at a touch.
+pub(super) fn hit_of(
+    k: usize,
+    touch: &ContactPoint,
+    (c, radius): (&Vec3, f64),
+    approach_m_s: f64,
+) -> Hit {
+    Hit {
+        rock: k,
+        normal: touch.normal,
+        approach_m_s,
+        point_m: c - touch.normal * radius,
+        feature: touch.feature.kind,
+        triangle: touch.triangle,
     }
 }
 

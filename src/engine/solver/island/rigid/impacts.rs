@@ -7,28 +7,26 @@
 //! step, and each takes energy.
 
 use super::RigidIsland;
-use super::contacts::{BallContact, StepBody};
+use super::collision::BlowStart;
+use super::contacts::{BallContact, ImpactScene, LIVELY, StepBody, hit_of};
 use super::sweeps::FEW;
-use crate::contact::ContactPoint;
-use crate::contact::pair::PairHistory;
+use crate::contact::pair::{PairHistory, between};
+use crate::contact::{ContactPoint, ContactPoints};
 use crate::rock::Vec3;
 use crate::solver::body::Twist;
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
+
 use crate::solver::impact::throw;
-use crate::solver::island::body::{BodySlot, IslandBody};
-use crate::solver::island::outcome::Hit;
+use crate::solver::island::body::IslandBody;
 use crate::solver::island::pair_contact::TOUCH;
 use crate::solver::law::capture_m_s;
 use crate::solver::loss::{Given, Loss};
 use crate::solver::rigid::{HELD, IMPACT, frozen, is_fast};
 use crate::solver::roughness::Meeting;
-use crate::terrain::Terrain;
 use nalgebra::Rotation3;
 use std::cmp::Reverse;
 
-/// Blows on one rock in one step from which on they do not rebound …
-const LIVELY: u32 = 200;
-/// … and after which the rest is left to the next step.
+/// Blows on one rock in one step after which the rest is left to the next step.
 const MOST: u32 = 400;
 /// A touch at the time of a blow that is no farther than this (–, relative to R): a mesh is not met on a parabola alone.
 const NEAR: f64 = 1e-3;
@@ -41,13 +39,6 @@ const IMPACT_OF_MANY: f64 = 1e-3;
 /// A blow that is due: time before the end of the step (s, as the bits of a positive number: they keep the order), the
 /// place of its contact, the counts of its rocks.
 pub(super) type PendingImpact = (u64, Reverse<usize>, [u32; 2]);
-
-/// What blows act on.
-pub(super) struct ImpactScene<'s> {
-    pub(super) terrain: &'s Terrain,
-    pub(super) members: &'s mut [BodySlot],
-    pub(super) pair_histories: &'s [PairHistory],
-}
 
 impl ImpactScene<'_> {
     /// The rocks of a contact: pairs come first, then every rock with the mesh.
@@ -88,7 +79,7 @@ impl RigidIsland {
                 continue;
             }
             self.blow(scene, place, f64::from_bits(bits));
-            self.expect_more(scene, ends);
+            self.expect_more(scene);
         }
         all
     }
@@ -102,14 +93,14 @@ impl RigidIsland {
         self.of_rocks.lay(&ends, self.balls.len());
     }
 
-    /// Looks for the blows that follow from one on these rocks.
-    fn expect_more(&mut self, scene: &mut ImpactScene, ends: [usize; 2]) {
-        let both = if ends[0] == ends[1] { &ends[..1] } else { &ends[..] };
-        for &end in both {
-            for place in self.of_rocks.places(end) {
+    /// Looks for the blows that follow from the last one.
+    fn expect_more(&mut self, scene: &mut ImpactScene) {
+        for k in 0..self.in_blow.len() {
+            let rock = self.in_blow[k];
+            for place in self.of_rocks.places(rock) {
                 self.expect_pair(scene, self.of_rocks.at(place));
             }
-            self.expect_ground(scene, end);
+            self.expect_ground(scene, rock);
         }
     }
 
@@ -132,7 +123,7 @@ impl RigidIsland {
         let inside = (reach * reach - distance2).max(0.0);
         let root = (along * along + closing.norm_squared() * inside).sqrt();
         let s = (inside / (root - along)).min(a.since_s).min(b.since_s);
-        let (n, _) = crate::contact::pair::between(&(a.c - a.v * s), &(b.c - b.v * s));
+        let (n, _) = between(&(a.c - a.v * s), &(b.c - b.v * s));
         if -n.dot(&closing) >= capture_m_s(&pair_history.law) {
             self.due.push((s.to_bits(), Reverse(place), [a.times, b.times]));
         }
@@ -148,7 +139,7 @@ impl RigidIsland {
         for touch in state.touches.iter() {
             let s = time_of_touch(ball, &touch.normal, body.radius - touch.distance_m);
             let is_fast = |s: &f64| {
-                let v = ball.v - body.gravity * *s;
+                let (_, v) = ball.before_end(*s);
                 -touch.normal.dot(&v) >= capture_m_s(world.law(touch.triangle))
             };
             if let Some(s) = s.filter(is_fast) {
@@ -164,6 +155,9 @@ impl RigidIsland {
 
     /// Takes the blow of a contact, `s` (s) before the end of the step.
     fn blow(&mut self, scene: &mut ImpactScene, place: usize, s: f64) {
+        let ends = scene.ends_of(place);
+        self.in_blow.clear();
+        self.in_blow.extend(ends.iter().take(if ends[0] == ends[1] { 1 } else { 2 }));
         if place < scene.pair_histories.len() {
             self.blow_pair(scene, place, s);
         } else {
@@ -172,11 +166,14 @@ impl RigidIsland {
     }
 
     /// Local error of a blow (–).
-    fn impact_tolerance(&self) -> f64 {
+    pub(super) fn impact_tolerance(&self) -> f64 {
         if self.balls.len() <= FEW { IMPACT } else { IMPACT_OF_MANY }
     }
 
-    fn blow_pair(&mut self, scene: &ImpactScene, place: usize, s: f64) {
+    fn blow_pair(&mut self, scene: &mut ImpactScene, place: usize, s: f64) {
+        if self.blow_together(scene, &BlowStart { pair: Some(place), turn: None }, s) {
+            return;
+        }
         let tolerance = self.impact_tolerance();
         let pair_history = &scene.pair_histories[place];
         let ends = [pair_history.a as usize, pair_history.b as usize];
@@ -209,8 +206,7 @@ impl RigidIsland {
         let ball = &mut self.balls[k];
         let IslandBody { state, body, laws, .. } = &mut *scene.members[k];
         let world = ContactEnvironment { terrain: scene.terrain, body: *body, laws };
-        let v = ball.v - body.gravity * s;
-        let at = ball.c - (ball.v - body.gravity * (0.5 * s)) * s;
+        let (at, v) = ball.before_end(s);
         let reach = body.radius * (1.0 + NEAR);
         state.look(&world, &at, reach);
         if state.touches.iter().all(|touch| touch.normal.dot(&v) >= 0.0) {
@@ -231,37 +227,43 @@ impl RigidIsland {
             state.fell_broken(&world, &broken);
             return ball.is_struck(s);
         }
+        let meeting = Meeting { n: touch.normal, triangle: touch.triangle, c: at, v };
+        let turn = state.facets.struck(&world, &meeting);
+        // how near something is at that instant is known as well as the parabola is the way of the rock
+        state.touches.keep_nearer(touch.distance_m.max(body.radius) + HELD * body.radius);
+        if self.blow_together(scene, &BlowStart { pair: None, turn }, s) {
+            return;
+        }
+        let ball = &mut self.balls[k];
+        let IslandBody { state, body, laws, .. } = &mut *scene.members[k];
+        let world = ContactEnvironment { terrain: scene.terrain, body: *body, laws };
         let how = (ball.blows >= LIVELY, tolerance);
         let mut note = |other: &ContactPoint, loss: &Loss, approach_m_s: Option<f64>| {
             self.losses[k].add(loss, 1.0);
             let hit = |approach_m_s| hit_of(k, other, (&at, body.radius), approach_m_s);
             self.hits.extend(approach_m_s.map(hit));
         };
-        let after = throw_off((&world, state), (&touch, &at), (&v, &ball.w), how, &mut note);
+        let motion = (&v, &ball.w);
+        let after = throw_off((&world, &state.touches), (&touch, turn), motion, how, &mut note);
         let load = ((after.0 - v) * body.mass, (after.1 - ball.w) * body.inertia);
         ball.take_late(&load, s);
         ball.is_struck(s);
     }
 }
 
-/// Velocity and spin after the impact of a rock, with its centre at `c`, on all that it touches at the instant at which it comes to
-/// `touch`; as a rock alone it is turned against a facet, and back. Gives nothing back if it is `dead`. Notes of every contact what
-/// it took, and of those struck the approach (m/s).
+/// Velocity and spin after the impact of a rock on all that it touches at the instant at which it comes to `touch`; as a rock alone it
+/// is turned against a facet, and back. Gives nothing back if it is `dead`. Notes of every contact what it took, and of those struck
+/// the approach (m/s).
 fn throw_off(
-    (world, state): (&ContactEnvironment, &mut ContactState),
-    (touch, c): (&ContactPoint, &Vec3),
+    (world, touches): (&ContactEnvironment, &ContactPoints),
+    (touch, turn): (&ContactPoint, Option<Rotation3<f64>>),
     (v, w): (&Vec3, &Vec3),
     (dead, tolerance): (bool, f64),
     note: &mut impl FnMut(&ContactPoint, &Loss, Option<f64>),
 ) -> Twist {
-    let meeting = Meeting { n: touch.normal, triangle: touch.triangle, c: *c, v: *v };
-    let turn = state.facets.struck(world, &meeting).unwrap_or_else(Rotation3::identity);
+    let turn = turn.unwrap_or_else(Rotation3::identity);
     let [met, spin] = [v, w].map(|x| turn.inverse() * x);
-    // how near something is at that instant is known as well as the parabola is the way of the rock
-    let reach = touch.distance_m.max(world.body.radius) + HELD * world.body.radius;
-    let mut touches = state.touches;
-    touches.keep_nearer(reach);
-    let mut struck = frozen(world, &touches, &met);
+    let mut struck = frozen(world, touches, &met);
     for contact in &mut struck {
         contact.captured |= dead;
     }
@@ -272,28 +274,6 @@ fn throw_off(
         note(other, &loss.on(world, other.triangle), approach_m_s);
     }
     (turn * thrown.velocity_m_s, turn * thrown.spin_rad_s)
-}
-
-impl StepBody {
-    /// Notes that a blow fell `s` (s) before the end of the step.
-    fn is_struck(&mut self, s: f64) {
-        self.since_s = s;
-        self.blows += 1;
-        self.pushed = true;
-        self.times += 1;
-    }
-}
-
-/// The impact of rock `k`, with its centre at `c`, at a touch.
-fn hit_of(k: usize, touch: &ContactPoint, (c, radius): (&Vec3, f64), approach_m_s: f64) -> Hit {
-    Hit {
-        rock: k,
-        normal: touch.normal,
-        approach_m_s,
-        point_m: c - touch.normal * radius,
-        feature: touch.feature.kind,
-        triangle: touch.triangle,
-    }
 }
 
 /// Whether a rock that slides or rolls strikes the next facet of rough ground, the last one being behind it.

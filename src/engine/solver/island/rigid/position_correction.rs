@@ -5,8 +5,7 @@
 //! pay for it, or a heap warms up by itself.
 
 use super::RigidIsland;
-use super::contacts::StepBody;
-use super::impacts::ImpactScene;
+use super::contacts::{ImpactScene, StepBody};
 use crate::contact::TOUCH;
 use crate::contact::pair::{PairHistory, between};
 use crate::rock::Vec3;
@@ -191,7 +190,7 @@ impl StepBody {
 
     /// Energy in motion (J).
     fn motion_j(&self) -> f64 {
-        0.5 * (self.body.mass * self.v.norm_squared() + self.body.inertia * self.w.norm_squared())
+        self.energy_j((&self.v, &self.w))
     }
 
     /// Loses energy (J) of its motion, as much as it has at most.

@@ -1,0 +1,176 @@
+//! Several bodies that touch each other and the mesh at the instant of a blow: springs in a row, and every contact answers.
+//!
+//! What runs through a column, a row or a cradle of rocks takes the time of their springs. In the limit of stiff springs it takes
+//! none, but its course is the same: it is followed in its own time as the impact of one rock among several contacts is, with the same
+//! rates. Impulses act on both ends of a contact at one point, so momentum and angular momentum are kept to rounding.
+
+use super::contacts::{AfterImpact, Contacts, REST};
+use super::rates::ContactRates;
+use super::{ContactEnds, FIRST, FrozenBody, FrozenContact, ImpactRun, LOCAL};
+use crate::math;
+use crate::rock::Vec3;
+use crate::solver::body::Twist;
+use crate::solver::loss::Loss;
+
+/// Most bodies and contacts of one impact.
+pub(crate) const BODIES: usize = 16;
+pub(crate) const CONTACTS: usize = 48;
+/// Slowest frequency of a contact over the fastest (–): in a light rock between heavy ones springs swing thousands of times in one blow.
+const SLOWEST: f64 = 1e-2;
+/// Rounds over the contacts in which what gives nothing back is brought to rest, at most.
+const ROUNDS: usize = 1000;
+
+/// Motions after a frozen impact of several bodies.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct FrozenCollision {
+    /// Velocity (m/s) and spin (rad/s) of every body.
+    pub(crate) motions: [Twist; BODIES],
+    /// Energy lost (J) by contact and kind, each ≥ 0: together exactly the energy before less that after.
+    pub(crate) loss: [Loss; CONTACTS],
+    /// Fastest approach to each contact (m/s), 0 where it was not pressed.
+    pub(crate) fastest_m_s: [f64; CONTACTS],
+}
+
+/// Follows up to [`BODIES`] bodies through an impact on up to [`CONTACTS`] contacts at once, each of them at penetration zero;
+/// `None` if nothing comes nearer, or where there are too many of them or their frequencies lie too far apart. `tolerance` is relative to the fastest motion at a contact (–).
+///
+/// A contact that is pressed together slower than what is captured gives nothing back, whatever it gave in between.
+pub(crate) fn collide(
+    bodies: &[FrozenBody],
+    contacts: &[FrozenContact],
+    tolerance: f64,
+) -> Option<FrozenCollision> {
+    let case = (bodies, contacts);
+    match (bodies.len(), contacts.len()) {
+        (..=3, ..=6) => followed::<3, 6, 63, 24, 18>(case, tolerance),
+        (..=8, ..=20) => followed::<8, 20, 192, 80, 60>(case, tolerance),
+        (..=BODIES, ..=CONTACTS) => followed::<BODIES, CONTACTS, 432, 192, 144>(case, tolerance),
+        _ => None,
+    }
+}
+
+fn followed<const B: usize, const K: usize, const N: usize, const Q: usize, const P: usize>(
+    (bodies, contacts): (&[FrozenBody], &[FrozenContact]),
+    tolerance: f64,
+) -> Option<FrozenCollision> {
+    let speed = fastest_m_s(bodies, contacts)?;
+    let mut flow = ContactRates::<B, K>::new(bodies, contacts, LOCAL * tolerance);
+    if flow.contacts.softest < SLOWEST {
+        return None;
+    }
+    let own = |k: usize| bodies.get(k).copied();
+    let start: [Twist; B] = std::array::from_fn(|k| {
+        let still = (Vec3::zeros(), Vec3::zeros());
+        own(k).map_or(still, |FrozenBody { body, motion: (v, w) }| {
+            (v / speed, w * (body.radius / speed))
+        })
+    });
+    let unit_j = flow.contacts.mass_kg * speed * speed;
+    flow.contacts.capture(contacts, speed);
+    let mut run = ImpactRun::<B, K, N, Q, P>::new(flow, start);
+    run.follow(FIRST * math::pow(tolerance, 0.2));
+    let nothing = run.flow.nothing();
+    let contacts = &run.flow.contacts;
+    let AfterImpact { motions: together, plastic } = contacts.part_or_stay(run.motions(), nothing);
+    let (motions, lost) = contacts.balanced((&start, &together), plastic.iter().sum());
+    let loss_j = run.loss_j(lost.max(0.0) * unit_j, plastic);
+    let mut end = FrozenCollision {
+        motions: [(Vec3::zeros(), Vec3::zeros()); BODIES],
+        loss: [Loss::default(); CONTACTS],
+        fastest_m_s: [0.0; CONTACTS],
+    };
+    for (k, FrozenBody { body, .. }) in bodies.iter().enumerate() {
+        let (v, w) = motions[k];
+        end.motions[k] = (v * speed, w * (speed / body.radius));
+    }
+    end.loss[..K].copy_from_slice(&loss_j);
+    for (m_s, fastest) in end.fastest_m_s.iter_mut().zip(run.flow.contacts.fastest) {
+        *m_s = fastest * speed;
+    }
+    Some(end)
+}
+
+/// Largest speed of two ends of a contact past each other (m/s); `None` if none comes nearer.
+fn fastest_m_s(bodies: &[FrozenBody], contacts: &[FrozenContact]) -> Option<f64> {
+    let velocity = |k: usize| bodies[k].motion.0;
+    let apart = contacts.iter().map(|FrozenContact { normal, ends, .. }| {
+        let v = velocity(ends.first) - ends.second.map_or_else(Vec3::zeros, velocity);
+        (v.norm(), normal.dot(&v) < 0.0)
+    });
+    let (fastest, comes) =
+        apart.fold((0.0f64, false), |(most, any), (speed, comes)| (most.max(speed), any || comes));
+    comes.then_some(fastest)
+}
+
+impl<const B: usize, const K: usize> Contacts<B, K> {
+    /// Brings to rest what gives nothing back, and every approach that is left: the closest motions in which no contact comes nearer, and
+    /// those that hold do not part either. Closest in the sense of energy, which is the one that loses least.
+    ///
+    /// Projected Gauss–Seidel over the normal impulses.
+    fn part_or_stay(&self, mut motions: [Twist; B], nothing: f64) -> AfterImpact<B, K> {
+        let parting = |motions: &[Twist; B], k: usize| self.parting(k, |k| motions[k].0);
+        let held: [bool; K] = std::array::from_fn(|k| {
+            k < self.list().len() && self.holds(k, parting(&motions, k), nothing)
+        });
+        let speeds: [f64; K] = std::array::from_fn(|k| {
+            let speed = if k < self.list().len() { parting(&motions, k) } else { 0.0 };
+            if speed < 0.0 || held[k] { speed } else { 0.0 }
+        });
+        let before = self.energies(&motions);
+        self.sweep(&mut motions, held);
+        let mut plastic = [0.0; K];
+        Self::share_plastic(before - self.energies(&motions), speeds, &mut plastic);
+        AfterImpact { motions, plastic }
+    }
+
+    /// Impulses along the normals until no contact comes nearer, and those that are held do not part either.
+    fn sweep(&self, motions: &mut [Twist; B], held: [bool; K]) {
+        let mut impulses = [0.0; K];
+        for _ in 0..ROUNDS {
+            let mut worst = 0.0f64;
+            for (k, contact) in self.list().iter().enumerate() {
+                let ContactEnds { first, second, .. } = contact.ends;
+                let lightness = |end: usize| self.bodies[end].lightness;
+                let (one, other) = (lightness(first), second.map_or(0.0, lightness));
+                let wanted = impulses[k] - self.parting(k, |k| motions[k].0) / (one + other);
+                let next = if held[k] { wanted } else { wanted.max(0.0) };
+                let change = next - impulses[k];
+                impulses[k] = next;
+                motions[first].0 += contact.n * (change * one);
+                if let Some(second) = second {
+                    motions[second].0 -= contact.n * (change * other);
+                }
+                worst = worst.max((change * (one + other)).abs());
+            }
+            if worst <= REST {
+                break;
+            }
+        }
+    }
+
+    fn energies(&self, motions: &[Twist; B]) -> f64 {
+        motions.iter().enumerate().map(|(k, motion)| self.energy(k, *motion)).sum()
+    }
+
+    /// Motions after the impact that hold no more energy than before, exactly as much where nothing in the contacts takes any, and what is
+    /// lost. All impulses are made smaller or larger by one factor, so that momentum is kept.
+    ///
+    /// `E(s) = E₀ + s a + s² b` of the motions `x₀ + s (x₁ − x₀)`.
+    fn balanced(
+        &self,
+        (before, after): (&[Twist; B], &[Twist; B]),
+        plastic: f64,
+    ) -> ([Twist; B], f64) {
+        let change: [Twist; B] =
+            std::array::from_fn(|k| (after[k].0 - before[k].0, after[k].1 - before[k].1));
+        let (was, is, b) = (self.energies(before), self.energies(after), self.energies(&change));
+        let is_exact = self.conserve() && plastic <= REST;
+        if !(is_exact || is > was) || b <= 0.0 {
+            return (*after, was - is);
+        }
+        let s = (b - (is - was)) / b;
+        let motions: [Twist; B] =
+            std::array::from_fn(|k| (before[k].0 + change[k].0 * s, before[k].1 + change[k].1 * s));
+        (motions, was - self.energies(&motions))
+    }
+}

@@ -1,0 +1,285 @@
+//! One blow of several rocks: all that touch each other at its instant take part, and so does the mesh that they touch.
+//!
+//! A ball that falls on one that lies on the ground is answered by the ground, and a blow on a row of rocks in touch runs through it:
+//! taken pair by pair that would be another law than that of springs. In islands of more rocks than one impact is followed with, in
+//! heaps, blows are taken pair by pair: each of them would run through all that lie there.
+
+use super::RigidIsland;
+use super::contacts::{ImpactScene, LIVELY, StepBody, hit_of};
+use crate::contact::pair::between;
+use crate::rock::Vec3;
+use crate::solver::contact_state::ContactEnvironment;
+use crate::solver::impact::{
+    BODIES, CONTACTS, ContactEnds, FrozenBody, FrozenCollision, FrozenContact, collide,
+};
+use crate::solver::island::body::IslandBody;
+use crate::solver::law::capture_m_s;
+use crate::solver::rigid::HELD;
+use nalgebra::Rotation3;
+
+/// What a blow begins with.
+pub(super) struct BlowStart {
+    /// The pair of rocks, or none where one comes to the mesh: its touches are those of its last look.
+    pub(super) pair: Option<usize>,
+    /// Turn of the facet of rough ground that is struck, if there is one.
+    pub(super) turn: Option<Rotation3<f64>>,
+}
+
+/// Rocks that touch each other.
+struct TouchingRocks {
+    /// Their places in the island.
+    rocks: [usize; BODIES],
+    count: usize,
+    /// Their pairs.
+    pairs: [usize; CONTACTS],
+    pair_count: usize,
+}
+
+impl TouchingRocks {
+    /// None yet.
+    const NONE: Self = Self { rocks: [0; BODIES], count: 0, pairs: [0; CONTACTS], pair_count: 0 };
+
+    fn rocks(&self) -> &[usize] {
+        &self.rocks[..self.count]
+    }
+
+    fn pairs(&self) -> &[usize] {
+        &self.pairs[..self.pair_count]
+    }
+
+    /// Where a rock stands among them; it is added, if there is room.
+    fn place_of(&mut self, rock: usize) -> Option<usize> {
+        let known = self.rocks().iter().position(|known| *known == rock);
+        if known.is_none() && self.count < BODIES {
+            self.rocks[self.count] = rock;
+            self.count += 1;
+            return Some(self.count - 1);
+        }
+        known
+    }
+
+    /// Adds a pair; whether there was room.
+    fn add_pair(&mut self, pair: usize) -> bool {
+        if self.pairs().contains(&pair) {
+            return true;
+        }
+        let room = self.pair_count < CONTACTS;
+        if room {
+            self.pairs[self.pair_count] = pair;
+            self.pair_count += 1;
+        }
+        room
+    }
+}
+
+/// A rock at the instant of a blow.
+#[derive(Clone, Copy)]
+struct StruckRock {
+    c: Vec3,
+    v: Vec3,
+    /// Whether it touches the mesh.
+    on_mesh: bool,
+}
+
+/// All that takes part in a blow.
+struct StruckRocks {
+    touching: TouchingRocks,
+    rocks: [StruckRock; BODIES],
+}
+
+impl RigidIsland {
+    /// Takes a blow `s` (s) before the end of the step together with all rocks that touch; whether more take part than its own ends
+    /// and not too many.
+    pub(super) fn blow_together(
+        &mut self,
+        scene: &mut ImpactScene,
+        blow: &BlowStart,
+        s: f64,
+    ) -> bool {
+        if self.balls.len() > BODIES {
+            return false;
+        }
+        let Some(touching) = self.touching(scene, blow, s) else { return false };
+        let rocks = touching.rocks.map(|rock| {
+            let (c, v) = self.balls[rock].before_end(s);
+            StruckRock { c, v, on_mesh: false }
+        });
+        let mut struck = StruckRocks { touching, rocks };
+        struck.look(scene, blow);
+        let Some((contacts, count)) = self.contacts(scene, &struck, blow) else { return false };
+        let contacts = &contacts[..count];
+        let StruckRocks { touching, rocks } = &struck;
+        let own = if blow.pair.is_some() { 2 } else { 1 };
+        if touching.count <= own && (blow.pair.is_none() || count == 1) {
+            return false;
+        }
+        let bodies: [FrozenBody; BODIES] = std::array::from_fn(|k| {
+            let ball = &self.balls[touching.rocks[k]];
+            FrozenBody { body: ball.body, motion: (rocks[k].v, ball.w) }
+        });
+        let (bodies, tolerance) = (&bodies[..touching.count], self.impact_tolerance());
+        let Some(after) = collide(bodies, contacts, tolerance) else { return false };
+        let taken_j = self.book(scene, &struck, contacts, &after);
+        self.go_on_from(&struck, &after, (taken_j, s));
+        true
+    }
+
+    /// Books what the contacts of a blow took; what each rock lost in its contacts (J).
+    fn book(
+        &mut self,
+        scene: &ImpactScene,
+        StruckRocks { touching, rocks }: &StruckRocks,
+        contacts: &[FrozenContact],
+        after: &FrozenCollision,
+    ) -> [f64; BODIES] {
+        let mut taken_j = [0.0; BODIES];
+        // the touch with the mesh, counted rock by rock
+        let (mut on, mut touch) = (0, 0);
+        for (k, contact) in contacts.iter().enumerate() {
+            let (loss, approach_m_s) = (&after.loss[k], after.fastest_m_s[k]);
+            let ContactEnds { first, second, .. } = contact.ends;
+            let rock = touching.rocks[first];
+            if let Some(second) = second {
+                for end in [first, second] {
+                    taken_j[end] += 0.5 * loss.sum();
+                    self.given[touching.rocks[end]].lost += 0.5 * loss.sum();
+                }
+                self.struck[touching.pairs[k]] = true;
+                continue;
+            }
+            touch = if on == first { touch } else { 0 };
+            on = first;
+            let IslandBody { state, body, laws, .. } = &*scene.members[rock];
+            let world = ContactEnvironment { terrain: scene.terrain, body: *body, laws };
+            let at = &state.touches[touch];
+            touch += 1;
+            taken_j[first] += loss.sum();
+            self.losses[rock].add(&loss.on(&world, at.triangle), 1.0);
+            if approach_m_s >= capture_m_s(contact.law) {
+                self.hits.push(hit_of(rock, at, (&rocks[first].c, body.radius), approach_m_s));
+            }
+        }
+        taken_j
+    }
+
+    /// Lets the rocks go on from a blow, `s` (s) before the end of the step. What none of their contacts took has been handed on.
+    fn go_on_from(
+        &mut self,
+        StruckRocks { touching, rocks }: &StruckRocks,
+        after: &FrozenCollision,
+        (taken_j, s): ([f64; BODIES], f64),
+    ) {
+        self.in_blow.clear();
+        for (k, (&rock, from)) in touching.rocks().iter().zip(rocks).enumerate() {
+            let ball = &mut self.balls[rock];
+            let (v, w) = after.motions[k];
+            let lost_j = ball.energy_j((&from.v, &ball.w)) - ball.energy_j((&v, &w));
+            self.given[rock].passed_on += lost_j - taken_j[k];
+            // what weight and contacts add in the rest of the step stays
+            ball.v += v - from.v;
+            ball.c += (v - from.v) * s;
+            ball.w = w;
+            ball.is_struck(s);
+            self.in_blow.push(rock);
+        }
+    }
+
+    /// Rocks that touch the ends of a blow, and those that touch these; `None` if they are too many.
+    fn touching(&self, scene: &ImpactScene, blow: &BlowStart, s: f64) -> Option<TouchingRocks> {
+        let mut touching = TouchingRocks::NONE;
+        for &rock in &self.in_blow {
+            touching.place_of(rock)?;
+        }
+        blow.pair.into_iter().for_each(|pair| {
+            touching.add_pair(pair);
+        });
+        let mut next = 0;
+        while next < touching.count {
+            let rock = touching.rocks[next];
+            next += 1;
+            for place in self.of_rocks.places(rock) {
+                let pair = self.of_rocks.at(place);
+                let ends = [scene.pair_histories[pair].a, scene.pair_histories[pair].b];
+                let [a, b] = ends.map(|k| &self.balls[k as usize]);
+                let apart = a.before_end(s).0 - b.before_end(s).0;
+                let reach = a.body.radius + b.body.radius + HELD * a.body.radius.min(b.body.radius);
+                if apart.norm_squared() <= reach * reach {
+                    for end in ends {
+                        touching.place_of(end as usize)?;
+                    }
+                    touching.add_pair(pair).then_some(())?;
+                }
+            }
+        }
+        Some(touching)
+    }
+
+    /// The contacts of a blow: pairs, then those with the mesh rock by rock; `None` if they are too many.
+    fn contacts<'s>(
+        &self,
+        scene: &'s ImpactScene,
+        StruckRocks { touching, rocks }: &StruckRocks,
+        blow: &BlowStart,
+    ) -> Option<([FrozenContact<'s>; CONTACTS], usize)> {
+        let mut contacts = [FrozenContact::none(); CONTACTS];
+        let mut count = 0;
+        let captured = touching.rocks().iter().any(|rock| self.balls[*rock].blows >= LIVELY);
+        let mut add = |contact: FrozenContact<'s>| -> Option<()> {
+            *contacts.get_mut(count)? = FrozenContact { captured, ..contact };
+            count += 1;
+            Some(())
+        };
+        for &pair in touching.pairs() {
+            let pair_history = &scene.pair_histories[pair];
+            let place = |end: u32| touching.rocks().iter().position(|rock| *rock == end as usize);
+            let (first, second) = (place(pair_history.a)?, place(pair_history.b)?);
+            let (normal, distance) = between(&rocks[first].c, &rocks[second].c);
+            let radius = |k: usize| self.balls[touching.rocks[k]].body.radius;
+            // one common point, as in every contact of two rocks
+            let lever = distance / (radius(first) + radius(second));
+            let ends = ContactEnds { first, second: Some(second), levers: [lever; 2] };
+            add(FrozenContact { normal, law: &pair_history.law, ends, ..FrozenContact::none() })?;
+        }
+        for (first, rock) in touching.rocks().iter().enumerate().filter(|(k, _)| rocks[*k].on_mesh)
+        {
+            let IslandBody { state, body, laws, .. } = &*scene.members[*rock];
+            let world = ContactEnvironment { terrain: scene.terrain, body: *body, laws };
+            let is_turned = blow.turn.is_some() && first == 0;
+            for touch in state.touches.iter() {
+                add(FrozenContact {
+                    normal: blow
+                        .turn
+                        .filter(|_| is_turned)
+                        .map_or(touch.normal, |turn| turn * touch.normal),
+                    law: &laws[usize::from(world.ground_of(touch.triangle))],
+                    stiffness_scale: touch.gain2,
+                    ends: ContactEnds { first, ..ContactEnds::MESH },
+                    ..FrozenContact::none()
+                })?;
+            }
+        }
+        Some((contacts, count))
+    }
+}
+
+impl StruckRocks {
+    /// Looks for what the rocks touch of the mesh. Of one that comes to it the touches are known.
+    fn look(&mut self, scene: &mut ImpactScene, blow: &BlowStart) {
+        for (k, (&rock, at)) in self.touching.rocks().iter().zip(&mut self.rocks).enumerate() {
+            let IslandBody { state, body, laws, .. } = &mut *scene.members[rock];
+            let world = ContactEnvironment { terrain: scene.terrain, body: *body, laws };
+            let is_known = blow.pair.is_none() && k == 0;
+            if !is_known {
+                state.look(&world, &at.c, body.radius * (1.0 + HELD));
+            }
+            at.on_mesh = !state.touches.is_empty();
+        }
+    }
+}
+
+impl StepBody {
+    /// Energy of motion (J) with a velocity (m/s) and a spin (rad/s).
+    pub(super) fn energy_j(&self, (v, w): (&Vec3, &Vec3)) -> f64 {
+        0.5 * (self.body.mass * v.norm_squared() + self.body.inertia * w.norm_squared())
+    }
+}
