@@ -14,6 +14,7 @@ mod dda_island;
 mod exact_edge;
 mod exact_plane;
 mod heap;
+mod heights;
 mod impact_ledger;
 mod ledger;
 mod many_rocks;

@@ -8,7 +8,7 @@ use crate::body::Block;
 use crate::flight::Parabola;
 use crate::flight::top::Top;
 use crate::rock::{Motion, Rock, Vec3};
-use nalgebra::{Rotation3, UnitQuaternion};
+use nalgebra::{Quaternion, Rotation3, UnitQuaternion};
 
 /// How a block is turned, and the energy of its rotation.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,7 +27,16 @@ pub(super) struct RockInstant {
     pub(super) turned: Option<Turned>,
 }
 
-/// A rock in free flight.
+/// How a block turns on its way.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum AttitudeOnWay<'a> {
+    /// Freely.
+    Top(&'a Top),
+    /// Through a step in contact, from one attitude to the other.
+    Step([&'a Turned; 2]),
+}
+
+/// A rock in free flight, or on the way of a step in contact.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct RockFlight<'a> {
     /// How it began.
@@ -35,7 +44,7 @@ pub(super) struct RockFlight<'a> {
     /// Way of its centre.
     pub(super) path: &'a Parabola,
     /// How a block turns; none for a sphere.
-    pub(super) top: Option<&'a Top>,
+    pub(super) turning: Option<AttitudeOnWay<'a>>,
     /// How long it flies (s).
     pub(super) lasts_s: f64,
 }
@@ -58,14 +67,27 @@ impl Turned {
     /// normed mean of the two quaternions is the turn about a fixed axis to 2e-5 rad, and takes
     /// no sine, whose bits would differ from machine to machine. The energy is linear.
     fn between([from, to]: [&Self; 2], s: f64) -> Self {
-        let [a, b] =
-            [from, to].map(|end| UnitQuaternion::from_rotation_matrix(&end.attitude).into_inner());
-        // q and −q are the same turn: the nearer one
-        let b = if a.dot(&b) < 0.0 { -b } else { b };
+        let (a, b) = Self::nearer([from, to]);
         Self {
             attitude: UnitQuaternion::new_normalize(a.lerp(&b, s)).to_rotation_matrix(),
             rotational_j: from.rotational_j + (to.rotational_j - from.rotational_j) * s,
         }
+    }
+
+    /// How far it turns per unit of share, at share `s` of a step in contact (rad, as a vector along the axis).
+    ///
+    /// `2 vec(q′ q̄)` of `q = p/|p|` with `p = a + s (b − a)`: what norms `p` has no part along the axis.
+    fn turning(ends: [&Self; 2], s: f64) -> Vec3 {
+        let (a, b) = Self::nearer(ends);
+        let (at, length) = UnitQuaternion::new_and_get(a.lerp(&b, s));
+        ((b - a) * at.conjugate().into_inner()).imag() * (2.0 / length)
+    }
+
+    /// The quaternions of two attitudes; `q` and `−q` are the same turn, so the second is the nearer one.
+    fn nearer(ends: [&Self; 2]) -> (Quaternion<f64>, Quaternion<f64>) {
+        let [a, b] =
+            ends.map(|end| UnitQuaternion::from_rotation_matrix(&end.attitude).into_inner());
+        (a, if a.dot(&b) < 0.0 { -b } else { b })
     }
 }
 
@@ -82,12 +104,7 @@ pub(super) fn quaternion(turn: &Rotation3<f64>) -> [f64; 4] {
 impl RockFlight<'_> {
     /// The rock after `t` (s).
     pub(super) fn at(&self, t: f64) -> RockInstant {
-        // the attitude is a closed form of the time (`Top`); the energy of rotation is constant in
-        // flight
-        let turned = self.top.map(|top| {
-            let attitude = top.attitude(t);
-            (top.spin(&attitude), Turned { attitude, rotational_j: top.energy_j() })
-        });
+        let turned = self.turning.map(|turning| self.turned(turning, t));
         let motion = Motion {
             time_s: self.start.time_s + t,
             position_m: self.path.centre(t),
@@ -96,6 +113,35 @@ impl RockFlight<'_> {
             spin_rad_s: turned.map_or(self.start.spin_rad_s, |(spin, _)| spin),
         };
         RockInstant { motion, turned: turned.map(|(_, turned)| turned) }
+    }
+
+    /// Spin (rad/s) and turn of a block after `t` (s).
+    fn turned(&self, turning: AttitudeOnWay, t: f64) -> (Vec3, Turned) {
+        match turning {
+            // the attitude is a closed form of the time (`Top`); the energy of rotation is constant in flight
+            AttitudeOnWay::Top(top) => {
+                let attitude = top.attitude(t);
+                (top.spin(&attitude), Turned { attitude, rotational_j: top.energy_j() })
+            }
+            AttitudeOnWay::Step(ends) => {
+                let s = t / self.lasts_s;
+                (Turned::turning(ends, s) / self.lasts_s, Turned::between(ends, s))
+            }
+        }
+    }
+
+    /// Largest size of `ω × (ω × ρ) + ω̇ × ρ` over the length of `ρ` (1/s²), see [`Top::bend`]; none for a sphere.
+    ///
+    /// In a step the spin is largest in its middle, and by `ω = 4 S h/(h² + u²)` with the sine `S` and the cosine `h` of a fourth of
+    /// the angle and `|u| ≤ S` it changes by no more than `ω³ dt/4` per second.
+    pub(super) fn bend(&self) -> Option<f64> {
+        Some(match self.turning? {
+            AttitudeOnWay::Top(top) => top.bend(),
+            AttitudeOnWay::Step(ends) => {
+                let spin = Turned::turning(ends, 0.5).norm() / self.lasts_s;
+                spin * spin * (1.0 + 0.25 * spin * self.lasts_s)
+            }
+        })
     }
 }
 

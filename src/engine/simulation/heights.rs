@@ -14,6 +14,9 @@
 //! Few flights are looked at so: over the lowest ground around (`Floor`), cell by cell, most are no higher than what is known.
 //!
 //! Of several sheets the ground is the highest below the centre. A flight meets no mesh before its end, so none crosses its path.
+//!
+//! A step in contact is looked at like a flight: on a slope the ground straight below a rock is lower than the one that it touches, and a
+//! block that leans over a steep place may stand higher above it than it has ever flown.
 
 use super::form::{Form, RockFlight};
 use crate::flight::Parabola;
@@ -161,14 +164,14 @@ impl Heights<'_> {
     /// A parabola over which the lowest point does not come within a span of time (s).
     ///
     /// The lowest corner of a block in the middle of the span is one of those among which the lowest is sought: its way is
-    /// `z·ρ + z·(ω × ρ) τ` and at most `bend |ρ| τ²/2` (`Top::bend`) more. Over long spans the largest ball inside the block says more.
+    /// `z·ρ + z·(ω × ρ) τ` and at most `bend |ρ| τ²/2` ([`RockFlight::bend`]) more. Over long spans the largest ball inside the block says more.
     fn ceiling(&self, [from_s, to_s]: [f64; 2]) -> Parabola {
         let mut path = *self.flight.path;
         let least_m = self.form.least_below_m();
         path.start.z -= least_m;
-        if let (Some(top), Some(block)) = (self.flight.top, self.form.block) {
+        if let (Some(bend), Some(block)) = (self.flight.bend(), self.form.block) {
             let (middle_s, half_s) = (0.5 * (from_s + to_s), 0.5 * (to_s - from_s));
-            let bend_m = 0.5 * top.bend() * block.bound_m * half_s * half_s;
+            let bend_m = 0.5 * bend * block.bound_m * half_s * half_s;
             if bend_m < block.bound_m - least_m
                 && let Some((below_m, sinks_m_s)) = Form::sinking(block, &self.flight.at(middle_s))
             {

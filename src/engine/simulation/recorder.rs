@@ -6,7 +6,7 @@
 
 use super::cells::{CellPassage, CellPassages};
 use super::crossings::{Crossing, Crossings};
-use super::form::{Form, RockFlight, RockInstant, Turned};
+use super::form::{AttitudeOnWay, Form, RockFlight, RockInstant, Turned};
 use super::heights::Heights;
 use super::impacts::{Impacts, ImpactsMark, Struck};
 use super::stretches::{Stretch, Stretches};
@@ -174,7 +174,8 @@ impl<'a> Recorder<'a> {
 
     /// Goes along a flight for `dt` (s); a block turns as `top` does.
     pub(super) fn fly(&mut self, path: &Parabola, top: Option<&Top>, dt: f64) {
-        let flight = RockFlight { start: self.now, path, top, lasts_s: dt };
+        let turning = top.map(AttitudeOnWay::Top);
+        let flight = RockFlight { start: self.now, path, turning, lasts_s: dt };
         // path points at even times, on the parabola itself
         while self.next_point_s <= flight.start.time_s + dt {
             let instant = flight.at(self.next_point_s - flight.start.time_s);
@@ -195,11 +196,32 @@ impl<'a> Recorder<'a> {
     fn note_heights(&mut self, flight: &RockFlight) {
         let form = self.form;
         let heights = Heights { terrain: self.terrain, form: &form, flight };
+        self.note_largest(&heights);
+        self.passages.fly(&heights);
+        self.stretches.fly(&heights);
+    }
+
+    /// Notes the largest height on a way.
+    fn note_largest(&mut self, heights: &Heights) {
+        let flight = heights.flight;
         if let Some(top) = heights.largest([0.0, flight.lasts_s], self.extremes.height_m) {
             self.note_height(&flight.path.centre(top.time_s), top.height_m);
         }
-        self.passages.fly(&heights);
-        self.stretches.fly(&heights);
+    }
+
+    /// Notes how a step in contact goes, by how the rock is turned where it begins and ends.
+    fn note_step(&mut self, [from, to]: [&RockInstant; 2]) {
+        self.passages.step((self.terrain, &self.form), [from, to]);
+        self.stretches.step(&to.motion);
+        let lasts_s = to.motion.time_s - from.motion.time_s;
+        if lasts_s > 0.0 {
+            let form = self.form;
+            let path = Parabola::between(&from.motion, &to.motion, form.rim_m());
+            let turns = from.turned.as_ref().zip(to.turned.as_ref());
+            let turning = turns.map(|(from, to)| AttitudeOnWay::Step([from, to]));
+            let flight = RockFlight { start: from.motion, path: &path, turning, lasts_s };
+            self.note_largest(&Heights { terrain: self.terrain, form: &form, flight: &flight });
+        }
     }
 
     /// Goes along one step in contact to `to`.
@@ -230,10 +252,9 @@ impl<'a> Recorder<'a> {
             // in a world a flying rock is carried along by the steps of its island, and so is one that hangs on others or lies on them
             let path = Parabola::between(&from.motion, &to.motion, self.form.rim_m());
             let start = from.motion;
-            self.note_heights(&RockFlight { start, path: &path, top: None, lasts_s });
+            self.note_heights(&RockFlight { start, path: &path, turning: None, lasts_s });
         } else {
-            self.passages.step((self.terrain, &self.form), [&from, &to]);
-            self.stretches.step(&to.motion);
+            self.note_step([&from, &to]);
         }
         self.note_speed();
     }

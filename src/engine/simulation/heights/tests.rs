@@ -1,3 +1,4 @@
+use super::super::form::{AttitudeOnWay, Turned};
 use super::*;
 use crate::body::{Block, Shape, Solid, box_surface, eota};
 use crate::flight::top::Top;
@@ -86,10 +87,11 @@ fn roofs() -> Vec<Facet> {
     facets
 }
 
-/// A block's flight or a sphere's, up to where it touches.
+/// A block's flight or a sphere's, up to where it touches; or a short way through which a block turns as in a step in contact.
 struct Flown {
     path: Parabola,
     top: Option<Top>,
+    turns: Option<[Turned; 2]>,
     lasts_s: f64,
 }
 
@@ -128,7 +130,7 @@ fn thrown(
             turn * own.component_mul(&Vec3::from(block.inertia_kg_m2)),
         )
     });
-    Some(Flown { path, top, lasts_s })
+    Some(Flown { path, top, turns: None, lasts_s })
 }
 
 /// Largest heights of some parts of a flight against the largest of its samples there; how much higher they are (m).
@@ -140,8 +142,10 @@ fn compare(terrain: &Terrain, block: Option<&Block>, flown: &Flown) -> f64 {
         velocity_m_s: flown.path.velocity,
         spin_rad_s: Vec3::zeros(),
     };
-    let Flown { path, top, lasts_s } = flown;
-    let flight = RockFlight { start, path, top: top.as_ref(), lasts_s: *lasts_s };
+    let Flown { path, top, turns, lasts_s } = flown;
+    let step = turns.as_ref().map(|[from, to]| AttitudeOnWay::Step([from, to]));
+    let turning = step.or(top.as_ref().map(AttitudeOnWay::Top));
+    let flight = RockFlight { start, path, turning, lasts_s: *lasts_s };
     let heights = Heights { terrain, form: &form, flight: &flight };
     let sample = |t: f64| {
         let at = flight.at(t);
@@ -237,13 +241,37 @@ fn no_sample_of_a_block_is_higher() {
     }
 }
 
+/// In contact a block turns by up to 0.3 rad a step, while its lowest corner gives way to another.
+#[test]
+fn no_sample_of_a_step_in_contact_is_higher() {
+    let surface = box_surface([1.0, 0.7, 0.4]);
+    let shape = Shape::of(&Solid::of(&surface), &surface.points, 0.1).unwrap();
+    let block = Block::new(&shape, &ROCK);
+    let terrain = terrain(rough(|_, _| false));
+    let mut chance = stream(12, Purpose::Shape, 2);
+    let mut seen = 0;
+    while seen < FLIGHTS {
+        let Some(flown) = thrown(&terrain, Some(&block), (0.1, 4.0), &mut chance) else { continue };
+        let turn = |chance: &mut RandomStream, size: f64| {
+            let axis = [(); 3].map(|()| unit(chance) - 0.5);
+            UnitQuaternion::new(Vec3::from(axis) * size).to_rotation_matrix()
+        };
+        let attitude = turn(&mut chance, 6.0);
+        let turned = |attitude| Turned { attitude, rotational_j: 0.0 };
+        let turns = [turned(attitude), turned(turn(&mut chance, 0.35) * attitude)];
+        let lasts_s = flown.lasts_s.min(0.03);
+        compare(&terrain, Some(&block), &Flown { top: None, turns: Some(turns), lasts_s, ..flown });
+        seen += 1;
+    }
+}
+
 /// Of a sphere over a terrain, whose coordinates are those of its facets.
 fn sphere(terrain: &Terrain, path: &Parabola, lasts_s: f64) -> Option<HighPoint> {
     let path = &Parabola { start: path.start - terrain.origin_m, ..*path };
     let form = Form { rock: ROCK, block: None };
     let (position_m, velocity_m_s) = (path.start, path.velocity);
     let start = Motion { time_s: 0.0, position_m, velocity_m_s, spin_rad_s: Vec3::zeros() };
-    let flight = RockFlight { start, path, top: None, lasts_s };
+    let flight = RockFlight { start, path, turning: None, lasts_s };
     Heights { terrain, form: &form, flight: &flight }.largest([0.0, lasts_s], f64::NEG_INFINITY)
 }
 
