@@ -164,17 +164,8 @@ fn of_percentile(found: &Percentile, (rocks, open): (usize, Option<Open>)) -> Es
     if rocks < found.needs {
         return Estimate::lacking(found.needs - rocks);
     }
-    let is = bounded(found.censored, open);
+    let is = Is::on_side(found.censored, open);
     Estimate { is, ..estimate(found.value, found.low_95, found.high_95) }
-}
-
-/// What a number is that bounds decide or not, where the truth lies on the side `open` of them.
-const fn bounded(is_bound: bool, open: Option<Open>) -> Is {
-    match (is_bound, open) {
-        (true, Some(Open::Below)) => Is::AtMost,
-        (true, _) => Is::AtLeast,
-        (false, _) => Is::Value,
-    }
 }
 
 /// Percentile `p` (0..1) of a sample whose true values may be open on one side; none of nothing.
@@ -307,11 +298,11 @@ fn statistics_table(
     let rows = rows.iter().map(|(name, like, sample, open)| {
         let (unit, size) = like.unit(if like.is_energy() { most_j } else { largest(sample) });
         let mean = sample.mean().map(|mean| Estimate {
-            is: bounded(sample.bounds() > 0, *open),
+            is: Is::on_side(sample.bounds() > 0, *open),
             ..estimate(mean.value, mean.low_95, mean.high_95)
         });
         let most = sample.largest().map(|(most, is_bound)| Estimate {
-            is: bounded(is_bound, *open),
+            is: Is::on_side(is_bound, *open),
             ..Estimate::plain(most)
         });
         let middle =
