@@ -126,7 +126,7 @@ impl Words {
     }
 
     /// What is said of rocks that would have gone on.
-    pub(super) fn open(&self) -> &'static OpenWords {
+    pub(crate) fn open(&self) -> &'static OpenWords {
         OpenWords::of(self.language())
     }
 

@@ -323,6 +323,13 @@ impl StudyStatistic {
         Some(0.5 * (self.own.high_95? - self.own.low_95?))
     }
 
+    /// Whether rocks that would have gone on leave it no interval, and not the number of rocks.
+    pub(super) fn is_only_bound(&self, releases: usize) -> bool {
+        self.sampling_error().is_none()
+            && self.open > 0
+            && (self.own.censored || releases >= self.own.needs)
+    }
+
     /// Error of the steps under a setting so much coarser than the scene's own, signed.
     pub fn step_error(&self, relative: f64, scheme: Scheme) -> Interval {
         let times = math::pow(relative, ladder_of(scheme).1);

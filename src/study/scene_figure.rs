@@ -6,6 +6,7 @@ use crate::report::axis::Axis;
 use crate::report::canvas::{Canvas, Label, NORMAL, Pen, SMALL, paint, text_width};
 use crate::report::colour::{BLUE, GREEN, GREY, INK, VERMILLION};
 use crate::report::figure::WIDTH_PX;
+use crate::report::format;
 use crate::report::panel::{FOOT_PX, Panel, align};
 use crate::report::svg::path::PaperFrame;
 use crate::report::words::{Words, fill};
@@ -36,6 +37,11 @@ pub(super) fn draw(study: &SceneStudy) -> String {
         for (panel, statistic) in panels.iter().zip(&shown) {
             panel.grid(canvas);
             draw_statistic(canvas, panel, study, statistic);
+            if let Some(why) = no_sampling(study, statistic, words) {
+                let corner =
+                    (panel.frame.right - text_width(&why, SMALL) - 4.0, panel.frame.top + 8.0);
+                canvas.text(&Label::new(why, corner).coloured(BLUE));
+            }
         }
         let (last, rest) = match panels.split_last() {
             Some((last, rest)) => (Some(last), rest),
@@ -105,6 +111,21 @@ fn points(study: &SceneStudy, statistic: &StudyStatistic) -> Vec<(f64, f64)> {
 fn sampling(study: &SceneStudy, statistic: &StudyStatistic) -> Vec<(f64, f64)> {
     let each_s = study.rungs[study.own].seconds / study.releases as f64;
     statistic.sampling.iter().map(|&(n, error)| (each_s * n as f64, error)).collect()
+}
+
+/// Why there is no error of sampling; none where there is one.
+fn no_sampling(study: &SceneStudy, statistic: &StudyStatistic, words: &Words) -> Option<String> {
+    if statistic.sampling_error().is_some() {
+        return None;
+    }
+    let why = if statistic.is_only_bound(study.releases) {
+        let (n, of) = (format::decimal(statistic.open as f64, 0), study.releases);
+        let of = format::decimal(of as f64, 0);
+        fill(words.open().no_sampling, &[("n", &n), ("of", &of)])
+    } else {
+        words.no_interval.to_owned()
+    };
+    Some(why)
 }
 
 /// Error of the steps and what it is at most, over the time of all releases under each setting.

@@ -67,7 +67,7 @@ pub fn sentence(study: &SceneStudy, statistic: &StudyStatistic, wanted: Option<f
         format!("**P{} {name} {} {unit}**", statistic.percent, significant(statistic.own.value, 4));
     let (Some(sampling), Some(total)) = (statistic.sampling_error(), statistic.total_error())
     else {
-        if statistic.open > 0 && (statistic.own.censored || study.releases >= statistic.own.needs) {
+        if statistic.is_only_bound(study.releases) {
             return format!(
                 "{head}: only a bound. {} of {} rocks left the terrain, ran out of time or failed, and no number of releases makes it narrower; give terrain that reaches farther, or a longer [solver] longest_s.",
                 statistic.open, study.releases

@@ -173,6 +173,33 @@ fn errors_of_a_scene_are_told_apart() {
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
+/// Where rocks that would have gone on leave a percentile no interval, its panel says so instead of showing no line of sampling.
+#[test]
+fn a_panel_without_sampling_says_why() {
+    let dir = tempfile::tempdir().unwrap();
+    let mesh = fs::canonicalize("terrain/quick_slope.stl").unwrap();
+    let scene = fs::read_to_string("examples/quick.toml").unwrap();
+    let trees = fs::canonicalize("terrain/quick_trees.stl").unwrap();
+    let scene = scene
+        .replace("../terrain/quick_slope.stl", mesh.to_str().unwrap())
+        .replace("../terrain/quick_trees.stl", trees.to_str().unwrap())
+        + "\n[solver]\nlongest_s = 1.0\n";
+    let file = dir.path().join("short.toml");
+    fs::write(&file, scene).unwrap();
+    let study = |releases: &str, out: &str| {
+        let out = dir.path().join(out);
+        let asked = ["study", "error", file.to_str().unwrap(), "--releases", releases];
+        let (code, said, _) = rockfall(&asked, &out);
+        assert_eq!(code, Some(0), "{said}");
+        fs::read_to_string(out.join("error.svg")).unwrap()
+    };
+    let drawn = study("100", "bound");
+    assert!(drawn.contains("only a bound, 100 of 100 rocks would have gone on"), "{drawn}");
+    let faults = boxes::faults(&drawn, "error.svg");
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+    assert!(study("40", "few").contains("too few rocks for an interval"));
+}
+
 /// Energies at a line are those of the rocks that cross it in a run, blocks with their own inertia: each percentile of the table is the
 /// value of one of them. With that of a sphere it was that of none.
 #[test]

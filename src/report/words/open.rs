@@ -7,7 +7,7 @@ use crate::hazard::Proportion;
 words_of! {
     OpenWords:
     some_rocks, censored, have_left, remedy_left, have_no_time, remedy_time, have_failed, have_no_budget,
-    remedy_budget, at_line, on_maps, median,
+    remedy_budget, at_line, on_maps, median, no_sampling,
 }
 
 /// So many of the rocks, beside a place or map where they are missing: `text` is one of the texts for it; nothing of none.
@@ -32,6 +32,7 @@ const EN: OpenWords = OpenWords {
     at_line: " Rocks that may still come here, with any energy and height: {n} ({share}). The values are of those that came, and percentiles may be too low.",
     on_maps: " Rocks that ended on the map and would have gone on: {n} ({share}); their time or work was up, the computation failed, or they left the terrain away from the edge of the map. Further on they are missing, and probabilities and percentiles may be too low.",
     median: "The median is at most {median}°: rocks that would have gone on leave open how much less it is.",
+    no_sampling: "no sampling error: only a bound, {n} of {of} rocks would have gone on",
 };
 
 const DE: OpenWords = OpenWords {
@@ -47,6 +48,7 @@ const DE: OpenWords = OpenWords {
     at_line: " Blöcke, die noch hierher kommen können, mit beliebiger Energie und Höhe: {n} ({share}). Die Werte sind die der angekommenen, und Perzentile können zu niedrig sein.",
     on_maps: " Blöcke, die auf der Karte endeten und weitergelaufen wären: {n} ({share}); ihre Zeit oder ihr Rechenaufwand war erschöpft, die Rechnung schlug fehl, oder sie verließen das Gelände abseits vom Kartenrand. Weiter unten fehlen sie, und Wahrscheinlichkeiten und Perzentile können zu niedrig sein.",
     median: "Der Median ist höchstens {median}°: Blöcke, die weitergelaufen wären, lassen offen, um wie viel er kleiner ist.",
+    no_sampling: "kein Stichprobenfehler: nur eine Schranke, {n} von {of} Blöcken wären weitergelaufen",
 };
 
 const FR: OpenWords = OpenWords {
@@ -62,6 +64,7 @@ const FR: OpenWords = OpenWords {
     at_line: " Blocs qui peuvent encore venir ici, avec toute énergie et toute hauteur\u{a0}: {n} ({share}). Les valeurs sont celles des blocs arrivés, et les centiles peuvent être trop faibles.",
     on_maps: " Blocs arrêtés sur la carte qui auraient continué\u{a0}: {n} ({share})\u{a0}; leur temps ou leur budget de calcul était épuisé, le calcul a échoué, ou ils ont quitté le terrain loin du bord de la carte. Plus loin ils manquent, et probabilités et centiles peuvent être trop faibles.",
     median: "La médiane est d’au plus {median}°\u{a0}: les blocs qui auraient continué laissent ouvert de combien elle est inférieure.",
+    no_sampling: "pas d’erreur d’échantillonnage\u{a0}: seulement une borne, {n} blocs sur {of} auraient continué",
 };
 
 const IT: OpenWords = OpenWords {
@@ -77,4 +80,5 @@ const IT: OpenWords = OpenWords {
     at_line: " Massi che possono ancora giungere qui, con qualsiasi energia e altezza: {n} ({share}). I valori sono quelli dei massi arrivati, e i percentili possono essere troppo bassi.",
     on_maps: " Massi finiti sulla carta che avrebbero proseguito: {n} ({share}); il loro tempo o lo sforzo di calcolo era esaurito, il calcolo è fallito, o hanno lasciato il terreno lontano dal bordo della carta. Più oltre mancano, e probabilità e percentili possono essere troppo bassi.",
     median: "La mediana è al più {median}°: i massi che avrebbero proseguito lasciano aperto di quanto sia inferiore.",
+    no_sampling: "nessun errore di campionamento: solo un limite, {n} massi su {of} avrebbero proseguito",
 };
