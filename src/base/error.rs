@@ -72,6 +72,13 @@ impl Flaw {
     }
 }
 
+/// What a file holds, as it can stand in a message of one line: a key with a line break would part it in two.
+fn one_line(text: &str) -> String {
+    let escaped =
+        |c: char| if c.is_control() { c.escape_default().collect() } else { c.to_string() };
+    text.chars().map(escaped).collect()
+}
+
 impl Error {
     /// A value that cannot be used, with the place and the remedy.
     pub fn input(
@@ -82,8 +89,8 @@ impl Error {
     ) -> Self {
         Self::Input {
             file: file.to_owned(),
-            place: place.into(),
-            found: found.into(),
+            place: one_line(&place.into()),
+            found: one_line(&found.into()),
             remedy: remedy.into(),
         }
     }

@@ -61,7 +61,7 @@ use crate::error::{Error, Result};
 use crate::random::{Distribution, entries};
 use crate::terrain::health::Health;
 use crate::terrain::{Sheet, Terrain, patches::Patches, read::MeshSource};
-use check::{Allowed, Checked, Complaint, FORMULA, check_names, is_formula, number};
+use check::{Allowed, BROKEN, Checked, Complaint, check_names, is_broken, name_flaw, number};
 use places::FARTHEST_M;
 use refusal::Refusal;
 use serde::Deserialize;
@@ -260,6 +260,10 @@ impl Scene {
     }
 
     fn check(&mut self) -> Checked {
+        if is_broken(&self.title) {
+            let found = format!("found {:?}", self.title);
+            return Err(Complaint::about("title", BROKEN).finding(found));
+        }
         number("gravity_m_s2", self.gravity_m_s2, Allowed::NotNegative, "9.81 on Earth")?;
         if places::finite(&self.origin_m).is_err() {
             let remedy = format!("write three finite numbers within {FARTHEST_M:e}");
@@ -268,10 +272,9 @@ impl Scene {
         self.check_meshes()?;
         let scheme = self.solver.scheme();
         for (name, ground) in &self.grounds {
-            if is_formula(name) {
-                return Err(Complaint::about(name, FORMULA)
-                    .finding(format!("found the name {name}"))
-                    .inside("grounds"));
+            if let Some(remedy) = name_flaw(name) {
+                let found = format!("found the name {name}");
+                return Err(Complaint::about(name, remedy).finding(found).inside("grounds"));
             }
             ground.check(scheme).map_err(|wrong| wrong.inside(name).inside("grounds"))?;
         }

@@ -238,3 +238,30 @@ cell_m = 2.0
     }
     assert!(fallen > 5, "{fallen}");
 }
+
+/// Names of lines and zones in files stand in tables too: one with a line break is refused, with the file and its feature.
+#[test]
+fn a_name_in_a_file_that_breaks_lines_is_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    let drawing = |kind: &str, corners: &str| {
+        format!(
+            r#"{{"type":"FeatureCollection","features":[{{"type":"Feature","properties":{{"name":"a\nb"}},
+            "geometry":{{"type":"{kind}","coordinates":{corners}}}}}]}}"#
+        )
+    };
+    std::fs::write(dir.path().join("lines.geojson"), drawing("LineString", "[[0,40],[60,40]]"))
+        .unwrap();
+    std::fs::write(dir.path().join("zones.geojson"), drawing("Point", "[10,10]")).unwrap();
+    let quick = std::fs::read_to_string("examples/quick.toml").unwrap();
+    let (physics, _) = quick.split_once("[[lines]]").unwrap();
+    let place = physics.lines().find(|line| line.starts_with("line_m")).unwrap();
+    let zones = physics.replace(place, "zones = \"zones.geojson\"");
+    let lines = format!("{physics}\n[[lines]]\nfile = \"lines.geojson\"\n");
+    for (scene, drawing) in [(lines, "lines.geojson"), (zones, "zones.geojson")] {
+        let file = dir.path().join("scene.toml");
+        std::fs::write(&file, scene).unwrap();
+        let said = Scene::read(&file).unwrap_err().to_string();
+        let found = format!("{drawing}: feature 1: found name = \"a\\nb\"; write it in one line");
+        assert!(said.contains(&found), "{said}");
+    }
+}

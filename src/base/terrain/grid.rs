@@ -289,21 +289,23 @@ impl Header {
     }
 
     fn from_values(found: [Option<f64>; 8], file: &Path) -> Result<Self> {
-        let lacks = |keyword: &str| {
+        let lacks = |keyword: &str, value: Option<f64>| {
             let remedy =
                 "an ESRI ASCII grid begins with ncols, nrows, xllcorner, yllcorner, cellsize";
-            Error::input(file, "header", format!("no usable `{keyword}`"), remedy)
+            let found = value.map_or_else(String::new, |value| format!(": found {value}"));
+            Error::input(file, "header", format!("no usable `{keyword}`{found}"), remedy)
         };
         let [columns, rows, cell, nodata, x_corner, y_corner, x_centre, y_centre] = found;
         let count = |value: Option<f64>, keyword: &str| {
             // 1e9 columns: beyond any grid, and columns x rows fits usize
             let usable = value.filter(|n| (1.0..1e9).contains(n) && n.fract() == 0.0);
-            usable.map(|n| n as usize).ok_or_else(|| lacks(keyword))
+            usable.map(|n| n as usize).ok_or_else(|| lacks(keyword, value))
         };
-        let cell_m = cell.filter(|m| *m > 0.0 && m.is_finite()).ok_or_else(|| lacks("cellsize"))?;
+        let cell_m =
+            cell.filter(|m| *m > 0.0 && m.is_finite()).ok_or_else(|| lacks("cellsize", cell))?;
         let place = |corner: Option<f64>, centre: Option<f64>, keyword: &str| {
             let place = corner.or(centre.map(|m| m - 0.5 * cell_m));
-            place.filter(|m| m.is_finite()).ok_or_else(|| lacks(keyword))
+            place.filter(|m| m.is_finite()).ok_or_else(|| lacks(keyword, place))
         };
         Ok(Self {
             columns: count(columns, "ncols")?,

@@ -132,33 +132,48 @@ pub(super) fn check_names(tables: &[(&str, Vec<&str>)]) -> Checked {
     let mut known: Vec<&str> = Vec::new();
     for (table, names) in tables {
         for (index, &name) in names.iter().enumerate() {
-            let wrong = if name.trim().is_empty() {
-                "write a name; it stands in tables and files"
-            } else if known.contains(&name) {
-                "write another name: an entry before has the same"
-            } else if is_formula(name) {
-                FORMULA
+            let own = if known.contains(&name) {
+                let remedy = "write another name: an entry before has the same";
+                Err(Complaint::about("name", remedy).finding(format!("found {name:?}")))
             } else {
-                known.push(name);
-                continue;
+                check_name("name", name)
             };
-            let found = format!("found {name:?}");
-            return Err(Complaint::about("name", wrong)
-                .finding(found)
-                .in_entry(index)
-                .inside(table));
+            own.map_err(|wrong| wrong.in_entry(index).inside(table))?;
+            known.push(name);
         }
     }
     Ok(())
 }
 
+/// Checks a name, which stands under `key`.
+pub(super) fn check_name(key: &str, name: &str) -> Checked {
+    name_flaw(name).map_or(Ok(()), |remedy| {
+        Err(Complaint::about(key, remedy).finding(format!("found {name:?}")))
+    })
+}
+
+/// What to write instead of a name that tables and files cannot hold.
+pub(super) fn name_flaw(name: &str) -> Option<&'static str> {
+    if name.trim().is_empty() {
+        Some("write a name; it stands in tables and files")
+    } else if is_broken(name) {
+        Some(BROKEN)
+    } else {
+        name.starts_with(['=', '+', '-', '@']).then_some(FORMULA)
+    }
+}
+
 /// What to do about a name that a spreadsheet takes for a formula: it stands in CSV files.
-pub(super) const FORMULA: &str =
+const FORMULA: &str =
     "write a name that does not begin with =, +, - or @: spreadsheets take that for a formula";
 
-/// Whether a spreadsheet takes a name for a formula.
-pub(super) fn is_formula(name: &str) -> bool {
-    name.starts_with(['=', '+', '-', '@', '\t', '\r'])
+/// What to do about a text that would break the rows, figures and messages in which it stands.
+pub(super) const BROKEN: &str =
+    "write it in one line, without line breaks, tabs and other control characters";
+
+/// Whether a text breaks a line, or has characters that say something to a terminal.
+pub(super) fn is_broken(text: &str) -> bool {
+    text.contains(|c: char| c.is_control() || matches!(c, '\u{2028}' | '\u{2029}'))
 }
 
 /// The known word that looks most like the one written, if any is near.

@@ -1,7 +1,7 @@
 //! `[[lines]]` and `[[barriers]]` as they are written: in the scene, or drawn in a file of a GIS.
 
 use super::barrier::{BarrierTable, DesignTable};
-use super::check::Complaint;
+use super::check::{Complaint, name_flaw};
 use super::places::Polyline;
 use super::record::LineTable;
 use super::refusal::Refusal;
@@ -143,6 +143,18 @@ struct DrawnLine {
     feature: GisFeature,
 }
 
+/// The property that names a feature.
+///
+/// # Errors
+/// A name that tables and files cannot hold; an empty one is none.
+pub(super) fn name_of(feature: &GisFeature, property: &str, file: &Path) -> Result<Option<String>> {
+    let Some(name) = feature.text(property) else { return Ok(None) };
+    match name_flaw(&name).filter(|_| !name.trim().is_empty()) {
+        Some(remedy) => Err(feature.wrong(file, format!("found {property} = {name:?}"), remedy)),
+        None => Ok(Some(name)),
+    }
+}
+
 /// The lines of a file with their names: the entry's own (numbered if there are several), else those of a property.
 fn drawn(file: &Path, name: Option<&str>, name_from: Option<&str>) -> Result<Vec<DrawnLine>> {
     let mut all = Vec::new();
@@ -156,7 +168,7 @@ fn drawn(file: &Path, name: Option<&str>, name_from: Option<&str>) -> Result<Vec
             ));
         };
         let property = name_from.unwrap_or("name");
-        let own = feature.text(property).filter(|text| !text.trim().is_empty());
+        let own = name_of(&feature, property, file)?.filter(|text| !text.trim().is_empty());
         if name.is_none() && own.is_none() {
             let remedy = "write the property, name_from = \"…\" for another one, or name = \"…\" in the scene";
             return Err(feature.wrong(file, format!("found no property {property}"), remedy));

@@ -1,6 +1,6 @@
 //! `[frequency.matrix]`: levels of hazard by the energy of each return period.
 
-use super::check::{Checked, Complaint};
+use super::check::{BROKEN, Checked, Complaint, is_broken};
 use super::sizes::positive_list;
 use serde::Deserialize;
 
@@ -122,6 +122,10 @@ impl MatrixTable {
             if words.trim().is_empty() {
                 let remedy = "write it: a table of levels stands with its name and its source";
                 return Err(Complaint::about(key, remedy));
+            }
+            if is_broken(words) {
+                let found = format!("found {words:?}");
+                return Err(Complaint::about(key, BROKEN).finding(found));
             }
         }
         for (key, list) in

@@ -1,5 +1,6 @@
 //! `[release] zones`: where rocks start, drawn in a GIS.
 
+use super::drawn::name_of;
 use super::places::{Area, Polyline};
 use crate::error::{Error, Result};
 use crate::gis::{self, Corner, Geometry, GisFeature, GisLayer, Polygon};
@@ -165,7 +166,7 @@ fn zone(feature: &GisFeature, file: &Path) -> Result<Zone> {
         Geometry::Polygons(all) => ZonePlace::Areas(all.iter().map(area).collect::<Result<_>>()?),
     };
     let zone = Zone {
-        name: feature.text("name").unwrap_or_else(|| format!("zone {}", feature.number)),
+        name: name_of(feature, "name", file)?.unwrap_or_else(|| format!("zone {}", feature.number)),
         feature: feature.number,
         place,
         weight: feature.positive("weight", file)?,

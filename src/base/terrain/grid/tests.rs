@@ -52,7 +52,7 @@ fn a_refused_grid_names_the_line_and_the_cure() {
         ("ncols 3", "ncols 1e12", "header", "no usable `ncols`"),
         ("ncols 3", "ncols 2.5", "header", "no usable `ncols`"),
         ("cellsize 2\n", "", "header", "no usable `cellsize`"),
-        ("cellsize 2", "cellsize -2", "header", "no usable `cellsize`"),
+        ("cellsize 2", "cellsize -2", "header", "no usable `cellsize`: found -2"),
         ("xllcorner", "xllcentre", "line 3", "xllcenter"),
     ] {
         let message = parse(&SMALL.replacen(from, to, 1)).expect_err(part).to_string();
