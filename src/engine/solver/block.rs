@@ -31,7 +31,7 @@ use crate::contact::neighbours::Neighbours;
 use crate::flight::block::WindowScratch;
 use crate::flight::top::{attitude_after, spin_of};
 use crate::rock::{Motion, Vec3};
-use energy::hold_energy;
+use energy::ActingAlong;
 use nalgebra::{Matrix3, Rotation3};
 use rolling::Turning;
 use solve::{BlockContact, Mass, SWEEPS, rigid_turning, solve};
@@ -223,14 +223,15 @@ impl Footing {
         let asked = (&mut self.contacts[..], &mut self.turning);
         self.unsettled = !solve(&mass, asked, free, (rounding_m_s, SWEEPS), &mut self.sweeps);
         moving.v += weight;
+        let free_motion = moving.clone();
         moving.take(&self.contacts, &self.turning, block.mass_kg);
         // the way of the step is that of the mean velocity, so this is just what the weight gives
-        let most_j = [&v, &moving.v].map(|v| 0.5 * block.mass_kg * weight.dot(v));
-        let most_j = [before_j + most_j[0], most_j[1]];
-        let lost_j = most_j[0] + most_j[1] - moving.motion_j(block);
+        let weight_j = 0.5 * block.mass_kg * weight.dot(&(v + moving.v));
+        let lost_j = before_j + weight_j - moving.motion_j(block);
         let after = (&moving.v, &moving.spin(block));
         let loss = self.booked(world, [(&v, &w), after], lost_j);
-        hold_energy(block, moving, most_j);
+        let along = ActingAlong::of_impulses(&self.contacts, &self.turning);
+        moving.hold_energy(block, (&free_motion, &weight), &along);
         let pushed = self.contacts.iter().any(|contact| contact.n.dot(&contact.impulse) > 0.0);
         moving.drift(block, 0.5 * dt);
         self.look(world, block, &moving.pose, AHEAD * block.ball_m);

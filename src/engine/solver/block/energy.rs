@@ -1,5 +1,6 @@
 //! A step of a block never gains energy.
 
+use super::rolling::Turning;
 use super::solve::{BlockContact, Mass, turning_limit};
 use super::{Footing, Moving};
 use crate::body::Block;
@@ -7,15 +8,157 @@ use crate::rock::Vec3;
 use crate::solver::environment::ContactEnvironment;
 use crate::solver::loss::Loss;
 
-/// Slows a block that has more energy of motion than it had, with what its weight gave on the way behind it, and than its weight gives
-/// it on the way to come (J), which is slowed too. Moving out of what it was pressed into is paid by its motion.
-pub(super) fn hold_energy(block: &Block, moving: &mut Moving, [had_j, comes_j]: [f64; 2]) {
-    let motion_j = moving.motion_j(block);
-    if motion_j > had_j + comes_j && motion_j > 0.0 {
-        // motion k² = had + comes k
-        let root = (comes_j * comes_j + 4.0 * motion_j * had_j.max(0.0)).sqrt();
-        let kept = ((comes_j + root) / (2.0 * motion_j)).clamp(0.0, 1.0);
-        moving.scale_motion(kept);
+/// Normals that differ by less are one (–).
+const SAME_NORMAL: f64 = 1e-9;
+
+/// Along what contacts act on a block. One without friction acts along its normal alone: with one such normal the momentum across it and the
+/// angular momentum about it are not theirs to change, with two the momentum square to both. Friction acts along everything.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct ActingAlong {
+    /// Directions square to each other, and how many.
+    normals: [Vec3; 3],
+    count: usize,
+    /// Whether something rubs or resists rolling.
+    everything: bool,
+}
+
+/// The part of a motion along which contacts act, and what it changes in the energy of motion: scaled by `1 + δ` it adds
+/// `slope δ + curvature δ²/2`.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct PartOfMotion {
+    v: Vec3,
+    momentum: Vec3,
+    /// Both in J.
+    slope_j: f64,
+    curvature_j: f64,
+}
+
+impl ActingAlong {
+    const EVERYTHING: Self =
+        Self { normals: [Vec3::new(0.0, 0.0, 0.0); 3], count: 0, everything: true };
+
+    /// Takes in a contact with this normal; whether it `rubs`.
+    pub(super) fn take_in(&mut self, n: &Vec3, rubs: bool) {
+        self.everything |= rubs;
+        let known = &self.normals[..self.count];
+        let new = known.iter().fold(*n, |rest, one| rest - one * one.dot(&rest));
+        if self.count < self.normals.len() && new.norm_squared() > SAME_NORMAL * SAME_NORMAL {
+            self.normals[self.count] = new.normalize();
+            self.count += 1;
+        }
+    }
+
+    /// What impulses of contacts act along in the rigid limit.
+    pub(super) fn of_impulses(contacts: &[BlockContact], turning: &Turning) -> Self {
+        let mut all = Self { everything: turning.is_on(), ..Self::default() };
+        for contact in contacts.iter().filter(|contact| contact.n.dot(&contact.impulse) > 0.0) {
+            all.take_in(&contact.n, contact.rubs());
+        }
+        all
+    }
+
+    /// What of a velocity and an angular momentum they act along.
+    fn of(&self, (v, momentum): (&Vec3, &Vec3)) -> (Vec3, Vec3) {
+        if self.everything {
+            return (*v, *momentum);
+        }
+        let known = &self.normals[..self.count];
+        let turns = match known {
+            [] => Vec3::zeros(),
+            [n] => momentum - n * n.dot(momentum),
+            _ => *momentum,
+        };
+        (known.iter().map(|n| n * n.dot(v)).sum(), turns)
+    }
+}
+
+impl PartOfMotion {
+    /// Energy in it (J), if nothing else turns the block.
+    pub(super) fn energy_j(&self) -> f64 {
+        0.5 * self.slope_j
+    }
+
+    /// The most that can be taken from it (J).
+    pub(super) fn most_j(&self) -> f64 {
+        let least_j = self.slope_j.max(0.0).powi(2) / (2.0 * self.curvature_j);
+        if self.curvature_j > 0.0 { least_j } else { 0.0 }
+    }
+
+    /// The `δ` (–) with which it has lost so much (J), or the most if it has less.
+    fn less(&self, taken_j: f64) -> f64 {
+        let root = (self.slope_j.powi(2) - 2.0 * taken_j * self.curvature_j).max(0.0).sqrt();
+        let sum = self.slope_j + root;
+        if sum > 0.0 { (-2.0 * taken_j / sum).max(-1.0) } else { 0.0 }
+    }
+}
+
+impl Moving {
+    /// The part of its motion along which contacts act.
+    pub(super) fn part(&self, block: &Block, along: &ActingAlong) -> PartOfMotion {
+        let (v, momentum) = along.of((&self.v, &self.momentum));
+        let w = self.mass(block).inverse * momentum;
+        let linear_j = block.mass_kg * v.norm_squared();
+        let (slope_j, curvature_j) =
+            (linear_j + self.momentum.dot(&w), linear_j + momentum.dot(&w));
+        PartOfMotion { v, momentum, slope_j, curvature_j }
+    }
+
+    /// Takes energy (J) from a part of its motion; gives it where it is negative.
+    pub(super) fn pay(&mut self, part: &PartOfMotion, taken_j: f64) {
+        let share = part.less(taken_j);
+        self.v += part.v * share;
+        self.momentum += part.momentum * share;
+    }
+
+    /// Takes energy (J) from the motion along which contacts act, and from all of it what that has not.
+    pub(super) fn pay_all(&mut self, block: &Block, along: &ActingAlong, taken_j: f64) {
+        let part = self.part(block, along);
+        self.pay(&part, taken_j);
+        let rest_j = taken_j - part.most_j();
+        if rest_j > 0.0 && !along.everything {
+            let all = self.part(block, &ActingAlong::EVERYTHING);
+            self.pay(&all, rest_j);
+        }
+    }
+
+    /// Holds a block to the energy that it had when it moved `free`, before contacts acted `along` these directions, its weight counted in
+    /// as the change of velocity that it makes: contacts only take energy. Moving out of what it was pressed into is paid by its motion, and what none of
+    /// them acts along stays as it is.
+    ///
+    /// Where the motion along them has not so much, a share of what contacts have done is taken back. With a share `s` of their impulse `P` and their
+    /// impulse of turning `T` the energy of motion, less what the weight gives on the way, grows by
+    ///
+    /// ```text
+    /// s (P·(v − W/2) + T·ω) + s²/2 (P·P/m + T·I⁻¹T)
+    /// ```
+    ///
+    /// with `v` and `ω` of the free motion, the way being that of the mean velocity and `W = g Δt` counted in `v`. It is 0 for `s = 0`.
+    pub(super) fn hold_energy(
+        &mut self,
+        block: &Block,
+        (free, weight): (&Self, &Vec3),
+        along: &ActingAlong,
+    ) {
+        let mass = self.mass(block);
+        let (dv, turned) = (self.v - free.v, self.momentum - free.momentum);
+        let dw = mass.inverse * turned;
+        let begins = block.mass_kg * dv.dot(&(free.v - weight * 0.5)) + free.momentum.dot(&dw);
+        let grows = block.mass_kg * dv.norm_squared() + turned.dot(&dw);
+        let gain_j = begins + 0.5 * grows;
+        // rounding, which nothing along the contacts may be there to pay for
+        if gain_j <= f64::EPSILON * self.motion_j(block) {
+            return;
+        }
+        let mut part = self.part(block, along);
+        // what is slowed gets less from its weight on the way to come
+        part.slope_j -= 0.5 * block.mass_kg * weight.dot(&part.v);
+        if along.everything || gain_j <= part.most_j() {
+            self.pay(&part, gain_j);
+            return;
+        }
+        let share = (-2.0 * begins / grows).clamp(0.0, 1.0);
+        self.v = free.v + dv * share;
+        self.momentum = free.momentum + turned * share;
     }
 }
 
@@ -23,12 +166,6 @@ pub(super) fn hold_energy(block: &Block, moving: &mut Moving, [had_j, comes_j]: 
 const SHORTEST_S: f64 = 1e-6;
 
 impl Moving {
-    /// Scales velocity and momentum by one factor (–): the direction of the motion stays.
-    pub(super) fn scale_motion(&mut self, kept: f64) {
-        self.v *= kept;
-        self.momentum *= kept;
-    }
-
     /// How long a step may be (s) in which the block climbs half of its way on the energy that it has (J): where a contact lets out a block
     /// that hardly moves, a longer one would lift it for nothing.
     pub(super) fn climbs_s(&self, (mass_kg, gravity): (f64, &Vec3), motion_j: f64) -> f64 {

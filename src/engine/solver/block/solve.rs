@@ -182,6 +182,11 @@ impl BlockContact {
         self.limits.has_rolling()
     }
 
+    /// Whether friction acts at it.
+    pub(super) fn rubs(&self) -> bool {
+        self.friction > 0.0
+    }
+
     /// The largest impulse of turning that its own bears (N m s).
     pub(super) fn turning_limit(&self) -> f64 {
         self.turning_limit_of(self.n.dot(&self.impulse))

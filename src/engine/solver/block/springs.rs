@@ -24,6 +24,7 @@ mod rolling;
 mod onset;
 mod stage;
 
+use super::energy::ActingAlong;
 use super::solve::{BlockContact, GivingWay, Mass};
 use super::{Footing, Moving, Stepped, TOUCH};
 use crate::body::Block;
@@ -173,6 +174,13 @@ impl Springs {
         self.contacts.iter().map(|contact| contact.shear.norm())
     }
 
+    /// What the contacts of the last stage act along.
+    fn acting_along(&self) -> ActingAlong {
+        let mut along = ActingAlong::default();
+        self.contacts.iter().for_each(|contact| contact.act(&mut along));
+        along
+    }
+
     /// Energy in the springs of the contacts as they were placed (J).
     fn placed_j(&self) -> f64 {
         let stored = |contact: &SpringContact| contact.holds_j(contact.penetration, &contact.shear);
@@ -202,6 +210,11 @@ impl SpringContact {
         let slides = (self.law.friction_coefficient(), self.triangle);
         BlockContact::on_springs(mass, (self.n, self.lever), slides, (goal, springs))
             .rolling(self.law.limits())
+    }
+
+    /// Adds what it acts along.
+    fn act(&self, along: &mut ActingAlong) {
+        along.take_in(&self.n, self.law.limits().caps(1.0) != (0.0, 0.0));
     }
 
     /// Takes the forces from an impulse that has acted for `a` (s).

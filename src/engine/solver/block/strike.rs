@@ -4,7 +4,7 @@
 //! What comes more slowly and what does not rub is a blow of impulses alone, contact by contact with Newton's restitution. With several
 //! contacts that rule can gain energy (Glocker 2013); where it would, all restitutions are lowered together until it does not.
 
-use super::energy::hold_energy;
+use super::energy::ActingAlong;
 use super::solve::{BlockContact, SWEEPS, rigid_turning, solve};
 use super::{Footing, Moving, ROUNDING, ROUNDING_OF_SPEED, STILL_M_S};
 use crate::body::Block;
@@ -136,8 +136,9 @@ impl Footing {
         self.wanted = wanted;
         let after = (&thrown.v, &thrown.spin(block));
         let loss = self.booked(world, [(&v, &w), after], before_j - thrown.motion_j(block));
+        let along = ActingAlong::of_impulses(&self.contacts, &self.turning);
+        thrown.hold_energy(block, (moving, &Vec3::zeros()), &along);
         *moving = thrown;
-        hold_energy(block, moving, [before_j, 0.0]);
         loss
     }
 }

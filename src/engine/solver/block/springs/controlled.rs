@@ -157,7 +157,8 @@ impl BlockTrial<'_, '_> {
             return 0.0;
         }
         let mass_kg = self.block.mass_kg;
-        let speed_m_s = (2.0 * end.moving.motion_j(self.block) / mass_kg).sqrt();
+        let part = end.moving.part(self.block, &springs.acting_along());
+        let speed_m_s = (2.0 * part.energy_j() / mass_kg).sqrt();
         PAYABLE * self.allowed * mass_kg * speed_m_s
     }
 }
@@ -184,7 +185,7 @@ impl Springs {
         (made_j, gained_j): (f64, f64),
     ) -> f64 {
         if made_j > 0.0 {
-            moving.scale_motion((1.0 - made_j / moving.motion_j(block)).max(0.0).sqrt());
+            moving.pay_all(block, &self.acting_along(), made_j);
         }
         let first = &mut self.rates[0];
         (first.centre, first.turned) = (moving.v, moving.spin(block));

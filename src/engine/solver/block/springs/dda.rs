@@ -154,12 +154,13 @@ impl Footing {
         self.remember(world, (block, moving));
         self.place(world, (block, moving, moving), 0.0, shear_of);
         self.springs.histories.truncate(known);
+        let part = moving.part(block, &self.springs.acting_along());
         let (motion_j, allowed_j) = (moving.motion_j(block), had_j - self.springs.owed_j);
         let made_j = motion_j + self.springs.placed_j() - allowed_j;
-        let paid_j = made_j.clamp(0.0, motion_j);
+        let paid_j = made_j.clamp(0.0, part.most_j());
         self.springs.owed_j = (made_j - paid_j).max(0.0);
         if paid_j > 0.0 {
-            moving.scale_motion((1.0 - paid_j / motion_j).sqrt());
+            moving.pay(&part, paid_j);
         }
     }
 }

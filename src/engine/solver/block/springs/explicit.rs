@@ -10,6 +10,7 @@
 
 mod flow;
 
+use super::super::energy::ActingAlong;
 use super::super::{Footing, Moving, Stepped, TOUCH, orthonormal};
 use crate::body::Block;
 use crate::contact::block::{BlockTouch, BlockTouches};
@@ -40,6 +41,8 @@ pub(super) struct ImpactEnergy {
     gained_j: f64,
     /// What contacts have taken, with what their springs held before it (J).
     taken_j: f64,
+    /// What its contacts have acted along.
+    along: ActingAlong,
 }
 
 /// How far a step may go, and how exactly.
@@ -127,8 +130,10 @@ impl Footing {
         // what springs store is counted among the losses until they give it back
         let lifted_j = -block.mass_kg * world.body.gravity.dot(&lifted);
         let taken_j = step.loss.sum();
-        let energy =
-            self.springs.energy.get_or_insert(ImpactEnergy { gained_j: 0.0, taken_j: stored_j });
+        let began =
+            ImpactEnergy { gained_j: 0.0, taken_j: stored_j, along: ActingAlong::default() };
+        let energy = self.springs.energy.get_or_insert(began);
+        self.springs.contacts.iter().for_each(|contact| contact.act(&mut energy.along));
         energy.gained_j += moving.motion_j(block) + lifted_j + taken_j - before_j;
         energy.taken_j += taken_j;
         let mut done = Stepped { dt: step.dt, loss: step.loss, ..Stepped::default() };
@@ -247,16 +252,16 @@ impl Footing {
     }
 
     /// Gives motion back what the steps of the impact have lost by themselves, or takes what they have gained: what is left of the energy is
-    /// what came in less what the contacts took. Velocity and momentum are scaled by one factor, so that the direction of the
-    /// rebound stays. What springs would have given beyond what they had (J) is none: contacts have taken that much more.
+    /// what came in less what the contacts took. What they act along is scaled by one factor, so that the direction of a
+    /// rebound with friction stays. What springs would have given beyond what they had (J) is none: contacts have taken that much more.
     pub(super) fn balance(&mut self, block: &Block, moving: &mut Moving) -> f64 {
         let Some(energy) = self.springs.energy.take() else { return 0.0 };
         let beyond_j = (self.springs.stored_j - energy.taken_j).max(0.0);
-        let (gained_j, motion_j) = (energy.gained_j + beyond_j, moving.motion_j(block));
-        if gained_j == 0.0 || gained_j.abs() >= BALANCED * motion_j {
+        let (gained_j, part) = (energy.gained_j + beyond_j, moving.part(block, &energy.along));
+        if gained_j == 0.0 || gained_j.abs() >= BALANCED * part.energy_j() {
             return 0.0;
         }
-        moving.scale_motion((1.0 - gained_j / motion_j).sqrt());
+        moving.pay(&part, gained_j);
         self.springs.refresh();
         beyond_j
     }

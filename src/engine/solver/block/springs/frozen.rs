@@ -14,6 +14,7 @@
 //! A contact that lets go and comes again begins anew, at the speed with which it comes: the step is cut there, as its dashpot pushes
 //! at once.
 
+use super::super::energy::ActingAlong;
 use super::{Footing, Moving, RollingSpring, SpringAnswer, SpringContact};
 use crate::body::Block;
 use crate::contact::MOST;
@@ -296,11 +297,10 @@ impl FrozenFlow<'_, '_> {
     ) -> (Moving, Loss) {
         let mut end = Moving { v: three(y, V), momentum: three(y, MOMENTUM), ..start.clone() };
         let before_j = start.motion_j(self.block);
-        let after_j = end.motion_j(self.block);
         // the steps' own error
-        if after_j > before_j {
-            end.scale_motion((before_j / after_j).sqrt());
-        }
+        let mut along = ActingAlong::default();
+        self.contacts.iter().for_each(|contact| contact.act(&mut along));
+        end.hold_energy(self.block, (start, &Vec3::zeros()), &along);
         let [friction, damping, rolling, trees] = sums.map(|sum| sum.max(0.0));
         let summed = Loss { friction, damping, rolling, trees };
         let lost_j = (before_j - end.motion_j(self.block)).max(0.0);
