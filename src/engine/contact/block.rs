@@ -27,6 +27,10 @@ const HELD_SLACK: f64 = 0.2;
 /// Edges closer to parallel than this meet at their ends (–, squared sine).
 const PARALLEL: f64 = 1e-12;
 
+/// Most contacts that act on a block at a time: a block has 64 corners at most, so a prism has half of them on a face. On a face with more than
+/// 32 those that span most are kept.
+pub(crate) const MOST_TOUCHES: usize = 32;
+
 /// Where a block is and how it is turned.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pose {

@@ -14,6 +14,7 @@ use super::rest::RestCriterion;
 use super::settings::RunSettings;
 use super::{ShapeOf, Stop, Trajectory};
 use crate::body::Block;
+use crate::contact::MOST;
 use crate::contact::block::BlockTouch;
 use crate::flight::Parabola;
 use crate::flight::block::{Tumble, first_touch};
@@ -217,7 +218,8 @@ impl Roll<'_> {
         let is_struck =
             |touch: &&BlockTouch| Footing::is_struck(&self.world, (block, &self.moving), touch);
         struck.extend(self.footing.touching(block).filter(is_struck));
-        for touch in &struck {
+        // as many have a row as there is room for at a time
+        for touch in struck.iter().take(MOST) {
             // of the touching point, spin included: v + ω × r
             let velocity = self.moving.at(block, &touch.lever);
             let struck = Struck {

@@ -2,8 +2,7 @@
 
 use super::Footing;
 use crate::body::Block;
-use crate::contact::MOST;
-use crate::contact::block::{Pose, keep_widest, touches};
+use crate::contact::block::{MOST_TOUCHES, Pose, keep_widest, touches};
 use crate::solver::environment::ContactEnvironment;
 
 /// Features are collected for a way of the centre (–, relative to the radius of the sphere of equal volume) …
@@ -55,8 +54,8 @@ impl Footing {
         }
         self.look_at_all(world, (block, pose), reach_m);
         self.looked = Some((*pose, reach_m));
-        if self.touches.found.len() > MOST {
-            keep_widest(&mut self.touches.found, MOST);
+        if self.touches.found.len() > MOST_TOUCHES {
+            keep_widest(&mut self.touches.found, MOST_TOUCHES);
         }
     }
 }

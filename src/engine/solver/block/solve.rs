@@ -11,6 +11,7 @@ mod mixing;
 
 use super::rolling::Turning;
 use crate::contact::MOST;
+use crate::contact::block::MOST_TOUCHES;
 use crate::ground::FrictionLimits;
 use crate::rock::Vec3;
 use crate::solver::contact_frame::ContactFrame;
@@ -330,6 +331,22 @@ pub(super) fn rigid_turning(contacts: &[BlockContact]) -> Turning {
 /// there are at most so many sweeps.
 pub(crate) fn solve(
     mass: &Mass,
+    asked: (&mut [BlockContact], &mut Turning),
+    free: (Vec3, Vec3),
+    until: (f64, u32),
+    sweeps: &mut u64,
+) -> bool {
+    // a face with many corners is rare, and room for all of them is not cleared for nothing
+    if asked.0.len() <= MOST {
+        sweep::<{ MOST + 1 }>(mass, asked, free, until, sweeps)
+    } else {
+        sweep::<{ MOST_TOUCHES + 1 }>(mass, asked, free, until, sweeps)
+    }
+}
+
+/// The same with room to learn from fewer than `M` contacts.
+fn sweep<const M: usize>(
+    mass: &Mass,
     (contacts, turning): (&mut [BlockContact], &mut Turning),
     (mut v, mut w): (Vec3, Vec3),
     (rounding_m_s, most): (f64, u32),
@@ -338,8 +355,8 @@ pub(crate) fn solve(
     let alone = contacts.len() <= 1 && !turning.is_on();
     let reach = contacts.iter().map(|contact| contact.lever.norm()).fold(0.0, f64::max);
     // a contact at the centre of mass itself has no lever to compare moments with
-    let mixes = contacts.len() <= MOST && reach > 0.0;
-    let mut mixing: Option<Mixing> = None;
+    let mixes = contacts.len() < M && reach > 0.0;
+    let mut mixing: Option<Mixing<M>> = None;
     for sweep in 0..most {
         *sweeps += 1;
         // what the last sweeps leave is what the laws allow

@@ -9,7 +9,6 @@
 
 use super::super::rolling::Turning;
 use super::{BlockContact, Mass};
-use crate::contact::MOST;
 use crate::rock::Vec3;
 
 /// Differences kept (–): a face that slides has three motions to settle, and rounding.
@@ -27,40 +26,42 @@ const WILD: f64 = 100.0;
 const SETBACKS: u32 = 6;
 
 /// The impulses of all contacts, and last that of rolling friction over the reach of the contacts (N s).
-type ContactImpulses = [Vec3; MOST + 1];
+type ContactImpulses<const M: usize> = [Vec3; M];
 
-const NONE: ContactImpulses = [Vec3::new(0.0, 0.0, 0.0); MOST + 1];
-
-/// What the last sweeps have done.
+/// What the last sweeps have done with up to `M` impulses.
 #[derive(Debug)]
-pub(super) struct Mixing {
-    /// How many impulses there are: contacts, [`MOST`] at most, and rolling friction.
+pub(super) struct Mixing<const M: usize> {
+    /// How many impulses there are: contacts and rolling friction.
     count: usize,
     /// Distance of the farthest contact from the centre of mass (m).
     reach_m: f64,
     setbacks: u32,
     /// Impulses with which the sweep began.
-    began: ContactImpulses,
+    began: ContactImpulses<M>,
     /// What the sweep before changed, where it ended, and the size of what it changed squared.
-    last: Option<(ContactImpulses, ContactImpulses, f64)>,
+    last: Option<(ContactImpulses<M>, ContactImpulses<M>, f64)>,
     /// Differences of what sweeps changed, made square to each other, with the differences of their ends that belong to them.
-    known: [(ContactImpulses, ContactImpulses); KEPT],
+    known: [(ContactImpulses<M>, ContactImpulses<M>); KEPT],
     /// How many of them, and where the next goes.
     len: usize,
 }
 
-fn dot(one: &ContactImpulses, other: &ContactImpulses, count: usize) -> f64 {
+fn dot<const M: usize>(one: &ContactImpulses<M>, other: &ContactImpulses<M>, count: usize) -> f64 {
     one[..count].iter().zip(&other[..count]).map(|(a, b)| a.dot(b)).sum()
 }
 
 /// Size of the largest of them.
-fn largest(all: &ContactImpulses, count: usize) -> f64 {
+fn largest<const M: usize>(all: &ContactImpulses<M>, count: usize) -> f64 {
     all[..count].iter().map(Vec3::norm_squared).fold(0.0, f64::max).sqrt()
 }
 
 /// `to − from`.
-fn less(to: &ContactImpulses, from: &ContactImpulses, count: usize) -> ContactImpulses {
-    let mut off = NONE;
+fn less<const M: usize>(
+    to: &ContactImpulses<M>,
+    from: &ContactImpulses<M>,
+    count: usize,
+) -> ContactImpulses<M> {
+    let mut off = [Vec3::zeros(); M];
     for k in 0..count {
         off[k] = to[k] - from[k];
     }
@@ -68,17 +69,24 @@ fn less(to: &ContactImpulses, from: &ContactImpulses, count: usize) -> ContactIm
 }
 
 /// Takes a share of the one from the other.
-fn take(from: &mut ContactImpulses, one: &ContactImpulses, share: f64, count: usize) {
+fn take<const M: usize>(
+    from: &mut ContactImpulses<M>,
+    one: &ContactImpulses<M>,
+    share: f64,
+    count: usize,
+) {
     for k in 0..count {
         from[k] -= one[k] * share;
     }
 }
 
-impl Mixing {
+impl<const M: usize> Mixing<M> {
+    const NONE: ContactImpulses<M> = [Vec3::new(0.0, 0.0, 0.0); M];
+
     /// Of so many impulses, of contacts that reach so far from the centre of mass (m).
     pub(super) fn of(count: usize, reach_m: f64) -> Self {
-        let known = [(NONE, NONE); KEPT];
-        Self { count, reach_m, setbacks: 0, began: NONE, last: None, known, len: 0 }
+        let known = [(Self::NONE, Self::NONE); KEPT];
+        Self { count, reach_m, setbacks: 0, began: Self::NONE, last: None, known, len: 0 }
     }
 
     /// A sweep begins with these impulses.
@@ -87,8 +95,8 @@ impl Mixing {
         self.began = self.gathered(contacts, turning);
     }
 
-    fn gathered(&self, contacts: &[BlockContact], turning: &Turning) -> ContactImpulses {
-        let mut all = NONE;
+    fn gathered(&self, contacts: &[BlockContact], turning: &Turning) -> ContactImpulses<M> {
+        let mut all = Self::NONE;
         for (one, contact) in all.iter_mut().zip(contacts) {
             *one = contact.impulse;
         }
@@ -126,7 +134,7 @@ impl Mixing {
     }
 
     /// The impulses with which the next sweep begins; `None` = those with which this one ended.
-    fn next(&mut self, ended: ContactImpulses) -> Option<ContactImpulses> {
+    fn next(&mut self, ended: ContactImpulses<M>) -> Option<ContactImpulses<M>> {
         let count = self.count;
         let left = less(&ended, &self.began, count);
         let size2 = dot(&left, &left, count);
@@ -148,13 +156,13 @@ impl Mixing {
     }
 
     /// Forgets the differences: the next sweep begins with what this one ended with.
-    fn set_back(&mut self) -> Option<ContactImpulses> {
+    fn set_back(&mut self) -> Option<ContactImpulses<M>> {
         (self.len, self.setbacks) = (0, self.setbacks + 1);
         None
     }
 
     /// Learns a difference of what sweeps changed, and of where they ended.
-    fn learn(&mut self, mut own: ContactImpulses, mut end: ContactImpulses) {
+    fn learn(&mut self, mut own: ContactImpulses<M>, mut end: ContactImpulses<M>) {
         let count = self.count;
         if self.len == KEPT {
             // the oldest belongs to other directions of friction; those after it are square to it, so what is lost is its part alone

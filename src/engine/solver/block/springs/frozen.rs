@@ -18,7 +18,7 @@ use super::super::energy::ActingAlong;
 use super::{Footing, Moving, RollingSpring, SpringAnswer, SpringContact};
 use crate::body::Block;
 use crate::contact::MOST;
-use crate::contact::block::BlockTouch;
+use crate::contact::block::{BlockTouch, MOST_TOUCHES};
 use crate::ground::Law;
 use crate::rock::Vec3;
 use crate::solver::block::solve::Mass;
@@ -69,7 +69,7 @@ impl Footing {
     ) -> Option<Loss> {
         let mut touches = std::mem::take(&mut self.aside);
         touches.clear();
-        touches.extend(self.touching(block).take(MOST));
+        touches.extend(self.touching(block).take(MOST_TOUCHES));
         let thrown = self.thrown(world, (block, moving), &touches);
         self.aside = touches;
         let (next, taken) = thrown?;
@@ -109,7 +109,8 @@ impl Footing {
             1 => flow.follow::<{ CONTACTS + OWN }, 2>(moving),
             2 => flow.follow::<{ CONTACTS + 2 * OWN }, 4>(moving),
             3..=4 => flow.follow::<{ CONTACTS + 4 * OWN }, 8>(moving),
-            _ => flow.follow::<{ CONTACTS + OWN * MOST }, { 2 * MOST }>(moving),
+            5..=MOST => flow.follow::<{ CONTACTS + OWN * MOST }, { 2 * MOST }>(moving),
+            _ => flow.follow::<{ CONTACTS + OWN * MOST_TOUCHES }, { 2 * MOST_TOUCHES }>(moving),
         };
         self.springs.contacts = flow.contacts;
         end
