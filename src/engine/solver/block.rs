@@ -43,6 +43,8 @@ pub(crate) const TOUCH: f64 = 1e-8;
 const AHEAD: f64 = 1.0;
 /// A block turns no further in one step (rad) than this share of the longest way of a corner over the balls' radius.
 const TURN: f64 = 0.1;
+/// What was pressed in is let out no faster than this (–, relative to the speed `√(g R)` of a fall by half the radius).
+const LET_OUT: f64 = 0.1;
 /// An approach slower than this is none (m/s): rounding.
 const STILL_M_S: f64 = 1e-9;
 /// A gain of energy that is rounding (–); it is taken off the motion all the same.
@@ -210,8 +212,9 @@ impl Footing {
         let (v, w) = (moving.v, moving.spin(block));
         self.contacts.clear();
         let slip_m_s = self.slip_m_s(block, &start);
+        let out_m_s = LET_OUT * (world.body.gravity.norm() * block.radius_m).sqrt();
         for touch in &self.touches.found {
-            let goal = goal(block, (&start, moving), touch, dt);
+            let goal = goal((block, out_m_s), (&start, moving), touch, dt);
             let ahead_m = 0.5 * dt * slip_m_s;
             self.contacts.push(self.contact(world, (&mass, touch), ahead_m, goal));
         }
@@ -290,14 +293,20 @@ impl Footing {
 
 /// The velocity that a contact point seeks in the middle of a step: along the normal what ends the step at the surface, along the surface
 /// what ends it where it began, as far as turning has moved it.
-fn goal(block: &Block, (start, middle): (&Moving, &Moving), touch: &BlockTouch, dt: f64) -> Vec3 {
+/// What was pressed in is let out with `out_m_s` (m/s) at most.
+fn goal(
+    (block, out_m_s): (&Block, f64),
+    (start, middle): (&Moving, &Moving),
+    touch: &BlockTouch,
+    dt: f64,
+) -> Vec3 {
     let n = &touch.normal;
     let core = middle.pose.attitude.inverse_transform_vector(&(touch.lever + n * block.ball_m));
     let began = start.at(block, &(start.pose.attitude * core - n * block.ball_m));
     let turned = middle.at(block, &touch.lever) - began;
     let gap = touch.gap_m - 0.5 * dt * n.dot(&(began + turned * 0.5));
     // a contact that was pressed in is let out slowly: it must not be thrown
-    let out = (-2.0 * gap / dt).min(0.1 * (block.radius_m * 10.0).sqrt());
+    let out = (-2.0 * gap / dt).min(out_m_s);
     let up = n.dot(&turned);
     n * (out - up) - (turned - n * up)
 }

@@ -254,3 +254,57 @@ fn edges_and_faces_meet_edges_and_peaks() {
         case.impacts += 1;
     }
 }
+
+/// A block pressed in by 1 mm is let out with a tenth of `√(g R)` of the scene's gravity at most, on the moon as on Jupiter.
+#[test]
+fn what_is_pressed_in_is_let_out_as_gravity_has_it() {
+    let case = BlockRun::new(slope(0.0, 50.0), block(&box_surface([1.0; 3]), 0.05), (0.5, 0.4));
+    for gravity in [1.62, G, 24.8] {
+        let (own, laws) = (case.block.clone(), [case.law]);
+        let body = Body::of_block(&own, gravity);
+        let world = ContactEnvironment { terrain: &case.terrain, body, laws: &laws };
+        let mut footing = Footing::default();
+        let mut moving = case.start(Rotation3::identity(), still(Vec3::z() * 0.499));
+        footing.step(&world, &own, &mut moving, (1e-4, CORNER_WAY));
+        let most = 0.1 * (gravity * own.radius_m).sqrt();
+        assert!(!footing.contacts.is_empty());
+        for contact in &footing.contacts {
+            let out = contact.goal.dot(&contact.n);
+            assert!((out / most - 1.0).abs() < 1e-9, "{gravity}: {out} {most}");
+        }
+    }
+}
+
+/// What of its energy of motion a block has lost that tips over its rear edge, without slip, when its front edge strikes the level (–).
+fn lost_by_tipping(sides: [f64; 3], ball: f64, (tilt, step_s): (f64, f64)) -> f64 {
+    let body = block(&box_surface(sides), ball);
+    let mut case = BlockRun::new(slope(0.0, 50.0), body, (10.0, 0.5));
+    case.step_s = step_s;
+    let attitude = tilted(-tilt);
+    let low = attitude * Vec3::new(ball - 0.5 * sides[0], 0.0, ball - 0.5 * sides[2]);
+    let mut moving = case.start(attitude, still(Vec3::z() * (ball - low.z)));
+    let (own, had_j) = (case.block.clone(), case.energy_j(&moving));
+    let energy_j = |now: &Moving| now.motion_j(&own) + own.mass_kg * G * now.pose.centre.z;
+    let (mut last_j, mut fastest, mut lost_j) = (had_j, 0.0f64, None);
+    case.follow(&mut moving, 2.0, |_, now| {
+        let w = now.spin(&own).norm();
+        if lost_j.is_none() && w < 0.9 * fastest {
+            lost_j = Some(had_j - last_j);
+        }
+        (last_j, fastest) = (energy_j(now), fastest.max(w));
+    });
+    lost_j.unwrap() / (had_j - own.mass_kg * G * 0.5 * sides[2])
+}
+
+/// A step that ends where the front edge closes takes nothing of what weight adds in it: what is left is the steps' own error, of second order.
+#[test]
+fn a_tipping_block_strikes_as_fast_as_it_has_fallen() {
+    for (sides, ball) in [([2.0, 1.0, 0.2], 0.01), ([2.0, 1.0, 0.2], 0.08), ([0.6, 1.0, 0.5], 0.08)]
+    {
+        for tilt in [0.02, 0.1, 0.6] {
+            let lost = [1e-2, 1e-3].map(|step_s| lost_by_tipping(sides, ball, (tilt, step_s)));
+            println!("{sides:?} {ball} {tilt}: {lost:?}");
+            assert!(lost[1].abs() < 5e-6, "{sides:?} {ball} {tilt}: {lost:?}");
+        }
+    }
+}
