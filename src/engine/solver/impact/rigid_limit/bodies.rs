@@ -32,7 +32,8 @@ pub(crate) struct FrozenCollision {
 }
 
 /// Follows up to [`BODIES`] bodies through an impact on up to [`CONTACTS`] contacts at once, each of them at penetration zero;
-/// `None` if nothing comes nearer, or where there are too many of them or their frequencies lie too far apart. `tolerance` is relative to the fastest motion at a contact (–).
+/// `None` if nothing comes nearer, or where there are too many of them or their frequencies lie too far apart. `tolerance` is relative
+/// to the fastest motion at a contact (–).
 ///
 /// A contact that is pressed together slower than what is captured gives nothing back, whatever it gave in between.
 pub(crate) fn collide(
