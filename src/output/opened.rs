@@ -24,7 +24,8 @@ pub(super) fn open_maps(
         }
         Some(found) => maps::read_state(dir, found.done)?,
     };
-    Ok(Some(Maps::new(frame, &info.asked.counted_j(), state)))
+    let energies_j = info.asked.frequency.as_ref().map_or(&[][..], |of| of.energies_j());
+    Ok(Some(Maps::new(frame, energies_j, state)))
 }
 
 /// Opens one table: new, or behind the rows that are known to be good.

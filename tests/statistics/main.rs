@@ -21,6 +21,5 @@ mod meshes;
 mod open;
 mod report;
 mod results;
-mod return_periods;
 mod scene_doc;
 mod study;

@@ -8,9 +8,7 @@ use super::super::proportion::Proportion;
 use super::super::rate::{EventRate, Limits, Running, Sums, proportion};
 use super::AnnualRequest;
 use super::barriers::{AnnualBarrier, Met};
-use super::curve::{
-    Ceilings, CurveRock, ExceedancePoint, ReturnEnergy, curve, resolved, return_energy,
-};
+use super::curve::{Ceilings, ExceedancePoint, ReturnEnergy, curve, return_energy};
 use super::risk::{Object, Risk};
 use super::strata::{All, StratumSums, stratum_of};
 use crate::frequency::{Frequency, Weights};
@@ -98,8 +96,6 @@ struct PassageTally {
     /// Metres of road blocked.
     blocked: StratumSums,
     classes: BTreeMap<(u16, u16), Sums>,
-    /// One by one, as they come.
-    rocks: Vec<CurveRock>,
     /// Rocks that may still pass, and the metres of road that they would block.
     open: StratumSums,
     open_blocked: StratumSums,
@@ -127,12 +123,6 @@ impl PassageTally {
         self.classes.entry((class_of(total_j), stratum)).or_default().join(&one);
     }
 
-    /// Keeps the rock itself, for energies that one rock decides.
-    fn keep(&mut self, passage: &PlacePassage) {
-        let PlacePassage { stratum, score, total_j: energy_j, .. } = *passage;
-        self.rocks.push(CurveRock { energy_j, stratum, score });
-    }
-
     /// Notes a rock that may still pass.
     fn leave_open(&mut self, stratum: u16, blocked_m: f64) {
         self.open.entry(stratum).or_default().join(&Sums::one(1.0, 0.0));
@@ -158,24 +148,11 @@ impl PassageTally {
         let own = (!self.open.is_empty())
             .then(|| Ceilings::beside(&running, (&all.weights, &all.asked.most_j)));
         let ceilings = own.as_ref().unwrap_or(&all.ceilings);
-        let smooth = curve(falling, &mut running, ceilings);
-        let periods = all.frequency.return_periods_years();
-        let steps = resolved((&smooth, &self.falling()), &mut running, ceilings, periods);
-        let energy =
-            |years: &f64| return_energy((&steps, &smooth), ceilings, *years, all.has_exponent);
-        let returns = periods.iter().map(energy).collect();
+        let curve = curve(falling, &mut running, ceilings);
+        let energy = |years: &f64| return_energy(&curve, ceilings, *years, all.has_exponent);
+        let returns = all.frequency.return_periods_years().iter().map(energy).collect();
         let risks = self.risks(object, all);
-        let curve = smooth.iter().map(|step| step.point).collect();
         AnnualFigures { passages, above: self.above(all), returns, risks, curve }
-    }
-
-    /// Its rocks by falling energy; those of one energy by stratum, so that sums do not depend on the order in which rocks came.
-    fn falling(&self) -> Vec<CurveRock> {
-        let mut rocks = self.rocks.clone();
-        rocks.sort_by(|one, next| {
-            next.energy_j.total_cmp(&one.energy_j).then(one.stratum.cmp(&next.stratum))
-        });
-        rocks
     }
 
     /// Risks of an object by the rocks that hit it.
@@ -201,7 +178,7 @@ struct PlaceSums {
     saved: Vec<PassageTally>,
 }
 
-/// What a year brings, while rocks come in: sums by stratum and class of energy, and the energy of each rock at each place.
+/// What a year brings, while rocks come in: sums by stratum and class of energy, which do not grow with the rocks.
 #[derive(Debug)]
 pub struct YearSums {
     asked: AnnualRequest,
@@ -306,12 +283,8 @@ impl PlaceSums {
         let passage = PlacePassage { stratum, score, total_j: row.total_j(), blocked_m };
         let energies_j = frequency.energies_j();
         self.all.add(&passage, energies_j);
-        self.all.keep(&passage);
         match stopped {
-            None => {
-                self.unstopped.add(&passage, energies_j);
-                self.unstopped.keep(&passage);
-            }
+            None => self.unstopped.add(&passage, energies_j),
             Some((_, which)) => self.saved[which].add(&passage, energies_j),
         }
     }
