@@ -11,6 +11,9 @@ use crate::solver::loss::Loss;
 /// Normals that differ by less are one (–).
 const SAME_NORMAL: f64 = 1e-9;
 
+/// Share of a motion that is rounding of its energy (–).
+const NOTHING_LEFT: f64 = 1e-7;
+
 /// Along what contacts act on a block. One without friction acts along its normal alone: with one such normal the momentum across it and the
 /// angular momentum about it are not theirs to change, with two the momentum square to both. Friction acts along everything.
 #[derive(Debug, Clone, Copy, Default)]
@@ -88,7 +91,9 @@ impl PartOfMotion {
     fn less(&self, taken_j: f64) -> f64 {
         let root = (self.slope_j.powi(2) - 2.0 * taken_j * self.curvature_j).max(0.0).sqrt();
         let sum = self.slope_j + root;
-        if sum > 0.0 { (-2.0 * taken_j / sum).max(-1.0) } else { 0.0 }
+        let share = if sum > 0.0 { (-2.0 * taken_j / sum).max(-1.0) } else { 0.0 };
+        // rounding of what is left would creep
+        if share < NOTHING_LEFT - 1.0 { -1.0 } else { share }
     }
 }
 
@@ -121,6 +126,19 @@ impl Moving {
         }
     }
 
+    /// Slows all of the motion of a block that has more energy than it had, with what its weight gave on the way behind it, and than its weight
+    /// gives it on the way to come (J), which is slowed too. What has none to climb with stands still, and does not creep.
+    fn hold_all(&mut self, block: &Block, [had_j, comes_j]: [f64; 2]) {
+        let motion_j = self.motion_j(block);
+        if motion_j > had_j + comes_j && motion_j > 0.0 {
+            // motion k² = had + comes k
+            let root = (comes_j * comes_j + 4.0 * motion_j * had_j.max(0.0)).sqrt();
+            let kept = ((comes_j + root) / (2.0 * motion_j)).clamp(0.0, 1.0);
+            self.v *= kept;
+            self.momentum *= kept;
+        }
+    }
+
     /// Holds a block to the energy that it had when it moved `free`, before contacts acted `along` these directions, its weight counted in
     /// as the change of velocity that it makes: contacts only take energy. Moving out of what it was pressed into is paid by its motion, and what none of
     /// them acts along stays as it is.
@@ -140,6 +158,13 @@ impl Moving {
         along: &ActingAlong,
     ) {
         let mass = self.mass(block);
+        if along.everything {
+            let before = free.v - weight;
+            let turning_j = 0.5 * free.momentum.dot(&(mass.inverse * free.momentum));
+            let had_j = turning_j + 0.5 * block.mass_kg * before.dot(&(before + weight));
+            self.hold_all(block, [had_j, 0.5 * block.mass_kg * weight.dot(&self.v)]);
+            return;
+        }
         let (dv, turned) = (self.v - free.v, self.momentum - free.momentum);
         let dw = mass.inverse * turned;
         let begins = block.mass_kg * dv.dot(&(free.v - weight * 0.5)) + free.momentum.dot(&dw);
@@ -152,7 +177,7 @@ impl Moving {
         let mut part = self.part(block, along);
         // what is slowed gets less from its weight on the way to come
         part.slope_j -= 0.5 * block.mass_kg * weight.dot(&part.v);
-        if along.everything || gain_j <= part.most_j() {
+        if gain_j <= part.most_j() {
             self.pay(&part, gain_j);
             return;
         }

@@ -172,3 +172,18 @@ fn a_mirrored_block_falls_as_the_mirror_shows() {
         }
     }
 }
+
+/// A block that has come to rest, or slides, takes long steps: what it may climb with is nothing, and not a rounding of its energy, which made
+/// a million steps of a second.
+#[test]
+fn a_block_at_rest_takes_long_steps() {
+    for (name, body) in bodies() {
+        for (friction, k) in [(0.0, 0), (0.5, 1), (0.5, 2)] {
+            let mut case = BlockRun::new(slope(0.0, 50.0), body.clone(), (friction, 0.3));
+            let (mut moving, mut steps) = (thrown(&case, k), 0);
+            case.follow(&mut moving, 5.0, |_, _| steps += 1);
+            println!("{name}, friction {friction}: {steps} steps");
+            assert!(steps < 5000, "{name}, friction {friction}: {steps} steps");
+        }
+    }
+}
