@@ -37,7 +37,8 @@ pub(super) struct PartOfMotion {
 }
 
 impl ActingAlong {
-    const EVERYTHING: Self =
+    /// Along everything.
+    pub(super) const EVERYTHING: Self =
         Self { normals: [Vec3::new(0.0, 0.0, 0.0); 3], count: 0, everything: true };
 
     /// Takes in a contact with this normal; whether it `rubs`.

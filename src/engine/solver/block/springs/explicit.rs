@@ -257,10 +257,13 @@ impl Footing {
     pub(super) fn balance(&mut self, block: &Block, moving: &mut Moving) -> f64 {
         let Some(energy) = self.springs.energy.take() else { return 0.0 };
         let beyond_j = (self.springs.stored_j - energy.taken_j).max(0.0);
-        let (gained_j, part) = (energy.gained_j + beyond_j, moving.part(block, &energy.along));
-        if gained_j == 0.0 || gained_j.abs() >= BALANCED * part.energy_j() {
-            return 0.0;
-        }
+        let gained_j = energy.gained_j + beyond_j;
+        // where there is hardly any motion along contacts, all of it answers for them
+        let mut parts = [&energy.along, &ActingAlong::EVERYTHING]
+            .map(|along| moving.part(block, along))
+            .into_iter();
+        let part = parts.find(|part| gained_j.abs() < BALANCED * part.energy_j());
+        let Some(part) = part.filter(|_| gained_j != 0.0) else { return 0.0 };
         moving.pay(&part, gained_j);
         self.springs.refresh();
         beyond_j
