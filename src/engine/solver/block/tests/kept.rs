@@ -18,7 +18,7 @@ const ROUNDING: f64 = 1e-10;
 const GRAZING: f64 = 1e-4;
 
 fn allowed(scheme: Scheme) -> f64 {
-    if matches!(scheme, Scheme::Adaptive | Scheme::Reference) { GRAZING } else { ROUNDING }
+    if scheme.controls_error() { GRAZING } else { ROUNDING }
 }
 
 /// Shapes with corners of all kinds, about a metre wide.
