@@ -37,6 +37,9 @@
 //!   contacts the law conserves energy, and velocity is scaled to its size before, up or down, by no more than that error.
 //! - One contact is the impact on a plane without weight: exact normal restitution.
 //!
+//! **Several bodies** that touch each other and the mesh: [`collide`], the same rates with two ends to a contact; which contacts give
+//! nothing back is told by how fast each was pressed together.
+//!
 //! Losses are each ≥ 0 and add up to the energy that is gone to rounding: the parts are summed along the steps and scaled by the
 //! exact total. What springs store when a contact opens is in them, under damping and rolling.
 

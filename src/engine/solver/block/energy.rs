@@ -152,6 +152,8 @@ impl Moving {
     /// ```
     ///
     /// with `v` and `ω` of the free motion, the way being that of the mean velocity and `W = g Δt` counted in `v`. It is 0 for `s = 0`.
+    ///
+    /// Contacts that act along everything are held by the energies themselves: at rest, where all of the motion goes, nothing may be left of it.
     pub(super) fn hold_energy(
         &mut self,
         block: &Block,

@@ -176,9 +176,7 @@ impl Springs {
 
     /// What the contacts of the last stage act along.
     fn acting_along(&self) -> ActingAlong {
-        let mut along = ActingAlong::default();
-        self.contacts.iter().for_each(|contact| contact.act(&mut along));
-        along
+        ActingAlong::default().and_springs(&self.contacts)
     }
 
     /// Energy in the springs of the contacts as they were placed (J).
@@ -201,6 +199,16 @@ impl Springs {
     }
 }
 
+impl ActingAlong {
+    /// With what these contacts act along.
+    fn and_springs(mut self, contacts: &[SpringContact]) -> Self {
+        for contact in contacts {
+            self.take_in(&contact.n, contact.law.limits().caps(1.0) != (0.0, 0.0));
+        }
+        self
+    }
+}
+
 impl SpringContact {
     /// The contact that a stage sees in which impulses act for `a` and the block moves for `b` (s).
     fn giving_way(&self, mass: &Mass, (a, b): (f64, f64)) -> BlockContact {
@@ -210,11 +218,6 @@ impl SpringContact {
         let slides = (self.law.friction_coefficient(), self.triangle);
         BlockContact::on_springs(mass, (self.n, self.lever), slides, (goal, springs))
             .rolling(self.law.limits())
-    }
-
-    /// Adds what it acts along.
-    fn act(&self, along: &mut ActingAlong) {
-        along.take_in(&self.n, self.law.limits().caps(1.0) != (0.0, 0.0));
     }
 
     /// Takes the forces from an impulse that has acted for `a` (s).

@@ -10,7 +10,7 @@
 
 mod flow;
 
-use super::super::energy::ActingAlong;
+use super::super::energy::{ActingAlong, PartOfMotion};
 use super::super::{Footing, Moving, Stepped, TOUCH, orthonormal};
 use crate::body::Block;
 use crate::contact::block::{BlockTouch, BlockTouches};
@@ -133,7 +133,7 @@ impl Footing {
         let began =
             ImpactEnergy { gained_j: 0.0, taken_j: stored_j, along: ActingAlong::default() };
         let energy = self.springs.energy.get_or_insert(began);
-        self.springs.contacts.iter().for_each(|contact| contact.act(&mut energy.along));
+        energy.along = energy.along.and_springs(&self.springs.contacts);
         energy.gained_j += moving.motion_j(block) + lifted_j + taken_j - before_j;
         energy.taken_j += taken_j;
         let mut done = Stepped { dt: step.dt, loss: step.loss, ..Stepped::default() };
@@ -258,12 +258,14 @@ impl Footing {
         let Some(energy) = self.springs.energy.take() else { return 0.0 };
         let beyond_j = (self.springs.stored_j - energy.taken_j).max(0.0);
         let gained_j = energy.gained_j + beyond_j;
+        if gained_j == 0.0 {
+            return 0.0;
+        }
         // where there is hardly any motion along contacts, all of it answers for them
-        let mut parts = [&energy.along, &ActingAlong::EVERYTHING]
-            .map(|along| moving.part(block, along))
-            .into_iter();
-        let part = parts.find(|part| gained_j.abs() < BALANCED * part.energy_j());
-        let Some(part) = part.filter(|_| gained_j != 0.0) else { return 0.0 };
+        let ways = [energy.along, ActingAlong::EVERYTHING].into_iter();
+        let mut parts = ways.map(|along| moving.part(block, &along));
+        let answers = |part: &PartOfMotion| gained_j.abs() < BALANCED * part.energy_j();
+        let Some(part) = parts.find(answers) else { return 0.0 };
         moving.pay(&part, gained_j);
         self.springs.refresh();
         beyond_j

@@ -299,8 +299,7 @@ impl FrozenFlow<'_, '_> {
         let mut end = Moving { v: three(y, V), momentum: three(y, MOMENTUM), ..start.clone() };
         let before_j = start.motion_j(self.block);
         // the steps' own error
-        let mut along = ActingAlong::default();
-        self.contacts.iter().for_each(|contact| contact.act(&mut along));
+        let along = ActingAlong::default().and_springs(&self.contacts);
         end.hold_energy(self.block, (start, &Vec3::zeros()), &along);
         let [friction, damping, rolling, trees] = sums.map(|sum| sum.max(0.0));
         let summed = Loss { friction, damping, rolling, trees };

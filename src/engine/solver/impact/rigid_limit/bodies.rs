@@ -59,10 +59,9 @@ fn followed<const B: usize, const K: usize, const N: usize, const Q: usize, cons
     if flow.contacts.softest < SLOWEST {
         return None;
     }
-    let own = |k: usize| bodies.get(k).copied();
     let start: [Twist; B] = std::array::from_fn(|k| {
         let still = (Vec3::zeros(), Vec3::zeros());
-        own(k).map_or(still, |FrozenBody { body, motion: (v, w) }| {
+        bodies.get(k).map_or(still, |FrozenBody { body, motion: (v, w) }| {
             (v / speed, w * (body.radius / speed))
         })
     });

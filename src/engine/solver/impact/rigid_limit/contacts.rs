@@ -152,8 +152,7 @@ impl<const B: usize, const K: usize> Contacts<B, K> {
         captured && parting <= own
     }
 
-    /// Tells what gives nothing back: what was captured before, and what is pressed together slower than that, in units of `speed`
-    /// (m/s).
+    /// From now on nothing is given back by what is pressed together slower than its capture speed, in units of `speed` (m/s).
     pub(super) fn capture(&mut self, struck: &[FrozenContact], speed: f64) {
         for (contact, struck) in self.list.iter_mut().zip(struck) {
             contact.slowest = capture_m_s(struck.law) / speed;

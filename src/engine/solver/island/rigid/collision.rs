@@ -133,30 +133,27 @@ impl RigidIsland {
         after: &FrozenCollision,
     ) -> [f64; BODIES] {
         let mut taken_j = [0.0; BODIES];
-        // the touch with the mesh, counted rock by rock
-        let (mut on, mut touch) = (0, 0);
-        for (k, contact) in contacts.iter().enumerate() {
-            let (loss, approach_m_s) = (&after.loss[k], after.fastest_m_s[k]);
+        let (pairs, meshes) = contacts.split_at(touching.pair_count);
+        for ((contact, loss), pair) in pairs.iter().zip(&after.loss).zip(touching.pairs()) {
             let ContactEnds { first, second, .. } = contact.ends;
-            let rock = touching.rocks[first];
-            if let Some(second) = second {
-                for end in [first, second] {
-                    taken_j[end] += 0.5 * loss.sum();
-                    self.given[touching.rocks[end]].lost += 0.5 * loss.sum();
-                }
-                self.struck[touching.pairs[k]] = true;
-                continue;
+            for end in [Some(first), second].into_iter().flatten() {
+                taken_j[end] += 0.5 * loss.sum();
+                self.given[touching.rocks[end]].lost += 0.5 * loss.sum();
             }
-            touch = if on == first { touch } else { 0 };
-            on = first;
-            let IslandBody { state, body, laws, .. } = &*scene.members[rock];
+            self.struck[*pair] = true;
+        }
+        let on_mesh = touching.rocks().iter().zip(rocks).filter(|(_, rock)| rock.on_mesh);
+        let touches = on_mesh
+            .flat_map(|(rock, _)| scene.members[*rock].state.touches.iter().map(|at| (*rock, at)));
+        for ((k, contact), (rock, at)) in (pairs.len()..).zip(meshes).zip(touches) {
+            let (loss, approach_m_s) = (&after.loss[k], after.fastest_m_s[k]);
+            let IslandBody { body, laws, .. } = &*scene.members[rock];
             let world = ContactEnvironment { terrain: scene.terrain, body: *body, laws };
-            let at = &state.touches[touch];
-            touch += 1;
-            taken_j[first] += loss.sum();
+            taken_j[contact.ends.first] += loss.sum();
             self.losses[rock].add(&loss.on(&world, at.triangle), 1.0);
             if approach_m_s >= capture_m_s(contact.law) {
-                self.hits.push(hit_of(rock, at, (&rocks[first].c, body.radius), approach_m_s));
+                let centre = (&rocks[contact.ends.first].c, body.radius);
+                self.hits.push(hit_of(rock, at, centre, approach_m_s));
             }
         }
         taken_j

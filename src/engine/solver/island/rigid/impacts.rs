@@ -2,7 +2,7 @@
 //!
 //! Rocks that came in faster than the capture speed overlap at the end of a step. When they touched is known: under the
 //! same gravity two rocks move in straight lines relative to each other, and one rock over the mesh in a parabola. Each
-//! blow is taken by itself at that time, the earliest first, and the rocks go on from there with what they got; blows
+//! blow is taken at that time, the earliest first, by itself or with all that touch ([`collision`](super::collision)), and the rocks go on from there with what they got; blows
 //! that follow from it are found with the new paths. A blow between two rocks alone is therefore exact, whatever the
 //! step, and each takes energy.
 
@@ -15,7 +15,6 @@ use crate::contact::{ContactPoint, ContactPoints};
 use crate::rock::Vec3;
 use crate::solver::body::Twist;
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
-
 use crate::solver::impact::throw;
 use crate::solver::island::body::IslandBody;
 use crate::solver::island::pair_contact::TOUCH;
@@ -155,9 +154,9 @@ impl RigidIsland {
 
     /// Takes the blow of a contact, `s` (s) before the end of the step.
     fn blow(&mut self, scene: &mut ImpactScene, place: usize, s: f64) {
-        let ends = scene.ends_of(place);
         self.in_blow.clear();
-        self.in_blow.extend(ends.iter().take(if ends[0] == ends[1] { 1 } else { 2 }));
+        self.in_blow.extend(scene.ends_of(place));
+        self.in_blow.dedup();
         if place < scene.pair_histories.len() {
             self.blow_pair(scene, place, s);
         } else {
@@ -202,7 +201,6 @@ impl RigidIsland {
     }
 
     fn blow_ground(&mut self, scene: &mut ImpactScene, k: usize, s: f64) {
-        let tolerance = self.impact_tolerance();
         let ball = &mut self.balls[k];
         let IslandBody { state, body, laws, .. } = &mut *scene.members[k];
         let world = ContactEnvironment { terrain: scene.terrain, body: *body, laws };
@@ -227,7 +225,21 @@ impl RigidIsland {
             state.fell_broken(&world, &broken);
             return ball.is_struck(s);
         }
-        let meeting = Meeting { n: touch.normal, triangle: touch.triangle, c: at, v };
+        self.rebound(scene, (k, &touch), (&at, &v), s);
+    }
+
+    /// Throws rock `k`, which comes to `touch` with its centre at `at` and a velocity `v` (m/s), off all that it touches.
+    fn rebound(
+        &mut self,
+        scene: &mut ImpactScene,
+        (k, touch): (usize, &ContactPoint),
+        (at, v): (&Vec3, &Vec3),
+        s: f64,
+    ) {
+        let tolerance = self.impact_tolerance();
+        let IslandBody { state, body, laws, .. } = &mut *scene.members[k];
+        let world = ContactEnvironment { terrain: scene.terrain, body: *body, laws };
+        let meeting = Meeting { n: touch.normal, triangle: touch.triangle, c: *at, v: *v };
         let turn = state.facets.struck(&world, &meeting);
         // how near something is at that instant is known as well as the parabola is the way of the rock
         state.touches.keep_nearer(touch.distance_m.max(body.radius) + HELD * body.radius);
@@ -240,11 +252,11 @@ impl RigidIsland {
         let how = (ball.blows >= LIVELY, tolerance);
         let mut note = |other: &ContactPoint, loss: &Loss, approach_m_s: Option<f64>| {
             self.losses[k].add(loss, 1.0);
-            let hit = |approach_m_s| hit_of(k, other, (&at, body.radius), approach_m_s);
+            let hit = |approach_m_s| hit_of(k, other, (at, body.radius), approach_m_s);
             self.hits.extend(approach_m_s.map(hit));
         };
-        let motion = (&v, &ball.w);
-        let after = throw_off((&world, &state.touches), (&touch, turn), motion, how, &mut note);
+        let motion = (v, &ball.w);
+        let after = throw_off((&world, &state.touches), (touch, turn), motion, how, &mut note);
         let load = ((after.0 - v) * body.mass, (after.1 - ball.w) * body.inertia);
         ball.take_late(&load, s);
         ball.is_struck(s);
