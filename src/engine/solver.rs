@@ -33,6 +33,7 @@ pub(crate) mod impact;
 pub mod island;
 pub(crate) mod multi_contact;
 pub mod law;
+mod linear_forces;
 pub mod scheme;
 pub mod rigid;
 mod contact_frame;

@@ -12,11 +12,11 @@
 //!
 //! Cost: a sweep is linear in the contacts, a jump one LU of 6×6 whatever their number.
 
-use super::body::Body;
+use super::body::{Body, Twist};
 use super::law::StageContact;
-use crate::ground::NormalLine;
+use super::linear_forces::{LinearForces, driven};
+use crate::contact::submatrix::{Mat6, Vec6};
 use crate::rock::Vec3;
-use nalgebra::{Matrix3, SMatrix, SVector};
 
 /// Sweeps between two jumps.
 const SWEEPS: u32 = 4;
@@ -25,26 +25,22 @@ const JUMPS: u32 = 12;
 /// Change of a force, relative to the largest, below which the sweeps have settled (–).
 const SETTLED: f64 = 1e-9;
 
-type Matrix6 = SMatrix<f64, 6, 6>;
-type Vector6 = SVector<f64, 6>;
-
 /// Solves all contacts of one stage from `free`, velocity and spin without contact forces (gravity included).
 ///
 /// Returns velocity and spin at the stage's end, or `None` if the sweeps do not settle; `sweeps` counts.
 pub(super) fn solve(
     body: &Body,
     contacts: &mut [StageContact],
-    free: (Vec3, Vec3),
+    free: Twist,
     h: f64,
     sweeps: &mut u64,
-) -> Option<(Vec3, Vec3)> {
+) -> Option<Twist> {
     match contacts {
         [] => Some(free),
         [contact] => {
             *sweeps += 1;
             contact.solve(body, &free.0, &free.1, h);
-            let (dv, dw) = contact.effect(body, h);
-            Some((free.0 + dv, free.1 + dw))
+            Some(driven(body, contacts, free, h))
         }
         several => sweep_and_jump(body, several, free, h, sweeps),
     }
@@ -55,10 +51,10 @@ pub(super) fn solve(
 fn sweep_and_jump(
     body: &Body,
     contacts: &mut [StageContact],
-    free: (Vec3, Vec3),
+    free: Twist,
     h: f64,
     sweeps: &mut u64,
-) -> Option<(Vec3, Vec3)> {
+) -> Option<Twist> {
     for contact in contacts.iter_mut() {
         // Without a guess for friction a guess for the push alone would only mislead.
         (contact.normal_force, contact.shear_force, contact.rolling_moment) =
@@ -75,7 +71,7 @@ fn sweep_and_jump(
         }
         // a singular system is no harm: the sweeps simply go on
         if let Some(jumped) = jump(body, contacts, free, &now, h) {
-            act_on(body, contacts, &jumped, h);
+            contacts.iter_mut().for_each(|contact| contact.act_at(body, &jumped, h));
             now = driven(body, contacts, free, h);
         }
     }
@@ -90,7 +86,7 @@ fn sweep_and_jump(
 fn sweep(
     body: &Body,
     contacts: &mut [StageContact],
-    ((v, w), calm): (&mut (Vec3, Vec3), &mut usize),
+    (now, calm): (&mut Twist, &mut usize),
     h: f64,
 ) -> bool {
     // changes are measured by the largest force, and by a thousandth of the weight where there is
@@ -99,17 +95,7 @@ fn sweep(
     let scale = contacts.iter().map(|contact| contact.normal_force).fold(least, f64::max);
     let count = contacts.len();
     for contact in contacts.iter_mut() {
-        let before = (contact.normal_force, contact.shear_force, contact.rolling_moment);
-        let (dv, dw) = contact.effect(body, h);
-        // without this contact's own forces: what the others do to the rock
-        let (vf, wf) = (*v - dv, *w - dw);
-        contact.solve(body, &vf, &wf, h);
-        let (dv, dw) = contact.effect(body, h);
-        (*v, *w) = (vf + dv, wf + dw);
-        let change2 = (contact.normal_force - before.0)
-            .powi(2)
-            .max((contact.shear_force - before.1).norm_squared())
-            .max((contact.rolling_moment - before.2).norm_squared() / body.radius.powi(2));
+        let change2 = contact.solve_anew(body, now, h);
         *calm = if change2 <= (SETTLED * scale.max(contact.normal_force)).powi(2) {
             *calm + 1
         } else {
@@ -122,104 +108,16 @@ fn sweep(
     false
 }
 
-/// Free motion and all contact forces together.
-fn driven(
-    body: &Body,
-    contacts: &[StageContact],
-    (mut v, mut w): (Vec3, Vec3),
-    h: f64,
-) -> (Vec3, Vec3) {
-    for contact in contacts {
-        let (dv, dw) = contact.effect(body, h);
-        v += dv;
-        w += dw;
-    }
-    (v, w)
-}
-
-/// Sets every force to what its law gives at velocity and spin `at`.
-///
-/// After a jump: the linear system may have left a cone or let a spring pull; the law itself may
-/// not.
-fn act_on(body: &Body, contacts: &mut [StageContact], (v, w): &(Vec3, Vec3), h: f64) {
-    for contact in contacts {
-        let normal = contact.line(body, h);
-        contact.normal_force = normal.at(contact.n.dot(v));
-        let law = &contact.law;
-        let (stick, wound) = contact.trials(body, v, w, h);
-        contact.shear_force = law.shear.capped(stick, contact.normal_force);
-        contact.rolling_moment = law.rolling.capped(wound, contact.normal_force);
-    }
-}
-
-impl StageContact {
-    /// Its normal force as a line, in the mode that it is in.
-    pub(crate) fn line(&self, body: &Body, h: f64) -> NormalLine {
-        self.normal.line((self.penetration, self.normal_force), body.mass, h)
-    }
-}
-
 /// Velocity and spin that solve the stage linearised in its present modes.
 /// Friction grows with the normal force, which makes the matrix unsymmetric: LU, not Cholesky.
-fn jump(
-    body: &Body,
-    contacts: &[StageContact],
-    free: (Vec3, Vec3),
-    now: &(Vec3, Vec3),
-    h: f64,
-) -> Option<(Vec3, Vec3)> {
-    let mut k = Matrix6::zeros();
-    let mut f = Vector6::zeros();
-    for axis in 0..3 {
-        (k[(axis, axis)], k[(axis + 3, axis + 3)]) = (body.mass / h, body.inertia / h);
-        (f[axis], f[axis + 3]) = (free.0[axis] * body.mass / h, free.1[axis] * body.inertia / h);
-    }
+fn jump(body: &Body, contacts: &[StageContact], free: Twist, now: &Twist, h: f64) -> Option<Twist> {
+    let (mut k, mut f) = (Mat6::zeros(), Vec6::zeros());
+    LinearForces::of_inertia(body, &free, h).add_to(&mut k, f.as_mut_slice());
     // open contacts have neither stiffness nor load
     for contact in contacts.iter().filter(|contact| contact.normal_force > 0.0) {
-        add(&mut k, &mut f, body, contact, (now, h));
+        contact.linear(body, now, h).add_to(&mut k, f.as_mut_slice());
     }
     let x = k.lu().solve(&f)?;
     let found = (x.fixed_rows::<3>(0).into(), x.fixed_rows::<3>(3).into());
     x.iter().all(|x| x.is_finite()).then_some(found)
-}
-
-/// Adds one contact's forces, linear around `now`, to the system.
-fn add(
-    k: &mut Matrix6,
-    f: &mut Vector6,
-    body: &Body,
-    contact: &StageContact,
-    ((v, w), h): (&(Vec3, Vec3), f64),
-) {
-    let normal = contact.line(body, h);
-    let (law, n, r) = (&contact.law, contact.n, body.radius);
-    // Slip u = T x with T = [Q, R n×]; shear acts back through the same T.
-    // S = [Q, R n×], the slip of the contact point from velocity and spin
-    let q = Matrix3::identity() - n * n.transpose();
-    let spin = n.cross_matrix() * r;
-    let (stick, wound) = contact.trials(body, v, w, h);
-    let normal_force = normal.at(n.dot(v));
-    // The sweeps know the mode. What the law gives at `now` does not: a newton of another contact that has changed
-    // since moves a stiff spring far beyond its cap.
-    let shear = law.shear.left(h, (&contact.shear_force, contact.normal_force));
-    let roll = law.rolling.left(h, (&contact.rolling_moment, contact.normal_force));
-    let (shear, roll) = (shear.at(stick, normal_force), roll.at(wound, normal_force));
-    let slip = body.slip(&n, v, w);
-    // q ≈ q0 + J (u − u0) − e μ b (s − s0), and the same for the moment.
-    let drag0 = shear.force - shear.jacobian * slip + shear.along * (normal.b * n.dot(v));
-    let moment0 = roll.force - roll.jacobian * w + roll.along * (normal.b * n.dot(v));
-    let (jq, js) = (q * shear.jacobian * q, shear.jacobian * spin);
-    let coupling = shear.along * n.transpose() * normal.b;
-    let (vv, vw) = (n * n.transpose() * normal.b + jq - coupling, q * js);
-    let wv =
-        spin.transpose() * (shear.jacobian * q - coupling) - roll.along * n.transpose() * normal.b;
-    let ww = spin.transpose() * js + roll.jacobian;
-    for (row, column, block) in [(0, 0, vv), (0, 3, vw), (3, 0, wv), (3, 3, ww)] {
-        let mut place = k.fixed_view_mut::<3, 3>(row, column);
-        place += block;
-    }
-    let mut force = f.fixed_rows_mut::<3>(0);
-    force += n * normal.a - drag0;
-    let mut torque = f.fixed_rows_mut::<3>(3);
-    torque -= spin.transpose() * drag0 + moment0;
 }

@@ -13,14 +13,14 @@
 //! rows:    N = ± (n, 0),   S = (± Q, lever n×)          of one end, so s = Σ N x and u = Σ S x
 //! ```
 
-use super::body::{BodySlot, IslandBody};
+use super::body::BodySlot;
 use super::pair_contact::PairContact;
 use crate::contact::submatrix::{Mat3x6, Mat6, Vec6};
 use crate::ground::{LinearFriction, NormalLine};
 use crate::rock::Vec3;
 use crate::solver::block_factor::{Below, Blocks, Factor};
 use crate::solver::body::Twist;
-use crate::solver::law::StageContact;
+use crate::solver::linear_forces::LinearForces;
 use nalgebra::{DMatrix, DVector, Matrix3};
 
 /// Most rocks for which a dense matrix is as cheap; it looks for its pivots everywhere.
@@ -75,9 +75,11 @@ pub(super) fn jump(
     let mut system = NewtonSystem { diagonal, joined: Vec::with_capacity(pairs.len()), load };
     for ((member, motion), place) in members.iter().zip(motions).zip(&place) {
         let Some(k) = *place else { continue };
-        system.add_inertia(k, member, h);
+        let own = &mut (&mut system.diagonal[k], &mut system.load[6 * k..6 * k + 6]);
+        LinearForces::of_inertia(&member.body, &member.free, h).add_to(own.0, own.1);
         for contact in member.contacts().iter().filter(|contact| contact.normal_force > 0.0) {
-            system.add_contact_force((k, motion), member, contact, h);
+            // the mesh is an end that does not move, so only `K_kk` changes
+            contact.linear(&member.body, motion, h).add_to(own.0, own.1);
         }
     }
     for pair in pairs.iter().filter(|pair| pair.normal_force > 0.0 || pair.bond.is_some()) {
@@ -119,68 +121,6 @@ impl Linear {
 }
 
 impl NewtonSystem {
-    /// `M/h` on the diagonal and `M v_free/h` in the load: without contacts the solution is the free motion.
-    fn add_inertia(&mut self, k: usize, member: &IslandBody, h: f64) {
-        let (m, i) = (member.body.mass / h, member.body.inertia / h);
-        for axis in 0..3 {
-            let (row, turn) = (6 * k + axis, 6 * k + 3 + axis);
-            self.diagonal[k][(axis, axis)] += m;
-            self.diagonal[k][(3 + axis, 3 + axis)] += i;
-            self.load[row] += m * member.free.0[axis];
-            self.load[turn] += i * member.free.1[axis];
-        }
-    }
-
-    /// A contact of rock `k` with the mesh; the mesh is an end that does not move, so only `K_kk` changes.
-    fn add_contact_force(
-        &mut self,
-        (k, (v, w)): (usize, &Twist),
-        member: &IslandBody,
-        contact: &StageContact,
-        h: f64,
-    ) {
-        let (body, law) = (&member.body, &contact.law);
-        let normal = contact.line(body, h);
-        let speed = contact.n.dot(v);
-        let (stick, wound) = contact.trials(body, v, w, h);
-        let normal_force = normal.at(speed);
-        let shear = law.shear.left(h, (&contact.shear_force, contact.normal_force));
-        let shear = shear.at(stick, normal_force);
-        let ends = [Some((k, 1.0, body.radius)), None];
-        self.add(&Linear {
-            normal,
-            shear,
-            slip: body.slip(&contact.n, v, w),
-            speed,
-            n: contact.n,
-            ends,
-        });
-        if law.rolling.is_on() {
-            let roll = law.rolling.left(h, (&contact.rolling_moment, contact.normal_force));
-            let roll = roll.at(wound, normal_force);
-            self.add_rolling(k, &roll, &normal, (&contact.n, speed, w));
-        }
-    }
-
-    /// The rolling slider: a moment against spin whose cap `c_r R F_N` couples it to the normal speed.
-    fn add_rolling(
-        &mut self,
-        k: usize,
-        roll: &LinearFriction,
-        normal: &NormalLine,
-        (n, speed, w): (&Vec3, f64, &Vec3),
-    ) {
-        let constant = roll.force - roll.jacobian * w + roll.along * (normal.b * speed);
-        let coupling = roll.along * n.transpose() * normal.b;
-        let mut block = Mat6::zeros();
-        block.fixed_view_mut::<3, 3>(3, 3).copy_from(&roll.jacobian);
-        block.fixed_view_mut::<3, 3>(3, 0).copy_from(&-coupling);
-        self.diagonal[k] += block;
-        for axis in 0..3 {
-            self.load[6 * k + 3 + axis] -= constant[axis];
-        }
-    }
-
     /// `K_kl += N_kᵀ b N_l + S_kᵀ (J S_l − e μ b N_l)`, with the rows `N` of the normal speed and `S` of the slip.
     fn add(&mut self, contact: &Linear) {
         let Linear { normal, shear, n, .. } = contact;

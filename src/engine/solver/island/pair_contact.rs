@@ -149,6 +149,18 @@ impl PairContact {
         self.shear_force = self.law.shear.capped(free, self.normal_force);
     }
 
+    /// Sets its forces to what its law gives at the motions of both rocks.
+    pub(super) fn act_at(&mut self, ends: [&Twist; 2], h: f64) {
+        let (speed, stick) = (self.speed(ends), self.trial(ends, h));
+        if self.bond.is_some() {
+            self.normal_force = self.normal.bond_force(self.penetration, speed, h);
+            self.shear_force = stick;
+        } else {
+            self.normal_force = self.line(h).at(speed);
+            self.shear_force = self.law.shear.capped(stick, self.normal_force);
+        }
+    }
+
     /// Forces at the present state, for the explicit first stage; gives the rate of the shear spring.
     pub(super) fn act_now(&mut self, ends: [&Twist; 2]) -> Vec3 {
         let (penetration, vn) = (self.penetration, self.speed(ends));

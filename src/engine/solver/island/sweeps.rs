@@ -13,6 +13,7 @@ use super::assembly::Island;
 use super::body::IslandBody;
 use super::newton_step::jump;
 use crate::solver::body::Twist;
+use crate::solver::linear_forces::driven;
 
 /// Sweeps before the first jump, and between two of them: at least, for each rock that is stirred, and at most. A jump
 /// costs as much as some hundred contacts.
@@ -94,13 +95,8 @@ impl Island<'_> {
         self.motions.clear();
         for member in &self.members {
             let IslandBody { state, body, free, .. } = &**member;
-            let mut now = *free;
-            for contact in &state.contacts[..state.contact_count] {
-                let (dv, dw) = contact.effect(body, h);
-                now.0 += dv;
-                now.1 += dw;
-            }
-            self.motions.push(now);
+            let contacts = &state.contacts[..state.contact_count];
+            self.motions.push(driven(body, contacts, *free, h));
         }
         for pair in self.pairs.iter().filter(|pair| pair.acts()) {
             for k in 0..2 {
@@ -131,16 +127,7 @@ impl Island<'_> {
         let count = state.contact_count;
         let mut worst = 0.0f64;
         for contact in &mut state.contacts[..count] {
-            let before = (contact.normal_force, contact.shear_force, contact.rolling_moment);
-            let (dv, dw) = contact.effect(body, h);
-            let free = (now.0 - dv, now.1 - dw);
-            contact.solve(body, &free.0, &free.1, h);
-            let (dv, dw) = contact.effect(body, h);
-            *now = (free.0 + dv, free.1 + dw);
-            let change = (contact.normal_force - before.0)
-                .abs()
-                .max((contact.shear_force - before.1).norm());
-            let change = change.max((contact.rolling_moment - before.2).norm() / body.radius);
+            let change = contact.solve_anew(body, now, h).sqrt();
             // a force that changes the velocity by SETTLED · tolerance in a stage
             let allowed = SETTLED * self.tolerance * body.mass / h;
             worst = worst.max(change / allowed.max(ROUNDING / nothing * contact.normal_force));
@@ -194,15 +181,11 @@ impl Island<'_> {
     /// more.
     fn act_on(&mut self, motions: &[Option<Twist>], h: f64) {
         for ((member, now), motion) in self.members.iter_mut().zip(&mut self.motions).zip(motions) {
-            let Some((v, w)) = motion else { continue };
+            let Some(motion) = motion else { continue };
             let IslandBody { state, body, .. } = &mut **member;
-            *now = (*v, *w);
+            *now = *motion;
             for contact in &mut state.contacts[..state.contact_count] {
-                let law = contact.law;
-                contact.normal_force = contact.line(body, h).at(contact.n.dot(v));
-                let (stick, wound) = contact.trials(body, v, w, h);
-                contact.shear_force = law.shear.capped(stick, contact.normal_force);
-                contact.rolling_moment = law.rolling.capped(wound, contact.normal_force);
+                contact.act_at(body, motion, h);
             }
         }
         for pair in &mut self.pairs {
@@ -210,14 +193,7 @@ impl Island<'_> {
                 continue;
             }
             let ends = pair.ends.map(|k| &self.motions[k]);
-            let (law, speed, stick) = (pair.law, pair.speed(ends), pair.trial(ends, h));
-            if pair.bond.is_some() {
-                pair.normal_force = pair.normal.bond_force(pair.penetration, speed, h);
-                pair.shear_force = stick;
-            } else {
-                pair.normal_force = pair.line(h).at(speed);
-                pair.shear_force = law.shear.capped(stick, pair.normal_force);
-            }
+            pair.act_at(ends, h);
         }
     }
 }

@@ -1,0 +1,125 @@
+//! A contact with the mesh among others of a stage: solved anew while they hold, asked at a motion, and made linear for Newton jumps.
+//!
+//! ```text
+//! normal:  F = a − b s,  s = n·v                                  (open contacts are left out)
+//! shear:   q = q0 + J (u − u0) + μ e (F − F0)                     sticking: J = κ 1;  sliding: J = κ cap/|trial| (1 − e eᵀ)
+//! rolling: M = M0 + J_r (ω − ω0) + μ_r e_r (F − F0)
+//! on the rock:  Σ (n F − q),  Σ (R n × q − M),                    u = T x with T = [1 − n nᵀ, R n×]
+//! ```
+//!
+//! The same for a rock alone ([`multi_contact`](super::multi_contact)) and for the rocks of an island.
+
+use super::body::{Body, Twist};
+use super::law::StageContact;
+use crate::contact::submatrix::Mat6;
+use crate::ground::NormalLine;
+use nalgebra::Matrix3;
+
+/// What acts on a rock over a stage, linear in velocity and spin: load less stiffness times both.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct LinearForces {
+    /// How force (first row) and moment fall with velocity (first column) and spin (N s/m; N s; N m s).
+    pub(super) stiffness: [[Matrix3<f64>; 2]; 2],
+    /// Force and moment without them (N, N m).
+    pub(super) load: Twist,
+}
+
+impl StageContact {
+    /// Its normal force as a line, in the mode that it is in.
+    pub(crate) fn line(&self, body: &Body, h: f64) -> NormalLine {
+        self.normal.line((self.penetration, self.normal_force), body.mass, h)
+    }
+
+    /// Solves it anew while all others hold: `now` is the motion with everybody's forces. Returns the largest change of a force, squared (N²),
+    /// of the rolling moment over the radius.
+    pub(super) fn solve_anew(&mut self, body: &Body, now: &mut Twist, h: f64) -> f64 {
+        let before = (self.normal_force, self.shear_force, self.rolling_moment);
+        let (dv, dw) = self.effect(body, h);
+        // without this contact's own forces: what the others do to the rock
+        let (vf, wf) = (now.0 - dv, now.1 - dw);
+        self.solve(body, &vf, &wf, h);
+        let (dv, dw) = self.effect(body, h);
+        *now = (vf + dv, wf + dw);
+        (self.normal_force - before.0)
+            .powi(2)
+            .max((self.shear_force - before.1).norm_squared())
+            .max((self.rolling_moment - before.2).norm_squared() / body.radius.powi(2))
+    }
+
+    /// Sets its forces to what its law gives at a motion.
+    ///
+    /// After a jump: the linear system may have left a cone or let a spring pull; the law itself may
+    /// not.
+    pub(super) fn act_at(&mut self, body: &Body, (v, w): &Twist, h: f64) {
+        self.normal_force = self.line(body, h).at(self.n.dot(v));
+        let (stick, wound) = self.trials(body, v, w, h);
+        self.shear_force = self.law.shear.capped(stick, self.normal_force);
+        self.rolling_moment = self.law.rolling.capped(wound, self.normal_force);
+    }
+
+    /// Its forces, linear around the motion `(v, w)`, in its present modes.
+    pub(super) fn linear(&self, body: &Body, (v, w): &Twist, h: f64) -> LinearForces {
+        let normal = self.line(body, h);
+        let (law, n, r) = (&self.law, self.n, body.radius);
+        // Slip u = T x with T = [Q, R n×]; shear acts back through the same T.
+        let q = Matrix3::identity() - n * n.transpose();
+        let spin = n.cross_matrix() * r;
+        let (stick, wound) = self.trials(body, v, w, h);
+        let normal_force = normal.at(n.dot(v));
+        // The sweeps know the mode. What the law gives at `(v, w)` does not: a newton of another contact that has changed
+        // since moves a stiff spring far beyond its cap.
+        let shear = law.shear.left(h, (&self.shear_force, self.normal_force));
+        let roll = law.rolling.left(h, (&self.rolling_moment, self.normal_force));
+        let (shear, roll) = (shear.at(stick, normal_force), roll.at(wound, normal_force));
+        let slip = body.slip(&n, v, w);
+        // q ≈ q0 + J (u − u0) − e μ b (s − s0), and the same for the moment.
+        let drag0 = shear.force - shear.jacobian * slip + shear.along * (normal.b * n.dot(v));
+        let moment0 = roll.force - roll.jacobian * w + roll.along * (normal.b * n.dot(v));
+        let (jq, js) = (q * shear.jacobian * q, shear.jacobian * spin);
+        let coupling = shear.along * n.transpose() * normal.b;
+        let (vv, vw) = (n * n.transpose() * normal.b + jq - coupling, q * js);
+        let wv = spin.transpose() * (shear.jacobian * q - coupling)
+            - roll.along * n.transpose() * normal.b;
+        let ww = spin.transpose() * js + roll.jacobian;
+        LinearForces {
+            stiffness: [[vv, vw], [wv, ww]],
+            load: (n * normal.a - drag0, -(spin.transpose() * drag0 + moment0)),
+        }
+    }
+}
+
+/// Free motion and all contact forces of a rock together.
+pub(super) fn driven(body: &Body, contacts: &[StageContact], free: Twist, h: f64) -> Twist {
+    contacts.iter().fold(free, |(v, w), contact| {
+        let (dv, dw) = contact.effect(body, h);
+        (v + dv, w + dw)
+    })
+}
+
+impl LinearForces {
+    /// What inertia asks for: without contacts it makes the motion the free one.
+    pub(super) fn of_inertia(body: &Body, free: &Twist, h: f64) -> Self {
+        let diagonal = |inertia: f64| Matrix3::identity() * (inertia / h);
+        Self {
+            stiffness: [
+                [diagonal(body.mass), Matrix3::zeros()],
+                [Matrix3::zeros(), diagonal(body.inertia)],
+            ],
+            load: (free.0 * body.mass / h, free.1 * body.inertia / h),
+        }
+    }
+
+    /// Adds it to the block of its rock and to the six loads of that.
+    pub(super) fn add_to(&self, k: &mut Mat6, load: &mut [f64]) {
+        for (i, blocks) in self.stiffness.iter().enumerate() {
+            for (j, block) in blocks.iter().enumerate() {
+                let mut place = k.fixed_view_mut::<3, 3>(3 * i, 3 * j);
+                place += block;
+            }
+        }
+        for axis in 0..3 {
+            load[axis] += self.load.0[axis];
+            load[3 + axis] += self.load.1[axis];
+        }
+    }
+}
