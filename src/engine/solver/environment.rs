@@ -1,7 +1,7 @@
 //! What a rock in contact meets: the terrain, the law of every ground, and itself.
 
 use super::body::Body;
-use crate::contact::ContactPoint;
+use crate::contact::{ContactPoint, TOUCH};
 use crate::ground::Law;
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
@@ -75,10 +75,13 @@ impl ContactEnvironment<'_> {
         if touches.len() + more.len() == 1 {
             return 1.0;
         }
+        // What parts takes part until it is no touch any more: a force that jumps where the gap is zero would be met by
+        // steps as short as what places are rounded by.
+        let reach = self.body.radius * (1.0 + TOUCH);
         let pressed = touches
             .iter()
             .enumerate()
-            .filter(|(j, other)| *j != k && other.distance_m < self.body.radius);
+            .filter(|(j, other)| *j != k && other.distance_m < reach);
         dashpot_share(&touches[k].normal, pressed.map(|(_, other)| &other.normal).chain(more))
     }
 }
