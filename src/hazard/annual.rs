@@ -7,6 +7,7 @@
 mod barriers;
 mod cells;
 mod curve;
+mod energies;
 mod places;
 mod risk;
 mod strata;
@@ -17,6 +18,7 @@ pub use curve::{ExceedancePoint, ReturnEnergy};
 pub use places::{Above, Annual, AnnualFigures, AnnualPlace, Saved, YearSums, annual};
 pub use risk::{Object, Risk, RiskKind, Vehicles};
 
+use super::rate::reaches;
 use crate::frequency::{Frequency, radius_of_m3};
 use serde::{Deserialize, Serialize};
 
@@ -37,6 +39,15 @@ pub struct AnnualRequest {
 }
 
 impl AnnualRequest {
+    /// Energies (J) above which rocks are counted, here and there: those asked for, and limits between classes of hazard.
+    pub fn counted_j(&self) -> Vec<f64> {
+        let asked = self.frequency.as_ref().map_or(&[][..], |of| of.energies_j());
+        let limits = self.matrix.as_ref().map_or(&[][..], |of| &of.energies_j);
+        let mut all = asked.to_vec();
+        all.extend(limits.iter().filter(|joule| !asked.contains(joule)));
+        all
+    }
+
     /// Radius of the largest rock of a stratum (m); 0 where nothing says it.
     fn largest_m(&self, stratum: usize) -> f64 {
         let of_law = || {
@@ -63,12 +74,17 @@ pub struct Matrix {
 }
 
 impl Matrix {
-    /// The highest level of a place by the energy of each return period (J); 0 where rocks come more seldom than all.
-    pub(super) fn level(&self, energy_of: impl Fn(f64) -> Option<f64>) -> u8 {
+    /// The highest level of a place, from how often a year rocks come with at least an energy (J), or with any; 0 where they come more
+    /// seldom than all periods.
+    ///
+    /// The energy of a return period reaches a limit if the limit is passed that often.
+    pub(super) fn level(&self, mut per_year: impl FnMut(Option<f64>) -> f64) -> u8 {
+        let any = per_year(None);
+        let above: Vec<f64> = self.energies_j.iter().map(|joule| per_year(Some(*joule))).collect();
         let at = |(years, row): (&f64, &Vec<u8>)| {
-            let energy_j = energy_of(*years)?;
-            let class = self.energies_j.iter().filter(|limit| energy_j >= **limit).count();
-            row.get(class).copied()
+            let wanted = 1.0 / years;
+            let class = above.iter().filter(|rate| reaches(**rate, wanted)).count();
+            row.get(class).copied().filter(|_| reaches(any, wanted))
         };
         self.return_periods_years.iter().zip(&self.levels).filter_map(at).max().unwrap_or(0)
     }

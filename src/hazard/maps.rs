@@ -10,7 +10,7 @@ use super::rate::proportion;
 use super::row::StopKind;
 use crate::frequency::Weights;
 use crate::simulation::CellPassage;
-use cell::MapCell;
+pub(super) use cell::MapCell;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 

@@ -96,6 +96,14 @@ impl Sums {
     }
 }
 
+/// Rounding of a sum of frequencies (–): it must not decide which rock is the last of a sum.
+const SUM_ROUNDING: f64 = 1e-12;
+
+/// Whether a frequency that is a sum over rocks reaches another (1/year).
+pub(super) fn reaches(per_year: f64, wanted: f64) -> bool {
+    per_year >= wanted * (1.0 - SUM_ROUNDING)
+}
+
 /// What a rate can reach at most.
 #[derive(Debug, Clone)]
 pub(super) struct Limits {
@@ -253,6 +261,11 @@ impl<'a> Running<'a> {
         let unseen = limits.sparse.iter().find(|(stratum, _)| self.strata[*stratum].rocks == 0);
         let open = unseen.map_or(0.0, |(_, open)| (self.value + open).min(limits.most));
         [self.value, low, high.max(open)]
+    }
+
+    /// Value alone.
+    pub(super) fn per_year(&self) -> f64 {
+        self.value
     }
 
     /// Change with the exponent.

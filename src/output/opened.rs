@@ -24,8 +24,7 @@ pub(super) fn open_maps(
         }
         Some(found) => maps::read_state(dir, found.done)?,
     };
-    let energies_j = info.asked.frequency.as_ref().map_or(&[][..], |of| of.energies_j());
-    Ok(Some(Maps::new(frame, energies_j, state)))
+    Ok(Some(Maps::new(frame, &info.asked.counted_j(), state)))
 }
 
 /// Opens one table: new, or behind the rows that are known to be good.

@@ -21,5 +21,6 @@ mod meshes;
 mod open;
 mod report;
 mod results;
+mod return_periods;
 mod scene_doc;
 mod study;

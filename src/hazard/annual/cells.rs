@@ -1,6 +1,6 @@
 //! Passages a year cell by cell.
 
-use super::super::maps::Maps;
+use super::super::maps::{MapCell, Maps};
 use super::super::rate::{Limits, Running, Sums};
 use super::curve::{Ceilings, curve, return_energy};
 use super::{AnnualRequest, Matrix};
@@ -26,7 +26,8 @@ pub struct YearMap {
 /// sources. A frequency is its own derivative by the logarithm of the rates; without power law there is none by the exponent.
 ///
 /// Of the sizes in a stratum (a factor of 2.2 in volume) the derivative by the exponent takes the mean. Energies of return periods are read
-/// from classes of energy (ratio 1.05).
+/// from classes of energy (ratio 1.05), as cells keep no rocks one by one; their intervals reach to the far ends of their classes. Levels of
+/// hazard are counted.
 pub fn year_maps(maps: &Maps, asked: &AnnualRequest, weights: &Weights) -> Vec<YearMap> {
     let Some(frequency) = &asked.frequency else { return Vec::new() };
     let scores: Vec<Option<f64>> = frequency.strata().iter().map(Stratum::mean_score).collect();
@@ -61,10 +62,9 @@ pub fn year_maps(maps: &Maps, asked: &AnnualRequest, weights: &Weights) -> Vec<Y
         running.clear();
         let falling = entries.iter().rev();
         let falling = falling.map(|&(class, s, n)| (class, s, sums(s, Sums::many(n))));
-        let points = curve(falling, &mut running, &ceilings);
-        let energy = |years: f64| return_energy(&points, &ceilings, years, has_exponent);
+        let steps = curve(falling, &mut running, &ceilings);
         for years in periods {
-            let found = energy(*years);
+            let found = return_energy((&steps, &steps), &ceilings, *years, has_exponent);
             // an end that is open has no number, nor has the slope of nothing
             let or_none = |value: Option<f64>| value.unwrap_or(f64::NAN);
             values.extend([found.energy_j.unwrap_or(0.0), found.low_95, or_none(found.high_95)]);
@@ -73,11 +73,29 @@ pub fn year_maps(maps: &Maps, asked: &AnnualRequest, weights: &Weights) -> Vec<Y
         }
         layers.push(number, values);
         if let Some(matrix) = &asked.matrix {
-            levels.push((number, f64::from(matrix.level(|years| energy(years).energy_j))));
+            levels.push((number, f64::from(level(matrix, (maps, cell), &mut running))));
         }
     }
     let level = YearMap { values: levels, ..YearMap::of(Matrix::FILE, "Level of hazard", "") };
     layers.0.into_iter().chain(asked.matrix.as_ref().map(|_| level)).collect()
+}
+
+/// Level of hazard of a cell, from the rocks that are counted above each limit between classes of energy.
+fn level(matrix: &Matrix, (maps, cell): (&Maps, &MapCell), running: &mut Running<'_>) -> u8 {
+    matrix.level(|limit| {
+        running.clear();
+        let any = cell.energies().entries().iter().map(|&(_, stratum, rocks)| (stratum, rocks));
+        let above = |joule| maps.number_of(joule).map_or(&[][..], |energy| cell.above(energy));
+        match limit {
+            None => any.for_each(|(stratum, rocks)| running.add(stratum, &Sums::many(rocks))),
+            Some(joule) => {
+                for &(stratum, rocks) in above(joule) {
+                    running.add(stratum, &Sums::many(rocks));
+                }
+            }
+        }
+        running.per_year()
+    })
 }
 
 /// All layers but that of levels, in the order in which their values come.
@@ -174,5 +192,35 @@ mod tests {
         // and so does the share that is conditional on release
         let share = maps.values(Layer::ExceedsWeak, &weights).next().unwrap().1;
         assert!((0.04 * share - value("frequency_above_30kj_per_year").unwrap()).abs() < 1e-15);
+    }
+    /// A rock of 30.2 kJ comes once in 50 years: more often than 100 years, and above 30 kJ though its class of energies begins below.
+    #[test]
+    fn levels_are_counted() {
+        let class = Class { volume_m3: [1.0, 1.0], per_year: 0.02 };
+        let law = FrequencyLaw::Classes(vec![class]);
+        let source = RockSource { name: "wall".to_owned(), law };
+        let frequency = Frequency::new(vec![source], vec![1e6], vec![]);
+        let frame =
+            MapFrame { west_m: 0.0, south_m: 0.0, cell_m: 1.0, columns: 1, rows: 1, epsg: None };
+        for (total_j, level) in [(29.8e3, 1.0), (30e3, 2.0), (30.2e3, 2.0), (31.5e3, 2.0)] {
+            let matrix = Matrix {
+                name: "levels".to_owned(),
+                source: "by hand".to_owned(),
+                energies_j: vec![30e3],
+                return_periods_years: vec![10.0, 100.0],
+                levels: vec![vec![8, 9], vec![1, 2]],
+            };
+            let frequency = Some(frequency.clone());
+            let asked = AnnualRequest { frequency, matrix: Some(matrix), ..Default::default() };
+            let mut maps = Maps::new(frame, &asked.counted_j(), MapState::default());
+            for _ in 0..4 {
+                let passage = CellPassage { cell: 0, total_j, height_m: 0.0 };
+                maps.add(0, &[passage], (StopKind::LeftTerrain, [9.0; 3]));
+            }
+            let weights = asked.frequency.as_ref().unwrap().weights(4);
+            let layers = year_maps(&maps, &asked, &weights);
+            let found = layers.iter().find(|layer| layer.file == Matrix::FILE).unwrap();
+            assert!((found.values[0].1 - level).abs() < 1e-9, "{total_j}: {:?}", found.values);
+        }
     }
 }

@@ -1,7 +1,8 @@
 //! The curve of energy exceedance λ(E ≥ e), and the energy of a return period on it.
 
 use super::super::classes::{RATIO, class_of, lower_end_of};
-use super::super::rate::{Limits, Running, Sums};
+use super::super::rate::{Limits, Running, Sums, reaches};
+use super::energies::EnergyClass;
 use crate::frequency::Weights;
 use crate::math;
 use serde::{Deserialize, Serialize};
@@ -28,6 +29,10 @@ pub struct ReturnEnergy {
     pub years: f64,
     /// Energy (J) with λ(E ≥ e) = 1/T; none where rocks come more seldom.
     pub energy_j: Option<f64>,
+    /// Width of the class of energies that it is read from over its lower end (–); none where it is the energy of a rock. The interval
+    /// holds the classes of its ends.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub class_width: Option<f64>,
     /// Lower end of the 95 % interval (J); 0: they may come more seldom.
     pub low_95: f64,
     /// Upper end of the 95 % interval (J); none where too few rocks bound it.
@@ -36,6 +41,17 @@ pub struct ReturnEnergy {
     pub by_log_rate: Option<f64>,
     /// Change with the exponents (J), over 0.05 either way.
     pub by_exponent: Option<f64>,
+}
+
+/// A place where the curve steps: a class of energy, whose rocks lie anywhere in it, or the energy of a rock.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Step {
+    /// With the least energy.
+    pub(super) point: ExceedancePoint,
+    /// The class of that energy.
+    class: u16,
+    /// Largest over least energy (–): 1 of a rock.
+    width: f64,
 }
 
 /// What λ(E ≥ e) can reach, class by class of energy.
@@ -67,47 +83,105 @@ impl Ceilings {
     }
 
     /// The largest energy (J) at which λ may still reach `wanted` (1/year): above all that was seen as far as rocks can have
-    /// it, below by the upper ends of the points. 0 where λ does not reach it at any; none where nothing bounds it.
-    fn highest(&self, points: &[ExceedancePoint], wanted: f64) -> Option<f64> {
-        let seen = points.first().map_or(0, |point| class_of(point.energy_j * RATIO.sqrt()));
+    /// it, below by the upper ends of the steps. 0 where λ does not reach it at any; none where nothing bounds it.
+    fn highest(&self, steps: &[Step], wanted: f64) -> Option<f64> {
+        let seen = steps.first().map_or(0, |step| step.class);
         let free = self.unseen.partition_point(|high| *high >= wanted);
         if free > usize::from(seen) + 1 {
             // the last class in which rocks can be heavy enough: its upper end bounds them
             return (free < self.unseen.len()).then(|| lower_end_of(free as u16));
         }
-        Some(reached(points, |point| point.high_95, wanted).unwrap_or(0.0))
+        let found = reached(steps, |point| point.high_95, wanted);
+        Some(found.map_or(0.0, |(step, _)| step.point.energy_j * step.width))
     }
 }
 
-/// The curve of rocks given by class, stratum and sums, by **falling** class; its points fall in energy too.
+/// The curve of rocks given by class, stratum and sums, by **falling** class; its steps fall in energy too.
 pub(super) fn curve(
     entries: impl Iterator<Item = (u16, u16, Sums)>,
     running: &mut Running<'_>,
     ceilings: &Ceilings,
-) -> Vec<ExceedancePoint> {
-    let mut points: Vec<ExceedancePoint> = Vec::new();
+) -> Vec<Step> {
+    let mut steps: Vec<Step> = Vec::new();
     let mut open = None;
+    let of_class = |class, running: &Running<'_>| {
+        let energy_j = lower_end_of(class);
+        Step { point: point(energy_j, class, (running, ceilings)), class, width: RATIO }
+    };
     for (class, stratum, sums) in entries {
         if open.is_some_and(|before| before != class) {
-            points.extend(open.map(|before| point(before, running, ceilings)));
+            steps.extend(open.map(|before| of_class(before, running)));
         }
         running.add(stratum, &sums);
         open = Some(class);
     }
-    points.extend(open.map(|before| point(before, running, ceilings)));
-    // what has the larger energy has the smaller too: λ at a lower energy is no less, and so are both ends
+    steps.extend(open.map(|before| of_class(before, running)));
+    never_rising(&mut steps);
+    steps
+}
+
+/// The same curve, finer in the classes that decide an energy of a return period (years); `rocks` by **falling** energy.
+pub(super) fn resolved(
+    (smooth, rocks): (&[Step], &[EnergyClass]),
+    running: &mut Running<'_>,
+    ceilings: &Ceilings,
+    years: &[f64],
+) -> Vec<Step> {
+    let wanted = years.iter().map(|years| 1.0 / years);
+    let of: [fn(&ExceedancePoint) -> f64; 3] = [|p| p.per_year, |p| p.low_95, |p| p.high_95];
+    let deciding =
+        |wanted: f64| of.map(|of| reached(smooth, of, wanted).map(|(step, _)| step.class));
+    let deciding: Vec<u16> = wanted.flat_map(deciding).flatten().collect();
+    running.clear();
+    let mut steps = Vec::new();
+    let mut left = rocks;
+    for step in smooth {
+        let class = step.class;
+        let (inside, lower) =
+            left.split_at(left.partition_point(|rocks| class_of(rocks.lower_j) >= class));
+        left = lower;
+        // what lies across the lower end of a class is met in the one below
+        let is_deciding = deciding.iter().any(|at| *at == class || *at == class + 1);
+        for equal in inside.chunk_by(|one, next| one.lower_j.total_cmp(&next.lower_j).is_eq()) {
+            for rocks in equal {
+                running.add(rocks.stratum, &Sums::many(rocks.rocks));
+            }
+            if is_deciding {
+                let EnergyClass { lower_j, upper_j, .. } = equal[0];
+                let width =
+                    if upper_j > lower_j && lower_j > 0.0 { upper_j / lower_j } else { 1.0 };
+                steps.push(Step {
+                    point: point(lower_j, class, (running, ceilings)),
+                    class,
+                    width,
+                });
+            }
+        }
+        if !is_deciding {
+            steps.push(*step);
+        }
+    }
+    never_rising(&mut steps);
+    steps
+}
+
+/// What has the larger energy has the smaller too: λ at a lower energy is no less, and so are both ends.
+fn never_rising(steps: &mut [Step]) {
     let mut ends = (0.0f64, 0.0f64);
-    for point in &mut points {
+    for Step { point, .. } in steps {
         ends = (ends.0.max(point.low_95), ends.1.max(point.high_95));
         (point.low_95, point.high_95) = ends;
     }
-    points
 }
 
-fn point(class: u16, running: &Running<'_>, ceilings: &Ceilings) -> ExceedancePoint {
+fn point(
+    energy_j: f64,
+    class: u16,
+    (running, ceilings): (&Running<'_>, &Ceilings),
+) -> ExceedancePoint {
     let [per_year, low_95, high_95] = running.estimate(ceilings.at(class));
     let by_exponent = running.by_exponent();
-    ExceedancePoint { energy_j: lower_end_of(class), per_year, low_95, high_95, by_exponent }
+    ExceedancePoint { energy_j, per_year, low_95, high_95, by_exponent }
 }
 
 /// How far the logarithm of the rates is moved either way to see how an energy follows (–): over several classes of energy and the rocks in
@@ -116,29 +190,35 @@ const RATE_STEP: f64 = 0.15;
 /// The same of the exponents (–): it moves rates by about as much.
 const EXPONENT_STEP: f64 = 0.05;
 
-/// The energy of a return period on a curve of falling points.
+/// The energy of a return period on a curve of falling steps; `smooth` is the same by classes alone, from which its slopes are taken.
 ///
-/// λ is taken as even in the logarithm of the energy inside a class, so that the energy is known to far better than the
-/// class is wide. The interval is that of the rate, read along the other axis: an energy belongs to it if 1/T lies in
-/// the interval of its λ.
+/// It is that of the rock with which λ reaches 1/T. Where a class decides and rocks in it are not told apart, λ is taken as even in the
+/// logarithm of the energy inside it, and the interval reaches to its far ends. The interval is that of the rate, read along the other axis:
+/// an energy belongs to it if 1/T lies in the interval of its λ.
 pub(super) fn return_energy(
-    points: &[ExceedancePoint],
+    (steps, smooth): (&[Step], &[Step]),
     ceilings: &Ceilings,
     years: f64,
     has_exponent: bool,
 ) -> ReturnEnergy {
-    let at = |of: &dyn Fn(&ExceedancePoint) -> f64| reached(points, of, 1.0 / years);
-    let energy_j = at(&|p| p.per_year);
+    let found = |steps, of: &dyn Fn(&ExceedancePoint) -> f64| reached(steps, of, 1.0 / years);
+    let inside = |(step, share): (Step, f64)| step.point.energy_j * math::pow(step.width, share);
+    let reached = found(steps, &|p| p.per_year);
+    let energy_j = reached.map(inside);
+    let width = reached.map(|(step, _)| step.width - 1.0);
+    let at = |of: &dyn Fn(&ExceedancePoint) -> f64| found(smooth, of).map(inside);
     let slope = |moved: &dyn Fn(&ExceedancePoint, f64) -> f64, step: f64| {
         let [less, more] = [-step, step].map(|step| at(&|p| moved(p, step)));
         // where rarer rocks have no such energy, the other side tells
-        Some((more? - less.or(energy_j)?) / if less.is_some() { 2.0 * step } else { step })
+        let beside = less.or_else(|| at(&|p| p.per_year))?;
+        Some((more? - beside) / if less.is_some() { 2.0 * step } else { step })
     };
     ReturnEnergy {
         years,
         energy_j,
-        low_95: at(&|p| p.low_95).unwrap_or(0.0),
-        high_95: ceilings.highest(points, 1.0 / years),
+        class_width: width.filter(|width| *width > 0.0),
+        low_95: found(steps, &|p| p.low_95).map_or(0.0, |(step, _)| step.point.energy_j),
+        high_95: ceilings.highest(steps, 1.0 / years),
         by_log_rate: energy_j
             .and_then(|_| slope(&|p, step| p.per_year * math::exp(step), RATE_STEP)),
         by_exponent: energy_j
@@ -147,18 +227,17 @@ pub(super) fn return_energy(
     }
 }
 
-/// The largest energy (J) whose λ reaches `wanted` (1/year); none if none does.
+/// The first step, of the largest energy, whose λ reaches `wanted` (1/year), and at which share of its width it does; none if none does.
 fn reached(
-    points: &[ExceedancePoint],
+    steps: &[Step],
     of: impl Fn(&ExceedancePoint) -> f64,
     wanted: f64,
-) -> Option<f64> {
+) -> Option<(Step, f64)> {
     let mut above = 0.0;
-    for point in points {
-        let here = of(point);
-        if here >= wanted {
-            let share = ((here - wanted) / (here - above)).clamp(0.0, 1.0);
-            return Some(point.energy_j * math::pow(RATIO, share));
+    for step in steps {
+        let here = of(&step.point);
+        if reaches(here, wanted) {
+            return Some((*step, ((here - wanted) / (here - above)).clamp(0.0, 1.0)));
         }
         above = here;
     }

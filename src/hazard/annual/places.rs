@@ -8,7 +8,8 @@ use super::super::proportion::Proportion;
 use super::super::rate::{EventRate, Limits, Running, Sums, proportion};
 use super::AnnualRequest;
 use super::barriers::{AnnualBarrier, Met};
-use super::curve::{Ceilings, ExceedancePoint, ReturnEnergy, curve, return_energy};
+use super::curve::{Ceilings, ExceedancePoint, ReturnEnergy, curve, resolved, return_energy};
+use super::energies::EnergyCounts;
 use super::risk::{Object, Risk};
 use super::strata::{All, StratumSums, stratum_of};
 use crate::frequency::{Frequency, Weights};
@@ -96,6 +97,8 @@ struct PassageTally {
     /// Metres of road blocked.
     blocked: StratumSums,
     classes: BTreeMap<(u16, u16), Sums>,
+    /// Their energies, for those that one rock decides; none of what a barrier keeps away, of which no energy is told.
+    energies: EnergyCounts,
     /// Rocks that may still pass, and the metres of road that they would block.
     open: StratumSums,
     open_blocked: StratumSums,
@@ -148,10 +151,14 @@ impl PassageTally {
         let own = (!self.open.is_empty())
             .then(|| Ceilings::beside(&running, (&all.weights, &all.asked.most_j)));
         let ceilings = own.as_ref().unwrap_or(&all.ceilings);
-        let curve = curve(falling, &mut running, ceilings);
-        let energy = |years: &f64| return_energy(&curve, ceilings, *years, all.has_exponent);
-        let returns = all.frequency.return_periods_years().iter().map(energy).collect();
+        let smooth = curve(falling, &mut running, ceilings);
+        let periods = all.frequency.return_periods_years();
+        let steps = resolved((&smooth, &self.energies.falling()), &mut running, ceilings, periods);
+        let energy =
+            |years: &f64| return_energy((&steps, &smooth), ceilings, *years, all.has_exponent);
+        let returns = periods.iter().map(energy).collect();
         let risks = self.risks(object, all);
+        let curve = smooth.iter().map(|step| step.point).collect();
         AnnualFigures { passages, above: self.above(all), returns, risks, curve }
     }
 
@@ -283,8 +290,12 @@ impl PlaceSums {
         let passage = PlacePassage { stratum, score, total_j: row.total_j(), blocked_m };
         let energies_j = frequency.energies_j();
         self.all.add(&passage, energies_j);
+        self.all.energies.add(passage.total_j, stratum);
         match stopped {
-            None => self.unstopped.add(&passage, energies_j),
+            None => {
+                self.unstopped.add(&passage, energies_j);
+                self.unstopped.energies.add(passage.total_j, stratum);
+            }
             Some((_, which)) => self.saved[which].add(&passage, energies_j),
         }
     }
