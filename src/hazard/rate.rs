@@ -263,6 +263,15 @@ impl<'a> Running<'a> {
         [self.value, low, high.max(open)]
     }
 
+    /// Whether all rocks count, of every stratum that has events.
+    fn are_all(&self) -> bool {
+        let all = |(stratum, sums): (usize, &Sums)| match self.weights.rocks(stratum) {
+            0 => self.weights.per_year(stratum) <= 0.0,
+            rocks => sums.rocks() == rocks,
+        };
+        self.strata.iter().enumerate().all(all)
+    }
+
     /// Value alone.
     pub(super) fn per_year(&self) -> f64 {
         self.value
@@ -348,5 +357,7 @@ pub(super) fn proportion(
     let [share, low_95, high_95] = running
         .estimate(&Limits::above(weights, &[], 0.0))
         .map(|value| value / weights.total_per_year());
+    // all of them are all: the sum of what each stands for would be so to rounding only
+    let share = if running.are_all() { 1.0 } else { share };
     Proportion { share, low_95, high_95, ..plain }
 }

@@ -3,9 +3,9 @@
 
 use crate::yearly;
 
-use rockfall::hazard::{CrossingRow, MapFrame, MapState, Maps, StopKind, year_maps};
+use rockfall::hazard::{CrossingRow, Line, MapFrame, MapState, Maps, StopKind, year_maps};
 use rockfall::simulation::CellPassage;
-use yearly::{asked, crossings, near, power_law, road};
+use yearly::{asked, crossings, line, near, power_law, road, row};
 
 /// The energy of a return period is that of the rock with which λ(E ≥ e) reaches 1/T, and its interval ends at the energies of rocks; found
 /// anew by sorting. Read from classes of 5 % it was up to 3 % off.
@@ -82,5 +82,26 @@ fn classes_of_cells_are_inside_their_intervals() {
             high.is_nan() || exact.high_95.is_some_and(|exact| exact <= high),
             "{high} {exact:?}"
         );
+    }
+}
+
+/// Where all rocks pass, their share is 1 and not the sum of their parts, which was 0.9999999999999986 of 203 rocks.
+#[test]
+#[expect(clippy::float_cmp, reason = "it is 1")]
+fn all_rocks_are_a_share_of_one() {
+    let asked = asked(vec![power_law(0.1, 0.5), power_law(0.03, 0.8)]);
+    for releases in 190..230 {
+        let rows: Vec<CrossingRow> = (0..releases).map(|k| row(k, "road", 1.0, 1e5)).collect();
+        let share = road(&asked, releases, &rows).conditional_on_release;
+        assert_eq!((share.share, share.high_95), (1.0, 1.0), "{releases}: {share:?}");
+        let weights = asked.frequency.as_ref().unwrap().weights(releases);
+        let mut at_line = Line::new(line("road")).weighing(Some(weights));
+        for row in &rows {
+            at_line.add(row);
+        }
+        assert_eq!(at_line.reach(releases).share, 1.0, "{releases}");
+        // one less is less
+        let some = road(&asked, releases, &rows[1..]).conditional_on_release;
+        assert!(some.share < 1.0, "{releases}: {some:?}");
     }
 }
