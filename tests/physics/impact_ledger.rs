@@ -4,9 +4,10 @@
 
 use crate::common::*;
 use crate::patch::{fold, noisy};
+use crate::stems::{shoot_from, stand_on};
 use rockfall::ground::Ground;
-use rockfall::rock::Rock;
-use rockfall::simulation::{Ledger, Trajectory};
+use rockfall::rock::{Rock, Vec3};
+use rockfall::simulation::{Ledger, Scratch, Trajectory};
 use rockfall::solver::Scheme;
 use rockfall::terrain::Terrain;
 use std::f64::consts::PI;
@@ -144,4 +145,30 @@ fn contacts_that_come_and_go_cost_few_tries() {
     // felt for by shorter and shorter steps it is two for three steps, and 1.1e-3
     assert!(100 * rejected < 58 * steps, "{rejected} of {steps}");
     assert!(apart < 7e-4, "{apart:e}");
+}
+
+/// A rock that strikes ground and stem at the same time: the row of the stem has what the stem took, no more than breaks it, and that of
+/// the ground the rest. Shared by the squares of their approach speeds each row had half of both.
+#[test]
+fn the_row_of_a_stem_is_what_the_stem_took() {
+    let limit_j = 0.02 * ROCK.mass_kg() * 100.0;
+    let ground_m = -3.0;
+    let terrain = stand_on(ground_m, 1, Some(limit_j));
+    let start = Vec3::new(-3.5 - ROCK.radius_m, 0.0, ground_m + ROCK.radius_m + 3.0);
+    for scheme in [Scheme::Adaptive, Scheme::Reference, Scheme::Dda, Scheme::Rigid] {
+        let way = [start, Vec3::new(10.0, 0.0, -10.0)];
+        let run = shoot_from(&terrain, scheme, way, &mut Scratch::default());
+        let ledger = &run.ledger;
+        let ground_j = ledger.friction_j + ledger.damping_j + ledger.rolling_j;
+        let of = |is_tree: bool| -> f64 {
+            let rows = run.impacts.iter().filter(|row| (row.sheet == 1) == is_tree);
+            rows.map(|row| row.energy_lost_j).sum()
+        };
+        println!("{scheme:?}: {} and {} J, {ledger:?}", of(true), of(false));
+        assert!((ledger.trees_j - limit_j).abs() < 1e-9 * limit_j, "{scheme:?}: {ledger:?}");
+        assert!(ground_j > 2.0 * limit_j, "{scheme:?}: {ledger:?}");
+        assert!((of(true) / limit_j - 1.0).abs() < 1e-9, "{scheme:?}: {} of {limit_j} J", of(true));
+        assert!(of(false) <= ground_j * (1.0 + 1e-9), "{scheme:?}: {} {ground_j}", of(false));
+        assert!(of(false) > 0.5 * ground_j, "{scheme:?}: {} {ground_j}", of(false));
+    }
 }

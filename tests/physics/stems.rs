@@ -27,10 +27,15 @@ use rockfall::terrain::{Sheet, Terrain};
 use std::path::Path;
 use std::process::Command;
 
-/// Ground far below the stems, stems of 1 m every 4 m along x; they can take `limit_j` each.
+/// Ground far below the stems, see [`stand_on`].
 fn stand(stems: usize, limit_j: Option<f64>) -> Terrain {
-    let square =
-        [[-9.0, -9.0], [30.0, -9.0], [30.0, 9.0], [-9.0, 9.0]].map(|[x, y]| Vec3::new(x, y, -50.0));
+    stand_on(-50.0, stems, limit_j)
+}
+
+/// Ground at a height (m), and stems of 1 m from 4 m below 0 every 4 m along x; they can take `limit_j` each.
+pub(crate) fn stand_on(ground_m: f64, stems: usize, limit_j: Option<f64>) -> Terrain {
+    let square = [[-9.0, -9.0], [30.0, -9.0], [30.0, 9.0], [-9.0, 9.0]];
+    let square = square.map(|[x, y]| Vec3::new(x, y, ground_m));
     let plate: Vec<Facet> =
         vec![[square[0], square[1], square[2]], [square[0], square[2], square[3]]];
     let tree = |k: usize| Stem { x_m: 4.0 * k as f64, y_m: 0.0, dbh_m: 1.0, height_m: 8.0 };
@@ -49,6 +54,17 @@ fn stand(stems: usize, limit_j: Option<f64>) -> Terrain {
 
 /// A rock that comes along x at 10 m/s, `beside_m` off the axis, without gravity.
 fn shoot(terrain: &Terrain, scheme: Scheme, beside_m: f64, scratch: &mut Scratch) -> Trajectory {
+    let start = [Vec3::new(-4.0, beside_m, 0.0), Vec3::new(10.0, 0.0, 0.0)];
+    shoot_from(terrain, scheme, start, scratch)
+}
+
+/// The same from another place (m) with another velocity (m/s).
+pub(crate) fn shoot_from(
+    terrain: &Terrain,
+    scheme: Scheme,
+    [place_m, velocity_m_s]: [Vec3; 2],
+    scratch: &mut Scratch,
+) -> Trajectory {
     let step = Settings {
         scheme,
         tolerance_m_s: if scheme == Scheme::Reference { 1e-8 } else { 1e-3 },
@@ -69,8 +85,8 @@ fn shoot(terrain: &Terrain, scheme: Scheme, beside_m: f64, scratch: &mut Scratch
     };
     let motion = Motion {
         time_s: 0.0,
-        position_m: Vec3::new(-4.0, beside_m, 0.0) - terrain.origin_m,
-        velocity_m_s: Vec3::new(10.0, 0.0, 0.0),
+        position_m: place_m - terrain.origin_m,
+        velocity_m_s,
         spin_rad_s: Vec3::zeros(),
     };
     let grounds = vec![GROUND; 2];

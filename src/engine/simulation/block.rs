@@ -8,7 +8,7 @@
 mod impacts;
 
 use super::form::{Form, RockInstant, Turned};
-use super::impacts::Struck;
+use super::impacts::{MeshEnergy, Struck};
 use super::recorder::{Keep, Recorder};
 use super::rest::RestCriterion;
 use super::settings::RunSettings;
@@ -222,14 +222,16 @@ impl Roll<'_> {
         for touch in struck.iter().take(MOST) {
             // of the touching point, spin included: v + ω × r
             let velocity = self.moving.at(block, &touch.lever);
+            let (sheet, is_tree) = self.recorder.sheet_of(touch.triangle);
             let struck = Struck {
                 point_m: self.moving.pose.centre + touch.lever,
                 normal: touch.normal,
                 feature: touch.feature.kind,
-                sheet: self.recorder.sheet_of(touch.triangle),
+                sheet,
+                is_tree,
                 approach_m_s: -touch.normal.dot(&velocity),
             };
-            self.recorder.begin_impact(&struck, now_s, 0.0);
+            self.recorder.begin_impact(&struck, now_s, &MeshEnergy::default());
         }
         let fastest = self.moving.fastest(block, struck.iter());
         if let Some(touch) = fastest.filter(|_| self.scars.are_any()) {

@@ -1,8 +1,9 @@
 //! The impacts of one rock: one row for every patch that it strikes.
 //!
 //! A rock may strike several patches at once, or one while it is still pressed into another. Each has its own approach, its own
-//! end and its own speed after it. What is lost while several are under way is shared by the squares of their approach speeds,
-//! for the energy that each would bring to rest. A patch that opens for an instant and closes again is still the same impact.
+//! end and its own speed after it. What trees take while several are under way is shared by those on trees, what the slope takes by
+//! those on the slope, each by the squares of their approach speeds, for the energy that each would bring to rest. A patch that opens
+//! for an instant and closes again is still the same impact.
 //!
 //! Why a share by squares: two contacts struck at once are followed as one event, and what each
 //! took by itself is not known. The energy `m (n·v)²/2` that an approach along its normal brings
@@ -20,6 +21,28 @@ use crate::rock::Vec3;
 /// against an impact and long against a step.
 const SAME_IMPACT_S: f64 = 1e-3;
 
+/// Energy by what of the mesh has it (J).
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct MeshEnergy {
+    /// The slope.
+    pub(super) slope_j: f64,
+    /// Trees.
+    pub(super) trees_j: f64,
+}
+
+impl MeshEnergy {
+    /// That of trees, or that of the slope.
+    fn of(&self, is_tree: bool) -> f64 {
+        if is_tree { self.trees_j } else { self.slope_j }
+    }
+
+    /// What is left without another.
+    #[must_use]
+    pub(super) fn less(&self, other: &Self) -> Self {
+        Self { slope_j: self.slope_j - other.slope_j, trees_j: self.trees_j - other.trees_j }
+    }
+}
+
 /// A patch that is struck.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Struck {
@@ -31,6 +54,8 @@ pub(super) struct Struck {
     pub(super) feature: FeatureKind,
     /// Index into `Terrain::sheets`.
     pub(super) sheet: u16,
+    /// Whether that is a mesh of trees.
+    pub(super) is_tree: bool,
     /// Speed of approach along the normal (m/s).
     pub(super) approach_m_s: f64,
 }
@@ -42,6 +67,7 @@ struct InHand {
     /// Which of the rock's impacts it is, from 1.
     number: u32,
     sheet: u16,
+    is_tree: bool,
     normal: Vec3,
     /// Its share of what is lost while it lasts (m²/s²).
     weight: f64,
@@ -70,7 +96,7 @@ struct Hand {
     list: [Option<InHand>; MOST],
     /// What had gone into contacts with the mesh when the first of them began, and what of it into soil (J).
     /// The ledger's sums when the group began: the group's loss is the difference at its end.
-    began_j: (f64, f64),
+    began_j: (MeshEnergy, f64),
 }
 
 impl Hand {
@@ -125,7 +151,7 @@ impl Impacts {
         struck: &Struck,
         (now_s, until_s): (f64, f64),
         speed_m_s: f64,
-        lost_j: (f64, f64),
+        lost_j: (MeshEnergy, f64),
     ) -> (u32, bool) {
         if !self.is_any() {
             self.hand.began_j = lost_j;
@@ -146,8 +172,8 @@ impl Impacts {
         }
         self.count += 1;
         let number = self.count;
-        let sheet = struck.sheet;
-        let impact = InHand { number, sheet, normal: struck.normal, weight, until_s, over_s: None };
+        let Struck { sheet, is_tree, normal, .. } = *struck;
+        let impact = InHand { number, sheet, is_tree, normal, weight, until_s, over_s: None };
         *self.hand.place() = Some(impact);
         if self.keeps_rows {
             self.rows.push(Impact {
@@ -179,18 +205,29 @@ impl Impacts {
 
     /// Once none is in hand any more, books what they took: `lost_j` has gone into contacts with the mesh so far, springs that
     /// are still pressed not counted, and `soil_j` of it into soil.
-    pub(super) fn book(&mut self, (lost_j, soil_j): (f64, f64)) {
+    pub(super) fn book(&mut self, (lost_j, soil_j): (MeshEnergy, f64)) {
         if !self.keeps_rows || self.is_any() {
             return;
         }
-        let whole: f64 = self.hand.list.iter().flatten().map(|impact| impact.weight).sum();
+        let taken_j = lost_j.less(&self.hand.began_j.0);
+        for is_tree in [false, true] {
+            // never less than nothing: a step may gain what it rounds
+            let taken_j = taken_j.of(is_tree).max(0.0);
+            // there is no soil on trees
+            let most_soil_j = if is_tree { 0.0 } else { taken_j };
+            self.share(is_tree, taken_j, (soil_j - self.hand.began_j.1).clamp(0.0, most_soil_j));
+        }
+    }
+
+    /// Shares what trees, or the slope, took among the impacts on them; what a patch took that was not struck is in no row.
+    fn share(&mut self, is_tree: bool, taken_j: f64, soil_j: f64) {
+        let own = |impact: &&mut InHand| impact.is_tree == is_tree;
+        let weights = self.hand.list.iter_mut().flatten().filter(own);
+        let whole: f64 = weights.map(|impact| impact.weight).sum();
         if whole <= 0.0 {
             return;
         }
-        // never less than nothing: a step may gain what it rounds
-        let taken_j = (lost_j - self.hand.began_j.0).max(0.0);
-        let soil_j = (soil_j - self.hand.began_j.1).clamp(0.0, taken_j);
-        for impact in self.hand.list.iter_mut().flatten() {
+        for impact in self.hand.list.iter_mut().flatten().filter(own) {
             let row = &mut self.rows[impact.number as usize - 1];
             row.energy_lost_j += taken_j * impact.weight / whole;
             row.soil_j += soil_j * impact.weight / whole;

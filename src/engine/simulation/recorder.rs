@@ -8,7 +8,7 @@ use super::cells::{CellPassage, CellPassages};
 use super::crossings::{Crossing, Crossings};
 use super::form::{AttitudeOnWay, Form, RockFlight, RockInstant, Turned};
 use super::heights::Heights;
-use super::impacts::{Impacts, ImpactsMark, Struck};
+use super::impacts::{Impacts, ImpactsMark, MeshEnergy, Struck};
 use super::stretches::{Stretch, Stretches};
 use super::{Effort, Extremes, Ledger, PathPoint, PathState, Stop, Trajectory};
 use crate::flight::Parabola;
@@ -144,10 +144,10 @@ impl<'a> Recorder<'a> {
         most.total_j = most.total_j.max(one + two);
     }
 
-    /// The sheet that a triangle belongs to.
-    /// The mesh file, and with it ground and whether it is a tree.
-    pub(super) fn sheet_of(&self, triangle: u32) -> u16 {
-        self.terrain.sheet_of[triangle as usize]
+    /// The sheet that a triangle belongs to, the mesh file, and whether it is one of trees.
+    pub(super) fn sheet_of(&self, triangle: u32) -> (u16, bool) {
+        let sheet = self.terrain.sheet_of[triangle as usize];
+        (sheet, self.terrain.sheets[usize::from(sheet)].is_tree)
     }
 
     /// Motion and turn as of now.
@@ -309,15 +309,19 @@ impl<'a> Recorder<'a> {
 
     /// Begins an impact on a triangle's patch at the present motion, to end at `until_s` (s) at the latest; `held_j` is what
     /// the springs of other contacts hold. Returns its number.
-    pub(super) fn begin_impact(&mut self, struck: &Struck, until_s: f64, held_j: f64) -> u32 {
+    pub(super) fn begin_impact(
+        &mut self,
+        struck: &Struck,
+        until_s: f64,
+        held_j: &MeshEnergy,
+    ) -> u32 {
         let times_s = (self.now.time_s, until_s);
         // springs of contacts that are still pressed hold energy that is booked as lost until they
         // give it back: not this impact's
-        let lost_j = (self.lost_to_mesh_j() - held_j, self.ledger.soil_j);
+        let lost_j = (self.lost_to_each_j().less(held_j), self.ledger.soil_j);
         let speed_m_s = self.now.velocity_m_s.norm();
         let (number, is_new) = self.impacts.begin(struck, times_s, speed_m_s, lost_j);
-        let is_tree = self.terrain.sheets[struck.sheet as usize].is_tree;
-        self.tree_impact_count += u32::from(is_new && is_tree);
+        self.tree_impact_count += u32::from(is_new && struck.is_tree);
         number
     }
 
@@ -332,14 +336,14 @@ impl<'a> Recorder<'a> {
     }
 
     /// Books what the impacts took that have ended; `held_j` as above.
-    pub(super) fn book_impacts(&mut self, held_j: f64) {
-        self.impacts.book((self.lost_to_mesh_j() - held_j, self.ledger.soil_j));
+    pub(super) fn book_impacts(&mut self, held_j: &MeshEnergy) {
+        self.impacts.book((self.lost_to_each_j().less(held_j), self.ledger.soil_j));
     }
 
     /// Ends all impacts where no spring holds anything.
     pub(super) fn end_all_impacts(&mut self) {
         if self.end_impacts(|_| false) {
-            self.book_impacts(0.0);
+            self.book_impacts(&MeshEnergy::default());
         }
     }
 
@@ -369,5 +373,14 @@ impl<'a> Recorder<'a> {
     fn lost_to_mesh_j(&self) -> f64 {
         let ledger = &self.ledger;
         ledger.friction_j + ledger.damping_j + ledger.rolling_j + ledger.trees_j + ledger.soil_j
+    }
+
+    /// The same, those to trees apart.
+    fn lost_to_each_j(&self) -> MeshEnergy {
+        let ledger = &self.ledger;
+        MeshEnergy {
+            slope_j: ledger.friction_j + ledger.damping_j + ledger.rolling_j + ledger.soil_j,
+            trees_j: ledger.trees_j,
+        }
     }
 }

@@ -5,7 +5,7 @@
 //! An impact here is a contact that begins with an approach above the capture speed: only those
 //! rebound, are counted and get a row. Contacts of rocks of a world with the mesh are handled by
 //! the same code.
-use super::impacts::Struck;
+use super::impacts::{MeshEnergy, Struck};
 use super::recorder::Recorder;
 use crate::contact::history::ContactHistory;
 use crate::contact::{ContactPoint, Feature};
@@ -53,14 +53,14 @@ impl RockInContact<'_, '_> {
         for k in 0..self.state.histories.len() {
             let mut history = self.state.histories[k];
             rebounds |=
-                self.announce_one(&mut history, (&fastest, to_facet_m_s), (until_s, held_j));
+                self.announce_one(&mut history, (&fastest, to_facet_m_s), (until_s, &held_j));
             self.state.histories[k] = history;
         }
         // in the rigid limit what is about to be struck stands in a list of its own
         for k in 0..self.state.struck.len() {
             let mut history = self.state.struck[k];
             rebounds |=
-                self.announce_one(&mut history, (&fastest, to_facet_m_s), (until_s, held_j));
+                self.announce_one(&mut history, (&fastest, to_facet_m_s), (until_s, &held_j));
             self.state.struck[k] = history;
         }
         if rebounds {
@@ -106,7 +106,7 @@ impl RockInContact<'_, '_> {
         &mut self,
         history: &mut ContactHistory,
         (fastest, to_facet_m_s): (&Blow, f64),
-        (until_s, held_j): (f64, f64),
+        (until_s, held_j): (f64, &MeshEnergy),
     ) -> bool {
         if std::mem::replace(&mut history.announced, true) || history.captured {
             return false;
@@ -153,7 +153,7 @@ impl RockInContact<'_, '_> {
                 let now_s = recorder.now.time_s;
                 let (at, of) = ((&state.c, &touch.normal), (touch.feature, touch.triangle));
                 let struck = struck(recorder, world.body.radius, at, of, approach_m_s);
-                recorder.begin_impact(&struck, now_s, 0.0);
+                recorder.begin_impact(&struck, now_s, &MeshEnergy::default());
             }
             recorder.ledger.trees_j += taken_j;
         };
@@ -214,7 +214,7 @@ impl RockInContact<'_, '_> {
         let lasts = |number| !has_springs || histories.iter().any(|one| one.impact == number);
         if self.recorder.end_impacts(lasts) {
             let held_j = self.held_j(|_| true);
-            self.recorder.book_impacts(held_j);
+            self.recorder.book_impacts(&held_j);
         }
         if self.state.has_met_its_facet(self.recorder.now.time_s) {
             self.leave_facet();
@@ -222,8 +222,14 @@ impl RockInContact<'_, '_> {
     }
 
     /// Energy in the springs of the contacts that `count` (J).
-    fn held_j(&mut self, count: impl Fn(&ContactHistory) -> bool) -> f64 {
-        if self.has_springs { self.state.held_j(&self.world, count) } else { 0.0 }
+    fn held_j(&mut self, count: impl Fn(&ContactHistory) -> bool) -> MeshEnergy {
+        if !self.has_springs {
+            return MeshEnergy::default();
+        }
+        let Self { world, state, .. } = self;
+        let is_tree = |history: &ContactHistory| world.terrain.is_tree(history.triangle);
+        let trees_j = state.held_j(world, |history| count(history) && is_tree(history));
+        MeshEnergy { slope_j: state.held_j(world, count) - trees_j, trees_j }
     }
 
     /// Turns the rock back, if it is turned.
@@ -246,11 +252,7 @@ fn struck(
     (feature, triangle): (Feature, u32),
     approach_m_s: f64,
 ) -> Struck {
-    Struck {
-        point_m: c - n * radius_m,
-        normal: *n,
-        feature: feature.kind,
-        sheet: recorder.sheet_of(triangle),
-        approach_m_s,
-    }
+    let (sheet, is_tree) = recorder.sheet_of(triangle);
+    let (point_m, feature) = (c - n * radius_m, feature.kind);
+    Struck { point_m, normal: *n, feature, sheet, is_tree, approach_m_s }
 }

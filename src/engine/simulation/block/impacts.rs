@@ -1,7 +1,7 @@
 //! Impacts of a block in a scheme with springs: noted down as they begin and end, and on rough ground turned against the facets
 //! that it meets, as spheres are (`simulation::rock_in_contact`).
 
-use super::super::impacts::Struck;
+use super::super::impacts::{MeshEnergy, Struck};
 use super::super::rock_in_contact::IMPACT_TIMES;
 use super::{Roll, turned};
 use crate::rock::Vec3;
@@ -46,12 +46,12 @@ impl Roll<'_> {
         let Some(fastest) = fastest.copied() else { return };
         let facet = self.next_facet(fastest.triangle, &fastest.n, &fastest.point);
         let until_s = self.recorder.now.time_s + IMPACT_TIMES * PI / self.footing.springs.slowest();
-        let held_j = self.footing.springs.held_j();
+        let held_j = self.held_j();
         // whether a block rebounds is judged by its approach to the facet
         let capture_m_s = self.world.law(fastest.triangle).capture_m_s;
         let to_facet_m_s = facet.map(|(_, speed)| speed).filter(|speed| *speed >= capture_m_s);
         for k in 0..self.footing.springs.histories.len() {
-            self.begin_impact(k, to_facet_m_s, (until_s, held_j));
+            self.begin_impact(k, to_facet_m_s, (until_s, &held_j));
         }
         if to_facet_m_s.is_some() || !fastest.captured {
             self.dig_and_break((fastest.triangle, &fastest.n), until_s);
@@ -98,7 +98,12 @@ impl Roll<'_> {
     }
 
     /// Notes down that contact `k` has begun, if it has not been; on rough ground all rebound with the fastest.
-    fn begin_impact(&mut self, k: usize, to_facet_m_s: Option<f64>, (until_s, held_j): (f64, f64)) {
+    fn begin_impact(
+        &mut self,
+        k: usize,
+        to_facet_m_s: Option<f64>,
+        (until_s, held_j): (f64, &MeshEnergy),
+    ) {
         let mut history = self.footing.springs.histories[k];
         if std::mem::replace(&mut history.announced, true) {
             return;
@@ -107,11 +112,13 @@ impl Roll<'_> {
             history.rebound(speed);
         }
         if !history.captured {
+            let (sheet, is_tree) = self.recorder.sheet_of(history.triangle);
             let struck = Struck {
                 point_m: history.point,
                 normal: history.n,
                 feature: history.feature.kind,
-                sheet: self.recorder.sheet_of(history.triangle),
+                sheet,
+                is_tree,
                 approach_m_s: history.approach_m_s.max(0.0),
             };
             history.impact = self.recorder.begin_impact(&struck, until_s, held_j);
@@ -127,13 +134,21 @@ impl Roll<'_> {
         let springs = &self.footing.springs;
         let lasts = |number| springs.histories.iter().any(|history| history.impact == number);
         if self.recorder.end_impacts(lasts) {
-            self.recorder.book_impacts(springs.held_j());
+            let held_j = self.held_j();
+            self.recorder.book_impacts(&held_j);
         }
         let now_s = self.recorder.now.time_s;
         if self.footing.has_met_its_facet(now_s) {
             self.turn_back();
         }
         self.footing.springs.capture(now_s);
+    }
+
+    /// What springs hold.
+    fn held_j(&self) -> MeshEnergy {
+        let (springs, terrain) = (&self.footing.springs, self.world.terrain);
+        let trees_j = springs.held_on_j(|triangle| terrain.is_tree(triangle));
+        MeshEnergy { slope_j: springs.held_j() - trees_j, trees_j }
     }
 
     /// Turns the block back, if it is turned.

@@ -8,7 +8,7 @@ use super::{BodyState, WorldBody};
 use crate::flight::{FlightEnd, Parabola, time_of_impact_past};
 use crate::release::Release;
 use crate::rock::{Motion, Vec3};
-use crate::simulation::impacts::Struck;
+use crate::simulation::impacts::{MeshEnergy, Struck};
 use crate::simulation::rest::RestCriterion;
 use crate::simulation::rock_in_contact::RockInContact;
 use crate::simulation::settings::RunSettings;
@@ -245,14 +245,16 @@ impl<'a> WorldBody<'a> {
     /// Notes an impact on the mesh in the step that ends at `time_s` (s).
     pub(super) fn hit(&mut self, hit: &Hit, time_s: f64) {
         if self.state == BodyState::Moving {
+            let (sheet, is_tree) = self.recorder.sheet_of(hit.triangle);
             let struck = Struck {
                 point_m: hit.point_m,
                 normal: hit.normal,
                 feature: hit.feature,
-                sheet: self.recorder.sheet_of(hit.triangle),
+                sheet,
+                is_tree,
                 approach_m_s: hit.approach_m_s,
             };
-            self.recorder.begin_impact(&struck, time_s, 0.0);
+            self.recorder.begin_impact(&struck, time_s, &MeshEnergy::default());
         }
     }
 

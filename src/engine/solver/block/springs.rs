@@ -192,10 +192,16 @@ impl Springs {
 
     /// How much springs hold (J), as the memories tell.
     pub(crate) fn held_j(&self) -> f64 {
-        let held = self.histories.iter().filter(|history| history.closed).map(|history| {
+        self.held_on_j(|_| true) + self.rolling.holds_j()
+    }
+
+    /// How much those of the contacts on some triangles hold (J).
+    pub(crate) fn held_on_j(&self, is_on: impl Fn(u32) -> bool) -> f64 {
+        let holds = |history: &&BlockHistory| history.closed && is_on(history.triangle);
+        let held = self.histories.iter().filter(holds).map(|history| {
             history.law.stored_j(history.pressed_m, history.shear.norm_squared(), 0.0)
         });
-        held.sum::<f64>() + self.rolling.holds_j()
+        held.sum()
     }
 }
 
