@@ -221,6 +221,7 @@ impl Plan {
         let year = annual::year(scene, &terrain, &mut warnings)?;
         let objects = annual::objects(scene, &mut warnings);
         let mut lines = recorders::evaluation_lines(scene, &terrain)?;
+        warnings.extend(recorders::crossing_themselves(scene));
         lines.extend(annual::evaluation_lines(scene, &terrain)?);
         let lines = Some(lines).filter(|lines| !lines.is_empty());
         annual::over_release(&tried.made, lines.as_deref(), &mut warnings);

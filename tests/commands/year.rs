@@ -282,3 +282,22 @@ fn an_object_over_the_release_is_told() {
     let [over, below] = [plan(87.25), plan(40.25)];
     assert!(over.contains(told) && !below.contains("before they move"), "{over}\n{below}");
 }
+
+/// A line that crosses itself is told, with the corners where its pieces begin; a ring and a line with a bend are not.
+#[test]
+fn a_line_that_crosses_itself_is_told() {
+    let dir = crate::site::Folder::new();
+    dir.slope();
+    let plan = |offsets: &[[f64; 2]]| {
+        let corner = |[x, y]: &[f64; 2]| format!("[{}, {}]", 2_600_010.25 + x, 1_200_040.25 + y);
+        let corners = offsets.iter().map(corner).collect::<Vec<_>>().join(", ");
+        let line = format!("[[lines]]\nname = \"road\"\npoints_m = [{corners}]\n");
+        dir.plan(&crate::site::scene("file = \"dem.tif\"", &line))
+    };
+    let told = "line “road”: its pieces from corner 1 and corner 3 cross";
+    let eight = plan(&[[0.0, 0.0], [20.0, 20.0], [20.0, 0.0], [0.0, 20.0]]);
+    assert!(eight.contains(told), "{eight}");
+    let ring = plan(&[[0.0, 0.0], [20.0, 0.0], [20.0, 20.0], [0.0, 20.0], [0.0, 0.0]]);
+    let bend = plan(&[[0.0, 0.0], [20.0, 0.0], [20.0, 20.0]]);
+    assert!(!ring.contains("cross;") && !bend.contains("cross;"), "{ring}{bend}");
+}

@@ -102,6 +102,20 @@ pub(super) fn evaluation_lines(scene: &Scene, terrain: &Terrain) -> Result<Vec<E
     Ok(all)
 }
 
+/// Says which lines cross themselves: mostly corners in a wrong order. Roads may pass over themselves, so objects are not asked.
+pub(super) fn crossing_themselves(scene: &Scene) -> Vec<String> {
+    let lines = scene.lines.iter().map(|line| (&line.name, &line.points_m));
+    let barriers = scene.barriers.iter().map(|barrier| (&barrier.name, &barrier.points_m));
+    let said = |(name, line): (&String, &Polyline)| {
+        let (one, other) = line.first_crossing()?;
+        let (one, other) = (one + 1, other + 1);
+        Some(format!(
+            "line “{name}”: its pieces from corner {one} and corner {other} cross; a rock counts once, where it crosses first. Write the corners in order if the line is not meant so"
+        ))
+    };
+    lines.chain(barriers).filter_map(said).collect()
+}
+
 impl EvaluationLine {
     /// The evaluation line over a line given in map coordinates.
     pub fn new(name: &str, line: &Polyline, origin_m: Vec3) -> Self {

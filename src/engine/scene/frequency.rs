@@ -1,6 +1,6 @@
 //! `[frequency]`: how often rocks are released, of what size, and what is asked of the year.
 
-use super::check::{Allowed, Checked, Complaint, check_name, number, optional};
+use super::check::{Allowed, Checked, Complaint, check_names, number, optional};
 use super::matrix::MatrixEntry;
 use super::places::{Area, Polyline, ReleasePoint};
 use super::sizes::{COUNTABLE, STEEPEST, VOLUMES_M3, are_volumes, positive_list};
@@ -165,6 +165,9 @@ impl FrequencyTable {
                 )
             });
         }
+        // results name sources, and nothing else tells them apart there
+        let names = self.sources.iter().map(|source| source.name.as_str());
+        check_names(&[("sources", names.collect())])?;
         let mut draws = Vec::new();
         for (index, source) in self.sources.iter().enumerate() {
             let law = source.check().map_err(|wrong| wrong.in_entry(index).inside("sources"))?;
@@ -193,7 +196,6 @@ impl FrequencyTable {
 
 impl SourceTable {
     fn check(&self) -> Result<FrequencyLaw, Complaint> {
-        check_name("name", &self.name)?;
         let places = [self.points_m.is_some(), self.line_m.is_some(), self.polygon_m.is_some()];
         if places.iter().filter(|given| **given).count() != 1 {
             let remedy = "write exactly one of points_m, line_m and polygon_m";

@@ -64,6 +64,16 @@ impl Polyline {
         self.along_m[self.along_m.len() - 1]
     }
 
+    /// The first two pieces that cross or touch each other beside a corner that they share.
+    pub fn first_crossing(&self) -> Option<(usize, usize)> {
+        let piece = |i: usize| [self.corners_m[i], self.corners_m[i + 1]];
+        let last = self.corners_m.len() - 2;
+        let is_ring = self.corners_m.first() == self.corners_m.last();
+        let pairs = (0..=last).flat_map(|i| (i + 2..=last).map(move |j| (i, j)));
+        let mut apart = pairs.filter(|pair| !(is_ring && *pair == (0, last)));
+        apart.find(|&(i, j)| meet(piece(i), piece(j)))
+    }
+
     /// The line at a distance beside it (m), positive on its left; none where that is no line.
     pub fn beside(&self, offset_m: f64) -> Option<Self> {
         let pieces = self.corners_m.windows(2).map(|pair| minus(pair[1], pair[0]));

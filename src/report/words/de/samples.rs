@@ -1,7 +1,13 @@
-//! What is said of samples of rocks in English, in German.
+//! What is said of samples of rocks and of lines in English, in German.
 
 /// By patterns, as for the plan.
-pub(super) const SAMPLES: &[(&str, &str)] = &[(
-    "rocks of one world meet each other, but all intervals take them for independent and are too narrow for what they share, as how long a heap moves: run several seeds and compare",
-    "Blöcke einer gemeinsamen Welt begegnen einander: alle Intervalle nehmen sie als unabhängig und sind zu eng für das, was sie teilen, etwa wie lange sich ein Haufen bewegt; mehrere Startwerte (seed) rechnen und vergleichen",
-)];
+pub(super) const SAMPLES: &[(&str, &str)] = &[
+    (
+        "rocks of one world meet each other, but all intervals take them for independent and are too narrow for what they share, as how long a heap moves: run several seeds and compare",
+        "Blöcke einer gemeinsamen Welt begegnen einander: alle Intervalle nehmen sie als unabhängig und sind zu eng für das, was sie teilen, etwa wie lange sich ein Haufen bewegt; mehrere Startwerte (seed) rechnen und vergleichen",
+    ),
+    (
+        "line “{name}”: its pieces from corner {a} and corner {b} cross; a rock counts once, where it crosses first. Write the corners in order if the line is not meant so",
+        "Linie „{name}“: ihre Stücke ab Ecke {a} und ab Ecke {b} kreuzen sich; ein Block zählt einmal, wo er sie zuerst quert. Die Ecken der Reihe nach schreiben, falls die Linie nicht so gemeint ist",
+    ),
+];

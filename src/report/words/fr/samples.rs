@@ -1,7 +1,13 @@
-//! What is said of samples of rocks in English, in French.
+//! What is said of samples of rocks and of lines in English, in French.
 
 /// By patterns, as for the plan.
-pub(super) const SAMPLES: &[(&str, &str)] = &[(
-    "rocks of one world meet each other, but all intervals take them for independent and are too narrow for what they share, as how long a heap moves: run several seeds and compare",
-    "les blocs d’un même monde se rencontrent\u{a0}: tous les intervalles les prennent pour indépendants et sont trop étroits pour ce qu’ils partagent, comme la durée du mouvement d’un amas\u{a0}; calculer avec plusieurs graines (seed) et comparer",
-)];
+pub(super) const SAMPLES: &[(&str, &str)] = &[
+    (
+        "rocks of one world meet each other, but all intervals take them for independent and are too narrow for what they share, as how long a heap moves: run several seeds and compare",
+        "les blocs d’un même monde se rencontrent\u{a0}: tous les intervalles les prennent pour indépendants et sont trop étroits pour ce qu’ils partagent, comme la durée du mouvement d’un amas\u{a0}; calculer avec plusieurs graines (seed) et comparer",
+    ),
+    (
+        "line “{name}”: its pieces from corner {a} and corner {b} cross; a rock counts once, where it crosses first. Write the corners in order if the line is not meant so",
+        "ligne «\u{a0}{name}\u{a0}»\u{a0}: ses tronçons depuis les sommets {a} et {b} se croisent\u{a0}; un bloc compte une fois, là où il la franchit d’abord. Écrire les sommets dans l’ordre si la ligne n’est pas voulue ainsi",
+    ),
+];

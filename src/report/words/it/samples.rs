@@ -1,7 +1,13 @@
-//! What is said of samples of rocks in English, in Italian.
+//! What is said of samples of rocks and of lines in English, in Italian.
 
 /// By patterns, as for the plan.
-pub(super) const SAMPLES: &[(&str, &str)] = &[(
-    "rocks of one world meet each other, but all intervals take them for independent and are too narrow for what they share, as how long a heap moves: run several seeds and compare",
-    "i blocchi di uno stesso mondo si incontrano: tutti gli intervalli li considerano indipendenti e sono troppo stretti per ciò che hanno in comune, come la durata del moto di un cumulo; calcolare con più semi (seed) e confrontare",
-)];
+pub(super) const SAMPLES: &[(&str, &str)] = &[
+    (
+        "rocks of one world meet each other, but all intervals take them for independent and are too narrow for what they share, as how long a heap moves: run several seeds and compare",
+        "i blocchi di uno stesso mondo si incontrano: tutti gli intervalli li considerano indipendenti e sono troppo stretti per ciò che hanno in comune, come la durata del moto di un cumulo; calcolare con più semi (seed) e confrontare",
+    ),
+    (
+        "line “{name}”: its pieces from corner {a} and corner {b} cross; a rock counts once, where it crosses first. Write the corners in order if the line is not meant so",
+        "linea “{name}”: i suoi tratti dai vertici {a} e {b} si incrociano; un blocco conta una volta, dove la attraversa per primo. Scrivere i vertici in ordine se la linea non è voluta così",
+    ),
+];
