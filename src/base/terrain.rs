@@ -205,19 +205,29 @@ impl Terrain {
 
     /// The highest slope surface at (x, y) that is not above `under_m`, and its unit normal (m, local).
     pub fn slope_under(&self, x_m: f64, y_m: f64, under_m: f64) -> Option<(f64, Vec3)> {
+        self.triangle_under(x_m, y_m, under_m).map(|(height_m, triangle)| {
+            let face = self.face(triangle);
+            (height_m, face.e1.cross(&face.e2).normalize())
+        })
+    }
+
+    /// The same surface, and its triangle.
+    pub fn triangle_under(&self, x_m: f64, y_m: f64, under_m: f64) -> Option<(f64, u32)> {
         let (mut best, mut of) = (f64::NEG_INFINITY, None);
         self.index.along_vertical((x_m, y_m), under_m, |start, count| {
             for t in start..start + count {
-                let height = section::height_of(&self.face(t), x_m, y_m);
+                let height = self.height_on(t, x_m, y_m);
                 if height > best && height <= under_m && !self.is_tree(t) {
                     (best, of) = (height, Some(t));
                 }
             }
         });
-        of.map(|triangle| {
-            let face = self.face(triangle);
-            (best, face.e1.cross(&face.e2).normalize())
-        })
+        of.map(|triangle| (best, triangle))
+    }
+
+    /// Height of a triangle at (x, y) (m, local); −∞ beside it.
+    pub fn height_on(&self, triangle: u32, x_m: f64, y_m: f64) -> f64 {
+        section::height_of(&self.face(triangle), x_m, y_m)
     }
 }
 

@@ -16,6 +16,7 @@ mod settings;
 mod soil;
 mod world;
 mod cells;
+mod contact_heights;
 
 use crate::body::ShapeKind;
 pub use crate::contact::FeatureKind;

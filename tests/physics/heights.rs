@@ -41,13 +41,22 @@ longest_s = 4.0
 [record]
 paths = 300
 path_step_s = 0.004
+profile_step_m = 3.0
+
+[maps]
+cell_m = 2.0
 "#;
+
+/// A scene of blocks or spheres on a ground.
+fn plan(shape: &str, ground: &str) -> Plan {
+    let text = SCENE.replace("SHAPE", shape).replace("GROUND", ground);
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/heights.toml");
+    Plan::of_scene(&Scene::parse(&text, &file).unwrap()).unwrap()
+}
 
 /// How many of some rocks have a path point that is higher over the ground than their largest height, and by how much (m).
 fn higher(shape: &str, ground: &str) -> (usize, f64) {
-    let text = SCENE.replace("SHAPE", shape).replace("GROUND", ground);
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/heights.toml");
-    let plan = Plan::of_scene(&Scene::parse(&text, &file).unwrap()).unwrap();
+    let plan = plan(shape, ground);
     let mut scratch = Scratch::default();
     let (mut rocks, mut most_m) = (0, 0.0_f64);
     for index in 0..plan.count {
@@ -74,4 +83,44 @@ fn no_point_of_a_plate_is_higher_than_its_largest_height() {
 fn no_point_of_a_rolling_sphere_is_higher_than_its_largest_height() {
     let found = higher("", "restitution = 0.0\nrolling_friction = 0.3");
     assert_eq!(found.0, 0, "{found:?}");
+}
+
+/// In every cell of the maps and every stretch of the profile a rock is as high as its path there, in flight as in contact. Steps
+/// that could raise a height by a millimetre are not looked at, a block's height is found to another, and it turns within a step: how many points are higher than cell and stretch say, and by how much (m).
+fn higher_than_its_place(shape: &str, ground: &str) -> [(usize, f64); 2] {
+    let plan = plan(shape, ground);
+    let grid = plan.recorders().cells.unwrap();
+    let step_m = plan.recorders().profile_step_m.unwrap();
+    let mut scratch = Scratch::default();
+    let mut higher = [(0, 0.0_f64); 2];
+    for index in 0..plan.count {
+        let fall = simulate_release(&plan, index, None, &mut scratch).unwrap();
+        let start = fall.start.position_m;
+        for point in &fall.path {
+            let at = point.motion.position_m;
+            let [column, row] = grid.place(at.x, at.y).map(|place| place.floor() as i64);
+            let cell = grid.cell(column, row).unwrap();
+            let in_cell = fall.passages.iter().find(|one| one.cell == cell).unwrap().height_m;
+            let number = ((at.x - start.x).hypot(at.y - start.y) / step_m) as u32;
+            let in_stretch = fall.stretches.iter().find(|one| one.number == number).unwrap();
+            for (known_m, (points, most_m)) in
+                [in_cell, in_stretch.height_m].into_iter().zip(&mut higher)
+            {
+                let more_m = point.clearance_m - known_m;
+                *points += usize::from(more_m > 3e-3);
+                *most_m = most_m.max(more_m);
+            }
+        }
+    }
+    higher
+}
+
+/// Cells and stretches in which a rock only rolled had a height of 0.
+#[test]
+fn cells_and_stretches_are_as_high_as_the_path_in_them() {
+    let found = higher_than_its_place("", "restitution = 0.0\nrolling_friction = 0.3");
+    assert_eq!(found.map(|(points, _)| points), [0, 0], "{found:?}");
+    let plate = "[[rocks.shapes]]\nkind = \"box\"\naxes = [1.0, 0.6, 0.3]\ncorner_radius = 0.1";
+    let found = higher_than_its_place(plate, "restitution = 0.2\nroughness_deg = 10.0");
+    assert_eq!(found.map(|(points, _)| points), [0, 0], "{found:?}");
 }

@@ -4,6 +4,7 @@
 //! rocks (how many passed, percentiles of energy and height) is made elsewhere from these passages;
 //! here each rock has one entry a cell, however often it comes back.
 
+use super::contact_heights::StepHeights;
 use super::form::{Form, RockInstant, between};
 use super::heights::Heights;
 use super::passages::{Passage, Passages};
@@ -19,7 +20,7 @@ pub struct CellPassage {
     pub cell: u32,
     /// Largest sum of translational and rotational energy in the cell (J).
     pub total_j: f64,
-    /// Largest vertical distance from the ground below to the lowest point of the rock in the cell (m), 0 in contact.
+    /// Largest vertical distance from the ground below to the lowest point of the rock in the cell (m), 0 or more.
     pub height_m: f64,
 }
 
@@ -67,8 +68,13 @@ impl<'a> CellPassages<'a> {
         });
     }
 
-    /// Notes the cells of a step in contact, which are shorter than cells: its ends hold what it has.
-    pub(super) fn step(&mut self, (terrain, form): (&Terrain, &Form), ends: [&RockInstant; 2]) {
+    /// Notes the cells of a step in contact, which are shorter than cells: its ends hold the energy that it has.
+    pub(super) fn step(
+        &mut self,
+        (terrain, form): (&Terrain, &Form),
+        ends: [&RockInstant; 2],
+        heights: &StepHeights,
+    ) {
         let Some(cells) = self.cells else { return };
         let [from, to] = ends.map(|end| &end.motion);
         // velocity linear within the step: its square has no largest value inside either
@@ -78,12 +84,14 @@ impl<'a> CellPassages<'a> {
         };
         walk(cells, [&from.position_m, &to.position_m], |cell, s0, s1| {
             // looked for once a cell, where the step comes into it: from below the mesh holds a rock too
-            let is_new = self.found.last().is_none_or(|last| last.cell != cell);
+            let known_m = self.found.last().filter(|last| last.cell == cell).map(|l| l.height_m);
+            let is_new = known_m.is_none();
             if is_new && terrain.is_under_slope(&between(from, to, s1).position_m) {
                 return;
             }
             let total_j = total_j(s0).max(total_j(s1));
-            self.found.add(CellPassage { cell, total_j, height_m: 0.0 });
+            let height_m = heights.largest_m([s0, s1], known_m.unwrap_or(0.0));
+            self.found.add(CellPassage { cell, total_j, height_m });
         });
     }
 }

@@ -25,7 +25,7 @@ use crate::terrain::Terrain;
 use crate::terrain::section::SectionLine;
 
 /// A block's height may come out too low by this, no more (m).
-const ERROR_M: f64 = 1e-3;
+pub(super) const ERROR_M: f64 = 1e-3;
 /// Cells of the floor in a row that are looked at together: one search through the mesh for all of them.
 const RUN_CELLS: u32 = 8;
 /// Lines of the ground that are looked at together, two or three a cell as a rule. More are parted …

@@ -48,11 +48,6 @@ impl<T: Passage> Passages<T> {
         }
     }
 
-    /// Adds others behind the last.
-    pub(super) fn extend(&mut self, others: impl Iterator<Item = T>) {
-        self.0.extend(others);
-    }
-
     /// One entry a place, in the order of places.
     /// A stable sort, so joining does not depend on anything but the order in which the rock went.
     pub(super) fn into_found(mut self) -> Vec<T> {

@@ -5,6 +5,7 @@
 //! adds the terrain's offset.
 
 use super::cells::{CellPassage, CellPassages};
+use super::contact_heights::{StepHeights, TriangleBelow};
 use super::crossings::{Crossing, Crossings};
 use super::form::{AttitudeOnWay, Form, RockFlight, RockInstant, Turned};
 use super::heights::Heights;
@@ -44,6 +45,8 @@ pub(super) struct Recorder<'a> {
     pub(super) crossings: Crossings<'a>,
     pub(super) passages: CellPassages<'a>,
     stretches: Stretches,
+    /// Only spares searches: it is not put back.
+    below: TriangleBelow,
     pub(super) tree_impact_count: u32,
     pub(super) ledger: Ledger,
     pub(super) effort: Effort,
@@ -86,6 +89,7 @@ impl<'a> Recorder<'a> {
             crossings: Crossings::of(recorders.lines),
             passages: CellPassages::of(recorders.cells),
             stretches: Stretches::of(recorders.profile_step_m, &start),
+            below: TriangleBelow::default(),
             tree_impact_count: 0,
             ledger: Ledger::default(),
             effort: Effort::default(),
@@ -210,17 +214,25 @@ impl<'a> Recorder<'a> {
     }
 
     /// Notes how a step in contact goes, by how the rock is turned where it begins and ends.
-    fn note_step(&mut self, [from, to]: [&RockInstant; 2]) {
-        self.passages.step((self.terrain, &self.form), [from, to]);
-        self.stretches.step(&to.motion);
+    fn note_step(&mut self, ends @ [from, to]: [&RockInstant; 2]) {
+        let (terrain, form) = (self.terrain, self.form);
         let lasts_s = to.motion.time_s - from.motion.time_s;
-        if lasts_s > 0.0 {
-            let form = self.form;
-            let path = Parabola::between(&from.motion, &to.motion, form.rim_m());
-            let turns = from.turned.as_ref().zip(to.turned.as_ref());
-            let turning = turns.map(|(from, to)| AttitudeOnWay::Step([from, to]));
-            let flight = RockFlight { start: from.motion, path: &path, turning, lasts_s };
-            self.note_largest(&Heights { terrain: self.terrain, form: &form, flight: &flight });
+        let path = Parabola::between(&from.motion, &to.motion, form.rim_m());
+        let turns = from.turned.as_ref().zip(to.turned.as_ref());
+        let turning = turns.map(|(from, to)| AttitudeOnWay::Step([from, to]));
+        let flight = RockFlight { start: from.motion, path: &path, turning, lasts_s };
+        let heights = Heights { terrain, form: &form, flight: &flight };
+        let heights = Some(heights).filter(|_| lasts_s > 0.0);
+        let mut most_m = self.below.most_m((terrain, &form), ends);
+        if most_m.is_infinite() {
+            self.below.find(terrain, to);
+            most_m = self.below.most_m((terrain, &form), ends);
+        }
+        let at_step = StepHeights { heights, most_m };
+        self.passages.step((terrain, &form), ends, &at_step);
+        self.stretches.step(ends.map(|end| &end.motion), &at_step);
+        if let Some(heights) = heights {
+            self.note_largest(&heights);
         }
     }
 

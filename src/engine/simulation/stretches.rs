@@ -3,6 +3,7 @@
 //! Stretches are rings about the release point, not pieces of the path: a rock that turns back
 //! passes its own stretch again. They make the profiles of speed and height over distance.
 
+use super::contact_heights::StepHeights;
 use super::heights::Heights;
 use super::passages::{Passage, Passages};
 use crate::math;
@@ -16,7 +17,7 @@ pub struct Stretch {
     pub number: u32,
     /// Largest speed of the centre in it (m/s).
     pub speed_m_s: f64,
-    /// Largest vertical distance from the ground below to the lowest point of the rock in it (m), 0 in contact.
+    /// Largest vertical distance from the ground below to the lowest point of the rock in it (m), 0 or more.
     pub height_m: f64,
 }
 
@@ -40,20 +41,42 @@ impl Stretches {
     /// `⌊distance/step⌋` is the stretch.
     pub(super) fn note(&mut self, at: &Vec3, speed_m_s: f64, height_m: f64) {
         let Some(step_m) = self.step_m else { return };
-        let away_m = math::hypot(at.x - self.from_m[0], at.y - self.from_m[1]);
-        self.found.add(Stretch { number: (away_m / step_m) as u32, speed_m_s, height_m });
+        self.found.add(Stretch { number: self.number_at(at, step_m), speed_m_s, height_m });
     }
 
-    /// Notes the end of a step in contact, and the stretches that it passes over.
-    /// A stretch that a step passes over entirely gets the values of the step's end.
-    pub(super) fn step(&mut self, to: &Motion) {
-        let before = self.found.last().map(|last| last.number);
+    fn number_at(&self, at: &Vec3, step_m: f64) -> u32 {
+        (math::hypot(at.x - self.from_m[0], at.y - self.from_m[1]) / step_m) as u32
+    }
+
+    /// Notes a step in contact: the speed at its end, and how high it is.
+    /// A stretch that a step passes over entirely gets the speed of the step's end.
+    pub(super) fn step(&mut self, [from, to]: [&Motion; 2], heights: &StepHeights) {
+        let Some(step_m) = self.step_m else { return };
         let speed_m_s = to.velocity_m_s.norm();
-        self.note(&to.position_m, speed_m_s, 0.0);
-        let (Some(before), Some(now)) = (before, self.found.last().copied()) else { return };
-        // steps are shorter than stretches as a rule: seldom is one passed over
-        let between = before.min(now.number) + 1..before.max(now.number);
-        self.found.extend(between.map(|number| Stretch { number, ..now }));
+        let number = self.number_at(&to.position_m, step_m);
+        // steps are shorter than stretches as a rule: seldom is one left
+        let before = self.found.last().map(|last| last.number);
+        if before.is_none_or(|before| before == number) {
+            return self.note_part(number, speed_m_s, (heights, [0.0, 1.0]));
+        }
+        let [at, end] = [from, to].map(|end| end.position_m);
+        let place = [at.x - self.from_m[0], at.y - self.from_m[1]];
+        walk(place, [end.x - at.x, end.y - at.y], step_m, |number, s0, s1| {
+            let is_left = before == Some(number);
+            self.note_part(number, if is_left { 0.0 } else { speed_m_s }, (heights, [s0, s1]));
+        });
+    }
+
+    /// Notes a part of a step in contact, from one share to another.
+    fn note_part(
+        &mut self,
+        number: u32,
+        speed_m_s: f64,
+        (heights, shares): (&StepHeights, [f64; 2]),
+    ) {
+        let last = self.found.last().filter(|last| last.number == number);
+        let height_m = heights.largest_m(shares, last.map_or(0.0, |last| last.height_m));
+        self.found.add(Stretch { number, speed_m_s, height_m });
     }
 
     /// Notes the stretches below a flight.

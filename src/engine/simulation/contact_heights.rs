@@ -1,0 +1,55 @@
+//! How high a rock in contact stands over the ground straight below it.
+//!
+//! On a slope that is lower than the ground that it touches: a sphere that rolls on even ground of inclination θ has `R (1/cos θ − 1)` below
+//! its lowest point. Contact steps are many and short, so the mesh is searched for few of them: the triangle that was last found
+//! below the centre lies below the ground or is it, and says how high the rock can be at most as long as the centre is over it.
+
+use super::form::{Form, RockInstant};
+use super::heights::{ERROR_M, Heights};
+use crate::terrain::Terrain;
+
+/// The triangle below the centre of a rock as last found; none beside the terrain.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct TriangleBelow(Option<u32>);
+
+impl TriangleBelow {
+    /// The most that a rock's height can be at both ends of a step (m); infinite where the triangle does not say it.
+    pub(super) fn most_m(self, (terrain, form): (&Terrain, &Form), ends: [&RockInstant; 2]) -> f64 {
+        let height_m = |at: &RockInstant| {
+            let centre = at.motion.position_m;
+            let ground_m = terrain.height_on(self.0?, centre.x, centre.y);
+            let is_below = ground_m.is_finite() && ground_m <= centre.z;
+            is_below.then(|| centre.z - form.below_m(at) - ground_m)
+        };
+        let [from, to] = ends.map(height_m);
+        from.zip(to).map_or(f64::INFINITY, |(from, to)| from.max(to))
+    }
+
+    /// Looks for it anew.
+    pub(super) fn find(&mut self, terrain: &Terrain, at: &RockInstant) {
+        let centre = at.motion.position_m;
+        let found = terrain.triangle_under(centre.x, centre.y, centre.z);
+        self.0 = found.map(|(_, triangle)| triangle);
+    }
+}
+
+/// A step in contact over the ground.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct StepHeights<'a> {
+    /// The way of the step; none where it takes no time.
+    pub(super) heights: Option<Heights<'a>>,
+    /// The most that the height can be (m).
+    pub(super) most_m: f64,
+}
+
+impl StepHeights<'_> {
+    /// Largest height (m) from one share of the step to another, where `known_m` (m) is known of the place: of a
+    /// sphere to a millimetre, of a block, which turns within the step, to three.
+    pub(super) fn largest_m(&self, shares: [f64; 2], known_m: f64) -> f64 {
+        let Some(heights) = self.heights.filter(|_| self.most_m > known_m + ERROR_M) else {
+            return known_m;
+        };
+        let span_s = shares.map(|share| share * heights.flight.lasts_s);
+        heights.largest(span_s, known_m).map_or(known_m, |top| top.height_m)
+    }
+}
