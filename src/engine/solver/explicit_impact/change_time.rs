@@ -76,7 +76,13 @@ impl<const C: usize> Among<'_, '_, C> {
     fn beyond_m(&mut self, change: ContactChange, c: &Vec3) -> Option<(f64, Vec3)> {
         let radius = self.radius_m();
         self.look_within(c, radius * (1.0 + AROUND));
-        let first = self.changes.first(change, &self.state.touches);
+        let mut first = self.changes.first(change, &self.state.touches);
+        if first.is_none() && change == ContactChange::End {
+            // Of two sheets that lie on each other the farther one may stand for both where it is in sight: what the step
+            // began with is looked for by itself. Else its end was where the step began, again and again.
+            self.look(c);
+            first = self.changes.first(change, &self.state.touches);
+        }
         let beyond = |(distance, n)| match change {
             ContactChange::Onset => (radius - distance - BEGUN * radius, n),
             ContactChange::End => (ENDED * radius - (radius - distance), n),
