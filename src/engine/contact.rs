@@ -65,6 +65,17 @@ pub struct Feature {
 impl Feature {
     /// Nothing.
     pub const NONE: Self = Self { kind: FeatureKind::Face, id: u32::MAX };
+
+    /// Whether a triangle is this face, or has this edge or vertex.
+    pub(crate) fn is_of(self, terrain: &Terrain, triangle: u32) -> bool {
+        match self.kind {
+            FeatureKind::Face => triangle == self.id,
+            FeatureKind::Edge => {
+                terrain.features.edges.triangles_on(self.id).any(|on| on == triangle)
+            }
+            FeatureKind::Vertex => terrain.triangles[triangle as usize].contains(&self.id),
+        }
+    }
 }
 
 impl Default for Feature {

@@ -31,6 +31,7 @@ mod rigid_blows;
 mod rigid_heap;
 mod roughness;
 mod schemes_agree;
+mod sheets;
 mod soil;
 mod stems;
 mod struck_through;

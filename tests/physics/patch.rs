@@ -10,7 +10,12 @@ use rockfall::terrain::Terrain;
 use rockfall::terrain::stl::Facet;
 
 /// Energy and force over `p_N` of a ball of `radius` at `centre`, as the contacts say: `½ Σ |a|² pen²`, `Σ |a|² pen n̂`.
-fn pressed(terrain: &Terrain, near: &mut Neighbours, centre: &Vec3, radius: f64) -> (f64, Vec3) {
+pub(crate) fn pressed(
+    terrain: &Terrain,
+    near: &mut Neighbours,
+    centre: &Vec3,
+    radius: f64,
+) -> (f64, Vec3) {
     let mut touches = ContactPoints::default();
     near.collect(terrain, centre, radius, 0.1 * radius, 0.1 * radius);
     near.touches(terrain, centre, radius, &mut touches);
@@ -62,7 +67,7 @@ fn energies_are_those_of_the_sum_over_all_simplices() {
 }
 
 /// One elastic impact without friction: energy after over before, height included.
-fn kept(terrain: &Terrain, case: &Case, [c, v]: [[f64; 3]; 2]) -> f64 {
+pub(crate) fn kept(terrain: &Terrain, case: &Case, [c, v]: [[f64; 3]; 2]) -> f64 {
     let fallen = case.run(terrain, [c, v, [0.0; 3]], 0.2);
     let energy = |p: &Vec3, v: &Vec3| 0.5 * v.norm_squared() + G * p.z;
     let end = energy(&fallen.end.position_m, &fallen.end.velocity_m_s);

@@ -185,7 +185,7 @@ impl Placed<'_> {
             let slack = self.slack(part, edge.feature);
             if edge.outward.iter().any(|out| out.dot(&normal) < -slack)
                 || !self.faces_out(&ridge.into, &normal, slack)
-                || edge.at_border && near.is_covered(terrain, &foot, &p, distance)
+                || edge.at_border && near.is_covered(terrain, edge.feature, &foot, (&p, distance))
             {
                 continue;
             }
@@ -214,7 +214,7 @@ impl Placed<'_> {
             peak.edges.iter().all(|edge| edge.dot(normal) <= slack)
         };
         let covered = |p: &Vec3, distance: f64| {
-            peak.at_border && near.is_covered(terrain, &peak.p, p, distance)
+            peak.at_border && near.is_covered(terrain, peak.feature, &peak.p, (p, distance))
         };
         for (part, ridge) in self.low_ridges(low) {
             let [a, b] = ridge.ends.map(|k| self.corners[usize::from(k)]);

@@ -32,6 +32,9 @@ const SLACK: f64 = 1e-9;
 /// Feet closer than this times the radius, with normals within it, are one contact (–). Loose enough for the
 /// rounding of map coordinates, which bends flat edges by 1e-9.
 pub(super) const SAME: f64 = 1e-6;
+/// Cosine of the fold between two sheets from which on a ball can press into both where one of them ends (–): springs give way by
+/// less than a tenth of the radius.
+const BLUNT: f64 = 0.9;
 
 /// The features a rock can touch while its centre stays within a margin of a place.
 #[derive(Debug)]
@@ -241,10 +244,11 @@ impl Neighbours {
         if distance <= slack || rays.iter().any(|out| out.dot(&off) < -SLACK * distance) {
             return None;
         }
-        if edge.at_border && self.is_covered(terrain, &(centre - off), centre, distance) {
+        let feature = Feature { kind: FeatureKind::Edge, id: edge.id };
+        if edge.at_border && self.is_covered(terrain, feature, &(centre - off), (centre, distance))
+        {
             return None;
         }
-        let feature = Feature { kind: FeatureKind::Edge, id: edge.id };
         Some(ContactPoint::single(feature, edge.triangle, &off, distance))
     }
 
@@ -263,32 +267,43 @@ impl Neighbours {
         }
         let distance = distance2.sqrt();
         let rays = &self.rays[corner.rays.0 as usize..corner.rays.1 as usize];
+        let feature = Feature { kind: FeatureKind::Vertex, id: corner.id };
         if distance <= SLACK * self.radius
             // the same for the edges at a vertex: one that leads towards the centre comes nearer
             || rays.iter().any(|along| along.dot(&off) > SLACK * distance)
-            || corner.at_border && self.is_covered(terrain, &corner.p, centre, distance)
+            || corner.at_border
+                && self.is_covered(terrain, feature, &corner.p, (centre, distance))
         {
             return None;
         }
-        let feature = Feature { kind: FeatureKind::Vertex, id: corner.id };
         Some(ContactPoint::single(feature, corner.triangle, &off, distance))
     }
 
-    /// Whether another triangle runs through `foot` and comes nearer to the centre: then the border or corner at
-    /// `foot` lies on the inside of a sheet (a T-junction, a seam) and touches nothing by itself.
+    /// Whether another triangle runs through the `nearest` point of a border edge or corner and comes nearer to the centre: then
+    /// it lies on the inside of a sheet (a T-junction, a seam) and touches nothing by itself.
+    ///
+    /// Not where the two sheets part bluntly there: the ball presses into both at once, each with its spring, until the foot
+    /// on one of them comes to its border; were that covered, all that its spring holds would vanish at a stroke. Sheets that go
+    /// on in one plane are one contact all along, and of a sharp fold the border is out of reach by then.
     pub(crate) fn is_covered(
         &self,
         terrain: &Terrain,
+        border: Feature,
         nearest: &Vec3,
-        centre: &Vec3,
-        distance: f64,
+        (centre, distance): (&Vec3, f64),
     ) -> bool {
         let near = SAME * self.radius;
-        self.all.sheets.iter().any(|&t| {
-            let corners = terrain.corners_m(t);
-            let gap = |p: &Vec3| (p - closest_on(&corners, p)).norm();
-            gap(nearest) <= near && gap(centre) < distance * (1.0 - 1e-12)
-        })
+        let gap = |t: u32, p: &Vec3| (p - closest_on(&terrain.corners_m(t), p)).norm();
+        let mut through = self.all.sheets.iter().filter(|&&t| gap(t, nearest) <= near);
+        let others = through.clone();
+        if !through.any(|&t| gap(t, centre) < distance * (1.0 - 1e-12)) {
+            return false;
+        }
+        let is_own = |&&t: &&u32| border.is_of(terrain, t);
+        let goes_on = |own: &u32| {
+            others.clone().filter(|t| !is_own(t)).any(|&t| !part_bluntly(terrain, *own, t))
+        };
+        others.clone().filter(is_own).all(goes_on)
     }
 
     /// Adds a touch unless the same point was found on a lower feature before.
@@ -308,4 +323,11 @@ impl Neighbours {
             touches.add(touch);
         }
     }
+}
+
+/// Whether two triangles through one point are neither of one plane nor sharply folded against each other.
+fn part_bluntly(terrain: &Terrain, one: u32, other: u32) -> bool {
+    let [one, other] = [one, other].map(|t| terrain.face(t).n);
+    let turned = (one - other).norm_squared().min((one + other).norm_squared());
+    turned > SAME * SAME && one.dot(&other).abs() > BLUNT
 }

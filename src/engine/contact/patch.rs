@@ -126,13 +126,8 @@ impl PatchScratch {
     /// The nearest feature of the patch that holds `feature`, of those found last.
     /// Tells which patch a lost contact has merged into, so that its springs find an heir.
     pub(super) fn holding(&self, terrain: &Terrain, feature: Feature) -> Option<Feature> {
-        let id = feature.id;
-        let has = |t: u32| match feature.kind {
-            FeatureKind::Face => t == id,
-            FeatureKind::Edge => terrain.features.edges.sides_on(id).any(|side| side / 3 == t),
-            FeatureKind::Vertex => terrain.triangles[t as usize].contains(&id),
-        };
-        let mut place = self.pressed.iter().position(|pressed| has(pressed.triangle))?;
+        let has = |pressed: &PressedTriangle| feature.is_of(terrain, pressed.triangle);
+        let mut place = self.pressed.iter().position(has)?;
         while self.pressed[place].parent as usize != place {
             place = self.pressed[place].parent as usize;
         }

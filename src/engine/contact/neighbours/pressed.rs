@@ -232,8 +232,8 @@ impl Neighbours {
                 // the nearest point of the mesh: that of the point contact which acts like the patch lies beside the mesh,
                 // and the patch's own triangles would cover it.
                 let foot = centre - nearest.normal * nearest.distance_m;
-                let covered =
-                    at_border && self.is_covered(terrain, &foot, centre, nearest.distance_m);
+                let covered = at_border
+                    && self.is_covered(terrain, touch.feature, &foot, (centre, nearest.distance_m));
                 if !covered {
                     self.merge(touch, centre, touches);
                 }

@@ -1,0 +1,123 @@
+//! Sheets that lie on each other, as tiles and buildings from several files do: no corners in common, borders on the others' faces.
+
+use crate::common;
+use crate::patch::{kept, pressed};
+use common::*;
+use rockfall::contact::neighbours::Neighbours;
+use rockfall::ground::Ground;
+use rockfall::rock::{Rock, Vec3};
+use rockfall::solver::Scheme;
+use rockfall::terrain::stl::{Facet, Soup};
+use rockfall::terrain::weld::{Piece, Up, weld};
+use rockfall::terrain::{Sheet, Terrain};
+use std::path::Path;
+
+/// Sheets from a file each, welded as a scene without a tolerance of its own has it.
+fn welded(sheets: [Vec<Facet>; 2]) -> Terrain {
+    let soups = sheets.map(Soup::from);
+    let piece =
+        |(sheet, soup)| Piece { file: Path::new("made"), soup, up: Up::Z, scale: 1.0, sheet };
+    let pieces: Vec<Piece> = (0..).zip(&soups).map(piece).collect();
+    let sheet = || Sheet { path: "made".into(), ground: 0, is_tree: false };
+    Terrain::new(weld(&pieces, Vec3::zeros(), None).unwrap(), vec![sheet(), sheet()])
+}
+
+/// A sheet from x = `from` to 10 m and 20 m wide, of so many squares each way.
+fn sheet(from: f64, squares: u32, z: impl Fn(f64, f64) -> f64) -> Vec<Facet> {
+    let at = |i: u32, j: u32| {
+        let along = |k: u32| f64::from(k) / f64::from(squares);
+        let (x, y) = (from + (10.0 - from) * along(i), 20.0 * along(j) - 10.0);
+        Vec3::new(x, y, z(x, y))
+    };
+    let squares = (0..squares).flat_map(|i| (0..squares).map(move |j| (i, j)));
+    let halves = |(i, j): (u32, u32)| {
+        let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+        [[a, b, c], [a, c, d]]
+    };
+    squares.flat_map(halves).collect()
+}
+
+/// A tile of level ground, and one on it that begins in the middle of its faces and rises by an angle.
+fn rising(angle: f64) -> Terrain {
+    welded([sheet(-10.0, 3, |_, _| 0.0), sheet(0.0, 7, |x, _| angle * x)])
+}
+
+/// e = 1 without friction.
+fn elastic(radius: f64) -> Case {
+    let ground = Ground {
+        normal_stiffness_n_m: 1e9 * radius,
+        shear_stiffness_n_m: 0.25e9 * radius,
+        friction_angle_rad: 0.0,
+        restitution: Some(1.0),
+        ..GROUND
+    };
+    let rock = Rock { radius_m: radius, ..ROCK };
+    Case { ground, rock, tolerance_m_s: 0.05, step_s: 0.01, capture_speed_m_s: Some(0.0), ..CASE }
+}
+
+/// Two tiles of one slope in the 32 bits of an STL file: they lie within some 1e-9 m of each other. A rock lets go of both in a
+/// few steps, wherever it lands. Of these landings one took all of the five million steps that a rock has.
+#[test]
+fn a_rock_lets_go_of_two_sheets_that_lie_on_each_other() {
+    let slope = |x: f64, y: f64| 0.01 * x + 0.013 * y;
+    let single = |facets: Vec<Facet>| -> Vec<Facet> {
+        let rounded = |corner: Vec3| corner.map(|x| f64::from(x as f32));
+        facets.into_iter().map(|facet| facet.map(rounded)).collect()
+    };
+    let terrain = welded([single(sheet(-10.0, 3, slope)), single(sheet(0.0, 7, slope))]);
+    for radius in [0.05, 0.5] {
+        for k in 0..40 {
+            let random = &mut common::zoo::dice(6, k);
+            let y = common::zoo::between(random, -5.0, 5.0);
+            let near = if k % 2 == 0 { 0.01 } else { 1.0 };
+            let x = radius * near * common::zoo::between(random, -0.3, 0.3);
+            let v = [1.0, common::zoo::between(random, -2.0, 2.0), -10.0];
+            let run = elastic(radius).run(&terrain, [[x, y, 1.2 * radius + 0.2], v, [0.0; 3]], 0.2);
+            assert!(run.effort.steps < 100, "R {radius} {k}: {:?}", run.effort);
+        }
+    }
+}
+
+/// Where a sheet begins on the faces of another and parts from it bluntly, a ball rolls from both to one without a jump of what
+/// its springs hold. Half of it was gone where the foot came to the border.
+#[test]
+fn a_border_on_the_faces_of_another_sheet_makes_no_jump() {
+    let (radius, depth, ways) = (0.5, 0.02, 2000);
+    let mut near = Neighbours::default();
+    for angle in [1e-5, 1e-3, 0.02, 0.1, 0.3] {
+        let terrain = rising(angle);
+        for y in [-4.3, -0.8, 0.2, 2.9] {
+            let at = |k: u32| 0.5 * radius * (2.0 * f64::from(k) / f64::from(ways) - 1.0);
+            let mut energy = |k: u32| {
+                let (x, z) = (at(k), radius - depth + angle * at(k).max(0.0));
+                let centre = Vec3::new(x, y + 0.3 * x, z) - terrain.origin_m;
+                pressed(&terrain, &mut near, &centre, radius).0
+            };
+            let energies: Vec<f64> = (0..=ways).map(&mut energy).collect();
+            let largest = energies.iter().copied().fold(0.0, f64::max);
+            let jump = energies.windows(2).map(|two| (two[1] - two[0]).abs()).fold(0.0, f64::max);
+            // a way of 0.25 mm on a spring pressed in by 20 mm, at a slope of up to 0.3
+            assert!(jump < 0.01 * largest, "{angle} {y}: {}", jump / largest);
+        }
+    }
+}
+
+/// e = 1 without friction where a tile begins on the faces of another: energy is kept. It was 0.3 of what it had been.
+#[test]
+fn elastic_impacts_where_one_sheet_begins_on_another_keep_their_energy() {
+    let schemes = [(Scheme::Reference, 1e-8), (Scheme::Adaptive, 0.05), (Scheme::Rigid, 0.05)];
+    for angle in [1e-5, 1e-3, 0.02, 0.1] {
+        let terrain = rising(angle);
+        for (scheme, tolerance_m_s) in schemes {
+            for k in 0..24 {
+                let random = &mut common::zoo::dice(7, k);
+                let x = common::zoo::between(random, -0.02, 0.02);
+                let v = [common::zoo::between(random, -3.0, 3.0), 0.3, -5.0];
+                let case = Case { scheme, tolerance_m_s, ..elastic(0.5) };
+                let z = 1.01 * 0.5 + angle * x.abs();
+                let off = (kept(&terrain, &case, [[x, 0.7, z], v]) - 1.0).abs();
+                assert!(off < 1e-9, "{scheme:?} {angle} {k}: {off:e}");
+            }
+        }
+    }
+}
