@@ -121,3 +121,19 @@ fn elastic_impacts_where_one_sheet_begins_on_another_keep_their_energy() {
         }
     }
 }
+
+/// A rock slides over level ground that is there twice in as many steps as over one sheet, about, and without a kick. It took a step
+/// for every 0.3 rad of its spring: a thousand times as many.
+#[test]
+fn ground_that_is_there_twice_is_slid_over_like_one_sheet() {
+    let once = terrain(sheet(-10.0, 3, |_, _| 0.0));
+    let twice = welded([sheet(-10.0, 3, |_, _| 0.0), sheet(-10.0, 7, |_, _| 0.0)]);
+    for radius in [0.05, 0.2] {
+        let case = Case { capture_speed_m_s: None, ..elastic(radius) };
+        let start = [[-3.0, 1.234, radius], [5.0, 0.4, 0.0], [0.0; 3]];
+        let [one, two] = [&once, &twice].map(|terrain| case.run(terrain, start, 1.2));
+        println!("{} {} steps", one.effort.steps, two.effort.steps);
+        assert!(two.effort.steps < 5 * one.effort.steps, "{:?} {:?}", one.effort, two.effort);
+        assert!((two.end.velocity_m_s - Vec3::new(5.0, 0.4, 0.0)).norm() < 1e-6);
+    }
+}

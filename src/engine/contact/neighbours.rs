@@ -192,21 +192,33 @@ impl Neighbours {
         self.all.faces.iter().any(|own| own.id == face && own.holds_foot_of(centre, slack))
     }
 
-    /// Whether a rock at `centre` comes nearer than `reach` (m) to nothing but `face`.
+    /// Whether a rock at `centre` comes nearer than `reach` (m) to nothing but `face`, or a sheet that lies on it.
     ///
     /// Cheapest tests first: heights over faces need three products, borders a search through all
     /// triangles near.
     #[inline]
     pub fn is_alone(&self, terrain: &Terrain, face: u32, (centre, reach): (&Vec3, f64)) -> bool {
         let (mut faces, mut edges) = (self.all.faces.iter(), self.all.edges.iter());
-        faces.all(|other| other.id == face || self.height_over(other, centre, reach).is_none())
-            && !self.has_saddle(terrain, &self.all.saddles, centre)
+        faces.all(|other| {
+            other.id == face
+                || self.height_over(other, centre, reach).is_none()
+                || self.lies_on(face, other, centre)
+        }) && !self.has_saddle(terrain, &self.all.saddles, centre)
             && edges.all(|edge| self.on_edge(terrain, edge, centre, reach).is_none())
             && self
                 .all
                 .corners
                 .iter()
                 .all(|corner| self.on_corner(terrain, corner, centre, reach).is_none())
+    }
+
+    /// Whether another face lies in the plane of `face` with the foot of `centre` well inside of it: a second sheet there, which is
+    /// one contact with the first. Both are not told apart by a seam, where a rock rolls from one to the other.
+    #[cold]
+    fn lies_on(&self, face: u32, other: &NearFace, centre: &Vec3) -> bool {
+        let own = self.all.faces.iter().find(|own| own.id == face);
+        own.is_some_and(|own| self.is_coplanar(own, other))
+            && other.holds_foot_of(centre, -SLACK * self.radius)
     }
 
     /// Height over a face (m), if it is nearer than `reach` and has the foot of `centre` on it.

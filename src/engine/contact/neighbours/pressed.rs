@@ -150,7 +150,7 @@ impl Neighbours {
     }
 
     /// Whether two triangles lie in one plane, with either winding.
-    fn is_coplanar(&self, own: &NearFace, other: &NearFace) -> bool {
+    pub(super) fn is_coplanar(&self, own: &NearFace, other: &NearFace) -> bool {
         let turned = (other.n - own.n).norm_squared().min((other.n + own.n).norm_squared());
         turned <= SLACK * SLACK && self.is_in_plane(own, &other.a)
     }
