@@ -29,10 +29,18 @@ pub const G: f64 = 9.8;
 /// A terrain of one sheet, without recentring noise: the facets' own coordinates are local when their box is
 /// centred on whole metres.
 pub fn terrain(facets: Vec<Facet>) -> Terrain {
-    let soup = Soup::from(facets);
-    let piece = Piece { file: Path::new("made"), soup: &soup, up: Up::Z, scale: 1.0, sheet: 0 };
-    let welded = weld(&[piece], Vec3::zeros(), Some(1e-9)).unwrap();
-    Terrain::new(welded, vec![Sheet { path: "made".into(), ground: 0, is_tree: false }])
+    terrain_of_files(vec![facets], Some(1e-9))
+}
+
+/// A terrain of sheets from a file each; without a tolerance with that of a scene that has none.
+pub fn terrain_of_files(files: Vec<Vec<Facet>>, tolerance_m: Option<f64>) -> Terrain {
+    let soups: Vec<Soup> = files.into_iter().map(Soup::from).collect();
+    let piece =
+        |(sheet, soup)| Piece { file: Path::new("made"), soup, up: Up::Z, scale: 1.0, sheet };
+    let pieces: Vec<Piece> = (0..).zip(&soups).map(piece).collect();
+    let welded = weld(&pieces, Vec3::zeros(), tolerance_m).unwrap();
+    let sheet = |_| Sheet { path: "made".into(), ground: 0, is_tree: false };
+    Terrain::new(welded, pieces.iter().map(sheet).collect())
 }
 
 /// The rock of the exact cases: R = 0.5 m, 2700 kg/m³.

@@ -7,19 +7,12 @@ use rockfall::contact::neighbours::Neighbours;
 use rockfall::ground::Ground;
 use rockfall::rock::{Rock, Vec3};
 use rockfall::solver::Scheme;
-use rockfall::terrain::stl::{Facet, Soup};
-use rockfall::terrain::weld::{Piece, Up, weld};
-use rockfall::terrain::{Sheet, Terrain};
-use std::path::Path;
+use rockfall::terrain::Terrain;
+use rockfall::terrain::stl::Facet;
 
-/// Sheets from a file each, welded as a scene without a tolerance of its own has it.
-fn welded(sheets: [Vec<Facet>; 2]) -> Terrain {
-    let soups = sheets.map(Soup::from);
-    let piece =
-        |(sheet, soup)| Piece { file: Path::new("made"), soup, up: Up::Z, scale: 1.0, sheet };
-    let pieces: Vec<Piece> = (0..).zip(&soups).map(piece).collect();
-    let sheet = || Sheet { path: "made".into(), ground: 0, is_tree: false };
-    Terrain::new(weld(&pieces, Vec3::zeros(), None).unwrap(), vec![sheet(), sheet()])
+/// Two tiles, welded as in a scene without a tolerance of its own.
+fn welded(tiles: [Vec<Facet>; 2]) -> Terrain {
+    terrain_of_files(tiles.into(), None)
 }
 
 /// A sheet from x = `from` to 10 m and 20 m wide, of so many squares each way.
