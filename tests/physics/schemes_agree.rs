@@ -54,8 +54,10 @@ fn stiff_springs_that_part_take_no_more_steps() {
         let falls = falls_of(20, 0.0, |scene| {
             scene.solver.scheme = Some(Scheme::Reference);
             for ground in scene.grounds.values_mut() {
-                ground.normal_stiffness_n_m = Distribution::fixed(stiffness_n_m).unwrap();
-                ground.restitution = Some(Distribution::fixed(restitution).unwrap());
+                let fixed = |value| Distribution::fixed(value).unwrap();
+                ground.normal_stiffness_n_m = fixed(stiffness_n_m);
+                ground.shear_stiffness_n_m = Some(fixed(0.25 * stiffness_n_m));
+                ground.restitution = Some(fixed(restitution));
             }
         });
         let most = falls.iter().map(|fall| fall.effort.steps).max();

@@ -78,10 +78,8 @@ impl ContactEnvironment<'_> {
         // What parts takes part until it is no touch any more: a force that jumps where the gap is zero would be met by
         // steps as short as what places are rounded by.
         let reach = self.body.radius * (1.0 + TOUCH);
-        let pressed = touches
-            .iter()
-            .enumerate()
-            .filter(|(j, other)| *j != k && other.distance_m < reach);
+        let pressed =
+            touches.iter().enumerate().filter(|(j, other)| *j != k && other.distance_m < reach);
         dashpot_share(&touches[k].normal, pressed.map(|(_, other)| &other.normal).chain(more))
     }
 }

@@ -99,13 +99,12 @@ pub(super) fn driven(body: &Body, contacts: &[StageContact], free: Twist, h: f64
 impl LinearForces {
     /// What inertia asks for: without contacts it makes the motion the free one.
     pub(super) fn of_inertia(body: &Body, free: &Twist, h: f64) -> Self {
-        let diagonal = |inertia: f64| Matrix3::identity() * (inertia / h);
+        let [m, i] = [body.mass / h, body.inertia / h];
+        let diagonal = |inertia: f64| Matrix3::identity() * inertia;
         Self {
-            stiffness: [
-                [diagonal(body.mass), Matrix3::zeros()],
-                [Matrix3::zeros(), diagonal(body.inertia)],
-            ],
-            load: (free.0 * body.mass / h, free.1 * body.inertia / h),
+            stiffness: [[diagonal(m), Matrix3::zeros()], [Matrix3::zeros(), diagonal(i)]],
+            // by the very numbers of the diagonal: what is free comes out as it went in
+            load: (free.0 * m, free.1 * i),
         }
     }
 
