@@ -68,6 +68,11 @@ impl<'a> CellPassages<'a> {
         });
     }
 
+    /// Whether there are any cells.
+    pub(super) fn are_on(&self) -> bool {
+        self.cells.is_some()
+    }
+
     /// Notes the cells of a step in contact, which are shorter than cells: its ends hold the energy that it has.
     pub(super) fn step(
         &mut self,

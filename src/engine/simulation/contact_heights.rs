@@ -13,8 +13,22 @@ use crate::terrain::Terrain;
 pub(super) struct TriangleBelow(Option<u32>);
 
 impl TriangleBelow {
-    /// The most that a rock's height can be at both ends of a step (m); infinite where the triangle does not say it.
-    pub(super) fn most_m(self, (terrain, form): (&Terrain, &Form), ends: [&RockInstant; 2]) -> f64 {
+    /// The most that a rock's height can be at both ends of a step (m); infinite where no triangle says it.
+    pub(super) fn most_m(
+        &mut self,
+        (terrain, form): (&Terrain, &Form),
+        ends: [&RockInstant; 2],
+    ) -> f64 {
+        let known_m = self.known_m((terrain, form), ends);
+        if known_m.is_finite() {
+            return known_m;
+        }
+        self.find(terrain, ends[1]);
+        self.known_m((terrain, form), ends)
+    }
+
+    /// The same by the triangle that was found last.
+    fn known_m(self, (terrain, form): (&Terrain, &Form), ends: [&RockInstant; 2]) -> f64 {
         let height_m = |at: &RockInstant| {
             let centre = at.motion.position_m;
             let ground_m = terrain.height_on(self.0?, centre.x, centre.y);
@@ -26,7 +40,7 @@ impl TriangleBelow {
     }
 
     /// Looks for it anew.
-    pub(super) fn find(&mut self, terrain: &Terrain, at: &RockInstant) {
+    fn find(&mut self, terrain: &Terrain, at: &RockInstant) {
         let centre = at.motion.position_m;
         let found = terrain.triangle_under(centre.x, centre.y, centre.z);
         self.0 = found.map(|(_, triangle)| triangle);

@@ -223,11 +223,8 @@ impl<'a> Recorder<'a> {
         let flight = RockFlight { start: from.motion, path: &path, turning, lasts_s };
         let heights = Heights { terrain, form: &form, flight: &flight };
         let heights = Some(heights).filter(|_| lasts_s > 0.0);
-        let mut most_m = self.below.most_m((terrain, &form), ends);
-        if most_m.is_infinite() {
-            self.below.find(terrain, to);
-            most_m = self.below.most_m((terrain, &form), ends);
-        }
+        let are_counted = self.passages.are_on() || self.stretches.are_on();
+        let most_m = if are_counted { self.below.most_m((terrain, &form), ends) } else { 0.0 };
         let at_step = StepHeights { heights, most_m };
         self.passages.step((terrain, &form), ends, &at_step);
         self.stretches.step(ends.map(|end| &end.motion), &at_step);

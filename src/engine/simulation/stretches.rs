@@ -44,6 +44,11 @@ impl Stretches {
         self.found.add(Stretch { number: self.number_at(at, step_m), speed_m_s, height_m });
     }
 
+    /// Whether they are noted.
+    pub(super) fn are_on(&self) -> bool {
+        self.step_m.is_some()
+    }
+
     fn number_at(&self, at: &Vec3, step_m: f64) -> u32 {
         (math::hypot(at.x - self.from_m[0], at.y - self.from_m[1]) / step_m) as u32
     }
