@@ -71,7 +71,9 @@ fn sweep_and_jump(
         }
         // a singular system is no harm: the sweeps simply go on
         if let Some(jumped) = jump(body, contacts, free, &now, h) {
-            contacts.iter_mut().for_each(|contact| contact.act_at(body, &jumped, h));
+            for contact in contacts.iter_mut() {
+                contact.act_at(body, &jumped, h);
+            }
             now = driven(body, contacts, free, h);
         }
     }
