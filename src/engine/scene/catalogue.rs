@@ -84,10 +84,10 @@ const TSCHAMUT: KnownGround = KnownGround {
     name: "tschamut/meadow",
     what: "meadow below a steep slope, spheres that stand for blocks of 40 to 80 kg",
     restitution: KnownValue::Fixed(0.35),
-    rolling_friction: Some(KnownValue::Triangular([0.125, 0.125, 0.258_333])),
-    roughness_deg: Some(KnownValue::Fixed(33.765_432)),
+    rolling_friction: Some(KnownValue::Triangular([0.125, 0.125, 0.158_333])),
+    roughness_deg: Some(KnownValue::Fixed(37.5)),
     beside: Some("normal_stiffness_n_m = 1e7, tangential_ratio = 0.25, friction_angle_deg = 35.0"),
-    source: "fitted with this program to the 80 ends of Tschamut 2014 in plan view, which leave rolling friction between 0.05 and 0.31 and roughness between 6 and 45° open",
+    source: "fitted with this program to the 80 ends of Tschamut 2014, which leave rolling friction between 0.05 and 0.42 and roughness between 0 and 45° open",
     ..NOTHING_ELSE
 };
 
