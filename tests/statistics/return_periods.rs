@@ -3,9 +3,19 @@
 
 use crate::yearly;
 
+use rockfall::frequency::Weights;
 use rockfall::hazard::{CrossingRow, Line, MapFrame, MapState, Maps, StopKind, year_maps};
 use rockfall::simulation::CellPassage;
 use yearly::{asked, crossings, line, near, power_law, road, row};
+
+/// The rock with which rocks of falling energy come once in so many years.
+fn deciding<'a>(rows: &'a [CrossingRow], weights: &Weights, years: f64) -> Option<&'a CrossingRow> {
+    let mut per_year = 0.0;
+    rows.iter().find(|row| {
+        per_year += weights.of_release(row.index);
+        per_year >= 1.0 / years
+    })
+}
 
 /// The energy of a return period is that of the rock with which λ(E ≥ e) reaches 1/T, and its interval ends at the energies of rocks; found
 /// anew by sorting. Read from classes of 5 % it was up to 3 % off.
@@ -18,11 +28,7 @@ fn energies_of_return_periods_are_those_of_rocks() {
         let found = road(&asked, releases, &rows).without_barriers;
         rows.sort_by(|one, next| next.total_j().total_cmp(&one.total_j()));
         for at in &found.returns {
-            let mut per_year = 0.0;
-            let reached = rows.iter().find(|row| {
-                per_year += weights.of_release(row.index);
-                per_year >= 1.0 / at.years
-            });
+            let reached = deciding(&rows, &weights, at.years);
             assert_eq!(at.energy_j, reached.map(CrossingRow::total_j), "{releases} releases");
             assert_eq!(at.class_width, None);
             let is_of_a_rock =
@@ -45,11 +51,7 @@ fn many_rocks_are_told_apart_in_narrow_classes() {
     let found = road(&asked, releases, &rows).without_barriers;
     rows.sort_by(|one, next| next.total_j().total_cmp(&one.total_j()));
     for at in &found.returns {
-        let mut per_year = 0.0;
-        let reached = rows.iter().find(|row| {
-            per_year += weights.of_release(row.index);
-            per_year >= 1.0 / at.years
-        });
+        let reached = deciding(&rows, &weights, at.years);
         let (exact, width) = (reached.unwrap().total_j(), at.class_width.unwrap());
         assert!(width < 1e-3, "{at:?}");
         near(at.energy_j.unwrap(), exact, width);

@@ -222,13 +222,11 @@ impl Roll<'_> {
         for touch in struck.iter().take(MOST) {
             // of the touching point, spin included: v + ω × r
             let velocity = self.moving.at(block, &touch.lever);
-            let (sheet, is_tree) = self.recorder.sheet_of(touch.triangle);
             let struck = Struck {
                 point_m: self.moving.pose.centre + touch.lever,
                 normal: touch.normal,
                 feature: touch.feature.kind,
-                sheet,
-                is_tree,
+                sheet: self.recorder.sheet_of(touch.triangle),
                 approach_m_s: -touch.normal.dot(&velocity),
             };
             self.recorder.begin_impact(&struck, now_s, &MeshEnergy::default());

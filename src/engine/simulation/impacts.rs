@@ -54,8 +54,6 @@ pub(super) struct Struck {
     pub(super) feature: FeatureKind,
     /// Index into `Terrain::sheets`.
     pub(super) sheet: u16,
-    /// Whether that is a mesh of trees.
-    pub(super) is_tree: bool,
     /// Speed of approach along the normal (m/s).
     pub(super) approach_m_s: f64,
 }
@@ -148,7 +146,7 @@ impl Impacts {
     /// `lost_j` is what has gone into contacts with the mesh so far, and what of it into soil. Returns its number, and whether it is a new one.
     pub(super) fn begin(
         &mut self,
-        struck: &Struck,
+        (struck, is_tree): (&Struck, bool),
         (now_s, until_s): (f64, f64),
         speed_m_s: f64,
         lost_j: (MeshEnergy, f64),
@@ -172,7 +170,7 @@ impl Impacts {
         }
         self.count += 1;
         let number = self.count;
-        let Struck { sheet, is_tree, normal, .. } = *struck;
+        let Struck { sheet, normal, .. } = *struck;
         let impact = InHand { number, sheet, is_tree, normal, weight, until_s, over_s: None };
         *self.hand.place() = Some(impact);
         if self.keeps_rows {

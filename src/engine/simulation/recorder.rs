@@ -148,10 +148,10 @@ impl<'a> Recorder<'a> {
         most.total_j = most.total_j.max(one + two);
     }
 
-    /// The sheet that a triangle belongs to, the mesh file, and whether it is one of trees.
-    pub(super) fn sheet_of(&self, triangle: u32) -> (u16, bool) {
-        let sheet = self.terrain.sheet_of[triangle as usize];
-        (sheet, self.terrain.sheets[usize::from(sheet)].is_tree)
+    /// The sheet that a triangle belongs to.
+    /// The mesh file, and with it ground and whether it is a tree.
+    pub(super) fn sheet_of(&self, triangle: u32) -> u16 {
+        self.terrain.sheet_of[triangle as usize]
     }
 
     /// Motion and turn as of now.
@@ -329,8 +329,9 @@ impl<'a> Recorder<'a> {
         // give it back: not this impact's
         let lost_j = (self.lost_to_each_j().less(held_j), self.ledger.soil_j);
         let speed_m_s = self.now.velocity_m_s.norm();
-        let (number, is_new) = self.impacts.begin(struck, times_s, speed_m_s, lost_j);
-        self.tree_impact_count += u32::from(is_new && struck.is_tree);
+        let is_tree = self.terrain.sheets[usize::from(struck.sheet)].is_tree;
+        let (number, is_new) = self.impacts.begin((struck, is_tree), times_s, speed_m_s, lost_j);
+        self.tree_impact_count += u32::from(is_new && is_tree);
         number
     }
 

@@ -252,7 +252,11 @@ fn struck(
     (feature, triangle): (Feature, u32),
     approach_m_s: f64,
 ) -> Struck {
-    let (sheet, is_tree) = recorder.sheet_of(triangle);
-    let (point_m, feature) = (c - n * radius_m, feature.kind);
-    Struck { point_m, normal: *n, feature, sheet, is_tree, approach_m_s }
+    Struck {
+        point_m: c - n * radius_m,
+        normal: *n,
+        feature: feature.kind,
+        sheet: recorder.sheet_of(triangle),
+        approach_m_s,
+    }
 }

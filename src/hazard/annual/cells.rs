@@ -84,15 +84,11 @@ pub fn year_maps(maps: &Maps, asked: &AnnualRequest, weights: &Weights) -> Vec<Y
 fn level(matrix: &Matrix, (maps, cell): (&Maps, &MapCell), running: &mut Running<'_>) -> u8 {
     matrix.level(|limit| {
         running.clear();
-        let any = cell.energies().entries().iter().map(|&(_, stratum, rocks)| (stratum, rocks));
+        let mut count = |stratum, rocks| running.add(stratum, &Sums::many(rocks));
         let above = |joule| maps.number_of(joule).map_or(&[][..], |energy| cell.above(energy));
         match limit {
-            None => any.for_each(|(stratum, rocks)| running.add(stratum, &Sums::many(rocks))),
-            Some(joule) => {
-                for &(stratum, rocks) in above(joule) {
-                    running.add(stratum, &Sums::many(rocks));
-                }
-            }
+            None => cell.energies().entries().iter().for_each(|&(_, s, n)| count(s, n)),
+            Some(joule) => above(joule).iter().for_each(|&(s, n)| count(s, n)),
         }
         running.per_year()
     })
@@ -193,6 +189,7 @@ mod tests {
         let share = maps.values(Layer::ExceedsWeak, &weights).next().unwrap().1;
         assert!((0.04 * share - value("frequency_above_30kj_per_year").unwrap()).abs() < 1e-15);
     }
+
     /// A rock of 30.2 kJ comes once in 50 years: more often than 100 years, and above 30 kJ though its class of energies begins below.
     #[test]
     fn levels_are_counted() {

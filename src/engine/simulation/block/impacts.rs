@@ -112,13 +112,11 @@ impl Roll<'_> {
             history.rebound(speed);
         }
         if !history.captured {
-            let (sheet, is_tree) = self.recorder.sheet_of(history.triangle);
             let struck = Struck {
                 point_m: history.point,
                 normal: history.n,
                 feature: history.feature.kind,
-                sheet,
-                is_tree,
+                sheet: self.recorder.sheet_of(history.triangle),
                 approach_m_s: history.approach_m_s.max(0.0),
             };
             history.impact = self.recorder.begin_impact(&struck, until_s, held_j);

@@ -245,13 +245,11 @@ impl<'a> WorldBody<'a> {
     /// Notes an impact on the mesh in the step that ends at `time_s` (s).
     pub(super) fn hit(&mut self, hit: &Hit, time_s: f64) {
         if self.state == BodyState::Moving {
-            let (sheet, is_tree) = self.recorder.sheet_of(hit.triangle);
             let struck = Struck {
                 point_m: hit.point_m,
                 normal: hit.normal,
                 feature: hit.feature,
-                sheet,
-                is_tree,
+                sheet: self.recorder.sheet_of(hit.triangle),
                 approach_m_s: hit.approach_m_s,
             };
             self.recorder.begin_impact(&struck, time_s, &MeshEnergy::default());
