@@ -3,15 +3,18 @@
 //!
 //! The ends are cut into parts, throws of one block together. The values are fitted to all but one part and scored on
 //! that, for each part in turn, and at last fitted to all. What the parts held out say is what the fit is worth
-//! elsewhere. The measured ends are then drawn again many times: the values that fit these best spread as far as the ends
-//! leave them open.
+//! elsewhere. Of every fit the best trials are followed again with other rocks, which select among them, and the selected one with
+//! others still, which say how good it is: no score profits from the luck of its rocks. The measured ends are then drawn again
+//! many times: the values that fit these best spread as far as the ends leave them open.
 
+mod finalists;
 mod fitted;
 mod parts;
 mod search;
 mod site;
 mod worth;
 
+pub use finalists::CalibrationStage;
 pub use fitted::fitted_scene;
 pub use worth::{SiteMeasure, Told};
 
@@ -23,7 +26,7 @@ use crate::math;
 use crate::random::Distribution;
 use crate::release::check_shapes;
 use crate::scene::{CalibrateTable, GroundTable, Scene, VaryKey, VaryTable};
-use search::ParameterSearch;
+use search::{FoundFit, ParameterSearch};
 use serde::{Deserialize, Serialize};
 use site::CalibrationSite;
 use std::fmt;
@@ -36,6 +39,12 @@ const MOST: usize = 6;
 pub struct CalibrationTrial {
     /// The values, in the order of the scene's list.
     pub values: Vec<f64>,
+    /// What it is for.
+    #[serde(default)]
+    pub stage: CalibrationStage,
+    /// Its releases, of each scene; 0 where it is not recorded, and was that of all trials.
+    #[serde(default)]
+    pub releases: usize,
     /// Against the ends that were fitted.
     pub fitted: Agreement,
     /// Against the ends that were kept apart; all of them where none were.
@@ -60,10 +69,13 @@ pub enum Ends {
 pub struct Calibration {
     /// What was varied: `ground.key`.
     pub names: Vec<String>,
-    /// Releases of each trial and scene.
+    /// Releases of each trial of a search, of each scene.
     pub releases: usize,
     /// Number of trials of the fit to all ends; fits to parts of them take about as many.
     pub trials: usize,
+    /// How many of these other rocks have selected from; 0 in a record of a search whose best trial was taken.
+    #[serde(default)]
+    pub finalists: usize,
     /// With the values that would stand there without calibration.
     pub before: CalibrationTrial,
     /// Fitted to all but one part of the ends and scored on that, part by part; none where none was held out.
@@ -84,10 +96,11 @@ pub struct Calibration {
     pub ends: (usize, f64),
 }
 
-/// Number of trials of a calibration, at least, for a bar of progress.
+/// What a calibration takes, at least, for a bar of progress: in trials of the search.
 pub fn planned(scene: &Scene) -> usize {
     let Some(table) = &scene.calibrate else { return 0 };
-    (table.parts() + 1) * search::trials(table.vary.len())
+    let trials = search::trials(table.vary.len());
+    (table.parts() + 1) * (trials + finalists::effort(trials))
 }
 
 /// Calibrates scenes together; the first says what is varied. `tried` hears of every trial.
@@ -104,18 +117,20 @@ pub fn calibrate(
     let (vary, parts) = vary_of(scenes)?;
     let mut search = ParameterSearch::new(scenes, vary, ensemble, (releases, parts.max(1)))?;
     let before: Vec<f64> = vary.iter().map(|vary| vary.before).collect();
-    let before = search.trial(&before, Ends::All)?;
+    // by the rocks that assess the fits, so that the difference is that of the values
+    let before = search.trial(&before, (Ends::All, CalibrationStage::Assessment))?;
     // first, so that the interval is that of the grids of this fit
-    let (whole, trials) = search.best(Ends::All, tried)?;
+    let FoundFit { trial: whole, trials, finalists } = search.best(Ends::All, tried)?;
     let (told, measures, ends) = search.worth(&whole.values, scenes[0].seed)?;
     let mut held_out = Vec::new();
     for part in 0..parts {
-        held_out.push(search.best(Ends::Without(part), tried)?.0);
+        held_out.push(search.best(Ends::Without(part), tried)?.trial);
     }
     Ok(Calibration {
         names: vary.iter().map(VaryTable::name).collect(),
         releases,
         trials,
+        finalists,
         before,
         held_out,
         by_block: search.sites.iter().any(CalibrationSite::knows_blocks),
@@ -227,12 +242,16 @@ fn put(ground: &mut GroundTable, key: VaryKey, value: f64) -> Result<()> {
     let fixed = Distribution::fixed(value).map_err(refuse)?;
     match key {
         VaryKey::FrictionAngleDeg => ground.friction_angle_deg = fixed,
-        VaryKey::RollingFrictionSpread if value > 0.0 => {
+        VaryKey::RollingFrictionSpread => {
             let low = ground.rolling_friction.as_ref().map_or(0.0, |rolling| rolling.support().0);
-            let above = Distribution::triangular([low, low, low + value]).map_err(refuse)?;
-            ground.rolling_friction = Some(above);
+            // a triangle of no width is no distribution
+            let above = if value > 0.0 {
+                Distribution::triangular([low, low, low + value])
+            } else {
+                Distribution::fixed(low)
+            };
+            ground.rolling_friction = Some(above.map_err(refuse)?);
         }
-        VaryKey::RollingFrictionSpread => {}
         _ => {
             if key == VaryKey::TangentialRatio {
                 ground.shear_stiffness_n_m = None;
@@ -251,6 +270,13 @@ fn put(ground: &mut GroundTable, key: VaryKey, value: f64) -> Result<()> {
 impl fmt::Display for Calibration {
     fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(to, "{} trials of {} releases for the fit on all", self.trials, self.releases)?;
+        if self.finalists > 0 {
+            let (finalists, more) = (self.finalists, self.whole.releases);
+            writeln!(
+                to,
+                "the best {finalists} again with {more} other releases, which select one; its scores are those of {more} others still"
+            )?;
+        }
         self.shapes.iter().try_for_each(|shape| writeln!(to, "shape: {shape}"))?;
         self.write_trial(to, "before", &self.before)?;
         for (part, trial) in self.held_out.iter().enumerate() {

@@ -1,15 +1,17 @@
 //! The search: grids that narrow to what the measured ends leave open, even points where there are many values.
 //!
 //! A grid that ends on a spacing wider than that tells the grid's interval and not that of the ends. So the ends are drawn
-//! again after every grid, and the next one spans the values that fit them best, until it has several steps there.
+//! again after every grid, and the next one spans the values that fit them best, until it has several steps there. Of the values tried
+//! the best are then followed again, see [`super::finalists`].
 
 use super::site::{CalibrationSite, Computed};
-use super::{CalibrationTrial, Ends};
+use super::{CalibrationStage, CalibrationTrial, Ends};
 use crate::ensemble::Ensemble;
 use crate::error::{Error, Result};
 use crate::hazard::Agreement;
 use crate::math;
 use crate::scene::{Scene, VaryTable};
+use std::cmp::Ordering;
 
 /// Values tried of each quantity in the first grid, and in each refinement: of one, two and three quantities.
 const GRID: [[usize; 2]; 3] = [[6, 9], [6, 5], [5, 4]];
@@ -44,13 +46,28 @@ fn steps(values: usize, stage: usize) -> usize {
     GRID[values - 1][stage.min(1)]
 }
 
+/// Ends that were computed, site by site.
+struct KnownTrial {
+    values: Vec<f64>,
+    stage: CalibrationStage,
+    computed: Vec<Computed>,
+}
+
+/// What a search has found, and from how many trials and finalists.
+pub(super) struct FoundFit {
+    pub(super) trial: CalibrationTrial,
+    pub(super) trials: usize,
+    pub(super) finalists: usize,
+}
+
 /// The search over one set of ends after the other.
 pub(super) struct ParameterSearch<'a> {
     pub(super) sites: Vec<CalibrationSite>,
     pub(super) vary: &'a [VaryTable],
     ensemble: &'a Ensemble,
-    /// Ends of the values tried so far, site by site: all searches begin with the same points.
-    pub(super) known: Vec<(Vec<f64>, Vec<Computed>)>,
+    releases: usize,
+    /// What was computed so far: all searches begin with the same points.
+    known: Vec<KnownTrial>,
     /// Step of the last grid, value by value.
     pub(super) step: Vec<f64>,
 }
@@ -70,6 +87,7 @@ impl<'a> ParameterSearch<'a> {
             sites: sites.collect::<Result<_>>()?,
             vary,
             ensemble,
+            releases,
             known: Vec::new(),
             step: Vec::new(),
         })
@@ -80,27 +98,47 @@ impl<'a> ParameterSearch<'a> {
         &mut self,
         ends: Ends,
         tried: &mut dyn FnMut(Ends, &CalibrationTrial),
-    ) -> Result<(CalibrationTrial, usize)> {
+    ) -> Result<FoundFit> {
+        let trials = self.search(ends, tried)?;
+        let (trial, finalists) = self.select(&trials, ends, tried)?;
+        Ok(FoundFit { trial, trials: trials.len(), finalists })
+    }
+
+    /// All trials of the search.
+    fn search(
+        &mut self,
+        ends: Ends,
+        tried: &mut dyn FnMut(Ends, &CalibrationTrial),
+    ) -> Result<Vec<CalibrationTrial>> {
         let mut ranges: Vec<[f64; 2]> = self.vary.iter().map(|vary| [vary.from, vary.to]).collect();
-        let mut best: Option<CalibrationTrial> = None;
-        let (mut count, mut stage) = (0, 0);
+        let (mut trials, mut stage) = (Vec::new(), 0);
         loop {
-            for values in points(&ranges, stage) {
-                let trial = self.trial(&values, ends)?;
-                tried(ends, &trial);
-                count += 1;
-                if best.as_ref().is_none_or(|best| is_nearer(&trial.fitted, &best.fitted)) {
-                    best = Some(trial);
-                }
-            }
+            let of_stage = (ends, CalibrationStage::Search);
+            trials.extend(self.try_all(&points(&ranges, stage), of_stage, tried)?);
             self.step = step(&ranges, stage);
-            let best = best.as_ref().ok_or_else(|| self.nothing())?;
+            let best = trials.iter().min_by(|one, other| nearer(one, other));
+            let best = best.ok_or_else(|| self.nothing())?;
             stage += 1;
             match self.next(&ranges, &best.values, (stage, ends)) {
                 Some(next) => ranges = next,
-                None => return Ok((best.clone(), count)),
+                None => return Ok(trials),
             }
         }
+    }
+
+    /// Tries values one after the other.
+    pub(super) fn try_all(
+        &mut self,
+        points: &[Vec<f64>],
+        (ends, stage): (Ends, CalibrationStage),
+        tried: &mut dyn FnMut(Ends, &CalibrationTrial),
+    ) -> Result<Vec<CalibrationTrial>> {
+        let one = |values: &Vec<f64>| {
+            let trial = self.trial(values, (ends, stage))?;
+            tried(ends, &trial);
+            Ok(trial)
+        };
+        points.iter().map(one).collect()
     }
 
     /// The ranges of the next stage; none after the last one.
@@ -139,15 +177,19 @@ impl<'a> ParameterSearch<'a> {
         shapes
     }
 
-    fn nothing(&self) -> Error {
+    pub(super) fn nothing(&self) -> Error {
         let remedy = "release rocks that do not fail";
         Error::input(self.sites[0].file(), "[calibrate]", "found no computed end", remedy)
     }
 
     /// Compares all releases with these values with the measured ends.
-    pub(super) fn trial(&mut self, values: &[f64], ends: Ends) -> Result<CalibrationTrial> {
-        let place = self.place(values)?;
-        let computed = &self.known[place].1;
+    pub(super) fn trial(
+        &mut self,
+        values: &[f64],
+        (ends, stage): (Ends, CalibrationStage),
+    ) -> Result<CalibrationTrial> {
+        let place = self.place(values, stage)?;
+        let computed = self.computed(place);
         let compare = |of: Ends| {
             let sites = self.sites.iter().zip(computed);
             let each = sites.map(|(site, computed)| site.compare(computed, of));
@@ -157,33 +199,48 @@ impl<'a> ParameterSearch<'a> {
         let found = |of: Ends| compare(of).ok_or_else(|| self.nothing());
         Ok(CalibrationTrial {
             values: values.to_vec(),
+            stage,
+            releases: stage.releases(self.releases),
             fitted: found(ends)?,
             kept_apart: found(apart)?,
             all: found(Ends::All)?,
         })
     }
 
-    /// Where the ends computed with these values stand; they are computed if they are not known.
-    pub(super) fn place(&mut self, values: &[f64]) -> Result<usize> {
-        if let Some(place) = self.known.iter().position(|(known, _)| known == values) {
+    /// Where the ends computed with these values for a stage stand; they are computed if they are not known.
+    pub(super) fn place(&mut self, values: &[f64], stage: CalibrationStage) -> Result<usize> {
+        let is_same = |known: &KnownTrial| known.stage == stage && known.values == values;
+        if let Some(place) = self.known.iter().position(is_same) {
             return Ok(place);
         }
-        let mut all = Vec::new();
+        let mut computed = Vec::new();
         for site in &mut self.sites {
-            all.push(site.compute((self.vary, values), self.ensemble)?);
+            computed.push(site.compute((self.vary, values), stage, self.ensemble)?);
         }
-        self.known.push((values.to_vec(), all));
+        self.known.push(KnownTrial { values: values.to_vec(), stage, computed });
         Ok(self.known.len() - 1)
+    }
+
+    /// The ends that stand at a place, site by site.
+    pub(super) fn computed(&self, place: usize) -> &[Computed] {
+        &self.known[place].computed
+    }
+
+    /// Values of all searches so far with the ends that were computed with them.
+    pub(super) fn searched(&self) -> impl Iterator<Item = (&[f64], &[Computed])> {
+        let searched = self.known.iter().filter(|known| known.stage == CalibrationStage::Search);
+        searched.map(|known| (&known.values[..], &known.computed[..]))
     }
 }
 
-/// Whether the ends of one comparison lie nearer than those of another: by their energy distance where a fit is scored by it, else
-/// by their runouts.
-fn is_nearer(one: &Agreement, other: &Agreement) -> bool {
+/// Whose fitted ends lie nearer, those of one trial (less) or of another: by their energy distance where a fit is scored by it, else by their
+/// runouts.
+pub(super) fn nearer(one: &CalibrationTrial, other: &CalibrationTrial) -> Ordering {
+    let (one, other) = (&one.fitted, &other.fitted);
     // 0 where it is not known, on both sides
     let [one_m, other_m] = [one, other].map(|of| of.ends_m.unwrap_or(0.0));
     let by_runout = || one.ks.total_cmp(&other.ks).then(one.area_m.total_cmp(&other.area_m));
-    one_m.total_cmp(&other_m).then_with(by_runout).is_lt()
+    one_m.total_cmp(&other_m).then_with(by_runout)
 }
 
 /// All combinations of `steps` even values of each range, ends included.

@@ -1,7 +1,7 @@
 //! One scene of a calibration and what was measured on it.
 
 use super::parts::{few, parts_of, rows_of};
-use super::{Ends, put_all, refuse_weights};
+use super::{CalibrationStage, Ends, put_all, refuse_weights};
 use crate::ensemble::Ensemble;
 use crate::error::Result;
 use crate::hazard::{
@@ -145,21 +145,26 @@ impl CalibrationSite {
         &self.measured
     }
 
-    /// Computes all releases with these values.
+    /// Computes all releases of a stage with these values.
     pub(super) fn compute(
         &mut self,
         (vary, values): (&[VaryTable], &[f64]),
+        stage: CalibrationStage,
         ensemble: &Ensemble,
     ) -> Result<Computed> {
-        put_all(&mut self.scene, vary, values)?;
+        // a copy: a value that only this trial leaves as it was must be that of the scene and not of the trial before
+        let mut scene = self.scene.clone();
+        put_all(&mut scene, vary, values)?;
+        scene.seed = stage.seed(self.scene.seed);
+        scene.release.count = stage.releases(self.scene.release.count);
         let terrain = match self.terrain.take() {
             Some(terrain) => terrain,
-            None => self.scene.read_terrain()?.0,
+            None => scene.read_terrain()?.0,
         };
-        let plan = Plan::compile(&self.scene, terrain)?;
+        let plan = Plan::compile(&scene, terrain)?;
         if let Part::Kept(year) = &plan.year {
             // of zones that were read meanwhile
-            refuse_weights(&self.scene, Some(&year.frequency))?;
+            refuse_weights(&scene, Some(&year.frequency))?;
         }
         let origin_m = plan.terrain.origin_m;
         let (mut ways, mut stayed) = (ObservedWays::new(), Vec::new());

@@ -1,8 +1,8 @@
 //! What a fit is worth: how far the measured ends tell the values, and how far computed ends lie from them.
 
-use super::Ends;
 use super::search::ParameterSearch;
 use super::site::{CalibrationSite, Computed};
+use super::{CalibrationStage, Ends};
 use crate::error::Result;
 use crate::hazard::{EndSpread, KOLMOGOROV_95, student_95};
 use crate::math;
@@ -61,7 +61,8 @@ type Worth = (Vec<Told>, Vec<SiteMeasure>, (usize, f64));
 impl ParameterSearch<'_> {
     /// What the fit with these values is worth.
     pub(super) fn worth(&mut self, values: &[f64], seed: u64) -> Result<Worth> {
-        let place = self.place(values)?;
+        // the rocks that assess: those that selected are lucky ones
+        let place = self.place(values, CalibrationStage::Assessment)?;
         let (mut ends, mut worth) = (0, 0.0);
         for site in &self.sites {
             ends += site.measured().len();
@@ -71,13 +72,15 @@ impl ParameterSearch<'_> {
     }
 
     /// How far the measured ends tell each value. A value tried stands for half a step to either side.
+    ///
+    /// The intervals are of the trials of all searches, whose rocks are others than those that selected: a selected value outside widens its own.
     fn told(&self, values: &[f64]) -> Vec<Told> {
         let ends: f64 = self.sites.iter().map(CalibrationSite::effective).sum();
         let open = self.left_open(Ends::All, REDRAWS, tail_of(ends));
         let one = |(at, vary): (usize, &VaryTable)| {
             let half = 0.5 * self.step[at];
-            let low_95 = (open[at][0] - half).max(vary.from);
-            let high_95 = (open[at][1] + half).min(vary.to);
+            let low_95 = (open[at][0].min(values[at]) - half).max(vary.from);
+            let high_95 = (open[at][1].max(values[at]) + half).min(vary.to);
             let is_told = high_95 - low_95 < UNTOLD * (vary.to - vary.from);
             Told { name: vary.name(), value: values[at], low_95, high_95, is_told }
         };
@@ -96,12 +99,12 @@ impl ParameterSearch<'_> {
                 each.map(|((site, rows), computed)| site.distance(computed, rows)).sum()
             };
             let distances: Vec<f64> =
-                self.known.iter().map(|(_, computed)| distance(computed)).collect();
+                self.searched().map(|(_, computed)| distance(computed)).collect();
             let least = distances.iter().copied().fold(f64::INFINITY, f64::min);
             // values that make no difference fit equally well, all of them
             let ties =
-                self.known.iter().zip(distances).filter(move |(_, distance)| *distance <= least);
-            ties.map(|((values, _), _)| values.clone()).collect::<Vec<_>>()
+                self.searched().zip(distances).filter(move |(_, distance)| *distance <= least);
+            ties.map(|((values, _), _)| values.to_vec()).collect::<Vec<_>>()
         };
         let best: Vec<Vec<Vec<f64>>> = (0..redraws).map(best).collect();
         let extremes = |at: usize| {
@@ -115,7 +118,7 @@ impl ParameterSearch<'_> {
     }
 
     fn measures(&self, place: usize, seed: u64) -> Vec<SiteMeasure> {
-        let sites = self.sites.iter().zip(&self.known[place].1);
+        let sites = self.sites.iter().zip(self.computed(place));
         let of_site = |(site, computed): (&CalibrationSite, &Computed)| {
             let all: Vec<usize> = (0..site.measured().len()).collect();
             let found = site.figures(computed, &all);

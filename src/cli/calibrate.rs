@@ -20,7 +20,7 @@ pub(super) struct CalibrateArgs {
     /// Folder for trials, result and fitted scenes [default: reports/<first scene's name>]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Releases of each trial
+    /// Releases of each trial of the search; its best are followed again with four times as many
     #[arg(long, value_name = "N", value_parser = of_a_trial, default_value = "400")]
     releases: usize,
     /// Worker threads [default: all cores]
@@ -35,29 +35,29 @@ pub(super) fn calibrate(args: &CalibrateArgs) -> Result<ExitCode> {
     let name = args.scenes[0].file_stem().unwrap_or_default();
     let out = args.out.clone().unwrap_or_else(|| Path::new("reports").join(name));
     let bar = bar(crate::calibrate::planned(&scenes[0]), "trials");
-    let said = fit(&scenes, (args.releases, args.threads), &out, || {
+    let said = fit(&scenes, (args.releases, args.threads), &out, |trials| {
         // a search goes on until its steps are finer than what the ends leave open
-        if bar.length() == Some(bar.position()) {
-            bar.inc_length(1);
-        }
-        bar.inc(1);
+        let beyond = (bar.position() + trials).saturating_sub(bar.length().unwrap_or_default());
+        bar.inc_length(beyond);
+        bar.inc(trials);
     })?;
     bar.finish_and_clear();
     Ok(say(said))
 }
 
-/// Calibrates scenes together, writes all trials and the fitted scenes into `out` and says what was found.
+/// Calibrates scenes together, writes all trials and the fitted scenes into `out` and says what was found. `progress` hears how many trials of the
+/// search each one was worth.
 fn fit(
     scenes: &[Scene],
     (releases, threads): (usize, Option<usize>),
     out: &Path,
-    progress: impl Fn(),
+    progress: impl Fn(u64),
 ) -> Result<String> {
     let ensemble = Ensemble::new(threads)?;
     let mut trials: Vec<(Ends, CalibrationTrial)> = Vec::new();
     let found = calibrate::calibrate(scenes, &ensemble, releases, &mut |ends, trial| {
         trials.push((ends, trial.clone()));
-        progress();
+        progress((trial.releases / releases) as u64);
     })?;
     let vary = scenes[0].calibrate.as_ref().map_or(&[][..], |table| &table.vary);
     // before the scenes are read again: hours of trials must not hang on a file that has been moved meanwhile

@@ -9,8 +9,8 @@ use std::path::Path;
 
 const RESULT: &str = "calibration.json";
 
-/// Writes `calibration.csv` (every trial with the part that was held out; energy distances where fits are scored by them) and
-/// `calibration.json`.
+/// Writes `calibration.csv` (every trial with the part that was held out, what it was for and its releases; energy distances where fits are
+/// scored by them) and `calibration.json`.
 ///
 /// # Errors
 /// A folder or file that cannot be written.
@@ -21,7 +21,7 @@ pub fn write_calibration(
 ) -> Result<()> {
     std::fs::create_dir_all(dir).map_err(Error::file("create", dir))?;
     let mut text = format!(
-        "held_out,{},fit_area_m,fit_ks,fit_mean_m,apart_area_m,apart_ks,apart_mean_m{}\n",
+        "held_out,{},fit_area_m,fit_ks,fit_mean_m,apart_area_m,apart_ks,apart_mean_m{},stage,releases\n",
         found.names.join(","),
         if found.whole.all.ends_m.is_some() { ",fit_ends_m,apart_ends_m" } else { "" }
     );
@@ -48,7 +48,8 @@ pub fn write_calibration(
         for ends_m in [fit.ends_m, apart.ends_m].into_iter().flatten() {
             let _ = write!(text, ",{ends_m}");
         }
-        text.push('\n');
+        // writing to a string cannot fail
+        let _ = writeln!(text, ",{},{}", trial.stage.name(), trial.releases);
     }
     write_atomic(&dir.join("calibration.csv"), text.as_bytes())?;
     write_json(&dir.join(RESULT), found)

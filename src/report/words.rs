@@ -96,7 +96,7 @@ words! {
     measured_title, measured_curves, measured_map, measured, computed, share_of_rocks, no_rock,
     measured_caption, col_mean_measured, col_computed, col_ks, col_ks_limit, col_area,
     col_side_measured, col_side_computed, agreement_title, agreement_note, this_run,
-    calibration_title, calibration_note, calibration_note_one, blocks_held_out, uncalibrated, fitted_without, held_out,
+    calibration_title, calibration_note, calibration_note_one, calibration_finalists, blocks_held_out, uncalibrated, fitted_without, held_out,
     fitted_all, hardly_told, told_title, told_note, fitted, ends_title, ends_note, difference,
     check_failed, check_reach, check_reach_found, check_speed, check_speed_found, check_fast_found,
     check_deposits, check_deposits_found, check_pits, check_mesh, check_mesh_found, check_coarse,

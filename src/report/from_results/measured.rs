@@ -126,7 +126,15 @@ fn effort(found: &Calibration, words: &Words) -> String {
     };
     let blocks = if found.by_block { words.blocks_held_out } else { "" };
     let (trials, releases) = (&found.trials, &found.releases);
-    fill(text, &[("trials", trials), ("releases", releases), ("fits", &fits), ("blocks", &blocks)])
+    let said = fill(
+        text,
+        &[("trials", trials), ("releases", releases), ("fits", &fits), ("blocks", &blocks)],
+    );
+    let (finalists, more) = (&found.finalists, &found.whole.releases);
+    if *finalists == 0 {
+        return said;
+    }
+    said + &fill(words.calibration_finalists, &[("finalists", finalists), ("more", more)])
 }
 
 /// How far the measured ends tell each value.
@@ -203,6 +211,16 @@ mod tests {
             let said = note(&found, language);
             assert!(said.contains(&format!(" {fits} ")), "{language:?}: {said}");
         }
+        // of a fit whose best trials were followed again it says with how many rocks
+        let count = |found: &Calibration| {
+            let said = Language::ALL.map(|language| note(found, language));
+            said.map(|said| said.matches("1717").count())
+        };
+        (found.finalists, found.whole.releases) = (0, 1717);
+        assert!(count(&found).iter().all(|count| *count == 0));
+        found.finalists = 7;
+        assert!(count(&found).iter().all(|count| *count == 2));
+        found.finalists = 0;
         found.held_out.clear();
         assert!(note(&found, Language::En).contains("releases for the fit; no ends were held out"));
         for language in Language::ALL {

@@ -311,6 +311,7 @@ pub(super) static WORDS: Words = Words {
     calibration_title: "Kalibrierung und was sie taugt",
     calibration_note: "Etwa {trials} Versuche mit je {releases} Ablösungen für jede von {fits} Anpassungen; ein Wert zählt nur an Endlagen, an die er nicht angepasst wurde{blocks}.",
     calibration_note_one: "{trials} Versuche mit je {releases} Ablösungen für die Anpassung; keine Endlagen wurden zurückgehalten, nichts hier sagt also, wie gut ihre Werte an anderen sind.",
+    calibration_finalists: " Die besten {finalists} wurden mit {more} Ablösungen anderer Blöcke wiederholt, die einen auswählten; seine Zahlen stammen von wiederum {more} anderen.",
     blocks_held_out: ", und Würfe desselben Blocks werden zusammen zurückgehalten",
     uncalibrated: "Unkalibriert, alle Blöcke",
     fitted_without: "Ohne Teil {part} angepasst, am Rest betrachtet",

@@ -307,6 +307,7 @@ pub(super) static WORDS: Words = Words {
     calibration_title: "Calibration and what it is worth",
     calibration_note: "About {trials} trials of {releases} releases for each of {fits} fits; a value counts only on ends that it was not fitted to{blocks}.",
     calibration_note_one: "{trials} trials of {releases} releases for the fit; no ends were held out, so nothing here says how well its values do on others.",
+    calibration_finalists: " The best {finalists} were run again with {more} releases of other rocks, which selected one; its numbers are those of {more} others still.",
     blocks_held_out: ", and throws of one block are held out together",
     uncalibrated: "Uncalibrated, all rocks",
     fitted_without: "Fitted without part {part}, seen on the rest",

@@ -311,6 +311,7 @@ pub(super) static WORDS: Words = Words {
     calibration_title: "Calage et sa valeur",
     calibration_note: "Environ {trials} essais de {releases} départs pour chacun des {fits} calages\u{a0}; une valeur ne compte que sur les arrêts qui n’ont pas servi à la caler{blocks}.",
     calibration_note_one: "{trials} essais de {releases} départs pour le calage\u{a0}; aucun arrêt n’a été réservé, rien ici ne dit donc ce que ses valeurs valent sur d’autres.",
+    calibration_finalists: " Les {finalists} meilleurs ont été refaits avec {more} départs d’autres blocs, qui en ont choisi un\u{a0}; ses nombres sont ceux de {more} autres encore.",
     blocks_held_out: ", et les lâchers d’un même bloc sont réservés ensemble",
     uncalibrated: "Non calé, tous les blocs",
     fitted_without: "Calé sans la partie {part}, vu sur le reste",

@@ -311,6 +311,7 @@ pub(super) static WORDS: Words = Words {
     calibration_title: "Calibrazione e quanto vale",
     calibration_note: "Circa {trials} prove di {releases} distacchi per ciascuno dei {fits} adattamenti; un valore conta solo sugli arresti a cui non è stato adattato{blocks}.",
     calibration_note_one: "{trials} prove di {releases} distacchi per l’adattamento; nessun arresto è stato tenuto da parte, perciò nulla qui dice quanto i suoi valori valgano su altri.",
+    calibration_finalists: " Le {finalists} migliori sono state ripetute con {more} distacchi di altri massi, che ne hanno scelta una; i suoi numeri sono quelli di altri {more} ancora.",
     blocks_held_out: ", e i lanci di uno stesso masso sono tenuti da parte insieme",
     uncalibrated: "Non calibrato, tutti i massi",
     fitted_without: "Adattato senza la parte {part}, visto sul resto",
