@@ -257,3 +257,24 @@ fn zones_of_mixed_geometry_are_sources_without_weights() {
     mixed("\"frequency_per_year\":0.3", "");
     assert!(dir.refusal(&text).contains("or frequency_per_year"));
 }
+
+/// A zone that a GIS has taken apart has the frequency or weight of the whole in each part: counted for each, it would release twice as often. So it is
+/// refused. Parts that only lie somewhere are one zone, which shares its releases by area as one feature of both would.
+#[test]
+fn a_name_that_stands_twice_is_one_zone_or_refused() {
+    let dir = Folder::new();
+    let refused = |properties: &str, year: &str| {
+        let file = dir.put("scene.toml", over_zones(&dir, [properties; 2], year));
+        let why = Scene::read(&file).unwrap_err().to_string();
+        assert!(why.contains("feature 2: found the name \"cliff\" of feature 1 again"), "{why}");
+        assert!(why.contains("write another name, or make one feature of several parts"), "{why}");
+    };
+    refused("\"name\":\"cliff\",\"frequency_per_year\":0.3", "");
+    refused("\"name\":\"cliff\",\"weight\":2.0", "per_year = 0.1\n");
+    dir.put("zones.geojson", zones(["\"name\":\"cliff\""; 2]));
+    let said = dir.plan(&scene("file = \"dem.tif\"", "zones = \"zones.geojson\"|"));
+    assert!(
+        said.contains("over 1 zones in 2 features of ") && said.contains("by their areas"),
+        "{said}"
+    );
+}

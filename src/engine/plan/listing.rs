@@ -322,7 +322,7 @@ fn place(place: &Where, zones_are_sources: bool) -> String {
         Where::Zones(zones) => {
             let file = zones.file.display();
             let how = if zones_are_sources { "each a source of its own" } else { shared_by(zones) };
-            format!("over {} zones of {file}, {how}", zones.list().len())
+            format!("over {} of {file}, {how}", zones.counted())
         }
     }
 }

@@ -4,6 +4,7 @@ use super::drawn::name_of;
 use super::places::{Area, Polyline};
 use crate::error::{Error, Result};
 use crate::gis::{self, Corner, Geometry, GisFeature, GisLayer, Polygon};
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// Where in a zone rocks start.
@@ -20,7 +21,7 @@ pub enum ZonePlace {
 /// One zone of release.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Zone {
-    /// Property `name`, else "zone" and its number.
+    /// Property `name`, else "zone" and its number; features of one name are parts of one zone.
     pub name: String,
     /// Number of the feature in the file, from 1.
     pub feature: usize,
@@ -58,12 +59,13 @@ impl Zones {
     /// Reads them.
     ///
     /// # Errors
-    /// A file or feature that cannot be used; weights for some zones and not for others; points beside lines or areas
-    /// without weights, which have no common measure.
+    /// A file or feature that cannot be used; weights for some zones and not for others, or for several of one name; points beside
+    /// lines or areas without weights, which have no common measure.
     pub fn read(file: &Path) -> Result<Self> {
         let GisLayer { epsg, system, features, .. } = gis::read(file)?;
         let list: Vec<Zone> =
             features.iter().map(|feature| zone(feature, file)).collect::<Result<_>>()?;
+        check_parts(&list, file)?;
         let sizes = sizes(&list, file)?;
         let total: f64 = sizes.iter().sum();
         let mut shares: Vec<f64> = sizes
@@ -83,6 +85,17 @@ impl Zones {
     /// The zones.
     pub fn list(&self) -> &[Zone] {
         &self.list
+    }
+
+    /// How many zones there are, and in how many features where these are more.
+    pub fn counted(&self) -> String {
+        let names: BTreeSet<&str> = self.list.iter().map(|zone| zone.name.as_str()).collect();
+        match self.list.len() {
+            features if features > names.len() => {
+                format!("{} zones in {features} features", names.len())
+            }
+            zones => format!("{zones} zones"),
+        }
     }
 
     /// Whether some are points, others lines or areas: then they share the releases by weights or frequencies alone.
@@ -183,6 +196,27 @@ fn zone(feature: &GisFeature, file: &Path) -> Result<Zone> {
         return Ok(zone);
     }
     Err(feature.wrong(file, "found no point", "draw a point, a line or a polygon"))
+}
+
+/// Refuses features of one name that say by weight or frequency how much they release. A zone of several parts that a GIS has taken apart
+/// has the value of the whole in each of them, and would release as many times as much as it has parts; two zones of one name could not be told
+/// apart in results. Parts that do not say it share by their sizes, as one feature of several parts does.
+fn check_parts(list: &[Zone], file: &Path) -> Result<()> {
+    let says = |zone: &Zone| zone.weight.is_some() || zone.says_how_often();
+    let mut known: BTreeMap<&str, &Zone> = BTreeMap::new();
+    for zone in list {
+        let first = *known.entry(zone.name.as_str()).or_insert(zone);
+        if first.feature != zone.feature && (says(first) || says(zone)) {
+            let place = format!("feature {}", zone.feature);
+            let found = format!(
+                "found the name {:?} of feature {} again, with weight or frequency",
+                zone.name, first.feature
+            );
+            let remedy = "write another name, or make one feature of several parts of them, with the weight or frequency of the whole";
+            return Err(Error::input(file, place, found, remedy));
+        }
+    }
+    Ok(())
 }
 
 /// Whether some zones are points, others lines or areas.

@@ -112,6 +112,10 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ("along a line of {x} m", "entlang einer Linie von {x} m"),
     ("over an area of {x} m²", "auf einer Fläche von {x} m²"),
     ("over {n} zones of {file}, {how}", "auf {n} Zonen von {file}, {how}"),
+    (
+        "over {n} zones in {m} features of {f}, {how}",
+        "auf {n} Zonen aus {m} Objekten von {f}, {how}",
+    ),
     ("each a source of its own", "jede eine eigene Quelle"),
     ("shared by their weights", "verteilt nach ihren Gewichten"),
     ("shared by their numbers of points", "verteilt nach ihrer Zahl von Punkten"),

@@ -109,6 +109,7 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ("along a line of {x} m", "le long d’une ligne de {x} m"),
     ("over an area of {x} m²", "sur une surface de {x} m²"),
     ("over {n} zones of {file}, {how}", "sur {n} zones de {file}, {how}"),
+    ("over {n} zones in {m} features of {f}, {how}", "sur {n} zones, {m} objets de {f}, {how}"),
     ("each a source of its own", "chacune une source à part"),
     ("shared by their weights", "réparties selon leurs poids"),
     ("shared by their numbers of points", "réparties selon leurs nombres de points"),

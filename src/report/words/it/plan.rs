@@ -109,6 +109,7 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ("along a line of {x} m", "lungo una linea di {x} m"),
     ("over an area of {x} m²", "su un’area di {x} m²"),
     ("over {n} zones of {file}, {how}", "su {n} zone di {file}, {how}"),
+    ("over {n} zones in {m} features of {f}, {how}", "su {n} zone, {m} oggetti di {f}, {how}"),
     ("each a source of its own", "ciascuna una sorgente a sé"),
     ("shared by their weights", "ripartite secondo i pesi"),
     ("shared by their numbers of points", "ripartite secondo il numero di punti"),
