@@ -8,6 +8,7 @@ mod common;
 mod blocks;
 mod chant_sura;
 mod contact;
+mod damped_folds;
 mod dda;
 mod dda_energy;
 mod dda_island;

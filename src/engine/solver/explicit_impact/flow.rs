@@ -48,6 +48,19 @@ pub(super) struct PressedContact {
     pub(super) slides: bool,
 }
 
+/// What a normal spring holds.
+#[derive(Debug, Clone, Copy)]
+struct HeldEnergy {
+    /// As its place says (J).
+    stored_j: f64,
+    /// Whether that goes back into motion; not where the rock goes apart faster than spring and dashpot can follow.
+    gives_back: bool,
+}
+
+impl HeldEnergy {
+    const NONE: Self = Self { stored_j: 0.0, gives_back: true };
+}
+
 /// A rock with up to `C` contacts; a contact keeps the place of its memory.
 pub(super) struct Among<'a, 'w, const C: usize> {
     world: &'a ContactEnvironment<'w>,
@@ -62,8 +75,8 @@ pub(super) struct Among<'a, 'w, const C: usize> {
     pub(super) changes: Changes,
     /// The one face met at the step's start; [`Feature::NONE`] if it was something else.
     face: Option<Feature>,
-    /// Energy in the normal spring of each contact at the step's start (J), if it is known, and which of them have a dashpot.
-    began_j: [Option<f64>; C],
+    /// The normal spring of each contact at the step's start, and which of them have a dashpot.
+    began: [HeldEnergy; C],
     damped: u32,
     list: [PressedContact; C],
     len: usize,
@@ -79,10 +92,10 @@ impl PressedContact {
         slides: false,
     };
 
-    /// Energy in its normal spring (J), unless that goes apart faster than spring and dashpot can follow; the mass is that of the rock (kg).
-    fn known_j(&self, mass: f64) -> Option<f64> {
-        let pushes = self.normal_force > 0.0 || !self.normal.is_damped(mass);
-        pushes.then(|| self.normal.stored_j(self.at.penetration))
+    /// What its normal spring holds; the mass is that of the rock (kg).
+    fn held(&self, mass: f64) -> HeldEnergy {
+        let gives_back = self.normal_force > 0.0 || !self.normal.is_damped(mass);
+        HeldEnergy { stored_j: self.normal.stored_j(self.at.penetration), gives_back }
     }
 }
 
@@ -101,7 +114,7 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
             is_smooth: true,
             changes: Changes::NONE,
             face: None,
-            began_j: [Some(0.0); C],
+            began: [HeldEnergy::NONE; C],
             damped: 0,
             list,
             len: 0,
@@ -161,7 +174,7 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
     pub(super) fn note_start(&mut self) {
         self.changes.begin(&self.state.touches);
         for contact in &self.list[..self.len] {
-            self.began_j[contact.place] = contact.known_j(self.world.body.mass);
+            self.began[contact.place] = contact.held(self.world.body.mass);
         }
     }
 
@@ -169,20 +182,26 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
     ///
     /// Known from the two ends where they push at both, whatever patches came and went between them: the energy of a place is
     /// continuous. What was absorbed by a patch holds nothing by itself. A spring whose dashpot has let it go has not given back what it
-    /// held: there the sums over the step tell.
+    /// held: there the sums over the step tell, which cancel against what the dashpot takes there. Not so where patches meet or part:
+    /// what one of them holds then jumps, and only all of them together, each by its place, are continuous.
     pub(super) fn taken_up<const Q: usize>(&self, sums: &[f64; Q]) -> Loss {
+        let jumps = self.changes.exchange.is_some();
         let mut taken = Loss::default();
         for (place, history) in self.state.histories.iter().enumerate().take(C) {
             let end = self.pressed().iter().find(|contact| contact.place == place);
             let is_absorbed =
                 || self.state.near.patch_holding(self.world.terrain, history.feature).is_some();
-            let gives_back = || self.damped & (1 << place) == 0 || is_absorbed();
-            let ended_j = match end {
-                Some(contact) => contact.known_j(self.world.body.mass),
-                None => gives_back().then_some(0.0),
-            };
-            let known = self.began_j[place].zip(ended_j).map(|(began, ended)| ended - began);
-            let damping = known.unwrap_or(sums[LOSSES + place]);
+            let ended = end.map_or_else(
+                || HeldEnergy {
+                    stored_j: 0.0,
+                    gives_back: self.damped & (1 << place) == 0 || is_absorbed(),
+                },
+                |contact| contact.held(self.world.body.mass),
+            );
+            let began = self.began[place];
+            let is_known = jumps || (began.gives_back && ended.gives_back);
+            let by_place_j = ended.stored_j - began.stored_j;
+            let damping = if is_known { by_place_j } else { sums[LOSSES + place] };
             let triangle = end.map_or(history.triangle, |contact| contact.touch.triangle);
             taken.add(&Loss { damping, ..Loss::default() }.on(self.world, triangle), 1.0);
         }
