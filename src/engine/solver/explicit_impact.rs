@@ -313,8 +313,8 @@ fn step_among<const C: usize, const N: usize, const Q: usize, const P: usize>(
         let (accepted, next_h) = judge((dt, wished), (tried.error2, flow.is_smooth), is_short)?;
         if !accepted {
             done.rejected += 1;
-            let path = |share: f64| start + three(&stages.within((&y, &tried), dt, share).0, WAY);
-            let share = flow.exchange_share(path);
+            let between = stages.between((&y, &tried), dt);
+            let share = flow.exchange_share(|share| start + three(&between.at(share), WAY));
             let share = share.filter(|share| (WITHIN.0..WITHIN.1).contains(share));
             flow.changes.ends_past_exchange = share.is_some();
             kept = share.map_or(0.0, |_| dt.max(kept));
@@ -334,14 +334,15 @@ fn end_of_step<const C: usize, const N: usize, const Q: usize, const P: usize>(
     dt: f64,
 ) -> Accepted {
     let start = flow.state.c;
+    let between = stages.between((y, tried), dt);
     let path = |share: f64| {
-        let (y, _) = stages.within((y, tried), dt, share);
+        let y = between.at(share);
         (start + three(&y, WAY), three(&y, V))
     };
     let is_alike = !flow.changes.are_any() && flow.holds_its_normals();
     let change = flow.change_share(dt, path);
     let (y_end, sums) = match change {
-        Some(share) => stages.within((y, tried), dt, share),
+        Some(share) => (between.at(share), stages.sums_between(tried, dt).at(share)),
         None => (tried.y, tried.q),
     };
     if change.is_some() {

@@ -9,7 +9,7 @@
 //! Kinks: where a slider reaches its cap or a contact opens the right side is continuous, but its
 //! derivative jumps. A pair of order five falls to order two there, and its estimate sees little of
 //! it. So each element says what it asks for and its cap; where they cross within a step, the step
-//! is cut.
+//! is cut. Flows that go on smoothly beyond a kink end the step where it lies instead, by what is between its ends.
 
 use crate::rock::Vec3;
 use crate::solver::tableau::RATIO;
@@ -132,14 +132,40 @@ impl<const N: usize, const Q: usize, const P: usize> Stages<N, Q, P> {
         h: f64,
         felt: Option<f64>,
     ) -> Attempt<N, Q> {
-        let [k1, k2, k3, k4, ..] = &mut self.0;
-        flow.rates(1, &mixed(y, h, [&k1.y], A2), k2);
-        flow.rates(2, &mixed(y, h, [&k1.y, &k2.y], A3), k3);
-        flow.rates(3, &mixed(y, h, [&k1.y, &k2.y, &k3.y], A4), k4);
+        self.begin(flow, y, h);
         // a kink in the first four fifths is found before the last three stages are paid for
         if let Some(cut) = felt.and_then(|allowed| self.cut(EARLY, h, allowed)) {
             return Attempt::Cut(cut);
         }
+        let tried = self.finish(flow, y, h);
+        let cut = felt.and_then(|allowed| self.cut(self.0.len(), h, allowed));
+        cut.map_or(Attempt::Whole(tried), Attempt::Cut)
+    }
+
+    /// Tries a step of length `h` from `y`, at whose rates the first stage stands, that has no kinks.
+    #[inline]
+    pub(in crate::solver) fn smooth_step(
+        &mut self,
+        flow: &mut impl Flow<N, Q, P>,
+        y: &[f64; N],
+        h: f64,
+    ) -> Tried<N, Q> {
+        self.begin(flow, y, h);
+        self.finish(flow, y, h)
+    }
+
+    /// The stages up to the one at four fifths.
+    #[inline]
+    fn begin(&mut self, flow: &mut impl Flow<N, Q, P>, y: &[f64; N], h: f64) {
+        let [k1, k2, k3, k4, ..] = &mut self.0;
+        flow.rates(1, &mixed(y, h, [&k1.y], A2), k2);
+        flow.rates(2, &mixed(y, h, [&k1.y, &k2.y], A3), k3);
+        flow.rates(3, &mixed(y, h, [&k1.y, &k2.y, &k3.y], A4), k4);
+    }
+
+    /// The last three, and what comes of the step.
+    #[inline]
+    fn finish(&mut self, flow: &mut impl Flow<N, Q, P>, y: &[f64; N], h: f64) -> Tried<N, Q> {
         let [k1, k2, k3, k4, k5, k6, k7] = &mut self.0;
         flow.rates(4, &mixed(y, h, [&k1.y, &k2.y, &k3.y, &k4.y], A5), k5);
         flow.rates(5, &mixed(y, h, [&k1.y, &k2.y, &k3.y, &k4.y, &k5.y], A6), k6);
@@ -147,37 +173,73 @@ impl<const N: usize, const Q: usize, const P: usize> Stages<N, Q, P> {
         // the seventh stage is at the step's end: it serves the error, and opens the next step
         flow.rates(5, &end, k7);
         let off = mixed(&[0.0; N], h, [&k1.y, &k3.y, &k4.y, &k5.y, &k6.y, &k7.y], E);
-        let tried = Tried {
+        Tried {
             y: end,
             q: mixed(&[0.0; Q], h, [&k1.q, &k3.q, &k4.q, &k5.q, &k6.q], B),
             error2: flow.size2(&off),
-        };
-        let cut = felt.and_then(|allowed| self.cut(self.0.len(), h, allowed));
-        cut.map_or(Attempt::Whole(tried), Attempt::Cut)
+        }
+    }
+
+    /// What elements ask for, squared, and their caps, at the stages of the step: the first at its start, the last at its end.
+    pub(in crate::solver) fn kinks(&self) -> [&[[f64; 2]; P]; 7] {
+        self.0.each_ref().map(|stage| &stage.kinks)
+    }
+}
+
+/// A step between its ends, of order 4.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::solver) struct Between<const M: usize> {
+    from: [f64; M],
+    whole: [f64; M],
+    /// What bends it at its start, at its end, and beyond the cubic of both.
+    begins: [f64; M],
+    ends: [f64; M],
+    bent: [f64; M],
+}
+
+impl<const M: usize> Between<M> {
+    /// Through `from` and `to` with the rates `first` and `last` there, and what else bends it, in a step of length `h`.
+    #[inline]
+    fn of(
+        (from, to): (&[f64; M], &[f64; M]),
+        (first, last): (&[f64; M], &[f64; M]),
+        bent: [f64; M],
+        h: f64,
+    ) -> Self {
+        let whole: [f64; M] = std::array::from_fn(|i| to[i] - from[i]);
+        let begins: [f64; M] = std::array::from_fn(|i| h * first[i] - whole[i]);
+        let ends = std::array::from_fn(|i| whole[i] - h * last[i] - begins[i]);
+        Self { from: *from, whole, begins, ends, bent }
+    }
+
+    /// After this `share` of the step (–).
+    #[inline]
+    pub(in crate::solver) fn at(&self, share: f64) -> [f64; M] {
+        let (Self { from, whole, begins, ends, bent }, left) = (self, 1.0 - share);
+        std::array::from_fn(|i| {
+            let curve = begins[i] + share * (ends[i] + left * bent[i]);
+            from[i] + share * (whole[i] + left * curve)
+        })
     }
 }
 
 impl<const N: usize, const Q: usize, const P: usize> Stages<N, Q, P> {
-    /// Where a step of length `h` from `y` is after this `share` of it (–), of order 4: what is summed up begins at 0.
-    pub(in crate::solver) fn within(
+    /// A step of length `h` from `y` between its ends.
+    pub(in crate::solver) fn between(
         &self,
         (y, tried): (&[f64; N], &Tried<N, Q>),
         h: f64,
-        share: f64,
-    ) -> ([f64; N], [f64; Q]) {
+    ) -> Between<N> {
         let [k1, _, k3, k4, k5, k6, k7] = &self.0;
-        let y_bent = mixed(&[0.0; N], h, [&k1.y, &k3.y, &k4.y, &k5.y, &k6.y, &k7.y], D);
-        let q_bent = mixed(&[0.0; Q], h, [&k1.q, &k3.q, &k4.q, &k5.q, &k6.q, &k7.q], D);
-        let between = |(from, to): (f64, f64), (first, last): (f64, f64), bent: f64| {
-            let (whole, left) = (to - from, 1.0 - share);
-            let begins = h * first - whole;
-            let ends = whole - h * last - begins;
-            from + share * (whole + left * (begins + share * (ends + left * bent)))
-        };
-        (
-            std::array::from_fn(|i| between((y[i], tried.y[i]), (k1.y[i], k7.y[i]), y_bent[i])),
-            std::array::from_fn(|i| between((0.0, tried.q[i]), (k1.q[i], k7.q[i]), q_bent[i])),
-        )
+        let bent = mixed(&[0.0; N], h, [&k1.y, &k3.y, &k4.y, &k5.y, &k6.y, &k7.y], D);
+        Between::of((y, &tried.y), (&k1.y, &k7.y), bent, h)
+    }
+
+    /// What it has summed up, from 0.
+    pub(in crate::solver) fn sums_between(&self, tried: &Tried<N, Q>, h: f64) -> Between<Q> {
+        let [k1, _, k3, k4, k5, k6, k7] = &self.0;
+        let bent = mixed(&[0.0; Q], h, [&k1.q, &k3.q, &k4.q, &k5.q, &k6.q, &k7.q], D);
+        Between::of((&[0.0; Q], &tried.q), (&k1.q, &k7.q), bent, h)
     }
 }
 
@@ -290,11 +352,13 @@ mod tests {
             let Attempt::Whole(tried) = stages.step(&mut Swing, &start, h, None) else {
                 unreachable!("nothing is cut where nothing is felt")
             };
-            assert_eq!(stages.within((&start, &tried), h, 0.0), (start, [0.0]));
-            let end = stages.within((&start, &tried), h, 1.0);
-            assert!((end.0[0] - tried.y[0]).abs() < 1e-15 && (end.1[0] - tried.q[0]).abs() < 1e-15);
+            let (place, sums) =
+                (stages.between((&start, &tried), h), stages.sums_between(&tried, h));
+            assert_eq!((place.at(0.0), sums.at(0.0)), (start, [0.0]));
+            assert!((place.at(1.0)[0] - tried.y[0]).abs() < 1e-15);
+            assert!((sums.at(1.0)[0] - tried.q[0]).abs() < 1e-15);
             let worst = |share: f64| {
-                let (y, q) = stages.within((&start, &tried), h, share);
+                let (y, q) = (place.at(share), sums.at(share));
                 let t = share * h;
                 let summed = 0.5 * t - 0.25 * crate::math::sin_cos(2.0 * t).0;
                 let (sine, cosine) = crate::math::sin_cos(t);

@@ -3,20 +3,36 @@
 //! The normal force is known in closed form before slip is followed: on a plane normal motion does
 //! not feel friction. So the law of slip is an ordinary differential equation with a given force,
 //! smooth but for the kinks where an element begins or ends to slip.
+//!
+//! In a step each element slips or sticks as it does at its start, also beyond where it would change: that is smooth, and what is
+//! between the ends of the step is known to order 4. Where an element changes there, the step ends, and nothing of it is lost.
 
 use super::ImpactEffort;
-use super::dormand_prince::{Attempt, Flow, NODES, Rates, Stages, growth};
+use super::dormand_prince::{Between, Flow, NODES, Rates, Stages, Tried, growth};
 use super::normal_motion::{NormalMotion, Series};
 
-/// No step is longer (1/ω, times the shorter of 1 and `1/2ζ`): as far as the series below gives all its digits.
+/// No step is longer (1/ω, times the shorter of 1 and `1/2ζ`): as far as the series below gives all its digits, and the estimate of
+/// the error is to be trusted.
 const LONGEST: f64 = 0.9;
 /// Steps below this share of the whole are taken as they are (–): rounding.
 const SHORTEST_SHARE: f64 = 1e-9;
+/// What a step may miss behind a change that is left as it is (–, relative to the local error allowed).
+const FELT: f64 = 0.3;
+/// What a step may miss between the moment that is found for a change and its own (–, relative to the local error allowed).
+const FOUND: f64 = 0.1;
+/// By how much a step behind a change is shorter than the one before lets expect (–).
+const BEHIND: f64 = 0.8;
+/// Most looks for the moment of a change.
+const MOST_LOOKS: u32 = 8;
+/// Changes one after the other without a step between them, after which one is taken whatever changes.
+const AT_ONCE: u32 = 4;
 
 /// A flow under a force that is known.
 pub(super) trait ForcedFlow<const N: usize, const Q: usize, const K: usize> {
-    /// Writes the rates under the force `f` over `to`.
-    fn rates(&self, f: f64, y: &[f64; N], to: &mut Rates<N, Q, K>);
+    /// What each element asks for, squared, and its cap, under the force `f`: beyond it slips.
+    fn asked(&self, f: f64, y: &[f64; N]) -> [[f64; 2]; K];
+    /// Writes the rates under the force `f` over `to`, with the elements that slip.
+    fn rates(&self, f: f64, y: &[f64; N], slips: &[bool; K], to: &mut Rates<N, Q, K>);
     /// Square of an error.
     fn size2(&self, off: &[f64; N]) -> f64;
 }
@@ -40,13 +56,16 @@ impl<const D: usize> Force<D> {
         Self { swing, gamma, now, nodes: [now[0]; 6], series }
     }
 
+    /// The force a time `t` after the step's start. Never negative: a contact does not pull.
+    #[inline]
+    fn at(&self, t: f64) -> f64 {
+        self.series.at(t).max(0.0)
+    }
+
     /// Sets the forces at the stages of a step of length `h`.
-    /// Never negative: a contact does not pull.
     #[inline]
     fn aim(&mut self, h: f64) {
-        for (force, node) in self.nodes.iter_mut().zip(NODES).skip(1) {
-            *force = self.series.at(node * h).max(0.0);
-        }
+        self.nodes = NODES.map(|node| self.at(node * h));
     }
 
     /// Goes on by `h`.
@@ -60,18 +79,19 @@ impl<const D: usize> Force<D> {
     }
 }
 
-struct Under<'a, P, const D: usize> {
+struct Under<'a, P, const K: usize, const D: usize> {
     law: &'a P,
     force: &'a Force<D>,
+    slips: &'a [bool; K],
     over_allowed2: f64,
 }
 
 impl<P: ForcedFlow<N, Q, K>, const N: usize, const Q: usize, const K: usize, const D: usize>
-    Flow<N, Q, K> for Under<'_, P, D>
+    Flow<N, Q, K> for Under<'_, P, K, D>
 {
     #[inline]
     fn rates(&mut self, node: usize, y: &[f64; N], to: &mut Rates<N, Q, K>) {
-        self.law.rates(self.force.nodes[node], y, to);
+        self.law.rates(self.force.nodes[node], y, self.slips, to);
     }
 
     #[inline]
@@ -95,6 +115,19 @@ pub(super) struct Span {
     pub(super) allowed: f64,
 }
 
+/// Whether an element slips that asks for so much, squared, under a cap.
+#[inline]
+fn slips_at([asked2, cap]: [f64; 2]) -> bool {
+    asked2 > cap * cap
+}
+
+/// By how much an element is over its cap, if it slips, or under it.
+#[inline]
+fn beyond([asked2, cap]: [f64; 2], slips: bool) -> f64 {
+    let over = asked2.sqrt() - cap;
+    if slips { -over } else { over }
+}
+
 /// Runs from `y` over the whole span; `D` terms of the force's series. Returns the end and the sums.
 pub(super) fn run<
     P: ForcedFlow<N, Q, K>,
@@ -104,59 +137,203 @@ pub(super) fn run<
     const D: usize,
 >(
     law: &P,
-    mut y: [f64; N],
+    y: [f64; N],
     span: &Span,
     effort: &mut ImpactEffort,
 ) -> ([f64; N], [f64; Q]) {
-    let mut force = Force::<D>::new(span);
+    let mut course = Course::<P, N, Q, K, D>::new(law, y, span);
     let over_allowed2 = 1.0 / (span.allowed * span.allowed);
-    // a strong dashpot makes the force's series short-lived
-    let longest = LONGEST / (2.0 * span.swing.zeta).max(1.0);
-    let (mut sum, mut t, mut wish) = ([0.0; Q], 0.0, span.first);
-    let mut stages = Stages::NONE;
-    law.rates(force.now[0], &y, stages.first());
-    let mut kept = 0.0;
-    while t < span.length {
-        let left = span.length - t;
-        let wished = wish.min(longest);
+    while course.t < span.length {
+        let h = course.next_step();
+        course.force.aim(h);
+        effort.evaluations += 6;
+        let Course { force, slips, stages, y, .. } = &mut course;
+        let under = &mut Under { law, force, slips, over_allowed2 };
+        let tried = stages.smooth_step(under, y, h);
+        course.wish = h * growth(tried.error2);
+        if tried.error2 > 1.0 && h > course.shortest() {
+            effort.rejected += 1;
+            course.wish = course.wish.min(0.7 * h);
+            continue;
+        }
+        effort.steps += 1;
+        match course.switch(&tried, h) {
+            Some(switch) => course.go_to(&switch, &tried, h),
+            None => course.go_on(&tried, h),
+        }
+    }
+    (course.y, course.sum)
+}
+
+/// How far a run has come.
+struct Course<'a, P, const N: usize, const Q: usize, const K: usize, const D: usize> {
+    law: &'a P,
+    span: &'a Span,
+    force: Force<D>,
+    y: [f64; N],
+    sum: [f64; Q],
+    t: f64,
+    /// The step to try next.
+    wish: f64,
+    /// Elements that slip, as they do in all of the next step.
+    slips: [bool; K],
+    /// Elements that have changed at this time.
+    at_once: u32,
+    stages: Stages<N, Q, K>,
+}
+
+/// Where an element begins to slip or to stick: which, after which share of the step (–), and the numbers there.
+struct SliderSwitch<const N: usize> {
+    element: usize,
+    share: f64,
+    place: [f64; N],
+}
+
+impl<'a, P: ForcedFlow<N, Q, K>, const N: usize, const Q: usize, const K: usize, const D: usize>
+    Course<'a, P, N, Q, K, D>
+{
+    fn new(law: &'a P, y: [f64; N], span: &'a Span) -> Self {
+        let (force, stages) = (Force::new(span), Stages::NONE);
+        let slips = law.asked(force.now[0], &y).map(slips_at);
+        let (sum, wish) = ([0.0; Q], span.first);
+        let mut course = Self { law, span, force, y, sum, t: 0.0, wish, slips, at_once: 0, stages };
+        course.begin();
+        course
+    }
+
+    /// Rates at the start of a step, with the elements that slip in it.
+    fn begin(&mut self) {
+        self.law.rates(self.force.now[0], &self.y, &self.slips, self.stages.first());
+    }
+
+    /// The length of the next step.
+    fn next_step(&self) -> f64 {
+        let left = self.span.length - self.t;
+        // a strong dashpot makes the force's series short-lived
+        let wished = self.wish.min(LONGEST / (2.0 * self.span.swing.zeta).max(1.0));
         // the last two steps share what is left, so that none is a remnant
-        let h = if wished >= left {
+        if wished >= left {
             left
         } else if 2.0 * wished > left {
             0.5 * left
         } else {
             wished
-        };
-        force.aim(h);
-        let short = h < SHORTEST_SHARE * span.length;
-        let felt = (!short).then_some(span.allowed);
-        effort.evaluations += 6;
-        match stages.step(&mut Under { law, force: &force, over_allowed2 }, &y, h, felt) {
-            Attempt::Whole(tried) if tried.error2 <= 1.0 || short => {
-                y = tried.y;
-                stages.pass();
-                for (sum, q) in sum.iter_mut().zip(tried.q) {
-                    *sum += q;
-                }
-                force.pass(h);
-                t = if h >= left { span.length } else { t + h };
-                // after a cut the step before it is taken up again: the kink is behind
-                wish = f64::max(h * growth(tried.error2), kept);
-                kept = 0.0;
-                effort.steps += 1;
-            }
-            Attempt::Whole(tried) => {
-                effort.rejected += 1;
-                kept = 0.0;
-                wish = h * growth(tried.error2).min(0.7);
-            }
-            Attempt::Cut(share) => {
-                effort.rejected += 1;
-                // Beyond a kink the law is as smooth as before it.
-                kept = h.max(kept);
-                wish = h * share;
-            }
         }
     }
-    (y, sum)
+
+    /// A step this short is taken as it is.
+    fn shortest(&self) -> f64 {
+        SHORTEST_SHARE * self.span.length
+    }
+
+    /// Goes on by a whole step of length `h`.
+    fn go_on(&mut self, tried: &Tried<N, Q>, h: f64) {
+        let left = self.span.length - self.t;
+        self.t = if h >= left { self.span.length } else { self.t + h };
+        (self.y, self.at_once) = (tried.y, 0);
+        self.sum.iter_mut().zip(tried.q).for_each(|(sum, q)| *sum += q);
+        self.force.pass(h);
+        let slips = self.stages.kinks()[6].map(slips_at);
+        if slips == self.slips {
+            self.stages.pass();
+        } else {
+            self.slips = slips;
+            self.begin();
+        }
+    }
+
+    /// Goes on to where an element changes in a step of length `h`.
+    fn go_to(&mut self, switch: &SliderSwitch<N>, tried: &Tried<N, Q>, h: f64) {
+        let gone = switch.share * h;
+        self.t += gone;
+        self.at_once = if gone > self.shortest() { 0 } else { self.at_once + 1 };
+        self.y = switch.place;
+        let sums = self.stages.sums_between(tried, h).at(switch.share);
+        self.sum.iter_mut().zip(sums).for_each(|(sum, q)| *sum += q);
+        self.force.pass(gone);
+        let slips = &mut self.slips[switch.element];
+        *slips = !*slips;
+        self.wish *= BEHIND;
+        self.begin();
+    }
+
+    /// The first change that is felt in a step of length `h`.
+    #[inline]
+    fn switch(&self, tried: &Tried<N, Q>, h: f64) -> Option<SliderSwitch<N>> {
+        if self.at_once >= AT_ONCE {
+            return None;
+        }
+        let kinks = self.stages.kinks();
+        let changes = |element: usize| {
+            kinks[1..].iter().any(|kinks| slips_at(kinks[element]) != self.slips[element])
+        };
+        let mut first: Option<SliderSwitch<N>> = None;
+        let mut between = None;
+        for element in (0..K).filter(|element| changes(*element)) {
+            let between = between.get_or_insert_with(|| self.stages.between((&self.y, tried), h));
+            if let Some(found) = self.switch_of(element, between, h)
+                && first.as_ref().is_none_or(|first| found.share < first.share)
+            {
+                first = Some(found);
+            }
+        }
+        first
+    }
+
+    /// Where one element changes in a step of length `h` for which stages say that it does, if that is felt.
+    fn switch_of(&self, element: usize, between: &Between<N>, h: f64) -> Option<SliderSwitch<N>> {
+        let (slips, allowed) = (self.slips[element], self.span.allowed);
+        let kinks = self.stages.kinks().map(|kinks| beyond(kinks[element], slips));
+        // how far it gets beyond its law, as far as the stages tell
+        if kinks[1..].iter().fold(0.0, |most, x| f64::max(most, *x)) * h <= allowed {
+            return None;
+        }
+        let look = |share: f64| {
+            let place = between.at(share);
+            let asked = self.law.asked(self.force.at(share * h), &place);
+            (beyond(asked[element], slips), SliderSwitch { element, share, place })
+        };
+        let end = kinks[6];
+        let high = if end > 0.0 {
+            (1.0, end)
+        } else {
+            // it is back at the end of the step
+            let seen = NODES.into_iter().zip(kinks).skip(1).filter(|(_, over)| *over > 0.0);
+            let mut looks = seen.map(|(node, _)| (node, look(node).0));
+            looks.find(|(_, over)| *over > 0.0)?
+        };
+        let found = first_beyond((kinks[0], high), look, FOUND * allowed / h);
+        // what the step would miss behind the change, on the mean
+        let is_felt = end <= 0.0 || 0.5 * end * (1.0 - found.share) * h > FELT * allowed;
+        is_felt.then_some(found)
+    }
+}
+
+/// Where an element gets beyond its law in a step that it begins with `start` beyond it, below 0 but for rounding; at the share
+/// `high.0` of the step it is beyond by `high.1`. Over the part of the step by which the place is wrong it is then off its law by
+/// `missed` on the mean, times that part.
+///
+/// By straight lines between a place on this side and one beyond, the one that stays with half of its weight (the Illinois rule).
+fn first_beyond<const N: usize>(
+    (start, mut high): (f64, (f64, f64)),
+    look: impl Fn(f64) -> (f64, SliderSwitch<N>),
+    missed: f64,
+) -> SliderSwitch<N> {
+    let mut low = (0.0, start.min(0.0));
+    let near2 = 2.0 * missed * (high.1 - low.1) / high.0;
+    for _ in 0..MOST_LOOKS {
+        let share = low.0 + (high.0 - low.0) * (low.1 / (low.1 - high.1));
+        let (over, found) = look(share);
+        if over * over <= near2 {
+            return found;
+        }
+        if over > 0.0 {
+            high = (share, over);
+            low.1 *= 0.5;
+        } else {
+            low = (share, over);
+            high.1 *= 0.5;
+        }
+    }
+    look(high.0).1
 }

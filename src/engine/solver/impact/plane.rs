@@ -27,8 +27,8 @@ pub(crate) use straight::blow_along_a_line;
 const COARSE: f64 = 1e-6;
 /// Local error of one step over the tolerance (–): the handful of an impact's steps then stay within about the tolerance.
 pub(in crate::solver) const LOCAL: f64 = 0.3;
-/// First step at a tolerance of 1 (1/ω): the local error of order 5 is about (h/this)⁵.
-pub(super) const FIRST: f64 = 3.5;
+/// First step along a plane at a local error of 1 (1/ω): that of order 5 is about (h/this)⁵.
+const FIRST: f64 = 2.5;
 
 /// How impacts of one rock on one ground go: all that does not change from impact to impact.
 #[derive(Debug, Clone, Copy)]
@@ -40,7 +40,6 @@ pub(crate) struct Plane {
     shear: SliderElement,
     rolling: SliderElement,
     tolerance: f64,
-    first: f64,
 }
 
 /// Motion after an impact, where the penetration is zero again, or after a part of it.
@@ -106,7 +105,6 @@ impl Plane {
             shear: SliderElement::shear(body, law, stiffness),
             rolling: SliderElement::rolling(body, law, stiffness),
             tolerance,
-            first: FIRST * math::pow(tolerance, 0.2),
         }
     }
 
@@ -151,9 +149,9 @@ impl Plane {
     }
 
     fn span(&self, start: &Start, length: f64) -> Span {
-        let Self { swing, first, .. } = *self;
         let Start { begin, gamma, allowed, .. } = *start;
-        Span { swing, begin, gamma, length, first, allowed }
+        let first = FIRST * math::pow(allowed, 0.2);
+        Span { swing: self.swing, begin, gamma, length, first, allowed }
     }
 
     /// `1 / (1 + m R²/I)` and its parts: what a blow along the surface does to slip, by mass and by inertia.

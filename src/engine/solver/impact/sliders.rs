@@ -73,12 +73,18 @@ impl SliderElement {
     #[inline]
     pub(super) fn share(&self, asked2: f64, f: f64) -> (f64, f64, f64) {
         let cap = self.cap * f;
-        if asked2 <= cap * cap {
-            (1.0, 0.0, cap)
-        } else {
-            let asked = asked2.sqrt();
-            (cap / asked, asked - cap, cap)
+        let (share, by) = Self::part(asked2 > cap * cap, [asked2, cap]);
+        (share, by, cap)
+    }
+
+    /// `p` and its shortening for what is asked, where it slips under a cap, or sticks: `p = asked × share`, and how much slips.
+    #[inline]
+    fn part(slips: bool, [asked2, cap]: [f64; 2]) -> (f64, f64) {
+        if !slips {
+            return (1.0, 0.0);
         }
+        let asked = asked2.sqrt().max(f64::MIN_POSITIVE);
+        (cap / asked, asked - cap)
     }
 }
 
@@ -95,12 +101,17 @@ pub(super) struct Shear {
 /// Slip, spring `s`; summed up: what slipping takes, slip.
 impl ForcedFlow<4, 3, 1> for Shear {
     #[inline]
-    fn rates(&self, f: f64, y: &[f64; 4], to: &mut Rates<4, 3, 1>) {
-        let SliderElement { damping, rate, .. } = self.element;
+    fn asked(&self, f: f64, y: &[f64; 4]) -> [[f64; 2]; 1] {
         let asked = [y[0] + y[2], y[1] + y[3]];
-        let asked2 = asked[0] * asked[0] + asked[1] * asked[1];
-        let (share, slips, cap) = self.element.share(asked2, f);
-        let p = asked.map(|x| x * share);
+        [[asked[0] * asked[0] + asked[1] * asked[1], self.element.cap * f]]
+    }
+
+    #[inline]
+    fn rates(&self, f: f64, y: &[f64; 4], [slips]: &[bool; 1], to: &mut Rates<4, 3, 1>) {
+        let SliderElement { damping, rate, .. } = self.element;
+        let kinks = self.asked(f, y);
+        let (share, by) = SliderElement::part(*slips, kinks[0]);
+        let p = [y[0] + y[2], y[1] + y[3]].map(|x| x * share);
         // an impulse c p changes the slip by (1 + m R²/I) = 7/2 of it for a sphere: velocity and
         // spin both give way
         let normal_force = self.lightness * damping;
@@ -112,8 +123,8 @@ impl ForcedFlow<4, 3, 1> for Shear {
                 rate * (p[0] - y[2]),
                 rate * (p[1] - y[3]),
             ],
-            q: [damping * cap * slips, y[0], y[1]],
-            kinks: [[asked2, cap]],
+            q: [damping * kinks[0][1] * by, y[0], y[1]],
+            kinks,
         };
     }
 
@@ -137,14 +148,21 @@ pub(super) struct Straight {
 /// Slip, spring `s`; summed up: what slipping takes, slip.
 impl ForcedFlow<2, 2, 1> for Straight {
     #[inline]
-    fn rates(&self, f: f64, y: &[f64; 2], to: &mut Rates<2, 2, 1>) {
-        let SliderElement { damping, rate, cap } = self.element;
-        let (asked, cap) = (y[0] + y[1], cap * f);
-        let p = asked.min(cap).max(-cap);
+    fn asked(&self, f: f64, y: &[f64; 2]) -> [[f64; 2]; 1] {
+        let asked = y[0] + y[1];
+        [[asked * asked, self.element.cap * f]]
+    }
+
+    #[inline]
+    fn rates(&self, f: f64, y: &[f64; 2], [slips]: &[bool; 1], to: &mut Rates<2, 2, 1>) {
+        let SliderElement { damping, rate, .. } = self.element;
+        let kinks = self.asked(f, y);
+        let (share, by) = SliderElement::part(*slips, kinks[0]);
+        let p = (y[0] + y[1]) * share;
         *to = Rates {
             y: [-self.lightness * damping * p, rate * (p - y[1])],
-            q: [damping * cap * (asked - p).abs(), y[0]],
-            kinks: [[asked * asked, cap]],
+            q: [damping * kinks[0][1] * by, y[0]],
+            kinks,
         };
     }
 
@@ -167,22 +185,53 @@ pub(super) struct Both {
     pub(super) gravity: [f64; 2],
 }
 
+impl Both {
+    /// `u = (v_s − R ω_t, v_t + R ω_s)`, with `y[2..5] = R ω`.
+    #[inline]
+    fn slip(y: &[f64; 10]) -> [f64; 2] {
+        [y[0] - y[3], y[1] + y[2]]
+    }
+
+    /// What the shear element is asked for …
+    #[inline]
+    fn slip_asked(y: &[f64; 10]) -> [f64; 2] {
+        let slip = Self::slip(y);
+        [slip[0] + y[5], slip[1] + y[6]]
+    }
+
+    /// … and the rolling one, which acts on all of the spin, that about the normal too.
+    #[inline]
+    fn spin_asked(y: &[f64; 10]) -> [f64; 3] {
+        [y[2] + y[7], y[3] + y[8], y[4] + y[9]]
+    }
+}
+
 /// Velocity, spin, springs; summed up: what slipping takes, way, work of rolling and of shear.
 impl ForcedFlow<10, 5, 2> for Both {
     #[inline]
-    fn rates(&self, f: f64, y: &[f64; 10], to: &mut Rates<10, 5, 2>) {
+    fn asked(&self, f: f64, y: &[f64; 10]) -> [[f64; 2]; 2] {
+        let (asked, wound) = (Self::slip_asked(y), Self::spin_asked(y));
+        [
+            [asked[0] * asked[0] + asked[1] * asked[1], self.shear.cap * f],
+            [wound[0] * wound[0] + wound[1] * wound[1] + wound[2] * wound[2], self.rolling.cap * f],
+        ]
+    }
+
+    #[inline]
+    fn rates(
+        &self,
+        f: f64,
+        y: &[f64; 10],
+        [slips, turns_over]: &[bool; 2],
+        to: &mut Rates<10, 5, 2>,
+    ) {
         let (shear, rolling) = (self.shear, self.rolling);
-        // u = (v_s − R ω_t, v_t + R ω_s), with y[2..5] = R ω
-        let slip = [y[0] - y[3], y[1] + y[2]];
-        let asked = [slip[0] + y[5], slip[1] + y[6]];
-        let asked2 = asked[0] * asked[0] + asked[1] * asked[1];
-        let (share, slips, cap) = shear.share(asked2, f);
-        let p = asked.map(|x| x * share);
-        // rolling acts on all of the spin, that about the normal too
-        let wound = [y[2] + y[7], y[3] + y[8], y[4] + y[9]];
-        let wound2 = wound[0] * wound[0] + wound[1] * wound[1] + wound[2] * wound[2];
-        let (share, _, most) = rolling.share(wound2, f);
-        let m = wound.map(|x| x * share);
+        let slip = Self::slip(y);
+        let kinks = self.asked(f, y);
+        let (share, by) = SliderElement::part(*slips, kinks[0]);
+        let p = Self::slip_asked(y).map(|x| x * share);
+        let (share, _) = SliderElement::part(*turns_over, kinks[1]);
+        let m = Self::spin_asked(y).map(|x| x * share);
         let (c, turn, g) = (shear.damping, self.turns * shear.damping, self.gravity);
         let stop = self.turns * rolling.damping;
         *to = Rates {
@@ -199,13 +248,13 @@ impl ForcedFlow<10, 5, 2> for Both {
                 rolling.rate * (m[2] - y[9]),
             ],
             q: [
-                c * cap * slips,
+                c * kinks[0][1] * by,
                 y[0],
                 y[1],
                 rolling.damping * (m[0] * y[2] + m[1] * y[3] + m[2] * y[4]),
                 c * (p[0] * slip[0] + p[1] * slip[1]),
             ],
-            kinks: [[asked2, cap], [wound2, most]],
+            kinks,
         };
     }
 

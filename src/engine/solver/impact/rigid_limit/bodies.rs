@@ -6,7 +6,7 @@
 
 use super::contacts::{AfterImpact, Contacts, REST};
 use super::rates::ContactRates;
-use super::{ContactEnds, FIRST, FrozenBody, FrozenContact, ImpactRun, LOCAL};
+use super::{ContactEnds, FrozenBody, FrozenContact, ImpactRun, LOCAL, OPENING};
 use crate::math;
 use crate::rock::Vec3;
 use crate::solver::body::Twist;
@@ -68,7 +68,7 @@ fn followed<const B: usize, const K: usize, const N: usize, const Q: usize, cons
     let unit_j = flow.contacts.mass_kg * speed * speed;
     flow.contacts.capture(contacts, speed);
     let mut run = ImpactRun::<B, K, N, Q, P>::new(flow, start);
-    run.follow(FIRST * math::pow(tolerance, 0.2));
+    run.follow(OPENING * math::pow(tolerance, 0.2));
     let nothing = run.flow.nothing();
     let contacts = &run.flow.contacts;
     let AfterImpact { motions: together, plastic } = contacts.part_or_stay(run.motions(), nothing);
