@@ -89,7 +89,8 @@ struct Under<'a, P, const K: usize, const D: usize> {
 impl<P: ForcedFlow<N, Q, K>, const N: usize, const Q: usize, const K: usize, const D: usize>
     Flow<N, Q, K> for Under<'_, P, K, D>
 {
-    #[inline]
+    #[expect(clippy::inline_always, reason = "seven times a step, in loops over a constant count")]
+    #[inline(always)]
     fn rates(&mut self, node: usize, y: &[f64; N], to: &mut Rates<N, Q, K>) {
         self.law.rates(self.force.nodes[node], y, self.slips, to);
     }
@@ -202,6 +203,7 @@ impl<'a, P: ForcedFlow<N, Q, K>, const N: usize, const Q: usize, const K: usize,
     }
 
     /// Rates at the start of a step, with the elements that slip in it.
+    #[inline(never)]
     fn begin(&mut self) {
         self.law.rates(self.force.now[0], &self.y, &self.slips, self.stages.first());
     }

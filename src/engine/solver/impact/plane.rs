@@ -27,6 +27,8 @@ pub(crate) use straight::blow_along_a_line;
 const COARSE: f64 = 1e-6;
 /// Local error of one step over the tolerance (–): the handful of an impact's steps then stay within about the tolerance.
 pub(in crate::solver) const LOCAL: f64 = 0.3;
+/// The same along a plane, where steps hold no kinks (–).
+const SMOOTH: f64 = 0.6;
 /// First step along a plane at a local error of 1 (1/ω): that of order 5 is about (h/this)⁵.
 const FIRST: f64 = 2.5;
 

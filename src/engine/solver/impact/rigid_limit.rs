@@ -114,6 +114,8 @@ pub(crate) struct FrozenRebound {
     pub(crate) effort: ImpactEffort,
 }
 
+/// Tolerance of one contact over that of several (–): it costs little.
+const OF_ONE: f64 = 0.5;
 /// First step at a tolerance of 1 (radians of the stiffest contact): the local error of order 5 is about (h/this)⁵.
 const OPENING: f64 = 3.5;
 /// No step is longer, in radians of the stiffest contact …
@@ -185,7 +187,8 @@ fn alone(
     let (law, n) = (contact.law, &contact.normal);
     // one that gives nothing back has its damping at least doubled over critical, and its rest of
     // rebound taken away below
-    let plane = Plane::of_patch(&body, law, (contact.captured, contact.stiffness_scale), tolerance);
+    let point = (contact.captured, contact.stiffness_scale);
+    let plane = Plane::of_patch(&body, law, point, OF_ONE * tolerance);
     let Some(rebound) = plane.follow(n, v, w) else {
         // Without weight nothing keeps it but a speed too small to be squared.
         end.velocity_m_s -= n * n.dot(v);

@@ -217,7 +217,8 @@ impl ForcedFlow<10, 5, 2> for Both {
         ]
     }
 
-    #[inline]
+    #[expect(clippy::inline_always, reason = "as in all of its steps")]
+    #[inline(always)]
     fn rates(
         &self,
         f: f64,

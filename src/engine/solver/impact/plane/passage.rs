@@ -3,7 +3,7 @@
 //! The normal motion is a closed form whatever it begins with: how long the impact still lasts, how deep the rock may get and how
 //! fast it leaves are known before anything is followed along the plane.
 
-use super::{LOCAL, Plane, Rebound, Start};
+use super::{Plane, Rebound, SMOOTH, Start};
 use crate::math;
 use crate::rock::Vec3;
 use crate::solver::contact_frame::{ContactFrame, Local};
@@ -149,7 +149,7 @@ impl Plane {
             begin: passage.begin,
             leaves: passage.leaves(),
             // a rock that stands still at its deepest has the speed that its springs give it
-            allowed: LOCAL * self.tolerance * v.norm().max(speed) * over,
+            allowed: SMOOTH * self.tolerance * v.norm().max(speed) * over,
         };
         let mut effort = ImpactEffort::default();
         let along = self.along(&start, &exit, &mut effort);

@@ -3,7 +3,7 @@
 //! Two rocks that strike each other are such a case: their slip is a straight line as long as nothing but the contact acts on it.
 //! The law, its steps and their error are those of [`Plane::follow`]; only the impulses are asked for, neither ways nor losses.
 
-use super::{LOCAL, Plane, Start, dot};
+use super::{Plane, SMOOTH, Start, dot};
 use crate::ground::Law;
 use crate::rock::Vec3;
 use crate::solver::body::Body;
@@ -51,7 +51,7 @@ impl Plane {
             gamma: 0.0,
             begin: self.swing.onset(0.0),
             leaves: true,
-            allowed: LOCAL * self.tolerance * (1.0 + u * u).sqrt(),
+            allowed: SMOOTH * self.tolerance * (1.0 + u * u).sqrt(),
         };
         let (after, _) = self.along_a_line(u, &start, length, &mut ImpactEffort::default());
         (u - after) / (1.0 + self.turns())
