@@ -62,10 +62,12 @@ impl Changes {
     };
 
     /// The contacts of the step's start.
-    pub(super) fn begin(&mut self, touches: &ContactPoints) {
-        (self.len, self.are_single) = (touches.len(), touches.iter().all(ContactPoint::is_single));
-        for (begun, touch) in self.begun.iter_mut().zip(touches.iter()) {
+    pub(super) fn begin<'a>(&mut self, touches: impl Iterator<Item = &'a ContactPoint>) {
+        (self.len, self.are_single) = (0, true);
+        for (begun, touch) in self.begun.iter_mut().zip(touches) {
             *begun = (touch.feature, touch.normal);
+            self.len += 1;
+            self.are_single &= touch.is_single();
         }
     }
 

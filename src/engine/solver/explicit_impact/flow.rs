@@ -171,9 +171,13 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
     }
 
     /// Notes the contacts of the step's start, the state last asked for, and what their normal springs hold.
+    ///
+    /// They are those of its rates: touches may have been looked for elsewhere since, where a rock that flies out would come to. A
+    /// contact of that place would end where the step begins, again and again.
     pub(super) fn note_start(&mut self) {
-        self.changes.begin(&self.state.touches);
-        for contact in &self.list[..self.len] {
+        let list = &self.list[..self.len];
+        self.changes.begin(list.iter().map(|contact| &contact.touch));
+        for contact in list {
             self.began[contact.place] = contact.held(self.world.body.mass);
         }
     }
