@@ -1,10 +1,10 @@
 //! Traps that cost rocks or joules elsewhere, each sprung once.
 
 use crate::common;
-use common::{CASE, Case, GROUND, terrain};
+use common::{CASE, Case, GROUND, ROCK, terrain};
 use rockfall::contact::history::carry;
 use rockfall::ground::Ground;
-use rockfall::rock::Vec3;
+use rockfall::rock::{Rock, Vec3};
 use rockfall::simulation::{Stop, Trajectory};
 use rockfall::solver::Scheme;
 use rockfall::study::bench::with_springs;
@@ -42,6 +42,31 @@ fn a_start_exactly_at_the_surface_is_a_touch() {
             on(1e14, 0.5).run(&flat, [[0.1, 0.2, 0.5 - inside], [0.0, 0.0, -1.0], REST], 20.0);
         assert_eq!(fallen.stop, Stop::AtRest);
         assert!(fallen.ledger.rise_j <= 1e-9 * 700.0, "{}", fallen.ledger.rise_j);
+    }
+}
+
+/// A clock that comes to the end of its time by rounding has no time left: a step of no length, sliding and rolling, is 0/0.
+#[test]
+fn a_rock_that_slides_when_time_is_up_is_somewhere() {
+    let slope_rad = 0.1f64;
+    let at = |x: f64, y: f64| Vec3::new(x, y, -x * slope_rad.tan());
+    let [a, b, c, d] = [at(-60.0, -60.0), at(60.0, -60.0), at(60.0, 60.0), at(-60.0, 60.0)];
+    let plane = terrain(vec![[a, b, c], [a, c, d]]);
+    let ground =
+        Ground { restitution: Some(0.0), friction_angle_rad: 0.3, rolling_friction: 0.1, ..GROUND };
+    let (sine, cosine) = slope_rad.sin_cos();
+    let touching = at(0.1, 5.0) + Vec3::new(sine, 0.0, cosine) * 0.3;
+    let start = [touching.into(), [10.0 * cosine, 0.0, -10.0 * sine], [3.0, 0.5, 0.7]];
+    for scheme in [Scheme::Adaptive, Scheme::Reference] {
+        let rock = Rock { radius_m: 0.3, ..ROCK };
+        let case = Case { scheme, ground, rock, tolerance_m_s: 0.05, ..CASE };
+        for k in 400..600 {
+            let longest_s = 0.6 * f64::from(k) / 600.0;
+            let fallen = case.run(&plane, start, longest_s);
+            assert_eq!(fallen.stop, Stop::TimeUp);
+            let speed_m_s = fallen.end.velocity_m_s.norm();
+            assert!(speed_m_s > 7.0, "{scheme:?}, {longest_s} s: {speed_m_s} m/s");
+        }
     }
 }
 

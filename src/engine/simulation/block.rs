@@ -137,7 +137,8 @@ impl Roll<'_> {
             if self.meet() {
                 return None;
             }
-            let left = self.settings.longest_s - self.recorder.now.time_s;
+            let now_s = self.recorder.now.time_s;
+            let left = self.settings.longest_s - now_s;
             let most_s = left.min(self.scars.longest_s(self.moving.v.norm()));
             let from = self.moving.pose.centre;
             let mut done = match self.step(most_s) {
@@ -152,7 +153,7 @@ impl Roll<'_> {
                 self.plough(&from, done.is_free);
             }
             let to = Motion {
-                time_s: self.recorder.now.time_s + done.dt,
+                time_s: now_s + done.dt,
                 position_m: self.moving.pose.centre,
                 velocity_m_s: self.moving.v,
                 spin_rad_s: self.moving.spin(block),
@@ -165,7 +166,7 @@ impl Roll<'_> {
             let turned = Some(turned(block, &self.moving));
             self.recorder.step(RockInstant { motion: to, turned }, done.slides);
             self.leave_impacts();
-            let time_up = (done.dt >= left).then_some(Stop::TimeUp);
+            let time_up = self.settings.time_up(now_s, done.dt);
             let ends = time_up.or_else(|| self.settings.over_budget(&self.recorder.effort));
             if done.is_free || ends.is_some() {
                 return ends;

@@ -278,7 +278,8 @@ impl Fall<'_> {
     fn steps(&mut self, stepper: &mut Stepper) -> Option<Stop> {
         let mut calm = RestCriterion::from(self.state.c);
         loop {
-            let left = self.settings.longest_s - self.recorder.now.time_s;
+            let now_s = self.recorder.now.time_s;
+            let left = self.settings.longest_s - now_s;
             // the shorter of the time left and of the way after which roughness, soil or slip change the law
             let most = left.min(self.before_step());
             let before = self.state.c;
@@ -302,7 +303,7 @@ impl Fall<'_> {
             }
             self.recorder.pay(&done.loss);
             let to = Motion {
-                time_s: self.recorder.now.time_s + done.dt,
+                time_s: now_s + done.dt,
                 position_m: self.state.c,
                 velocity_m_s: self.state.v,
                 spin_rad_s: self.state.w,
@@ -313,9 +314,7 @@ impl Fall<'_> {
             self.recorder.step(to, slides);
             self.in_contact().end_impacts();
             self.state.stopwatches.stop(TimedPiece::NotesInContact, begun);
-            // exact comparison: `advance` takes no more than `left`, and takes all of it in its
-            // last step
-            let time_up = (done.dt >= left).then_some(Stop::TimeUp);
+            let time_up = self.settings.time_up(now_s, done.dt);
             let ends = time_up.or_else(|| self.settings.over_budget(&self.recorder.effort));
             if self.state.is_free() {
                 return ends;

@@ -80,6 +80,13 @@ impl<'a> RunSettings<'a> {
             FlightEnd::Flies => (left, Some(Stop::TimeUp)),
         };
         // a touch at the very end of the time comes too late
-        (dt, stop.or_else(|| (dt >= left).then_some(Stop::TimeUp)))
+        (dt, stop.or_else(|| self.time_up(now_s, dt)))
+    }
+
+    /// Whether a rock is out of time after `dt` (s) from `now_s`: it has taken all that was left, or the clock says so by rounding. A step of
+    /// no time at all has no solution where the rock both slides and rolls.
+    pub(super) fn time_up(&self, now_s: f64, dt: f64) -> Option<Stop> {
+        let is_over = dt >= self.longest_s - now_s || now_s + dt >= self.longest_s;
+        is_over.then_some(Stop::TimeUp)
     }
 }
