@@ -354,6 +354,11 @@ impl ContactState {
         self.histories.iter().all(|history| !history.closed)
     }
 
+    /// Whether place, velocity and spin are numbers.
+    pub(super) fn is_finite(&self) -> bool {
+        self.c.iter().chain(self.v.iter()).chain(self.w.iter()).all(|x| x.is_finite())
+    }
+
     /// Energy in motion (J): `m v²/2 + I w²/2`.
     pub fn motion_j(&self, body: &Body) -> f64 {
         0.5 * (body.mass * self.v.norm_squared() + body.inertia * self.w.norm_squared())

@@ -73,8 +73,7 @@ pub fn advance(
             sustained::step(world, state, usual.min(h_max), &mut done);
         }
     }
-    let finite = state.c.iter().chain(state.v.iter()).chain(state.w.iter()).all(|x| x.is_finite());
-    if finite { Ok(done) } else { Err(StepError::NotFinite) }
+    if state.is_finite() { Ok(done) } else { Err(StepError::NotFinite) }
 }
 
 /// Whether a touch of the last look comes in faster than the capture speed, or as fast as to a facet that is met.

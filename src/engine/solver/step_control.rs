@@ -134,13 +134,25 @@ fn stiffest(world: &ContactEnvironment, state: &ContactState) -> f64 {
 /// one to try next.
 ///
 /// # Errors
-/// [`StepError`] if the step had to become too short to matter.
+/// [`StepError`] if the step had to become too short to matter, or the motion is no longer finite.
 pub fn advance(
     world: &ContactEnvironment,
     control: &Control,
     state: &mut ContactState,
     h: &mut f64,
     h_max: f64,
+) -> Result<Advance, StepError> {
+    let done = step(world, control, state, (h, h_max))?;
+    // the largest of some errors does not see one that is no number
+    if state.is_finite() { Ok(done) } else { Err(StepError::NotFinite) }
+}
+
+/// The step itself, or all those of an impact on one plane.
+fn step(
+    world: &ContactEnvironment,
+    control: &Control,
+    state: &mut ContactState,
+    (h, h_max): (&mut f64, f64),
 ) -> Result<Advance, StepError> {
     let mut done = Advance::default();
     // an impact is short and not stiff in its own time: explicit, whole on one plane, step by step
@@ -154,7 +166,7 @@ pub fn advance(
         return state.step_impact(world, (omega, control.impact), h_max, &mut done).map(|()| done);
     }
     // lasting contact on one plane: the kernel, else the stages among any features
-    if let Some(settled) = state.step_on_plane(world, control, (h, h_max), &mut done) {
+    if let Some(settled) = state.step_on_plane(world, control, (&mut *h, h_max), &mut done) {
         return settled.map(|()| done);
     }
     state.leave_plane(world);

@@ -137,8 +137,7 @@ const MOST_STEPS: u32 = 20_000;
 /// # Panics
 /// Never: contacts beyond [`MOST`] are not looked at.
 ///
-/// Cost: one contact is a closed form and a short integration; several are followed step by step by the
-/// explicit pair.
+/// Cost: one contact is a closed form and a short integration; several are followed step by step.
 pub(crate) fn throw(
     body: &Body,
     contacts: &[FrozenContact],
@@ -163,7 +162,7 @@ pub(crate) fn throw(
     }
     let rolls = contacts.iter().any(|contact| contact.law.rolling.is_on());
     let how = (body, contacts, tolerance);
-    // the numbers of contacts and springs are constants, so that each case is a loop on the stack
+    // numbers of contacts and springs are constants: loops on the stack
     match (contacts.len(), rolls) {
         (2, false) => several::<2, 15, 8, 6>(how, (v, w), same),
         (2, true) => several::<2, 21, 8, 6>(how, (v, w), same),
@@ -185,8 +184,7 @@ fn alone(
 ) -> FrozenRebound {
     let body = Body { gravity: Vec3::zeros(), ..*body };
     let (law, n) = (contact.law, &contact.normal);
-    // one that gives nothing back has its damping at least doubled over critical, and its rest of
-    // rebound taken away below
+    // one that gives nothing back is damped over critical, and its rest of rebound taken away below
     let point = (contact.captured, contact.stiffness_scale);
     let plane = Plane::of_patch(&body, law, point, OF_ONE * tolerance);
     let Some(rebound) = plane.follow(n, v, w) else {
@@ -256,8 +254,7 @@ impl<const B: usize, const K: usize, const N: usize, const Q: usize, const P: us
 
     /// Steps until nothing pushes and nothing comes nearer.
     ///
-    /// A rock may touch, fly and touch again within one impact (a wedge): flights between touches
-    /// are closed forms and cost no time.
+    /// A rock may fly between touches of one impact (a wedge): a closed form that costs no time.
     fn follow(&mut self, first: f64) -> Settled {
         let (mut wish, mut kept, mut time) = (first, 0.0, 0.0);
         let softest = self.flow.contacts.softest;
