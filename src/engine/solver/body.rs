@@ -9,6 +9,11 @@ use crate::rock::{Rock, Vec3};
 /// A velocity (m/s) and a spin (rad/s), or an impulse and one of rotation.
 pub(crate) type Twist = (Vec3, Vec3);
 
+/// Whether place, velocity and spin are numbers.
+pub(super) fn are_finite(motion: [&Vec3; 3]) -> bool {
+    motion.into_iter().flatten().all(|x| x.is_finite())
+}
+
 /// What of a rock the mechanics needs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Body {

@@ -1,6 +1,6 @@
 //! A rock in contact: its motion, what it remembers of its contacts, and the scratch space of its steps.
 
-use super::body::Body;
+use super::body::{Body, are_finite};
 use super::dda_system::DdaScratch;
 pub use super::environment::ContactEnvironment;
 use super::friction_rolling::SlipState;
@@ -356,7 +356,7 @@ impl ContactState {
 
     /// Whether place, velocity and spin are numbers.
     pub(super) fn is_finite(&self) -> bool {
-        self.c.iter().chain(self.v.iter()).chain(self.w.iter()).all(|x| x.is_finite())
+        are_finite([&self.c, &self.v, &self.w])
     }
 
     /// Energy in motion (J): `m v²/2 + I w²/2`.

@@ -81,6 +81,26 @@ pub(in crate::solver) trait Flow<const N: usize, const Q: usize, const P: usize>
     fn size2(&self, off: &[f64; N]) -> f64;
 }
 
+/// Whether an element slips, or has opened, that asks for so much, squared, under a cap.
+#[inline]
+pub(in crate::solver) fn slips([asked2, cap]: [f64; 2]) -> bool {
+    asked2 > cap * cap
+}
+
+/// By how much it is over its cap.
+#[inline]
+pub(in crate::solver) fn over([asked2, cap]: [f64; 2]) -> f64 {
+    asked2.sqrt() - cap
+}
+
+/// Adds what a step has summed up.
+#[inline]
+pub(in crate::solver) fn sum_up<const Q: usize>(sums: &mut [f64; Q], more: &[f64; Q]) {
+    for (sum, more) in sums.iter_mut().zip(more) {
+        *sum += more;
+    }
+}
+
 /// A step tried.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::solver) struct Tried<const N: usize, const Q: usize> {
@@ -198,14 +218,11 @@ pub(in crate::solver) struct Between<const M: usize> {
 }
 
 impl<const M: usize> Between<M> {
-    /// Through `from` and `to` with the rates `first` and `last` there, and what else bends it, in a step of length `h`.
+    /// From one place to another in a step of length `h` with the rates `k` of its first, third … seventh stage.
     #[inline]
-    fn of(
-        (from, to): (&[f64; M], &[f64; M]),
-        (first, last): (&[f64; M], &[f64; M]),
-        bent: [f64; M],
-        h: f64,
-    ) -> Self {
+    fn of((from, to): (&[f64; M], &[f64; M]), k: [&[f64; M]; 6], h: f64) -> Self {
+        let [first, .., last] = k;
+        let bent = mixed(&[0.0; M], h, k, D);
         let whole: [f64; M] = std::array::from_fn(|i| to[i] - from[i]);
         let begins: [f64; M] = std::array::from_fn(|i| h * first[i] - whole[i]);
         let ends = std::array::from_fn(|i| whole[i] - h * last[i] - begins[i]);
@@ -231,15 +248,13 @@ impl<const N: usize, const Q: usize, const P: usize> Stages<N, Q, P> {
         h: f64,
     ) -> Between<N> {
         let [k1, _, k3, k4, k5, k6, k7] = &self.0;
-        let bent = mixed(&[0.0; N], h, [&k1.y, &k3.y, &k4.y, &k5.y, &k6.y, &k7.y], D);
-        Between::of((y, &tried.y), (&k1.y, &k7.y), bent, h)
+        Between::of((y, &tried.y), [&k1.y, &k3.y, &k4.y, &k5.y, &k6.y, &k7.y], h)
     }
 
     /// What it has summed up, from 0.
     pub(in crate::solver) fn sums_between(&self, tried: &Tried<N, Q>, h: f64) -> Between<Q> {
         let [k1, _, k3, k4, k5, k6, k7] = &self.0;
-        let bent = mixed(&[0.0; Q], h, [&k1.q, &k3.q, &k4.q, &k5.q, &k6.q, &k7.q], D);
-        Between::of((&[0.0; Q], &tried.q), (&k1.q, &k7.q), bent, h)
+        Between::of((&[0.0; Q], &tried.q), [&k1.q, &k3.q, &k4.q, &k5.q, &k6.q, &k7.q], h)
     }
 }
 
@@ -286,7 +301,6 @@ impl<const N: usize, const Q: usize, const P: usize> Stages<N, Q, P> {
     /// open there, and not little beyond it; by the first `known` stages.
     #[inline]
     fn cut(&self, known: usize, h: f64, allowed: f64) -> Option<f64> {
-        let slips = |[asked2, cap]: [f64; 2]| asked2 > cap * cap;
         let mut cut: Option<f64> = None;
         for (k, first) in self.0[0].kinks.into_iter().map(slips).enumerate() {
             if self.0[1..known].iter().any(|stage| slips(stage.kinks[k]) != first) {
@@ -305,10 +319,7 @@ impl<const N: usize, const Q: usize, const P: usize> Stages<N, Q, P> {
     /// Linear between stages; the shorter step finds it again, nearer.
     fn kink(&self, k: usize, known: usize) -> (f64, f64) {
         // what is asked less the cap: above 0 it slips, or the contact is open
-        let over = |stage: &Rates<N, Q, P>| {
-            let [asked2, cap] = stage.kinks[k];
-            asked2.sqrt() - cap
-        };
+        let over = |stage: &Rates<N, Q, P>| over(stage.kinks[k]);
         let first = over(&self.0[0]);
         let (mut before, mut at, mut found, mut beyond) = (first, 0.0, None, 0.0f64);
         for (stage, node) in self.0[..known].iter().zip(NODES.into_iter().chain([1.0])).skip(1) {

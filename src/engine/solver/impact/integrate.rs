@@ -8,7 +8,9 @@
 //! between the ends of the step is known to order 4. Where an element changes there, the step ends, and nothing of it is lost.
 
 use super::ImpactEffort;
-use super::dormand_prince::{Between, Flow, NODES, Rates, Stages, Tried, growth};
+use super::dormand_prince::{
+    Between, Flow, NODES, Rates, Stages, Tried, growth, over, slips, sum_up,
+};
 use super::normal_motion::{NormalMotion, Series};
 
 /// No step is longer (1/ω, times the shorter of 1 and `1/2ζ`): as far as the series below gives all its digits, and the estimate of
@@ -116,17 +118,10 @@ pub(super) struct Span {
     pub(super) allowed: f64,
 }
 
-/// Whether an element slips that asks for so much, squared, under a cap.
+/// By how much an element is beyond its law, if it slips as it asks for less than its cap or sticks as it asks for more.
 #[inline]
-fn slips_at([asked2, cap]: [f64; 2]) -> bool {
-    asked2 > cap * cap
-}
-
-/// By how much an element is over its cap, if it slips, or under it.
-#[inline]
-fn beyond([asked2, cap]: [f64; 2], slips: bool) -> f64 {
-    let over = asked2.sqrt() - cap;
-    if slips { -over } else { over }
+fn beyond(kink: [f64; 2], slips: bool) -> f64 {
+    if slips { -over(kink) } else { over(kink) }
 }
 
 /// Runs from `y` over the whole span; `D` terms of the force's series. Returns the end and the sums.
@@ -195,7 +190,7 @@ impl<'a, P: ForcedFlow<N, Q, K>, const N: usize, const Q: usize, const K: usize,
 {
     fn new(law: &'a P, y: [f64; N], span: &'a Span) -> Self {
         let (force, stages) = (Force::new(span), Stages::NONE);
-        let slips = law.asked(force.now[0], &y).map(slips_at);
+        let slips = law.asked(force.now[0], &y).map(slips);
         let (sum, wish) = ([0.0; Q], span.first);
         let mut course = Self { law, span, force, y, sum, t: 0.0, wish, slips, at_once: 0, stages };
         course.begin();
@@ -233,9 +228,9 @@ impl<'a, P: ForcedFlow<N, Q, K>, const N: usize, const Q: usize, const K: usize,
         let left = self.span.length - self.t;
         self.t = if h >= left { self.span.length } else { self.t + h };
         (self.y, self.at_once) = (tried.y, 0);
-        self.sum.iter_mut().zip(tried.q).for_each(|(sum, q)| *sum += q);
+        sum_up(&mut self.sum, &tried.q);
         self.force.pass(h);
-        let slips = self.stages.kinks()[6].map(slips_at);
+        let slips = self.stages.kinks()[6].map(slips);
         if slips == self.slips {
             self.stages.pass();
         } else {
@@ -250,8 +245,7 @@ impl<'a, P: ForcedFlow<N, Q, K>, const N: usize, const Q: usize, const K: usize,
         self.t += gone;
         self.at_once = if gone > self.shortest() { 0 } else { self.at_once + 1 };
         self.y = switch.place;
-        let sums = self.stages.sums_between(tried, h).at(switch.share);
-        self.sum.iter_mut().zip(sums).for_each(|(sum, q)| *sum += q);
+        sum_up(&mut self.sum, &self.stages.sums_between(tried, h).at(switch.share));
         self.force.pass(gone);
         let slips = &mut self.slips[switch.element];
         *slips = !*slips;
@@ -267,7 +261,7 @@ impl<'a, P: ForcedFlow<N, Q, K>, const N: usize, const Q: usize, const K: usize,
         }
         let kinks = self.stages.kinks();
         let changes = |element: usize| {
-            kinks[1..].iter().any(|kinks| slips_at(kinks[element]) != self.slips[element])
+            kinks[1..].iter().any(|kinks| slips(kinks[element]) != self.slips[element])
         };
         let mut first: Option<SliderSwitch<N>> = None;
         let mut between = None;

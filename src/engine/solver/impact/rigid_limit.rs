@@ -16,7 +16,7 @@ mod bodies;
 mod contacts;
 mod rates;
 
-use super::dormand_prince::{Attempt, Stages, growth};
+use super::dormand_prince::{Attempt, Stages, growth, sum_up};
 use super::plane::{LOCAL, Plane, shared};
 use super::{ImpactEffort, Settled};
 use crate::contact::MOST;
@@ -314,9 +314,7 @@ impl<const B: usize, const K: usize, const N: usize, const Q: usize, const P: us
                 _ => {
                     turned = false;
                     self.y = tried.y;
-                    for (sum, q) in self.sums.iter_mut().zip(tried.q) {
-                        *sum += q;
-                    }
+                    sum_up(&mut self.sums, &tried.q);
                     time += h;
                     self.effort.steps += 1;
                     wish = f64::max(h * growth(tried.error2), kept);

@@ -7,7 +7,7 @@
 //! Why `s` and not `ξ`: it is a speed, so slip and spring add up before the projection. Losses: the slider takes `c p (u + s − p)`, the dashpot `c
 //! (p − s)²`; what is left goes into the spring.
 
-use super::dormand_prince::Rates;
+use super::dormand_prince::{Rates, slips};
 use super::integrate::ForcedFlow;
 use crate::ground::Law;
 use crate::solver::body::Body;
@@ -73,7 +73,7 @@ impl SliderElement {
     #[inline]
     pub(super) fn share(&self, asked2: f64, f: f64) -> (f64, f64, f64) {
         let cap = self.cap * f;
-        let (share, by) = Self::part(asked2 > cap * cap, [asked2, cap]);
+        let (share, by) = Self::part(slips([asked2, cap]), [asked2, cap]);
         (share, by, cap)
     }
 

@@ -128,7 +128,8 @@ impl<'a> Island<'a> {
         let (dt, rejected) = self.settle_step(control, omega, h_max)?;
         let done = self.accept(control.tableau, dt);
         self.begin_late();
-        Ok(Done { rejected, ..done })
+        let finite = self.members.iter().all(|member| member.state.is_finite());
+        if finite { Ok(Done { rejected, ..done }) } else { Err(StepError::NotFinite) }
     }
 
     /// One step of the scheme `rigid`, at most `longest` and `h_max` (s) long.

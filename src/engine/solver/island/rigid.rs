@@ -24,6 +24,7 @@ use super::contact_queue::{ContactQueue, ContactsOfRocks};
 use super::outcome::{Done, Hit};
 use crate::contact::pair::{PairHistory, between};
 use crate::rock::Vec3;
+use crate::solver::body::are_finite;
 use crate::solver::contact_state::ContactEnvironment;
 use crate::solver::impact::BlowTable;
 use crate::solver::law::capture_m_s;
@@ -198,7 +199,7 @@ impl PairHistory {
 
 impl StepBody {
     fn is_finite(&self) -> bool {
-        self.c.iter().chain(self.v.iter()).chain(self.w.iter()).all(|x| x.is_finite())
+        are_finite([&self.c, &self.v, &self.w])
     }
 }
 

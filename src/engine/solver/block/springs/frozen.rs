@@ -24,7 +24,7 @@ use crate::rock::Vec3;
 use crate::solver::block::solve::Mass;
 use crate::solver::environment::ContactEnvironment;
 use crate::solver::explicit_impact::{FIRST, LONGEST_RAD, SHORTEST_RAD, judge};
-use crate::solver::impact::dormand_prince::{Attempt, Flow, Rates, Stages, put, three};
+use crate::solver::impact::dormand_prince::{Attempt, Flow, Rates, Stages, put, sum_up, three};
 use crate::solver::impact::{LOCAL, NOTHING};
 use crate::solver::law::capture_m_s;
 use crate::solver::loss::Loss;
@@ -172,7 +172,7 @@ impl FrozenFlow<'_, '_> {
                 continue;
             }
             y = tried.y;
-            sums.iter_mut().zip(tried.q).for_each(|(sum, q)| *sum += q);
+            sum_up(&mut sums, &tried.q);
             gone += dt * self.omega;
             stages.pass();
             let mut begins = self.switch(&mut y);
