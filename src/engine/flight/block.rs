@@ -2,24 +2,27 @@
 //!
 //! The ball around the block is leapt ahead exactly; nothing touches before it does. From there the block is gone along feature by
 //! feature (conservative advancement). The distance of a corner to a convex set is a convex function of its place, so with the present
-//! distance `d`, direction `n` and velocity `ṗ`
+//! distance `d`, direction `n`, velocity `ṗ` and acceleration `p̈`
 //!
 //! ```text
-//! d(t+τ) ≥ d + n·ṗ τ − ½ B τ²,   B = g + ρ (ω_m² + α_m),   ω_m² = 2E/I_min,   α_m = ω_m² (I_max − I_min)/I_min
+//! d(t+τ) ≥ d + n·ṗ τ + ½ n·p̈ τ² − ⅙ J τ³ ≥ d + n·ṗ τ − ½ B τ²   for τ ≤ T,   B = min(g + ρ b₂, −n·p̈ + ⅓ J T),   J = ρ b₃
 //! ```
 //!
-//! as `|ω|² ≤ ω_m²` and `|ω̇| ≤ α_m` for a body without torque. With the speed of approach `c = −n·ṗ` and the gap `δ = d − r` the step
-//! `τ = 2δ/(c + √(c² + 2Bδ))` is never too long, and near a touch it converges like Newton's method from one side. Edges and faces of the
-//! block are hulls of corners: with `n` from their own nearest points the same bound holds for each of their corners.
+//! where `ρ b₂` and `ρ b₃` bound what the turn does to the corner's acceleration and to the rate of it ([`Bends`]). With the speed of
+//! approach `c = −n·ṗ` and the gap `δ = d − r` the step `τ = 2δ/(c + √(c² + 2Bδ))` is never too long, and near a touch it converges
+//! faster than Newton's method, from one side. Edges and faces of the block are hulls of corners: with `n` from their own nearest points
+//! the same bound holds for each of their corners.
 //!
 //! Frames: corners are fixed in the block's principal frame; `attitude` turns them to the
 //! terrain's. `ρ` is a corner's distance from the centre of mass (m), `r` the radius of the balls
 //! at the corners (m). Cost: about ten evaluations a corner over a second of flight without any
 //! window, most of them in the last window before the touch.
 
+mod ahead;
+mod gap;
 mod window;
 
-use super::top::{ShortTurn, Top};
+use super::top::{Bends, ShortTurn, Top};
 use super::{FlightEnd, Parabola, time_of_impact_past};
 use crate::body::Block;
 use crate::contact::block::Pose;
@@ -27,9 +30,10 @@ use crate::contact::closest::closest_on;
 use crate::contact::neighbours::Neighbours;
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
+use ahead::FeaturesAhead;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
-use window::{Flying, WindowSearch};
+use window::{FlyingCorners, WindowSearch};
 
 /// No step forward is shorter (s): what comes so soon touches now.
 /// Below it the time could not be told from the one before, at times of some hundred seconds.
@@ -37,9 +41,14 @@ const SHORTEST_S: f64 = 1e-13;
 /// Way of the centre for which features are collected at a time (–, relative to the radius of the ball around).
 /// Longer windows collect more features, shorter ones collect more often.
 const WINDOW: f64 = 0.5;
+/// Features that are known from before will do for a window as long as this (–, relative to the radius of the ball around).
+const SHORTEST_WINDOW: f64 = 0.1;
+
+/// Rounding of a sum of three products, with room (–): what is skipped because it is far away must be so for certain.
+const CAUTION: f64 = 1e-12;
 
 /// A block in free flight.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug)]
 pub struct Tumble<'a> {
     /// The block.
     pub block: &'a Block,
@@ -51,12 +60,15 @@ pub struct Tumble<'a> {
 
 /// A moment of the flight.
 struct Moment {
+    /// Time since the flight began (s).
+    time_s: f64,
     /// Centre (m) and attitude.
     pose: Pose,
     /// Of the centre (m/s).
     velocity: Vec3,
-    /// Angular velocity in the frame of the terrain (rad/s).
+    /// Angular velocity (rad/s) and acceleration (rad/s²) in the frame of the terrain.
     spin: Vec3,
+    angular: Vec3,
 }
 
 /// A part of the block that may touch.
@@ -80,10 +92,8 @@ pub struct WindowScratch {
     /// Until when each of them surely touches nothing, soonest first: the bits of the time (s), which rise with it as times are not
     /// negative, and its place among the parts.
     dues: BinaryHeap<Reverse<(u64, u32)>>,
-    /// A corner and the unit normal of every triangle near: looked up once a window, asked hundreds of times.
-    planes: Vec<(Vec3, Vec3)>,
-    /// Corners of a face.
-    corners: Vec<Flying>,
+    ahead: FeaturesAhead,
+    corners: FlyingCorners,
 }
 
 impl Tumble<'_> {
@@ -101,37 +111,15 @@ impl Tumble<'_> {
             turn.attitude(t - from)
         } else {
             let attitude = self.top.attitude(t);
-            *near = self.top.short(attitude, ends - t).map(|turn| (t, turn));
+            // at first the series of the top itself reaches on
+            if !self.top.is_early(t) {
+                *near = self.top.short(attitude, ends - t).map(|turn| (t, turn));
+            }
             attitude
         };
         let pose = Pose { centre, attitude };
-        let spin = self.top.spin(&pose.attitude);
-        Moment { pose, velocity: self.path.velocity(t), spin }
-    }
-
-    /// Largest size of `ω × (ω × ρ) + ω̇ × ρ` over the length of `ρ` (1/s²).
-    ///
-    /// `ω_m² + α_m` of the head of this file: a free body's `|ω|² ≤ 2E/I_min`, and `|ω̇| ≤ ω_m²
-    /// (I_max − I_min)/I_min` by Euler's equations. Times `ρ` it bounds the acceleration of a point
-    /// relative to the centre of mass.
-    fn bend(&self) -> f64 {
-        let [low, high] = [f64::min, f64::max]
-            .map(|pick| self.block.inertia_kg_m2.into_iter().reduce(pick).unwrap_or(1.0));
-        let spin2 = 2.0 * self.top.energy_j() / low;
-        spin2 * (1.0 + (high - low) / low)
-    }
-
-    /// Collects what the block can touch while its centre moves up to `way` (m) from `centre`.
-    pub fn collect(
-        block: &Block,
-        near: &mut Neighbours,
-        terrain: &Terrain,
-        (centre, way): (&Vec3, f64),
-    ) {
-        // corners sit up to `bound − ball` from the centre: what they can meet is that much farther
-        // than what the centre can
-        let core = block.bound_m - block.ball_m;
-        near.collect(terrain, centre, block.ball_m, core + way, block.ball_m);
+        let (spin, angular) = (self.top.spin(&attitude), self.top.angular_rad_s2(&attitude));
+        Moment { time_s: t, pose, velocity: self.path.velocity(t), spin, angular }
     }
 }
 
@@ -146,12 +134,12 @@ pub fn first_touch(
     longest_s: f64,
     (near, scratch): (&mut Neighbours, &mut WindowScratch),
 ) -> FlightEnd {
-    let (bound, mut t) = (tumble.block.bound_m, 0.0);
+    let (block, mut t) = (tumble.block, 0.0);
     loop {
         let centre = tumble.path.centre(t);
         // as long as nothing is within the bounding ball the block cannot touch: its leap is exact,
         // in place of many evaluations
-        if !is_within(terrain, &centre, bound, near) {
+        if !is_within(terrain, block, &centre, near) {
             let ahead =
                 Parabola { start: centre, velocity: tumble.path.velocity(t), ..tumble.path };
             let gone = std::mem::take(&mut near.gone);
@@ -164,10 +152,9 @@ pub fn first_touch(
                 FlightEnd::Flies => return FlightEnd::Flies,
             }
         }
-        let way = WINDOW * bound;
+        let way = known_way(terrain, block, &tumble.path.centre(t), near);
         // within this time the centre stays inside the ball for which features were collected
         let ends = (t + time_for(&tumble.path, t, way)).min(longest_s);
-        Tumble::collect(tumble.block, near, terrain, (&tumble.path.centre(t), way));
         if let Some(touch) = advance(terrain, tumble, near, (t, ends), scratch) {
             return FlightEnd::Touch(touch);
         }
@@ -178,20 +165,38 @@ pub fn first_touch(
     }
 }
 
-/// Whether a triangle is nearer to a point than `reach` (m).
-/// Walks the index once; what it finds is not kept.
-fn is_within(terrain: &Terrain, point: &Vec3, reach: f64, near: &mut Neighbours) -> bool {
+/// Whether a triangle is within the ball around a block at `centre`.
+/// Where they are known no more are looked for; else the index is walked once, and what it finds is not kept.
+fn is_within(terrain: &Terrain, block: &Block, centre: &Vec3, near: &mut Neighbours) -> bool {
+    let reach = block.bound_m;
+    let is_near = |t: u32| (closest_on(&terrain.corners_m(t), centre) - centre).norm() < reach;
     let (mut within, mut tested) = (false, 0);
-    terrain.index.near(point, reach, |start, count| {
-        for t in start..start + count {
-            tested += 1;
-            within = within
-                || !terrain.is_gone(t, &near.gone)
-                    && (closest_on(&terrain.corners_m(t), point) - point).norm() < reach;
-        }
-    });
+    if near.room_around(centre, (block.ball_m, block.bound_m)) >= 0.0 {
+        within = near.triangles().iter().inspect(|_| tested += 1).any(|t| is_near(*t));
+    } else {
+        terrain.index.near(centre, reach, |start, count| {
+            for t in start..start + count {
+                tested += 1;
+                within = within || !terrain.is_gone(t, &near.gone) && is_near(t);
+            }
+        });
+    }
     near.tested += tested;
     within
+}
+
+/// How far the centre of a block may go from `centre` among the features that are known (m): those around it are collected if that is not
+/// far.
+fn known_way(terrain: &Terrain, block: &Block, centre: &Vec3, near: &mut Neighbours) -> f64 {
+    let way = WINDOW * block.bound_m;
+    let room = near.room_around(centre, (block.ball_m, block.bound_m));
+    if room >= SHORTEST_WINDOW * block.bound_m {
+        return room.min(way);
+    }
+    // corners sit up to so far from the centre: what they can meet is that much farther than what the centre can
+    let core = block.bound_m - block.ball_m;
+    near.collect(terrain, centre, block.ball_m, core + way, block.ball_m);
+    way
 }
 
 /// A time in which the centre surely moves no further than `way` (m) from where it is at `t`.
@@ -213,40 +218,37 @@ fn advance(
     scratch: &mut WindowScratch,
 ) -> Option<f64> {
     let core = &tumble.block.core;
+    let WindowScratch { parts, dues, ahead, corners } = scratch;
+    ahead.look(terrain, tumble, near, (begins, ends));
+    corners.begin(core.corners.len());
+    parts.clear();
     // on ground without sharp edges or peaks only corners can touch
-    let (edges, peaks) = (near.sharp_edges().next().is_some(), near.peaks().next().is_some());
-    scratch.parts.clear();
-    scratch.parts.extend((0..core.corners.len()).map(BlockPart::Corner));
-    scratch.parts.extend((0..core.ridges.len()).filter(|_| edges).map(BlockPart::Ridge));
-    scratch.parts.extend((0..core.faces.len()).filter(|_| peaks).map(BlockPart::Face));
+    let at_most = |count: usize, is_met: bool| if is_met { count } else { 0 };
+    parts.extend(
+        (0..at_most(core.corners.len(), !ahead.triangles.is_empty())).map(BlockPart::Corner),
+    );
+    parts.extend((0..at_most(core.ridges.len(), !ahead.edges.is_empty())).map(BlockPart::Ridge));
+    parts.extend((0..at_most(core.faces.len(), !ahead.peaks.is_empty())).map(BlockPart::Face));
     let due = |time: f64, part: u32| Reverse((time.to_bits(), part));
-    scratch.dues.clear();
-    let all = if begins < ends { scratch.parts.len() as u32 } else { 0 };
-    scratch.dues.extend((0..all).map(|part| due(begins, part)));
-    scratch.planes.clear();
-    let plane = |t: &u32| {
-        let face = terrain.face(*t);
-        (face.a, face.n)
-    };
-    scratch.planes.extend(near.triangles().iter().map(plane));
-    let bend = tumble.bend();
-    let mut short = None;
+    dues.clear();
+    let all = if begins < ends { parts.len() as u32 } else { 0 };
+    dues.extend((0..all).map(|part| due(begins, part)));
+    let (bends, mut short) = (tumble.top.bends(), None);
     let moment = tumble.moment(begins, ends, &mut short);
-    let mut search = WindowSearch { terrain, tumble, near, bend, moment };
-    let mut now = begins;
-    while let Some(Reverse((bits, part))) = scratch.dues.pop() {
+    let tested = &mut near.tested;
+    let mut search = WindowSearch { terrain, tumble, ahead, bends, moment, corners, tested };
+    while let Some(Reverse((bits, part))) = dues.pop() {
         let time = f64::from_bits(bits);
         // the attitude is worked out once a moment, for all parts due then
-        if time > now {
-            now = time;
-            search.moment = tumble.moment(now, ends, &mut short);
+        if time > search.moment.time_s {
+            search.moment = tumble.moment(time, ends, &mut short);
         }
-        let step = search.safe_step(scratch.parts[part as usize], ends - now, scratch);
+        let step = search.safe_step(parts[part as usize], ends - time);
         if step < SHORTEST_S {
-            return Some(now);
+            return Some(time);
         }
-        if now + step < ends {
-            scratch.dues.push(due(now + step, part));
+        if time + step < ends {
+            dues.push(due(time + step, part));
         }
     }
     None

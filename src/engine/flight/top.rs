@@ -24,6 +24,7 @@ use crate::math::elliptic::{Elliptic, Jacobi};
 use crate::math::{self, turn};
 use crate::rock::Vec3;
 use nalgebra::{Matrix3, Rotation3, Unit};
+use std::cell::OnceCell;
 
 /// Moments of inertia this close are equal (–, relative).
 /// Cubes and prisms have equal moments but for rounding of their integrals.
@@ -33,7 +34,7 @@ const EQUAL: f64 = 1e-12;
 const STEADY: f64 = 1e-15;
 
 /// A body that turns freely.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Top {
     /// From the body's principal frame to the world, at time 0.
     start: Rotation3<f64>,
@@ -41,7 +42,10 @@ pub struct Top {
     inertia: [f64; 3],
     /// World angular momentum (kg m²/s).
     momentum: Vec3,
-    motion: TopMotion,
+    /// The turn soon after the start, of three unequal moments.
+    early: Option<ShortTurn>,
+    /// The turn for all times, worked out once one is asked for that is not early: a block that rocks on its corners flies for milliseconds.
+    motion: OnceCell<TopMotion>,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -87,8 +91,8 @@ struct Wobble {
 impl Top {
     /// From principal moments of inertia (kg m²), the rotation from body to world and the world angular momentum (kg m²/s).
     pub fn new(inertia: [f64; 3], start: Rotation3<f64>, momentum: Vec3) -> Self {
-        let motion = motion_of(inertia, &start, &momentum);
-        Self { start, inertia, momentum, motion }
+        let early = ShortTurn::of(inertia, start, &momentum, f64::INFINITY);
+        Self { start, inertia, momentum, early, motion: OnceCell::new() }
     }
 
     /// The rotation from body to world after `t` (s).
@@ -96,7 +100,15 @@ impl Top {
     /// `R(t) = [w(t)] [f(t)]ᵀ`: `f` is the triad of `ℓ` as seen from the body, `w` the one fixed to
     /// `ℓ` in the world, turned by `ψ(t)`.
     pub fn attitude(&self, t: f64) -> Rotation3<f64> {
-        match &self.motion {
+        match self.early.as_ref().filter(|_| self.is_early(t)) {
+            Some(early) => early.attitude(t),
+            None => self.late(t),
+        }
+    }
+
+    /// The same by the closed form.
+    fn late(&self, t: f64) -> Rotation3<f64> {
+        match self.motion.get_or_init(|| motion_of(self.inertia, &self.start, &self.momentum)) {
             TopMotion::Still => self.start,
             TopMotion::Steady(axis, rate) => turn(axis, rate * t) * self.start,
             TopMotion::Symmetric(about, rate, own, own_rate) => {
@@ -104,6 +116,11 @@ impl Top {
             }
             TopMotion::Elliptic(wobble) => wobble.attitude(t),
         }
+    }
+
+    /// Whether the turn after `t` (s) is that of a series, without elliptic functions.
+    pub(crate) fn is_early(&self, t: f64) -> bool {
+        self.early.as_ref().is_some_and(|early| t.abs() <= early.holds_s)
     }
 
     /// Angular velocity (rad/s) where the body is turned like this.
@@ -121,18 +138,42 @@ impl Top {
         0.5 * self.spin(&self.start).dot(&self.momentum)
     }
 
-    /// Largest size of `ω × (ω × ρ) + ω̇ × ρ` over the length of `ρ` (1/s²): bounds how fast the way of a point bends.
+    /// Angular acceleration (rad/s²) where the body is turned like this.
+    ///
+    /// Euler's equations without torque, `I ω̇ = ℓ × ω` in the body's frame; `ω` changes alike in both frames.
+    pub(crate) fn angular_rad_s2(&self, attitude: &Rotation3<f64>) -> Vec3 {
+        let by_inertia = |x: &Vec3| x.component_div(&Vec3::from(self.inertia));
+        let own = attitude.inverse_transform_vector(&self.momentum);
+        attitude * by_inertia(&own.cross(&by_inertia(&own)))
+    }
+
+    /// How fast the ways of its points bend at most.
     ///
     /// From both constants of the motion, `2E` and `ℓ²`. No `(I − I_min)(I_max − I)` is negative, so
     /// `I_min I_max |ω|² ≤ 2E (I_min + I_max) − ℓ²`; and by Euler's equations
-    /// `I_min |ω̇| ≤ |ℓ × ω|`, where `|ℓ × ω|² = ℓ²ω² − (2E)²`. About a principal axis both are equalities.
-    pub(crate) fn bend(&self) -> f64 {
+    /// `I_min |ω̇| ≤ |ℓ × ω|`, where `|ℓ × ω|² = ℓ²ω² − (2E)²`. About a principal axis both are equalities. In the body's frame
+    /// `I ω̈ = I ω̇ × ω + ℓ × ω̇`, in the world's `ω × ω̇` comes to it: `|ω̈| ≤ (2 I_max/I_min + 1) |ω| |ω̇|`.
+    pub(crate) fn bends(&self) -> Bends {
         let [low, high] =
             [f64::min, f64::max].map(|pick| self.inertia.into_iter().reduce(pick).unwrap_or(1.0));
         let (energy2, momentum2) = (2.0 * self.energy_j(), self.momentum.norm_squared());
         let spin2 = ((energy2 * (low + high) - momentum2) / (low * high)).max(0.0);
-        spin2 + (momentum2 * spin2 - energy2 * energy2).max(0.0).sqrt() / low
+        let angular = (momentum2 * spin2 - energy2 * energy2).max(0.0).sqrt() / low;
+        let spin = spin2.sqrt();
+        let jerk = spin * (spin2 + (2.0 * high / low + 4.0) * angular);
+        Bends { spin, bend: spin2 + angular, jerk }
     }
+}
+
+/// Bounds on the way of a point of a body that turns freely, over the point's distance `ρ` from the centre of mass.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Bends {
+    /// On its velocity `ω × ρ` (1/s).
+    pub(crate) spin: f64,
+    /// On its acceleration `ω × (ω × ρ) + ω̇ × ρ` (1/s²).
+    pub(crate) bend: f64,
+    /// On the rate of that, `ω̈ × ρ + 2 ω̇ × (ω × ρ) + ω × (ω̇ × ρ) + ω × (ω × (ω × ρ))` (1/s³).
+    pub(crate) jerk: f64,
 }
 
 /// `R I⁻¹ Rᵀ ℓ` (rad/s).

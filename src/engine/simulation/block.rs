@@ -103,7 +103,7 @@ impl Roll<'_> {
         let landing = first_touch(self.settings.terrain, &tumble, left, scratch);
         let (dt, stop) = self.settings.end_of_flight(&landing, time_s);
         self.recorder.effort.leaps += 1;
-        self.recorder.fly(&path, Some(&top), dt);
+        self.recorder.fly(&path, Some(&tumble.top), dt);
         self.footing.slip.fly(dt);
         self.scars.fly(dt);
         self.moving.pose = tumble.pose(dt);

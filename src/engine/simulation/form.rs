@@ -130,13 +130,13 @@ impl RockFlight<'_> {
         }
     }
 
-    /// Largest size of `ω × (ω × ρ) + ω̇ × ρ` over the length of `ρ` (1/s²), see [`Top::bend`]; none for a sphere.
+    /// Largest size of `ω × (ω × ρ) + ω̇ × ρ` over the length of `ρ` (1/s²), see [`Top::bends`]; none for a sphere.
     ///
     /// In a step the spin is largest in its middle, and by `ω = 4 S h/(h² + u²)` with the sine `S` and the cosine `h` of a fourth of
     /// the angle and `|u| ≤ S` it changes by no more than `ω³ dt/4` per second.
     pub(super) fn bend(&self) -> Option<f64> {
         Some(match self.turning? {
-            AttitudeOnWay::Top(top) => top.bend(),
+            AttitudeOnWay::Top(top) => top.bends().bend,
             AttitudeOnWay::Step(ends) => {
                 let spin = Turned::turning(ends, 0.5).norm() / self.lasts_s;
                 spin * spin * (1.0 + 0.25 * spin * self.lasts_s)

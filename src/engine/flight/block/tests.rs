@@ -1,3 +1,4 @@
+use super::gap::Gap;
 use super::*;
 use crate::body::{Shape, Solid, box_surface, eota, sphere_points};
 use crate::math::turn;
@@ -106,4 +107,69 @@ fn no_touch_is_missed() {
     }
     assert!(touched > FLIGHTS / 2, "{touched}");
     assert!(missed == 0 && worst < 1e-6, "{missed} missed, {worst:e} m off at a touch");
+}
+
+/// By how much the line through two points is further off the one through `e` along a unit vector `w` than `ball`, times the size of `u × w`,
+/// and that.
+fn between_lines([a, b]: [Vec3; 2], (e, w): (&Vec3, &Vec3), ball: f64) -> (f64, f64) {
+    let across = (b - a).cross(w);
+    ((a - e).dot(&across).abs() - ball * across.norm(), across.norm())
+}
+
+/// Gaps of edges and of faces are nowhere less than their bounds say, and these are near to them over short times.
+#[test]
+fn gaps_are_no_less_than_their_bounds() {
+    let (terrain, blocks) = (rough(), blocks());
+    let (ahead, most, mut worst) = (FeaturesAhead::default(), 0.02, 0.0_f64);
+    let mut kept = 0;
+    for case in 0..400 {
+        let mut chance = stream(17, Purpose::Start, case);
+        let mut vector = |most: f64| Vec3::from([0; 3].map(|_| even(&mut chance, -most, most)));
+        let block = &blocks[case % blocks.len()];
+        let own = vector(9.0).component_mul(&Vec3::from(block.inertia_kg_m2));
+        let attitude = turn(&Unit::new_normalize(vector(1.0)), 2.0);
+        let (start, velocity) = (vector(1.0), vector(8.0));
+        let path = Parabola { start, velocity, gravity: 9.81, radius: block.bound_m };
+        let top = Top::new(block.inertia_kg_m2, attitude, own);
+        let tumble = Tumble { block, top, path };
+        let (moment, bends) = (tumble.moment(0.0, 1.0, &mut None), tumble.top.bends());
+        let (mut corners, mut tested) = (FlyingCorners::default(), 0);
+        corners.begin(block.core.corners.len());
+        let mut search = WindowSearch {
+            terrain: &terrain,
+            tumble: &tumble,
+            ahead: &ahead,
+            bends,
+            moment,
+            corners: &mut corners,
+            tested: &mut tested,
+        };
+        let (e, w, point) = (vector(2.0), vector(1.0).normalize(), vector(3.0));
+        let ridge = block.core.ridges[case % block.core.ridges.len()].ends.map(usize::from);
+        let face = &block.core.faces[case % block.core.faces.len()];
+        let flying = ridge.map(|k| search.flying(k));
+        let of_lines = Gap::of_lines(&flying, block.ball_m, (&e, &w), (&bends, most));
+        let turned = |own: &Vec3| search.turned(own);
+        let moving = (&search.centre(), turned);
+        let of_face = Gap::of_face((face, block.ball_m), &point, moving, (&bends, most));
+        let size = between_lines(flying.map(|end| end.p), (&e, &w), 0.0).1;
+        for share in [0.01, 0.1, 0.4, 0.7, 1.0] {
+            let pose = tumble.pose(share * most);
+            let height = (pose.attitude * face.normal).dot(&(point - pose.centre)) - face.level;
+            assert!(of_face.at_least_m(share * most) <= height - block.ball_m + 1e-9);
+            let Some(gap) = of_lines else { continue };
+            let t = share * gap.holds_s;
+            let pose = tumble.pose(t);
+            let ends = ridge.map(|k| pose.point(&block.core.corners[k]));
+            let now = between_lines(ends, (&e, &w), block.ball_m).0 / size;
+            // only where the lines have not met before
+            if gap.open_s(1e-9, gap.holds_s) >= t {
+                kept += 1;
+                assert!(gap.at_least_m(t) <= now + 1e-9, "{case}: {share} {now} {t} {gap:?}");
+                worst = worst.max(if share < 0.1 { now - gap.at_least_m(t) } else { 0.0 });
+            }
+        }
+    }
+    println!("{kept} {worst:e}");
+    assert!(kept > 1000 && worst < 1e-5, "{kept} {worst:e}");
 }

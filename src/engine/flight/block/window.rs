@@ -1,172 +1,239 @@
 //! How long the parts of a block surely keep off what is near it.
 
-use super::{BlockPart, Moment, Tumble, WindowScratch};
+use super::ahead::{Ahead, FeaturesAhead, TriangleAhead};
+use super::gap::Gap;
+use super::{Bends, BlockPart, CAUTION, Moment, Tumble};
+use crate::body::HullFace;
 use crate::contact::closest::closest_on;
-use crate::contact::neighbours::Neighbours;
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
 
 /// A gap that counts as touching (–, relative to the radius of the sphere of equal volume).
 /// A tenth of the gap at which contact begins: what is found here is a touch there.
-const TOUCHING: f64 = 1e-10;
-/// Rounding of a sum of three products, with room (–): what is skipped because it is far away must be so for certain.
-const CAUTION: f64 = 1e-12;
+pub(super) const TOUCHING: f64 = 1e-10;
 
 /// The search of a window at one moment.
 pub(super) struct WindowSearch<'a> {
     pub(super) terrain: &'a Terrain,
     pub(super) tumble: &'a Tumble<'a>,
-    pub(super) near: &'a mut Neighbours,
-    pub(super) bend: f64,
+    pub(super) ahead: &'a FeaturesAhead,
+    pub(super) bends: Bends,
     pub(super) moment: Moment,
+    pub(super) corners: &'a mut FlyingCorners,
+    /// Triangles tested so far.
+    pub(super) tested: &'a mut u64,
 }
 
 /// A corner as it flies.
-/// Position `p` (m), velocity (m/s) in the frame of the terrain.
+/// Position `p` (m), velocity (m/s) and acceleration (m/s²) in the frame of the terrain.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Flying {
-    p: Vec3,
-    velocity: Vec3,
-    /// Largest acceleration (m/s²).
+    pub(super) p: Vec3,
+    pub(super) velocity: Vec3,
+    pub(super) acceleration: Vec3,
+    /// Largest acceleration (m/s²), and largest rate of it (m/s³).
     pub(super) bend: f64,
+    pub(super) jerk: f64,
+}
+
+impl Flying {
+    const NONE: Self = Self {
+        p: Vec3::new(0.0, 0.0, 0.0),
+        velocity: Vec3::new(0.0, 0.0, 0.0),
+        acceleration: Vec3::new(0.0, 0.0, 0.0),
+        bend: 0.0,
+        jerk: 0.0,
+    };
+}
+
+/// The corners of a block in flight, worked out once a moment for all parts that ask for them.
+#[derive(Debug, Default)]
+pub(super) struct FlyingCorners {
+    /// Each corner at the time (s) at which it was last asked for.
+    known: Vec<(f64, Flying)>,
+    /// Those of a face.
+    of_face: Vec<Flying>,
+}
+
+impl FlyingCorners {
+    /// Begins another flight, of a block with so many corners.
+    pub(super) fn begin(&mut self, count: usize) {
+        self.known.clear();
+        self.known.resize(count, (f64::NAN, Flying::NONE));
+    }
 }
 
 impl WindowSearch<'_> {
-    fn flying(&self, k: usize) -> Flying {
+    /// A vector of the block's frame in that of the terrain, with its first and second rate.
+    pub(super) fn turned(&self, own: &Vec3) -> [Vec3; 3] {
+        let Moment { pose, spin, angular, .. } = &self.moment;
+        let arm = pose.attitude * own;
+        let turning = spin.cross(&arm);
+        [arm, turning, angular.cross(&arm) + spin.cross(&turning)]
+    }
+
+    /// The block's centre.
+    pub(super) fn centre(&self) -> Flying {
+        let (path, Moment { pose, velocity, .. }) = (&self.tumble.path, &self.moment);
+        let acceleration = Vec3::new(0.0, 0.0, -path.gravity);
+        let (p, velocity) = (pose.centre, *velocity);
+        Flying { p, velocity, acceleration, bend: path.gravity, jerk: 0.0 }
+    }
+
+    pub(super) fn flying(&mut self, k: usize) -> Flying {
+        let known = self.corners.known[k];
+        if known.0.to_bits() == self.moment.time_s.to_bits() {
+            return known.1;
+        }
         let own = &self.tumble.block.core.corners[k];
-        let arm = self.moment.pose.attitude * own;
-        // v + ω × ρ, and the bound g + ρ (ω_m² + α_m) on its acceleration
-        Flying {
-            p: self.moment.pose.centre + arm,
-            velocity: self.moment.velocity + self.moment.spin.cross(&arm),
-            bend: self.tumble.path.gravity + own.norm() * self.bend,
-        }
+        let ([arm, turning, bending], far, centre) = (self.turned(own), own.norm(), self.centre());
+        let flying = Flying {
+            p: centre.p + arm,
+            velocity: centre.velocity + turning,
+            acceleration: centre.acceleration + bending,
+            bend: centre.bend + far * self.bends.bend,
+            jerk: far * self.bends.jerk,
+        };
+        self.corners.known[k] = (self.moment.time_s, flying);
+        flying
     }
 
-    /// How long a corner surely keeps off a plane with unit normal `n` through `q` (s).
-    ///
-    /// `τ = 2δ/(c + √(c² + 2Bδ))` while it approaches, `(√(c² + 2Bδ) − c)/B` while it parts (`c ≤
-    /// 0`): then gravity and spin need time to turn it round. Both are the positive root of `δ − c
-    /// τ − B τ²/2 = 0`, each in the form without cancellation.
-    fn safe(&self, corner: &Flying, n: &Vec3, q: &Vec3) -> f64 {
-        let gap = n.dot(&(corner.p - q)) - self.tumble.block.ball_m;
-        let closing = -n.dot(&corner.velocity);
-        let touching = TOUCHING * self.tumble.block.radius_m;
-        // only an approach touches: a corner that has just left lies within the same gap and must
-        // be free to go
-        if closing > 0.0 && gap <= touching {
-            return 0.0;
-        }
-        let root = (closing * closing + 2.0 * corner.bend * gap.max(0.0)).sqrt();
-        if closing > 0.0 {
-            2.0 * gap / (closing + root)
-        } else if corner.bend > 0.0 {
-            (root - closing) / corner.bend
-        } else {
-            f64::INFINITY
-        }
-    }
-
-    /// Whether [`Self::safe`] is surely not less than `least` (s): the same bound without its root.
+    /// Whether nothing of the block meets a feature, and what is listed behind it, within `least` (s).
     #[inline]
-    fn keeps_off(&self, corner: &Flying, (gap, closing): (f64, f64), least: f64) -> bool {
-        let bent = 0.5 * corner.bend * least;
-        let rounding = CAUTION * (closing.abs() + bent);
-        gap > TOUCHING * self.tumble.block.radius_m && gap >= least * (closing + bent + rounding)
+    fn is_later<T>(&self, ahead: &Ahead<T>, least: f64) -> bool {
+        ahead.from_s >= self.moment.time_s + least
+    }
+
+    /// A gap that counts as touching (m).
+    fn touching(&self) -> f64 {
+        TOUCHING * self.tumble.block.radius_m
+    }
+
+    /// How long all these corners surely keep off a plane (s), no longer than `most`.
+    fn off_plane(&self, corners: &[Flying], plane: (&Vec3, &Vec3), most: f64) -> f64 {
+        let (ball, touching) = (self.tumble.block.ball_m, self.touching());
+        corners
+            .iter()
+            .fold(most, |least, corner| Gap::of_corner(corner, ball, plane).open_s(touching, least))
     }
 
     /// How long a part surely touches nothing (s), no longer than `most`.
-    pub(super) fn safe_step(
-        &mut self,
-        part: BlockPart,
-        most: f64,
-        scratch: &mut WindowScratch,
-    ) -> f64 {
+    pub(super) fn safe_step(&mut self, part: BlockPart, most: f64) -> f64 {
         match part {
-            BlockPart::Corner(k) => self.of_corner(k, most, &scratch.planes),
+            BlockPart::Corner(k) => self.of_corner(k, most),
             BlockPart::Ridge(k) => self.of_ridge(k, most),
-            BlockPart::Face(k) => self.of_face(k, most, &mut scratch.corners),
+            BlockPart::Face(k) => self.of_face(k, most),
         }
     }
 
-    fn of_corner(&mut self, k: usize, mut least: f64, planes: &[(Vec3, Vec3)]) -> f64 {
+    /// The longer of two times (s) for which a part keeps off a feature: one that is known, and what a gap that is never wider than theirs tells.
+    fn open_at_least(&self, known_s: f64, gap: Option<Gap>, most: f64) -> f64 {
+        let touching = self.touching();
+        // lines and planes may meet where edges and faces do not: that tells nothing
+        let gap = gap.filter(|gap| gap.now_m >= -touching);
+        gap.map_or(known_s, |gap| gap.open_s(touching, most).max(known_s))
+    }
+
+    fn of_corner(&mut self, k: usize, mut least: f64) -> f64 {
         let corner = self.flying(k);
-        let ball = self.tumble.block.ball_m;
-        self.near.tested += self.near.triangles().len() as u64;
-        for (&t, (a, n)) in self.near.triangles().iter().zip(planes) {
-            let (height, climbs) = (n.dot(&(corner.p - a)), n.dot(&corner.velocity));
-            let closing = if height < 0.0 { climbs } else { -climbs };
-            // the plane is never farther than the triangle
-            if self.keeps_off(&corner, (height.abs() - ball, closing), least) {
-                continue;
+        let (ball, touching) = (self.tumble.block.ball_m, self.touching());
+        for ahead in &self.ahead.triangles {
+            if self.is_later(ahead, least) {
+                break;
             }
-            let side = if height < 0.0 { -n } else { *n };
-            if self.safe(&corner, &side, a) >= least {
+            *self.tested += 1;
+            let TriangleAhead { id, a, n } = &ahead.feature;
+            let side = if n.dot(&(corner.p - a)) < 0.0 { -n } else { *n };
+            // the plane is never farther than the triangle
+            let gap = Gap::of_corner(&corner, ball, (&side, a));
+            if gap.stays_open(touching, least) || gap.open_s(touching, least) >= least {
                 continue;
             }
             // the true distance of a convex set is never less than that of its own supporting plane
             // at the nearest point
-            let q = closest_on(&self.terrain.corners_m(t), &corner.p);
+            let q = closest_on(&self.terrain.corners_m(*id), &corner.p);
             // a corner exactly on the triangle has no direction: the plane's normal on its side
             // stands in
             let n = (corner.p - q).try_normalize(0.0).unwrap_or(side);
-            least = least.min(self.safe(&corner, &n, &q));
+            least = Gap::of_corner(&corner, ball, (&n, &q)).open_s(touching, least);
         }
         least
     }
 
     /// An edge of the block: with `n` from the nearest points of two segments, the plane square to
-    /// `n` keeps both apart, and the ridge stays on its side as long as both its ends do.
-    fn of_ridge(&self, k: usize, mut least: f64) -> f64 {
+    /// `n` keeps both apart, and the ridge stays on its side as long as both its ends do. Nor do the
+    /// edges meet before the endless lines along them do.
+    fn of_ridge(&mut self, k: usize, mut least: f64) -> f64 {
         let ends = self.tumble.block.core.ridges[k].ends.map(|end| self.flying(usize::from(end)));
         let [a, b] = ends;
         let (middle, half) = ((a.p + b.p) * 0.5, 0.5 * (b.p - a.p).norm());
         let bend = a.bend.max(b.bend);
         let fastest = a.velocity.norm().max(b.velocity.norm());
-        for edge in self.near.sharp_edges() {
-            // distance of the ridge's middle to the edge less half a ridge: a lower bound without
-            // the nearest points
-            let along = edge.along.dot(&(middle - edge.a)).clamp(0.0, edge.length);
-            let room =
-                (middle - edge.a - edge.along * along).norm() - half - self.tumble.block.ball_m;
-            // far away: whatever the directions
-            if room > 0.0 && least * (fastest + 0.5 * bend * least) <= room {
+        let ball = self.tumble.block.ball_m;
+        let around = half + ball;
+        for ahead in &self.ahead.edges {
+            if self.is_later(ahead, least) {
+                break;
+            }
+            // the edge's distance from the ridge's middle less half a ridge: a lower bound without
+            // the nearest points; far away whatever the directions
+            let edge = &ahead.feature;
+            let far = (around + least * (fastest + 0.5 * bend * least)) * (1.0 + CAUTION);
+            if (middle - edge.nearest_to(&middle)).norm_squared() > far * far {
                 continue;
             }
-            let far = edge.a + edge.along * edge.length;
-            let (p, q) = nearest_of_segments((a.p, b.p), (edge.a, far));
+            let end = edge.a + edge.along * edge.length;
+            let (p, q) = nearest_of_segments((a.p, b.p), (edge.a, end));
             let Some(n) = (p - q).try_normalize(0.0) else { continue };
-            for end in &ends {
-                least = least.min(self.safe(end, &n, &q));
+            let off_plane = self.off_plane(&ends, (&n, &q), least);
+            if off_plane < least {
+                let line = (&edge.a, &edge.along);
+                let gap = Gap::of_lines(&ends, ball, line, (&self.bends, least));
+                least = self.open_at_least(off_plane, gap, least);
             }
         }
         least
     }
 
     /// A face of the block against a vertex of the mesh: nearest point over a fan of triangles,
-    /// then the bound for all corners of the face.
-    fn of_face(&self, k: usize, mut least: f64, corners: &mut Vec<Flying>) -> f64 {
-        let face = &self.tumble.block.core.faces[k];
+    /// then the bound for all corners of the face, or that of the vertex for the face's plane.
+    fn of_face(&mut self, k: usize, most: f64) -> f64 {
+        let mut corners = std::mem::take(&mut self.corners.of_face);
         corners.clear();
+        let face = &self.tumble.block.core.faces[k];
         corners.extend(face.corners.iter().map(|&k| self.flying(usize::from(k))));
+        let least = self.of_fan(face, &corners, most);
+        self.corners.of_face = corners;
+        least
+    }
+
+    fn of_fan(&self, face: &HullFace, corners: &[Flying], mut least: f64) -> f64 {
         let most = |of: fn(&Flying) -> f64| corners.iter().map(of).fold(0.0, f64::max);
         let (bend, fastest) = (most(|c| c.bend), most(|c| c.velocity.norm()));
         let middle = corners.iter().map(|c| c.p).sum::<Vec3>() / corners.len() as f64;
         let around = corners.iter().map(|c| (c.p - middle).norm_squared()).fold(0.0, f64::max);
         let skin = self.tumble.block.ball_m + TOUCHING * self.tumble.block.radius_m;
         let around = around.sqrt() * (1.0 + CAUTION) + skin;
-        for peak in self.near.peaks() {
+        for ahead in &self.ahead.peaks {
+            if self.is_later(ahead, least) {
+                break;
+            }
+            let peak = &ahead.feature;
             // far away: whatever the directions
             let far = around + least * (fastest + 0.5 * bend * least) * (1.0 + CAUTION);
-            if (peak.p - middle).norm_squared() * (1.0 - CAUTION) > far * far {
+            if (peak - middle).norm_squared() * (1.0 - CAUTION) > far * far {
                 continue;
             }
             let nearest = (1..corners.len() - 1)
-                .map(|k| closest_on(&[corners[0].p, corners[k].p, corners[k + 1].p], &peak.p))
-                .min_by(|a, b| (a - peak.p).norm_squared().total_cmp(&(b - peak.p).norm_squared()));
-            let Some(n) = nearest.and_then(|p| (p - peak.p).try_normalize(0.0)) else { continue };
-            for corner in corners.iter() {
-                least = least.min(self.safe(corner, &n, &peak.p));
+                .map(|k| closest_on(&[corners[0].p, corners[k].p, corners[k + 1].p], peak))
+                .min_by(|a, b| (a - peak).norm_squared().total_cmp(&(b - peak).norm_squared()));
+            let Some(n) = nearest.and_then(|p| (p - peak).try_normalize(0.0)) else { continue };
+            let off_plane = self.off_plane(corners, (&n, peak), least);
+            if off_plane < least {
+                let moving = (&self.centre(), |own: &Vec3| self.turned(own));
+                let of_face = (face, self.tumble.block.ball_m);
+                let gap = Gap::of_face(of_face, peak, moving, (&self.bends, least));
+                least = self.open_at_least(off_plane, Some(gap), least);
             }
         }
         least

@@ -75,16 +75,20 @@ impl ShortTurn {
             [momentum[0] / inertia[0], momentum[1] / inertia[1], momentum[2] / inertia[2]]
         };
         spins[0] = rate(momenta[0]);
+        // ℓ × I⁻¹ℓ along each axis: the product of the other two times what their moments differ by
+        let differ = |i: usize, j: usize| (inertia[i] - inertia[j]) / (inertia[i] * inertia[j]);
+        let unlike = [differ(1, 2), differ(2, 0), differ(0, 1)];
         self.terms[0] = [1.0, 0.0, 0.0, 0.0];
         let mut size = reach;
         while size > BELOW_ROUNDING && self.count < TERMS {
             let k = self.count - 1;
-            let (mut torque, mut turned) = ([0.0; 3], [0.0; 4]);
+            let (mut products, mut turned) = ([0.0; 3], [0.0; 4]);
             for j in 0..=k {
-                let ([x, y, z], [a, b, c]) = (momenta[j], spins[k - j]);
-                torque[0] += y * c - z * b;
-                torque[1] += z * a - x * c;
-                torque[2] += x * b - y * a;
+                let ([x, y, z], [x1, y1, z1]) = (momenta[j], momenta[k - j]);
+                products[0] += y * z1;
+                products[1] += z * x1;
+                products[2] += x * y1;
+                let [a, b, c] = spins[k - j];
                 let [s, i, j, k] = self.terms[j];
                 turned[0] -= i * a + j * b + k * c;
                 turned[1] += s * a + j * c - k * b;
@@ -92,7 +96,7 @@ impl ShortTurn {
                 turned[3] += s * c + i * b - j * a;
             }
             let share = 1.0 / self.count as f64;
-            momenta[self.count] = torque.map(|x| x * share);
+            momenta[self.count] = std::array::from_fn(|i| products[i] * unlike[i] * share);
             spins[self.count] = rate(momenta[self.count]);
             self.terms[self.count] = turned.map(|x| x * (0.5 * share));
             self.count += 1;

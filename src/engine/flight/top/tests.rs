@@ -143,7 +143,7 @@ fn a_short_turn_is_the_closed_form() {
                 let t = share * short.holds_s;
                 let found = short.attitude(t);
                 worst[0] = worst[0].max((found.matrix() - integrated(&top, t, 128)).norm());
-                worst[1] = worst[1].max((found.matrix() - top.attitude(t).matrix()).norm());
+                worst[1] = worst[1].max((found.matrix() - top.late(t).matrix()).norm());
             }
             assert!(short.holds_s > 0.1 * 0.99 / (41.0 * Vec3::from(spin).norm()));
         }
@@ -158,21 +158,38 @@ fn a_short_turn_is_the_closed_form() {
 
 /// No point of a body moves on a way that bends more than is said, and about a principal axis exactly so.
 #[test]
-fn the_bend_bounds_the_acceleration_of_every_point() {
+fn bends_bound_the_ways_of_all_points() {
     let starts = [Vec3::new(3.0, -4.0, 5.0), Vec3::new(0.1, 6.0, 0.1), Vec3::new(0.0, 0.0, 5.0)];
     for (start, inertia) in starts.into_iter().flat_map(|s| [(s, BOX), (s, [1.0, 3.0, 3.5])]) {
         let top = top(inertia, start);
-        let mut most = 0.0_f64;
+        let (mut most, h) = ([0.0_f64; 2], 1e-3);
         for k in 0..400 {
-            let attitude = top.attitude(0.01 * f64::from(k));
-            let turned = |off: f64| top.attitude(0.01 * f64::from(k) + off).matrix() * 1.0;
-            // central difference of the rotation: its norm is the largest acceleration over the length
-            let h = 1e-4;
-            let second = (turned(h) + turned(-h) - attitude.matrix() * 2.0) / (h * h);
-            most = most.max(second.svd(false, false).singular_values.max());
+            let attitude =
+                |steps: f64| top.attitude(0.01 * f64::from(k) + steps * h).matrix() * 1.0;
+            // central differences of the rotation: their norms are the largest of any point over its length
+            let second = attitude(1.0) - attitude(0.0) * 2.0 + attitude(-1.0);
+            let third = (attitude(0.5) - attitude(-0.5)) * 3.0 - (attitude(1.5) - attitude(-1.5));
+            for (most, difference) in most.iter_mut().zip([second / (h * h), third / (h * h * h)]) {
+                *most = most.max(difference.svd(false, false).singular_values.max());
+            }
         }
-        assert!(most <= top.bend() * (1.0 + 1e-5), "{most} {}", top.bend());
+        let bends = top.bends();
+        let shares = [most[0] / bends.bend, most[1] / bends.jerk];
         let is_steady = start.x.abs() < f64::EPSILON;
-        assert!(most > if is_steady { 0.999 } else { 0.3 } * top.bend(), "{most} {}", top.bend());
+        assert!(shares.iter().all(|share| *share <= 1.0 + 1e-5), "{shares:?}");
+        let least = if is_steady { [0.999; 2] } else { [0.3, 0.05] };
+        assert!(shares[0] > least[0] && shares[1] > least[1], "{shares:?}");
+    }
+}
+
+/// The angular acceleration is the rate of the spin.
+#[test]
+fn spin_changes_by_the_angular_acceleration() {
+    for (start, t) in [(Vec3::new(3.0, -4.0, 5.0), 0.7), (Vec3::new(1e-3, 10.0, 1e-3), 2.1)] {
+        let (top, h) = (top(BOX, start), 1e-4);
+        let spin = |t: f64| top.spin(&top.attitude(t));
+        let rate = (spin(t + h) - spin(t - h)) / (2.0 * h);
+        let found = top.angular_rad_s2(&top.attitude(t));
+        assert!((found - rate).norm() < 1e-6 * (1.0 + rate.norm()), "{found} {rate}");
     }
 }

@@ -1,0 +1,182 @@
+//! How a gap between a part of a block and a feature of the mesh changes from now on, and how long it surely stays open.
+
+use super::window::Flying;
+use super::{Bends, CAUTION};
+use crate::body::HullFace;
+use crate::rock::Vec3;
+
+/// The time sought for a bound is halved, on a scale of powers, so many times at most.
+const LOOKS: u32 = 6;
+/// A time this much shorter than one for which nothing is known is good enough (–).
+const NEAR_ENOUGH: f64 = 0.5;
+/// Edges are not followed to where they are nearer to parallel than this (–, cosine).
+const PARALLEL: f64 = 0.99;
+
+/// How long what is `gap` off a convex feature surely keeps off it (s): it is `closing` a second, and that grows by no more than `bend` a
+/// second.
+///
+/// The first positive root of `δ − c τ − B τ²/2 = 0`: `τ = 2δ/(c + √(c² + 2Bδ))` while it approaches, `(√(c² + 2Bδ) − c)/B` while it
+/// parts (`c ≤ 0`), each in the form without cancellation. Where it is turned away before it arrives there is none.
+pub(super) fn apart_s((gap, closing): (f64, f64), bend: f64) -> f64 {
+    let square = closing * closing + 2.0 * bend * gap;
+    if closing > 0.0 && square >= 0.0 {
+        2.0 * gap / (closing + square.sqrt())
+    } else if closing <= 0.0 && bend > 0.0 {
+        (square.sqrt() - closing) / bend
+    } else {
+        f64::INFINITY
+    }
+}
+
+/// A gap: after `τ` it is no less than `δ + δ' τ + ½ δ'' τ² − ⅙ J τ³`, nor than `δ + δ' τ − ½ B τ²`, for `τ` up to some time.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Gap {
+    /// `δ` (m).
+    pub(super) now_m: f64,
+    /// `δ'` (m/s).
+    pub(super) parting_m_s: f64,
+    /// `δ''` (m/s²).
+    second: f64,
+    /// `B` (m/s²).
+    bend: f64,
+    /// `J` (m/s³).
+    third: f64,
+    /// That time (s).
+    pub(super) holds_s: f64,
+}
+
+impl Gap {
+    /// Of a corner with a ball (m) round it and a plane with unit normal `n` through `q` (m).
+    #[inline]
+    pub(super) fn of_corner(corner: &Flying, ball: f64, (n, q): (&Vec3, &Vec3)) -> Self {
+        Self {
+            now_m: n.dot(&(corner.p - q)) - ball,
+            parting_m_s: n.dot(&corner.velocity),
+            second: n.dot(&corner.acceleration),
+            bend: corner.bend,
+            third: corner.jerk,
+            holds_s: f64::INFINITY,
+        }
+    }
+
+    /// Of two edges, as far as `most` (s): the distance of the endless lines along an edge of the block between two corners and along one of
+    /// the mesh from `e` (m) with a unit direction, less the radius of the ball (m) along the first. `None` where they are nearly parallel.
+    ///
+    /// With `u` along the block's edge, `w` along the mesh's, `x = a − e` and `N = |u × w|` it is `x·(u × w)/N − r`; `x·(u × w) − r N` over the present
+    /// `N` is followed, as `u` turns and `a` moves: nought when that is. `N = √(u² − z²)` with `z = u·w` curves upwards by no more than `|z z''|/N`. What a bound
+    /// by a plane takes for an approach, that one end of an edge comes nearer as it turns about where it touches, is none here.
+    pub(super) fn of_lines(
+        [a, b]: &[Flying; 2],
+        ball: f64,
+        (e, w): (&Vec3, &Vec3),
+        (bends, most): (&Bends, f64),
+    ) -> Option<Self> {
+        let (u, u1, u2) = (b.p - a.p, b.velocity - a.velocity, b.acceleration - a.acceleration);
+        let (length, z, z1, x) = (u.norm(), u.dot(w), u1.dot(w), a.p - e);
+        let (spin, turned) = (bends.spin, length * bends.bend);
+        // how long the edges are surely not parallel
+        let holds_s = ((PARALLEL * length - z.abs()) / (spin * length)).min(most);
+        if holds_s <= 0.0 {
+            return None;
+        }
+        let widest = z.abs() + spin * length * holds_s;
+        let (n, least_n) =
+            ((length * length - z * z).sqrt(), (length * length - widest * widest).sqrt());
+        let across = u.cross(w);
+        let side = 1.0_f64.copysign(x.dot(&across)) / n;
+        let (across1, across2) = (u1.cross(w), u2.cross(w));
+        let volume = [
+            x.dot(&across),
+            a.velocity.dot(&across) + x.dot(&across1),
+            a.acceleration.dot(&across) + 2.0 * a.velocity.dot(&across1) + x.dot(&across2),
+        ];
+        // bounds on |a'|, on what of x is square to w, and by the product rule on the third derivative of the numerator
+        let fastest = a.velocity.norm() + a.bend * holds_s;
+        let aside = (x - w * w.dot(&x)).norm() + fastest * holds_s;
+        let third = a.jerk * length
+            + 3.0 * a.bend * spin * length
+            + 3.0 * fastest * turned
+            + aside * length * bends.jerk;
+        Some(Self {
+            now_m: volume[0] * side - ball,
+            parting_m_s: volume[1] * side + ball * z * z1 / (n * n),
+            second: volume[2] * side - ball * widest * turned / (least_n * n),
+            bend: f64::INFINITY,
+            third: third / n,
+            holds_s,
+        })
+    }
+
+    /// Of a point (m) of the mesh and the plane of a face of a block that flies like `centre`, as far as `most` (s); the ball (m) lies on
+    /// the face. The face is turned as `turn` turns its vectors, and their rates.
+    ///
+    /// `δ = m·(p − c) − h − r` with the face's unit normal `m` and its height `h` over the centre.
+    pub(super) fn of_face(
+        (face, ball): (&HullFace, f64),
+        point: &Vec3,
+        (centre, turn): (&Flying, impl Fn(&Vec3) -> [Vec3; 3]),
+        (bends, most): (&Bends, f64),
+    ) -> Self {
+        let ([m, m1, m2], off) = (turn(&face.normal), point - centre.p);
+        let fastest = centre.velocity.norm() + centre.bend * most;
+        let third = bends.jerk * (off.norm() + fastest * most)
+            + 3.0 * (bends.bend * fastest + bends.spin * centre.bend);
+        Self {
+            now_m: m.dot(&off) - face.level - ball,
+            parting_m_s: m1.dot(&off) - m.dot(&centre.velocity),
+            second: m2.dot(&off) - 2.0 * m1.dot(&centre.velocity) - m.dot(&centre.acceleration),
+            bend: f64::INFINITY,
+            third,
+            holds_s: most,
+        }
+    }
+
+    /// What it is after `t` (s) at least (m).
+    #[cfg(test)]
+    pub(super) fn at_least_m(&self, t: f64) -> f64 {
+        self.now_m + t * (self.parting_m_s + t * (0.5 * self.second - t * self.third / 6.0))
+    }
+
+    /// `B` for so long a time (s): `J τ³/6 ≤ (J T/3) τ²/2` for `τ ≤ T`.
+    #[inline]
+    fn bend_within(&self, most: f64) -> f64 {
+        self.bend.min(self.third * most / 3.0 - self.second)
+    }
+
+    /// Whether it surely stays open for `most` (s), more than `touching` (m): as [`Gap::open_s`], without a root.
+    #[inline]
+    pub(super) fn stays_open(&self, touching: f64, most: f64) -> bool {
+        let bent = 0.5 * self.bend_within(most).max(0.0) * most;
+        let rounding = CAUTION * (self.parting_m_s.abs() + bent);
+        self.now_m > touching && self.now_m >= most * (bent - self.parting_m_s + rounding)
+    }
+
+    /// How long it surely stays open (s), no longer than `most`; not at all where it is no more than `touching` (m) and becomes less.
+    ///
+    /// A bound for a shorter time is a better one: the longest time is sought for which what is known within it reaches through it.
+    pub(super) fn open_s(&self, touching: f64, most: f64) -> f64 {
+        // only an approach touches: what has just left lies within the same gap and must be free to go
+        if self.parting_m_s < 0.0 && self.now_m <= touching {
+            return 0.0;
+        }
+        let asked = (self.now_m.max(0.0), -self.parting_m_s);
+        let within = |most: f64| apart_s(asked, self.bend_within(most)).min(most);
+        let mut fails = most.min(self.holds_s);
+        let mut safe = within(fails);
+        if safe >= fails {
+            return safe;
+        }
+        for _ in 0..LOOKS {
+            if safe >= NEAR_ENOUGH * fails {
+                break;
+            }
+            let middle = (safe * fails).sqrt();
+            let found = within(middle);
+            if found < middle {
+                fails = middle;
+            }
+            safe = safe.max(found);
+        }
+        safe
+    }
+}
