@@ -66,6 +66,7 @@ fn empty(terrain: &Terrain) -> Welded {
         edges: Edges::default(),
         zero_area: Tally::default(),
         duplicates: Tally::default(),
+        covered: Tally::default(),
         moved_corners: 0,
         splits: Splits::default(),
     }

@@ -65,6 +65,8 @@ pub struct Health {
     pub zero_area: Tally,
     /// Facets left out: same corners as an earlier one.
     pub duplicates: Tally,
+    /// Facets left out: those before cover them, within the tolerance.
+    pub covered: Tally,
     /// Triangles more than 10⁴ times as long as high.
     pub needles: Tally,
     /// Edges of three or more triangles.
@@ -116,6 +118,7 @@ impl Health {
             moved_corners: welded.moved_corners,
             zero_area: welded.zero_area.clone(),
             duplicates: welded.duplicates.clone(),
+            covered: welded.covered.clone(),
             needles: measure::needles(welded),
             non_manifold_edges: odd.non_manifold,
             border_edges: odd.borders,

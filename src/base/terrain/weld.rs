@@ -1,9 +1,9 @@
 //! Several STL soups become one mesh with shared vertices and known neighbours.
 //!
 //! Order of work: turn and scale each file, subtract the whole-metre centre of the common box (before anything is
-//! rounded), merge vertices, drop triangles without area and exact duplicates, list the edges, then split triangles on
-//! whose edges vertices of others lie. Everything follows the order of the input: the same files give the same mesh, bit
-//! for bit.
+//! rounded), merge vertices, drop triangles without area, exact duplicates and what lies on others, list the edges, then
+//! split triangles on whose edges vertices of others lie. Everything follows the order of the input: the same files give
+//! the same mesh, bit for bit.
 
 use crate::error::{Error, Result};
 use crate::parallel;
@@ -108,6 +108,8 @@ pub struct Welded {
     pub zero_area: Tally,
     /// Facets left out because a triangle with the same corners (wound either way) came before.
     pub duplicates: Tally,
+    /// Facets left out because triangles that came before cover them, within the tolerance.
+    pub covered: Tally,
     /// Corners that were moved onto a vertex up to the tolerance away.
     pub moved_corners: usize,
     /// What was done where a vertex lies on an edge.
@@ -157,6 +159,7 @@ pub(super) fn join(
         edges: Edges::default(),
         zero_area: Tally::default(),
         duplicates: Tally::default(),
+        covered: Tally::default(),
         moved_corners: 0,
         splits: Splits::default(),
     };
@@ -172,8 +175,9 @@ impl Joined {
     pub(super) fn finish(self) -> Welded {
         let Self(mut welded) = self;
         welded.list_edges();
+        welded.drop_covered();
         welded.split_at_t_junctions();
-        if welded.zero_area.count + welded.duplicates.count > 0 {
+        if welded.zero_area.count + welded.duplicates.count + welded.covered.count > 0 {
             welded.drop_unused_vertices();
         }
         welded
@@ -272,17 +276,6 @@ impl Welded {
         self.vertices_m[b as usize] - self.vertices_m[a as usize]
     }
 
-    /// Lists the edges, once triangles that are there twice are dropped.
-    fn list_edges(&mut self) {
-        self.edges = Edges::of(&self.triangles);
-        let again = self.duplicates();
-        if !again.is_empty() {
-            self.edges = Edges::default();
-            self.drop_triangles(&again);
-            self.edges = Edges::of(&self.triangles);
-        }
-    }
-
     /// Merges vertices and keeps every facet that has an area.
     fn take(&mut self, pieces: &[Piece], frame: &CommonBox) {
         let mut merger = Merger::new(self.tolerance_m, frame.size_m, 3 * frame.facets);
@@ -306,28 +299,6 @@ impl Welded {
             append(&mut self.triangles, all);
         }
         self.vertices_m = merger.into_kept_m();
-    }
-
-    /// All triangles but the first with the same three corners, wound either way; ascending.
-    fn duplicates(&self) -> Vec<u32> {
-        let third = |side: u32| {
-            let (corners, k) = (self.triangles[side as usize / 3], side as usize % 3);
-            corners[(k + 2) % 3]
-        };
-        let is_again = |t: u32| {
-            let same = |side: u32| side / 3 < t && third(side) == third(3 * t);
-            self.edges.sides_on(3 * t).any(same)
-        };
-        parallel::filter(self.triangles.len(), is_again)
-    }
-
-    fn drop_triangles(&mut self, again: &[u32]) {
-        for &t in again {
-            self.duplicates.add(self.on_map(self.corners_m(t as usize)[0]));
-        }
-        drop_at(&mut self.triangles, again);
-        drop_at(&mut self.sheet_of, again);
-        drop_at(&mut self.facet_of, again);
     }
 
     /// Vertices that only dropped triangles used go; the others keep their order.
@@ -393,7 +364,9 @@ fn nothing_left(pieces: &[Piece], welded: &Welded) -> Error {
     )
 }
 
+mod covered;
 mod numbers;
+mod repeated;
 pub mod split;
 pub mod t_junctions;
 #[cfg(test)]

@@ -134,13 +134,7 @@ pub(super) fn border_loops(welded: &Welded) -> usize {
 
 /// Triangles of each edge-connected part, the largest first.
 pub(super) fn parts(welded: &Welded) -> Vec<usize> {
-    let beside = |t: u32| {
-        let later = move |side: u32| {
-            welded.edges.sides_on(side).skip(1).take_while(move |&other| other > side)
-        };
-        (3 * t..3 * t + 3).flat_map(later).map(|side| side / 3)
-    };
-    let mut groups = Groups::joined(welded.triangles.len(), beside);
+    let mut groups = welded.parts();
     let mut sizes = groups.sizes();
     sizes.sort_unstable_by(|a, b| b.cmp(a));
     sizes

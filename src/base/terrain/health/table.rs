@@ -76,11 +76,16 @@ impl Health {
     }
 
     /// Name, tally and treatment of everything that can be wrong.
-    fn rows(&self) -> [(&'static str, &Tally, String); 7] {
+    fn rows(&self) -> [(&'static str, &Tally, String); 8] {
         let loops = format!("kept, can be hit; {} open border(s)", grouped(self.border_loops));
         [
             ("without area", &self.zero_area, "left out".into()),
             ("duplicates", &self.duplicates, "left out, the first is kept".into()),
+            (
+                "lying on others",
+                &self.covered,
+                "left out: those before cover them, within the tolerance".into(),
+            ),
             ("needles", &self.needles, "kept (more than 10 000 times as long as high)".into()),
             (
                 "edges of 3+ triangles",

@@ -203,6 +203,6 @@ proptest! {
         prop_assert!(sets.windows(2).all(|pair| pair[0] != pair[1]));
         prop_assert!(sets.iter().all(|set| set[0] < set[1] && set[1] < set[2]));
         let all = facets.len() + welded.splits.pieces - welded.splits.facets;
-        prop_assert_eq!(welded.zero_area.count + welded.duplicates.count + welded.triangles.len(), all);
+        prop_assert_eq!(welded.zero_area.count + welded.duplicates.count + welded.covered.count + welded.triangles.len(), all);
     }
 }
