@@ -263,12 +263,7 @@ impl<'a> Canvas<'a> {
 
     /// Whether no text stands in a room, nor nearer than 2 px.
     pub fn is_free(&self, frame: &PaperFrame) -> bool {
-        let near = PaperFrame {
-            left: frame.left - 2.0,
-            top: frame.top - 2.0,
-            right: frame.right + 2.0,
-            bottom: frame.bottom + 2.0,
-        };
+        let near = frame.grown(2.0);
         !self.boxes.borrow().iter().any(|taken| taken.meets(&near))
     }
 

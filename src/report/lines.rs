@@ -10,7 +10,7 @@ use super::histogram::EqualBins;
 use super::model::{BandPoint, Estimate, ReportLine, kilo};
 use super::panel::MANY;
 use super::panel::{FOOT_PX, Panel, align};
-use super::svg::path::{PaperFrame, Spot};
+use super::svg::path::{PaperFrame, Spot, clipped};
 use super::words::{Words, fill};
 use crate::hazard::INTENSITY_J;
 
@@ -75,7 +75,7 @@ pub(super) fn draw(words: &Words, line: &ReportLine) -> Drawing {
         head(canvas, &curves[0], words.energy_exceeded);
         let pair = (&line.energy_exceedance[..], behind(|at| &at.energy_exceedance));
         draw_curve(canvas, &curves[0], pair, size);
-        intensities(canvas, &curves[0], size);
+        intensities(canvas, &curves[0], line, size);
         head(canvas, &curves[1], words.height_exceeded);
         let pair = (&line.height_exceedance[..], behind(|at| &at.height_exceedance));
         draw_curve(canvas, &curves[1], pair, 1.0);
@@ -187,26 +187,46 @@ fn draw_cloud(canvas: &Canvas<'_>, panel: &Panel, line: &ReportLine, size: f64) 
     canvas.dots(&spots, if spots.len() > MANY { 1.1 } else { 2.0 }, BLUE);
     let weak = line.crossings.iter().filter(|at| at.total_j / size < panel.x.low).count();
     weaker(canvas, panel, weak);
-    for probability in MARKED {
-        let pen = Pen::full(VERMILLION, 1.2);
-        let pen = if probability < 0.9 { pen } else { pen.dashed() };
-        let of = |list: &[super::model::Quantile]| {
-            let found = list.iter().find(|q| (q.probability - probability).abs() < 1e-9);
-            found.map(|q| q.at.value).filter(|value| value.is_finite())
-        };
-        let words = format!("P{:.0}", 100.0 * probability);
-        if let Some(energy) = of(&line.energy_quantiles) {
-            panel.upright(canvas, energy / size, pen);
-            let at = panel.at(energy / size, panel.y.high);
-            name(canvas, panel, &words, [(at.0 + 3.0, at.1 + 9.0), (at.0 - 24.0, at.1 + 9.0)]);
-        }
-        if let Some(height) = of(&line.height_quantiles) {
-            panel.line(canvas, &[(panel.x.low, height), (panel.x.high, height)], pen);
-            let (x, y) = panel.at(panel.x.high, height.max(0.0));
-            name(canvas, panel, &words, [(x - 26.0, y - 8.0), (x - 26.0, y + 9.0)]);
-        }
-    }
+    percentiles(canvas, panel, line, size);
     panel.axes(canvas);
+}
+
+/// Marked percentiles of energy and height, each with its name where no other one runs through it.
+fn percentiles(canvas: &Canvas<'_>, panel: &Panel, line: &ReportLine, size: f64) {
+    let of = |list: &[super::model::Quantile], probability: f64| {
+        let found = list.iter().find(|q| (q.probability - probability).abs() < 1e-9);
+        found.map(|q| q.at.value).filter(|value| value.is_finite())
+    };
+    let upright = |energy: f64| panel.at(energy / size, panel.y.high).0;
+    let level = |height: f64| panel.at(panel.x.high, height.max(0.0)).1;
+    let energies = MARKED.map(|p| (p, of(&line.energy_quantiles, p)));
+    let heights = MARKED.map(|p| (p, of(&line.height_quantiles, p)));
+    let lines: Vec<Vec<Spot>> = (energies.iter().filter_map(|(_, e)| e.map(upright)))
+        .map(|x| vec![(x, panel.frame.top), (x, panel.frame.bottom)])
+        .chain(
+            heights
+                .iter()
+                .filter_map(|(_, h)| h.map(level))
+                .map(|y| vec![(panel.frame.left, y), (panel.frame.right, y)]),
+        )
+        .collect();
+    let pen = |probability: f64| {
+        let pen = Pen::full(VERMILLION, 1.2);
+        if probability < 0.9 { pen } else { pen.dashed() }
+    };
+    let words = |probability: f64| format!("P{:.0}", 100.0 * probability);
+    for (p, energy) in energies {
+        let Some(energy) = energy else { continue };
+        panel.upright(canvas, energy / size, pen(p));
+        let (x, y) = (upright(energy), panel.frame.top + 9.0);
+        name(canvas, panel, (&words(p), &[(x + 3.0, y), (x - 24.0, y)]), &lines);
+    }
+    for (p, height) in heights {
+        let Some(height) = height else { continue };
+        panel.line(canvas, &[(panel.x.low, height), (panel.x.high, height)], pen(p));
+        let (x, y) = (panel.frame.right - 26.0, level(height));
+        name(canvas, panel, (&words(p), &[(x, y - 8.0), (x, y + 9.0)]), &lines);
+    }
 }
 
 /// How many rocks have less energy than the axis shows.
@@ -223,13 +243,18 @@ fn above(height_m: f64) -> f64 {
     if height_m < 0.0 { 0.0 } else { height_m }
 }
 
-/// Writes a word at the first place that is free.
-fn name(canvas: &Canvas<'_>, panel: &Panel, words: &str, places: [Spot; 2]) {
-    let labels = places.map(|at| Label::new(words, at).coloured(INK));
-    let free =
-        |label: &&Label| panel.frame.contains(&label.frame()) && canvas.is_free(&label.frame());
-    if let Some(label) = labels.iter().find(free) {
-        canvas.text_on_rim(label);
+/// Writes a word at the first place where no text stands and none of some lines runs.
+fn name(canvas: &Canvas<'_>, panel: &Panel, (words, places): (&str, &[Spot]), lines: &[Vec<Spot>]) {
+    let labels = places.iter().map(|&at| Label::new(words, at).coloured(INK));
+    // its white rim would cover them
+    let is_clear =
+        |room: PaperFrame| lines.iter().all(|line| clipped(line, &room.grown(1.8)).is_empty());
+    let is_free = |label: &Label| {
+        let room = label.frame();
+        panel.frame.contains(&room) && canvas.is_free(&room) && is_clear(room)
+    };
+    if let Some(label) = labels.into_iter().find(is_free) {
+        canvas.text_on_rim(&label);
     }
 }
 
@@ -257,18 +282,22 @@ fn draw_curve(
     panel.axes(canvas);
 }
 
-/// The limits between weak, medium and strong.
-fn intensities(canvas: &Canvas<'_>, panel: &Panel, size: f64) {
+/// The limits between weak, medium and strong, each named beside its line where no curve runs.
+fn intensities(canvas: &Canvas<'_>, panel: &Panel, line: &ReportLine, size: f64) {
+    let behind = line.behind.iter().map(|behind| &behind.energy_exceedance);
+    let curves = std::iter::once(&line.energy_exceedance).chain(behind).map(|curve| {
+        let shown = curve.iter().filter(|p| p.x > 0.0 && p.y.value > 0.0);
+        shown.map(|p| panel.at(p.x / size, p.y.value)).collect()
+    });
+    let curves: Vec<Vec<Spot>> = curves.collect();
+    let (top, bottom) = (panel.frame.top + 9.0, panel.frame.bottom - 9.0);
     for limit in INTENSITY_J {
         panel.upright(canvas, limit / size, Pen::full(GREY, 0.8).dotted());
-        let (x, y) = panel.at(limit / size, panel.y.high);
+        let (x, _) = panel.at(limit / size, panel.y.high);
         let words = format!("{:.0}\u{2009}kJ", limit / 1e3);
-        name(
-            canvas,
-            panel,
-            &words,
-            [(x + 3.0, y + 9.0), (x - text_width(&words, SMALL) - 3.0, y + 9.0)],
-        );
+        let before = x - text_width(&words, SMALL) - 3.0;
+        let places = [(x + 3.0, top), (before, top), (x + 3.0, bottom), (before, bottom)];
+        name(canvas, panel, (&words, &places), &curves);
     }
 }
 

@@ -9,11 +9,14 @@ use super::canvas::{Canvas, Label, NORMAL, Pen, SMALL, bold_width, fitted, paint
 use super::colour::{self, INK, ORANGE, SKY, VERMILLION};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
-use super::model::{CellMap, Report, energy_unit};
+use super::model::{CellMap, MapMark, Report, energy_unit};
 use super::panel::{FOOT_PX, Panel};
 use super::plan_view::ground::Shaded;
 use super::profile::NEEDS;
-use super::site;
+use super::site::{
+    self,
+    names::{Key, Names},
+};
 use super::svg::path::{PaperFrame, Spot};
 use super::words::fill;
 use super::words::open::missing;
@@ -23,6 +26,10 @@ use plotters::style::RGBColor;
 const TOP_PX: f64 = 24.0;
 /// Height of one line of a key (px).
 const KEY_PX: f64 = 16.0;
+/// Gap between the key of the colours and that of the numbers (px).
+const KEY_GAP_PX: f64 = 4.0;
+/// Least side of a cell in which rocks lie (px): most of them are alone, and a finer one is not seen.
+const DEPOSIT_PX: f64 = 2.4;
 const TALLEST_PX: f64 = 300.0;
 /// Upper ends of the classes of a share of the releases (–).
 const SHARES: [f64; 5] = [0.001, 0.01, 0.1, 0.3, 1.0];
@@ -36,6 +43,8 @@ struct ClassedMap {
     title: String,
     cells: Vec<(u32, usize)>,
     classes: Vec<(String, RGBColor)>,
+    /// Least side of a cell on paper (px).
+    least_px: f64,
 }
 
 impl ClassedMap {
@@ -48,6 +57,7 @@ impl ClassedMap {
             title: format!("{title} (%)"),
             cells: values.iter().map(|&(cell, v)| (cell, class(v).unwrap_or(4))).collect(),
             classes: classes.map(|(k, limit)| (name(*limit), shade(k))).collect(),
+            least_px: 0.0,
         }
     }
 
@@ -58,6 +68,7 @@ impl ClassedMap {
             title: title.to_owned(),
             cells: values.iter().map(|&(cell, class)| (cell, class as usize - 1)).collect(),
             classes: names.iter().zip(INTENSITY).map(|(n, c)| ((*n).to_owned(), c)).collect(),
+            least_px: 0.0,
         }
     }
 
@@ -83,6 +94,7 @@ impl ClassedMap {
             title: format!("{title} ({unit})"),
             cells: values.iter().map(|&(cell, v)| (cell, class(v))).collect(),
             classes: (0..CLASSES).map(|k| (name(k), shade(k))).collect(),
+            least_px: 0.0,
         }
     }
 
@@ -95,6 +107,7 @@ impl ClassedMap {
             title: title.to_owned(),
             cells: values.iter().map(|&(cell, v)| (cell, class(v))).collect(),
             classes: names.iter().enumerate().map(|(k, n)| ((*n).to_owned(), shade(k))).collect(),
+            least_px: DEPOSIT_PX,
         }
     }
 }
@@ -189,13 +202,20 @@ fn draw_layers(
     layers: &[ClassedMap],
 ) -> String {
     let (panels, bottom) = panels(report, maps, layers);
-    paint(name, (WIDTH_PX, bottom), title, |canvas| {
+    let said = |mark: &MapMark, width: f64| fitted(&mark.name, SMALL, width);
+    // all panels have one extent and scale: names that are clear in one are clear in all
+    let is_clear = panels.first().is_none_or(|panel| Names::of(panel, report, &said).is_clear());
+    let left = panels.first().map_or(0.0, |panel| panel.frame.left);
+    let marks = if is_clear { Key::default() } else { Key::of(report, &said, WIDTH_PX - left) };
+    let room = if is_clear { 0.0 } else { marks.height_px() + KEY_GAP_PX };
+    paint(name, (WIDTH_PX, bottom + room), title, |canvas| {
+        marks.draw(canvas, (left, bottom + KEY_GAP_PX));
         for (k, (panel, layer)) in panels.iter().zip(layers).enumerate() {
             let at = (panel.frame.left, panel.frame.top - 9.0);
             let title = short_title(&layer.title, panel.frame.left);
             canvas.text(&Label::new(title, at).bold().sized(NORMAL));
-            let names =
-                site::places(canvas, panel, report, |mark, width| fitted(&mark.name, SMALL, width));
+            let names = Names::of(panel, report, &said);
+            names.keep(canvas);
             canvas.clip(&format!("part{k}"), &panel.frame, || {
                 if let Some(shaded) = ground {
                     shaded.draw(canvas, panel);
@@ -205,7 +225,7 @@ fn draw_layers(
                 }
                 site::zones(canvas, panel, report);
                 site::marks(canvas, panel, report);
-                site::names(canvas, &names);
+                names.write(canvas);
             });
             if layer.cells.is_empty() {
                 panel.nothing(canvas, report.words().no_rock);
@@ -289,8 +309,16 @@ fn cells(
         let ((x0, y), (x1, _)) = (maps.centre_m(first), maps.centre_m(first + count - 1));
         (panel.at(x0 - half_m, y + half_m), panel.at(x1 + half_m, y - half_m))
     };
-    let bars: Vec<(Spot, Spot)> = runs.into_iter().map(corners).collect();
+    let bars: Vec<(Spot, Spot)> =
+        runs.into_iter().map(corners).map(|ends| at_least(ends, layer.least_px)).collect();
     canvas.group(r#"opacity="0.8""#, || canvas.rectangles(&bars, colour));
+}
+
+/// A rectangle about the same middle whose sides are not shorter than this (px).
+fn at_least(((x0, y0), (x1, y1)): (Spot, Spot), least_px: f64) -> (Spot, Spot) {
+    let more = |from: f64, to: f64| 0.5 * (least_px - (to - from).abs()).max(0.0);
+    let (dx, dy) = (more(x0, x1), more(y0, y1));
+    ((x0 - dx, y0 - dy), (x1 + dx, y1 + dy))
 }
 
 /// Where each entry of a key stands, from the left end and by line, and how many lines there are.

@@ -12,7 +12,10 @@ use super::model::Report;
 use super::panel::MANY;
 use super::panel::TOLERANCE_PX;
 use super::panel::{FOOT_PX, Panel};
-use super::site;
+use super::site::{
+    self,
+    names::{Key, Names},
+};
 use super::svg::path::{PaperFrame, Spot, clipped, thinned};
 use super::words::fill;
 use crate::math;
@@ -52,11 +55,18 @@ pub(super) fn draw(report: &Report) -> Drawing {
     let panel = layout(report);
     let key = furniture::MapLegend::of(report);
     let width = (panel.frame.right + RIGHT_PX).clamp(NARROWEST_PX, WIDTH_PX);
-    let height = panel.frame.bottom + FOOT_PX + key.height_px(width - KEY_LEFT_PX) + 8.0;
+    let names = Names::of(&panel, report, &site::in_words);
+    let numbered = if names.is_clear() {
+        Key::default()
+    } else {
+        Key::of(report, &site::in_words, width - KEY_LEFT_PX)
+    };
+    let below = panel.frame.bottom + FOOT_PX + key.height_px(width - KEY_LEFT_PX) + 8.0;
+    let height = below + numbered.height_px();
     let fastest = fastest_m_s(report);
     let mut contours = None;
     let svg = paint("plan", (width, height), words.plan_title, |canvas| {
-        let names = site::places(canvas, &panel, report, site::in_words);
+        names.keep(canvas);
         canvas.clip("map", &panel.frame, || {
             if let Some(ground) = &report.ground {
                 contours = ground::draw(canvas, &panel, ground, &site::outline(&panel, report));
@@ -68,7 +78,7 @@ pub(super) fn draw(report: &Report) -> Drawing {
             if let Some(contours) = &contours {
                 contours.labels(canvas);
             }
-            site::names(canvas, &names);
+            names.write(canvas);
         });
         if report.releases.is_empty() && report.ground.is_none() {
             panel.nothing(canvas, words.no_release_no_ground);
@@ -76,6 +86,7 @@ pub(super) fn draw(report: &Report) -> Drawing {
         panel.axes(canvas);
         furniture::draw(canvas, &panel, (fastest, !report.paths.is_empty()), words);
         key.draw(canvas, (KEY_LEFT_PX, panel.frame.bottom + FOOT_PX + 4.0));
+        numbered.draw(canvas, (KEY_LEFT_PX, below - 4.0));
     });
     let interval = contours.map_or(String::new(), |c| {
         fill(words.contour_interval, &[("m", &format::plain(c.interval_m))])

@@ -1,11 +1,13 @@
-//! What stands on the map beside the rocks: release zone, evaluation lines and barriers, with their names.
+//! What stands on the map beside the rocks: release zone, evaluation lines and barriers.
 
-use super::canvas::{Canvas, Label, Pen, SMALL, fitted, text_width};
+pub(super) mod names;
+
+use super::canvas::{Canvas, Pen, SMALL, fitted, text_width};
 use super::colour::{GREEN, INK, WHITE};
 use super::format;
 use super::model::{MapMark, Report, ReportQuantity};
 use super::panel::Panel;
-use super::svg::path::{PaperFrame, Spot, clipped};
+use super::svg::path::{Spot, clipped};
 use crate::math;
 use crate::output::ReleaseZone;
 
@@ -17,10 +19,6 @@ const ZONE: Pen = Pen::full(INK, 1.2).dashed();
 const TOOTH_PX: (f64, f64) = (9.0, 4.0);
 /// More release points than this are told by their key alone.
 const MOST_POINTS: usize = 200;
-/// A shorter end of a line that looks into the frame has no name: it would be read as that of another one (px).
-const LEAST_NAMED_PX: f64 = 16.0;
-/// Gap between a line and its name (px).
-const GAP_PX: f64 = 8.0;
 
 /// Draws the zones of release.
 pub(super) fn zones(canvas: &Canvas<'_>, panel: &Panel, report: &Report) {
@@ -125,132 +123,6 @@ pub(super) fn size(height_m: f64, capacity_j: f64) -> String {
     let (unit, size) = ReportQuantity::Total.unit(capacity_j);
     let capacity = format::significant(capacity_j / size, 3);
     format!("{}\u{2009}m, {capacity}\u{2009}{unit}", format::plain(height_m))
-}
-
-/// A name and, where it stands farther from its line, the stroke that leads there.
-pub(super) struct PlacedName {
-    label: Label,
-    stroke: Option<[Spot; 2]>,
-}
-
-/// Finds room for the names of lines and barriers and keeps it free; they are drawn with [`names`] when all else is.
-/// `said` gives the words of each that fit a width (px).
-pub(super) fn places(
-    canvas: &Canvas<'_>,
-    panel: &Panel,
-    report: &Report,
-    said: impl Fn(&MapMark, f64) -> String,
-) -> Vec<PlacedName> {
-    let inner = PaperFrame {
-        left: panel.frame.left + 3.0,
-        right: panel.frame.right - 3.0,
-        top: panel.frame.top + 3.0,
-        bottom: panel.frame.bottom - 3.0,
-    };
-    let place = |mark: &MapMark| {
-        let words = said(mark, 0.6 * panel.frame.width());
-        let colour = if mark.barrier.is_some() { super::colour::DARK_GREEN } else { INK };
-        let styled =
-            |name: PlacedName| PlacedName { label: name.label.bold().coloured(colour), ..name };
-        let is_free = |name: &PlacedName| {
-            let room = name.label.frame();
-            inner.contains(&room)
-                && canvas.is_free(&room)
-                && name.stroke.is_none_or(|stroke| canvas.is_free(&around(stroke)))
-        };
-        // a name on another's line would be read as that one's
-        let others = |name: &PlacedName| {
-            let of_others = report.marks.iter().filter(|other| other.name != mark.name);
-            of_others.filter(|other| crosses(panel, other, &name.label.frame())).count()
-        };
-        let candidates = candidates(panel, mark, &words).into_iter().map(styled);
-        let found = candidates.filter(is_free).min_by_key(others)?;
-        canvas.take(found.label.frame());
-        if let Some(stroke) = found.stroke {
-            canvas.take(around(stroke));
-        }
-        Some(found)
-    };
-    report.marks.iter().filter_map(place).collect()
-}
-
-/// Room of an upright stroke.
-fn around([from, to]: [Spot; 2]) -> PaperFrame {
-    let (top, bottom) = (from.1.min(to.1), from.1.max(to.1));
-    PaperFrame { left: from.0 - 0.5, right: from.0 + 0.5, top, bottom }
-}
-
-/// Places for the name of a mark, the nearest first.
-fn candidates(panel: &Panel, mark: &MapMark, words: &str) -> Vec<PlacedName> {
-    let parts = on_paper(panel, mark);
-    let corners = || mark.corners_m.iter().map(|&[x, y]| panel.at(x, y));
-    let is_whole = corners().all(|corner| panel.frame.holds(corner));
-    let named = parts.iter().filter(|part| is_whole || length(part) > LEAST_NAMED_PX);
-    let near = named.clone().flat_map(|part| beside(part, words));
-    let near = near.map(|label| PlacedName { label, stroke: None });
-    near.chain(named.flat_map(|part| farther(part, words))).collect()
-}
-
-/// Distances from a line at which a name with a stroke may stand (px).
-const FARTHER_PX: [f64; 5] = [22.0, 36.0, 50.0, 64.0, 78.0];
-
-/// Places for a name above and below both ends and the middle, each with an upright stroke to the line.
-fn farther(part: &[Spot], words: &str) -> Vec<PlacedName> {
-    let (Some(&first), Some(&last)) = (part.first(), part.last()) else { return Vec::new() };
-    let middle = (0.5 * (first.0 + last.0), 0.5 * (first.1 + last.1));
-    let middle = if part.len() > 2 { part[part.len() / 2] } else { middle };
-    let steps = FARTHER_PX.into_iter().flat_map(|by| [-by, by]);
-    let at = |by: f64| {
-        [middle, first, last].into_iter().flat_map(move |(x, y)| {
-            let label = || Label::new(words, (x, y + by));
-            let stroke = Some([(x, y), (x, y + by - 7.0 * by.signum())]);
-            [label().centred(), label(), label().right()].map(|label| PlacedName { label, stroke })
-        })
-    };
-    steps.flat_map(at).collect()
-}
-
-fn length(part: &[Spot]) -> f64 {
-    part.windows(2).map(|pair| math::hypot(pair[1].0 - pair[0].0, pair[1].1 - pair[0].1)).sum()
-}
-
-/// Whether a mark runs through a room.
-fn crosses(panel: &Panel, mark: &MapMark, room: &PaperFrame) -> bool {
-    on_paper(panel, mark).iter().any(|part| !clipped(part, room).is_empty())
-}
-
-/// Places for a name: above and below both ends and the middle, and beyond both ends.
-fn beside(part: &[Spot], words: &str) -> Vec<Label> {
-    let (Some(&first), Some(&last)) = (part.first(), part.last()) else { return Vec::new() };
-    let (left, right) = if first.0 <= last.0 { (first, last) } else { (last, first) };
-    let middle = part[part.len() / 2];
-    let at = |(x, y): Spot, by: f64| Label::new(words, (x, y + by));
-    let beyond = [at((right.0 + 6.0, right.1), 0.0), at((left.0 - 6.0, left.1), 0.0).right()];
-    [-GAP_PX, GAP_PX]
-        .into_iter()
-        .flat_map(|by| {
-            [
-                at((right.0 - 4.0, right.1), by).right(),
-                at((left.0 + 4.0, left.1), by),
-                at(middle, by).centred(),
-                at((middle.0 + 6.0, middle.1), by),
-                at((middle.0 - 6.0, middle.1), by).right(),
-            ]
-        })
-        .chain(beyond)
-        .collect()
-}
-
-/// Writes the names.
-pub(super) fn names(canvas: &Canvas<'_>, names: &[PlacedName]) {
-    for stroke in names.iter().filter_map(|name| name.stroke) {
-        canvas.line(&stroke, Pen { opacity: 0.8, ..Pen::full(WHITE, 2.8) });
-        canvas.line(&stroke, Pen::full(INK, 0.8));
-        canvas.disc(stroke[0], 1.8, INK);
-    }
-    for name in names {
-        canvas.text_on_rim(&name.label);
-    }
 }
 
 /// A short piece of each kind of mark, for a key.

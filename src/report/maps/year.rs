@@ -68,6 +68,7 @@ fn periods(title: String, year: &YearCells) -> ClassedMap {
         title,
         cells: year.frequencies.iter().map(|&(cell, value)| (cell, class(value))).collect(),
         classes: (0..=last).filter(|_| last > 0).map(|k| (name(k), shade(k))).collect(),
+        least_px: 0.0,
     }
 }
 
@@ -83,6 +84,7 @@ fn of_slopes(title: &str, values: &[(u32, f64)]) -> ClassedMap {
         title: title.to_owned(),
         cells: values.iter().map(|&(cell, value)| (cell, class(value))).collect(),
         classes: SLOPE_COLOURS.iter().enumerate().map(|(k, c)| (name(k), *c)).collect(),
+        least_px: 0.0,
     }
 }
 
@@ -100,5 +102,6 @@ fn of_levels(title: String, values: &[(u32, f64)]) -> ClassedMap {
             .enumerate()
             .map(|(k, level)| (level.to_string(), shade(k)))
             .collect(),
+        least_px: 0.0,
     }
 }

@@ -3,7 +3,7 @@
 use crate::math;
 use crate::report::axis::round_step;
 use crate::report::canvas::{Canvas, Label, Pen, text_width};
-use crate::report::colour::{GREEN, WHITE};
+use crate::report::colour::{GREEN, GREY, WHITE};
 use crate::report::contour::Field;
 use crate::report::format;
 use crate::report::hillshade;
@@ -57,7 +57,7 @@ pub(in crate::report) fn draw(
 ) -> Option<Contours> {
     canvas.fragment(&picture(panel, ground));
     let contours = contours((canvas, avoided), panel, ground);
-    trees(canvas, panel, ground);
+    trees(canvas, panel, ground, GREEN);
     contours
 }
 
@@ -85,7 +85,8 @@ impl<'g> Shaded<'g> {
             pictures.len() - 1
         });
         canvas.fragment(&pictures[at].1);
-        trees(canvas, panel, self.ground);
+        // cells of a map are green too
+        trees(canvas, panel, self.ground, GREY);
     }
 }
 
@@ -247,7 +248,7 @@ fn label_lines(
 }
 
 /// Stems: discs where they are small on paper, outlines where they are large.
-fn trees(canvas: &Canvas<'_>, panel: &Panel, ground: &GroundRaster) {
+fn trees(canvas: &Canvas<'_>, panel: &Panel, ground: &GroundRaster, colour: RGBColor) {
     let cell_px = ground.cell_m / (panel.x.high - panel.x.low) * panel.frame.width();
     let mut discs: BTreeMap<u32, Vec<Spot>> = BTreeMap::new();
     let mut large = vec![false; ground.trees.len()];
@@ -269,12 +270,17 @@ fn trees(canvas: &Canvas<'_>, panel: &Panel, ground: &GroundRaster) {
     }
     for (tenths, spots) in &discs {
         canvas.dots(spots, f64::from(*tenths) / 10.0 + 0.5, WHITE);
-        canvas.dots(spots, f64::from(*tenths) / 10.0, GREEN);
+        canvas.dots(spots, f64::from(*tenths) / 10.0, colour);
     }
-    outlines(canvas, panel, ground, &large);
+    outlines((canvas, panel), ground, &large, colour);
 }
 
-fn outlines(canvas: &Canvas<'_>, panel: &Panel, ground: &GroundRaster, large: &[bool]) {
+fn outlines(
+    (canvas, panel): (&Canvas<'_>, &Panel),
+    ground: &GroundRaster,
+    large: &[bool],
+    colour: RGBColor,
+) {
     if !large.contains(&true) {
         return;
     }
@@ -293,7 +299,7 @@ fn outlines(canvas: &Canvas<'_>, panel: &Panel, ground: &GroundRaster, large: &[
         };
         let outline: Vec<Spot> = line.iter().map(place).collect();
         if outline.iter().any(|&spot| panel.frame.holds(spot)) {
-            canvas.polygon(&outline, GREEN, 0.85);
+            canvas.polygon(&outline, colour, 0.85);
         }
     }
 }

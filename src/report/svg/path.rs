@@ -20,6 +20,17 @@ pub struct PaperFrame {
 }
 
 impl PaperFrame {
+    /// The same with so much more on every side (px), less where it is negative.
+    #[must_use]
+    pub fn grown(&self, by_px: f64) -> Self {
+        Self {
+            left: self.left - by_px,
+            top: self.top - by_px,
+            right: self.right + by_px,
+            bottom: self.bottom + by_px,
+        }
+    }
+
     /// Width (px).
     pub fn width(&self) -> f64 {
         self.right - self.left

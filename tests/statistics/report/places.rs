@@ -189,3 +189,56 @@ fn bars_along_a_line_weigh_its_rocks() {
     // twelve of 5 m
     assert_eq!((bars(1.0), bars(0.0)), (12, 6));
 }
+
+/// Lines that lie close to each other have numbers, whose names stand once below the maps; where there is room the names
+/// themselves stand in each map.
+#[test]
+fn names_that_would_be_read_as_those_of_other_lines_are_numbers() {
+    let marks = |apart_m: f64| -> Vec<MapMark> {
+        let line = |k: usize| MapMark {
+            name: format!("parcel boundary {}", 1370 + k),
+            corners_m: [20.0, 120.0]
+                .map(|x| [EAST_M + x, NORTH_M + 5.0 + apart_m * k as f64])
+                .into(),
+            barrier: None,
+        };
+        (0..9).map(line).collect()
+    };
+    let said = |apart_m: f64, file: &str| {
+        let report = Report { marks: marks(apart_m), ..site() };
+        let drawn = rockfall::report::drawings(&report);
+        let (_, drawing) =
+            drawn.into_iter().find(|(heading, _)| heading.file == file).expect("is drawn");
+        let rim = drawing.svg.matches("stroke=\"#fff\" stroke-width=\"30\"").count();
+        (
+            drawing.svg.matches("parcel boundary 1374").count(),
+            drawing.svg.contains(">5</text>"),
+            rim > 0,
+        )
+    };
+    // each on its rim, in both maps
+    assert_eq!(said(16.0, "maps.svg"), (4, false, true));
+    assert_eq!(said(5.0, "maps.svg"), (1, true, true));
+    assert_eq!(said(2.0, "plan.svg"), (1, true, true));
+}
+
+/// Where the percentiles of the height lie close to each other no line runs through the name of the other one.
+#[test]
+fn a_percentile_is_not_named_on_the_line_of_another() {
+    let names = |median_m: f64| {
+        let mut report = site();
+        for line in &mut report.lines {
+            for (quantile, at) in line.height_quantiles.iter_mut().zip([median_m, 0.1]) {
+                quantile.at = Estimate::plain(at);
+            }
+        }
+        let drawn = rockfall::report::drawings(&report);
+        let (_, drawing) = drawn
+            .into_iter()
+            .find(|(heading, _)| heading.file == "line_2.svg")
+            .expect("rocks cross it");
+        ["P50", "P95"].map(|name| drawing.svg.matches(&format!("{name}</text>")).count())
+    };
+    // energy and height, each on its rim
+    assert_eq!([names(0.005), names(0.8)], [[2, 4], [4, 4]]);
+}
