@@ -103,6 +103,28 @@ fn the_tyrolean_slope_is_one_sheet_without_faults() {
     assert!(health.check().is_ok());
 }
 
+/// The terrains of the examples are sound: no gap and no overlap is named in any of them, with their trees and without.
+#[test]
+fn the_terrains_of_the_examples_have_no_gaps_and_no_overlaps() {
+    let at = |name: &str| Path::new(env!("CARGO_MANIFEST_DIR")).join("terrain").join(name);
+    for names in [
+        &["quick_slope.stl", "quick_trees.stl"][..],
+        &["valley_slope.stl", "valley_trees.stl"],
+        &["paper_slope.stl", "paper_trees.stl"],
+        &["paper_containers.stl"],
+        &["tschamut/terrain.stl"],
+        &["tyrol.stl"],
+    ] {
+        let paths: Vec<PathBuf> = names.iter().map(|name| at(name)).collect();
+        let soups: Vec<_> = paths.iter().map(|path| stl::read(path).unwrap()).collect();
+        let piece = |(path, soup)| Piece { file: path, soup, up: Up::Z, scale: 1.0, sheet: 0 };
+        let files = paths.iter().map(PathBuf::as_path);
+        let pieces: Vec<Piece> = files.zip(&soups).map(piece).collect();
+        let health = Health::of(&weld(&pieces, Vec3::zeros(), None).unwrap(), &pieces);
+        assert_eq!((health.gaps.len(), health.overlaps.len()), (0, 0), "{health}");
+    }
+}
+
 /// meshio, trimesh and numpy-stl read our text and binary files. Without Python and these programs nothing is checked.
 #[test]
 fn other_programs_read_our_files() {

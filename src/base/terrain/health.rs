@@ -1,15 +1,28 @@
 //! What is wrong with the meshes of a scene, counted and located, and what is done about it.
 
+mod gaps;
 mod measure;
+mod near;
+mod overlaps;
+mod parts;
 mod table;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod seam_tests;
+
+pub use gaps::Gap;
+pub use overlaps::Overlap;
 
 use crate::error::{Error, Result};
 use crate::rock::Vec3;
 use crate::terrain::stl::{Format, Spacing};
 use crate::terrain::weld::{Piece, Tally, Welded};
+use parts::Parts;
 use std::path::Path;
+
+/// Most gaps and overlaps that are kept.
+const MOST_NAMED: usize = 50;
 
 /// One file as it was read.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -87,6 +100,12 @@ pub struct Health {
     pub flipped_edges: Tally,
     /// Triangles of each part that shares no edge with another, the largest first.
     pub parts: Vec<usize>,
+    /// Where borders of the slope face each other across a small distance: the longest first, up to fifty.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub gaps: Vec<Gap>,
+    /// Where two parts of the slope lie over each other, a rock's radius or less apart: the largest first, up to fifty.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub overlaps: Vec<Overlap>,
     /// Lowest x, y and z (m).
     pub low_m: [f64; 3],
     /// Highest x, y and z (m).
@@ -98,14 +117,24 @@ pub struct Health {
 }
 
 impl Health {
-    /// Examines a welded terrain; `pieces` are what it was welded from.
+    /// Examines a welded terrain, all of it slope; `pieces` are what it was welded from.
     pub fn of(welded: &Welded, pieces: &[Piece]) -> Self {
-        Self::with_files(welded, FileHealth::of_all(pieces, welded.map_origin_m))
+        Self::with_files(welded, FileHealth::of_all(pieces, welded.map_origin_m), &|_| true)
     }
 
-    /// Examines a welded terrain; `files` is what there is to say of what it was welded from.
-    pub(super) fn with_files(welded: &Welded, files: Vec<FileHealth>) -> Self {
+    /// Examines a welded terrain; `files` is what there is to say of what it was welded from, `is_slope` tells triangles of
+    /// the slope from those of trees.
+    pub(super) fn with_files(
+        welded: &Welded,
+        files: Vec<FileHealth>,
+        is_slope: &(dyn Fn(u32) -> bool + Sync),
+    ) -> Self {
         let edges = &welded.edges;
+        let parts = Parts::of(welded);
+        let mut gaps = gaps::gaps(welded, &parts, is_slope);
+        gaps.truncate(MOST_NAMED);
+        let mut overlaps = overlaps::overlaps(welded, &parts, is_slope);
+        overlaps.truncate(MOST_NAMED);
         let odd = measure::odd_edges(welded);
         let [low_m, high_m] = measure::box_m(welded);
         Self {
@@ -128,7 +157,9 @@ impl Health {
             split_into: welded.splits.pieces,
             t_junctions_left: welded.splits.left.clone(),
             flipped_edges: odd.flipped,
-            parts: measure::parts(welded),
+            parts: parts.sizes,
+            gaps,
+            overlaps,
             low_m,
             high_m,
             area_m2: measure::area_m2(welded),

@@ -83,7 +83,8 @@ impl Terrain {
         drop(pieces);
         drop(soups);
         let mut welded = joined.finish();
-        let health = Health::with_files(&welded, files);
+        let is_slope = |t: u32| !sources[usize::from(welded.sheet_of[t as usize])].sheet.is_tree;
+        let health = Health::with_files(&welded, files, &is_slope);
         health.check()?;
         for (sheet, &facet) in welded.sheet_of.iter_mut().zip(&welded.facet_of) {
             if let Some(&other) = sheet_of_facet[usize::from(*sheet)].get(facet as usize) {

@@ -1,9 +1,12 @@
 //! The health of a mesh as a table for people.
 
-use super::{FileHealth, Health};
+use super::{FileHealth, Gap, Health, Overlap};
 use crate::terrain::stl::{Format, Spacing};
 use crate::terrain::weld::Tally;
 use std::fmt;
+
+/// How many gaps and overlaps are said.
+const MOST_SAID: usize = 5;
 
 impl fmt::Display for Health {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -18,8 +21,69 @@ impl fmt::Display for Health {
                 writeln!(f, "{}", places(tally))?;
             }
         }
-        Ok(())
+        named(
+            f,
+            ("gaps", "kept: wide rocks press on both borders, smaller ones fall in"),
+            &self.gaps,
+        )?;
+        named(f, ("overlaps", "kept: rocks touch both sheets"), &self.overlaps)
     }
+}
+
+/// Some of what was found, the largest first; nothing where nothing was.
+fn named(
+    f: &mut fmt::Formatter<'_>,
+    (name, handled): (&str, &str),
+    found: &[impl fmt::Display],
+) -> fmt::Result {
+    if found.is_empty() {
+        return Ok(());
+    }
+    writeln!(f, "{name:<22}{:>12}  {handled}", grouped(found.len()))?;
+    for one in found.iter().take(MOST_SAID) {
+        writeln!(f, "    {one}")?;
+    }
+    match found.len().saturating_sub(MOST_SAID) {
+        0 => Ok(()),
+        more => writeln!(f, "    and {more} smaller ones"),
+    }
+}
+
+impl fmt::Display for Gap {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [x, y, z] = self.at_m;
+        let [wide, widest] = [self.width_m, self.widest_m].map(metres);
+        let most = if wide == widest { String::new() } else { format!(" (up to {widest} m)") };
+        let length = metres(self.length_m);
+        let between = match self.parts {
+            [a, b] if a == b => format!("in part {a}"),
+            [a, b] => format!("between part {a} and part {b}"),
+        };
+        write!(f, "{wide} m wide{most}, {length} m long, {between}, near ({x:.1}, {y:.1}, {z:.1})")
+    }
+}
+
+impl fmt::Display for Overlap {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let ([x, y, z], [a, b]) = (self.at_m, self.parts);
+        let [area, low, high] = [self.area_m2, self.apart_low_m, self.apart_high_m].map(metres);
+        write!(
+            f,
+            "part {a} and part {b} over each other on {area} m², apart by {low} to {high} m, near ({x:.1}, {y:.1}, {z:.1})"
+        )
+    }
+}
+
+/// A length as far as it is known: two digits below ten, none behind the point from ten on.
+fn metres(length_m: f64) -> String {
+    let decimals = match length_m {
+        m if m >= 10.0 => 0,
+        m if m >= 1.0 => 1,
+        m if m >= 0.1 => 2,
+        m if m >= 0.01 => 3,
+        _ => 4,
+    };
+    format!("{length_m:.decimals$}")
 }
 
 impl Health {
