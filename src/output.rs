@@ -25,7 +25,7 @@ mod atomic_file;
 
 pub use crate::file::write_atomic;
 pub use calibration::{read_calibration, write_calibration};
-pub use folder::{Mode, announce_figures, check_folder, releases_in};
+pub use folder::{Mode, announce_figures, check_folder, check_writable, releases_in};
 pub use lock::FolderLock;
 pub use merge::merge;
 pub use progress::Identity;

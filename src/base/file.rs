@@ -3,7 +3,7 @@
 
 use crate::error::{Error, Result};
 use std::fs::{self, File};
-use std::io::{Read, Seek, Write};
+use std::io::{Cursor, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 
 /// Longest text a scene, a list or a table may have (bytes).
@@ -52,6 +52,19 @@ fn refuse_pointer(file: &mut File, path: &Path) -> Result<()> {
         ));
     }
     file.rewind().map_err(Error::file("read", path))
+}
+
+/// The bytes of a table, every line of which ends with a line feed alone: the reader of tables takes the second byte of another end
+/// for the beginning of the next line, whose number it then misses by one.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_table(path: &Path, longest: u64) -> Result<Cursor<Vec<u8>>> {
+    let mut bytes = read(path, longest)?;
+    let mut before = 0;
+    bytes.retain(|&byte| std::mem::replace(&mut before, byte) != b'\r' || byte != b'\n');
+    bytes.iter_mut().filter(|byte| **byte == b'\r').for_each(|byte| *byte = b'\n');
+    Ok(Cursor::new(bytes))
 }
 
 /// Reads a whole file, see [`open`].

@@ -53,6 +53,7 @@ fn fit(
     out: &Path,
     progress: impl Fn(u64),
 ) -> Result<String> {
+    output::check_writable(out)?;
     let ensemble = Ensemble::new(threads)?;
     let mut trials: Vec<(Ends, CalibrationTrial)> = Vec::new();
     let found = calibrate::calibrate(scenes, &ensemble, releases, &mut |ends, trial| {

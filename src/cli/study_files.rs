@@ -2,6 +2,7 @@
 
 use crate::ensemble::Ensemble;
 use crate::error::{Error, Result};
+use crate::output;
 use crate::plan::Plan;
 use crate::scene::Scene;
 use crate::study::scene::{Of, PERCENTS, QUANTITIES, SceneStudy};
@@ -30,6 +31,7 @@ pub(crate) struct StudyOptions {
 
 /// Studies the exact cases and says where the result is.
 pub(crate) fn exact_cases(out: &Path, done: impl Fn(&str)) -> Result<String> {
+    output::check_writable(out)?;
     let values = exact_values::values();
     let ladders = order::study();
     let studies = exact::study(done);
@@ -39,6 +41,7 @@ pub(crate) fn exact_cases(out: &Path, done: impl Fn(&str)) -> Result<String> {
 
 /// Runs the stiff and extreme cases; says how many bounds are kept, and whether all are.
 pub(crate) fn stability(out: &Path, done: impl Fn(&str) + Sync) -> Result<(String, bool)> {
+    output::check_writable(out)?;
     let outcomes = stability::study(&done);
     let maps = Map::all();
     done("map of stiffness against step");
@@ -70,6 +73,7 @@ pub(crate) fn conservation(
     (releases, threads): (Option<usize>, Option<usize>),
     done: impl Fn(&str),
 ) -> Result<(String, bool)> {
+    output::check_writable(out)?;
     let mut asked = Scene::read(scene)?;
     asked.refuse_world("`study stability`")?;
     asked.release.count = releases.unwrap_or(asked.release.count);
@@ -95,6 +99,7 @@ pub(crate) fn conservation(
 
 /// Studies a scene and says what was found in a few sentences.
 pub(crate) fn scene_errors(options: &StudyOptions, done: impl Fn(String)) -> Result<String> {
+    output::check_writable(&options.out)?;
     let mut asked = Scene::read(&options.scene)?;
     asked.refuse_world("`study error`")?;
     asked.release.count = options.releases.unwrap_or(asked.release.count);

@@ -100,7 +100,7 @@ impl ObservedPath {
             let remedy = "write numbers in the columns release_x_m, release_y_m, x_m, y_m";
             Error::input(path, format!("line {line}"), why.to_string(), remedy)
         };
-        let file = file::open(path, LONGEST_TEXT)?;
+        let file = file::read_table(path, LONGEST_TEXT)?;
         let mut reader = csv::Reader::from_reader(file);
         let way = |row: Measured| Self {
             start_m: [row.release_x_m, row.release_y_m],
@@ -135,7 +135,7 @@ impl ObservedPath {
     /// # Errors
     /// A file that cannot be read.
     pub fn read_blocks(path: &Path) -> Result<Vec<String>> {
-        let file = file::open(path, LONGEST_TEXT)?;
+        let file = file::read_table(path, LONGEST_TEXT)?;
         let rows = csv::Reader::from_reader(file).into_deserialize();
         let blocks = rows.map(|row: csv::Result<BlockColumn>| row.ok().map(|thrown| thrown.block));
         Ok(blocks.collect::<Option<_>>().unwrap_or_default())

@@ -88,6 +88,15 @@ pub fn check_folder(dir: &Path, identity: &Identity, mode: Mode) -> Result<()> {
     if mode == Mode::Fresh {
         claimed(dir, identity, mode)?;
     }
+    check_writable(dir)
+}
+
+/// Refuses a folder that cannot be made or written, before hours of work for it; leaves no trace.
+///
+/// # Errors
+///
+/// If a file stands in its place, it cannot be written, or another process is writing into it.
+pub fn check_writable(dir: &Path) -> Result<()> {
     FolderLock::on(dir).map(drop)
 }
 

@@ -224,6 +224,23 @@ fn results_that_cannot_be_written_are_refused() {
     assert!({ went_on }.status().unwrap().success());
 }
 
+/// Studies and fits ask for their folder before they compute, not after hours.
+#[test]
+fn a_folder_that_cannot_be_made_is_refused_before_the_work() {
+    for words in [
+        &["study", "error"][..],
+        &["study", "error", "examples/quick.toml"],
+        &["study", "stability"],
+        &["study", "stability", "examples/quick.toml"],
+        &["calibrate", "examples/tschamut.toml"],
+    ] {
+        let answer = rockfall(&[words, &["--out", "Cargo.toml"]].concat());
+        assert!(answer.stdout.is_empty(), "{words:?} has begun");
+        let said = refusal(answer);
+        assert!(said.starts_with("Cargo.toml: cannot create: "), "{words:?}: {said}");
+    }
+}
+
 /// Requests that do not fit together end like wrong scenes: status 2, words, no panic.
 #[test]
 fn wrong_requests_are_refused() {

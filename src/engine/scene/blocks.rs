@@ -82,7 +82,7 @@ pub(super) fn read(
 ) -> Result<Vec<BlockRow>> {
     let wrong =
         |line: u64, found: String| Error::input(path, format!("line {line}"), found, REMEDY);
-    let file = file::open(path, LONGEST_TEXT)?;
+    let file = file::read_table(path, LONGEST_TEXT)?;
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(file);
     let headers = reader.headers().cloned().unwrap_or_default();
     let columns = BlockColumns::of(&headers, has_height).map_err(|found| wrong(1, found))?;

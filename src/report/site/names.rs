@@ -14,8 +14,10 @@ const LEAST_NAMED_PX: f64 = 16.0;
 const GAP_PX: f64 = 8.0;
 /// Free room around a name (px).
 const APART_PX: f64 = 2.0;
-/// A name farther from its own line is read as that of another one that runs within this of it (px).
-const READ_PX: f64 = 7.0;
+/// The same before and behind: two numbers side by side are not one.
+const ASIDE_PX: f64 = 7.0;
+/// A name is read as that of another line that runs within this of it (px): beside its own line, and farther from it.
+const READ_PX: [f64; 2] = [1.5, 7.0];
 /// Height of a line of the key, and gap between its entries (px).
 const KEY_PX: (f64, f64) = (15.0, 18.0);
 /// Gap between a number and its name in the key (px).
@@ -108,7 +110,12 @@ impl PlacedName {
     }
 
     fn is_free(&self, panel: &Panel, taken: &[PaperFrame]) -> bool {
-        let is_free = |room: PaperFrame| !taken.iter().any(|t| t.meets(&room.grown(APART_PX)));
+        let is_free = |room: PaperFrame| {
+            let PaperFrame { left, right, top, bottom } = room.grown(APART_PX);
+            let aside = ASIDE_PX - APART_PX;
+            let around = PaperFrame { left: left - aside, right: right + aside, top, bottom };
+            !taken.iter().any(|t| t.meets(&around))
+        };
         panel.frame.grown(-3.0).contains(&self.label.frame()) && self.rooms().all(is_free)
     }
 
@@ -117,8 +124,10 @@ impl PlacedName {
         let others = || report.marks.iter().filter(|other| other.name != mark.name);
         let through =
             |room: &PaperFrame| others().filter(|other| crosses(panel, other, room)).count();
-        let Some(stroke) = self.stroke else { return [through(&room), 0, 0] };
-        [through(&room), through(&room.grown(READ_PX)), through(&around(stroke))]
+        let Some(stroke) = self.stroke else {
+            return [through(&room), through(&room.grown(READ_PX[0])), 0];
+        };
+        [through(&room), through(&room.grown(READ_PX[1])), through(&around(stroke))]
     }
 }
 

@@ -107,7 +107,7 @@ pub fn read_list(path: &Path) -> Result<TreeList> {
     if gis::begins_like_drawing(&file::head(path)?) {
         return read_drawn(path);
     }
-    let file = file::open(path, LONGEST_TEXT)?;
+    let file = file::read_table(path, LONGEST_TEXT)?;
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(file);
     let header = |found: String| Error::input(path, "line 1", found, REMEDY);
     let headers = reader.headers().map_err(|why| header(format!("found {why}")))?.clone();
