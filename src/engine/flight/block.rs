@@ -19,7 +19,7 @@
 //! window, most of them in the last window before the touch.
 
 mod ahead;
-mod gap;
+mod clearance;
 mod window;
 
 use super::top::{Bends, ShortTurn, Top};
@@ -46,6 +46,10 @@ const SHORTEST_WINDOW: f64 = 0.1;
 
 /// Rounding of a sum of three products, with room (–): what is skipped because it is far away must be so for certain.
 const CAUTION: f64 = 1e-12;
+
+/// A gap that counts as touching (–, relative to the radius of the sphere of equal volume).
+/// A tenth of the gap at which contact begins: what is found here is a touch there.
+const TOUCHING: f64 = 1e-10;
 
 /// A block in free flight.
 #[derive(Debug)]

@@ -132,17 +132,6 @@ pub(super) fn border_loops(welded: &Welded) -> usize {
     groups.sizes().len()
 }
 
-<<<<<<< HEAD
-/// Triangles of each edge-connected part, the largest first.
-pub(super) fn parts(welded: &Welded) -> Vec<usize> {
-    let mut groups = welded.parts();
-    let mut sizes = groups.sizes();
-    sizes.sort_unstable_by(|a, b| b.cmp(a));
-    sizes
-}
-
-=======
->>>>>>> 14027579 (The plan names gaps and overlaps of the slope's meshes, with size and place: border edges and parts alone do not tell them from outlines and trees)
 /// Surface of all triangles (m²).
 pub(super) fn area_m2(welded: &Welded) -> f64 {
     let mut areas = vec![0.0; AT_ONCE.min(welded.triangles.len())];

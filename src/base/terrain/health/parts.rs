@@ -1,7 +1,6 @@
 //! Which part of the mesh a triangle belongs to: what shares edges hangs together.
 
 use crate::parallel;
-use crate::terrain::groups::Groups;
 use crate::terrain::weld::Welded;
 
 /// Steepest triangles that make a sheet, as cosine of their inclination (–): 80°. The rim of a wall or a stem looks nowhere.
@@ -17,13 +16,7 @@ pub(super) struct Parts {
 
 impl Parts {
     pub(super) fn of(welded: &Welded) -> Self {
-        let beside = |t: u32| {
-            let later = move |side: u32| {
-                welded.edges.sides_on(side).skip(1).take_while(move |&other| other > side)
-            };
-            (3 * t..3 * t + 3).flat_map(later).map(|side| side / 3)
-        };
-        let mut groups = Groups::joined(welded.triangles.len(), beside);
+        let mut groups = welded.parts();
         let mut of: Vec<u32> =
             (0..welded.triangles.len() as u32).map(|t| groups.lowest(t)).collect();
         drop(groups);

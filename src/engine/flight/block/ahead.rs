@@ -3,9 +3,8 @@
 //! No part of a block meets a feature before the ball around it does, however it turns. What that ball does not reach within the window
 //! is left out of it, and of what is left a part of the block that has found a nearer feature looks at no later one.
 
-use super::gap::apart_s;
-use super::window::TOUCHING;
-use super::{CAUTION, Tumble};
+use super::clearance::apart_s;
+use super::{CAUTION, TOUCHING, Tumble};
 use crate::contact::closest::closest_on;
 use crate::contact::neighbours::Neighbours;
 use crate::rock::Vec3;
@@ -13,7 +12,7 @@ use crate::terrain::Terrain;
 
 /// A feature, and the time (s) before which nothing of the block meets it.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Ahead<T> {
+pub(super) struct FeatureAhead<T> {
     pub(super) from_s: f64,
     pub(super) feature: T,
 }
@@ -38,11 +37,11 @@ pub(super) struct EdgeAhead {
 #[derive(Debug, Default)]
 pub(super) struct FeaturesAhead {
     /// For the corners of the block.
-    pub(super) triangles: Vec<Ahead<TriangleAhead>>,
+    pub(super) triangles: Vec<FeatureAhead<TriangleAhead>>,
     /// For its edges: those of the mesh that stand out.
-    pub(super) edges: Vec<Ahead<EdgeAhead>>,
+    pub(super) edges: Vec<FeatureAhead<EdgeAhead>>,
     /// For its faces: vertices of the mesh that stand out (m).
-    pub(super) peaks: Vec<Ahead<Vec3>>,
+    pub(super) peaks: Vec<FeatureAhead<Vec3>>,
 }
 
 /// The ball around a block as a window begins.
@@ -108,12 +107,12 @@ impl FeaturesAhead {
 
 /// Lists features, each with its point nearest to the ball's centre, that may be met before the window `ends` (s).
 fn list<T>(
-    to: &mut Vec<Ahead<T>>,
+    to: &mut Vec<FeatureAhead<T>>,
     features: impl Iterator<Item = (T, Vec3)>,
     (ball, ends): (&BallAhead, f64),
 ) {
     to.clear();
-    let ahead = features.map(|(feature, p)| Ahead { from_s: ball.comes_s(&p), feature });
+    let ahead = features.map(|(feature, p)| FeatureAhead { from_s: ball.comes_s(&p), feature });
     to.extend(ahead.filter(|ahead| ahead.from_s < ends));
     // in a fixed order also where times are the same
     to.sort_by(|one, other| one.from_s.total_cmp(&other.from_s));

@@ -1,4 +1,4 @@
-use super::gap::Gap;
+use super::clearance::Clearance;
 use super::*;
 use crate::body::{Shape, Solid, box_surface, eota, sphere_points};
 use crate::math::turn;
@@ -148,10 +148,10 @@ fn gaps_are_no_less_than_their_bounds() {
         let ridge = block.core.ridges[case % block.core.ridges.len()].ends.map(usize::from);
         let face = &block.core.faces[case % block.core.faces.len()];
         let flying = ridge.map(|k| search.flying(k));
-        let of_lines = Gap::of_lines(&flying, block.ball_m, (&e, &w), (&bends, most));
+        let of_lines = Clearance::of_lines(&flying, block.ball_m, (&e, &w), (&bends, most));
         let turned = |own: &Vec3| search.turned(own);
         let moving = (&search.centre(), turned);
-        let of_face = Gap::of_face((face, block.ball_m), &point, moving, (&bends, most));
+        let of_face = Clearance::of_face((face, block.ball_m), &point, moving, (&bends, most));
         let size = between_lines(flying.map(|end| end.p), (&e, &w), 0.0).1;
         for share in [0.01, 0.1, 0.4, 0.7, 1.0] {
             let pose = tumble.pose(share * most);

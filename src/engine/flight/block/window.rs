@@ -1,16 +1,12 @@
 //! How long the parts of a block surely keep off what is near it.
 
-use super::ahead::{Ahead, FeaturesAhead, TriangleAhead};
-use super::gap::Gap;
-use super::{Bends, BlockPart, CAUTION, Moment, Tumble};
+use super::ahead::{FeatureAhead, FeaturesAhead, TriangleAhead};
+use super::clearance::{Clearance, Flying};
+use super::{Bends, BlockPart, CAUTION, Moment, TOUCHING, Tumble};
 use crate::body::HullFace;
 use crate::contact::closest::closest_on;
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
-
-/// A gap that counts as touching (–, relative to the radius of the sphere of equal volume).
-/// A tenth of the gap at which contact begins: what is found here is a touch there.
-pub(super) const TOUCHING: f64 = 1e-10;
 
 /// The search of a window at one moment.
 pub(super) struct WindowSearch<'a> {
@@ -22,28 +18,6 @@ pub(super) struct WindowSearch<'a> {
     pub(super) corners: &'a mut FlyingCorners,
     /// Triangles tested so far.
     pub(super) tested: &'a mut u64,
-}
-
-/// A corner as it flies.
-/// Position `p` (m), velocity (m/s) and acceleration (m/s²) in the frame of the terrain.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Flying {
-    pub(super) p: Vec3,
-    pub(super) velocity: Vec3,
-    pub(super) acceleration: Vec3,
-    /// Largest acceleration (m/s²), and largest rate of it (m/s³).
-    pub(super) bend: f64,
-    pub(super) jerk: f64,
-}
-
-impl Flying {
-    const NONE: Self = Self {
-        p: Vec3::new(0.0, 0.0, 0.0),
-        velocity: Vec3::new(0.0, 0.0, 0.0),
-        acceleration: Vec3::new(0.0, 0.0, 0.0),
-        bend: 0.0,
-        jerk: 0.0,
-    };
 }
 
 /// The corners of a block in flight, worked out once a moment for all parts that ask for them.
@@ -100,7 +74,7 @@ impl WindowSearch<'_> {
 
     /// Whether nothing of the block meets a feature, and what is listed behind it, within `least` (s).
     #[inline]
-    fn is_later<T>(&self, ahead: &Ahead<T>, least: f64) -> bool {
+    fn is_later<T>(&self, ahead: &FeatureAhead<T>, least: f64) -> bool {
         ahead.from_s >= self.moment.time_s + least
     }
 
@@ -112,9 +86,9 @@ impl WindowSearch<'_> {
     /// How long all these corners surely keep off a plane (s), no longer than `most`.
     fn off_plane(&self, corners: &[Flying], plane: (&Vec3, &Vec3), most: f64) -> f64 {
         let (ball, touching) = (self.tumble.block.ball_m, self.touching());
-        corners
-            .iter()
-            .fold(most, |least, corner| Gap::of_corner(corner, ball, plane).open_s(touching, least))
+        corners.iter().fold(most, |least, corner| {
+            Clearance::of_corner(corner, ball, plane).open_s(touching, least)
+        })
     }
 
     /// How long a part surely touches nothing (s), no longer than `most`.
@@ -127,7 +101,7 @@ impl WindowSearch<'_> {
     }
 
     /// The longer of two times (s) for which a part keeps off a feature: one that is known, and what a gap that is never wider than theirs tells.
-    fn open_at_least(&self, known_s: f64, gap: Option<Gap>, most: f64) -> f64 {
+    fn open_at_least(&self, known_s: f64, gap: Option<Clearance>, most: f64) -> f64 {
         let touching = self.touching();
         // lines and planes may meet where edges and faces do not: that tells nothing
         let gap = gap.filter(|gap| gap.now_m >= -touching);
@@ -145,7 +119,7 @@ impl WindowSearch<'_> {
             let TriangleAhead { id, a, n } = &ahead.feature;
             let side = if n.dot(&(corner.p - a)) < 0.0 { -n } else { *n };
             // the plane is never farther than the triangle
-            let gap = Gap::of_corner(&corner, ball, (&side, a));
+            let gap = Clearance::of_corner(&corner, ball, (&side, a));
             if gap.stays_open(touching, least) || gap.open_s(touching, least) >= least {
                 continue;
             }
@@ -155,7 +129,7 @@ impl WindowSearch<'_> {
             // a corner exactly on the triangle has no direction: the plane's normal on its side
             // stands in
             let n = (corner.p - q).try_normalize(0.0).unwrap_or(side);
-            least = Gap::of_corner(&corner, ball, (&n, &q)).open_s(touching, least);
+            least = Clearance::of_corner(&corner, ball, (&n, &q)).open_s(touching, least);
         }
         least
     }
@@ -188,7 +162,7 @@ impl WindowSearch<'_> {
             let off_plane = self.off_plane(&ends, (&n, &q), least);
             if off_plane < least {
                 let line = (&edge.a, &edge.along);
-                let gap = Gap::of_lines(&ends, ball, line, (&self.bends, least));
+                let gap = Clearance::of_lines(&ends, ball, line, (&self.bends, least));
                 least = self.open_at_least(off_plane, gap, least);
             }
         }
@@ -232,7 +206,7 @@ impl WindowSearch<'_> {
             if off_plane < least {
                 let moving = (&self.centre(), |own: &Vec3| self.turned(own));
                 let of_face = (face, self.tumble.block.ball_m);
-                let gap = Gap::of_face(of_face, peak, moving, (&self.bends, least));
+                let gap = Clearance::of_face(of_face, peak, moving, (&self.bends, least));
                 least = self.open_at_least(off_plane, Some(gap), least);
             }
         }

@@ -1,6 +1,5 @@
 //! How a gap between a part of a block and a feature of the mesh changes from now on, and how long it surely stays open.
 
-use super::window::Flying;
 use super::{Bends, CAUTION};
 use crate::body::HullFace;
 use crate::rock::Vec3;
@@ -28,9 +27,31 @@ pub(super) fn apart_s((gap, closing): (f64, f64), bend: f64) -> f64 {
     }
 }
 
+/// A corner as it flies.
+/// Position `p` (m), velocity (m/s) and acceleration (m/s²) in the frame of the terrain.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Flying {
+    pub(super) p: Vec3,
+    pub(super) velocity: Vec3,
+    pub(super) acceleration: Vec3,
+    /// Largest acceleration (m/s²), and largest rate of it (m/s³).
+    pub(super) bend: f64,
+    pub(super) jerk: f64,
+}
+
+impl Flying {
+    pub(super) const NONE: Self = Self {
+        p: Vec3::new(0.0, 0.0, 0.0),
+        velocity: Vec3::new(0.0, 0.0, 0.0),
+        acceleration: Vec3::new(0.0, 0.0, 0.0),
+        bend: 0.0,
+        jerk: 0.0,
+    };
+}
+
 /// A gap: after `τ` it is no less than `δ + δ' τ + ½ δ'' τ² − ⅙ J τ³`, nor than `δ + δ' τ − ½ B τ²`, for `τ` up to some time.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Gap {
+pub(super) struct Clearance {
     /// `δ` (m).
     pub(super) now_m: f64,
     /// `δ'` (m/s).
@@ -45,7 +66,7 @@ pub(super) struct Gap {
     pub(super) holds_s: f64,
 }
 
-impl Gap {
+impl Clearance {
     /// Of a corner with a ball (m) round it and a plane with unit normal `n` through `q` (m).
     #[inline]
     pub(super) fn of_corner(corner: &Flying, ball: f64, (n, q): (&Vec3, &Vec3)) -> Self {
@@ -143,7 +164,7 @@ impl Gap {
         self.bend.min(self.third * most / 3.0 - self.second)
     }
 
-    /// Whether it surely stays open for `most` (s), more than `touching` (m): as [`Gap::open_s`], without a root.
+    /// Whether it surely stays open for `most` (s), more than `touching` (m): as [`Clearance::open_s`], without a root.
     #[inline]
     pub(super) fn stays_open(&self, touching: f64, most: f64) -> bool {
         let bent = 0.5 * self.bend_within(most).max(0.0) * most;
