@@ -19,8 +19,8 @@ pub(super) const BEFORE: u32 = 2;
 const NOTHING_NEW: f64 = 1e-7;
 /// What is left may grow this much (–) before the differences are forgotten: contacts have changed from sticking to sliding …
 const GROWS: f64 = 2.0;
-/// Impulses that are larger than those with which the sweep ended by more than this (–) are no combination of such: where a contact
-/// that would pull is left out, those beside it grow from sweep to sweep, and velocities would lose their digits …
+/// Impulses that are larger than the largest of the sweeps that went before by more than this (–) are no combination of such: where a
+/// contact that would pull is left out, those beside it grow from sweep to sweep, and velocities would lose their digits …
 const WILD: f64 = 100.0;
 /// … and so often before sweeps go on alone.
 const SETBACKS: u32 = 6;
@@ -36,6 +36,8 @@ pub(super) struct Mixing<const M: usize> {
     /// Distance of the farthest contact from the centre of mass (m).
     reach_m: f64,
     setbacks: u32,
+    /// Size of the largest impulse of the sweeps that went before (N s).
+    usual: Option<f64>,
     /// Impulses with which the sweep began.
     began: ContactImpulses<M>,
     /// What the sweep before changed, where it ended, and the size of what it changed squared.
@@ -86,13 +88,23 @@ impl<const M: usize> Mixing<M> {
     /// Of so many impulses, of contacts that reach so far from the centre of mass (m).
     pub(super) fn of(count: usize, reach_m: f64) -> Self {
         let known = [(Self::NONE, Self::NONE); KEPT];
-        Self { count, reach_m, setbacks: 0, began: Self::NONE, last: None, known, len: 0 }
+        Self {
+            count,
+            reach_m,
+            setbacks: 0,
+            usual: None,
+            began: Self::NONE,
+            last: None,
+            known,
+            len: 0,
+        }
     }
 
     /// A sweep begins with these impulses.
     #[inline]
     pub(super) fn begin(&mut self, contacts: &[BlockContact], turning: &Turning) {
         self.began = self.gathered(contacts, turning);
+        self.usual.get_or_insert(largest(&self.began, self.count));
     }
 
     fn gathered(&self, contacts: &[BlockContact], turning: &Turning) -> ContactImpulses<M> {
@@ -149,7 +161,8 @@ impl<const M: usize> Mixing<M> {
             take(&mut rest, own, share, count);
             take(&mut next, end, share, count);
         }
-        if largest(&next, count) > WILD * largest(&ended, count) {
+        // not than those of this sweep: a hundred times, again and again, is without bound
+        if self.usual.is_none_or(|usual| largest(&next, count) > WILD * usual) {
             return self.set_back();
         }
         Some(next)
