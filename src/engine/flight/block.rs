@@ -247,8 +247,10 @@ fn advance(
         if time > search.moment.time_s {
             search.moment = tumble.moment(time, ends, &mut short);
         }
-        let step = search.safe_step(parts[part as usize], ends - time);
-        if step < SHORTEST_S {
+        let left = ends - time;
+        let step = search.safe_step(parts[part as usize], left);
+        // what rounding leaves of a window is shorter than any step, and no touch
+        if step < left && (step < SHORTEST_S || time + step <= time) {
             return Some(time);
         }
         if time + step < ends {

@@ -88,9 +88,10 @@ impl Neighbours {
     /// How far (m) the centre of a block that reaches so far, with balls of some radius at its corners (m), may go from `centre` with all
     /// that it can meet known; negative where that is not.
     pub(crate) fn room_around(&self, centre: &Vec3, (ball, bound): (f64, f64)) -> f64 {
-        // what was collected for a rock of another size has other features
+        // what was collected for a rock of another size has other features; what touches is as far as the ball, half of that is
+        // room for rounding
         let is_own =
-            (self.radius - ball).abs() <= f64::EPSILON * ball && self.sees_m() >= 2.0 * ball;
+            (self.radius - ball).abs() <= f64::EPSILON * ball && self.sees_m() >= 1.5 * ball;
         let known = if is_own { self.margin + ball - bound } else { f64::NEG_INFINITY };
         known - (centre - self.centre).norm()
     }

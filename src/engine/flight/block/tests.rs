@@ -7,7 +7,7 @@ use crate::rock::Rock;
 use crate::terrain::stl::{Facet, Soup};
 use crate::terrain::weld::{Piece, Up, weld};
 use crate::terrain::{Sheet, Terrain};
-use nalgebra::Unit;
+use nalgebra::{Rotation3, Unit};
 use parry3d_f64::math::{Pose as Place, Vector};
 use parry3d_f64::query::distance;
 use parry3d_f64::shape::{ConvexPolyhedron, Triangle};
@@ -34,6 +34,10 @@ fn rough() -> Terrain {
             facets.extend([[a, b, c], [a, c, d]]);
         }
     }
+    made(facets)
+}
+
+fn made(facets: Vec<Facet>) -> Terrain {
     let soup = Soup::from(facets);
     let piece = Piece { file: Path::new("made"), soup: &soup, up: Up::Z, scale: 1.0, sheet: 0 };
     let welded = weld(&[piece], Vec3::zeros(), Some(1e-9)).unwrap();
@@ -172,4 +176,59 @@ fn gaps_are_no_less_than_their_bounds() {
     }
     println!("{kept} {worst:e}");
     assert!(kept > 1000 && worst < 1e-5, "{kept} {worst:e}");
+}
+
+/// The ball of a corner that flies beside a sheet reaches through the sheet's plane, and comes to its border however that plane is left.
+#[test]
+fn a_corner_beside_a_sheet_comes_to_its_border() {
+    let sheet = [(0.0, -5.0), (0.0, 5.0), (-8.0, 0.0)].map(|(x, y)| Vec3::new(x, y, 0.0));
+    let (terrain, blocks) = (made(vec![sheet]), blocks());
+    let block = &blocks[0];
+    let corner = Vec3::new(2.0, 0.0, 0.3) * block.ball_m;
+    let start = corner - block.core.corners[0] - terrain.origin_m;
+    let velocity = Vec3::new(-1.0, 0.0, 0.01);
+    let path = Parabola { start, velocity, gravity: 0.0, radius: block.bound_m };
+    let top = Top::new(block.inertia_kg_m2, Rotation3::identity(), Vec3::zeros());
+    let tumble = Tumble { block, top, path };
+    let mut near = Neighbours::default();
+    near.collect(&terrain, &start, block.ball_m, 3.0 * block.bound_m, block.ball_m);
+    let (mut ahead, mut corners, mut tested) = Default::default();
+    FeaturesAhead::look(&mut ahead, &terrain, &tumble, &mut near, (0.0, 1.0));
+    FlyingCorners::begin(&mut corners, block.core.corners.len());
+    let (bends, moment) = (tumble.top.bends(), tumble.moment(0.0, 1.0, &mut None));
+    let mut search = WindowSearch {
+        terrain: &terrain,
+        tumble: &tumble,
+        ahead: &ahead,
+        bends,
+        moment,
+        corners: &mut corners,
+        tested: &mut tested,
+    };
+    let step = search.safe_step(BlockPart::Corner(0), 1.0);
+    assert!(step > 0.0 && step < 2.0 * block.ball_m, "{step} {}", block.ball_m);
+}
+
+/// What turns low over level ground, and weighs nothing, never touches it: neither does it where times are rounded.
+#[test]
+fn what_rounding_leaves_of_a_window_is_no_touch() {
+    let [a, b, c, d] =
+        [(-1e3, -1e3), (1e3, -1e3), (1e3, 1e3), (-1e3, 1e3)].map(|(x, y)| Vec3::new(x, y, 0.0));
+    let (terrain, blocks) = (made(vec![[a, b, c], [a, c, d]]), blocks());
+    let (mut near, mut scratch) = (Neighbours::default(), WindowScratch::default());
+    for flight in 0..3000 {
+        let mut chance = stream(19, Purpose::Start, flight);
+        let block = &blocks[0];
+        let [speed, spin, height] =
+            [(1.0, 4.0), (1.0, 6.0), (0.01, 0.2)].map(|(low, high)| even(&mut chance, low, high));
+        let start = Vec3::z() * (block.support_m(&-Vec3::z()) + height);
+        let velocity = Vec3::x() * speed;
+        let path = Parabola { start, velocity, gravity: 0.0, radius: block.bound_m };
+        let momentum = Vec3::z() * (spin * block.inertia_kg_m2[2]);
+        let top = Top::new(block.inertia_kg_m2, Rotation3::identity(), momentum);
+        let tumble = Tumble { block, top, path };
+        near.forget();
+        let end = first_touch(&terrain, &tumble, 3.0, (&mut near, &mut scratch));
+        assert_eq!(end, FlightEnd::Flies, "{flight}");
+    }
 }

@@ -118,9 +118,11 @@ impl WindowSearch<'_> {
             *self.tested += 1;
             let TriangleAhead { id, a, n } = &ahead.feature;
             let side = if n.dot(&(corner.p - a)) < 0.0 { -n } else { *n };
-            // the plane is never farther than the triangle
+            // the plane is never farther than the triangle; one that the ball reaches through beside it tells nothing
             let gap = Clearance::of_corner(&corner, ball, (&side, a));
-            if gap.stays_open(touching, least) || gap.open_s(touching, least) >= least {
+            if gap.stays_open(touching, least)
+                || gap.now_m >= -touching && gap.open_s(touching, least) >= least
+            {
                 continue;
             }
             // the true distance of a convex set is never less than that of its own supporting plane
