@@ -14,6 +14,7 @@ mod dda_energy;
 mod dda_island;
 mod exact_edge;
 mod exact_plane;
+mod grooves;
 mod heap;
 mod heights;
 mod impact_ledger;

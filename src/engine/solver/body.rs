@@ -8,6 +8,8 @@ use crate::rock::{Rock, Vec3};
 
 /// A velocity (m/s) and a spin (rad/s), or an impulse and one of rotation.
 pub(crate) type Twist = (Vec3, Vec3);
+/// No motion.
+pub(super) const STILL: Twist = (Vec3::new(0.0, 0.0, 0.0), Vec3::new(0.0, 0.0, 0.0));
 
 /// Whether place, velocity and spin are numbers.
 pub(super) fn are_finite(motion: [&Vec3; 3]) -> bool {

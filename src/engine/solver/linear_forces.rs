@@ -46,19 +46,34 @@ impl StageContact {
             .max((self.rolling_moment - before.2).norm_squared() / body.radius.powi(2))
     }
 
-    /// Sets its forces to what its law gives at a motion.
+    /// Sets its forces to what its law gives at a motion and a change of it: what the change adds is known beyond the rounding
+    /// of the motion.
     ///
     /// After a jump: the linear system may have left a cone or let a spring pull; the law itself may
     /// not.
-    pub(super) fn act_at(&mut self, body: &Body, (v, w): &Twist, h: f64) {
-        self.normal_force = self.line(body, h).at(self.n.dot(v));
+    pub(super) fn act_at(&mut self, body: &Body, [(v, w), (dv, dw)]: [&Twist; 2], h: f64) {
+        let NormalLine { a, b } = self.line(body, h);
+        self.normal_force = (a - b * self.n.dot(v) - b * self.n.dot(dv)).max(0.0);
         let (stick, wound) = self.trials(body, v, w, h);
+        let stick = stick + body.slip(&self.n, dv, dw) * self.law.shear.over(h);
+        let wound = wound + dw * self.law.rolling.over(h);
         self.shear_force = self.law.shear.capped(stick, self.normal_force);
         self.rolling_moment = self.law.rolling.capped(wound, self.normal_force);
     }
 
-    /// Its forces, linear around the motion `(v, w)`, in its present modes.
-    pub(super) fn linear(&self, body: &Body, (v, w): &Twist, h: f64) -> LinearForces {
+    /// Its forces, linear around a motion, in its present modes.
+    pub(super) fn linear(&self, body: &Body, motion: &Twist, h: f64) -> LinearForces {
+        self.linear_and_here(body, motion, h).0
+    }
+
+    /// The same in changes of the motion: its load is what it does at the motion itself.
+    pub(super) fn linear_in_changes(&self, body: &Body, motion: &Twist, h: f64) -> LinearForces {
+        let (forces, here) = self.linear_and_here(body, motion, h);
+        LinearForces { load: here, ..forces }
+    }
+
+    /// Its forces, linear around the motion `(v, w)`, and force and moment there.
+    fn linear_and_here(&self, body: &Body, (v, w): &Twist, h: f64) -> (LinearForces, Twist) {
         let normal = self.line(body, h);
         let (law, n, r) = (&self.law, self.n, body.radius);
         // Slip u = T x with T = [Q, R n×]; shear acts back through the same T.
@@ -81,10 +96,11 @@ impl StageContact {
         let wv = spin.transpose() * (shear.jacobian * q - coupling)
             - roll.along * n.transpose() * normal.b;
         let ww = spin.transpose() * js + roll.jacobian;
-        LinearForces {
-            stiffness: [[vv, vw], [wv, ww]],
-            load: (n * normal.a - drag0, -(spin.transpose() * drag0 + moment0)),
-        }
+        // the very numbers that `act_at` begins with
+        let push = n * (normal.a - normal.b * n.dot(v));
+        let here = (push - shear.force, -(spin.transpose() * shear.force + roll.force));
+        let load = (n * normal.a - drag0, -(spin.transpose() * drag0 + moment0));
+        (LinearForces { stiffness: [[vv, vw], [wv, ww]], load }, here)
     }
 }
 

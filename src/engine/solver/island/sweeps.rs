@@ -12,7 +12,7 @@
 use super::assembly::Island;
 use super::body::IslandBody;
 use super::newton_step::jump;
-use crate::solver::body::Twist;
+use crate::solver::body::{STILL, Twist};
 use crate::solver::linear_forces::driven;
 
 /// Sweeps before the first jump, and between two of them: at least, for each rock that is stirred, and at most. A jump
@@ -185,7 +185,7 @@ impl Island<'_> {
             let IslandBody { state, body, .. } = &mut **member;
             *now = *motion;
             for contact in &mut state.contacts[..state.contact_count] {
-                contact.act_at(body, motion, h);
+                contact.act_at(body, [motion, &STILL], h);
             }
         }
         for pair in &mut self.pairs {
