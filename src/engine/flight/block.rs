@@ -8,7 +8,7 @@
 //! d(t+τ) ≥ d + n·ṗ τ + ½ n·p̈ τ² − ⅙ J τ³ ≥ d + n·ṗ τ − ½ B τ²   for τ ≤ T,   B = min(g + ρ b₂, −n·p̈ + ⅓ J T),   J = ρ b₃
 //! ```
 //!
-//! where `ρ b₂` and `ρ b₃` bound what the turn does to the corner's acceleration and to the rate of it ([`Bends`]). With the speed of
+//! where `ρ b₂` and `ρ b₃` bound what the turn does to the corner's acceleration and to the rate of it (`top::Bends`). With the speed of
 //! approach `c = −n·ṗ` and the gap `δ = d − r` the step `τ = 2δ/(c + √(c² + 2Bδ))` is never too long, and near a touch it converges
 //! faster than Newton's method, from one side. Edges and faces of the block are hulls of corners: with `n` from their own nearest points
 //! the same bound holds for each of their corners.
