@@ -121,15 +121,8 @@ fn sweep(
 }
 
 /// Velocity and spin that solve the stage linearised in its present modes.
-/// Friction grows with the normal force, which makes the matrix unsymmetric: LU, not Cholesky.
 fn jump(body: &Body, contacts: &[StageContact], free: Twist, now: &Twist, h: f64) -> Option<Twist> {
-    let (mut k, mut f) = (Mat6::zeros(), Vec6::zeros());
-    LinearForces::of_inertia(body, &free, h).add_to(&mut k, f.as_mut_slice());
-    // open contacts have neither stiffness nor load
-    for contact in contacts.iter().filter(|contact| contact.normal_force > 0.0) {
-        contact.linear(body, now, h).add_to(&mut k, f.as_mut_slice());
-    }
-    solved(&k, &f)
+    solved(body, contacts, (&free, h), |contact| contact.linear(body, now, h))
 }
 
 /// The change of the motion `now` that a jump would find.
@@ -140,17 +133,25 @@ fn jump_on(
     now: &Twist,
     h: f64,
 ) -> Option<Twist> {
-    let (mut k, mut f) = (Mat6::zeros(), Vec6::zeros());
     let missing = (free.0 - now.0, free.1 - now.1);
-    LinearForces::of_inertia(body, &missing, h).add_to(&mut k, f.as_mut_slice());
-    for contact in contacts.iter().filter(|contact| contact.normal_force > 0.0) {
-        contact.linear_in_changes(body, now, h).add_to(&mut k, f.as_mut_slice());
-    }
-    solved(&k, &f)
+    solved(body, contacts, (&missing, h), |contact| contact.linear_in_changes(body, now, h))
 }
 
-fn solved(k: &Mat6, f: &Vec6) -> Option<Twist> {
-    let x = k.lu().solve(f)?;
+/// What solves the linear system of inertia, which would move by `free` without contacts, and of their linear `forces`.
+/// Friction grows with the normal force, which makes the matrix unsymmetric: LU, not Cholesky.
+fn solved(
+    body: &Body,
+    contacts: &[StageContact],
+    (free, h): (&Twist, f64),
+    forces: impl Fn(&StageContact) -> LinearForces,
+) -> Option<Twist> {
+    let (mut k, mut f) = (Mat6::zeros(), Vec6::zeros());
+    LinearForces::of_inertia(body, free, h).add_to(&mut k, f.as_mut_slice());
+    // open contacts have neither stiffness nor load
+    for contact in contacts.iter().filter(|contact| contact.normal_force > 0.0) {
+        forces(contact).add_to(&mut k, f.as_mut_slice());
+    }
+    let x = k.lu().solve(&f)?;
     let found = (x.fixed_rows::<3>(0).into(), x.fixed_rows::<3>(3).into());
     x.iter().all(|x| x.is_finite()).then_some(found)
 }

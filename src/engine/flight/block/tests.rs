@@ -120,6 +120,17 @@ fn between_lines([a, b]: [Vec3; 2], (e, w): (&Vec3, &Vec3), ball: f64) -> (f64, 
     ((a - e).dot(&across).abs() - ball * across.norm(), across.norm())
 }
 
+/// The search of a window of 1 s at its start.
+fn search<'a>(
+    (terrain, ahead): (&'a Terrain, &'a FeaturesAhead),
+    tumble: &'a Tumble<'a>,
+    (corners, tested): (&'a mut FlyingCorners, &'a mut u64),
+) -> WindowSearch<'a> {
+    corners.begin(tumble.block.core.corners.len());
+    let (bends, moment) = (tumble.top.bends(), tumble.moment(0.0, 1.0, &mut None));
+    WindowSearch { terrain, tumble, ahead, bends, moment, corners, tested }
+}
+
 /// Gaps of edges and of faces are nowhere less than their bounds say, and these are near to them over short times.
 #[test]
 fn gaps_are_no_less_than_their_bounds() {
@@ -136,18 +147,8 @@ fn gaps_are_no_less_than_their_bounds() {
         let path = Parabola { start, velocity, gravity: 9.81, radius: block.bound_m };
         let top = Top::new(block.inertia_kg_m2, attitude, own);
         let tumble = Tumble { block, top, path };
-        let (moment, bends) = (tumble.moment(0.0, 1.0, &mut None), tumble.top.bends());
-        let (mut corners, mut tested) = (FlyingCorners::default(), 0);
-        corners.begin(block.core.corners.len());
-        let mut search = WindowSearch {
-            terrain: &terrain,
-            tumble: &tumble,
-            ahead: &ahead,
-            bends,
-            moment,
-            corners: &mut corners,
-            tested: &mut tested,
-        };
+        let (bends, mut corners, mut tested) = (tumble.top.bends(), FlyingCorners::default(), 0);
+        let mut search = search((&terrain, &ahead), &tumble, (&mut corners, &mut tested));
         let (e, w, point) = (vector(2.0), vector(1.0).normalize(), vector(3.0));
         let ridge = block.core.ridges[case % block.core.ridges.len()].ends.map(usize::from);
         let face = &block.core.faces[case % block.core.faces.len()];
@@ -194,17 +195,7 @@ fn a_corner_beside_a_sheet_comes_to_its_border() {
     near.collect(&terrain, &start, block.ball_m, 3.0 * block.bound_m, block.ball_m);
     let (mut ahead, mut corners, mut tested) = Default::default();
     FeaturesAhead::look(&mut ahead, &terrain, &tumble, &mut near, (0.0, 1.0));
-    FlyingCorners::begin(&mut corners, block.core.corners.len());
-    let (bends, moment) = (tumble.top.bends(), tumble.moment(0.0, 1.0, &mut None));
-    let mut search = WindowSearch {
-        terrain: &terrain,
-        tumble: &tumble,
-        ahead: &ahead,
-        bends,
-        moment,
-        corners: &mut corners,
-        tested: &mut tested,
-    };
+    let mut search = search((&terrain, &ahead), &tumble, (&mut corners, &mut tested));
     let step = search.safe_step(BlockPart::Corner(0), 1.0);
     assert!(step > 0.0 && step < 2.0 * block.ball_m, "{step} {}", block.ball_m);
 }

@@ -120,8 +120,7 @@ impl WindowSearch<'_> {
             let side = if n.dot(&(corner.p - a)) < 0.0 { -n } else { *n };
             // the plane is never farther than the triangle; one that the ball reaches through beside it tells nothing
             let gap = Clearance::of_corner(&corner, ball, (&side, a));
-            if gap.stays_open(touching, least)
-                || gap.now_m >= -touching && gap.open_s(touching, least) >= least
+            if gap.stays_open(touching, least) || self.open_at_least(0.0, Some(gap), least) >= least
             {
                 continue;
             }
