@@ -23,6 +23,7 @@ pub mod submatrix;
 
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
+use arrayvec::ArrayVec;
 use serde::{Deserialize, Serialize};
 
 /// Most contacts one rock keeps at a time, the deepest first.
@@ -139,27 +140,15 @@ impl ContactPoint {
     }
 }
 
-/// The touches of one rock, without allocation.
-///
-/// A fixed array: the list is rebuilt at every stage of every step, and steps allocate nothing
-/// (`tests/no_allocation.rs`).
-#[derive(Debug, Clone, Copy)]
-pub struct ContactPoints {
-    list: [ContactPoint; MOST],
-    len: usize,
-}
-
-impl Default for ContactPoints {
-    fn default() -> Self {
-        Self { list: [ContactPoint::NONE; MOST], len: 0 }
-    }
-}
+/// The touches of one rock, without allocation: the list is made anew at every stage of every step.
+#[derive(Debug, Clone, Default)]
+pub struct ContactPoints(ArrayVec<ContactPoint, MOST>);
 
 impl ContactPoints {
     /// Forgets all.
     #[inline]
     pub fn clear(&mut self) {
-        self.len = 0;
+        self.0.clear();
     }
 
     /// The same touches from another centre, if all are on faces: their planes tell, nothing need be searched.
@@ -169,17 +158,21 @@ impl ContactPoints {
     /// unsigned distance would push it out on the other side.
     #[inline]
     pub fn slide_to(&mut self, terrain: &Terrain, centre: &Vec3) -> bool {
-        let touches = &mut self.list[..self.len];
-        if touches.iter().any(|touch| !touch.is_on_plane()) {
+        if self.0.iter().any(|touch| !touch.is_on_plane()) {
             return false;
         }
-        for touch in touches {
+        for touch in &mut self.0 {
             // d = n·(c − a): exact for any centre, as long as the foot stays on the face, which the
             // caller sees to
             let corner = terrain.face(touch.feature.id).a;
             touch.distance_m = touch.normal.dot(&(centre - corner));
         }
         true
+    }
+
+    /// Those that are nearer than `reach` (m).
+    pub(crate) fn nearer(&self, reach: f64) -> Self {
+        Self(self.0.iter().filter(|touch| touch.distance_m < reach).copied().collect())
     }
 
     /// Forgets those that are not nearer than `reach` (m).
@@ -194,14 +187,7 @@ impl ContactPoints {
 
     /// Forgets those that are not `wanted`.
     pub(crate) fn retain(&mut self, wanted: impl Fn(&ContactPoint) -> bool) {
-        let mut kept = 0;
-        for k in 0..self.len {
-            if wanted(&self.list[k]) {
-                self.list[kept] = self.list[k];
-                kept += 1;
-            }
-        }
-        self.len = kept;
+        self.0.retain(|touch| wanted(touch));
     }
 
     /// Adds one; when full, it takes the place of the shallowest if it is deeper.
@@ -210,13 +196,11 @@ impl ContactPoints {
     /// on the order of the search.
     #[inline]
     pub fn add(&mut self, touch: ContactPoint) {
-        if self.len < MOST {
-            self.list[self.len] = touch;
-            self.len += 1;
+        if self.0.try_push(touch).is_ok() {
             return;
         }
         // the largest distance from the centre is the least penetration
-        let shallowest = self.list.iter_mut().max_by(|a, b| a.distance_m.total_cmp(&b.distance_m));
+        let shallowest = self.0.iter_mut().max_by(|a, b| a.distance_m.total_cmp(&b.distance_m));
         if let Some(place) = shallowest.filter(|place| place.distance_m > touch.distance_m) {
             *place = touch;
         }
@@ -227,6 +211,6 @@ impl std::ops::Deref for ContactPoints {
     type Target = [ContactPoint];
     #[inline]
     fn deref(&self) -> &[ContactPoint] {
-        &self.list[..self.len]
+        &self.0
     }
 }

@@ -7,6 +7,7 @@
 
 use super::{ContactPoint, Feature, MOST};
 use crate::rock::Vec3;
+use arrayvec::ArrayVec;
 
 /// Most memories: the contacts of a step's start and those that come up during the step.
 /// A bit of a `u32` marks each as taken, so no more than 32 would do without a change there.
@@ -121,42 +122,28 @@ impl ContactHistory {
 
 /// The memories of one rock, without allocation.
 /// Searched linearly: with one to three entries that is faster than any index.
-#[derive(Debug, Clone)]
-pub struct ContactHistories {
-    list: [ContactHistory; HISTORIES],
-    len: usize,
-}
-
-impl Default for ContactHistories {
-    fn default() -> Self {
-        let touch = super::ContactPoints::default().list[0];
-        Self { list: [ContactHistory::new(&touch, false); HISTORIES], len: 0 }
-    }
-}
+#[derive(Debug, Clone, Default)]
+pub struct ContactHistories(ArrayVec<ContactHistory, HISTORIES>);
 
 impl ContactHistories {
     /// Forgets all.
     pub fn clear(&mut self) {
-        self.len = 0;
+        self.0.clear();
     }
 
     /// Knows these instead, no more than there is room for.
     pub fn restore(&mut self, histories: &[ContactHistory]) {
-        self.len = histories.len().min(HISTORIES);
-        self.list[..self.len].copy_from_slice(&histories[..self.len]);
+        self.0 = histories.iter().take(HISTORIES).copied().collect();
     }
 
     /// Adds one, if there is room.
     pub fn push(&mut self, history: ContactHistory) {
-        if self.len < HISTORIES {
-            self.list[self.len] = history;
-            self.len += 1;
-        }
+        let _ = self.0.try_push(history);
     }
 
     /// Forgets all after the first `len`.
     pub fn truncate(&mut self, len: usize) {
-        self.len = self.len.min(len);
+        self.0.truncate(len);
     }
 
     /// The memory of a touch: its own, else that of a like one which has lost its feature, else a new one.
@@ -176,22 +163,20 @@ impl ContactHistories {
     ) -> usize {
         // two touches of one instant must not share a spring: it would be stretched twice
         let free = |k: usize| taken & (1 << k) == 0;
-        if let Some(k) = (0..self.len).find(|&k| free(k) && self.list[k].feature == touch.feature) {
+        if let Some(k) = (0..self.len()).find(|&k| free(k) && self[k].feature == touch.feature) {
             return k;
         }
         // a memory whose feature is still touched keeps it, whatever its normal
         let orphan =
             |history: &ContactHistory| touches.iter().all(|other| other.feature != history.feature);
-        let like = (0..self.len).find(|&k| {
-            free(k) && self.list[k].n.dot(&touch.normal) > SAME_GRIP && orphan(&self.list[k])
-        });
+        let like = (0..self.len())
+            .find(|&k| free(k) && self[k].n.dot(&touch.normal) > SAME_GRIP && orphan(&self[k]));
         like.unwrap_or_else(|| {
             // room for twice the contacts there can be; should it be full all the same, the
             // youngest memory is given up
-            let place = self.len.min(HISTORIES - 1);
-            self.list[place] = ContactHistory::new(touch, captured());
-            self.len = place + 1;
-            place
+            self.0.truncate(HISTORIES - 1);
+            self.0.push(ContactHistory::new(touch, captured()));
+            self.0.len() - 1
         })
     }
 
@@ -203,16 +188,15 @@ impl ContactHistories {
     /// next.
     pub fn merge_lost(&mut self, heir: impl Fn(Feature) -> Option<Feature>) -> bool {
         let mut merged = false;
-        for k in 0..self.len {
-            let lost = self.list[k];
+        for k in 0..self.len() {
+            let lost = self[k];
             // what is still closed is not lost, and what has no stretch leaves nothing
             if lost.closed || lost.shear == Vec3::zeros() && lost.roll == Vec3::zeros() {
                 continue;
             }
             let Some(feature) = heir(lost.feature) else { continue };
-            let histories = &mut self.list[..self.len];
             if let Some(history) =
-                histories.iter_mut().find(|history| history.closed && history.feature == feature)
+                self.0.iter_mut().find(|history| history.closed && history.feature == feature)
             {
                 history.absorb(&lost);
                 merged = true;
@@ -223,14 +207,7 @@ impl ContactHistories {
 
     /// Keeps only the memories that `keep` wants, in order.
     pub fn retain(&mut self, mut keep: impl FnMut(&ContactHistory) -> bool) {
-        let mut kept = 0;
-        for k in 0..self.len {
-            if keep(&self.list[k]) {
-                self.list[kept] = self.list[k];
-                kept += 1;
-            }
-        }
-        self.len = kept;
+        self.0.retain(|history| keep(history));
     }
 }
 
@@ -238,13 +215,13 @@ impl std::ops::Deref for ContactHistories {
     type Target = [ContactHistory];
     #[inline]
     fn deref(&self) -> &[ContactHistory] {
-        &self.list[..self.len]
+        &self.0
     }
 }
 
 impl std::ops::DerefMut for ContactHistories {
     #[inline]
     fn deref_mut(&mut self) -> &mut [ContactHistory] {
-        &mut self.list[..self.len]
+        &mut self.0
     }
 }

@@ -27,8 +27,9 @@ use super::roughness;
 use super::step_control::{Advance, StepError, TRAVEL};
 use crate::contact::TOUCH;
 use crate::contact::history::ContactHistory;
-use crate::contact::{ContactPoint, ContactPoints, MOST};
+use crate::contact::{ContactPoint, MOST};
 use crate::rock::Vec3;
+use arrayvec::ArrayVec;
 pub(super) use contact::{GroundContact, settle, sustained_m_s};
 
 /// Touches no further away than this still hold the rock (–, relative to R).
@@ -56,12 +57,12 @@ pub fn advance(
     state.look_ahead_again(world, &c);
     if hits(world, state) {
         // only what touches at this instant takes part in the impact
-        state.look(world, &c, world.body.radius * (1.0 + TOUCH));
+        let touches = state.touches.nearer(world.body.radius * (1.0 + TOUCH));
         if state.is_struck {
-            impact(world, state, &mut done);
+            impact(world, state, &touches, &mut done);
         } else {
             // Strikes anew within an episode: the driver hears of it before it happens, as it does of the first.
-            strike(world, state);
+            strike(world, state, &touches);
             done.steps = 0;
         }
         state.is_struck = !state.is_struck;
@@ -93,13 +94,12 @@ pub(super) fn is_fast(world: &ContactEnvironment, touch: &ContactPoint, v: &Vec3
     -touch.normal.dot(v) >= capture_m_s(world.law(touch.triangle))
 }
 
-/// Notes the contacts of the last look that are about to be struck.
-fn strike(world: &ContactEnvironment, state: &mut ContactState) {
-    let touches = state.touches;
+/// Notes the contacts that are about to be struck.
+fn strike(world: &ContactEnvironment, state: &mut ContactState, touches: &[ContactPoint]) {
     let mut taken = 0;
-    for touch in touches.iter() {
+    for touch in touches {
         let captured = !is_fast(world, touch, &state.v);
-        let history = state.histories.find(touch, &touches, taken, || captured);
+        let history = state.histories.find(touch, touches, taken, || captured);
         taken |= 1 << history;
         let history = &mut state.histories[history];
         history.announced = true;
@@ -113,29 +113,30 @@ fn strike(world: &ContactEnvironment, state: &mut ContactState) {
 /// The touches of a rock with velocity `v` as contacts of one impact: those too slow to rebound take part and give nothing back.
 pub(super) fn frozen<'w>(
     world: &'w ContactEnvironment,
-    touches: &ContactPoints,
+    touches: &[ContactPoint],
     v: &Vec3,
-) -> [FrozenContact<'w>; MOST] {
-    let mut struck = [FrozenContact::none(); MOST];
-    for (struck, touch) in struck.iter_mut().zip(touches.iter()) {
-        *struck = FrozenContact {
-            normal: touch.normal,
-            law: world.law(touch.triangle),
-            stiffness_scale: touch.gain2,
-            captured: !is_fast(world, touch, v),
-            ..FrozenContact::none()
-        };
-    }
-    struck
+) -> ArrayVec<FrozenContact<'w>, MOST> {
+    let contact = |touch: &ContactPoint| FrozenContact {
+        normal: touch.normal,
+        law: world.law(touch.triangle),
+        stiffness_scale: touch.gain2,
+        captured: !is_fast(world, touch, v),
+        ..FrozenContact::none()
+    };
+    touches.iter().map(contact).collect()
 }
 
 /// The impact: the limit of stiff springs of the same law, with the geometry of the instant ([`super::impact`]).
-fn impact(world: &ContactEnvironment, state: &mut ContactState, done: &mut Advance) {
-    let (v, w, touches) = (state.v, state.w, state.touches);
-    let struck = frozen(world, &touches, &v);
-    let thrown = throw(&world.body, &struck[..touches.len()], (&v, &w), IMPACT);
+fn impact(
+    world: &ContactEnvironment,
+    state: &mut ContactState,
+    touches: &[ContactPoint],
+    done: &mut Advance,
+) {
+    let (v, w) = (state.v, state.w);
+    let thrown = throw(&world.body, &frozen(world, touches, &v), (&v, &w), IMPACT);
     (state.v, state.w) = (thrown.velocity_m_s, thrown.spin_rad_s);
-    for (loss, touch) in thrown.loss.iter().zip(touches.iter()) {
+    for (loss, touch) in thrown.loss.iter().zip(touches) {
         done.loss.add(&loss.on(world, touch.triangle), 1.0);
     }
     done.steps = u64::from(thrown.effort.steps).max(1);
@@ -151,8 +152,7 @@ pub(crate) fn remember(
 ) {
     let (c, v) = (state.c, state.v);
     state.look_ahead_again(world, &c);
-    let mut touches = state.touches;
-    touches.keep_nearer(world.body.radius * (1.0 + HELD));
+    let touches = state.touches.nearer(world.body.radius * (1.0 + HELD));
     for history in state.histories.iter_mut() {
         history.closed = false;
     }

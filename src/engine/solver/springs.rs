@@ -45,7 +45,7 @@ impl ContactState {
         if !self.histories.iter().any(&count) {
             return 0.0;
         }
-        let (c, last) = (self.c, self.touches);
+        let (c, last) = (self.c, std::mem::take(&mut self.touches));
         self.know(world, &c);
         self.near.touches(world.terrain, &c, world.body.radius, &mut self.touches);
         let all = self.stored_j(world).sum();

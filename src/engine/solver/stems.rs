@@ -129,7 +129,7 @@ impl ContactState {
         let Some(stems) = world.terrain.stems.as_ref() else { return };
         let c = self.c;
         self.look(world, &c, world.body.radius * (1.0 + TOUCH));
-        let touches = self.touches;
+        let touches = self.touches.clone();
         for touch in touches.iter() {
             let Some(broken) = self.broken_by(world, touch, (&self.v, &self.w)) else { continue };
             let of_stem =

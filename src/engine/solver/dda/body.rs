@@ -73,7 +73,7 @@ impl<'a> DdaBody<'a> {
         let way: Vec3 = self.state.scratch.d.fixed_rows::<3>(0).into();
         let end = self.state.c + way;
         self.state.look_ahead(&self.world, &end);
-        let touches = self.state.touches;
+        let touches = self.state.touches.clone();
         let before = self.state.scratch.contacts().len();
         for (k, touch) in touches.iter().enumerate() {
             let contacts = self.state.scratch.contacts();

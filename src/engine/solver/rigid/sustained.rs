@@ -7,6 +7,7 @@ use crate::rock::Vec3;
 use crate::solver::body::Twist;
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
 use crate::solver::step_control::Advance;
+use arrayvec::ArrayVec;
 
 /// How often a step is cut to where the rock comes to the next surface, at most: each cut knows the motion on the way better.
 const CUTS: u32 = 6;
@@ -17,9 +18,8 @@ const MET: f64 = 1e-6;
 struct HeldStep {
     /// Its length (s).
     dt: f64,
-    /// What holds the rock in its middle, with the impulses: on the stack, as many as a rock keeps.
-    contacts: [GroundContact; MOST],
-    len: usize,
+    /// What holds the rock in its middle, with the impulses.
+    contacts: ArrayVec<GroundContact, MOST>,
     /// Motion at its end.
     after: Twist,
 }
@@ -34,53 +34,48 @@ pub(super) fn step(
     longest: f64,
     done: &mut Advance,
 ) {
-    let mut tried = hold(world, state, closing(world, state, longest));
+    let mut tried = HeldStep { dt: 0.0, contacts: ArrayVec::new(), after: (state.v, state.w) };
+    tried.hold(world, state, closing(world, state, longest));
     for _ in 0..CUTS {
         let Some(met_s) = meets_s(world, state, &tried) else { break };
-        tried = hold(world, state, met_s);
+        tried.hold(world, state, met_s);
     }
     let (v, w) = (state.v, state.w);
     (state.v, state.w) = tried.after;
     let mean = (0.5 * (v + state.v), 0.5 * (w + state.w));
-    for contact in tried.contacts() {
+    for contact in &tried.contacts {
         done.loss.add(&contact.loss(&world.body, &mean).on(world, contact.triangle), 1.0);
     }
     // mean of both velocities: the parabola under weight alone is exact
     state.c += mean.0 * tried.dt;
     done.dt = tried.dt;
     // without any impulse the rock is free, and the next leap takes over
-    let pushed = tried.contacts().iter().any(|contact| contact.normal_force > 0.0);
+    let pushed = tried.contacts.iter().any(|contact| contact.normal_force > 0.0);
     push_out(world, state);
     remember(world, state, |_| pushed);
 }
 
-/// A step of `dt` (s) with the contacts of its middle, looked for there. What the rock comes to faster than it is captured does nothing before it
-/// is met.
-fn hold(world: &ContactEnvironment, state: &mut ContactState, dt: f64) -> HeldStep {
-    let half = state.v * (0.5 * dt);
-    let middle = state.c + half;
-    state.look_ahead(world, &middle);
-    let free = (state.v + world.body.gravity * dt, state.w);
-    let mut step = HeldStep { dt, contacts: [GroundContact::NONE; MOST], len: 0, after: free };
-    for touch in state.touches.iter() {
-        // what is touched when the step begins is not come to so fast: that were an impact
-        if is_fast(world, touch, &state.v) {
-            continue;
-        }
-        let gap = gap_at_start(world, touch, &half);
-        let mut contact = GroundContact::new(0, touch, world.law(touch.triangle));
-        contact.target = sustained_m_s(gap, touch.normal.dot(&state.v), dt);
-        step.contacts[step.len] = contact;
-        step.len += 1;
-    }
-    let contacts = &mut step.contacts[..step.len];
-    step.after = settle(contacts, &world.body, free, &mut state.sweeps);
-    step
-}
-
 impl HeldStep {
-    fn contacts(&self) -> &[GroundContact] {
-        &self.contacts[..self.len]
+    /// Takes `dt` (s), with the contacts of the middle, looked for there. What the rock comes to faster than it is captured does nothing
+    /// before it is met.
+    fn hold(&mut self, world: &ContactEnvironment, state: &mut ContactState, dt: f64) {
+        let half = state.v * (0.5 * dt);
+        let middle = state.c + half;
+        state.look_ahead(world, &middle);
+        self.dt = dt;
+        self.contacts.clear();
+        for touch in state.touches.iter() {
+            // what is touched when the step begins is not come to so fast: that were an impact
+            if is_fast(world, touch, &state.v) {
+                continue;
+            }
+            let gap = gap_at_start(world, touch, &half);
+            let mut contact = GroundContact::new(0, touch, world.law(touch.triangle));
+            contact.target = sustained_m_s(gap, touch.normal.dot(&state.v), dt);
+            self.contacts.push(contact);
+        }
+        let free = (state.v + world.body.gravity * dt, state.w);
+        self.after = settle(&mut self.contacts, &world.body, free, &mut state.sweeps);
     }
 }
 

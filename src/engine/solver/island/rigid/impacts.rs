@@ -10,8 +10,8 @@ use super::RigidIsland;
 use super::collision::BlowStart;
 use super::contacts::{BallContact, ImpactScene, LIVELY, StepBody, hit_of};
 use super::sweeps::FEW;
+use crate::contact::ContactPoint;
 use crate::contact::pair::{PairHistory, between};
-use crate::contact::{ContactPoint, ContactPoints};
 use crate::rock::Vec3;
 use crate::solver::body::Twist;
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
@@ -267,7 +267,7 @@ impl RigidIsland {
 /// is turned against a facet, and back. Gives nothing back if it is `dead`. Notes of every contact what it took, and of those struck
 /// the approach (m/s).
 fn throw_off(
-    (world, touches): (&ContactEnvironment, &ContactPoints),
+    (world, touches): (&ContactEnvironment, &[ContactPoint]),
     (touch, turn): (&ContactPoint, Option<Rotation3<f64>>),
     (v, w): (&Vec3, &Vec3),
     (dead, tolerance): (bool, f64),
@@ -279,8 +279,8 @@ fn throw_off(
     for contact in &mut struck {
         contact.captured |= dead;
     }
-    let thrown = throw(&world.body, &struck[..touches.len()], (&met, &spin), tolerance);
-    for (loss, other) in thrown.loss.iter().zip(touches.iter()) {
+    let thrown = throw(&world.body, &struck, (&met, &spin), tolerance);
+    for (loss, other) in thrown.loss.iter().zip(touches) {
         let is_struck = other.feature == touch.feature || is_fast(world, other, &met);
         let approach_m_s = is_struck.then(|| -other.normal.dot(&met));
         note(other, &loss.on(world, other.triangle), approach_m_s);
