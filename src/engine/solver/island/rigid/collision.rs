@@ -15,6 +15,7 @@ use crate::solver::impact::{
 use crate::solver::island::body::IslandBody;
 use crate::solver::law::capture_m_s;
 use crate::solver::rigid::HELD;
+use arrayvec::ArrayVec;
 use nalgebra::Rotation3;
 
 /// What a blow begins with.
@@ -25,50 +26,22 @@ pub(super) struct BlowStart {
     pub(super) turn: Option<Rotation3<f64>>,
 }
 
-/// Rocks that touch each other.
+/// Rocks that touch each other, as places in the island, and their pairs.
+#[derive(Default)]
 struct TouchingRocks {
-    /// Their places in the island.
-    rocks: [usize; BODIES],
-    count: usize,
-    /// Their pairs.
-    pairs: [usize; CONTACTS],
-    pair_count: usize,
+    rocks: ArrayVec<usize, BODIES>,
+    pairs: ArrayVec<usize, CONTACTS>,
 }
 
 impl TouchingRocks {
-    /// None yet.
-    const NONE: Self = Self { rocks: [0; BODIES], count: 0, pairs: [0; CONTACTS], pair_count: 0 };
-
-    fn rocks(&self) -> &[usize] {
-        &self.rocks[..self.count]
+    /// Adds a rock that is not among them yet; `None` if there is no room.
+    fn add_rock(&mut self, rock: usize) -> Option<()> {
+        self.rocks.contains(&rock).then_some(()).or_else(|| self.rocks.try_push(rock).ok())
     }
 
-    fn pairs(&self) -> &[usize] {
-        &self.pairs[..self.pair_count]
-    }
-
-    /// Where a rock stands among them; it is added, if there is room.
-    fn place_of(&mut self, rock: usize) -> Option<usize> {
-        let known = self.rocks().iter().position(|known| *known == rock);
-        if known.is_none() && self.count < BODIES {
-            self.rocks[self.count] = rock;
-            self.count += 1;
-            return Some(self.count - 1);
-        }
-        known
-    }
-
-    /// Adds a pair; whether there was room.
-    fn add_pair(&mut self, pair: usize) -> bool {
-        if self.pairs().contains(&pair) {
-            return true;
-        }
-        let room = self.pair_count < CONTACTS;
-        if room {
-            self.pairs[self.pair_count] = pair;
-            self.pair_count += 1;
-        }
-        room
+    /// The same for a pair.
+    fn add_pair(&mut self, pair: usize) -> Option<()> {
+        self.pairs.contains(&pair).then_some(()).or_else(|| self.pairs.try_push(pair).ok())
     }
 }
 
@@ -84,7 +57,8 @@ struct StruckRock {
 /// All that takes part in a blow.
 struct StruckRocks {
     touching: TouchingRocks,
-    rocks: [StruckRock; BODIES],
+    /// Every rock that touches.
+    rocks: ArrayVec<StruckRock, BODIES>,
 }
 
 impl RigidIsland {
@@ -100,26 +74,28 @@ impl RigidIsland {
             return false;
         }
         let Some(touching) = self.touching(scene, blow, s) else { return false };
-        let rocks = touching.rocks.map(|rock| {
-            let (c, v) = self.balls[rock].before_end(s);
+        let at_blow = |rock: &usize| {
+            let (c, v) = self.balls[*rock].before_end(s);
             StruckRock { c, v, on_mesh: false }
-        });
+        };
+        let rocks = touching.rocks.iter().map(at_blow).collect();
         let mut struck = StruckRocks { touching, rocks };
         struck.look(scene, blow);
-        let Some((contacts, count)) = self.contacts(scene, &struck, blow) else { return false };
-        let contacts = &contacts[..count];
+        let Some(contacts) = self.contacts(scene, &struck, blow) else { return false };
         let StruckRocks { touching, rocks } = &struck;
         let own = if blow.pair.is_some() { 2 } else { 1 };
-        if touching.count <= own && (blow.pair.is_none() || count == 1) {
+        if touching.rocks.len() <= own && (blow.pair.is_none() || contacts.len() == 1) {
             return false;
         }
-        let bodies: [FrozenBody; BODIES] = std::array::from_fn(|k| {
-            let ball = &self.balls[touching.rocks[k]];
-            FrozenBody { body: ball.body, motion: (rocks[k].v, ball.w) }
-        });
-        let (bodies, tolerance) = (&bodies[..touching.count], self.impact_tolerance());
-        let Some(after) = collide(bodies, contacts, tolerance) else { return false };
-        let taken_j = self.book(scene, &struck, contacts, &after);
+        let frozen = |(rock, at): (&usize, &StruckRock)| {
+            let ball = &self.balls[*rock];
+            FrozenBody { body: ball.body, motion: (at.v, ball.w) }
+        };
+        let bodies: ArrayVec<_, BODIES> = touching.rocks.iter().zip(rocks).map(frozen).collect();
+        let Some(after) = collide(&bodies, &contacts, self.impact_tolerance()) else {
+            return false;
+        };
+        let taken_j = self.book(scene, &struck, &contacts, &after);
         self.go_on_from(&struck, &after, (taken_j, s));
         true
     }
@@ -133,8 +109,8 @@ impl RigidIsland {
         after: &FrozenCollision,
     ) -> [f64; BODIES] {
         let mut taken_j = [0.0; BODIES];
-        let (pairs, meshes) = contacts.split_at(touching.pair_count);
-        for ((contact, loss), pair) in pairs.iter().zip(&after.loss).zip(touching.pairs()) {
+        let (pairs, meshes) = contacts.split_at(touching.pairs.len());
+        for ((contact, loss), pair) in pairs.iter().zip(&after.loss).zip(&touching.pairs) {
             let ContactEnds { first, second, .. } = contact.ends;
             for end in [Some(first), second].into_iter().flatten() {
                 taken_j[end] += 0.5 * loss.sum();
@@ -142,7 +118,7 @@ impl RigidIsland {
             }
             self.struck[*pair] = true;
         }
-        let on_mesh = touching.rocks().iter().zip(rocks).filter(|(_, rock)| rock.on_mesh);
+        let on_mesh = touching.rocks.iter().zip(rocks).filter(|(_, rock)| rock.on_mesh);
         let touches = on_mesh
             .flat_map(|(rock, _)| scene.members[*rock].state.touches.iter().map(|at| (*rock, at)));
         for ((k, contact), (rock, at)) in (pairs.len()..).zip(meshes).zip(touches) {
@@ -167,7 +143,7 @@ impl RigidIsland {
         (taken_j, s): ([f64; BODIES], f64),
     ) {
         self.in_blow.clear();
-        for (k, (&rock, from)) in touching.rocks().iter().zip(rocks).enumerate() {
+        for (k, (&rock, from)) in touching.rocks.iter().zip(rocks).enumerate() {
             let ball = &mut self.balls[rock];
             let (v, w) = after.motions[k];
             let lost_j = ball.energy_j((&from.v, &ball.w)) - ball.energy_j((&v, &w));
@@ -183,16 +159,13 @@ impl RigidIsland {
 
     /// Rocks that touch the ends of a blow, and those that touch these; `None` if they are too many.
     fn touching(&self, scene: &ImpactScene, blow: &BlowStart, s: f64) -> Option<TouchingRocks> {
-        let mut touching = TouchingRocks::NONE;
+        let mut touching = TouchingRocks::default();
         for &rock in &self.in_blow {
-            touching.place_of(rock)?;
+            touching.add_rock(rock)?;
         }
-        blow.pair.into_iter().for_each(|pair| {
-            touching.add_pair(pair);
-        });
+        blow.pair.map_or(Some(()), |pair| touching.add_pair(pair))?;
         let mut next = 0;
-        while next < touching.count {
-            let rock = touching.rocks[next];
+        while let Some(&rock) = touching.rocks.get(next) {
             next += 1;
             for place in self.of_rocks.places(rock) {
                 let pair = self.of_rocks.at(place);
@@ -202,9 +175,9 @@ impl RigidIsland {
                 let reach = a.body.radius + b.body.radius + HELD * a.body.radius.min(b.body.radius);
                 if apart.norm_squared() <= reach * reach {
                     for end in ends {
-                        touching.place_of(end as usize)?;
+                        touching.add_rock(end as usize)?;
                     }
-                    touching.add_pair(pair).then_some(())?;
+                    touching.add_pair(pair)?;
                 }
             }
         }
@@ -217,18 +190,15 @@ impl RigidIsland {
         scene: &'s ImpactScene,
         StruckRocks { touching, rocks }: &StruckRocks,
         blow: &BlowStart,
-    ) -> Option<([FrozenContact<'s>; CONTACTS], usize)> {
-        let mut contacts = [FrozenContact::none(); CONTACTS];
-        let mut count = 0;
-        let captured = touching.rocks().iter().any(|rock| self.balls[*rock].blows >= LIVELY);
+    ) -> Option<ArrayVec<FrozenContact<'s>, CONTACTS>> {
+        let mut contacts = ArrayVec::new();
+        let captured = touching.rocks.iter().any(|rock| self.balls[*rock].blows >= LIVELY);
         let mut add = |contact: FrozenContact<'s>| -> Option<()> {
-            *contacts.get_mut(count)? = FrozenContact { captured, ..contact };
-            count += 1;
-            Some(())
+            contacts.try_push(FrozenContact { captured, ..contact }).ok()
         };
-        for &pair in touching.pairs() {
+        for &pair in &touching.pairs {
             let pair_history = &scene.pair_histories[pair];
-            let place = |end: u32| touching.rocks().iter().position(|rock| *rock == end as usize);
+            let place = |end: u32| touching.rocks.iter().position(|rock| *rock == end as usize);
             let (first, second) = (place(pair_history.a)?, place(pair_history.b)?);
             let (normal, distance) = between(&rocks[first].c, &rocks[second].c);
             let radius = |k: usize| self.balls[touching.rocks[k]].body.radius;
@@ -237,8 +207,7 @@ impl RigidIsland {
             let ends = ContactEnds { first, second: Some(second), levers: [lever; 2] };
             add(FrozenContact { normal, law: &pair_history.law, ends, ..FrozenContact::none() })?;
         }
-        for (first, rock) in touching.rocks().iter().enumerate().filter(|(k, _)| rocks[*k].on_mesh)
-        {
+        for (first, rock) in touching.rocks.iter().enumerate().filter(|(k, _)| rocks[*k].on_mesh) {
             let IslandBody { state, body, laws, .. } = &*scene.members[*rock];
             let world = ContactEnvironment { terrain: scene.terrain, body: *body, laws };
             let is_turned = blow.turn.is_some() && first == 0;
@@ -255,14 +224,14 @@ impl RigidIsland {
                 })?;
             }
         }
-        Some((contacts, count))
+        Some(contacts)
     }
 }
 
 impl StruckRocks {
     /// Looks for what the rocks touch of the mesh. Of one that comes to it the touches are known.
     fn look(&mut self, scene: &mut ImpactScene, blow: &BlowStart) {
-        for (k, (&rock, at)) in self.touching.rocks().iter().zip(&mut self.rocks).enumerate() {
+        for (k, (&rock, at)) in self.touching.rocks.iter().zip(&mut self.rocks).enumerate() {
             let IslandBody { state, body, laws, .. } = &mut *scene.members[rock];
             let world = ContactEnvironment { terrain: scene.terrain, body: *body, laws };
             let is_known = blow.pair.is_none() && k == 0;
