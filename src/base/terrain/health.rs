@@ -4,7 +4,6 @@ mod gaps;
 mod measure;
 mod near;
 mod overlaps;
-mod parts;
 mod table;
 #[cfg(test)]
 mod tests;
@@ -17,9 +16,12 @@ pub use overlaps::Overlap;
 use crate::error::{Error, Result};
 use crate::rock::Vec3;
 use crate::terrain::stl::{Format, Spacing};
+use crate::terrain::weld::parts::Parts;
 use crate::terrain::weld::{Piece, Tally, Welded};
-use parts::Parts;
 use std::path::Path;
+
+/// Steepest triangles that make a sheet, as cosine of their inclination (–): 80°. The rim of a wall or a stem looks nowhere.
+const LEAST_FLAT: f64 = 0.17;
 
 /// Most gaps and overlaps that are kept.
 const MOST_NAMED: usize = 50;

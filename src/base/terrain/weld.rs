@@ -366,6 +366,7 @@ fn nothing_left(pieces: &[Piece], welded: &Welded) -> Error {
 
 mod covered;
 mod numbers;
+pub(in crate::terrain) mod parts;
 mod repeated;
 pub mod split;
 pub mod t_junctions;

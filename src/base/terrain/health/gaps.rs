@@ -1,12 +1,13 @@
 //! Gaps: stretches where borders of the slope face each other across a distance that is small beside their edges.
 
+use super::LEAST_FLAT;
 use super::near::PlanCells;
-use super::parts::{LEAST_FLAT, Parts};
 use crate::parallel;
 use crate::rock::Vec3;
 use crate::terrain::groups::Groups;
 use crate::terrain::stl::area_vector;
 use crate::terrain::weld::Welded;
+use crate::terrain::weld::parts::Parts;
 
 /// Widest gap over the median length of border edges (–): a missing row of cells, but not the mouth of a gully.
 const WIDEST: f64 = 3.0;

@@ -4,12 +4,13 @@
 //! slope are no sheets: closed bodies have no border; walls and stems have little area in plan view; a dam or a block that
 //! lies wholly on a sheet is apart from it by more over much of its area, or has much more surface than the sheet below.
 
-use super::parts::{LEAST_FLAT, Parts};
+use super::LEAST_FLAT;
 use crate::parallel;
 use crate::rock::Vec3;
 use crate::terrain::groups::Groups;
 use crate::terrain::stl::area_vector;
 use crate::terrain::weld::Welded;
+use crate::terrain::weld::parts::Parts;
 use std::collections::BTreeMap;
 
 /// Sheets farther apart than this (m), or than a cell, are two surfaces: no rock of usual size presses on both.

@@ -7,9 +7,9 @@
 //! lies beside it: O(n log n).
 
 use super::Welded;
+use super::parts::Parts;
 use crate::parallel;
 use crate::rock::Vec3;
-use crate::terrain::groups::Groups;
 use crate::terrain::index::{Index, Sizes};
 use outline::{PlaneOutline, lies_beneath};
 
@@ -54,15 +54,10 @@ impl Welded {
     /// All triangles beside the largest part of the mesh, and those of it that share an edge with two others or lie folded back
     /// on the next one; none if the mesh is one sheet.
     fn suspects(&self) -> Option<Suspects> {
-        let mut parts = self.parts();
-        let mut sizes = vec![0u32; self.triangles.len()];
-        let part_of: Vec<u32> = (0..sizes.len() as u32).map(|t| parts.lowest(t)).collect();
-        for &part in &part_of {
-            sizes[part as usize] += 1;
-        }
-        let largest = (0..).zip(&sizes).max_by_key(|(_, size)| **size).map_or(0, |(part, _)| part);
-        let is_one = parallel::map(sizes.len(), |t| {
-            part_of[t] != largest || (0..3).any(|k| self.is_doubled(3 * t as u32 + k))
+        let parts = Parts::of(self);
+        // part 0 is the largest
+        let is_one = parallel::map(parts.of.len(), |t| {
+            parts.of[t] != 0 || (0..3).any(|k| self.is_doubled(3 * t as u32 + k))
         });
         let all: Vec<u32> = (0..is_one.len() as u32).filter(|&t| is_one[t as usize]).collect();
         if all.is_empty() {
@@ -72,17 +67,6 @@ impl Welded {
         let (index, order) = Index::build(all.len(), Sizes::SMALL, corners);
         let triangles = order.into_iter().map(|k| all[k as usize]).collect();
         Some(Suspects { index, triangles, is_one })
-    }
-
-    /// Triangles that hang together by edges.
-    pub(in crate::terrain) fn parts(&self) -> Groups {
-        let beside = |t: u32| {
-            let later = move |side: u32| {
-                self.edges.sides_on(side).skip(1).take_while(move |&other| other > side)
-            };
-            (3 * t..3 * t + 3).flat_map(later).map(|side| side / 3)
-        };
-        Groups::joined(self.triangles.len(), beside)
     }
 
     /// Whether the edge of a side has three triangles or more, or two on the same side of it in one plane.

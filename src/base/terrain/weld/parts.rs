@@ -1,22 +1,21 @@
 //! Which part of the mesh a triangle belongs to: what shares edges hangs together.
 
+use super::Welded;
 use crate::parallel;
-use crate::terrain::weld::Welded;
-
-/// Steepest triangles that make a sheet, as cosine of their inclination (–): 80°. The rim of a wall or a stem looks nowhere.
-pub(super) const LEAST_FLAT: f64 = 0.17;
+use crate::terrain::groups::Groups;
 
 /// The parts, numbered from 0, the largest first.
-pub(super) struct Parts {
+pub(in crate::terrain) struct Parts {
     /// Triangles of each part.
-    pub(super) sizes: Vec<usize>,
+    pub(in crate::terrain) sizes: Vec<usize>,
     /// Of each triangle.
-    pub(super) of: Vec<u32>,
+    pub(in crate::terrain) of: Vec<u32>,
 }
 
 impl Parts {
-    pub(super) fn of(welded: &Welded) -> Self {
-        let mut groups = welded.parts();
+    /// Of a mesh as it is now: triangles that are left out or split later change them.
+    pub(in crate::terrain) fn of(welded: &Welded) -> Self {
+        let mut groups = groups(welded);
         let mut of: Vec<u32> =
             (0..welded.triangles.len() as u32).map(|t| groups.lowest(t)).collect();
         drop(groups);
@@ -39,4 +38,15 @@ impl Parts {
         parallel::update(&mut of, |_, number| *number = rank[*number as usize]);
         Self { sizes: sizes.into_iter().map(|(size, _)| size).collect(), of }
     }
+}
+
+/// Triangles that share edges.
+fn groups(welded: &Welded) -> Groups {
+    let edges = &welded.edges;
+    let beside = |t: u32| {
+        let later =
+            move |side: u32| edges.sides_on(side).skip(1).take_while(move |&other| other > side);
+        (3 * t..3 * t + 3).flat_map(later).map(|side| side / 3)
+    };
+    Groups::joined(welded.triangles.len(), beside)
 }
