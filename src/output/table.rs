@@ -7,6 +7,10 @@ use std::fs::{File, OpenOptions};
 use std::io::{BufRead, BufReader, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
+mod header;
+
+pub(super) use header::Columns;
+
 /// Buffer of a reader or writer (bytes).
 const BUFFER: usize = 1 << 17;
 
@@ -88,9 +92,6 @@ impl CsvTable {
     }
 }
 
-/// Columns that a table always has, and groups of further ones that it has all of or none, in this order.
-pub(super) type Columns = (&'static [&'static str], &'static [&'static [&'static str]]);
-
 /// Reads the rows of a CSV file one by one.
 pub(super) fn rows<R: DeserializeOwned>(
     path: PathBuf,
@@ -102,12 +103,12 @@ pub(super) fn rows<R: DeserializeOwned>(
     let mut record = csv::StringRecord::new();
     reader.read_record(&mut record).map_err(|why| in_file(&path, columns, why))?;
     let found: Vec<&str> = record.iter().collect();
-    let Some(gaps) = gaps(&found, (columns, groups)) else {
+    let Some(gaps) = header::gaps(&found, (columns, groups)) else {
         return Err(Error::input(
             &path,
             "line 1",
-            format!("columns \"{}\"", found.join(",")),
-            format!("the columns must be \"{}\"", columns.join(",")),
+            header::flaw(&found, (columns, groups)),
+            "restore the file as it was written, or run again with --overwrite",
         ));
     };
     let all: Vec<String> = found.iter().map(|&column| column.to_owned()).collect();
@@ -116,21 +117,6 @@ pub(super) fn rows<R: DeserializeOwned>(
         next_row(&mut reader, (&mut record, &gaps), &path, &all).transpose()
     };
     Ok(std::iter::from_fn(next))
-}
-
-/// Before which columns of a file a group is missing; none if it has other columns than it should.
-fn gaps(found: &[&str], (columns, groups): Columns) -> Option<Vec<usize>> {
-    let mut rest = found.strip_prefix(columns)?;
-    let mut gaps = Vec::new();
-    for group in groups {
-        match rest.strip_prefix(*group) {
-            Some(after) => rest = after,
-            None => gaps.push(found.len() - rest.len()),
-        }
-    }
-    // at the end of a row nothing needs to stand for what is missing
-    gaps.retain(|gap| *gap < found.len());
-    rest.is_empty().then_some(gaps)
 }
 
 /// Whether the rows of a CSV file have these columns too.
