@@ -13,6 +13,9 @@ pub struct Site {
     /// Where further sources release theirs.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub further_releases: Vec<ReleaseZone>,
+    /// Names of all these places, in the order of [`zones`](Self::zones); empty where the scene names none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub release_names: Vec<String>,
     /// What the user should know if rocks come so fast.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub fast_warnings: Vec<FastWarning>,
@@ -22,6 +25,12 @@ impl Site {
     /// Every place where rocks are released.
     pub fn zones(&self) -> impl Iterator<Item = &ReleaseZone> {
         std::iter::once(&self.release).chain(&self.further_releases)
+    }
+
+    /// The same, each with its name where it has one.
+    pub fn named_zones(&self) -> impl Iterator<Item = (Option<&str>, &ReleaseZone)> {
+        let names = self.release_names.iter().map(|name| Some(name.as_str()));
+        names.chain(std::iter::repeat(None)).zip(self.zones())
     }
 }
 

@@ -147,16 +147,19 @@ pub(super) fn write_site(folder: &Path, epsg: Option<u32>, summary: &Summary) ->
         file.add(&line(&at.info.corners_m), &said)?;
     }
     file.finish()?;
-    let zones: Vec<&ReleaseZone> =
-        summary.site.zones().filter(|zone| !zone.corners_m().is_empty()).collect();
+    let zones: Vec<(Option<&str>, &ReleaseZone)> =
+        summary.site.named_zones().filter(|(_, zone)| !zone.corners_m().is_empty()).collect();
     let mut file =
         GeoJsonFile::create_if(!zones.is_empty(), folder.join("release_zone.geojson"), epsg)?;
-    for (number, zone) in zones.iter().enumerate() {
-        let said = if zones.len() > 1 {
+    for (number, (name, zone)) in zones.iter().enumerate() {
+        let mut said = if zones.len() > 1 {
             json!({ "source": number + 1 })
         } else {
             json!({ "releases": summary.identity.of_releases })
         };
+        if let Some(name) = name {
+            said["name"] = (*name).into();
+        }
         file.add(&geometry(zone), &said)?;
     }
     file.finish()

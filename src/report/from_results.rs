@@ -70,8 +70,7 @@ pub fn gather(results: &Results, ground: Option<GroundRaster>) -> Result<Report>
             .into_iter()
             .chain(arrivals::tables(results, words, &order))
             .collect(),
-        zone: results.summary.site.release.clone(),
-        further_zones: results.summary.site.further_releases.clone(),
+        zones: lines::zones(results),
         marks: lines::marks(results),
         tables: [table(hazard, words)]
             .into_iter()

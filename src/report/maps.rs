@@ -13,10 +13,7 @@ use super::model::{CellMap, MapMark, Report, energy_unit};
 use super::panel::{FOOT_PX, Panel};
 use super::plan_view::ground::Shaded;
 use super::profile::NEEDS;
-use super::site::{
-    self,
-    names::{Key, Names},
-};
+use super::site::{self, names::Names};
 use super::svg::path::{PaperFrame, Spot};
 use super::words::fill;
 use super::words::open::missing;
@@ -203,18 +200,21 @@ fn draw_layers(
 ) -> String {
     let (panels, bottom) = panels(report, maps, layers);
     let said = |mark: &MapMark, width: f64| fitted(&mark.name, SMALL, width);
-    // all panels have one extent and scale: names that are clear in one are clear in all
-    let is_clear = panels.first().is_none_or(|panel| Names::of(panel, report, &said).is_clear());
-    let left = panels.first().map_or(0.0, |panel| panel.frame.left);
-    let marks = if is_clear { Key::default() } else { Key::of(report, &said, WIDTH_PX - left) };
-    let room = if is_clear { 0.0 } else { marks.height_px() + KEY_GAP_PX };
+    let corner = |panel: &Panel| (panel.frame.left, panel.frame.top);
+    let (left, first_top) = panels.first().map_or((0.0, 0.0), corner);
+    // all panels have one extent and scale: names stand in all as in the first
+    let names = panels.first().map(|panel| Names::of(panel, report, &said)).unwrap_or_default();
+    let marks = names.key(report, &said, WIDTH_PX - left);
+    let height = marks.height_px();
+    let room = if height > 0.0 { height + KEY_GAP_PX } else { 0.0 };
     paint(name, (WIDTH_PX, bottom + room), title, |canvas| {
         marks.draw(canvas, (left, bottom + KEY_GAP_PX));
         for (k, (panel, layer)) in panels.iter().zip(layers).enumerate() {
             let at = (panel.frame.left, panel.frame.top - 9.0);
             let title = short_title(&layer.title, panel.frame.left);
             canvas.text(&Label::new(title, at).bold().sized(NORMAL));
-            let names = Names::of(panel, report, &said);
+            let (x, y) = corner(panel);
+            let names = names.moved((x - left, y - first_top));
             names.keep(canvas);
             canvas.clip(&format!("part{k}"), &panel.frame, || {
                 if let Some(shaded) = ground {

@@ -5,12 +5,12 @@ mod places;
 pub use places::{
     AnnualView, BarrierView, Behind, CellMap, DesignView, LevelCells, LinePoint, MapMark, Observed,
     PlaceView, ProfileStretch, ProfileView, ReportLine, ReportStretch, RockView, YearCells,
+    ZoneMark,
 };
 
 pub use super::bound::Is;
 use super::raster::GroundRaster;
 use super::words::Words;
-use crate::output::ReleaseZone;
 use crate::scene::Language;
 use crate::simulation::{PathState, Stop};
 use std::collections::BTreeMap;
@@ -43,9 +43,7 @@ pub struct Report {
     /// Plausibility: what was looked at, what was found, whether it passes.
     pub checks: Vec<Check>,
     /// Where rocks are released.
-    pub zone: ReleaseZone,
-    /// Where further sources release theirs.
-    pub further_zones: Vec<ReleaseZone>,
+    pub zones: Vec<ZoneMark>,
     /// Lines and barriers on the map.
     pub marks: Vec<MapMark>,
     /// Further tables: one an evaluation line, for instance.

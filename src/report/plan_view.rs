@@ -12,10 +12,7 @@ use super::model::Report;
 use super::panel::MANY;
 use super::panel::TOLERANCE_PX;
 use super::panel::{FOOT_PX, Panel};
-use super::site::{
-    self,
-    names::{Key, Names},
-};
+use super::site::{self, names::Names};
 use super::svg::path::{PaperFrame, Spot, clipped, thinned};
 use super::words::fill;
 use crate::math;
@@ -55,12 +52,8 @@ pub(super) fn draw(report: &Report) -> Drawing {
     let panel = layout(report);
     let key = furniture::MapLegend::of(report);
     let width = (panel.frame.right + RIGHT_PX).clamp(NARROWEST_PX, WIDTH_PX);
-    let names = Names::of(&panel, report, &site::in_words);
-    let numbered = if names.is_clear() {
-        Key::default()
-    } else {
-        Key::of(report, &site::in_words, width - KEY_LEFT_PX)
-    };
+    let names = Names::of(&panel, report, &site::in_words).with_zones(&panel, report);
+    let numbered = names.key(report, &site::in_words, width - KEY_LEFT_PX);
     let below = panel.frame.bottom + FOOT_PX + key.height_px(width - KEY_LEFT_PX) + 8.0;
     let height = below + numbered.height_px();
     let fastest = fastest_m_s(report);

@@ -22,20 +22,19 @@ const MOST_POINTS: usize = 200;
 
 /// Draws the zones of release.
 pub(super) fn zones(canvas: &Canvas<'_>, panel: &Panel, report: &Report) {
-    for one in std::iter::once(&report.zone).chain(&report.further_zones) {
-        zone(canvas, panel, one);
+    for one in &report.zones {
+        zone(canvas, panel, &one.outline);
     }
 }
 
 /// Spots along the outlines of the zones, closer to each other than a word is high: text is written beside them.
 pub(super) fn outline(panel: &Panel, report: &Report) -> Vec<Spot> {
-    let zones = std::iter::once(&report.zone).chain(&report.further_zones);
     let of_zone = |zone: &ReleaseZone| -> Vec<Spot> {
-        let mut spots: Vec<Spot> = zone.corners_m().iter().map(|&[x, y]| panel.at(x, y)).collect();
+        let spots = zone_spots(panel, zone);
         if matches!(zone, ReleaseZone::Points(_)) {
             return spots;
         }
-        spots.extend(spots.first().copied());
+        let closed = spots.iter().chain(spots.first()).copied().collect::<Vec<Spot>>();
         let between = |pair: &[Spot]| -> Vec<Spot> {
             let ((x, y), (to_x, to_y)) = (pair[0], pair[1]);
             let pieces = (math::hypot(to_x - x, to_y - y) / 4.0).ceil().clamp(1.0, 1000.0);
@@ -43,26 +42,41 @@ pub(super) fn outline(panel: &Panel, report: &Report) -> Vec<Spot> {
             let at = |s: f64| (x + s * (to_x - x), y + s * (to_y - y));
             (0..=pieces as u32).map(|k| at(share(k))).collect()
         };
-        spots.windows(2).flat_map(between).collect()
+        closed.windows(2).flat_map(between).collect()
     };
-    zones.flat_map(of_zone).collect()
+    report.zones.iter().flat_map(|zone| of_zone(&zone.outline)).collect()
+}
+
+/// Corners or points of a zone on paper.
+fn zone_spots(panel: &Panel, zone: &ReleaseZone) -> Vec<Spot> {
+    zone.corners_m().iter().map(|&[x, y]| panel.at(x, y)).collect()
+}
+
+/// What of a zone lies inside the frame: pieces of its outline, or its points.
+fn zone_parts(panel: &Panel, zone: &ReleaseZone) -> Vec<Vec<Spot>> {
+    let mut spots = zone_spots(panel, zone);
+    match zone {
+        ReleaseZone::Points(_) => {
+            spots.retain(|&spot| panel.frame.holds(spot));
+            return vec![spots];
+        }
+        ReleaseZone::Polygon(_) => spots.extend(spots.first().copied()),
+        ReleaseZone::Line(_) => {}
+    }
+    clipped(&spots, &panel.frame)
 }
 
 fn zone(canvas: &Canvas<'_>, panel: &Panel, zone: &ReleaseZone) {
-    let mut spots: Vec<Spot> = zone.corners_m().iter().map(|&[x, y]| panel.at(x, y)).collect();
-    match zone {
-        ReleaseZone::Points(_) if spots.len() <= MOST_POINTS => {
-            for &spot in spots.iter().filter(|&&spot| panel.frame.holds(spot)) {
-                canvas.disc(spot, 2.6, INK);
-                canvas.disc(spot, 1.6, WHITE);
+    for part in zone_parts(panel, zone) {
+        match zone {
+            ReleaseZone::Points(_) if part.len() <= MOST_POINTS => {
+                for &spot in &part {
+                    canvas.disc(spot, 2.6, INK);
+                    canvas.disc(spot, 1.6, WHITE);
+                }
             }
-        }
-        ReleaseZone::Points(_) => canvas.dots(&spots, 0.9, INK),
-        ReleaseZone::Polygon(_) | ReleaseZone::Line(_) => {
-            if matches!(zone, ReleaseZone::Polygon(_)) {
-                spots.extend(spots.first().copied());
-            }
-            for part in clipped(&spots, &panel.frame) {
+            ReleaseZone::Points(_) => canvas.dots(&part, 0.9, INK),
+            ReleaseZone::Polygon(_) | ReleaseZone::Line(_) => {
                 canvas.line(&part, Pen { opacity: 0.7, ..Pen::full(WHITE, 3.0) });
                 canvas.line(&part, ZONE);
             }

@@ -1,6 +1,7 @@
 //! What the results need to know of a plan: where things stand, lines, barriers, maps.
 
 use crate::error::{Error, Result};
+use crate::frequency::Frequency;
 use crate::hazard::{Barrier, Elsewhere, LineInfo, MapFrame, Rule};
 use crate::output::{ReleaseZone, Site};
 use crate::plan::{self, EvaluationLine, Plan};
@@ -9,32 +10,45 @@ use crate::scene::{self, Area, BarrierTable, DesignTable, Polyline, ZonePlace};
 
 /// Where meshes and releases lie.
 pub(super) fn site(plan: &Plan) -> Site {
-    let mut zones = plan.releases.places().iter().flat_map(zones);
+    let places = plan.releases.places();
+    // one place alone needs no name
+    let sources = plan.releases.frequency().filter(|_| places.len() > 1);
+    let names = sources.into_iter().flat_map(Frequency::sources).map(|one| one.name.as_str());
+    let named = places.iter().zip(names.chain(std::iter::repeat("")));
+    let (release_names, mut outlines): (Vec<String>, Vec<ReleaseZone>) =
+        named.flat_map(|(place, name)| zones(place, name)).unzip();
+    let is_named = release_names.iter().any(|name| !name.is_empty());
+    let further_releases = outlines.split_off(outlines.len().min(1));
     Site {
         mesh_origin_m: plan.mesh_origin_m,
-        release: zones.next().unwrap_or_default(),
-        further_releases: zones.collect(),
+        release: outlines.pop().unwrap_or_default(),
+        further_releases,
+        release_names: if is_named { release_names } else { Vec::new() },
         fast_warnings: plan.fast_warnings.clone(),
     }
 }
 
-/// Outlines of a place of release.
-fn zones(place: &Where) -> Vec<ReleaseZone> {
+/// Outlines of a place of release, each with the name of its zone or of the place.
+fn zones(place: &Where, name: &str) -> Vec<(String, ReleaseZone)> {
     let line = |line: &Polyline| ReleaseZone::Line(line.corners_m().to_vec());
     let area = |area: &Area| ReleaseZone::Polygon(area.corners_m().to_vec());
-    let drawn = |one: &scene::Zone| match &one.place {
-        ZonePlace::Points(points) => vec![ReleaseZone::Points(points.clone())],
-        ZonePlace::Lines(lines) => lines.iter().map(line).collect(),
-        ZonePlace::Areas(areas) => areas.iter().map(area).collect(),
+    let drawn = |one: &scene::Zone| -> Vec<(String, ReleaseZone)> {
+        let outlines = match &one.place {
+            ZonePlace::Points(points) => vec![ReleaseZone::Points(points.clone())],
+            ZonePlace::Lines(lines) => lines.iter().map(line).collect(),
+            ZonePlace::Areas(areas) => areas.iter().map(area).collect(),
+        };
+        outlines.into_iter().map(|outline| (one.name.clone(), outline)).collect()
     };
-    match place {
+    let outline = match place {
         Where::Points(points) => {
-            vec![ReleaseZone::Points(points.iter().map(|point| point.at_m).collect())]
+            ReleaseZone::Points(points.iter().map(|point| point.at_m).collect())
         }
-        Where::Line(one) => vec![line(one)],
-        Where::Area(one) => vec![area(one)],
-        Where::Zones(zones) => zones.list().iter().flat_map(drawn).collect(),
-    }
+        Where::Line(one) => line(one),
+        Where::Area(one) => area(one),
+        Where::Zones(zones) => return zones.list().iter().flat_map(drawn).collect(),
+    };
+    vec![(name.to_owned(), outline)]
 }
 
 pub(super) fn line_infos(plan: &Plan) -> Vec<LineInfo> {

@@ -77,6 +77,13 @@ fn each_zone_releases_as_often_as_it_says() {
     near(&found["annual"]["places"][0]["without_barriers"]["passages"]["per_year"], by_hand);
     let reach = &found["annual"]["places"][0]["conditional_on_release"]["share"];
     near(reach, by_hand / 0.4);
+    // which zone is which, on the map and for a GIS
+    let plan = fs::read_to_string(out.join("figures/plan.svg")).unwrap();
+    let zones = fs::read_to_string(out.join("maps/release_zone.geojson")).unwrap();
+    for name in ["west", "east"] {
+        assert!(plan.contains(&format!("{name}</text>")), "{name}");
+        assert!(zones.contains(&format!("\"name\":\"{name}\"")), "{zones}");
+    }
 }
 
 /// What properties and `[frequency]` say together is a law: a total and a common power law, 1 m³ events, one volume, a range.

@@ -37,6 +37,7 @@ pub fn info(releases: usize) -> RunInfo {
                 [2_600_010.0, 1_200_000.0],
             ]),
             further_releases: Vec::new(),
+            release_names: Vec::new(),
             fast_warnings: vec![],
         },
         ground_of_sheet: vec!["rock".to_owned(), "trunk, \"old\"".to_owned()],

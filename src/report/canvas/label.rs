@@ -38,6 +38,11 @@ impl Label {
         self
     }
 
+    /// Its place.
+    pub fn at(&self) -> Spot {
+        self.at
+    }
+
     /// Ends at its place.
     #[must_use]
     pub fn right(mut self) -> Self {

@@ -4,7 +4,7 @@ use super::super::by_frequency;
 use super::super::format;
 use super::super::model::{
     About, BandPoint, Behind, Estimate, EstimateTable, Is, LinePoint, MapMark, Quantile,
-    ReportLine, ReportQuantity,
+    ReportLine, ReportQuantity, ZoneMark,
 };
 use super::super::raster::GroundRaster;
 use super::super::words::open::missing as missing_rocks;
@@ -15,7 +15,7 @@ use crate::frequency::Weights;
 use crate::hazard::{
     self, Barrier, CrossingRow, LineQuantity, PERCENTS, Proportion, Residual, Sample,
 };
-use crate::output::Results;
+use crate::output::{ReleaseZone, Results};
 
 /// A row: what it is of, its name, and the quantity of a release with the same unit.
 type Tabled = (LineQuantity, fn(&Words) -> &'static str, ReportQuantity);
@@ -58,6 +58,15 @@ pub(super) fn marks(results: &Results) -> Vec<MapMark> {
         barrier: barrier_on(results, &line.info.name).map(|b| (b.height_m, b.capacity_j)),
     };
     shown(results).map(mark).collect()
+}
+
+/// Zones of release on the map.
+pub(super) fn zones(results: &Results) -> Vec<ZoneMark> {
+    let mark = |(name, outline): (Option<&str>, &ReleaseZone)| ZoneMark {
+        name: name.unwrap_or_default().to_owned(),
+        outline: outline.clone(),
+    };
+    results.summary.site.named_zones().map(mark).collect()
 }
 
 /// All lines with their first crossings, in downslope order.

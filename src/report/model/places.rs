@@ -2,6 +2,7 @@
 
 use super::{BandPoint, Estimate, Quantile};
 use crate::hazard::{Agreement, ObservedPath, Proportion};
+use crate::output::ReleaseZone;
 
 /// Speed and height of all rocks by distance from their release.
 #[derive(Debug, Clone, PartialEq)]
@@ -203,6 +204,15 @@ pub struct MapMark {
     pub corners_m: Vec<[f64; 2]>,
     /// Height (m) and capacity (J) of a barrier; none of a line.
     pub barrier: Option<(f64, f64)>,
+}
+
+/// A place of release on the map.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ZoneMark {
+    /// Its name; empty where it has none.
+    pub name: String,
+    /// Where it lies.
+    pub outline: ReleaseZone,
 }
 
 /// One first crossing.

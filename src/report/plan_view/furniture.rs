@@ -96,10 +96,10 @@ impl MapLegend {
     pub(super) fn of(report: &Report) -> Self {
         let words = report.words();
         let mut entries = Vec::new();
-        if !report.releases.is_empty() {
+        if let Some(zone) = report.zones.first().filter(|_| !report.releases.is_empty()) {
             let count = format::decimal(report.released() as f64, 0);
             entries.push((
-                Symbol::Zone(report.zone.clone()),
+                Symbol::Zone(zone.outline.clone()),
                 fill(words.key_release, &[("n", &count)]),
             ));
         }

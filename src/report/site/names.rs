@@ -1,5 +1,7 @@
 //! Names of lines and barriers on a map: beside their lines where that is clear, as numbers with a key where it is not.
 
+mod zones;
+
 use super::on_paper;
 use crate::math;
 use crate::report::canvas::{Canvas, Label, Pen, SMALL, bold_width, fitted, text_width};
@@ -8,6 +10,8 @@ use crate::report::model::{MapMark, Report};
 use crate::report::panel::Panel;
 use crate::report::svg::path::{PaperFrame, Spot, clipped};
 
+/// Widest name over the width of the frame (–).
+const WIDEST: f64 = 0.6;
 /// A shorter end of a line that looks into the frame has no name: it would be read as that of another one (px).
 const LEAST_NAMED_PX: f64 = 16.0;
 /// Gap between a line and its name (px).
@@ -27,17 +31,30 @@ const NUMBER_GAP_PX: f64 = 4.0;
 type NameOf<'a> = &'a dyn Fn(&MapMark, f64) -> String;
 
 /// Room that names were found for.
+#[derive(Default)]
 pub(in crate::report) struct Names {
     placed: Vec<PlacedName>,
-    /// Whether each is read as that of its own line, and none lacks.
-    is_clear: bool,
+    /// Whether lines and barriers have numbers, for a [`Key`].
+    are_numbers: bool,
+    /// Letters of the zones and what they stand for; none where zones have their names, or need none.
+    lettered: Vec<(String, String)>,
 }
 
 /// A name and, where it stands farther from its line, the stroke that leads there.
+#[derive(Clone)]
 struct PlacedName {
     label: Label,
     stroke: Option<[Spot; 2]>,
 }
+
+/// What has a name, on paper.
+struct Outline<'a> {
+    name: &'a str,
+    parts: Vec<Vec<Spot>>,
+}
+
+/// A name, and places for it, the nearest first.
+type Wanted<'a> = (&'a str, Vec<PlacedName>);
 
 /// What is wrong with a place, the worst first: lines of others through the name, beside it, and through its stroke.
 type Faults = [usize; 3];
@@ -45,49 +62,73 @@ type Faults = [usize; 3];
 impl Names {
     /// Finds room for what is `said` of each mark; numbers where words would be read as those of other lines or have no room.
     pub(in crate::report) fn of(panel: &Panel, report: &Report, said: NameOf<'_>) -> Self {
-        let words = Self::placed(panel, report, said);
-        if words.is_clear { words } else { Self::numbers(panel, report) }
-    }
-
-    /// Numbers of the marks from 1 on, for a [`Key`].
-    pub(in crate::report) fn numbers(panel: &Panel, report: &Report) -> Self {
-        let number = |mark: &MapMark, _: f64| {
-            let at = report.marks.iter().position(|other| std::ptr::eq(other, mark));
-            (at.unwrap_or(0) + 1).to_string()
+        let outlines = outlines(panel, report);
+        let marks = || report.marks.iter().zip(&outlines).zip(1..);
+        let written = |words: &dyn Fn(&MapMark, usize) -> String| -> Vec<Wanted<'_>> {
+            let places = |((mark, outline), number): ((&MapMark, &Outline<'_>), usize)| {
+                candidates(panel, mark, &outline.parts, &words(mark, number))
+            };
+            marks().map(|mark| (mark.0.1.name, places(mark))).collect()
         };
-        Self { is_clear: false, ..Self::placed(panel, report, &number) }
+        let mut names = Self::default();
+        let words = written(&|mark, _| said(mark, WIDEST * panel.frame.width()));
+        names.are_numbers = !names.place(panel, &outlines, words);
+        if names.are_numbers {
+            names.placed.clear();
+            names.place(panel, &outlines, written(&|_, number| number.to_string()));
+        }
+        names
     }
 
-    /// Whether they are names and need no key.
-    pub(in crate::report) fn is_clear(&self) -> bool {
-        self.is_clear
-    }
-
-    fn placed(panel: &Panel, report: &Report, said: NameOf<'_>) -> Self {
-        let mut found = Self { placed: Vec::new(), is_clear: true };
-        let mut taken = Vec::new();
-        for mark in &report.marks {
-            let words = said(mark, 0.6 * panel.frame.width());
-            let candidates = candidates(panel, mark, &words);
-            if candidates.is_empty() {
-                continue;
-            }
-            let free = candidates.into_iter().filter(|name| name.is_free(panel, &taken));
-            let faults = |name: &PlacedName| name.faults(panel, report, mark);
+    /// Adds names where there is room; whether each is read as that of its own line, and none lacks.
+    fn place(&mut self, panel: &Panel, outlines: &[Outline<'_>], all: Vec<Wanted<'_>>) -> bool {
+        let mut taken: Vec<PaperFrame> = self.rooms().collect();
+        let mut is_clear = true;
+        for (own, places) in all.into_iter().filter(|(_, places)| !places.is_empty()) {
+            let free = places.into_iter().filter(|name| name.is_free(panel, &taken));
+            let faults = |name: &PlacedName| name.faults(outlines, own);
             let Some(name) = free.min_by_key(faults) else {
-                found.is_clear = false;
+                is_clear = false;
                 continue;
             };
-            found.is_clear &= faults(&name)[..2] == [0, 0];
+            is_clear &= faults(&name)[..2] == [0, 0];
             taken.extend(name.rooms());
-            found.placed.push(name);
+            self.placed.push(name);
         }
-        found
+        is_clear
+    }
+
+    /// What numbers and letters on the map stand for, in lines of a width (px); nothing where it has all names itself.
+    pub(in crate::report) fn key(&self, report: &Report, said: NameOf<'_>, width_px: f64) -> Key {
+        let mut key = Key::default();
+        let marks = report.marks.iter().zip(1..).filter(|_| self.are_numbers);
+        for (mark, number) in marks {
+            key.add(number.to_string(), &|width| said(mark, width), width_px);
+        }
+        for (letter, name) in &self.lettered {
+            key.add(letter.clone(), &|_| name.clone(), width_px);
+        }
+        key
+    }
+
+    /// The same in a frame of the same size and extent elsewhere on the sheet.
+    pub(in crate::report) fn moved(&self, (dx, dy): Spot) -> Self {
+        let there = |(x, y): Spot| (x + dx, y + dy);
+        let moved = |name: &PlacedName| PlacedName {
+            label: name.label.clone().moved(there(name.label.at())),
+            stroke: name.stroke.map(|ends| ends.map(there)),
+        };
+        let placed = self.placed.iter().map(moved).collect();
+        Self { placed, lettered: self.lettered.clone(), ..*self }
+    }
+
+    fn rooms(&self) -> impl Iterator<Item = PaperFrame> {
+        self.placed.iter().flat_map(PlacedName::rooms)
     }
 
     /// Keeps their room free of other words.
     pub(in crate::report) fn keep(&self, canvas: &Canvas<'_>) {
-        self.placed.iter().flat_map(PlacedName::rooms).for_each(|room| canvas.take(room));
+        self.rooms().for_each(|room| canvas.take(room));
     }
 
     /// Writes them, when all else is drawn.
@@ -101,6 +142,12 @@ impl Names {
             canvas.text_on_rim(&name.label);
         }
     }
+}
+
+/// Lines and barriers on paper.
+fn outlines<'a>(panel: &Panel, report: &'a Report) -> Vec<Outline<'a>> {
+    let outline = |mark: &'a MapMark| Outline { name: &mark.name, parts: on_paper(panel, mark) };
+    report.marks.iter().map(outline).collect()
 }
 
 impl PlacedName {
@@ -119,15 +166,21 @@ impl PlacedName {
         panel.frame.grown(-3.0).contains(&self.label.frame()) && self.rooms().all(is_free)
     }
 
-    fn faults(&self, panel: &Panel, report: &Report, mark: &MapMark) -> Faults {
+    fn faults(&self, outlines: &[Outline<'_>], own: &str) -> Faults {
         let room = self.label.frame();
-        let others = || report.marks.iter().filter(|other| other.name != mark.name);
-        let through =
-            |room: &PaperFrame| others().filter(|other| crosses(panel, other, room)).count();
+        let others = || outlines.iter().filter(|other| other.name != own);
+        let through = |room: &PaperFrame| others().filter(|other| other.crosses(room)).count();
         let Some(stroke) = self.stroke else {
             return [through(&room), through(&room.grown(READ_PX[0])), 0];
         };
         [through(&room), through(&room.grown(READ_PX[1])), through(&around(stroke))]
+    }
+}
+
+impl Outline<'_> {
+    /// Whether it runs through a room.
+    fn crosses(&self, room: &PaperFrame) -> bool {
+        self.parts.iter().any(|part| !clipped(part, room).is_empty())
     }
 }
 
@@ -138,8 +191,7 @@ fn around([from, to]: [Spot; 2]) -> PaperFrame {
 }
 
 /// Places for the name of a mark, the nearest first.
-fn candidates(panel: &Panel, mark: &MapMark, words: &str) -> Vec<PlacedName> {
-    let parts = on_paper(panel, mark);
+fn candidates(panel: &Panel, mark: &MapMark, parts: &[Vec<Spot>], words: &str) -> Vec<PlacedName> {
     let corners = || mark.corners_m.iter().map(|&[x, y]| panel.at(x, y));
     let is_whole = corners().all(|corner| panel.frame.holds(corner));
     let named = parts.iter().filter(|part| is_whole || length(part) > LEAST_NAMED_PX);
@@ -174,11 +226,6 @@ fn length(part: &[Spot]) -> f64 {
     part.windows(2).map(|pair| math::hypot(pair[1].0 - pair[0].0, pair[1].1 - pair[0].1)).sum()
 }
 
-/// Whether a mark runs through a room.
-fn crosses(panel: &Panel, mark: &MapMark, room: &PaperFrame) -> bool {
-    on_paper(panel, mark).iter().any(|part| !clipped(part, room).is_empty())
-}
-
 /// Places for a name: above and below both ends and the middle, and beyond both ends.
 fn beside(part: &[Spot], words: &str) -> Vec<Label> {
     let (Some(&first), Some(&last)) = (part.first(), part.last()) else { return Vec::new() };
@@ -209,22 +256,20 @@ pub(in crate::report) struct Key {
 }
 
 impl Key {
-    /// The names of all marks in lines of a width (px); nothing where the map has names itself.
-    pub(in crate::report) fn of(report: &Report, said: NameOf<'_>, width_px: f64) -> Self {
-        let (mut x, mut line) = (0.0, 0);
-        let mut entries = Vec::new();
-        for (mark, number) in report.marks.iter().zip(1..) {
-            let number = number.to_string();
-            let head = bold_width(&number, SMALL) + NUMBER_GAP_PX;
-            let name = fitted(&said(mark, width_px - head), SMALL, width_px - head);
-            let width = head + text_width(&name, SMALL);
-            if x > 0.0 && x + width > width_px {
-                (x, line) = (0.0, line + 1);
-            }
-            entries.push((number, name, x, line));
-            x += width + KEY_PX.1;
+    /// Adds what stands for words that fit a width, in lines of a width (px).
+    fn add(&mut self, symbol: String, said: &dyn Fn(f64) -> String, width_px: f64) {
+        let head = bold_width(&symbol, SMALL) + NUMBER_GAP_PX;
+        let name = fitted(&said(width_px - head), SMALL, width_px - head);
+        let width = head + text_width(&name, SMALL);
+        let end = |(symbol, name, x, line): &(String, String, f64, usize)| {
+            let head = bold_width(symbol, SMALL) + NUMBER_GAP_PX;
+            (x + head + text_width(name, SMALL) + KEY_PX.1, *line)
+        };
+        let (mut x, mut line) = self.entries.last().map_or((0.0, 0), end);
+        if x > 0.0 && x + width > width_px {
+            (x, line) = (0.0, line + 1);
         }
-        Self { entries }
+        self.entries.push((symbol, name, x, line));
     }
 
     /// Height that it takes (px).

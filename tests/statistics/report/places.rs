@@ -5,7 +5,7 @@ use rockfall::hazard::{Agreement, ObservedPath};
 use rockfall::output::ReleaseZone;
 use rockfall::report::model::{
     AnnualView, BandPoint, BarrierView, Behind, CellMap, DesignView, Estimate, LinePoint, MapMark,
-    Observed, PlaceView, Quantile, Report, ReportLine, RockView,
+    Observed, PlaceView, Quantile, Report, ReportLine, RockView, ZoneMark,
 };
 
 const EAST_M: f64 = 2_600_000.0;
@@ -152,7 +152,10 @@ fn observed() -> Observed {
 pub(crate) fn site() -> Report {
     let area = [[40.0, 185.0], [100.0, 185.0], [100.0, 195.0], [40.0, 195.0]];
     Report {
-        zone: ReleaseZone::Polygon(area.map(|[x, y]| [EAST_M + x, NORTH_M + y]).into()),
+        zones: vec![ZoneMark {
+            name: String::new(),
+            outline: ReleaseZone::Polygon(area.map(|[x, y]| [EAST_M + x, NORTH_M + y]).into()),
+        }],
         marks: marks(),
         lines: vec![
             line(2, "cantonal road between the upper and the lower village, western verge", 230),
@@ -241,4 +244,32 @@ fn a_percentile_is_not_named_on_the_line_of_another() {
     };
     // energy and height, each on its rim
     assert_eq!([names(0.005), names(0.8)], [[2, 4], [4, 4]]);
+}
+
+/// Several zones of release have their names on the plan view; where these have no room, or would be read as those of others, letters
+/// whose names stand once below. One zone needs no name.
+#[test]
+fn zones_of_release_are_told_apart() {
+    let zones = |count: usize, apart_m: f64| -> Vec<ZoneMark> {
+        let zone = |k: usize| {
+            let (x, y) = (EAST_M + 20.0 + apart_m * k as f64, NORTH_M + 185.0);
+            ZoneMark {
+                name: format!("upper cliff, sector {}", 40 + k),
+                outline: ReleaseZone::Line(vec![[x, y], [x + 0.5 * apart_m, y]]),
+            }
+        };
+        (0..count).map(zone).collect()
+    };
+    let said = |count: usize, apart_m: f64| {
+        let report = Report { zones: zones(count, apart_m), marks: Vec::new(), ..site() };
+        let drawn = rockfall::report::drawings(&report);
+        let (_, plan) =
+            drawn.into_iter().find(|(heading, _)| heading.file == "plan.svg").expect("is drawn");
+        let names = plan.svg.matches("upper cliff, sector 40").count();
+        (names, plan.svg.contains(">A</text>"))
+    };
+    // on its rim; in the key; not at all
+    assert_eq!(said(2, 60.0), (2, false));
+    assert_eq!(said(12, 6.0), (1, true));
+    assert_eq!(said(1, 60.0), (0, false));
 }
