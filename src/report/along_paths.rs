@@ -2,10 +2,10 @@
 
 use super::axis::Axis;
 use super::canvas::{Canvas, Label, Pen, SMALL, paint, text_width};
-use super::colour::{BLUE, GREEN, INK, VERMILLION};
+use super::colour::{BLUE, GREEN, GREY, INK, VERMILLION};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
-use super::model::{Path, ReleaseEnd, Report, energy_unit};
+use super::model::{Path, ReleaseEnd, Report, ReportQuantity, energy_unit};
 use super::panel::{FOOT_PX, Panel, align};
 use super::svg::path::PaperFrame;
 use super::words::{Words, fill};
@@ -17,6 +17,16 @@ const GAP_PX: f64 = 18.0;
 /// Pens of the three rocks: told apart without colour.
 const PENS: [Pen; 3] =
     [Pen::full(BLUE, 1.4), Pen::full(VERMILLION, 1.4).dashed(), Pen::full(GREEN, 1.6).dotted()];
+
+const LEVEL: Pen = Pen::full(GREY, 0.9);
+/// Room right of the frames for the names of levels (px).
+const RIGHT_PX: f64 = 32.0;
+/// Largest energies of rocks that differ by more than this are told apart on a logarithmic scale only (–).
+const UNLIKE: f64 = 10.0;
+/// How far down the curve of the weakest rock is shown, over its largest energy (–): to a fifth of its speed.
+const SHOWN: f64 = 0.04;
+/// Least energy of the scale over the largest (–).
+const SMALLEST: f64 = 1e-5;
 
 /// A rock that is shown, and why.
 struct Chosen<'a> {
@@ -60,28 +70,31 @@ pub(super) fn draw(report: &Report) -> Option<Drawing> {
         return None;
     }
     let words = report.words();
-    let most_j = chosen.iter().map(|rock| rock.fall.max_translational_j).fold(0.0, f64::max);
-    let (unit, size) = energy_unit(most_j);
+    let scale = EnergyScale::of(report, &chosen);
     let curves: [Vec<Vec<(f64, f64)>>; 3] = [
         along(&chosen, |rock, k| rock.path.points[k].speed_m_s),
         // translational energy grows with the square of the speed, and is largest where the speed is
         along(&chosen, |rock, k| {
             let share = rock.path.points[k].speed_m_s / rock.fall.max_speed_m_s;
-            rock.fall.max_translational_j * share * share / size
+            scale.drawn(rock.fall.max_translational_j * share * share)
         }),
         along(&chosen, |rock, k| {
             let height_m = rock.path.points[k].clearance_m;
             if height_m < 0.0 { 0.0 } else { height_m }
         }),
     ];
-    let energy = fill(words.along_energy, &[("unit", &unit)]);
-    let titles = [words.speed_axis, energy.as_str(), words.height_axis];
-    let panels = panels(&curves, titles, words);
+    let levels = [
+        levels(report, ReportQuantity::Speed, 1.0),
+        levels(report, ReportQuantity::Translational, scale.size_j),
+        levels(report, ReportQuantity::Height, 1.0),
+    ];
+    let panels = panels((&curves, &levels), &scale, words);
     let bottom = panels[2].frame.bottom + FOOT_PX;
     let svg = paint("along", (WIDTH_PX, bottom), words.along_alt, |canvas| {
         key(canvas, &panels[0], &chosen, words);
         for (k, panel) in panels.iter().enumerate() {
             panel.grid(canvas);
+            draw_levels(canvas, panel, &levels[k]);
             for (curve, pen) in curves[k].iter().zip(PENS) {
                 panel.line(canvas, curve, pen);
             }
@@ -91,7 +104,85 @@ pub(super) fn draw(report: &Report) -> Option<Drawing> {
     let who = |rock: &Chosen<'_>| in_words(rock, words.along_rock_caption);
     let who: Vec<String> = chosen.iter().map(who).collect();
     let caption = fill(words.along_caption, &[("who", &who.join(", "))]);
-    Some(Drawing { svg, caption })
+    let rocks = words.rocks(report.released());
+    let all = fill(words.along().percentiles, &[("rocks", &rocks)]);
+    let all = if levels.iter().any(|of| !of.is_empty()) { all } else { String::new() };
+    Some(Drawing { svg, caption: caption + &all + &scale.in_words(words) })
+}
+
+/// The scale of energy: logarithmic where the largest energies of the rocks differ much, so that each can be read.
+struct EnergyScale {
+    unit: &'static str,
+    /// Its unit (J).
+    size_j: f64,
+    /// Lower end of a logarithmic scale (J); none of a linear one.
+    least_j: Option<f64>,
+    /// Largest over smallest of the rocks' largest energies (–).
+    ratio: f64,
+}
+
+impl EnergyScale {
+    fn of(report: &Report, chosen: &[Chosen<'_>]) -> Self {
+        let largest = || chosen.iter().map(|rock| rock.fall.max_translational_j);
+        let (most_j, least_j) =
+            (largest().fold(0.0, f64::max), largest().fold(f64::INFINITY, f64::min));
+        let ratio = most_j / least_j;
+        let median_j = levels(report, ReportQuantity::Translational, 1.0);
+        let median_j = median_j.first().map_or(f64::INFINITY, |(_, value)| *value);
+        let lowest_j = (least_j * SHOWN).min(0.5 * median_j).max(SMALLEST * most_j);
+        let is_log = ratio > UNLIKE && ratio.is_finite();
+        let least_j = is_log.then(|| Axis::ratios(lowest_j, most_j, "").low);
+        let (unit, size_j) = energy_unit(most_j);
+        Self { unit, size_j, least_j, ratio }
+    }
+
+    /// An energy as it is drawn, in its unit: one far below a logarithmic scale stays a number there.
+    fn drawn(&self, energy_j: f64) -> f64 {
+        energy_j.max(self.least_j.map_or(0.0, |least_j| 0.1 * least_j)) / self.size_j
+    }
+
+    fn axis(&self, values: impl Iterator<Item = f64>, title: &str) -> Axis {
+        match self.least_j {
+            Some(least_j) => Axis::ratios(least_j / self.size_j, values.fold(0.0, f64::max), title),
+            None => Axis::from_zero(values, title),
+        }
+    }
+
+    /// What a logarithmic scale leaves out; nothing of a linear one.
+    fn in_words(&self, words: &Words) -> String {
+        let said = |least_j: f64| {
+            let (unit, size_j) = energy_unit(2.0 * least_j);
+            let least = format::plain(math::rounded(least_j / size_j, 3));
+            let ratio = format::significant(self.ratio, 2);
+            fill(words.along().log_scale, &[("ratio", &ratio), ("least", &least), ("unit", &unit)])
+        };
+        self.least_j.map_or(String::new(), said)
+    }
+}
+
+/// Median and P95 of the largest values of all rocks over a unit, by name; none of too few rocks.
+fn levels(report: &Report, quantity: ReportQuantity, unit: f64) -> Vec<(&'static str, f64)> {
+    let all = report.quantiles.get(&quantity).into_iter().flatten();
+    let at = |asked: f64| all.clone().find(|one| (one.probability - asked).abs() < 1e-9);
+    let named = |(name, probability)| Some((name, at(probability)?.at.value / unit));
+    let found = [("P50", 0.5), ("P95", 0.95)].into_iter().filter_map(named);
+    found.filter(|(_, value)| value.is_finite() && *value > 0.0).collect()
+}
+
+/// Lines across, named beside the frame: the one that is the smaller lower where they are close.
+fn draw_levels(canvas: &Canvas<'_>, panel: &Panel, levels: &[(&str, f64)]) {
+    let right = panel.frame.right;
+    let y = |value: f64| panel.at(panel.x.low, value).1;
+    let shown = |value: f64| (panel.y.low..=panel.y.high).contains(&value);
+    let close = match levels {
+        [(_, low), (_, high)] => 0.5 * (SMALL + 1.0 - (y(*low) - y(*high))).max(0.0),
+        _ => 0.0,
+    };
+    for ((name, value), side) in levels.iter().zip([1.0, -1.0]).filter(|((_, v), _)| shown(*v)) {
+        canvas.line(&[(panel.frame.left, y(*value)), (right, y(*value))], LEVEL);
+        let at = (right + 4.0, y(*value) + side * close);
+        canvas.text(&Label::new(*name, at).coloured(GREY));
+    }
 }
 
 /// Number of a rock and why it is shown.
@@ -118,14 +209,23 @@ fn along(chosen: &[Chosen<'_>], value: impl Fn(&Chosen<'_>, usize) -> f64) -> Ve
     chosen.iter().map(curve).collect()
 }
 
-fn panels(curves: &[Vec<Vec<(f64, f64)>>; 3], titles: [&str; 3], words: &Words) -> [Panel; 3] {
+/// Curves of the rocks and levels of all, panel by panel.
+type Drawn<'a> = (&'a [Vec<Vec<(f64, f64)>>; 3], &'a [Vec<(&'static str, f64)>; 3]);
+
+fn panels((curves, levels): Drawn<'_>, scale: &EnergyScale, words: &Words) -> [Panel; 3] {
+    let energy = fill(words.along_energy, &[("unit", &scale.unit)]);
+    let titles = [words.speed_axis, energy.as_str(), words.height_axis];
     let ways = curves[0].iter().flatten().map(|p| p.0);
     let x = Axis::from_zero(ways, words.along_axis);
     let mut panels = [0, 1, 2].map(|k| {
         let top = TOP_PX + k as f64 * (PLOT_PX + GAP_PX);
-        let frame = PaperFrame { left: 0.0, top, right: WIDTH_PX - 16.0, bottom: top + PLOT_PX };
+        let right = WIDTH_PX - RIGHT_PX;
+        let frame = PaperFrame { left: 0.0, top, right, bottom: top + PLOT_PX };
         let values = curves[k].iter().flatten().map(|p| p.1);
-        Panel::new(frame, x.clone(), Axis::from_zero(values, titles[k]))
+        let values = values.chain(levels[k].iter().map(|level| level.1));
+        let y =
+            if k == 1 { scale.axis(values, titles[k]) } else { Axis::from_zero(values, titles[k]) };
+        Panel::new(frame, x.clone(), y)
     });
     let [a, b, c] = &mut panels;
     align([a, b, c]);

@@ -10,6 +10,7 @@ mod en;
 mod fr;
 mod glossary;
 mod it;
+mod along;
 pub(super) mod open;
 mod said;
 mod shapes;
@@ -17,6 +18,7 @@ mod year;
 
 use super::format;
 use crate::scene::Language;
+use along::AlongWords;
 use open::OpenWords;
 use shapes::ShapeWords;
 use std::fmt::{Display, Write as _};
@@ -47,6 +49,7 @@ macro_rules! words {
                 texts.extend(self.year().texts());
                 texts.extend(self.shapes().texts());
                 texts.extend(self.open().texts());
+                texts.extend(self.along().texts());
                 texts
             }
         }
@@ -128,6 +131,11 @@ impl Words {
     /// What is said of rocks that would have gone on.
     pub(crate) fn open(&self) -> &'static OpenWords {
         OpenWords::of(self.language())
+    }
+
+    /// What is said of a few rocks along their ways.
+    pub(super) fn along(&self) -> &'static AlongWords {
+        AlongWords::of(self.language())
     }
 
     /// What is said of rocks with shapes.

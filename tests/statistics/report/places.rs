@@ -273,3 +273,28 @@ fn zones_of_release_are_told_apart() {
     assert_eq!(said(12, 6.0), (1, true));
     assert_eq!(said(1, 60.0), (0, false));
 }
+
+/// Where one rock has a thousand times the energy of another, both can be read: on a logarithmic scale, which the caption says with
+/// what is left out below.
+#[test]
+fn energies_of_unlike_rocks_along_their_ways_are_all_readable() {
+    let caption = |factor: f64| {
+        let mut report = site();
+        let strongest = report.paths[0].index;
+        for (index, fall) in report.releases.iter_mut().enumerate() {
+            fall.max_translational_j = if index == strongest { factor * 1e4 } else { 1e4 };
+            fall.max_total_j = fall.max_translational_j;
+        }
+        let drawn = rockfall::report::drawings(&report);
+        let (_, along) =
+            drawn.into_iter().find(|(heading, _)| heading.file == "along.svg").expect("is drawn");
+        assert!(along.svg.contains(">P95</text>"));
+        along.caption
+    };
+    let [alike, unlike] = [1.0, 1000.0].map(caption);
+    assert!(!alike.contains("logarithmic"), "{alike}");
+    assert!(
+        unlike.contains("logarithmic") && unlike.contains("a factor of 1\u{2009}000; below"),
+        "{unlike}"
+    );
+}
