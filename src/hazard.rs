@@ -38,7 +38,7 @@ pub use barriers::{
 };
 pub use design::{Design, Rule};
 pub use difference::{Difference, Reading, Values, WeightedCount};
-pub use lines::{CrossingRow, Line, LineInfo, LineQuantity, LineSummary, by_rock};
+pub use lines::{CrossingRow, Line, LineFloor, LineInfo, LineQuantity, LineSummary, by_rock};
 pub use maps::{INTENSITY_J, Layer, MapFrame, MapState, Maps};
 pub use observed::{
     Agreement, EndDistances, EndSpread, KOLMOGOROV_95, ObservedPath, Weighted, distances,

@@ -1,5 +1,6 @@
 //! A run: the releases of a plan, computed chunk by chunk, written durably, summed up and drawn.
 
+mod floors;
 mod infos;
 mod options;
 mod year;

@@ -23,6 +23,18 @@ pub struct LineInfo {
     /// Whether it is another place of a barrier: its numbers stand with that barrier.
     #[serde(default)]
     pub of_barrier: bool,
+    /// What a rock must have the energy to come up to; none where that is not known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub floor: Option<LineFloor>,
+}
+
+/// The lowest ground under a line: a rock that crosses it is above.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct LineFloor {
+    /// Map height that no ground of the line lies below (m).
+    pub ground_m: f64,
+    /// Gravity (m/s²).
+    pub gravity_m_s2: f64,
 }
 
 /// One row of `crossings.csv`: the first crossing of a line by a rock.

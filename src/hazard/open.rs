@@ -2,10 +2,11 @@
 //!
 //! A rock whose time or work was up, or that failed, may still come to every line that it has not crossed. One that left the
 //! terrain may come to those that do not lie behind it: it would have to turn back to a line of which every corner lies
-//! behind the vertical plane through its end, across its velocity there. Shares and rates take none of them as
+//! behind the vertical plane through its end, across its velocity there. None comes to a line whose ground lies higher than its
+//! energy lifts it: whatever the terrain beyond, nothing gives a rock energy but its fall. Shares and rates take none of them as
 //! arriving, and the upper ends of their intervals all (worst-case bounds, Manski 1990).
 
-use super::lines::{CrossingRow, LineInfo, by_rock};
+use super::lines::{CrossingRow, LineFloor, LineInfo, by_rock};
 use super::maps::MapFrame;
 use super::row::{Row, StopKind};
 use std::collections::BTreeMap;
@@ -19,6 +20,8 @@ pub struct OpenRock {
     pub radius_m: f64,
     /// Where it has left the terrain on the map (m), and its velocity there (m/s); none of one that ended within.
     left: Option<[[f64; 2]; 2]>,
+    /// What it could still do; none of one that failed.
+    left_with: Option<LeftWith>,
     /// Lines that it has crossed, and barriers that have stopped it, by their numbers.
     crossed: Vec<usize>,
     stopped_by: Vec<usize>,
@@ -32,13 +35,29 @@ impl OpenRock {
             release: row.index,
             radius_m: row.radius_m,
             left: (row.stop == StopKind::LeftTerrain).then_some([[x, y], [vx, vy]]),
+            left_with: (row.stop != StopKind::Failed).then(|| LeftWith::of(row)),
             crossed: Vec::new(),
             stopped_by: Vec::new(),
         })
     }
 
-    /// Whether it need not turn back to come to a line.
+    /// Whether it need not turn back to come to a line, and can come up to it.
     fn may_come(&self, line: &LineInfo) -> bool {
+        line.floor.is_none_or(|floor| self.most_j(floor) >= 0.0) && self.need_not_turn(line)
+    }
+
+    /// Most total energy with which it can cross a line (J): that which it ended with, and that of its fall from there to the lowest
+    /// ground of the line, above which its centre then is. Negative where it does not come up to it; infinite where nothing bounds it.
+    pub(super) fn most_j(&self, floor: LineFloor) -> f64 {
+        let bound = |of: LeftWith| {
+            let fall_j = of.mass_kg * floor.gravity_m_s2 * (of.height_m - floor.ground_m);
+            ROUNDING * of.energy_j + fall_j
+        };
+        // what is no number bounds nothing
+        self.left_with.map(bound).filter(|most| !most.is_nan()).unwrap_or(f64::INFINITY)
+    }
+
+    fn need_not_turn(&self, line: &LineInfo) -> bool {
         self.left.is_none_or(|[end, way]| {
             let is_ahead = |[x, y]: &[f64; 2]| (x - end[0]) * way[0] + (y - end[1]) * way[1] >= 0.0;
             line.corners_m.iter().any(is_ahead)
@@ -71,6 +90,37 @@ impl OpenRock {
         for row in way {
             self.crossed.extend(lines.iter().position(|line| line.name == row.line));
             self.stopped_by.extend(stops(row));
+        }
+    }
+}
+
+/// Energy that a rock may have more than its row says (–): rounding.
+const ROUNDING: f64 = 1.0 + 1e-6;
+
+/// What a rock ended with.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct LeftWith {
+    mass_kg: f64,
+    /// Map height of its centre (m).
+    height_m: f64,
+    /// Energy of its motion and of the springs of its contacts (J).
+    energy_j: f64,
+}
+
+impl LeftWith {
+    /// The spin of a block is taken as its fastest: its row does not say what turns.
+    fn of(row: &Row) -> Self {
+        let square = |v: [f64; 3]| v.iter().map(|part| part * part).sum::<f64>();
+        let rotational_j = match row.shape {
+            // of a homogeneous sphere: I = 2/5 m R²
+            None => 0.2 * row.mass_kg * row.radius_m.powi(2) * square(row.end_spin_rad_s),
+            Some(_) => row.max_rotational_j,
+        };
+        let translational_j = 0.5 * row.mass_kg * square(row.end_velocity_m_s);
+        Self {
+            mass_kg: row.mass_kg,
+            height_m: row.end_m[2],
+            energy_j: translational_j + rotational_j + row.springs_j.max(0.0),
         }
     }
 }

@@ -4,9 +4,11 @@
 //! strata add (Hantz et al. 2021, Geosciences 11, 158: passage frequency = Σ failure frequency × reach probability).
 //! Every rock may count for more or less than one, by its exposure `y` for instance.
 
+use super::classes::class_of;
 use super::proportion::{Proportion, RULE_OF_THREE, interval_95};
 use crate::frequency::Weights;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// Events a year with their 95 % interval, and what moves them.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -111,6 +113,8 @@ pub(super) struct Limits {
     most: f64,
     /// Events a year that a rock of the heaviest of them stands for (1/year).
     heaviest: f64,
+    /// Class of the least energy that counts: an open rock that can have no more does not.
+    least_class: u16,
     /// Strata of few rocks that can count, the rate of each of which none may be seen (1/year), largest first.
     sparse: Vec<(usize, f64)>,
 }
@@ -124,7 +128,8 @@ impl Limits {
     /// most energy of each stratum; of none without an entry anything is known.
     pub(super) fn above(weights: &Weights, most_j: &[f64], energy_j: f64) -> Self {
         let can = |stratum: &usize| most_j.get(*stratum).is_none_or(|most| *most >= energy_j);
-        Self::of(weights, (0..weights.strata()).filter(can), |_| 1.0)
+        let limits = Self::of(weights, (0..weights.strata()).filter(can), |_| 1.0);
+        Self { least_class: class_of(energy_j), ..limits }
     }
 
     /// Of what every rock can do, where one of a stratum counts for so much at most.
@@ -153,10 +158,20 @@ impl Limits {
         Self {
             most: strata.map(|at| most(at) * weights.per_year(at)).sum(),
             heaviest: heaviest.fold(0.0, f64::max),
+            least_class: 0,
             sparse,
         }
     }
 }
+
+/// Rocks that may still count, by the class of the most energy that they can have and by stratum.
+pub(super) type OpenSums = BTreeMap<(u16, u16), Sums>;
+
+/// The class of rocks of whose energy nothing is known.
+pub(super) const ANY_ENERGY: u16 = u16::MAX;
+
+/// Where no rock may still count.
+static NO_OPEN: OpenSums = BTreeMap::new();
 
 /// The rate of all rocks added so far.
 #[derive(Debug)]
@@ -165,7 +180,7 @@ pub(super) struct Running<'a> {
     strata: Vec<Sums>,
     touched: Vec<u16>,
     /// Rocks that may still count: they move the upper end.
-    open: Vec<(u16, Sums)>,
+    open: &'a OpenSums,
     value: f64,
     score: f64,
     variance: f64,
@@ -175,30 +190,25 @@ impl<'a> Running<'a> {
     /// Without rocks.
     pub(super) fn new(weights: &'a Weights) -> Self {
         let strata = vec![Sums::default(); weights.strata()];
-        let (touched, open) = (Vec::new(), Vec::new());
+        let (touched, open) = (Vec::new(), &NO_OPEN);
         Self { weights, strata, touched, open, value: 0.0, score: 0.0, variance: 0.0 }
     }
 
     /// Without rocks, where some may still count.
-    pub(super) fn with_open<'b>(
-        weights: &'a Weights,
-        open: impl IntoIterator<Item = (&'b u16, &'b Sums)>,
-    ) -> Self {
-        let open = open.into_iter().map(|(stratum, sums)| (*stratum, *sums)).collect();
+    pub(super) fn with_open(weights: &'a Weights, open: &'a OpenSums) -> Self {
         Self { open, ..Self::new(weights) }
     }
 
-    /// The rate were all rocks to count that may; none where there are none.
-    fn far(&self) -> Option<Self> {
-        if self.open.is_empty() {
-            return None;
-        }
+    /// The rate were all rocks to count that may, with the energy that counts; none where there are none.
+    fn far(&self, limits: &Limits) -> Option<Self> {
+        let mut open = self.open.range((limits.least_class, 0)..).peekable();
+        open.peek()?;
         let mut far = Self::new(self.weights);
         for stratum in &self.touched {
             far.add(*stratum, &self.strata[usize::from(*stratum)]);
         }
-        for (stratum, sums) in &self.open {
-            far.add(*stratum, sums);
+        for (&(_, stratum), sums) in open {
+            far.add(stratum, sums);
         }
         Some(far)
     }
@@ -251,7 +261,7 @@ impl<'a> Running<'a> {
     /// Value, and lower and upper end of the interval.
     pub(super) fn estimate(&self, limits: &Limits) -> [f64; 3] {
         let [value, low, high] = self.by_chance(limits);
-        let far = self.far().map_or(high, |far| far.by_chance(limits)[2]);
+        let far = self.far(limits).map_or(high, |far| far.by_chance(limits)[2]);
         [value, low, high.max(far)]
     }
 
@@ -287,7 +297,7 @@ impl<'a> Running<'a> {
         let [per_year, low_95, high_95] = self.estimate(limits);
         let by_chance = self.by_chance(limits)[2];
         EventRate {
-            censored: self.far().is_some_and(|far| far.value.min(limits.most) > by_chance),
+            censored: self.far(limits).is_some_and(|far| far.value.min(limits.most) > by_chance),
             rocks: self.strata.iter().map(|sums| sums.rocks as usize).sum(),
             per_year,
             low_95,

@@ -170,6 +170,7 @@ mod tests {
             length_m: 1.0,
             corners_m: vec![],
             of_barrier: false,
+            floor: None,
         };
         let rows = [
             row(0, "path", 1.0, 0.1, 40.0),

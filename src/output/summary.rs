@@ -46,7 +46,7 @@ const DEFINITIONS: [(&str, &str); 13] = [
     ),
     (
         "lines",
-        "over rocks, of the value at the first crossing, which is interpolated on the parabola of a flight or the cubic of a step; reach = rocks that cross / rocks released; may_still_come = rocks that have not crossed but may, with any energy: they are missing in the statistics, whose percentiles may be too low; height_m vertical, height_normal_m along the normal of the triangle below",
+        "over rocks, of the value at the first crossing, which is interpolated on the parabola of a flight or the cubic of a step; reach = rocks that cross / rocks released; may_still_come = rocks that have not crossed but may, with any energy up to that of their fall to it: they are missing in the statistics, whose percentiles may be too low; floor = no ground of the line is lower, and no rock without the energy to come up to it comes; height_m vertical, height_normal_m along the normal of the triangle below",
     ),
     (
         "maps",

@@ -1,5 +1,6 @@
 //! What the results need to know of a plan: where things stand, lines, barriers, maps.
 
+use super::floors;
 use crate::error::{Error, Result};
 use crate::frequency::Frequency;
 use crate::hazard::{Barrier, Elsewhere, LineInfo, MapFrame, Rule};
@@ -65,6 +66,7 @@ fn infos(plan: &Plan, moved: &[String]) -> Vec<LineInfo> {
         length_m: line.length_m(),
         corners_m: line.corners_m(plan.terrain.origin_m),
         of_barrier: moved.contains(&line.name),
+        floor: floors::floor(plan, line),
     };
     plan.recorders().lines.iter().map(info).collect()
 }

@@ -35,6 +35,7 @@ mod data_in;
 mod edges;
 mod first_steps;
 mod fitted;
+mod floors;
 mod full_disk;
 mod kill;
 mod language;

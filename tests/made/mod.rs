@@ -47,6 +47,7 @@ pub fn info(releases: usize) -> RunInfo {
                 length_m,
                 corners_m: vec![[0.0, 0.0], [length_m, 0.0]],
                 of_barrier: false,
+                floor: None,
             })
             .into(),
         maps: Some(MapFrame {

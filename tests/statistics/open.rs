@@ -1,14 +1,17 @@
 //! Rocks that were not released, and those that may still come: what they do to shares, by hand.
 
 use crate::made;
+use crate::yearly;
 
 use made::{fall, info};
 use rockfall::frequency::{Frequency, FrequencyLaw, RockSource};
 use rockfall::hazard::{
-    CrossingRow, Hazard, Line, LineInfo, MapFrame, OpenRock, OpenRocks, Proportion, Row, StopKind,
+    CrossingRow, Hazard, Line, LineFloor, LineInfo, MapFrame, OpenRock, OpenRocks, Proportion, Row,
+    StopKind, YearSums,
 };
 use rockfall::rock::Vec3;
 use std::convert::Infallible;
+use yearly::near;
 
 /// By hand: of four releases of each of two sources with 0.3 events a year, three of the second find no place to start
 /// from. Its one rock stands for all 0.3, and those of the first for a quarter each: a line that this one and two of the
@@ -72,6 +75,7 @@ fn rocks_that_may_still_come_move_the_upper_end() {
         length_m: 40.0,
         corners_m: vec![[0.0, 0.0], [40.0, 0.0]],
         of_barrier: false,
+        floor: None,
     };
     let (south, up) = ([0.0, -5.0, -1.0], [20.0, 30.0, 0.0]);
     let ends = [
@@ -108,6 +112,76 @@ fn rocks_that_may_still_come_move_the_upper_end() {
     // one more rock than chance knows of is no reason for a mark
     line.leave_open(10..11);
     assert!(!line.reach(100).censored && line.reach(100).high_95 > seen.high_95);
+}
+
+/// By hand: with 10 m/s a rock rises 5.1 m, with 15 m/s 11.5 m, so a line 8 m above its end is out of its reach in the first case,
+/// however the ground beyond may be. A failed rock has no energy to trust, and of a line without a known floor nothing is known.
+#[test]
+fn no_rock_comes_to_a_line_above_what_its_energy_lifts_it_to() {
+    let floor = LineFloor { ground_m: 508.0, gravity_m_s2: 9.81 };
+    let may_come = |stop: StopKind, speed_m_s: f64, floor: Option<LineFloor>| {
+        let info = LineInfo {
+            name: "road".to_owned(),
+            length_m: 40.0,
+            corners_m: vec![[0.0, 0.0], [40.0, 0.0]],
+            of_barrier: false,
+            floor,
+        };
+        let row = Row {
+            stop,
+            end_m: [20.0, 30.0, 500.0],
+            end_velocity_m_s: [0.0, -speed_m_s, 0.0],
+            end_spin_rad_s: [0.0; 3],
+            springs_j: 0.0,
+            ..Row::of(&fall(1), Vec3::zeros())
+        };
+        let lines = std::slice::from_ref(&info);
+        let none = std::iter::empty::<Result<CrossingRow, Infallible>>();
+        let rocks = OpenRock::of(&row).into_iter().collect();
+        let open = OpenRocks::find(rocks, (lines, |_: &CrossingRow| None), none).unwrap();
+        open.at("road").count() == 1
+    };
+    for stop in [StopKind::LeftTerrain, StopKind::TimeUp, StopKind::OverBudget] {
+        assert!(!may_come(stop, 10.0, Some(floor)), "{stop:?}");
+        assert!(may_come(stop, 15.0, Some(floor)), "{stop:?}");
+        assert!(may_come(stop, 10.0, None), "{stop:?}");
+    }
+    assert!(may_come(StopKind::Failed, 10.0, Some(floor)));
+}
+
+/// By hand: 200 rocks of 0.3 events a year that may still come down 10 m to a line. Their energy there is m g h + m v²/2 at most: only where that
+/// is 300 kJ or more do they move the upper end of the passages with so much.
+#[test]
+fn what_may_still_come_has_no_more_energy_than_it_left_with_and_falls_for() {
+    let law = FrequencyLaw::Events { per_year: 0.3 };
+    let asked = yearly::asked(vec![RockSource { name: "wall".to_owned(), law }]);
+    let floor = Some(LineFloor { ground_m: 490.0, gravity_m_s2: 10.0 });
+    let lines = [LineInfo { floor, ..yearly::line("road") }];
+    let high = |mass_kg: f64| {
+        let way = |index: usize| Row {
+            index,
+            mass_kg,
+            stop: StopKind::TimeUp,
+            end_m: [0.0, 0.0, 500.0],
+            end_velocity_m_s: [10.0, 0.0, 0.0],
+            end_spin_rad_s: [0.0; 3],
+            springs_j: 0.0,
+            ..Row::of(&fall(1), Vec3::zeros())
+        };
+        let rocks = (0..200).filter_map(|k| OpenRock::of(&way(k))).collect();
+        let none = std::iter::empty::<Result<CrossingRow, Infallible>>();
+        let open = OpenRocks::find(rocks, (&lines, |_: &CrossingRow| None), none).unwrap();
+        let mut year = YearSums::new(&asked, &lines, &[]).unwrap();
+        year.leave_open(&open);
+        let weights = asked.frequency.as_ref().unwrap().weights(200);
+        let place = year.said(weights).places.remove(0).without_barriers;
+        [place.passages.high_95, place.above[0].rate.high_95]
+    };
+    // 100 + 50 J/kg: 1900 kg have 285 kJ, 2200 kg have 330 kJ
+    let (light, heavy) = (high(1900.0), high(2200.0));
+    near(light[0], 0.3, 1e-12);
+    near(light[1], 0.3 * 3.0 / 200.0, 1e-12);
+    near(heavy[1], 0.3, 1e-12);
 }
 
 /// A map of 10 by 10 cells of 2 m: what ended on it and would have gone on is missing further on, and so is what has fallen out

@@ -45,7 +45,13 @@ pub fn row(index: usize, line: &str, volume_m3: f64, energy_j: f64) -> CrossingR
 }
 
 pub fn line(name: &str) -> LineInfo {
-    LineInfo { name: name.to_owned(), length_m: 1.0, corners_m: vec![], of_barrier: false }
+    LineInfo {
+        name: name.to_owned(),
+        length_m: 1.0,
+        corners_m: vec![],
+        of_barrier: false,
+        floor: None,
+    }
 }
 
 /// Rocks of a source that reach the line one time in five with 20 m/s.

@@ -210,6 +210,7 @@ fn info(plan: &Plan) -> RunInfo {
         length_m: line.length_m(),
         corners_m: line.corners_m(plan.terrain.origin_m),
         of_barrier: false,
+        floor: None,
     });
     let maps = plan.recorders().cells.map(|cells| MapFrame {
         west_m: cells.west_m + plan.terrain.origin_m.x,

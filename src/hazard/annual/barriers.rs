@@ -3,7 +3,7 @@
 use super::super::arrival::Arrival;
 use super::super::barriers::Barrier;
 use super::super::lines::CrossingRow;
-use super::super::rate::{EventRate, Sums};
+use super::super::rate::{ANY_ENERGY, EventRate, OpenSums, Sums};
 use super::strata::{All, StratumSums, stratum_of};
 use crate::frequency::Frequency;
 use serde::{Deserialize, Serialize};
@@ -31,7 +31,7 @@ pub(super) struct Met {
     over: StratumSums,
     through: StratumSums,
     /// Rocks that may still arrive.
-    open: StratumSums,
+    open: OpenSums,
 }
 
 impl Met {
@@ -67,7 +67,7 @@ impl Met {
     ) {
         for release in releases {
             let stratum = frequency.stratum_of(release) as u16;
-            self.open.entry(stratum).or_default().join(&Sums::one(1.0, 0.0));
+            self.open.entry((ANY_ENERGY, stratum)).or_default().join(&Sums::one(1.0, 0.0));
         }
     }
 

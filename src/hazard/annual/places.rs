@@ -2,10 +2,10 @@
 
 use super::super::barriers::Barrier;
 use super::super::classes::class_of;
-use super::super::lines::{CrossingRow, LineInfo, by_rock};
+use super::super::lines::{CrossingRow, LineFloor, LineInfo, by_rock};
 use super::super::open::{OpenRock, OpenRocks};
 use super::super::proportion::Proportion;
-use super::super::rate::{EventRate, Limits, Running, Sums, proportion};
+use super::super::rate::{ANY_ENERGY, EventRate, Limits, OpenSums, Running, Sums, proportion};
 use super::AnnualRequest;
 use super::barriers::{AnnualBarrier, Met};
 use super::curve::{Ceilings, ExceedancePoint, ReturnEnergy, curve, resolved, return_energy};
@@ -100,8 +100,8 @@ struct PassageTally {
     /// Their energies, for those that one rock decides; none of what a barrier keeps away, of which no energy is told.
     energies: EnergyCounts,
     /// Rocks that may still pass, and the metres of road that they would block.
-    open: StratumSums,
-    open_blocked: StratumSums,
+    open: OpenSums,
+    open_blocked: OpenSums,
 }
 
 /// One passage.
@@ -126,10 +126,13 @@ impl PassageTally {
         self.classes.entry((class_of(total_j), stratum)).or_default().join(&one);
     }
 
-    /// Notes a rock that may still pass.
-    fn leave_open(&mut self, stratum: u16, blocked_m: f64) {
-        self.open.entry(stratum).or_default().join(&Sums::one(1.0, 0.0));
-        self.open_blocked.entry(stratum).or_default().join(&Sums::one(blocked_m, 0.0));
+    /// Notes a rock that may still pass; its energy is the most that it can have.
+    fn leave_open(&mut self, passage: &PlacePassage) {
+        let PlacePassage { stratum, total_j, blocked_m, .. } = *passage;
+        let class = if total_j.is_finite() { class_of(total_j) } else { ANY_ENERGY };
+        self.open.entry((class, stratum)).or_default().join(&Sums::one(1.0, 0.0));
+        let blocked = self.open_blocked.entry((ANY_ENERGY, stratum)).or_default();
+        blocked.join(&Sums::one(blocked_m, 0.0));
     }
 
     fn rate(&self, level: usize, all: &All<'_>) -> EventRate {
@@ -179,6 +182,7 @@ impl PassageTally {
 #[derive(Debug)]
 struct PlaceSums {
     name: String,
+    floor: Option<LineFloor>,
     object: Option<Object>,
     all: PassageTally,
     unstopped: PassageTally,
@@ -227,14 +231,14 @@ impl YearSums {
 
     /// Notes the rocks that may still come to lines, objects and barriers.
     pub fn leave_open(&mut self, open: &OpenRocks) {
-        let Self { frequency, barriers, places, nets, .. } = self;
+        let Self { asked, frequency, barriers, places, nets } = self;
         for (which, (barrier, net)) in barriers.iter().zip(nets).enumerate() {
             net.leave_open(open.free_at(&barrier.name, Some(which)), frequency);
         }
         for place in places {
             let own = barriers.iter().position(|barrier| barrier.name == place.name);
             for rock in open.rocks_at(&place.name) {
-                place.leave_open(rock, own, frequency);
+                place.leave_open(rock, own, (frequency, &asked.most_j));
             }
         }
     }
@@ -276,6 +280,7 @@ impl PlaceSums {
     fn of(line: &LineInfo, objects: &[Object], barriers: usize) -> Self {
         Self {
             name: line.name.clone(),
+            floor: line.floor,
             object: objects.iter().find(|object| object.name == line.name).cloned(),
             all: PassageTally::default(),
             unstopped: PassageTally::default(),
@@ -301,16 +306,24 @@ impl PlaceSums {
     }
 
     /// Notes a rock that may still come: a barrier that has stopped it, or one further on, may keep it away.
-    fn leave_open(&mut self, rock: &OpenRock, own: Option<usize>, frequency: &Frequency) {
+    fn leave_open(
+        &mut self,
+        rock: &OpenRock,
+        own: Option<usize>,
+        (frequency, most_j): (&Frequency, &[f64]),
+    ) {
         let stratum = frequency.stratum_of(rock.release) as u16;
         let blocked_m =
             self.object.as_ref().map_or(0.0, |object| object.blocked_m(2.0 * rock.radius_m));
-        self.all.leave_open(stratum, blocked_m);
+        let of_class_j = most_j.get(usize::from(stratum)).copied().unwrap_or(f64::INFINITY);
+        let total_j = self.floor.map_or(of_class_j, |floor| rock.most_j(floor).min(of_class_j));
+        let passage = PlacePassage { stratum, score: 0.0, total_j, blocked_m };
+        self.all.leave_open(&passage);
         if let Some(which) = rock.stopped_by(own) {
-            self.saved[which].leave_open(stratum, blocked_m);
+            self.saved[which].leave_open(&passage);
         } else {
-            self.unstopped.leave_open(stratum, blocked_m);
-            self.saved.iter_mut().for_each(|saved| saved.leave_open(stratum, blocked_m));
+            self.unstopped.leave_open(&passage);
+            self.saved.iter_mut().for_each(|saved| saved.leave_open(&passage));
         }
     }
 
@@ -329,8 +342,9 @@ impl PlaceSums {
         };
         let seen = share(&mut reach.clone());
         let open = &self.all.open;
+        let with_open = reach.chain(open.iter().map(|((_, stratum), sums)| (stratum, sums)));
         let conditional =
-            if open.is_empty() { seen } else { seen.up_to(&share(&mut reach.chain(open))) };
+            if open.is_empty() { seen } else { seen.up_to(&share(&mut { with_open })) };
         AnnualPlace {
             name: self.name.clone(),
             is_object: self.object.is_some(),

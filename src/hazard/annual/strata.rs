@@ -2,7 +2,7 @@
 
 use super::super::barriers::Barrier;
 use super::super::lines::CrossingRow;
-use super::super::rate::{EventRate, Limits, Running, Sums};
+use super::super::rate::{EventRate, Limits, OpenSums, Running, Sums};
 use super::AnnualRequest;
 use super::curve::Ceilings;
 use crate::frequency::{Frequency, Weights, volume_m3};
@@ -23,13 +23,13 @@ pub(super) struct All<'a> {
 
 impl All<'_> {
     /// How often a year rocks do something that every rock might do, and that `open` ones may still do.
-    pub(super) fn rate_of_any(&self, strata: &StratumSums, open: &StratumSums) -> EventRate {
+    pub(super) fn rate_of_any(&self, strata: &StratumSums, open: &OpenSums) -> EventRate {
         self.rate((Some(strata), open), &Limits::above(&self.weights, &[], 0.0))
     }
 
     pub(super) fn rate(
         &self,
-        (strata, open): (Option<&StratumSums>, &StratumSums),
+        (strata, open): (Option<&StratumSums>, &OpenSums),
         limits: &Limits,
     ) -> EventRate {
         let mut running = Running::with_open(&self.weights, open);
