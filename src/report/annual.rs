@@ -5,7 +5,7 @@ use super::canvas::{Canvas, Label, Pen, SMALL, paint, text_width};
 use super::colour::{BLUE, GREY, INK, ORANGE, SKY};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
-use super::model::{AnnualView, BandPoint, kilo};
+use super::model::{AnnualView, BandPoint, energy_unit};
 use super::panel::{FOOT_PX, Panel};
 use super::svg::path::PaperFrame;
 use super::words::{Words, fill};
@@ -36,7 +36,7 @@ pub(super) fn nobody(words: &Words, view: &AnnualView) -> Option<String> {
 pub(super) fn draw(words: &Words, view: &AnnualView, number: usize) -> Drawing {
     let energies = view.curves().flatten().map(|point| point.x);
     let largest_j = energies.fold(0.0, f64::max);
-    let (unit, size) = kilo(largest_j);
+    let (unit, size) = energy_unit(largest_j);
     let panel = panel(words, view, largest_j, (unit, size));
     let bottom = TOP_PX + HEIGHT_PX + FOOT_PX;
     let title = fill(words.year_title, &[("name", &view.name)]);

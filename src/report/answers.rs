@@ -2,7 +2,7 @@
 
 use super::bound::Is;
 use super::format::{
-    NO_NUMBER, counted, decimal, percent, percent_at_most, percents, sign, significant,
+    self, counted, decimal, percent, percent_at_most, percents, sign, significant,
 };
 use super::model::energy_unit;
 use super::words::Words;
@@ -119,11 +119,10 @@ fn height(p95: &Percentile) -> String {
 }
 
 fn with_interval(p95: &Percentile, size: f64, unit: &str) -> String {
-    let end = |end: Option<f64>| {
-        end.map_or_else(|| NO_NUMBER.to_owned(), |end| significant(end / size, 3))
-    };
-    let (low, high) = (end(p95.low_95), end(p95.high_95));
-    format!("{} {unit} ({})", significant(p95.value / size, 3), interval(&low, &high))
+    let end = |end: Option<f64>| end.map_or(f64::NAN, |end| end / size);
+    let [value, low, high] =
+        format::with_interval([p95.value / size, end(p95.low_95), end(p95.high_95)]);
+    format!("{value} {unit} ({})", interval(&low, &high))
 }
 
 fn share(of: &Proportion) -> String {

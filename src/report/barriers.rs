@@ -5,7 +5,7 @@ use super::canvas::{Canvas, Label, NORMAL, Pen, paint};
 use super::colour::{BLUE, GREEN, GREY, INK, ORANGE, PURPLE, SKY, VERMILLION};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
-use super::model::{BarrierView, DesignView, Estimate, PlaceView, RockView, kilo};
+use super::model::{BarrierView, DesignView, Estimate, PlaceView, RockView, energy_unit};
 use super::panel::MANY;
 use super::panel::{FOOT_PX, Panel};
 use super::svg::path::{PaperFrame, Spot};
@@ -25,7 +25,7 @@ const ELSEWHERE: [RGBColor; 4] = [ORANGE, PURPLE, SKY, GREY];
 pub(super) fn draw(words: &Words, barrier: &BarrierView, number: usize) -> Drawing {
     let rocks = barrier.places.first().map_or(&[][..], |own| &own.rocks);
     let most_j = rocks.iter().map(|rock| rock.total_j).fold(barrier.capacity_j, f64::max);
-    let (unit, size) = kilo(most_j);
+    let (unit, size) = energy_unit(most_j);
     let cloud = cloud_panel(words, (barrier, rocks), (unit, size));
     let top = cloud.frame.bottom + FOOT_PX + GAP_PX;
     let (heights, places) = lower_panels(words, barrier, top);

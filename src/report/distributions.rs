@@ -7,7 +7,7 @@ use super::colour::{GREY, INK};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
 use super::histogram::EqualBins;
-use super::model::{Is, Report, ReportQuantity, kilo};
+use super::model::{Estimate, Is, Report, ReportQuantity};
 use super::panel::{FOOT_PX, Panel};
 use super::runout;
 use super::svg::path::PaperFrame;
@@ -72,8 +72,7 @@ impl<'a> DistributionPanel<'a> {
         let si = report.weighed(|fall| quantity.of(fall));
         let finite = si.iter().map(|(v, _)| *v).filter(|v| v.is_finite());
         let largest = finite.reduce(f64::max).unwrap_or(0.0);
-        let (unit, unit_size) =
-            if quantity.is_energy() { kilo(largest) } else { quantity.unit(largest) };
+        let (unit, unit_size) = quantity.unit(largest);
         let values: Vec<(f64, f64)> =
             si.iter().map(|(v, weight)| (v / unit_size, *weight)).collect();
         let bins = match quantity {
@@ -99,7 +98,7 @@ impl<'a> DistributionPanel<'a> {
             let is_bound = self.quantity == ReportQuantity::ReachAngle
                 && !ended.any(|release| self.quantity.of(release) >= self.largest);
             let sign = format::sign(if is_bound { Is::AtMost } else { Is::Value });
-            let most = format::short(self.largest / self.unit_size);
+            let most = format::alone(self.largest / self.unit_size);
             words.push(format!("{} {sign}{most}", said.max));
         }
         self.panel.axes(canvas);
@@ -126,10 +125,11 @@ impl<'a> DistributionPanel<'a> {
         for (probability, pen) in MARKED {
             let found = known.iter().find(|q| (q.probability - probability).abs() < 1e-9);
             let Some(quantile) = found.filter(|q| q.at.value.is_finite()) else { continue };
-            let value = quantile.at.value / self.unit_size;
+            let Estimate { value, low, high, .. } = quantile.at.over(self.unit_size);
             self.panel.upright(canvas, value, pen);
+            let [value, ..] = format::with_interval([value, low, high]);
             let sign = format::sign(quantile.at.is);
-            words.push(format!("P{:.0} {sign}{}", 100.0 * probability, format::short(value)));
+            words.push(format!("P{:.0} {sign}{value}", 100.0 * probability));
         }
         words
     }

@@ -1,6 +1,7 @@
 //! Numbers and text as a reader expects them: thin-space thousands, a true minus, raised powers.
 
 use super::bound::Is;
+use crate::math;
 
 /// Stands between groups of three digits.
 const THIN_SPACE: char = '\u{2009}';
@@ -52,11 +53,6 @@ pub fn significant(value: f64, digits: usize) -> String {
     } else {
         scientific(value, digits.max(1) - 1)
     }
-}
-
-/// Three significant digits; from a hundred thousand on as a power of ten.
-pub fn short(value: f64) -> String {
-    if value.abs() >= 1e5 { scientific(value, 2) } else { significant(value, 3) }
 }
 
 /// `value` as `m×10ⁿ`, the mantissa with so many decimals and left out where it is 1.
@@ -137,6 +133,48 @@ pub(super) fn told_apart(all: [f64; 3], write: impl Fn(f64, usize) -> String) ->
     let most = if low < high { MOST_MORE } else { 0 };
     let is_seen = |[value, low, high]: &[String; 3]| value != low || low != high;
     (0..=most).map(with).find(is_seen).unwrap_or_else(|| with(0))
+}
+
+/// A number and the ends of its interval, where they are known, with as many digits as the interval leaves meaningful.
+pub(super) fn with_interval(all: [f64; 3]) -> [String; 3] {
+    let [value, low, high] = all;
+    let width = high - low;
+    let digits = if width.is_finite() && width > 0.0 && value != 0.0 {
+        // the last digit is at most a fifth of the interval
+        let leading = math::log10(value.abs()).floor() - math::log10(0.2 * width).floor();
+        (leading as i32 + 1).clamp(3, 5) as usize
+    } else {
+        // alone: a maximum is read as it is, a small derivative or a bound only for its size
+        if value.abs() >= 0.1 { 4 } else { 3 }
+    };
+    told_apart(all, |number, more| like(value, digits + more)(number))
+}
+
+/// Whether a number without interval is a count, or one as it was written.
+pub(super) fn is_as_written(value: f64) -> bool {
+    value.fract() == 0.0 && value.abs() < 1e7
+}
+
+/// A number that stands alone: a maximum, a count.
+pub(super) fn alone(value: f64) -> String {
+    if is_as_written(value) {
+        return decimal(value, 0);
+    }
+    let [value, ..] = with_interval([value, f64::NAN, f64::NAN]);
+    value
+}
+
+/// Writes numbers to the last place that a value of so many digits has: its interval ends where it ends.
+fn like(value: f64, digits: usize) -> impl Fn(f64) -> String {
+    let exponent = if value == 0.0 { 0.0 } else { math::log10(value.abs()).floor() };
+    let last = exponent - digits as f64 + 1.0;
+    move |v| {
+        if !(-4.0..9.0).contains(&exponent) {
+            return significant(math::rounded(v, digits), digits);
+        }
+        let place = math::pow(10.0, last.max(0.0));
+        decimal(if last > 0.0 { (v / place).round() * place } else { v }, (-last).max(0.0) as usize)
+    }
 }
 
 /// A share (0..1) and the ends of its interval in per cent, [told apart](told_apart).

@@ -7,7 +7,7 @@ use super::colour::{BLUE, DARK_GREEN, GREEN, GREY, INK, SKY, VERMILLION};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
 use super::histogram::EqualBins;
-use super::model::{BandPoint, Estimate, ReportLine, kilo};
+use super::model::{BandPoint, Estimate, ReportLine, energy_unit};
 use super::panel::MANY;
 use super::panel::{FOOT_PX, Panel, align};
 use super::svg::path::{PaperFrame, Spot, clipped};
@@ -52,7 +52,7 @@ pub(super) fn nobody(words: &Words, line: &ReportLine) -> Option<String> {
 /// Draws the line's panels: where, how high with how much energy, and the exceedance of both beside each other.
 pub(super) fn draw(words: &Words, line: &ReportLine) -> Drawing {
     let largest_j = line.crossings.iter().map(|at| at.total_j).fold(0.0, f64::max);
-    let (unit, size) = kilo(largest_j);
+    let (unit, size) = energy_unit(largest_j);
     let alongs: Vec<_> = line.crossings.iter().map(|at| (at.along_m, at.weight)).collect();
     let mut bins = EqualBins::of(&alongs);
     bins.all = line.releases as f64;

@@ -377,16 +377,7 @@ impl ReportQuantity {
     }
 }
 
-/// J or kJ: on a logarithmic axis thousands of kilojoules are read more easily than thousandths of megajoules.
-pub(super) fn kilo(largest_j: f64) -> (&'static str, f64) {
-    if largest_j >= 2e3 { ("kJ", 1e3) } else { ("J", 1.0) }
-}
-
-/// J, kJ or MJ, whichever keeps numbers up to `largest_j` short.
+/// J or kJ, in which barriers and classes of intensity are named too: one number has one unit wherever it stands.
 pub(super) fn energy_unit(largest_j: f64) -> (&'static str, f64) {
-    match largest_j {
-        e if e >= 2e6 => ("MJ", 1e6),
-        e if e >= 2e3 => ("kJ", 1e3),
-        _ => ("J", 1.0),
-    }
+    if largest_j >= 2e3 { ("kJ", 1e3) } else { ("J", 1.0) }
 }

@@ -231,11 +231,11 @@ fn values(canvas: &Canvas<'_>, panel: &Panel, report: &Report, quantiles: &[Quan
 /// Name and value, and the interval.
 fn in_words(quantile: &Quantile, words: &Words) -> (String, String) {
     let at = quantile.at;
-    let number = |value: f64| format::significant(value, 4);
-    let tail = match words.interval(&number(at.low), &number(at.high)) {
+    let [value, low, high] = format::with_interval([at.value, at.low, at.high]);
+    let tail = match words.interval(&low, &high) {
         none if none == format::NO_NUMBER => String::new(),
         interval => interval,
     };
     let sign = format::sign(at.is);
-    (format!("{} {sign}{}\u{2009}m", name(quantile), number(at.value)), tail)
+    (format!("{} {sign}{value}\u{2009}m", name(quantile)), tail)
 }

@@ -201,8 +201,8 @@ fn in_words(one: &BarrierSummary, words: &Words) -> Option<String> {
             ("name", &name),
             ("standard", &standard),
             ("percentile", &rule.percentile),
-            ("energy", &format::decimal(design.energy_percentile_j / 1e3, 1)),
-            ("top", &format::decimal(design.height_percentile_m, 2)),
+            ("energy", &percentile(&one.energy_j, design.energy_percentile_j, 1e3)),
+            ("top", &percentile(&one.top_m, design.height_percentile_m, 1.0)),
             ("speed", &factors(words.factor_speed, &rule.speed_factors)),
             ("mass", &factors(words.factor_mass, &rule.mass_factors)),
             ("height", &factors(words.factor_height, &rule.height_factors)),
@@ -210,6 +210,15 @@ fn in_words(one: &BarrierSummary, words: &Words) -> Option<String> {
         ],
     );
     Some(said + &distance)
+}
+
+/// The percentile of a rule over a unit, with as many digits as in the table of what arrives.
+fn percentile(of: &Statistic, value: f64, unit: f64) -> String {
+    let known = of.percentiles.values().find(|found| found.value.to_bits() == value.to_bits());
+    let end = |end: Option<f64>| end.map_or(f64::NAN, |end| end / unit);
+    let (low, high) = known.map_or((None, None), |found| (found.low_95, found.high_95));
+    let [value, ..] = format::with_interval([value / unit, end(low), end(high)]);
+    value
 }
 
 /// Partial factors on something, one by one.
@@ -234,13 +243,18 @@ fn arriving(one: &BarrierSummary, words: &Words) -> EstimateTable {
         (format!("{name} ({unit})"), cells.map(|cell| cell.map(|x| x.over(size))).collect())
     };
     let before = one.crossing - one.arriving.count;
+    let count = |n: usize| format::decimal(n as f64, 0);
     EstimateTable {
         about: About::Barriers,
         place: one.barrier.name.clone(),
         title: named(words.arriving_title, one, words),
         note: fill(
             words.arriving_note,
-            &[("crossing", &one.crossing), ("before", &before), ("left", &one.arriving.count)],
+            &[
+                ("crossing", &count(one.crossing)),
+                ("before", &count(before)),
+                ("left", &count(one.arriving.count)),
+            ],
         ) + &missing_rocks(words.open().at_line, one.may_still_come.as_ref()),
         columns: statistics(words),
         rows: vec![

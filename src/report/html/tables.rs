@@ -1,7 +1,6 @@
 //! Tables of estimates: numbers with as many digits as their intervals leave meaningful.
 
 use super::{escape, note};
-use crate::math;
 use crate::report::format;
 use crate::report::model::{Estimate, EstimateRow, EstimateTable, Is, energy_unit};
 use crate::report::words::{Words, fill};
@@ -55,7 +54,7 @@ pub fn plain_headline(rows: &[EstimateRow], words: &Words) -> Vec<String> {
     rows.iter().zip(&values).map(line).collect()
 }
 
-/// Joules as kJ or MJ where that is shorter; other units as they are.
+/// Joules as kJ where that is shorter; other units as they are.
 fn in_short_unit(row: &EstimateRow) -> (Estimate, &str) {
     if row.unit != "J" {
         return (row.estimate, &row.unit);
@@ -82,40 +81,12 @@ fn in_words(estimate: &Estimate, words: &Words) -> (String, String) {
         // none seen: what matters is how many there may be
         return (format!("{sign}0"), one_sided(estimate, words, |v| format::significant(v, 2)));
     }
-    if width.is_nan() && estimate.value.fract() == 0.0 && estimate.value.abs() < 1e7 {
-        // a count, or a number as it was written
+    if width.is_nan() && format::is_as_written(estimate.value) {
         let value = format!("{sign}{}", format::decimal(estimate.value, 0));
         return (value, one_sided(estimate, words, |v| format::significant(v, 4)));
     }
-    let digits = if width.is_finite() && width > 0.0 && estimate.value != 0.0 {
-        // the last digit is at most a fifth of the interval
-        let leading = math::log10(estimate.value.abs()).floor() - math::log10(0.2 * width).floor();
-        (leading as i32 + 1).clamp(3, 5) as usize
-    } else {
-        // alone: a maximum is read as it is, a small derivative or a bound only for its size
-        if estimate.value.abs() >= 0.1 { 4 } else { 3 }
-    };
-    let [value, low, high] =
-        format::told_apart([estimate.value, estimate.low, estimate.high], |number, more| {
-            like(estimate.value, digits + more)(number)
-        });
+    let [value, low, high] = format::with_interval([estimate.value, estimate.low, estimate.high]);
     (format!("{sign}{value}"), words.interval(&low, &high))
-}
-
-/// Writes numbers to the last place that a value of so many digits has: its interval ends where it ends.
-fn like(value: f64, digits: usize) -> impl Fn(f64) -> String {
-    let exponent = if value == 0.0 { 0.0 } else { math::log10(value.abs()).floor() };
-    let last = exponent - digits as f64 + 1.0;
-    move |v| {
-        if !(-4.0..9.0).contains(&exponent) {
-            return format::significant(math::rounded(v, digits), digits);
-        }
-        let place = math::pow(10.0, last.max(0.0));
-        format::decimal(
-            if last > 0.0 { (v / place).round() * place } else { v },
-            (-last).max(0.0) as usize,
-        )
-    }
 }
 
 fn one_sided(estimate: &Estimate, words: &Words, bound: impl Fn(f64) -> String) -> String {

@@ -5,7 +5,7 @@ use rockfall::hazard::{Agreement, ObservedPath};
 use rockfall::output::ReleaseZone;
 use rockfall::report::model::{
     AnnualView, BandPoint, BarrierView, Behind, CellMap, DesignView, Estimate, LinePoint, MapMark,
-    Observed, PlaceView, Quantile, Report, ReportLine, RockView, ZoneMark,
+    Observed, PlaceView, Quantile, Report, ReportLine, ReportQuantity, RockView, ZoneMark,
 };
 
 const EAST_M: f64 = 2_600_000.0;
@@ -297,4 +297,17 @@ fn energies_of_unlike_rocks_along_their_ways_are_all_readable() {
         unlike.contains("logarithmic") && unlike.contains("a factor of 1\u{2009}000; below"),
         "{unlike}"
     );
+}
+
+/// A percentile has the same digits in a figure as in a table: those that its interval leaves.
+#[test]
+fn a_number_is_written_alike_in_figures_and_tables() {
+    let mut report = site();
+    let quantiles = report.quantiles.get_mut(&ReportQuantity::Runout).expect("is known");
+    quantiles[0].at = Estimate::new(265.5, 261.9, 269.2);
+    let drawn = rockfall::report::drawings(&report);
+    let (_, runout) =
+        drawn.into_iter().find(|(heading, _)| heading.file == "runout.svg").expect("is drawn");
+    assert!(runout.svg.contains("266\u{2009}m") && runout.svg.contains("262 to 269"));
+    assert!(!runout.svg.contains("265.5"));
 }

@@ -23,7 +23,7 @@ function written(value, digits = 3) {
 }
 
 const energyText = (joule, digits = 3) =>
-  joule >= 1e6 ? `${written(joule / 1e6, digits)} MJ` : joule >= 1e3 ? `${written(joule / 1e3, digits)} kJ` : `${written(joule, digits)} J`;
+  joule >= 2e3 ? `${written(joule / 1e3, digits)} kJ` : `${written(joule, digits)} J`;
 
 // One switch for every kind of thing that is there.
 function switches(scene, shown, changed) {
