@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
 use crate::program::rockfall;
-use crate::{boxes, svg};
+use crate::{boxes, site, svg};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -134,4 +134,20 @@ fn a_run_speaks_the_language_of_its_scene() {
     let before = fs::read(out.join("report.html")).unwrap();
     assert!(rockfall(&["draw", out.to_str().unwrap()]).status.success());
     assert_eq!(fs::read(out.join("report.html")).unwrap(), before);
+}
+
+/// Objects of a scene without frequency have a warning, in the language of the page as all others.
+#[test]
+fn objects_without_a_year_are_warned_of_in_the_language_of_the_page() {
+    let dir = site::Folder::new();
+    dir.slope();
+    let road = "[[objects]]\nname = \"road\"\nwidth_m = 4.0\npoints_m = [[2600010.0, 1200030.5], [2600040.0, 1200030.5]]\n";
+    for (language, said) in
+        [("de", "ohne [frequency]"), ("fr", "sans [frequency]"), ("it", "senza [frequency]")]
+    {
+        let more = format!("{road}[report]\nlanguage = \"{language}\"\n");
+        let out = dir.run(language, &site::scene("file = \"dem.tif\"", &more));
+        let page = fs::read_to_string(out.join("report.html")).unwrap();
+        assert!(page.contains(said) && !page.contains("without [frequency]"), "{language}");
+    }
 }

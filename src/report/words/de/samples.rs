@@ -10,4 +10,8 @@ pub(super) const SAMPLES: &[(&str, &str)] = &[
         "line “{name}”: its pieces from corner {a} and corner {b} cross; a rock counts once, where it crosses first. Write the corners in order if the line is not meant so",
         "Linie „{name}“: ihre Stücke ab Ecke {a} und ab Ecke {b} kreuzen sich; ein Block zählt einmal, wo er sie zuerst quert. Die Ecken der Reihe nach schreiben, falls die Linie nicht so gemeint ist",
     ),
+    (
+        "[[objects]] without [frequency]: how many releases hit them is computed, how often a year and at what risk is not",
+        "[[objects]] ohne [frequency]: wie viele Ablösungen sie treffen, wird gerechnet, wie oft im Jahr und mit welchem Risiko nicht",
+    ),
 ];

@@ -10,4 +10,8 @@ pub(super) const SAMPLES: &[(&str, &str)] = &[
         "line “{name}”: its pieces from corner {a} and corner {b} cross; a rock counts once, where it crosses first. Write the corners in order if the line is not meant so",
         "ligne «\u{a0}{name}\u{a0}»\u{a0}: ses tronçons depuis les sommets {a} et {b} se croisent\u{a0}; un bloc compte une fois, là où il la franchit d’abord. Écrire les sommets dans l’ordre si la ligne n’est pas voulue ainsi",
     ),
+    (
+        "[[objects]] without [frequency]: how many releases hit them is computed, how often a year and at what risk is not",
+        "[[objects]] sans [frequency]\u{a0}: combien de départs les touchent est calculé, combien de fois par an et avec quel risque ne l’est pas",
+    ),
 ];

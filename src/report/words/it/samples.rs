@@ -10,4 +10,8 @@ pub(super) const SAMPLES: &[(&str, &str)] = &[
         "line “{name}”: its pieces from corner {a} and corner {b} cross; a rock counts once, where it crosses first. Write the corners in order if the line is not meant so",
         "linea “{name}”: i suoi tratti dai vertici {a} e {b} si incrociano; un blocco conta una volta, dove la attraversa per primo. Scrivere i vertici in ordine se la linea non è voluta così",
     ),
+    (
+        "[[objects]] without [frequency]: how many releases hit them is computed, how often a year and at what risk is not",
+        "[[objects]] senza [frequency]: quanti distacchi li colpiscono è calcolato, quante volte all’anno e con quale rischio no",
+    ),
 ];
