@@ -52,16 +52,21 @@ pub fn hermite_crossing([x0, d0]: [f64; 2], [x1, d1]: [f64; 2], down: bool) -> f
         let x = x0 + t * (d0 + t * (b + t * a));
         if down { x >= 0.0 } else { x <= 0.0 }
     };
-    let (mut lo, mut hi) = (0.0, 1.0);
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (lo + hi);
-        if is_before(middle) {
-            lo = middle;
-        } else {
-            hi = middle;
-        }
-    }
+    let [lo, hi] = bisected([0.0, 1.0], HALVINGS, is_before);
     0.5 * (lo + hi)
+}
+
+/// An interval, halved so many times, from the last place before something to the first behind it.
+pub fn bisected(
+    [mut lo, mut hi]: [f64; 2],
+    halvings: u32,
+    mut is_before: impl FnMut(f64) -> bool,
+) -> [f64; 2] {
+    for _ in 0..halvings {
+        let middle = 0.5 * (lo + hi);
+        *(if is_before(middle) { &mut lo } else { &mut hi }) = middle;
+    }
+    [lo, hi]
 }
 
 /// The nearest number with so many significant digits.

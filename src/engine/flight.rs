@@ -20,6 +20,7 @@ mod parabola_box;
 pub mod top;
 mod touching;
 
+use crate::math;
 use crate::rock::{Motion, Vec3};
 use crate::terrain::Terrain;
 use crate::terrain::index::{BvhNode, Child, WAITING};
@@ -41,6 +42,11 @@ pub struct Parabola {
 }
 
 impl Parabola {
+    /// That of a ball that flies on from a motion.
+    pub fn of(from: &Motion, gravity: f64, radius: f64) -> Self {
+        Self { start: from.position_m, velocity: from.velocity_m_s, gravity, radius }
+    }
+
     /// The one through two moments between which nothing was touched, bent as its velocity changes.
     pub fn between(from: &Motion, to: &Motion, radius: f64) -> Self {
         let dt = to.time_s - from.time_s;
@@ -138,16 +144,8 @@ fn under_slope_after(terrain: &Terrain, flight: &Parabola, leaves: f64) -> f64 {
     let is_under = |t: f64| terrain.is_under_slope(&flight.centre(t));
     let look = |k: u32| leaves * f64::from(k) / f64::from(LOOKS);
     let Some(first) = (0..=LOOKS).find(|k| is_under(look(*k))) else { return leaves };
-    let (mut over, mut under) = (look(first.saturating_sub(1)), look(first));
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (over + under);
-        if is_under(middle) {
-            under = middle;
-        } else {
-            over = middle;
-        }
-    }
-    under
+    let between = [look(first.saturating_sub(1)), look(first)];
+    math::bisected(between, HALVINGS, |t| !is_under(t))[1]
 }
 
 /// When the ball is outside the mesh's box for good (s): beside it, or below it; without gravity also above it.

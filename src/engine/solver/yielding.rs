@@ -8,6 +8,7 @@
 use super::body::Body;
 use super::law::{Action, ContactPlace};
 use crate::ground::Law;
+use crate::math;
 use crate::rock::Vec3;
 
 /// Step (rad of the contact's oscillation).
@@ -74,13 +75,9 @@ pub(crate) fn yielding_impact(
         if next.motion_j(body) <= left_j {
             // halving is safe where the energy taken is not monotone: the interval always ends with
             // the first crossing that the step saw
-            let (mut low, mut high) = (0.0, step);
-            for _ in 0..BISECTIONS {
-                let middle = 0.5 * (low + high);
-                let is_over = rock.after(body, law, middle).motion_j(body) <= left_j;
-                *(if is_over { &mut high } else { &mut low }) = middle;
-            }
-            let end = rock.after(body, law, high);
+            let stands = |time: f64| rock.after(body, law, time).motion_j(body) > left_j;
+            let [_, yields] = math::bisected([0.0, step], BISECTIONS, stands);
+            let end = rock.after(body, law, yields);
             return Some((end.v, end.w));
         }
         (rock, gone) = (next, gone + STEP);

@@ -69,10 +69,7 @@ pub(super) fn skidded(setup: &Setup, v: f64, t: f64, has_springs: bool) -> (f64,
 }
 
 /// Where a rising function is zero.
-pub(super) fn zero_of(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
-    for _ in 0..80 {
-        let middle = 0.5 * (low + high);
-        if f(middle) < 0.0 { low = middle } else { high = middle }
-    }
+pub(super) fn zero_of(f: impl Fn(f64) -> f64, low: f64, high: f64) -> f64 {
+    let [low, high] = math::bisected([low, high], 80, |x| f(x) < 0.0);
     0.5 * (low + high)
 }

@@ -64,15 +64,7 @@ pub fn damping_ratio(e: f64) -> f64 {
     if e < PLASTIC_RESTITUTION {
         return PLASTIC_DAMPING_RATIO;
     }
-    let (mut lo, mut hi) = (0.0, PLASTIC_DAMPING_RATIO);
-    for _ in 0..60 {
-        let middle = 0.5 * (lo + hi);
-        if restitution(middle) > e {
-            lo = middle;
-        } else {
-            hi = middle;
-        }
-    }
+    let [lo, hi] = math::bisected([0.0, PLASTIC_DAMPING_RATIO], 60, |zeta| restitution(zeta) > e);
     0.5 * (lo + hi)
 }
 
@@ -169,16 +161,8 @@ impl Damping {
 fn capture_number(zeta: f64) -> f64 {
     // Towards ζ = 1 the swing dies out; so heavily damped an impact hardly rebounds at all.
     let zeta = zeta.min(0.95);
-    let (mut lo, mut hi) = (0.0, 200.0);
-    for _ in 0..50 {
-        let middle = 0.5 * (lo + hi);
-        if normal_impact(middle, 1.0, zeta, 1.0).rebound_m_s.is_some() {
-            hi = middle;
-        } else {
-            lo = middle;
-        }
-    }
-    hi
+    let stays = |speed: f64| normal_impact(speed, 1.0, zeta, 1.0).rebound_m_s.is_none();
+    math::bisected([0.0, 200.0], 50, stays)[1]
 }
 
 #[cfg(test)]

@@ -9,6 +9,7 @@ use super::solve::{BlockContact, SWEEPS, rigid_turning, solve};
 use super::{Footing, Moving, ROUNDING, ROUNDING_OF_SPEED, STILL_M_S};
 use crate::body::Block;
 use crate::contact::block::BlockTouch;
+use crate::math;
 use crate::rock::Vec3;
 use crate::solver::environment::ContactEnvironment;
 use crate::solver::loss::Loss;
@@ -126,12 +127,8 @@ impl Footing {
             thrown.motion_j(block) <= before_j * (1.0 + ROUNDING)
         };
         if !try_with(1.0) {
-            let (mut low, mut high) = (0.0, 1.0);
-            for _ in 0..HALVINGS {
-                let middle = 0.5 * (low + high);
-                if try_with(middle) { low = middle } else { high = middle }
-            }
-            try_with(low);
+            let [most, _] = math::bisected([0.0, 1.0], HALVINGS, &mut try_with);
+            try_with(most);
         }
         self.wanted = wanted;
         let after = (&thrown.v, &thrown.spin(block));

@@ -6,6 +6,7 @@
 //! `W = −(u₀·P + P·G P/2)` with `u₀` the velocity of the contact point before and `G = T M⁻¹ Tᵀ`.
 
 use super::solve::BlockContact;
+use crate::math;
 use crate::rock::Vec3;
 use crate::solver::law::within;
 use crate::solver::yielding::BISECTIONS;
@@ -66,14 +67,10 @@ impl BlockContact {
             }
             let next = self.pushed(u, &impulse, push);
             if self.taken_j(u, &next) >= limit_j {
-                let (mut low, mut high) = (0.0, 1.0);
-                for _ in 0..BISECTIONS {
-                    let middle = 0.5 * (low + high);
-                    let is_over =
-                        self.taken_j(u, &(impulse + (next - impulse) * middle)) >= limit_j;
-                    *(if is_over { &mut high } else { &mut low }) = middle;
-                }
-                return Some(impulse + (next - impulse) * high);
+                let after = |share: f64| impulse + (next - impulse) * share;
+                let stands = |share: f64| self.taken_j(u, &after(share)) < limit_j;
+                let [_, yields] = math::bisected([0.0, 1.0], BISECTIONS, stands);
+                return Some(after(yields));
             }
             impulse = next;
         }

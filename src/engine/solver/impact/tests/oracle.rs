@@ -2,6 +2,7 @@
 //! short: slow and independent.
 
 use crate::ground::Law;
+use crate::math;
 use crate::rock::Vec3;
 use crate::solver::body::Body;
 use crate::solver::law::within;
@@ -130,16 +131,11 @@ pub(super) fn follow(
             (0..touches.len()).all(|k| normal_force[k] <= 0.0 && touches[k].n.dot(&next.v) >= 0.0);
         if ends && touches.len() == 1 {
             // The moment of lift-off lies within this step.
-            let (mut lo, mut hi) = (0.0, h);
-            for _ in 0..60 {
-                let middle = 0.5 * (lo + hi);
-                let there = step(body, touches, &pressed, &at, middle);
-                if pushes(touches, &pressed, &there)[0] > 0.0 {
-                    lo = middle;
-                } else {
-                    hi = middle;
-                }
-            }
+            let holds = |time: f64| {
+                let there = step(body, touches, &pressed, &at, time);
+                pushes(touches, &pressed, &there)[0] > 0.0
+            };
+            let [_, hi] = math::bisected([0.0, h], 60, holds);
             at = step(body, touches, &pressed, &at, hi);
             let n = &touches[0].n;
             let (x, up, g) = (depth(&touches[0], &at), n.dot(&at.v), -n.dot(&body.gravity));
