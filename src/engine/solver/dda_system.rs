@@ -13,6 +13,7 @@ use crate::contact::history::ContactHistory;
 use crate::contact::submatrix::{Mat6, Vec6, inertia};
 use crate::contact::{ContactPoint, MOST};
 use crate::ground::Law;
+use arrayvec::ArrayVec;
 use contact::{ContactMatrixTerms, DdaContact};
 use nalgebra::{Cholesky, U6};
 use slider::Change;
@@ -51,8 +52,7 @@ impl StepConstants {
 #[derive(Debug, Default)]
 pub struct DdaScratch {
     pub(super) step: StepConstants,
-    contacts: [DdaContact; MOST],
-    count: usize,
+    contacts: ArrayVec<DdaContact, MOST>,
     /// Memories that belong to the contacts.
     pub(super) taken: u32,
     /// What contacts add to the free displacement, `E`, and both together, `D = D₀ + E`, Eq. (1).
@@ -60,8 +60,7 @@ pub struct DdaScratch {
     pub(super) d: Vec6,
     /// Of what the block was made: inertia, and contacts in their states.
     inertia: Mat6,
-    terms: [ContactMatrixTerms; MOST],
-    terms_count: usize,
+    terms: ArrayVec<ContactMatrixTerms, MOST>,
     /// What the contacts add to the block.
     springs: Mat6,
     /// Factor of the block; `None` if nobody has asked for it, or if there is none.
@@ -71,7 +70,8 @@ pub struct DdaScratch {
 impl DdaScratch {
     /// Begins a step without contacts.
     pub(super) fn begin(&mut self, body: &Body, step: StepConstants) {
-        (self.step, self.count, self.taken) = (step, 0, 0);
+        (self.step, self.taken) = (step, 0);
+        self.contacts.clear();
         let inertia = inertia(body.mass, body.inertia, step.dt);
         if self.inertia != inertia {
             (self.inertia, self.factor) = (inertia, None);
@@ -80,13 +80,12 @@ impl DdaScratch {
 
     /// Adds the contact of a touch and its memory.
     pub(super) fn add(&mut self, law: &Law, touch: &ContactPoint, left: (usize, &ContactHistory)) {
-        self.contacts[self.count] = DdaContact::with_mesh(&self.step, law, touch, left);
-        self.count += 1;
+        self.contacts.push(DdaContact::with_mesh(&self.step, law, touch, left));
         self.taken |= 1 << left.0;
     }
 
     pub(super) fn contacts(&self) -> &[DdaContact] {
-        &self.contacts[..self.count]
+        &self.contacts
     }
 
     /// `2M/Δt² + K` of the contacts with the mesh, as [`Self::load`] has brought it up to date.
@@ -97,16 +96,16 @@ impl DdaScratch {
     /// Brings the block up to the states of the contacts, and gives `F − K D₀`: the unknown is what contacts add to the
     /// free displacement.
     pub(super) fn load(&mut self) -> Vec6 {
-        let contacts = &self.contacts[..self.count];
+        let contacts = &self.contacts;
         let terms = || contacts.iter().map(DdaContact::terms);
-        if !self.terms[..self.terms_count].iter().copied().eq(terms()) {
-            self.terms_count = contacts.len();
-            self.terms.iter_mut().zip(terms()).for_each(|(known, now)| *known = now);
+        if !self.terms.iter().copied().eq(terms()) {
+            self.terms.clear();
+            self.terms.extend(terms());
             self.springs = terms().fold(Mat6::zeros(), |sum, one| sum + one.stiffness());
             self.factor = None;
         }
         let mut load = -(self.springs * self.step.free);
-        for contact in contacts {
+        for contact in contacts.iter() {
             contact.add_load(&mut load);
         }
         load
@@ -133,19 +132,19 @@ impl DdaScratch {
 
     /// Judges its contacts by the displacement that came out; the largest change of all counts.
     pub(super) fn judge(&mut self) -> Change {
-        let contacts = self.contacts[..self.count].iter_mut();
+        let contacts = self.contacts.iter_mut();
         let judged = contacts.map(|contact| contact.judge(&contact.ways(&self.d)));
         judged.max().unwrap_or(Change::None)
     }
 
     /// Ends the search for the states of its contacts.
     pub(super) fn stick(&mut self) {
-        self.contacts[..self.count].iter_mut().for_each(DdaContact::stick);
+        self.contacts.iter_mut().for_each(DdaContact::stick);
     }
 
     /// Opens or closes one contact that begins apart, the last that asks for it; whether there is any.
     pub(super) fn open_or_close_one_apart(&mut self) -> bool {
-        let mut contacts = self.contacts[..self.count].iter_mut().rev();
+        let mut contacts = self.contacts.iter_mut().rev();
         contacts.any(|contact| contact.open_or_close_apart(&contact.ways(&self.d)))
     }
 }

@@ -8,18 +8,16 @@
 
 use crate::contact::{ContactPoint, ContactPoints, Feature, MOST};
 use crate::rock::Vec3;
-use crate::solver::law::ZERO;
+use arrayvec::ArrayVec;
 
 /// The contacts of a step's start, and the first stages that see others.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(super) struct Changes {
-    begun: [(Feature, Vec3); MOST],
-    len: usize,
+    begun: ArrayVec<(Feature, Vec3), MOST>,
     /// Whether each of them is a single point.
     are_single: bool,
     /// Normals of those that the current stage does not touch any more.
-    gone: [Vec3; MOST],
-    gone_len: usize,
+    gone: ArrayVec<Vec3, MOST>,
     /// First stage at which a contact that waits would press, at which one has ended, at which one has taken the place of another.
     pub(super) onset: Option<usize>,
     pub(super) end: Option<usize>,
@@ -50,11 +48,9 @@ enum Compared {
 impl Changes {
     /// None, and no contacts.
     pub(super) const NONE: Self = Self {
-        begun: [(Feature::NONE, ZERO); MOST],
-        len: 0,
+        begun: ArrayVec::new_const(),
         are_single: true,
-        gone: [ZERO; MOST],
-        gone_len: 0,
+        gone: ArrayVec::new_const(),
         onset: None,
         end: None,
         exchange: None,
@@ -63,10 +59,10 @@ impl Changes {
 
     /// The contacts of the step's start.
     pub(super) fn begin<'a>(&mut self, touches: impl Iterator<Item = &'a ContactPoint>) {
-        (self.len, self.are_single) = (0, true);
-        for (begun, touch) in self.begun.iter_mut().zip(touches) {
-            *begun = (touch.feature, touch.normal);
-            self.len += 1;
+        self.begun.clear();
+        self.are_single = true;
+        for touch in touches {
+            self.begun.push((touch.feature, touch.normal));
             self.are_single &= touch.is_single();
         }
     }
@@ -83,11 +79,11 @@ impl Changes {
 
     /// Normals of the contacts that have ended since the step's start.
     pub(super) fn gone(&self) -> &[Vec3] {
-        &self.gone[..self.gone_len]
+        &self.gone
     }
 
     fn has(&self, feature: Feature) -> bool {
-        self.begun[..self.len].iter().any(|begun| begun.0 == feature)
+        self.begun.iter().any(|begun| begun.0 == feature)
     }
 
     /// How many of the touches were there at the step's start.
@@ -99,7 +95,7 @@ impl Changes {
     fn compared(&self, touches: &ContactPoints) -> Compared {
         let still = self.still(touches);
         let are_single = touches.iter().all(ContactPoint::is_single);
-        match (still == self.len, still == touches.len()) {
+        match (still == self.begun.len(), still == touches.len()) {
             (true, true) if are_single == self.are_single => Compared::Same,
             (true, false) if are_single && self.are_single => Compared::More,
             (false, true) if are_single && self.are_single => Compared::Fewer,
@@ -114,7 +110,7 @@ impl Changes {
 
     /// Makes the touches of stage `node` those of the step's start, for a rock of `radius` (m); those of the ends, 0, are what they are.
     pub(super) fn hold_on(&mut self, node: usize, touches: &mut ContactPoints, radius: f64) {
-        self.gone_len = 0;
+        self.gone.clear();
         if node == 0 {
             return;
         }
@@ -124,10 +120,7 @@ impl Changes {
             Compared::Fewer => {
                 self.end = self.end.or(Some(node));
                 let is_gone = |one: &&(Feature, Vec3)| touches.iter().all(|at| at.feature != one.0);
-                for (_, normal) in self.begun[..self.len].iter().filter(is_gone) {
-                    self.gone[self.gone_len] = *normal;
-                    self.gone_len += 1;
-                }
+                self.gone.extend(self.begun.iter().filter(is_gone).map(|one| one.1));
             }
             Compared::More => {
                 let mut waits = touches.iter().filter(|touch| !self.has(touch.feature));
@@ -149,7 +142,7 @@ impl Changes {
             ContactChange::Onset => {
                 places.filter(|touch| !self.has(touch.2)).min_by(|a, b| a.0.total_cmp(&b.0))
             }
-            ContactChange::End if self.still(touches) < self.len => None,
+            ContactChange::End if self.still(touches) < self.begun.len() => None,
             ContactChange::End => {
                 places.filter(|touch| self.has(touch.2)).max_by(|a, b| a.0.total_cmp(&b.0))
             }
