@@ -67,4 +67,9 @@ impl Motion {
     pub fn rotational_j(&self, rock: &Rock) -> f64 {
         0.5 * rock.inertia_kg_m2() * self.spin_rad_s.norm_squared()
     }
+
+    /// Both (J).
+    pub fn kinetic_j(&self, rock: &Rock) -> f64 {
+        self.translational_j(rock) + self.rotational_j(rock)
+    }
 }

@@ -87,28 +87,23 @@ fn turned(block: &Block, moving: &Moving) -> Turned {
 impl Roll<'_> {
     /// Leaps to the next touch.
     fn fly(&mut self) -> Option<Stop> {
-        let Motion { time_s, position_m, velocity_m_s, .. } = self.recorder.now;
+        let time_s = self.recorder.now.time_s;
         let block = self.block;
-        let path = Parabola {
-            start: position_m,
-            velocity: velocity_m_s,
-            gravity: self.settings.gravity_m_s2,
-            // the ball around the block: what it does not touch, the block does not touch
-            radius: block.bound_m,
-        };
+        // the ball around the block: what it does not touch, the block does not touch
+        let path = Parabola::of(&self.recorder.now, self.settings.gravity_m_s2, block.bound_m);
         let top = Top::new(block.inertia_kg_m2, self.moving.pose.attitude, self.moving.momentum);
         let left = self.settings.longest_s - time_s;
         let tumble = Tumble { block, top, path };
         let scratch = (&mut self.footing.near, &mut self.footing.window);
         let landing = first_touch(self.settings.terrain, &tumble, left, scratch);
-        let (dt, stop) = self.settings.end_of_flight(&landing, time_s);
         self.recorder.effort.leaps += 1;
+        let (dt, stop) = self.settings.end_of_flight(&landing, time_s, &self.recorder.effort);
         self.recorder.fly(&path, Some(&tumble.top), dt);
         self.footing.slip.fly(dt);
         self.scars.fly(dt);
         self.moving.pose = tumble.pose(dt);
         self.moving.v = self.recorder.now.velocity_m_s;
-        stop.or_else(|| self.settings.over_budget(&self.recorder.effort))
+        stop
     }
 
     /// Goes on in contact until the block is free again or stops.
@@ -119,12 +114,8 @@ impl Roll<'_> {
         let rise_j = self.total_j() - before_j;
         let lost_j = self.recorder.lost_j() - lost_before_j;
         self.recorder.ledger.remainder_j -= rise_j + lost_j;
-        // what springs hold is not lost
         let stored = self.stored();
-        self.recorder.hold(&stored, &held);
-        // contacts only take energy: a rise is an error of the solver
-        let ledger = &mut self.recorder.ledger;
-        ledger.rise_j = ledger.rise_j.max(rise_j + stored.sum() - held.sum());
+        self.recorder.end_episode(rise_j, &stored, &held);
         self.end_contact();
         stop
     }
@@ -166,8 +157,7 @@ impl Roll<'_> {
             let turned = Some(turned(block, &self.moving));
             self.recorder.step(RockInstant { motion: to, turned }, done.slides);
             self.leave_impacts();
-            let time_up = self.settings.time_up(now_s, done.dt);
-            let ends = time_up.or_else(|| self.settings.over_budget(&self.recorder.effort));
+            let ends = self.settings.end_of_step(now_s, done.dt, &self.recorder.effort);
             if done.is_free || ends.is_some() {
                 return ends;
             }
@@ -227,7 +217,7 @@ impl Roll<'_> {
                 point_m: self.moving.pose.centre + touch.lever,
                 normal: touch.normal,
                 feature: touch.feature.kind,
-                sheet: self.recorder.sheet_of(touch.triangle),
+                triangle: touch.triangle,
                 approach_m_s: -touch.normal.dot(&velocity),
             };
             self.recorder.begin_impact(&struck, now_s, &MeshEnergy::default());
@@ -292,17 +282,15 @@ impl Roll<'_> {
         self.moving.motion_j(self.block) - weight.dot(&self.moving.pose.centre)
     }
 
-    /// The journey, complete, with the energy released and the shape as it was drawn.
+    /// The journey, complete, with the shape as it was drawn.
     fn end(mut self, (release, drawn): (&Release, &DrawnShape), stop: Stop) -> Trajectory {
         let start =
             Moving::new(self.block, (release.motion.position_m, drawn.attitude), &release.motion);
-        self.recorder.end_path();
         self.recorder.effort.sweeps += self.footing.sweeps;
         self.recorder.effort.triangles += self.footing.near.tested;
-        let fallen = release.motion.position_m.z - self.recorder.now.position_m.z;
-        let weight_j = self.block.mass_kg * self.settings.gravity_m_s2 * fallen;
-        let released_j = weight_j + start.motion_j(self.block);
+        let weight_n = self.block.mass_kg * self.settings.gravity_m_s2;
+        let energies = (weight_n, start.motion_j(self.block));
         let shape = Some(ShapeOf::new(drawn));
-        Trajectory { shape, ..self.recorder.into_trajectory(release, stop, released_j) }
+        Trajectory { shape, ..self.recorder.into_trajectory(release, stop, energies) }
     }
 }

@@ -55,7 +55,7 @@ impl<'a> CellPassages<'a> {
         walk(cells, [&from, &to], |cell, s0, s1| {
             let [t0, t1] = [s0, s1].map(|share| share * flight.lasts_s);
             let total_j = total_j(t0).max(total_j(t1));
-            let known_m = self.found.last().filter(|last| last.cell == cell).map(|l| l.height_m);
+            let known_m = self.found.known_m(cell);
             let top = heights.largest([t0, t1], known_m.unwrap_or(f64::NEG_INFINITY));
             // where there is no ground there is no height; fallen through a hole of the mesh, it
             // passes no cell any more
@@ -89,9 +89,8 @@ impl<'a> CellPassages<'a> {
         };
         walk(cells, [&from.position_m, &to.position_m], |cell, s0, s1| {
             // looked for once a cell, where the step comes into it: from below the mesh holds a rock too
-            let known_m = self.found.last().filter(|last| last.cell == cell).map(|l| l.height_m);
-            let is_new = known_m.is_none();
-            if is_new && terrain.is_under_slope(&between(from, to, s1).position_m) {
+            let known_m = self.found.known_m(cell);
+            if known_m.is_none() && terrain.is_under_slope(&between(from, to, s1).position_m) {
                 return;
             }
             let total_j = total_j(s0).max(total_j(s1));
@@ -104,6 +103,10 @@ impl<'a> CellPassages<'a> {
 impl Passage for CellPassage {
     fn place(&self) -> u32 {
         self.cell
+    }
+
+    fn height_m(&self) -> f64 {
+        self.height_m
     }
 
     fn join(&mut self, other: &Self) {

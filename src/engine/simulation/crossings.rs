@@ -43,6 +43,8 @@ impl Crossing {
 /// there. All are counted.
 #[derive(Debug)]
 pub(super) struct Crossings<'a> {
+    terrain: &'a Terrain,
+    form: Form<'a>,
     lines: &'a [EvaluationLine],
     found: Vec<Crossing>,
     /// South-western and north-eastern corner of a box in plan view in which nothing can be met: most steps are short and
@@ -54,8 +56,8 @@ pub(super) struct Crossings<'a> {
 const KEPT: f64 = 0.999;
 
 impl<'a> Crossings<'a> {
-    pub(super) fn of(lines: &'a [EvaluationLine]) -> Self {
-        Self { lines, found: Vec::new(), clear: None }
+    pub(super) fn of(terrain: &'a Terrain, form: Form<'a>, lines: &'a [EvaluationLine]) -> Self {
+        Self { terrain, form, lines, found: Vec::new(), clear: None }
     }
 
     /// So far.
@@ -78,14 +80,13 @@ impl<'a> Crossings<'a> {
     }
 
     /// Notes the lines that a flight passes. Seen from above it is straight and even: the moment follows from one division.
-    pub(super) fn fly(&mut self, (terrain, form): (&Terrain, &Form), flight: &RockFlight) {
+    pub(super) fn fly(&mut self, flight: &RockFlight) {
         if self.lines.is_empty() {
             return;
         }
         // in plan view a parabola is a straight line: two distances to the line of a piece give the share of the way
         let [a, b] = [0.0, flight.lasts_s].map(|t| flat(&flight.path.centre(t)));
         self.pass(
-            (terrain, form),
             [a, a, b, b],
             |piece| {
                 // signed distances to the endless line through the piece, positive on its left
@@ -99,7 +100,7 @@ impl<'a> Crossings<'a> {
     }
 
     /// Notes the lines that a step in contact passes.
-    pub(super) fn step(&mut self, (terrain, form): (&Terrain, &Form), ends: [&RockInstant; 2]) {
+    pub(super) fn step(&mut self, ends: [&RockInstant; 2]) {
         if self.lines.is_empty() {
             return;
         }
@@ -114,7 +115,6 @@ impl<'a> Crossings<'a> {
         ];
         let hull = hull.map(|point| flat(&point));
         self.pass(
-            (terrain, form),
             hull,
             |piece| roots(hull.map(|point| piece.side_m(point))),
             |s| RockInstant::between(ends, s),
@@ -125,7 +125,6 @@ impl<'a> Crossings<'a> {
     /// endless line of a piece, rising, `at` the motion there.
     fn pass(
         &mut self,
-        (terrain, form): (&Terrain, &Form),
         hull: [Corner; 4],
         when: impl Fn(&LinePiece) -> Vec<f64>,
         at: impl Fn(f64) -> RockInstant,
@@ -141,7 +140,7 @@ impl<'a> Crossings<'a> {
         }
         for (line, evaluation_line) in self.lines.iter().enumerate() {
             if let Some(footprint) = evaluation_line.footprint {
-                let rim_m = form.rim_m();
+                let rim_m = self.form.rim_m();
                 let free = |k: usize| [low[k] - rim_m, high[k] + rim_m];
                 // an object is met by the rim of the rock, not by its centre
                 let ([west, east], [south, north]) = (free(0), free(1));
@@ -150,7 +149,7 @@ impl<'a> Crossings<'a> {
                     continue;
                 }
                 if let Some((s, along_m)) = enter((evaluation_line, footprint), rim_m, hull, &at) {
-                    self.note((terrain, form), line, (at(s), along_m), 1);
+                    self.note(line, (at(s), along_m), 1);
                 }
                 continue;
             }
@@ -171,22 +170,22 @@ impl<'a> Crossings<'a> {
             }
             met.sort_by(|one, other| one.0.total_cmp(&other.0));
             if let Some(&(s, along_m)) = met.first() {
-                self.note((terrain, form), line, (at(s), along_m), met.len() as u32);
+                self.note(line, (at(s), along_m), met.len() as u32);
             }
         }
-        self.clear = self.clear_around([low, high], form.rim_m());
+        self.clear = self.clear_around([low, high]);
     }
 
     /// The largest box around another in which nothing can be met: an object counts with the rim of the rock, and not at
     /// all once it is hit.
-    fn clear_around(&self, [low, high]: [Corner; 2], rim_m: f64) -> Option<[Corner; 2]> {
+    fn clear_around(&self, [low, high]: [Corner; 2]) -> Option<[Corner; 2]> {
         let room = |(line, evaluation_line): (usize, &EvaluationLine)| {
             let apart_m = evaluation_line.apart_m(low, high);
             if evaluation_line.footprint.is_none() {
                 return apart_m;
             }
             let is_known = self.found.iter().any(|crossing| crossing.line == line);
-            if is_known { f64::INFINITY } else { apart_m - rim_m }
+            if is_known { f64::INFINITY } else { apart_m - self.form.rim_m() }
         };
         let free_m = KEPT * self.lines.iter().enumerate().map(room).fold(f64::INFINITY, f64::min);
         let grown = [low.map(|at| at - free_m), high.map(|at| at + free_m)];
@@ -196,13 +195,8 @@ impl<'a> Crossings<'a> {
     /// Records a crossing, or counts it where the rock has crossed this line before: only the first is kept in full.
     ///
     /// A rock that has fallen through a hole of the mesh and is under the slope has left the terrain: it crosses nothing.
-    fn note(
-        &mut self,
-        (terrain, form): (&Terrain, &Form),
-        line: usize,
-        (instant, along_m): (RockInstant, f64),
-        times: u32,
-    ) {
+    fn note(&mut self, line: usize, (instant, along_m): (RockInstant, f64), times: u32) {
+        let (terrain, form) = (self.terrain, self.form);
         let centre = instant.motion.position_m;
         if let Some(known) = self.found.iter_mut().find(|crossing| crossing.line == line) {
             known.times += if terrain.is_under_slope(&centre) { 0 } else { times };
@@ -314,21 +308,11 @@ fn roots(ordinates: [f64; 4]) -> Vec<f64> {
         _ => value(s) > 0.0,
     };
     let changes = ends.windows(2).filter(|pair| above(pair[0]) != above(pair[1]));
-    changes.map(|pair| halve(pair[0], pair[1], above)).collect()
-}
-
-/// The place between `low` and `high` where the answer changes.
-fn halve(mut low: f64, mut high: f64, above: impl Fn(f64) -> bool) -> f64 {
-    let at_low = above(low);
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (low + high);
-        if above(middle) == at_low {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    high
+    let place = |pair: &[f64]| {
+        let at_first = above(pair[0]);
+        math::bisected([pair[0], pair[1]], HALVINGS, |s| above(s) == at_first)[1]
+    };
+    changes.map(place).collect()
 }
 
 #[cfg(test)]

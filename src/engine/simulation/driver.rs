@@ -63,9 +63,6 @@ impl Scratch {
 
     /// Fills in the laws of all grounds for one rock. The damping ratio of a restitution takes a root search, so it is
     /// kept as long as the restitution of a ground stays the same.
-    ///
-    /// A law holds what a ground means for this one rock: `ω = √(p_N/m)`, `c_N = 2 ζ(e) √(p_N m)`,
-    /// `c_s` and the speed of capture all hang on its mass, so they are made anew for each.
     fn make_laws(&mut self, release: &Release, capture: &Capture) {
         self.damping.truncate(release.grounds.len());
         self.laws.clear();
@@ -111,9 +108,6 @@ pub fn simulate(
         ),
     };
     // A rock that starts pressed into something must not fly out of its grip: a leap sees no touch where none begins.
-    // stop is only set here if the rock is at rest, or fails, where it was released
-    // The loop is the whole life of a rock: fly to the next touch, step in contact until it is
-    // free, and again. Each part may end it.
     let mut stop = if fall.is_pressed() { fall.touch() } else { None };
     let stop = loop {
         stop = stop.or_else(|| fall.fly()).or_else(|| fall.touch());
@@ -192,12 +186,7 @@ impl Fall<'_> {
     /// Cost: one search through the index, however long the flight.
     fn fly(&mut self) -> Option<Stop> {
         let now = self.recorder.now;
-        let flight = Parabola {
-            start: now.position_m,
-            velocity: now.velocity_m_s,
-            gravity: self.settings.gravity_m_s2,
-            radius: self.body.radius,
-        };
+        let flight = Parabola::of(&now, self.settings.gravity_m_s2, self.body.radius);
         let left = self.settings.longest_s - now.time_s;
         let begun = self.state.stopwatches.now();
         // stems that this rock has broken are no longer in its way
@@ -208,16 +197,15 @@ impl Fall<'_> {
             &self.state.near.gone,
             &mut self.recorder.effort.triangles,
         );
-        let (dt, stop) = self.settings.end_of_flight(&end, now.time_s);
-        self.state.stopwatches.stop(TimedPiece::Leap, begun);
         // a flight counts as one leap, however long
         self.recorder.effort.leaps += 1;
+        let (dt, stop) = self.settings.end_of_flight(&end, now.time_s, &self.recorder.effort);
+        self.state.stopwatches.stop(TimedPiece::Leap, begun);
         let begun = self.state.stopwatches.now();
         self.recorder.fly(&flight, None, dt);
         self.soil.fly(dt);
         self.state.stopwatches.stop(TimedPiece::NotesInFlight, begun);
-        // flights count too: between two plates a rock may fly without end and without getting on in time
-        stop.or_else(|| self.settings.over_budget(&self.recorder.effort))
+        stop
     }
 
     /// Goes on in contact until the rock is free again or stops.
@@ -232,29 +220,21 @@ impl Fall<'_> {
         // soil takes speed out of the blow before any spring answers
         let kept = self.answer_blow();
         self.recorder.now.velocity_m_s *= kept;
-        // from here on the balance is kept: motion and weight now, losses and springs as they are
-        // booked
+        // from here on the balance is kept
         let before_j = self.total_j();
         let lost_before_j = self.recorder.lost_j();
-        // those of the look that `begin` has just taken
         let world = self.settings.around(self.body, self.laws);
         // A rock released pressed in, or one that never left, begins with energy in its springs: it
         // counts as brought along.
         let held = if self.is_rigid() { Loss::default() } else { self.state.stored_j(&world) };
         let mut stepper = Stepper::new(self.settings.step, &world, self.state);
-        // from here to the end of the episode time goes by steps
         let stop = self.steps(&mut stepper);
-        // energy balance over the episode: the change of motion and all booked losses add up to the remainder
         // ΔE of motion and weight; with losses ≥ 0 and springs at rest at both ends it is −(losses)
-        // up to the numerics' own error
+        // up to the numerics' own error, the remainder
         let rise_j = self.total_j() - before_j;
         self.recorder.ledger.remainder_j -= rise_j + self.recorder.lost_j() - lost_before_j;
-        // A rock that rests presses on its springs: what they hold is not lost.
         let stored = self.held();
-        self.recorder.hold(&stored, &held);
-        // largest over all episodes: 0 in exact arithmetic, since contacts only take energy
-        self.recorder.ledger.rise_j =
-            self.recorder.ledger.rise_j.max(rise_j + stored.sum() - held.sum());
+        self.recorder.end_episode(rise_j, &stored, &held);
         self.recorder.end_all_impacts();
         self.in_contact().leave_facet();
         stop
@@ -262,8 +242,6 @@ impl Fall<'_> {
 
     /// Energy in the contact springs at the end of an episode; only a fixed step leaves some in those of a free rock.
     fn held(&mut self) -> Loss {
-        // the springs of a rock that is free hold nothing, but a fixed step may end with a spring
-        // still pressed or pulled
         let left = self.state.is_free() && !self.settings.step.scheme.has_fixed_step();
         if left || self.is_rigid() {
             return Loss::default();
@@ -288,7 +266,6 @@ impl Fall<'_> {
                 Ok(done) => done,
                 Err(stuck) => return Some(Stop::Failed(stuck.to_string())),
             };
-            // before its losses are paid, and with the speed before
             self.in_contact().announce();
             self.soil_after_step(&before, done.dt);
             self.answer_blow();
@@ -314,8 +291,7 @@ impl Fall<'_> {
             self.recorder.step(to, slides);
             self.in_contact().end_impacts();
             self.state.stopwatches.stop(TimedPiece::NotesInContact, begun);
-            let time_up = self.settings.time_up(now_s, done.dt);
-            let ends = time_up.or_else(|| self.settings.over_budget(&self.recorder.effort));
+            let ends = self.settings.end_of_step(now_s, done.dt, &self.recorder.effort);
             if self.state.is_free() {
                 return ends;
             }
@@ -336,15 +312,15 @@ impl Fall<'_> {
         self.state.motion_j(&self.body) - self.body.mass * self.body.gravity.dot(&self.state.c)
     }
 
-    /// The journey, complete, with the energy released: `m g Δz` of the fall and the kinetic energy of the release.
+    /// The journey, complete.
     fn end(mut self, release: &Release, stop: Stop) -> Trajectory {
-        self.recorder.end_path();
         self.recorder.effort.sweeps += self.state.sweeps;
         self.recorder.effort.triangles += self.state.near.tested;
-        let start = release.motion;
-        let fallen = start.position_m.z - self.recorder.now.position_m.z;
-        let kinetic = start.translational_j(&release.rock) + start.rotational_j(&release.rock);
-        let released_j = self.body.mass * self.settings.gravity_m_s2 * fallen + kinetic;
-        self.recorder.into_trajectory(release, stop, released_j)
+        let weight_n = self.body.mass * self.settings.gravity_m_s2;
+        self.recorder.into_trajectory(
+            release,
+            stop,
+            (weight_n, release.motion.kinetic_j(&release.rock)),
+        )
     }
 }

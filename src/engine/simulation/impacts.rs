@@ -52,8 +52,8 @@ pub(super) struct Struck {
     pub(super) normal: Vec3,
     /// What of the mesh it is.
     pub(super) feature: FeatureKind,
-    /// Index into `Terrain::sheets`.
-    pub(super) sheet: u16,
+    /// Triangle whose ground answers.
+    pub(super) triangle: u32,
     /// Speed of approach along the normal (m/s).
     pub(super) approach_m_s: f64,
 }
@@ -142,11 +142,11 @@ impl Impacts {
         self.hand.list.iter().flatten().filter(|impact| impact.over_s.is_none())
     }
 
-    /// Begins one at `now_s` (s) and `speed_m_s`, to end at `until_s` at the latest, or goes on with that of the same patch;
+    /// Begins one on a sheet at `now_s` (s) and `speed_m_s`, to end at `until_s` at the latest, or goes on with that of the same patch;
     /// `lost_j` is what has gone into contacts with the mesh so far, and what of it into soil. Returns its number, and whether it is a new one.
     pub(super) fn begin(
         &mut self,
-        (struck, is_tree): (&Struck, bool),
+        (struck, sheet, is_tree): (&Struck, u16, bool),
         (now_s, until_s): (f64, f64),
         speed_m_s: f64,
         lost_j: (MeshEnergy, f64),
@@ -160,7 +160,7 @@ impl Impacts {
         // second patch
         let is_same = |impact: &&mut InHand| {
             impact.over_s.is_some_and(|over_s| now_s - over_s <= SAME_IMPACT_S)
-                && impact.sheet == struck.sheet
+                && impact.sheet == sheet
                 && impact.normal.dot(&struck.normal) > SAME_GRIP
         };
         if let Some(impact) = self.hand.list.iter_mut().flatten().find(is_same) {
@@ -170,7 +170,7 @@ impl Impacts {
         }
         self.count += 1;
         let number = self.count;
-        let Struck { sheet, normal, .. } = *struck;
+        let normal = struck.normal;
         let impact = InHand { number, sheet, is_tree, normal, weight, until_s, over_s: None };
         *self.hand.place() = Some(impact);
         if self.keeps_rows {

@@ -9,6 +9,9 @@ pub(super) trait Passage: Copy {
     /// Number of the place.
     fn place(&self) -> u32;
 
+    /// Largest height in it (m).
+    fn height_m(&self) -> f64;
+
     /// Takes the larger values of another passage of the same place.
     fn join(&mut self, other: &Self);
 }
@@ -24,6 +27,11 @@ impl<T: Passage> Passages<T> {
 
     pub(super) fn last(&self) -> Option<&T> {
         self.0.last()
+    }
+
+    /// The largest height so far (m) in the place where the rock is, if it is this one: lower ones need no search.
+    pub(super) fn known_m(&self, place: u32) -> Option<f64> {
+        self.last().filter(|last| last.place() == place).map(T::height_m)
     }
 
     /// How many there are so far, and the last, which the next may join.

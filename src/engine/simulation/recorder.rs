@@ -86,7 +86,7 @@ impl<'a> Recorder<'a> {
             extremes: Extremes::default(),
             path: Vec::new(),
             impacts: Impacts::kept_if(keep.impacts),
-            crossings: Crossings::of(recorders.lines),
+            crossings: Crossings::of(terrain, form, recorders.lines),
             passages: CellPassages::of(recorders.cells),
             stretches: Stretches::of(recorders.profile_step_m, &start),
             below: TriangleBelow::default(),
@@ -148,12 +148,6 @@ impl<'a> Recorder<'a> {
         most.total_j = most.total_j.max(one + two);
     }
 
-    /// The sheet that a triangle belongs to.
-    /// The mesh file, and with it ground and whether it is a tree.
-    pub(super) fn sheet_of(&self, triangle: u32) -> u16 {
-        self.terrain.sheet_of[triangle as usize]
-    }
-
     /// Motion and turn as of now.
     fn instant(&self) -> RockInstant {
         RockInstant { motion: self.now, turned: self.turned }
@@ -187,7 +181,7 @@ impl<'a> Recorder<'a> {
             self.point(&RockInstant { motion, ..instant }, PathState::Flight);
         }
         // lines, cells and stretches each look at the flight as a whole, not at its points
-        self.crossings.fly((self.terrain, &self.form), &flight);
+        self.crossings.fly(&flight);
         self.note_heights(&flight);
         let end = flight.at(dt);
         // the end is computed as the parabola gives it, so that the touch found there holds to the
@@ -248,7 +242,7 @@ impl<'a> Recorder<'a> {
         let (from, to) = (self.instant(), to.into());
         (self.now, self.turned) = (to.motion, to.turned);
         // a step in contact is noted from where it began to where it ended
-        self.crossings.step((self.terrain, &self.form), [&from, &to]);
+        self.crossings.step([&from, &to]);
         let (from_s, to_s) = (from.motion.time_s, to.motion.time_s);
         let lasts_s = to_s - from_s;
         while self.next_point_s <= to_s {
@@ -275,13 +269,15 @@ impl<'a> Recorder<'a> {
         self.next_point_s += self.keep.path_step_s.unwrap_or(f64::INFINITY);
     }
 
-    /// The whole journey.
+    /// The whole journey of a rock of this weight (N) that was released with this energy of motion (J).
     pub(super) fn into_trajectory(
-        self,
+        mut self,
         release: &Release,
         stop: Stop,
-        released_j: f64,
+        (weight_n, kinetic_j): (f64, f64),
     ) -> Trajectory {
+        self.end_path();
+        let fallen_m = release.motion.position_m.z - self.now.position_m.z;
         Trajectory {
             // the caller knows number and shape
             index: 0,
@@ -299,14 +295,14 @@ impl<'a> Recorder<'a> {
             passages: self.passages.found.into_found(),
             stretches: self.stretches.found.into_found(),
             ledger: self.ledger,
-            released_j,
+            released_j: weight_n * fallen_m + kinetic_j,
             effort: self.effort,
         }
     }
 
     /// Keeps the last point of the path.
     /// So that a path ends where its rock does, whatever the time step of its points.
-    pub(super) fn end_path(&mut self) {
+    fn end_path(&mut self) {
         if self.keep.path_step_s.is_some()
             && self.path.last().is_none_or(|last| last.motion.time_s < self.now.time_s)
         {
@@ -329,8 +325,10 @@ impl<'a> Recorder<'a> {
         // give it back: not this impact's
         let lost_j = (self.lost_to_each_j().less(held_j), self.ledger.soil_j);
         let speed_m_s = self.now.velocity_m_s.norm();
-        let is_tree = self.terrain.sheets[usize::from(struck.sheet)].is_tree;
-        let (number, is_new) = self.impacts.begin((struck, is_tree), times_s, speed_m_s, lost_j);
+        let sheet = self.terrain.sheet_of[struck.triangle as usize];
+        let is_tree = self.terrain.sheets[usize::from(sheet)].is_tree;
+        let on = (struck, sheet, is_tree);
+        let (number, is_new) = self.impacts.begin(on, times_s, speed_m_s, lost_j);
         self.tree_impact_count += u32::from(is_new && is_tree);
         number
     }
@@ -373,19 +371,22 @@ impl<'a> Recorder<'a> {
         self.ledger.springs_j -= back.sum();
     }
 
+    /// Ends an episode in which motion and weight have gained `rise_j` (J), with [`Self::hold`]. What springs hold is not lost, and no gain is
+    /// due to what they have brought: what rises beyond that is an error of the numerics.
+    pub(super) fn end_episode(&mut self, rise_j: f64, stored: &Loss, brought: &Loss) {
+        self.hold(stored, brought);
+        self.ledger.rise_j = self.ledger.rise_j.max(rise_j + stored.sum() - brought.sum());
+    }
+
     /// All losses so far (J).
     /// Including what other rocks got or took.
     pub(super) fn lost_j(&self) -> f64 {
-        self.lost_to_mesh_j() + self.ledger.others_j + self.ledger.passed_on_j
+        let Ledger { friction_j, damping_j, rolling_j, trees_j, soil_j, others_j, .. } =
+            self.ledger;
+        friction_j + damping_j + rolling_j + trees_j + soil_j + others_j + self.ledger.passed_on_j
     }
 
-    /// Those in contacts with the mesh (J).
-    fn lost_to_mesh_j(&self) -> f64 {
-        let ledger = &self.ledger;
-        ledger.friction_j + ledger.damping_j + ledger.rolling_j + ledger.trees_j + ledger.soil_j
-    }
-
-    /// The same, those to trees apart.
+    /// Those in contacts with the mesh, those with trees apart.
     fn lost_to_each_j(&self) -> MeshEnergy {
         let ledger = &self.ledger;
         MeshEnergy {

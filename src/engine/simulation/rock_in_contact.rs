@@ -1,15 +1,13 @@
 //! A rock in contact with the mesh, alone or among others: its impacts are noted down as they begin and end, and on rough
 //! ground it is turned against the facets that it meets.
-
 //!
 //! An impact here is a contact that begins with an approach above the capture speed: only those
-//! rebound, are counted and get a row. Contacts of rocks of a world with the mesh are handled by
-//! the same code.
+//! rebound, are counted and get a row.
+
 use super::impacts::{MeshEnergy, Struck};
 use super::recorder::Recorder;
+use crate::contact::ContactPoint;
 use crate::contact::history::ContactHistory;
-use crate::contact::{ContactPoint, Feature};
-use crate::rock::Vec3;
 use crate::solver::contact_state::{Blow, ContactEnvironment, ContactState};
 use crate::solver::roughness::Meeting;
 use nalgebra::Rotation3;
@@ -40,7 +38,6 @@ impl RockInContact<'_, '_> {
         let Some(fastest) = self.fastest_unannounced() else { return };
         let facet = self.next_facet(&fastest);
         // whether a rock rebounds is judged by its approach to the facet
-        // approach to the tilted normal n' = turn n, at the velocity not yet turned
         let to_facet_m_s = facet.map_or(0.0, |(_, approach_m_s)| approach_m_s);
         if to_facet_m_s >= self.world.law(fastest.triangle).capture_m_s {
             self.state.rebound(&self.world, to_facet_m_s);
@@ -49,26 +46,13 @@ impl RockInContact<'_, '_> {
         // be charged with it
         let held_j = self.held_j(|history| history.announced);
         let until_s = self.recorder.now.time_s + self.impact_time();
-        let mut rebounds = false;
-        for k in 0..self.state.histories.len() {
-            let mut history = self.state.histories[k];
-            rebounds |=
-                self.announce_one(&mut history, (&fastest, to_facet_m_s), (until_s, &held_j));
-            self.state.histories[k] = history;
-        }
-        // in the rigid limit what is about to be struck stands in a list of its own
-        for k in 0..self.state.struck.len() {
-            let mut history = self.state.struck[k];
-            rebounds |=
-                self.announce_one(&mut history, (&fastest, to_facet_m_s), (until_s, &held_j));
-            self.state.struck[k] = history;
-        }
+        let rebounds = self.announce_all((&fastest, to_facet_m_s), (until_s, &held_j));
         if rebounds {
             let approach_m_s = fastest.approach_m_s.max(to_facet_m_s);
             self.state.blow = Some(Blow { approach_m_s, ..fastest });
         }
-        // the rock is turned against the facet, instead of the mesh: contact itself stays as it is
-        // what is captured is turned too: the facet takes what it takes
+        // The rock is turned instead of the mesh: contact itself stays as it is. What is captured is turned too: the facet
+        // takes what it takes.
         if let Some((turn, _)) = facet {
             self.state.turn_against(&self.world, turn, until_s);
             self.recorder.now.turn(&turn.inverse());
@@ -100,30 +84,41 @@ impl RockInContact<'_, '_> {
         begun.reduce(|one, other| if other.approach_m_s > one.approach_m_s { other } else { one })
     }
 
-    /// Notes down a contact that has begun, the `fastest` by its approach to the facet; whether it rebounds.
+    /// Notes down the contacts that have begun, the `fastest` by its approach to the facet; whether any rebounds.
     /// One that was captured, or is too slow, is announced but is no impact.
-    fn announce_one(
+    fn announce_all(
         &mut self,
-        history: &mut ContactHistory,
         (fastest, to_facet_m_s): (&Blow, f64),
         (until_s, held_j): (f64, &MeshEnergy),
     ) -> bool {
-        if std::mem::replace(&mut history.announced, true) || history.captured {
-            return false;
+        let Self { world, state, recorder, .. } = self;
+        let ContactState { c, histories, struck, .. } = &mut **state;
+        let mut rebounds = false;
+        // in the rigid limit what is about to be struck stands in a list of its own
+        for history in histories.iter_mut().chain(struck.iter_mut()) {
+            if std::mem::replace(&mut history.announced, true) || history.captured {
+                continue;
+            }
+            rebounds = true;
+            let own_m_s = -history.n.dot(&recorder.now.velocity_m_s);
+            // the facet counts for the contact that it was drawn for
+            let is_fastest = history.n == fastest.n;
+            let approach_m_s = if is_fastest { own_m_s.max(to_facet_m_s) } else { own_m_s };
+            // what comes too slowly is no impact
+            history.impact = if approach_m_s < world.law(history.triangle).capture_m_s {
+                0
+            } else {
+                let struck = Struck {
+                    point_m: *c - history.n * world.body.radius,
+                    normal: history.n,
+                    feature: history.feature.kind,
+                    triangle: history.triangle,
+                    approach_m_s,
+                };
+                recorder.begin_impact(&struck, until_s, held_j)
+            };
         }
-        let own_m_s = -history.n.dot(&self.recorder.now.velocity_m_s);
-        let is_fastest = history.n == fastest.n;
-        // the facet counts for the contact that it was drawn for
-        let approach_m_s = if is_fastest { own_m_s.max(to_facet_m_s) } else { own_m_s };
-        // what comes too slowly is no impact
-        history.impact = if approach_m_s < self.world.law(history.triangle).capture_m_s {
-            0
-        } else {
-            let (at, of) = ((&self.state.c, &history.n), (history.feature, history.triangle));
-            let struck = struck(self.recorder, self.world.body.radius, at, of, approach_m_s);
-            self.recorder.begin_impact(&struck, until_s, held_j)
-        };
-        true
+        rebounds
     }
 
     /// Breaks the stems that cannot take the current blow, and meets the next facet if it is time for it; returns the longest
@@ -150,9 +145,14 @@ impl RockInContact<'_, '_> {
         let note = |state: &ContactState, touch: &ContactPoint, (taken_j, is_new)| {
             let approach_m_s = -touch.normal.dot(&state.v);
             if is_new && approach_m_s >= world.law(touch.triangle).capture_m_s {
+                let struck = Struck {
+                    point_m: state.c - touch.normal * world.body.radius,
+                    normal: touch.normal,
+                    feature: touch.feature.kind,
+                    triangle: touch.triangle,
+                    approach_m_s,
+                };
                 let now_s = recorder.now.time_s;
-                let (at, of) = ((&state.c, &touch.normal), (touch.feature, touch.triangle));
-                let struck = struck(recorder, world.body.radius, at, of, approach_m_s);
                 recorder.begin_impact(&struck, now_s, &MeshEnergy::default());
             }
             recorder.ledger.trees_j += taken_j;
@@ -240,23 +240,5 @@ impl RockInContact<'_, '_> {
             // turned, not taken from the state: a step that is not noted yet has changed its speed
             self.recorder.now.turn(&turn);
         }
-    }
-}
-
-/// What a rock with its centre at `c` strikes with an approach of so much (m/s) at a feature with normal `n`, of a triangle.
-/// The touched point is `P1 = c − R n`.
-fn struck(
-    recorder: &Recorder,
-    radius_m: f64,
-    (c, n): (&Vec3, &Vec3),
-    (feature, triangle): (Feature, u32),
-    approach_m_s: f64,
-) -> Struck {
-    Struck {
-        point_m: c - n * radius_m,
-        normal: *n,
-        feature: feature.kind,
-        sheet: recorder.sheet_of(triangle),
-        approach_m_s,
     }
 }

@@ -64,15 +64,20 @@ impl<'a> RunSettings<'a> {
         ContactEnvironment { terrain: self.terrain, body, laws }
     }
 
-    /// Whether a rock has had all the work it may have.
-    /// A budget of work, not of time: a rock that is stopped here is stopped on every machine.
+    /// Whether a rock has had all the work it may have: a budget of work, not of time, so that it is stopped on every machine.
     pub(super) fn over_budget(&self, effort: &Effort) -> Option<Stop> {
         (effort.work() > self.step.scheme.most_work()).then_some(Stop::OverBudget)
     }
 
-    /// How long a flight lasts (s) that ends so and began at `now_s`, and whether the rock stops there.
-    /// The time limit counts as reached when a flight ends at it exactly.
-    pub(super) fn end_of_flight(&self, end: &FlightEnd, now_s: f64) -> (f64, Option<Stop>) {
+    /// How long a flight lasts (s) that ends so and began at `now_s`, and whether the rock, after this `effort`, stops there.
+    ///
+    /// Flights count too: between two plates a rock may fly without end and without getting on in time.
+    pub(super) fn end_of_flight(
+        &self,
+        end: &FlightEnd,
+        now_s: f64,
+        effort: &Effort,
+    ) -> (f64, Option<Stop>) {
         let left = self.longest_s - now_s;
         let (dt, stop) = match *end {
             FlightEnd::Touch(t) => (t, None),
@@ -80,13 +85,13 @@ impl<'a> RunSettings<'a> {
             FlightEnd::Flies => (left, Some(Stop::TimeUp)),
         };
         // a touch at the very end of the time comes too late
-        (dt, stop.or_else(|| self.time_up(now_s, dt)))
+        (dt, stop.or_else(|| self.end_of_step(now_s, dt, effort)))
     }
 
-    /// Whether a rock is out of time after `dt` (s) from `now_s`: it has taken all that was left, or the clock says so by rounding. A step of
-    /// no time at all has no solution where the rock both slides and rolls.
-    pub(super) fn time_up(&self, now_s: f64, dt: f64) -> Option<Stop> {
+    /// Whether a rock, after this `effort`, is out of time `dt` (s) after `now_s`, or over its budget. Out of time: it has taken all that was
+    /// left, or the clock says so by rounding. A step of no time at all has no solution where the rock both slides and rolls.
+    pub(super) fn end_of_step(&self, now_s: f64, dt: f64, effort: &Effort) -> Option<Stop> {
         let is_over = dt >= self.longest_s - now_s || now_s + dt >= self.longest_s;
-        is_over.then_some(Stop::TimeUp)
+        is_over.then_some(Stop::TimeUp).or_else(|| self.over_budget(effort))
     }
 }

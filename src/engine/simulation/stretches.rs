@@ -64,23 +64,27 @@ impl Stretches {
         if before.is_none_or(|before| before == number) {
             return self.note_part(number, speed_m_s, (heights, [0.0, 1.0]));
         }
-        let [at, end] = [from, to].map(|end| end.position_m);
-        let place = [at.x - self.from_m[0], at.y - self.from_m[1]];
-        walk(place, [end.x - at.x, end.y - at.y], step_m, |number, s0, s1| {
+        let [place, way] = self.seen_from_release([&from.position_m, &to.position_m]);
+        walk(place, way, step_m, |number, s0, s1| {
             let is_left = before == Some(number);
             self.note_part(number, if is_left { 0.0 } else { speed_m_s }, (heights, [s0, s1]));
         });
     }
 
-    /// Notes a part of a step in contact, from one share to another.
+    /// Place in plan view as seen from the release, and way from there, of a straight way between two places (m).
+    fn seen_from_release(&self, [from, to]: [&Vec3; 2]) -> [Corner; 2] {
+        [[from.x - self.from_m[0], from.y - self.from_m[1]], [to.x - from.x, to.y - from.y]]
+    }
+
+    /// Notes a part of a way, from one share to another.
     fn note_part(
         &mut self,
         number: u32,
         speed_m_s: f64,
         (heights, shares): (&StepHeights, [f64; 2]),
     ) {
-        let last = self.found.last().filter(|last| last.number == number);
-        let height_m = heights.largest_m(shares, last.map_or(0.0, |last| last.height_m));
+        let known_m = self.found.known_m(number).unwrap_or(0.0);
+        let height_m = heights.largest_m(shares, known_m);
         self.found.add(Stretch { number, speed_m_s, height_m });
     }
 
@@ -91,17 +95,11 @@ impl Stretches {
         let Some(step_m) = self.step_m else { return };
         let flight = heights.flight;
         let [from, to] = [0.0, flight.lasts_s].map(|t| flight.path.centre(t));
-        let place = [from.x - self.from_m[0], from.y - self.from_m[1]];
-        let way = [to.x - from.x, to.y - from.y];
-        let speed_m_s = |t: f64| flight.path.velocity(t).norm();
+        let [place, way] = self.seen_from_release([&from, &to]);
+        let heights = StepHeights { heights: Some(*heights), most_m: f64::INFINITY };
+        let speed_m_s = |share: f64| flight.path.velocity(share * flight.lasts_s).norm();
         walk(place, way, step_m, |number, s0, s1| {
-            let [t0, t1] = [s0, s1].map(|share| share * flight.lasts_s);
-            // a height known for this stretch spares the search for lower ones
-            let last = self.found.last().filter(|last| last.number == number);
-            let known_m = last.map_or(0.0, |last| last.height_m);
-            let height_m = heights.largest([t0, t1], known_m).map_or(known_m, |top| top.height_m);
-            let speed_m_s = speed_m_s(t0).max(speed_m_s(t1));
-            self.found.add(Stretch { number, speed_m_s, height_m });
+            self.note_part(number, speed_m_s(s0).max(speed_m_s(s1)), (&heights, [s0, s1]));
         });
     }
 }
@@ -109,6 +107,10 @@ impl Stretches {
 impl Passage for Stretch {
     fn place(&self) -> u32 {
         self.number
+    }
+
+    fn height_m(&self) -> f64 {
+        self.height_m
     }
 
     fn join(&mut self, other: &Self) {

@@ -116,7 +116,7 @@ impl Roll<'_> {
                 point_m: history.point,
                 normal: history.n,
                 feature: history.feature.kind,
-                sheet: self.recorder.sheet_of(history.triangle),
+                triangle: history.triangle,
                 approach_m_s: history.approach_m_s.max(0.0),
             };
             history.impact = self.recorder.begin_impact(&struck, until_s, held_j);

@@ -21,12 +21,7 @@ use crate::solver::step_control::ONSET;
 impl<'a> WorldBody<'a> {
     /// The parabola of its centre from the recorded instant on: `c + v t − g t²/2 z`, the spin constant.
     pub(super) fn flight(&self, settings: &RunSettings) -> Parabola {
-        Parabola {
-            start: self.recorder.now.position_m,
-            velocity: self.recorder.now.velocity_m_s,
-            gravity: settings.gravity_m_s2,
-            radius: self.member.body.radius,
-        }
+        Parabola::of(&self.recorder.now, settings.gravity_m_s2, self.member.body.radius)
     }
 
     /// Centre at a time not before its own (m).
@@ -249,7 +244,7 @@ impl<'a> WorldBody<'a> {
                 point_m: hit.point_m,
                 normal: hit.normal,
                 feature: hit.feature,
-                sheet: self.recorder.sheet_of(hit.triangle),
+                triangle: hit.triangle,
                 approach_m_s: hit.approach_m_s,
             };
             self.recorder.begin_impact(&struck, time_s, &MeshEnergy::default());
@@ -367,7 +362,6 @@ impl<'a> WorldBody<'a> {
         if !self.member.flying {
             self.end_episode(settings);
         }
-        self.recorder.end_path();
         // Friction that turns round within a step may seem to work: that is an error of the steps.
         let ledger = &mut self.recorder.ledger;
         // booked where it belongs: an entry below 0 is no loss but the numerics' gain
@@ -375,12 +369,9 @@ impl<'a> WorldBody<'a> {
             ledger.remainder_j += entry.min(0.0);
             *entry = entry.max(0.0);
         }
-        let start = release.motion;
-        // energy released: potential energy of the fall and kinetic energy of the release
-        let fallen = start.position_m.z - self.recorder.now.position_m.z;
-        let kinetic = start.translational_j(&release.rock) + start.rotational_j(&release.rock);
         self.recorder.effort.triangles += self.member.state.near.tested;
-        let released_j = self.member.body.mass * settings.gravity_m_s2 * fallen + kinetic;
-        Trajectory { index, ..self.recorder.into_trajectory(release, stop, released_j) }
+        let weight_n = self.member.body.mass * settings.gravity_m_s2;
+        let energies = (weight_n, release.motion.kinetic_j(&release.rock));
+        Trajectory { index, ..self.recorder.into_trajectory(release, stop, energies) }
     }
 }
