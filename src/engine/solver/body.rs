@@ -60,6 +60,12 @@ impl Body {
         1.0 / Rock::SLIP_LIGHTNESS * self.mass
     }
 
+    /// How much more a force along the surface does to the slip by the turn than by the way (–): `m R²/I`.
+    #[inline]
+    pub(crate) fn turns(&self) -> f64 {
+        self.mass * self.radius * self.radius / self.inertia
+    }
+
     /// Velocity of the contact point along the surface with normal `n` (m/s): `Q (v + w × (−R n))`.
     /// `n × w R` is `w × (−R n)`: the lever from the centre to the contact point is `−R n`.
     #[inline]

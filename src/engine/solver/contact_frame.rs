@@ -7,6 +7,18 @@ pub(crate) type Along = [f64; 2];
 /// A vector in the frame of a contact: two tangents, then the normal.
 pub(crate) type Local = [f64; 3];
 
+/// `x·y`.
+#[inline]
+pub(crate) fn dot<const N: usize>(x: [f64; N], y: [f64; N]) -> f64 {
+    x.iter().zip(y).map(|(x, y)| x * y).sum()
+}
+
+/// `|x|²`.
+#[inline]
+pub(crate) fn square<const N: usize>(x: [f64; N]) -> f64 {
+    dot(x, x)
+}
+
 /// Right-handed unit vectors of a contact: two tangents and the normal from the mesh to the centre.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ContactFrame {

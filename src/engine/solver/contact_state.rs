@@ -59,7 +59,7 @@ impl StateRates {
         w: Vec3::new(0.0, 0.0, 0.0),
         shear: [Vec3::new(0.0, 0.0, 0.0); HISTORIES],
         roll: [Vec3::new(0.0, 0.0, 0.0); HISTORIES],
-        loss: Loss { friction: 0.0, damping: 0.0, rolling: 0.0, trees: 0.0 },
+        loss: Loss::on_slope([0.0; 3]),
     };
 }
 
@@ -312,10 +312,15 @@ impl ContactState {
         history
     }
 
+    /// Contacts of the current stage.
+    #[inline]
+    pub(super) fn stage_contacts(&self) -> &[StageContact] {
+        &self.contacts[..self.contact_count]
+    }
+
     /// Fastest approach of what has come up in the present try and presses (m/s).
     pub(super) fn met_m_s(&self) -> f64 {
-        let pressed = self.contacts[..self.contact_count].iter();
-        let pressed = pressed.filter(|contact| contact.normal_force > 0.0);
+        let pressed = self.stage_contacts().iter().filter(|contact| contact.normal_force > 0.0);
         pressed.map(|contact| self.histories[contact.history].met_m_s).fold(0.0, f64::max)
     }
 

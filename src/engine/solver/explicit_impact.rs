@@ -17,8 +17,8 @@ mod changes;
 mod flow;
 
 use super::contact_state::{ContactEnvironment, ContactState};
-use super::impact::LOCAL;
 use super::impact::dormand_prince::{Attempt, Stages, Tried, growth, three};
+use super::impact::{LOCAL, StepLength};
 use super::loss::Loss;
 use super::plane_ahead::longest_step;
 use super::stage::End;
@@ -287,26 +287,25 @@ fn step_among<const C: usize, const N: usize, const Q: usize, const P: usize>(
     let y = flow.begin::<N>();
     flow.note_start();
     let (known, start) = (flow.state.histories.len(), flow.state.c);
-    let mut kept = 0.0;
+    let mut step = StepLength::new(flow.state.impact.h);
     loop {
         flow.state.histories.truncate(known);
         flow.begin_try();
-        let wished = flow.state.impact.h.min(limit);
+        let wished = step.wish.min(limit);
         let dt = wished.min(h_max);
         let is_short = dt * omega < SHORTEST_RAD;
         let attempt = stages.step(flow, &y, dt, (!is_short).then_some(allowed));
         if flow.is_crowded && C < HISTORIES {
             flow.state.histories.truncate(known);
+            flow.state.impact.h = step.wish;
             return Ok(None);
         }
         let tried = match attempt {
             Attempt::Whole(tried) => tried,
             Attempt::Cut(share) => {
                 done.rejected += 1;
-                flow.state.impact.h = dt * share;
+                step.cut(dt, share);
                 flow.changes.ends_past_exchange = false;
-                // beyond a kink the law is as smooth as before it: the step before is taken up again
-                kept = dt.max(kept);
                 continue;
             }
         };
@@ -317,11 +316,14 @@ fn step_among<const C: usize, const N: usize, const Q: usize, const P: usize>(
             let share = flow.exchange_share(|share| start + three(&between.at(share), WAY));
             let share = share.filter(|share| (WITHIN.0..WITHIN.1).contains(share));
             flow.changes.ends_past_exchange = share.is_some();
-            kept = share.map_or(0.0, |_| dt.max(kept));
-            flow.state.impact.h = share.map_or(next_h, |share| dt * share);
+            match share {
+                Some(share) => step.cut(dt, share),
+                None => step.shrink(next_h),
+            }
             continue;
         }
-        flow.state.impact.h = next_h.max(kept);
+        step.grow(next_h);
+        flow.state.impact.h = step.wish;
         return Ok(Some(end_of_step(flow, stages, (&y, &tried), dt)));
     }
 }

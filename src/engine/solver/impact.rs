@@ -28,13 +28,11 @@
 //!   spring of a patch are not scaled.
 //! - Dashpots share, `c_i = c_N/√(Σ_j max(0, n_i·n_j)²)` over the contacts with penetration now; steps end where one is pressed or
 //!   opens. The springs of a contact that opens are at rest when it is pressed again.
-//! - It ends when nothing pushes and nothing comes nearer ([`Settled::Free`]); when the motion of a rock that is pressed no longer
-//!   changes ([`Settled::Jammed`]); or after 300 radians of the softest contact ([`Settled::OutOfTime`]). An approach
-//!   below 1e-3 of the local error is none.
-//! - Then every approach left, and what a captured contact has given back of itself, is taken out of the velocity along the
-//!   normal and booked as damping: no contact approaches afterwards, captured ones do not separate unless thrown off by others.
-//! - Energy never rises: should the steps' error make it, velocity and spin are scaled back. With `e = 1` and no friction on all
-//!   contacts the law conserves energy, and velocity is scaled to its size before, up or down, by no more than that error.
+//! - It ends as [`Settled`] says. Then every approach left, and what a captured contact has given back of itself, is taken out of the
+//!   velocity along the normal and booked as damping: no contact approaches afterwards, captured ones do not separate unless thrown
+//!   off by others.
+//! - Energy never rises: should the steps' error make it, velocity and spin are scaled back; where nothing takes any (`e = 1`, no friction),
+//!   velocity is scaled to its size before.
 //! - One contact is the impact on a plane without weight: exact normal restitution.
 //!
 //! **Several bodies** that touch each other and the mesh: [`collide`], the same rates with two ends to a contact; which contacts give
@@ -66,8 +64,34 @@ pub(crate) struct ImpactEffort {
     pub(crate) steps: u32,
     /// Steps thrown away.
     pub(crate) rejected: u32,
-    /// Times the law was asked.
-    pub(crate) evaluations: u32,
+}
+
+/// The step to try next, and that before it was cut: beyond a kink the law is as smooth as before it, and its length is taken up again.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::solver) struct StepLength {
+    pub(in crate::solver) wish: f64,
+    before_cut: f64,
+}
+
+impl StepLength {
+    pub(in crate::solver) const fn new(wish: f64) -> Self {
+        Self { wish, before_cut: 0.0 }
+    }
+
+    /// A try of length `h` has to end at this share of it (–).
+    pub(in crate::solver) fn cut(&mut self, h: f64, share: f64) {
+        *self = Self { wish: h * share, before_cut: h.max(self.before_cut) };
+    }
+
+    /// The error of a try was too large.
+    pub(in crate::solver) fn shrink(&mut self, wish: f64) {
+        *self = Self::new(wish);
+    }
+
+    /// A try is taken.
+    pub(in crate::solver) fn grow(&mut self, wish: f64) {
+        *self = Self::new(wish.max(self.before_cut));
+    }
 }
 
 /// How a frozen impact ended.

@@ -26,8 +26,6 @@ pub struct StageContact {
     pub law: Law,
     /// Normal spring and dashpot in force: those of a captured contact if it is one.
     pub(crate) normal: NormalElement,
-    /// Whether it touches a tree.
-    pub is_tree: bool,
     /// Unit normal from the mesh to the centre.
     pub n: Vec3,
     /// Penetration at the stage's base, along `n` (m).
@@ -130,7 +128,6 @@ impl StageContact {
         triangle: 0,
         law: Law::NONE,
         normal: NormalElement::NONE,
-        is_tree: false,
         n: ZERO,
         penetration: 0.0,
         shear: ZERO,

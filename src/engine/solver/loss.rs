@@ -17,6 +17,16 @@ pub struct Loss {
 }
 
 impl Loss {
+    /// On the slope, by friction, damping and rolling.
+    pub(crate) const fn on_slope([friction, damping, rolling]: [f64; 3]) -> Self {
+        Self { friction, damping, rolling, trees: 0.0 }
+    }
+
+    /// By friction, damping and rolling, and on trees.
+    pub(crate) fn parts(&self) -> [f64; 4] {
+        [self.friction, self.damping, self.rolling, self.trees]
+    }
+
     /// Adds `other` times `factor`.
     #[inline]
     pub fn add(&mut self, other: &Self, factor: f64) {

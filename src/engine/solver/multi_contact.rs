@@ -51,8 +51,7 @@ pub(super) fn solve(
     }
 }
 
-/// Nonlinear Gauss–Seidel first, because it finds the modes; Newton in these modes, because it
-/// finds the forces.
+/// Nonlinear Gauss–Seidel first, because it finds the modes; Newton in these modes, because it finds the forces.
 fn sweep_and_jump(
     body: &Body,
     contacts: &mut [StageContact],
@@ -76,9 +75,12 @@ fn sweep_and_jump(
         }
         // a singular system is no harm: the sweeps simply go on
         let jumped = if round == 0 {
-            jump(body, contacts, free, &now, h).map(|motion| (motion, STILL))
+            let motion = solved(body, contacts, (&free, h), |one| one.linear(body, &now, h));
+            motion.map(|motion| (motion, STILL))
         } else {
-            jump_on(body, contacts, free, &now, h).map(|change| (now, change))
+            let missing = (free.0 - now.0, free.1 - now.1);
+            let change = |one: &StageContact| one.linear_in_changes(body, &now, h);
+            solved(body, contacts, (&missing, h), change).map(|change| (now, change))
         };
         if let Some((motion, change)) = jumped {
             for contact in contacts.iter_mut() {
@@ -90,11 +92,8 @@ fn sweep_and_jump(
     None
 }
 
-/// One pass over the contacts; whether all agree. `calm` counts those that were asked since anything they answer to has
-/// changed.
-///
-/// Counts across sweeps: as soon as each contact has been asked once with nothing changed since,
-/// all agree.
+/// One pass over the contacts; whether all agree. `calm` counts, across sweeps, those that were asked since anything they answer to has
+/// changed: as soon as that is each of them, all agree.
 fn sweep(
     body: &Body,
     contacts: &mut [StageContact],
@@ -118,23 +117,6 @@ fn sweep(
         }
     }
     false
-}
-
-/// Velocity and spin that solve the stage linearised in its present modes.
-fn jump(body: &Body, contacts: &[StageContact], free: Twist, now: &Twist, h: f64) -> Option<Twist> {
-    solved(body, contacts, (&free, h), |contact| contact.linear(body, now, h))
-}
-
-/// The change of the motion `now` that a jump would find.
-fn jump_on(
-    body: &Body,
-    contacts: &[StageContact],
-    free: Twist,
-    now: &Twist,
-    h: f64,
-) -> Option<Twist> {
-    let missing = (free.0 - now.0, free.1 - now.1);
-    solved(body, contacts, (&missing, h), |contact| contact.linear_in_changes(body, now, h))
 }
 
 /// What solves the linear system of inertia, which would move by `free` without contacts, and of their linear `forces`.

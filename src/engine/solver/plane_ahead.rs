@@ -56,10 +56,11 @@ impl PlaneStep {
 }
 
 impl ContactState {
-    /// Longest step in which the centre stays where its features are known, or goes no further than `travel` (–,
-    /// relative to R), past one plane or among several features (s).
-    pub fn longest_step(&self, world: &ContactEnvironment, travel: f64) -> f64 {
-        let way = travel * world.body.radius;
+    /// Longest step in which the rock cannot jump over a feature (s): its centre stays where features are known, past one plane, or goes
+    /// no further than `travel` (–, relative to R), among several.
+    pub fn longest_step(&mut self, world: &ContactEnvironment, travel: f64) -> f64 {
+        let (c, way) = (self.c, travel * world.body.radius);
+        self.know(world, &c);
         let is_plane = self.near.plane().is_some();
         let room = if is_plane { self.near.room_m(&self.c).max(way) } else { way };
         longest_step(&world.body, self.v.norm(), room)

@@ -14,14 +14,12 @@
 mod trial;
 
 use super::body::Body;
-use super::contact_frame::ContactFrame;
+use super::contact_frame::{ContactFrame, square};
 use super::contact_state::{ContactEnvironment, ContactState};
 use super::friction_rolling::SlipState;
 use super::loss::Loss;
 use super::plane_ahead::longest_step;
-use super::plane_state::{
-    PlaneForces, PlaneState, ROLL, SHEAR, SIZE, SPEED, SPIN, State, WAY, square, three, two,
-};
+use super::plane_state::{PlaneForces, PlaneState, SIZE, SPEED, WAY, into_plane, out_of_plane};
 use super::step_control::{Advance, Control, StepError, StepFailure, TRAVEL};
 use crate::contact::FeatureKind;
 use crate::ground::{Law, NormalElement};
@@ -35,8 +33,7 @@ pub(super) fn is_on_face(world: &ContactEnvironment, rock: &ContactState) -> boo
         return false;
     }
     let face = world.terrain.face(history.feature.id);
-    // Deep inside, or with a memory from elsewhere, the side it is on must be looked up.
-    // more than half a radius off the plane: there is no doubt on which side the rock is
+    // more than half a radius off the plane, and with no memory from elsewhere, there is no doubt on which side the rock is
     history.n.dot(&(rock.c - face.a)) > 0.5 * world.body.radius
         && (history.n == face.n || history.n == -face.n)
 }
@@ -137,19 +134,13 @@ impl ContactState {
         let (history, plane) = (&self.histories[0], &mut self.plane);
         plane.on = true;
         plane.frame = ContactFrame::of(&history.n);
-        let put =
-            |to: &mut State, (c, v, w): (&Vec3, &Vec3, &Vec3), (shear, roll): (&Vec3, &Vec3)| {
-                to[WAY..SPEED].copy_from_slice(&plane.frame.local(c));
-                to[SPEED..SPIN].copy_from_slice(&plane.frame.local(v));
-                to[SPIN..SHEAR].copy_from_slice(&plane.frame.local(w));
-                to[SHEAR..ROLL].copy_from_slice(&plane.frame.along(shear));
-                to[ROLL..].copy_from_slice(&plane.frame.local(roll));
-            };
-        put(&mut plane.state, (&Vec3::zeros(), &self.v, &self.w), (&history.shear, &history.roll));
+        let (motion, springs) =
+            ([&Vec3::zeros(), &self.v, &self.w], [&history.shear, &history.roll]);
+        plane.state = into_plane(&plane.frame, motion, springs);
         if self.fresh {
             let rate = &self.rates[0];
-            let springs = (&rate.shear[0], &rate.roll[0]);
-            put(&mut plane.rates[0], (&rate.c, &rate.v, &rate.w), springs);
+            let (motion, springs) = ([&rate.c, &rate.v, &rate.w], [&rate.shear[0], &rate.roll[0]]);
+            plane.rates[0] = into_plane(&plane.frame, motion, springs);
             let loss = &rate.loss;
             plane.losses[0] = if loss.trees == 0.0 {
                 [loss.friction, loss.damping, loss.rolling]
@@ -165,13 +156,11 @@ impl ContactState {
     /// Takes over where the steps have ended: motion and memory.
     fn take_plane(&mut self, law: &Law, press: PlaneForces, stored: f64) {
         let PlaneState { state, frame, on, .. } = &mut self.plane;
-        self.c += frame.out_local(three(state, WAY));
-        self.v = frame.out_local(three(state, SPEED));
-        self.w = frame.out_local(three(state, SPIN));
-        self.stored = stored;
         let history = &mut self.histories[0];
-        history.shear = frame.out_along(two(state, SHEAR));
-        history.roll = frame.out_local(three(state, ROLL));
+        let way;
+        [way, self.v, self.w, history.shear, history.roll] = out_of_plane(frame, state);
+        self.c += way;
+        self.stored = stored;
         // forces of the end, for the first guess of what comes next
         history.normal_force = press.normal_force;
         history.slides = law.shear.slides2(square(press.shear_force), press.normal_force);
@@ -192,14 +181,9 @@ impl ContactState {
         if !std::mem::take(&mut plane.on) {
             return;
         }
-        let (rate, from) = (&mut self.rates[0], &plane.rates[0]);
-        rate.c = plane.frame.out_local(three(from, WAY));
-        rate.v = plane.frame.out_local(three(from, SPEED));
-        rate.w = plane.frame.out_local(three(from, SPIN));
-        rate.shear[0] = plane.frame.out_along(two(from, SHEAR));
-        rate.roll[0] = plane.frame.out_local(three(from, ROLL));
-        let [friction, damping, rolling] = plane.losses[0];
-        let loss = Loss { friction, damping, rolling, trees: 0.0 };
-        rate.loss = loss.on(world, self.histories[0].triangle);
+        let rate = &mut self.rates[0];
+        [rate.c, rate.v, rate.w, rate.shear[0], rate.roll[0]] =
+            out_of_plane(&plane.frame, &plane.rates[0]);
+        rate.loss = Loss::on_slope(plane.losses[0]).on(world, self.histories[0].triangle);
     }
 }

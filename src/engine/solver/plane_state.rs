@@ -1,7 +1,7 @@
 //! A rock on one plane: the fourteen numbers that change along a step, and what presses on it.
 
 use super::body::Body;
-use super::contact_frame::{Along, ContactFrame, Local};
+use super::contact_frame::{Along, ContactFrame, Local, dot, square};
 use super::friction_rolling::{cut, cut_moment};
 use super::tableau::STAGES;
 use crate::ground::{Law, NormalElement};
@@ -32,15 +32,33 @@ pub(super) fn three(x: &State, at: usize) -> Local {
     [x[at], x[at + 1], x[at + 2]]
 }
 
+/// The numbers of way, velocity and spin and of the springs of shear and rolling, or of their rates.
 #[inline]
-pub(super) fn dot<const N: usize>(x: [f64; N], y: [f64; N]) -> f64 {
-    x.iter().zip(y).map(|(x, y)| x * y).sum()
+pub(super) fn state_of([way, speed, spin]: [Local; 3], shear: Along, roll: Local) -> State {
+    let mut state = [0.0; SIZE];
+    state[WAY..SPEED].copy_from_slice(&way);
+    state[SPEED..SPIN].copy_from_slice(&speed);
+    state[SPIN..SHEAR].copy_from_slice(&spin);
+    state[SHEAR..ROLL].copy_from_slice(&shear);
+    state[ROLL..].copy_from_slice(&roll);
+    state
 }
 
-#[inline]
-pub(super) fn square<const N: usize>(x: [f64; N]) -> f64 {
-    dot(x, x)
+/// The same of vectors, in the frame of the plane.
+pub(super) fn into_plane(
+    frame: &ContactFrame,
+    motion: [&Vec3; 3],
+    [shear, roll]: [&Vec3; 2],
+) -> State {
+    state_of(motion.map(|x| frame.local(x)), frame.along(shear), frame.local(roll))
 }
+
+/// Way, velocity, spin, shear and rolling as vectors.
+pub(super) fn out_of_plane(frame: &ContactFrame, x: &State) -> [Vec3; 5] {
+    let [way, speed, spin, roll] = [WAY, SPEED, SPIN, ROLL].map(|at| frame.out_local(three(x, at)));
+    [way, speed, spin, frame.out_along(two(x, SHEAR)), roll]
+}
+
 /// What presses on the rock at a stage's end.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct PlaneForces {
@@ -50,31 +68,11 @@ pub(super) struct PlaneForces {
     /// Whether it still holds the rock.
     pub(super) closed: bool,
 }
+
 /// Velocity of the contact point along the plane (m/s).
 #[inline]
 pub(super) fn slip(body: &Body, speed: Local, spin: Local) -> Along {
     [speed[0] - body.radius * spin[1], speed[1] + body.radius * spin[0]]
-}
-
-/// What contact forces do to velocity and spin (m/s², rad/s²).
-#[inline]
-pub(super) fn accelerations(
-    body: &Body,
-    normal_force: f64,
-    shear_force: Along,
-    rolling_moment: Local,
-) -> (Local, Local) {
-    let (over_m, over_i) = (1.0 / body.mass, 1.0 / body.inertia);
-    let r = body.radius;
-    let turns = [
-        -r * shear_force[1] - rolling_moment[0],
-        r * shear_force[0] - rolling_moment[1],
-        -rolling_moment[2],
-    ];
-    (
-        [-shear_force[0] * over_m, -shear_force[1] * over_m, normal_force * over_m],
-        turns.map(|x| x * over_i),
-    )
 }
 
 /// Energy in the springs (J).
@@ -85,6 +83,22 @@ pub(super) fn stored_j(law: &Law, penetration: f64, at: &State) -> f64 {
 }
 
 impl PlaneForces {
+    /// What they do to velocity and spin (m/s², rad/s²).
+    #[inline]
+    pub(super) fn accelerations(&self, body: &Body) -> (Local, Local) {
+        let Self { normal_force, shear_force, rolling_moment, .. } = *self;
+        let (over_m, over_i, r) = (1.0 / body.mass, 1.0 / body.inertia, body.radius);
+        let turns = [
+            -r * shear_force[1] - rolling_moment[0],
+            r * shear_force[0] - rolling_moment[1],
+            -rolling_moment[2],
+        ];
+        (
+            [-shear_force[0] * over_m, -shear_force[1] * over_m, normal_force * over_m],
+            turns.map(|x| x * over_i),
+        )
+    }
+
     /// Power that goes into friction, damping and rolling (W): what the springs store is counted in.
     #[inline]
     pub(super) fn losses(
@@ -166,19 +180,13 @@ impl PlaneState {
         let rolling_moment = cut_moment(asked, law.rolling.cap(normal_force));
         let (over_s, over_r) = (law.shear.mobility(), law.rolling.mobility());
         let gravity = self.frame.local(&body.gravity);
-        let (dv, dw) = accelerations(body, normal_force, shear_force, rolling_moment);
-        let rate = &mut self.rates[0];
-        for k in 0..3 {
-            rate[WAY + k] = speed[k];
-            rate[SPEED + k] = gravity[k] + dv[k];
-            rate[SPIN + k] = dw[k];
-            rate[ROLL + k] = (rolling_moment[k] - wound[k]) * over_r;
-        }
-        for k in 0..2 {
-            rate[SHEAR + k] = (shear_force[k] - held[k]) * over_s;
-        }
         let press = PlaneForces { normal_force, shear_force, rolling_moment, closed: true };
-        self.losses[0] = press.losses(slip, (speed[2], spin), two(&self.rates[0], SHEAR));
+        let (dv, dw) = press.accelerations(body);
+        let dv = [0, 1, 2].map(|k| gravity[k] + dv[k]);
+        let shear_rate = [0, 1].map(|k| (shear_force[k] - held[k]) * over_s);
+        let roll_rate = [0, 1, 2].map(|k| (rolling_moment[k] - wound[k]) * over_r);
+        self.rates[0] = state_of([speed, dv, dw], shear_rate, roll_rate);
+        self.losses[0] = press.losses(slip, (speed[2], spin), shear_rate);
         stored_j(law, penetration, &self.state)
     }
 }

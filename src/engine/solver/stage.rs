@@ -33,11 +33,7 @@ impl StageContact {
         let friction = self.shear_force.dot(&(slip - shear_rate));
         let damping = self.shear_force.dot(shear_rate) - self.normal_force * self.n.dot(v);
         let rolling = self.rolling_moment.dot(w);
-        if self.is_tree {
-            Loss { trees: friction + damping + rolling, ..Loss::default() }
-        } else {
-            Loss { friction, damping, rolling, trees: 0.0 }
-        }
+        Loss::on_slope([friction, damping, rolling]).on(world, self.triangle)
     }
 
     /// Forces at the present state, for the explicit first stage; returns the rates of shear and rolling springs.
@@ -128,7 +124,7 @@ impl ContactState {
     /// so the forces are exact wherever the rock was when they were computed.
     #[inline]
     fn stays_on_faces(&self) -> bool {
-        let contacts = &self.contacts[..self.contact_count];
+        let contacts = self.stage_contacts();
         contacts.len() == self.touches.len()
             && contacts.iter().zip(self.touches.iter()).all(|(contact, touch)| {
                 touch.is_on_plane() && touch.feature == contact.feature && touch.normal == contact.n
@@ -149,16 +145,13 @@ impl ContactState {
         for k in 0..self.contact_count {
             let history = self.history_of(world, k, taken, &base.v);
             taken |= 1 << history;
-            let mut contact = self.contact_of(world, k, history);
             let memory = &self.histories[history];
             let (mut shear, mut roll) = (memory.shear, memory.roll);
             for (rate, a) in self.rates.iter().zip(tableau.a[i]) {
                 shear += rate.shear[history] * (h * a);
                 roll += rate.roll[history] * (h * a);
             }
-            // turned with the normal, keeping its length
-            contact.shear = carry(shear, &memory.n, &contact.n);
-            contact.roll = roll;
+            let mut contact = self.contact_of(world, k, history, (shear, roll));
             contact.penetration =
                 world.body.radius - self.touches[k].distance_m - contact.n.dot(&(base.c - at));
             if self.onset.waits && memory.met_m_s > 0.0 {
@@ -168,12 +161,13 @@ impl ContactState {
         }
     }
 
-    /// The contact of touch `k` with the stretches of its memory and no penetration yet.
-    pub(super) fn contact_of(
+    /// The contact of touch `k` with springs stretched so in the frame of its memory, and no penetration yet.
+    fn contact_of(
         &self,
         world: &ContactEnvironment,
         k: usize,
         history: usize,
+        (shear, roll): (Vec3, Vec3),
     ) -> StageContact {
         let (touch, memory) = (&self.touches[k], &self.histories[history]);
         let law = world.law_of(&self.touches, k);
@@ -182,11 +176,11 @@ impl ContactState {
             feature: touch.feature,
             triangle: touch.triangle,
             normal: law.normal(memory.captured),
-            is_tree: world.terrain.is_tree(touch.triangle),
             n: touch.normal,
             penetration: 0.0,
-            shear: carry(memory.shear, &memory.n, &touch.normal),
-            roll: memory.roll,
+            // turned with the normal, keeping its length
+            shear: carry(shear, &memory.n, &touch.normal),
+            roll,
             normal_force: memory.normal_force,
             shear_force: Vec3::zeros(),
             rolling_moment: Vec3::zeros(),
@@ -236,7 +230,8 @@ impl ContactState {
         for k in 0..self.touches.len() {
             let history = self.history_of(world, k, taken, &v);
             taken |= 1 << history;
-            let mut contact = self.contact_of(world, k, history);
+            let memory = &self.histories[history];
+            let mut contact = self.contact_of(world, k, history, (memory.shear, memory.roll));
             contact.penetration = (body.radius - self.touches[k].distance_m).max(0.0);
             let (shear_rate, roll_rate) = contact.act_now(world, &v, &w);
             let back = self.histories[history].n;

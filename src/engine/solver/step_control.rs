@@ -15,12 +15,13 @@ mod settle;
 
 use super::Settings;
 use super::body::Body;
-use super::contact_state::{ContactEnvironment, ContactState, Onset};
+use super::contact_state::{ContactEnvironment, ContactState, Onset, StateRates};
 use super::loss::Loss;
 use super::stage::End;
 use super::tableau::Tableau;
 use crate::contact::history::carry;
 use crate::ground::Law;
+use crate::rock::Vec3;
 pub(crate) use onset::{Begun, MET, MOST_CUTS, OnsetSearch};
 pub(crate) use settle::{StepFailure, TrialStep, TryOutcome, settle};
 
@@ -175,7 +176,7 @@ fn step(
     if !state.fresh {
         state.rates_now(world);
     }
-    let limit = travel_limit(world, state, TRAVEL);
+    let limit = state.longest_step(world, TRAVEL);
     let (omega, known) = (stiffest(world, state), state.histories.len());
     let mut trial = RockTrial {
         world,
@@ -260,11 +261,8 @@ fn gains(world: &ContactEnvironment, state: &ContactState, end: &End, hh: f64) -
     let lifted = -body.mass * body.gravity.dot(&(end.c - state.c));
     let before = state.motion_j(body) + state.stored;
     // Positions are rounded to about 1e-13 of a slope's size: times the forces, that much work is not known.
-    let force = body.mass * body.gravity.norm()
-        + state.contacts[..state.contact_count]
-            .iter()
-            .map(|contact| contact.normal_force)
-            .sum::<f64>();
+    let contacts = state.stage_contacts().iter();
+    let force = body.mass * body.gravity.norm() + contacts.map(|one| one.normal_force).sum::<f64>();
     let unknown = ROUNDING * before + PLACE_ROUNDING * body.radius * force;
     motion + lifted + pressed_j(state, end, hh) > before + unknown
 }
@@ -272,26 +270,13 @@ fn gains(world: &ContactEnvironment, state: &ContactState, end: &End, hh: f64) -
 /// Energy in the springs of the contacts that are closed at the end of the step (J).
 /// `Σ (p_N pen² + p_s ξ² + k_r θ²)/2` over what is closed.
 pub(crate) fn pressed_j(state: &ContactState, end: &End, hh: f64) -> f64 {
-    let closed = state.contacts[..state.contact_count]
-        .iter()
-        .filter(|contact| contact.is_closed(&end.v, hh));
+    let closed = state.stage_contacts().iter().filter(|contact| contact.is_closed(&end.v, hh));
     let stored = closed.map(|contact| {
         let (penetration, law) = (contact.pen_at(&end.v, hh).max(0.0), &contact.law);
         let (shear, roll) = contact.stretches(hh);
         law.stored_j(penetration, shear.norm_squared(), roll.norm_squared())
     });
     stored.sum()
-}
-
-/// Longest step in which the rock goes no further than `travel` (–, relative to R), so that it cannot jump over a feature (s).
-pub(crate) fn travel_limit(
-    world: &ContactEnvironment,
-    state: &mut ContactState,
-    travel: f64,
-) -> f64 {
-    let c = state.c;
-    state.know(world, &c);
-    state.longest_step(world, travel)
 }
 
 /// One step: where it ends and its error relative to the tolerance; `None` if a stage does not settle.
@@ -307,23 +292,20 @@ fn attempt(
     for i in 1..tableau.stages {
         end = Some(state.stage(world, tableau, i, dt)?);
     }
-    let mut off = [crate::rock::Vec3::zeros(); 3];
-    let mut stretch2 = 0.0f64;
-    for (rate, weight) in state.rates[..tableau.stages].iter().zip(tableau.error) {
-        off[0] += rate.c * weight;
-        off[1] += rate.v * weight;
-        off[2] += rate.w * weight;
-    }
-    for k in 0..state.histories.len() {
-        let stages = state.rates[..tableau.stages].iter().zip(tableau.error);
-        let drift = stages
-            .fold(crate::rock::Vec3::zeros(), |sum, (rate, weight)| sum + rate.shear[k] * weight);
-        stretch2 = stretch2.max(drift.norm_squared());
-    }
-    let worst2 = (off[0].norm_squared().max(stretch2) * omega * omega)
-        .max(off[1].norm_squared())
-        .max(off[2].norm_squared() * world.body.radius.powi(2));
+    let rates = &state.rates[..tableau.stages];
+    let ways2 = (0..state.histories.len())
+        .map(|k| off2(tableau, rates, |rate| rate.shear[k]))
+        .fold(off2(tableau, rates, |rate| rate.c), f64::max);
+    let worst2 = (ways2 * omega * omega)
+        .max(off2(tableau, rates, |rate| rate.v))
+        .max(off2(tableau, rates, |rate| rate.w) * world.body.radius.powi(2));
     end.map(|end| (end, dt * worst2.sqrt() / control.tolerance))
+}
+
+/// What the two methods of a tableau differ by in a part of the motion, over the length of the step, squared.
+fn off2(tableau: &Tableau, rates: &[StateRates], part: impl Fn(&StateRates) -> Vec3) -> f64 {
+    let weighted = rates.iter().zip(tableau.error);
+    weighted.fold(Vec3::zeros(), |sum, (rate, weight)| sum + part(rate) * weight).norm_squared()
 }
 
 /// Takes over the step's end: motion, memories, losses.

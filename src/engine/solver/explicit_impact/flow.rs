@@ -13,13 +13,12 @@
 use super::changes::Changes;
 use crate::contact::TOUCH;
 use crate::contact::history::carry;
-use crate::contact::{ContactPoint, Feature};
+use crate::contact::{ContactPoint, Feature, ShortList};
 use crate::ground::NormalElement;
 use crate::rock::Vec3;
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
 use crate::solver::impact::dormand_prince::{Flow, NODES, Rates, put, three};
-use crate::solver::law::ZERO;
-use crate::solver::law::{Action, ContactPlace};
+use crate::solver::law::{Action, ContactPlace, ZERO};
 use crate::solver::loss::Loss;
 use crate::solver::stage::End;
 
@@ -78,8 +77,8 @@ pub(super) struct Among<'a, 'w, const C: usize> {
     /// The normal spring of each contact at the step's start, and which of them have a dashpot.
     began: [HeldEnergy; C],
     damped: u32,
-    list: [PressedContact; C],
-    len: usize,
+    /// Contacts at the state last asked for.
+    pressed: ShortList<PressedContact, C>,
 }
 
 impl PressedContact {
@@ -105,7 +104,6 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
         state: &'a mut ContactState,
         scale: (f64, f64),
     ) -> Self {
-        let list = [PressedContact::NONE; C];
         Self {
             world,
             state,
@@ -116,8 +114,7 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
             face: None,
             began: [HeldEnergy::NONE; C],
             damped: 0,
-            list,
-            len: 0,
+            pressed: ShortList::new(PressedContact::NONE),
         }
     }
 
@@ -167,7 +164,7 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
 
     /// Contacts at the state last asked for.
     pub(super) fn pressed(&self) -> &[PressedContact] {
-        &self.list[..self.len]
+        &self.pressed
     }
 
     /// Notes the contacts of the step's start, the state last asked for, and what their normal springs hold.
@@ -175,9 +172,8 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
     /// They are those of its rates: touches may have been looked for elsewhere since, where a rock that flies out would come to. A
     /// contact of that place would end where the step begins, again and again.
     pub(super) fn note_start(&mut self) {
-        let list = &self.list[..self.len];
-        self.changes.begin(list.iter().map(|contact| &contact.touch));
-        for contact in list {
+        self.changes.begin(self.pressed.iter().map(|contact| &contact.touch));
+        for contact in self.pressed.iter() {
             self.began[contact.place] = contact.held(self.world.body.mass);
         }
     }
@@ -215,7 +211,7 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
     /// Whether the contacts at the state last asked for are those of the memories, with the normals that these know.
     pub(super) fn holds_its_normals(&self) -> bool {
         let histories = &self.state.histories;
-        self.len == histories.len()
+        self.pressed.len() == histories.len()
             && self.pressed().iter().all(|contact| {
                 let history = &histories[contact.place];
                 (history.feature, history.n) == (contact.touch.feature, contact.at.n)
@@ -227,7 +223,7 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
     pub(super) fn remember(&mut self) {
         let histories = &mut self.state.histories;
         histories.iter_mut().for_each(|history| history.closed = false);
-        for contact in &self.list[..self.len] {
+        for contact in self.pressed.iter() {
             let PressedContact { place, touch, at, normal_force, slides, .. } = *contact;
             let history = &mut histories[place];
             (history.feature, history.triangle) = (touch.feature, touch.triangle);
@@ -267,7 +263,7 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
         let is_end = node == LAST && changes.ends_past_exchange;
         let is_plain = face == first && face != Feature::NONE && !changes.are_any();
         self.is_smooth &= is_end || is_plain;
-        self.len = 0;
+        self.pressed.clear();
         for k in 0..state.touches.len() {
             let touch = state.touches[k];
             // by feature; a contact that has no memory yet takes over that of a like one, or begins
@@ -304,18 +300,14 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
             if Self::rolls::<N>() {
                 put(&mut rates.y, SPRINGS + 3 * (C + place), &action.rates[1]);
             }
-            // energy that goes into trees is counted apart, whatever takes it
             let apart = n.dot(&v);
             let [friction, shear_damping, rolling] = action.powers(&w);
             let damping = shear_damping + normal.dissipating_w(at.penetration, apart);
             rates.q[LOSSES + place] = normal.storing_w(at.penetration, -apart);
             *damped |= u32::from(normal.is_damped(body.mass)) << place;
-            if world.terrain.is_tree(touch.triangle) {
-                rates.q[3] += friction + damping + rolling;
-            } else {
-                rates.q[0] += friction;
-                rates.q[1] += damping;
-                rates.q[2] += rolling;
+            let power = Loss::on_slope([friction, damping, rolling]).on(world, touch.triangle);
+            for (sum, power) in rates.q.iter_mut().zip(power.parts()) {
+                *sum += power;
             }
             let (cap, most) = law.limits().caps(normal_force);
             // In units of acceleration, so that times a step they are speeds.
@@ -325,8 +317,8 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
             rates.kinks[3 * place + 1] = [action.asked2[0] * by_mass * by_mass, cap * by_mass];
             rates.kinks[3 * place + 2] = [action.asked2[1] * turn * turn, most * turn];
             let slides = law.shear.slides2(action.asked2[0], normal_force);
-            self.list[self.len] = PressedContact { place, touch, at, normal, normal_force, slides };
-            self.len += 1;
+            let pressed = PressedContact { place, touch, at, normal, normal_force, slides };
+            self.pressed.push(pressed);
         }
         put(&mut rates.y, WAY, &v);
         put(&mut rates.y, V, &dv);

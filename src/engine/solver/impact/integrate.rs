@@ -142,7 +142,6 @@ pub(super) fn run<
     while course.t < span.length {
         let h = course.next_step();
         course.force.aim(h);
-        effort.evaluations += 6;
         let Course { force, slips, stages, y, .. } = &mut course;
         let under = &mut Under { law, force, slips, over_allowed2 };
         let tried = stages.smooth_step(under, y, h);

@@ -16,7 +16,7 @@ use crate::ground::Law;
 use crate::math;
 use crate::rock::Vec3;
 use crate::solver::body::Body;
-use crate::solver::contact_frame::{Along, Local};
+use crate::solver::contact_frame::{Along, Local, dot, square};
 use crate::solver::loss::Loss;
 
 pub(crate) use blow_table::BlowTable;
@@ -78,10 +78,6 @@ pub(super) struct Along2 {
     pub(super) lost: Local,
 }
 
-fn dot<const N: usize>(x: [f64; N], y: [f64; N]) -> f64 {
-    x.iter().zip(y).map(|(x, y)| x * y).sum()
-}
-
 impl Plane {
     /// Prepares the impacts of `body` on a ground of `law`; `tolerance` is the local error allowed of a step (–, relative to
     /// the speed of the impact).
@@ -124,10 +120,6 @@ impl Plane {
         Some(self.pass(&passage, (v, w), &PressedIn::NOT))
     }
 
-    fn rubs(&self) -> bool {
-        self.shear.is_on() || self.rolling.is_on()
-    }
-
     /// Everything but the normal motion, until the rock is out.
     #[inline]
     fn along(&self, start: &Start, exit: &Exit, effort: &mut ImpactEffort) -> Along2 {
@@ -150,23 +142,12 @@ impl Plane {
         end
     }
 
-    fn span(&self, start: &Start, length: f64) -> Span {
-        let Start { begin, gamma, allowed, .. } = *start;
-        let first = FIRST * math::pow(allowed, 0.2);
-        Span { swing: self.swing, begin, gamma, length, first, allowed }
-    }
-
-    /// `1 / (1 + m R²/I)` and its parts: what a blow along the surface does to slip, by mass and by inertia.
-    fn turns(&self) -> f64 {
-        self.body.mass * self.body.radius * self.body.radius / self.body.inertia
-    }
-
     /// Shear alone: slip and spring decide, velocity and spin follow from the impulse.
     ///
     /// Two numbers of slip and two of the spring are integrated; `v` and `ω` follow from the
     /// impulse `J = Σ q dt` alone: `Δv = −J/m`, and the lever `R` turns it into spin.
     fn shears(&self, start: &Start, t: f64, effort: &mut ImpactEffort) -> Along2 {
-        let turns = self.turns();
+        let turns = self.body.turns();
         let lightness = 1.0 + turns;
         let u = [start.v[0] - start.w[1], start.v[1] + start.w[0]];
         let is_straight = start.gravity.iter().chain(&start.shear).all(|x| *x == 0.0);
@@ -210,7 +191,7 @@ impl Plane {
         let flow = Both {
             shear: self.shear,
             rolling: self.rolling,
-            turns: self.turns(),
+            turns: self.body.turns(),
             gravity: start.gravity,
         };
         let ([vx, vy], [wx, wy, wz]) = (start.v, start.w);
@@ -240,10 +221,12 @@ impl Plane {
         flow: &P,
         begin: [f64; N],
         start: &Start,
-        t: f64,
+        length: f64,
         effort: &mut ImpactEffort,
     ) -> ([f64; N], [f64; Q]) {
-        let span = self.span(start, t);
+        let Start { begin: force, gamma, allowed, .. } = *start;
+        let first = FIRST * math::pow(allowed, 0.2);
+        let span = Span { swing: self.swing, begin: force, gamma, length, first, allowed };
         if start.allowed >= COARSE {
             run::<P, N, Q, K, 9>(flow, begin, &span, effort)
         } else {
@@ -261,8 +244,8 @@ impl Plane {
     /// What was lost along the surface: energy before, what springs give back and what gravity brought less energy after. Where the
     /// error of the steps would make that a gain, motion after is slowed by so much.
     fn settle(&self, start: &Start, end: &mut Along2) -> f64 {
-        let over = 1.0 / self.turns();
-        let energy = |v: Along, w: Local| 0.5 * (dot(v, v) + over * dot(w, w));
+        let over = 1.0 / self.body.turns();
+        let energy = |v: Along, w: Local| 0.5 * (square(v) + over * square(w));
         let before = energy(start.v, start.w) + dot(start.gravity, end.way);
         let given_back = self.given_back((&start.shear, &start.roll), end);
         let before = before + given_back.iter().sum::<f64>();

@@ -18,12 +18,12 @@ mod rates;
 
 use super::dormand_prince::{Attempt, Stages, growth, sum_up};
 use super::plane::{LOCAL, Plane, shared};
-use super::{ImpactEffort, Settled};
+use super::{ImpactEffort, Settled, StepLength};
 use crate::contact::MOST;
 use crate::ground::Law;
 use crate::math;
 use crate::rock::Vec3;
-use crate::solver::body::{Body, Twist};
+use crate::solver::body::{Body, STILL, Twist};
 use crate::solver::loss::Loss;
 pub(crate) use bodies::{BODIES, CONTACTS, FrozenCollision, collide};
 use contacts::{AfterImpact, SwitchTime};
@@ -84,6 +84,18 @@ pub(crate) struct FrozenBody {
     pub(crate) motion: Twist,
 }
 
+impl FrozenBody {
+    /// Its velocity, and its spin times its radius, in units of `speed` (m/s).
+    fn in_units(&self, speed: f64) -> Twist {
+        (self.motion.0 / speed, self.motion.1 * (self.body.radius / speed))
+    }
+
+    /// The same back from these units.
+    fn out_of_units(&self, (v, w): Twist, speed: f64) -> Twist {
+        (v * speed, w * (speed / self.body.radius))
+    }
+}
+
 impl FrozenContact<'_> {
     /// No contact.
     pub(crate) const fn none() -> Self {
@@ -106,8 +118,6 @@ pub(crate) struct FrozenRebound {
     pub(crate) spin_rad_s: Vec3,
     /// Energy lost (J) by contact and kind, each ≥ 0: together exactly the energy before less that after.
     pub(crate) loss: [Loss; MOST],
-    /// Which contacts threw the rock off.
-    pub(crate) rebounded: [bool; MOST],
     /// How it ended.
     pub(crate) settled: Settled,
     /// What it cost.
@@ -149,7 +159,6 @@ pub(crate) fn throw(
         velocity_m_s: *v,
         spin_rad_s: *w,
         loss: [Loss::default(); MOST],
-        rebounded: [false; MOST],
         settled: Settled::Free,
         effort: ImpactEffort::default(),
     };
@@ -194,7 +203,6 @@ fn alone(
     };
     (end.velocity_m_s, end.spin_rad_s) = (rebound.velocity_m_s, rebound.spin_rad_s);
     (end.loss[0], end.effort) = (rebound.loss, rebound.effort);
-    end.rebounded[0] = !contact.captured;
     if contact.captured {
         let up = n.dot(&end.velocity_m_s);
         end.velocity_m_s -= n * up;
@@ -212,10 +220,9 @@ fn several<const K: usize, const N: usize, const Q: usize, const P: usize>(
     // |v| is the unit of speed: the tolerance is relative to it
     let speed = v.norm();
     let bodies = [FrozenBody { body: *body, motion: (*v, *w) }];
-    let flow = ContactRates::<1, K>::new(&bodies, contacts, LOCAL * tolerance);
-    let start = (v / speed, w * (body.radius / speed));
-    let mut run = ImpactRun::<1, K, N, Q, P>::new(flow, [start]);
-    end.settled = run.follow(OPENING * math::pow(tolerance, 0.2));
+    let mut run = ImpactRun::<1, K, N, Q, P>::new((&bodies, contacts), speed, tolerance);
+    let [start] = run.motions();
+    end.settled = run.follow(tolerance);
     end.effort = run.effort;
     let [place] = run.motions();
     let AfterImpact { motions: [place], plastic } =
@@ -224,14 +231,7 @@ fn several<const K: usize, const N: usize, const Q: usize, const P: usize>(
     let lost = run.flow.contacts.energy(0, start) - run.flow.contacts.energy(0, place);
     let loss_j = run.loss_j(lost.max(0.0) * (body.mass * speed * speed), plastic);
     end.loss[..K].copy_from_slice(&loss_j);
-    let fastest = run.flow.contacts.fastest;
-    end.rebounded = std::array::from_fn(|k| {
-        k < contacts.len()
-            && !contacts[k].captured
-            && fastest[k] > 0.0
-            && contacts[k].normal.dot(&place.0) > 0.0
-    });
-    (end.velocity_m_s, end.spin_rad_s) = (place.0 * speed, place.1 * (speed / body.radius));
+    (end.velocity_m_s, end.spin_rad_s) = bodies[0].out_of_units(place, speed);
     end
 }
 
@@ -246,17 +246,26 @@ struct ImpactRun<const B: usize, const K: usize, const N: usize, const Q: usize,
 impl<const B: usize, const K: usize, const N: usize, const Q: usize, const P: usize>
     ImpactRun<B, K, N, Q, P>
 {
-    /// From velocities and spins times radius.
-    fn new(flow: ContactRates<B, K>, motions: [Twist; B]) -> Self {
-        let effort = ImpactEffort::default();
-        Self { flow, y: rates::begun(&motions), sums: [0.0; Q], effort }
+    /// At the first touch, with `speed` (m/s) for a unit.
+    fn new(
+        (bodies, contacts): (&[FrozenBody], &[FrozenContact]),
+        speed: f64,
+        tolerance: f64,
+    ) -> Self {
+        let motion = |k: usize| bodies.get(k).map_or(STILL, |body| body.in_units(speed));
+        Self {
+            flow: ContactRates::new(bodies, contacts, LOCAL * tolerance),
+            y: rates::begun(&std::array::from_fn::<_, B, _>(motion)),
+            sums: [0.0; Q],
+            effort: ImpactEffort::default(),
+        }
     }
 
     /// Steps until nothing pushes and nothing comes nearer.
     ///
     /// A rock may fly between touches of one impact (a wedge): a closed form that costs no time.
-    fn follow(&mut self, first: f64) -> Settled {
-        let (mut wish, mut kept, mut time) = (first, 0.0, 0.0);
+    fn follow(&mut self, tolerance: f64) -> Settled {
+        let (mut step, mut time) = (StepLength::new(OPENING * math::pow(tolerance, 0.2)), 0.0);
         let softest = self.flow.contacts.softest;
         let (most, mut quiet) = (MOST_TIME / softest, Quiet::<B>::NONE);
         // Whether the contacts have been changed without a step: once is enough.
@@ -280,22 +289,18 @@ impl<const B: usize, const K: usize, const N: usize, const Q: usize, const P: us
             if quiet.stays(&self.motions(), time, QUIET * self.flow.allowed) > TAU / softest {
                 return Settled::Jammed;
             }
-            let h = wish.min(self.flow.longest);
+            let h = step.wish.min(self.flow.longest);
             let felt = (h > SHORTEST_CUT).then_some(self.flow.allowed);
-            self.effort.evaluations += 6;
             let tried = match stages.step(&mut self.flow, &self.y, h, felt) {
                 Attempt::Whole(tried) if tried.error2 <= 1.0 => tried,
                 Attempt::Whole(tried) => {
                     self.effort.rejected += 1;
-                    kept = 0.0;
-                    wish = h * growth(tried.error2).min(0.7);
+                    step.shrink(h * growth(tried.error2).min(0.7));
                     continue;
                 }
                 Attempt::Cut(share) => {
                     self.effort.rejected += 1;
-                    // Beyond a kink the law is as smooth as before it.
-                    kept = h.max(kept);
-                    wish = h * share;
+                    step.cut(h, share);
                     continue;
                 }
             };
@@ -308,8 +313,7 @@ impl<const B: usize, const K: usize, const N: usize, const Q: usize, const P: us
                 }
                 Some(SwitchTime::At(share)) => {
                     self.effort.rejected += 1;
-                    kept = h.max(kept);
-                    wish = h * share;
+                    step.cut(h, share);
                 }
                 _ => {
                     turned = false;
@@ -317,8 +321,7 @@ impl<const B: usize, const K: usize, const N: usize, const Q: usize, const P: us
                     sum_up(&mut self.sums, &tried.q);
                     time += h;
                     self.effort.steps += 1;
-                    wish = f64::max(h * growth(tried.error2), kept);
-                    kept = 0.0;
+                    step.grow(h * growth(tried.error2));
                     if self.flow.press(&mut self.y) {
                         self.flow.rates_of(&self.y, stages.first());
                     } else {
@@ -360,13 +363,7 @@ impl<const B: usize, const K: usize, const N: usize, const Q: usize, const P: us
             *part = [slipping, damping + plastic, rolling.max(0.0)];
         }
         shared(lost_j, parts.as_flattened_mut());
-        let loss = |[friction, damping, rolling]: [f64; 3]| Loss {
-            friction,
-            damping,
-            rolling,
-            trees: 0.0,
-        };
-        parts.map(loss)
+        parts.map(Loss::on_slope)
     }
 }
 
@@ -381,8 +378,7 @@ struct Quiet<const B: usize> {
 
 impl<const B: usize> Quiet<B> {
     /// Nothing seen yet.
-    const NONE: Self =
-        Self { since: 0.0, motions: [(Vec3::new(0.0, 0.0, 0.0), Vec3::new(0.0, 0.0, 0.0)); B] };
+    const NONE: Self = Self { since: 0.0, motions: [STILL; B] };
 
     /// For how long velocities and spins have been the same, to `allowed`.
     fn stays(&mut self, motions: &[Twist; B], time: f64, allowed: f64) -> f64 {

@@ -214,7 +214,7 @@ impl<'a> Island<'a> {
         for member in self.members.iter_mut().filter(|member| !member.flying) {
             let IslandBody { state, body, laws, .. } = &mut **member;
             let world = ContactEnvironment { terrain: self.terrain, body: *body, laws };
-            limit = limit.min(step_control::travel_limit(&world, state, travel));
+            limit = limit.min(state.longest_step(&world, travel));
         }
         for pair_history in &self.pair_histories {
             let [a, b] = [pair_history.a, pair_history.b].map(|k| &self.members[k as usize]);

@@ -19,14 +19,14 @@ use crate::contact::neighbours::Neighbours;
 use crate::ground::{Law, NormalElement};
 use crate::rock::Vec3;
 use crate::solver::body::Body;
-use crate::solver::contact_frame::Local;
+use crate::solver::contact_frame::{Local, dot, square};
 use crate::solver::contact_state::ContactEnvironment;
 use crate::solver::friction_rolling::{Answers, Pair, SlipState};
 use crate::solver::loss::Loss;
 use crate::solver::plane_ahead::PlaneStep;
 use crate::solver::plane_state::{
-    PlaneForces, PlaneState, ROLL, SHEAR, SIZE, SPEED, SPIN, State, WAY, accelerations, dot, slip,
-    square, stored_j, three, two,
+    PlaneForces, PlaneState, ROLL, SHEAR, SIZE, SPEED, SPIN, State, WAY, slip, state_of, stored_j,
+    three, two,
 };
 use crate::solver::step_control::{
     Advance, Control, ONSET, PLACE_ROUNDING, RESOLVED, ROUNDING, StepFailure, TrialStep,
@@ -80,6 +80,7 @@ pub(super) struct PlaneTrial<'a, 'w> {
     /// Stages solved so far.
     pub(super) solved: u64,
 }
+
 /// What the stages of a step of one length have in common.
 struct Length {
     /// Length of a stage (s).
@@ -126,27 +127,19 @@ impl PlaneTrial<'_, '_> {
             let caps = law.limits().caps(normal_force);
             (shear_force, rolling_moment) = Pair { answers, a, d, caps }.solve(&mut self.mode);
         }
-        let (dv, dw) = accelerations(body, normal_force, shear_force, rolling_moment);
-        let (rate, end) = (&mut self.plane.rates[i], &mut self.end);
-        for k in 0..3 {
-            let v = speed[k] + dv[k] * hh;
-            rate[WAY + k] = v;
-            rate[SPEED + k] = self.gravity[k] + dv[k];
-            rate[SPIN + k] = dw[k];
-        }
-        for k in 0..2 {
-            rate[SHEAR + k] = (shear_force[k] - law.shear.held(base[SHEAR + k])) * by.over_s;
-        }
-        for k in 0..3 {
-            rate[ROLL + k] = (rolling_moment[k] - law.rolling.held(base[ROLL + k])) * by.over_r;
-        }
-        // stiffly accurate: the last of these ends is that of the step
-        for k in 0..SIZE {
-            end[k] = base[k] + rate[k] * hh;
-        }
         let press = PlaneForces { normal_force, shear_force, rolling_moment, closed: true };
-        let (speed, spin) = (three(end, SPEED), three(end, SPIN));
-        let shear_rate = two(rate, SHEAR);
+        let (dv, dw) = press.accelerations(body);
+        let v = [0, 1, 2].map(|k| speed[k] + dv[k] * hh);
+        let dv = [0, 1, 2].map(|k| self.gravity[k] + dv[k]);
+        let shear_rate =
+            [0, 1].map(|k| (shear_force[k] - law.shear.held(base[SHEAR + k])) * by.over_s);
+        let roll_rate =
+            [0, 1, 2].map(|k| (rolling_moment[k] - law.rolling.held(base[ROLL + k])) * by.over_r);
+        let rate = state_of([v, dv, dw], shear_rate, roll_rate);
+        // stiffly accurate: the last of these ends is that of the step
+        self.end = std::array::from_fn(|k| base[k] + rate[k] * hh);
+        let (speed, spin) = (three(&self.end, SPEED), three(&self.end, SPIN));
+        self.plane.rates[i] = rate;
         self.plane.losses[i] = press.losses(slip(body, speed, spin), (speed[2], spin), shear_rate);
         self.press = press;
         self.solved += 1;
@@ -256,8 +249,7 @@ impl PlaneTrial<'_, '_> {
                 break None;
             }
         };
-        let [friction, damping, rolling] = sum;
-        done.loss = Loss { friction, damping, rolling, trees: 0.0 };
+        done.loss = Loss::on_slope(sum);
         halt
     }
 

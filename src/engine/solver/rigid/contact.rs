@@ -118,12 +118,9 @@ impl GroundContact {
     /// An impulse works with the mean of the velocities before and after: `J·(v₀ + v₁)/2` is the
     /// change of kinetic energy exactly.
     pub(crate) fn loss(&self, body: &Body, (v, w): &Twist) -> Loss {
-        Loss {
-            friction: -self.shear_force.dot(&body.slip(self.n(), v, w)),
-            damping: -self.normal_force * self.n().dot(v),
-            rolling: -self.turn.dot(w),
-            trees: 0.0,
-        }
+        let friction = -self.shear_force.dot(&body.slip(self.n(), v, w));
+        let damping = -self.normal_force * self.n().dot(v);
+        Loss::on_slope([friction, damping, -self.turn.dot(w)])
     }
 }
 

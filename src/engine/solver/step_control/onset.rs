@@ -8,6 +8,7 @@
 use super::{ONSET, PLACE_ROUNDING, RockTrial};
 use crate::math;
 use crate::solver::contact_state::ContactState;
+use crate::solver::law::StageContact;
 use crate::solver::stage::End;
 
 /// Most cuts of a step for impacts that begin within it.
@@ -114,8 +115,8 @@ impl ContactState {
         (end, hh): (&End, f64),
         (allowed, radius_m): (f64, f64),
     ) {
-        let contacts = &self.contacts[..self.contact_count];
-        for contact in contacts.iter().filter(|it| self.histories[it.history].met_m_s > 0.0) {
+        let has_come_up = |one: &&StageContact| self.histories[one.history].met_m_s > 0.0;
+        for contact in self.stage_contacts().iter().filter(has_come_up) {
             let met = (contact.pen_at(&end.v, hh), -contact.n.dot(&end.v));
             begun.see(met, None, (allowed, radius_m));
         }

@@ -38,7 +38,7 @@ impl BlowTable {
         let plane = blow_plane((body, law), false, TOLERANCE);
         let exit = plane.swing.exit(0.0).filter(|_| plane.shear.is_on())?;
         let most = plane.shear.damping * plane.shear.cap * (1.0 + exit.speed);
-        let sliding = (1.0 + plane.turns()) * most;
+        let sliding = (1.0 + plane.body.turns()) * most;
         let nodes: Box<[OnceLock<f64>]> = (0..=NODES).map(|_| OnceLock::new()).collect();
         nodes[0].get_or_init(|| 0.0);
         nodes[NODES].get_or_init(|| most);
@@ -52,7 +52,7 @@ impl BlowTable {
         }
         let x = slip / approach;
         // what a spring that loses nothing gives back is twice the slip, and no rounding may give more
-        let against = self.against(x).min(2.0 * x / (1.0 + turns(with.0)));
+        let against = self.against(x).min(2.0 * x / (1.0 + with.0.turns()));
         Some([approach * (1.0 + self.exit.speed), approach * against])
     }
 
@@ -65,7 +65,7 @@ impl BlowTable {
             (shear.damping, own.damping, SAME_MATERIAL),
             (shear.rate, own.rate, SAME_MATERIAL),
             (shear.cap, own.cap, SAME_MATERIAL),
-            (turns(body), self.plane.turns(), SAME_LEVERS),
+            (body.turns(), self.plane.body.turns(), SAME_LEVERS),
         ];
         pairs.iter().all(|(one, other, off)| (one - other).abs() <= off * other.abs().max(1.0))
     }
@@ -85,9 +85,4 @@ impl BlowTable {
             self.plane.rubbed(self.sliding * share / (1.0 - share), self.exit.lift)
         })
     }
-}
-
-/// `m R²/I` (–).
-fn turns(body: &Body) -> f64 {
-    body.mass * body.radius * body.radius / body.inertia
 }

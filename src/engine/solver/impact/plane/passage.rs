@@ -165,6 +165,9 @@ impl Plane {
         );
         let damped = damped.max(0.0);
         let [held_shear, held_roll] = self.given_back((&start.shear, &start.roll), &along);
+        let [friction, shear, rolling] = along.lost;
+        let lost = [friction, damped - held + shear - held_shear, rolling - held_roll];
+        let rubs = self.shear.is_on() || self.rolling.is_on();
         let (scale, spin) = (speed / self.omega, speed / radius);
         let [x, y] = along.way.map(|x| x * scale);
         let after = PressedIn {
@@ -176,13 +179,8 @@ impl Plane {
             time_s: passage.time_s(),
             shift_m: frame.out_local([x, y, (depth - left) * scale]),
             velocity_m_s: frame.out_local([along.v[0], along.v[1], exit.speed].map(|v| v * speed)),
-            spin_rad_s: if self.rubs() { frame.out_local(along.w.map(|w| w * spin)) } else { *w },
-            loss: Loss {
-                friction: along.lost[0] * unit_j,
-                damping: (damped - held + along.lost[1] - held_shear) * unit_j,
-                rolling: (along.lost[2] - held_roll) * unit_j,
-                trees: 0.0,
-            },
+            spin_rad_s: if rubs { frame.out_local(along.w.map(|w| w * spin)) } else { *w },
+            loss: Loss::on_slope(lost.map(|lost| lost * unit_j)),
             pressed: (!start.leaves).then_some(after),
             effort,
         }

@@ -3,11 +3,11 @@
 //! Two rocks that strike each other are such a case: their slip is a straight line as long as nothing but the contact acts on it.
 //! The law, its steps and their error are those of [`Plane::follow`]; only the impulses are asked for, neither ways nor losses.
 
-use super::{Plane, SMOOTH, Start, dot};
+use super::{Plane, SMOOTH, Start};
 use crate::ground::Law;
 use crate::rock::Vec3;
 use crate::solver::body::Body;
-use crate::solver::contact_frame::Along;
+use crate::solver::contact_frame::{Along, square};
 use crate::solver::impact::ImpactEffort;
 use crate::solver::impact::sliders::Straight;
 
@@ -54,7 +54,7 @@ impl Plane {
             allowed: SMOOTH * self.tolerance * (1.0 + u * u).sqrt(),
         };
         let (after, _) = self.along_a_line(u, &start, length, &mut ImpactEffort::default());
-        (u - after) / (1.0 + self.turns())
+        (u - after) / (1.0 + self.body.turns())
     }
 
     /// As [`Straight`] from a slip in two directions: slip at the end, what slipping took, and the way of the slip.
@@ -65,7 +65,7 @@ impl Plane {
         length: f64,
         effort: &mut ImpactEffort,
     ) -> (Along, f64, Along) {
-        let size = dot(slip, slip).sqrt();
+        let size = square(slip).sqrt();
         if size == 0.0 {
             return ([0.0; 2], 0.0, [0.0; 2]);
         }
@@ -81,7 +81,7 @@ impl Plane {
         length: f64,
         effort: &mut ImpactEffort,
     ) -> (f64, [f64; 2]) {
-        let flow = Straight { element: self.shear, lightness: 1.0 + self.turns() };
+        let flow = Straight { element: self.shear, lightness: 1.0 + self.body.turns() };
         let ([after, _], sums) = self.run(&flow, [u, 0.0], start, length, effort);
         // the spring gives back no more than it has had, whatever the error of the steps
         (after.clamp(-u, u), sums)

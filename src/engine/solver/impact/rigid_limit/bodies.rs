@@ -5,11 +5,9 @@
 //! rates. Impulses act on both ends of a contact at one point, so momentum and angular momentum are kept to rounding.
 
 use super::contacts::{AfterImpact, Contacts, REST};
-use super::rates::ContactRates;
-use super::{ContactEnds, FrozenBody, FrozenContact, ImpactRun, LOCAL, OPENING};
-use crate::math;
+use super::{ContactEnds, FrozenBody, FrozenContact, ImpactRun};
 use crate::rock::Vec3;
-use crate::solver::body::Twist;
+use crate::solver::body::{STILL, Twist};
 use crate::solver::loss::Loss;
 
 /// Most bodies and contacts of one impact.
@@ -55,33 +53,26 @@ fn followed<const B: usize, const K: usize, const N: usize, const Q: usize, cons
     tolerance: f64,
 ) -> Option<FrozenCollision> {
     let speed = fastest_m_s(bodies, contacts)?;
-    let mut flow = ContactRates::<B, K>::new(bodies, contacts, LOCAL * tolerance);
-    if flow.contacts.softest < SLOWEST {
+    let mut run = ImpactRun::<B, K, N, Q, P>::new((bodies, contacts), speed, tolerance);
+    if run.flow.contacts.softest < SLOWEST {
         return None;
     }
-    let start: [Twist; B] = std::array::from_fn(|k| {
-        let still = (Vec3::zeros(), Vec3::zeros());
-        bodies.get(k).map_or(still, |FrozenBody { body, motion: (v, w) }| {
-            (v / speed, w * (body.radius / speed))
-        })
-    });
-    let unit_j = flow.contacts.mass_kg * speed * speed;
-    flow.contacts.capture(contacts, speed);
-    let mut run = ImpactRun::<B, K, N, Q, P>::new(flow, start);
-    run.follow(OPENING * math::pow(tolerance, 0.2));
+    let start = run.motions();
+    let unit_j = run.flow.contacts.mass_kg * speed * speed;
+    run.flow.contacts.capture(contacts, speed);
+    run.follow(tolerance);
     let nothing = run.flow.nothing();
     let contacts = &run.flow.contacts;
     let AfterImpact { motions: together, plastic } = contacts.part_or_stay(run.motions(), nothing);
     let (motions, lost) = contacts.balanced((&start, &together), plastic.iter().sum());
     let loss_j = run.loss_j(lost.max(0.0) * unit_j, plastic);
     let mut end = FrozenCollision {
-        motions: [(Vec3::zeros(), Vec3::zeros()); BODIES],
+        motions: [STILL; BODIES],
         loss: [Loss::default(); CONTACTS],
         fastest_m_s: [0.0; CONTACTS],
     };
-    for (k, FrozenBody { body, .. }) in bodies.iter().enumerate() {
-        let (v, w) = motions[k];
-        end.motions[k] = (v * speed, w * (speed / body.radius));
+    for (k, body) in bodies.iter().enumerate() {
+        end.motions[k] = body.out_of_units(motions[k], speed);
     }
     end.loss[..K].copy_from_slice(&loss_j);
     for (m_s, fastest) in end.fastest_m_s.iter_mut().zip(run.flow.contacts.fastest) {

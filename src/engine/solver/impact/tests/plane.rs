@@ -1,8 +1,9 @@
 //! Impacts on one plane.
 
 use super::oracle::{self, Touch};
-use super::{G, case, ground, motion_j, uniforms};
+use super::{G, apart, case, ground, motion_j, uniforms};
 use crate::ground::{Damping, Law, normal_impact};
+use crate::math;
 use crate::rock::Vec3;
 use crate::solver::body::Body;
 use crate::solver::impact::Plane;
@@ -28,11 +29,6 @@ fn drop((body, law): &(Body, Law), speed: f64) -> Option<Rebound> {
 fn deepest_m((body, law): &(Body, Law), speed: f64) -> f64 {
     let v = Vec3::new(0.0, 0.0, -speed);
     Plane::new(body, law, 1e-10).passage(&Vec3::z(), &v, 0.0).unwrap().deepest_m()
-}
-
-/// The greater difference of velocity and of spin times radius, relative to the speed of the impact.
-fn apart(body: &Body, [v, w]: [Vec3; 2], [v1, w1]: [Vec3; 2], speed: f64) -> f64 {
-    (v - v1).norm().max((w - w1).norm() * body.radius) / speed
 }
 
 const ROLLING: [f64; 2] = [0.0, 0.3];
@@ -118,15 +114,7 @@ fn gravity_keeps_what_is_too_slow() {
     for e in [0.005, 0.1, 0.2, 0.3, 0.5, 0.9, 1.0] {
         let case = case(&ground(1e9, e, 0.0), 0.5, G);
         let leaves = |p: f64| drop(&case, p * G / case.1.omega_rad_s()).is_some();
-        let (mut lo, mut hi) = (0.0, 1e5);
-        for _ in 0..60 {
-            let middle = 0.5 * (lo + hi);
-            if leaves(middle) {
-                hi = middle;
-            } else {
-                lo = middle;
-            }
-        }
+        let [_, hi] = math::bisected([0.0, 1e5], 60, |p| !leaves(p));
         // every slower impact stays, every faster one leaves
         for share in [0.01, 0.1, 0.5, 0.9, 0.999] {
             assert!(hi < 1e-9 || !leaves(hi * share), "{e}");
@@ -254,7 +242,7 @@ fn a_smooth_ground_touches_nothing_but_the_normal() {
     let out = hit(&case, 1e-4, v, w);
     assert_eq!(out.spin_rad_s, w);
     assert!((out.velocity_m_s.xy() - v.xy()).norm() <= 1e-15 * v.norm());
-    assert_eq!(out.effort.evaluations, 0);
+    assert_eq!(out.effort.steps, 0);
     // e = 1: to rounding
     let elastic = case.1.undamped();
     let out = hit(&(case.0, elastic), 1e-4, v, w);
