@@ -1,7 +1,6 @@
 //! Impacts of frozen geometry.
 
-use super::oracle::{self, Touch};
-use super::{G, apart, case, ground, motion_j, uniforms};
+use super::{G, apart, case, ground, motion_j, oracle, uniforms};
 use crate::contact::MOST;
 use crate::ground::{Ground, Law};
 use crate::rock::Vec3;
@@ -11,16 +10,6 @@ use crate::solver::impact::{FrozenContact, Plane, Settled, throw};
 use crate::solver::loss::Loss;
 use nalgebra::Rotation3;
 use proptest::prelude::*;
-
-fn touches(contacts: &[FrozenContact]) -> Vec<Touch> {
-    let touch = |contact: &FrozenContact| Touch {
-        n: contact.normal,
-        law: *contact.law,
-        captured: contact.captured,
-        scale: contact.stiffness_scale,
-    };
-    contacts.iter().map(touch).collect()
-}
 
 fn slope(n: [f64; 3], law: &Law) -> FrozenContact<'_> {
     let normal = Vec3::from(n).normalize();
@@ -42,8 +31,7 @@ fn balances(body: &Body, out: &FrozenRebound, v: &Vec3, w: &Vec3) {
     let lost: f64 = out.loss.iter().map(Loss::sum).sum();
     assert!((lost - gone).abs() < 1e-12 * before, "{lost} {gone} of {before}");
     assert!(gone >= -1e-14 * before);
-    let parts = out.loss.iter().flat_map(|loss| [loss.friction, loss.damping, loss.rolling]);
-    assert!(parts.into_iter().all(|part| part >= 0.0));
+    assert!(out.loss.iter().flat_map(Loss::parts).all(|part| part >= 0.0));
 }
 
 /// The limit that the printed law tends to, as read off stiff springs (3.394 and 4.12); and the same law followed slowly.
@@ -54,7 +42,7 @@ fn the_rebound_is_the_limit_of_the_springs() {
         let (body, law) = case(&ground(1e9, 0.5, rolling), 0.5, 0.0);
         let contact = [slope([0.0, 0.0, 1.0], &law)];
         let out = throw(&body, &contact, (&v, &w), 1e-10);
-        let (slow, _) = oracle::follow(&body, &touches(&contact), (v, w), 4000.0);
+        let (slow, _) = oracle::follow(&body, &contact, (v, w), 4000.0);
         assert!(apart(&body, after(&out), [slow.v, slow.w], v.norm()) < 2e-8);
         balances(&body, &out, &v, &w);
         out
@@ -116,7 +104,7 @@ fn several_contacts_are_the_law_as_printed() {
                 for (v, w) in [([2.0, 1.0, -6.0], [1.0, -5.0, 3.0]), ([-3.0, -5.0, -1.0], [0.0; 3])]
                 {
                     let (v, w) = (Vec3::from(v), Vec3::from(w));
-                    let (slow, _) = oracle::follow(&body, &touches(&contacts), (v, w), 2000.0);
+                    let (slow, _) = oracle::follow(&body, &contacts, (v, w), 2000.0);
                     for (tolerance, allowed) in [(1e-4, 2e-4), (1e-8, 2e-5)] {
                         let fast = throw(&body, &contacts, (&v, &w), tolerance);
                         let off = apart(&body, after(&fast), [slow.v, slow.w], v.norm());

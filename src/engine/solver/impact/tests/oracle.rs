@@ -1,20 +1,11 @@
 //! The same law written as it is printed, in SI units and world vectors, followed by a fixed classical step that is far too
 //! short: slow and independent.
 
-use crate::ground::Law;
 use crate::math;
 use crate::rock::Vec3;
 use crate::solver::body::Body;
+use crate::solver::impact::FrozenContact;
 use crate::solver::law::within;
-
-/// One contact of a frozen geometry.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Touch {
-    pub(super) n: Vec3,
-    pub(super) law: Law,
-    pub(super) captured: bool,
-    pub(super) scale: f64,
-}
 
 /// Motion and memory; `way` is that of the centre.
 #[derive(Debug, Clone)]
@@ -48,14 +39,14 @@ impl OracleState {
 }
 
 /// Penetration of a contact (m).
-fn depth(touch: &Touch, at: &OracleState) -> f64 {
-    -touch.n.dot(&at.way)
+fn depth(touch: &FrozenContact, at: &OracleState) -> f64 {
+    -touch.normal.dot(&at.way)
 }
 
 /// Normal force of every contact (N); `pressed` are those that hold the rock.
-pub(super) fn pushes(touches: &[Touch], pressed: &[bool], at: &OracleState) -> Vec<f64> {
+pub(super) fn pushes(touches: &[FrozenContact], pressed: &[bool], at: &OracleState) -> Vec<f64> {
     let share = |k: usize| -> f64 {
-        let cosine = |j: usize| touches[k].n.dot(&touches[j].n).max(0.0);
+        let cosine = |j: usize| touches[k].normal.dot(&touches[j].normal).max(0.0);
         let sum: f64 = (0..touches.len()).filter(|j| pressed[*j]).map(|j| cosine(j).powi(2)).sum();
         1.0 / sum.sqrt()
     };
@@ -63,18 +54,18 @@ pub(super) fn pushes(touches: &[Touch], pressed: &[bool], at: &OracleState) -> V
         let touch = &touches[k];
         let [p_n, c_n, c_n_captured] = touch.law.coefficients().normal;
         let c_n = if touch.captured { c_n_captured } else { c_n };
-        let c = c_n * touch.scale.sqrt() * share(k);
-        p_n * touch.scale * depth(touch, at) - c * touch.n.dot(&at.v)
+        let c = c_n * touch.stiffness_scale.sqrt() * share(k);
+        p_n * touch.stiffness_scale * depth(touch, at) - c * touch.normal.dot(&at.v)
     };
     (0..touches.len()).map(|k| if pressed[k] { normal_force(k).max(0.0) } else { 0.0 }).collect()
 }
 
-fn rate(body: &Body, touches: &[Touch], pressed: &[bool], at: &OracleState) -> OracleState {
+fn rate(body: &Body, touches: &[FrozenContact], pressed: &[bool], at: &OracleState) -> OracleState {
     let mut rate = OracleState::new(body.gravity, Vec3::zeros(), touches.len());
     rate.way = at.v;
     let normal_force = pushes(touches, pressed, at);
     for (k, touch) in touches.iter().enumerate() {
-        let (n, law, force) = (&touch.n, &touch.law, normal_force[k]);
+        let (n, law, force) = (&touch.normal, touch.law, normal_force[k]);
         let slip = body.slip(n, &at.v, &at.w);
         let mut shear_force = Vec3::zeros();
         let [p_s, c_s, friction] = law.coefficients().shear;
@@ -98,7 +89,13 @@ fn rate(body: &Body, touches: &[Touch], pressed: &[bool], at: &OracleState) -> O
 }
 
 /// One classical step of order 4.
-fn step(body: &Body, touches: &[Touch], pressed: &[bool], at: &OracleState, h: f64) -> OracleState {
+fn step(
+    body: &Body,
+    touches: &[FrozenContact],
+    pressed: &[bool],
+    at: &OracleState,
+    h: f64,
+) -> OracleState {
     let k1 = rate(body, touches, pressed, at);
     let k2 = rate(body, touches, pressed, &at.moved(&k1, 0.5 * h));
     let k3 = rate(body, touches, pressed, &at.moved(&k2, 0.5 * h));
@@ -114,21 +111,22 @@ fn step(body: &Body, touches: &[Touch], pressed: &[bool], at: &OracleState, h: f
 /// contact if there is but one; returns the end and its time (s).
 pub(super) fn follow(
     body: &Body,
-    touches: &[Touch],
+    touches: &[FrozenContact],
     (v, w): (Vec3, Vec3),
     per_radian: f64,
 ) -> (OracleState, f64) {
-    let omega =
-        |touch: &Touch| (touch.law.coefficients().normal[0] * touch.scale / body.mass).sqrt();
+    let omega = |touch: &FrozenContact| {
+        (touch.law.coefficients().normal[0] * touch.stiffness_scale / body.mass).sqrt()
+    };
     let h = 1.0 / (per_radian * touches.iter().map(omega).fold(0.0, f64::max));
     let mut at = OracleState::new(v, w, touches.len());
-    let mut pressed: Vec<bool> = touches.iter().map(|touch| touch.n.dot(&v) < 0.0).collect();
+    let mut pressed: Vec<bool> = touches.iter().map(|touch| touch.normal.dot(&v) < 0.0).collect();
     let mut t = 0.0;
     for _ in 0..100_000_000u64 {
         let next = step(body, touches, &pressed, &at, h);
         let normal_force = pushes(touches, &pressed, &next);
-        let ends =
-            (0..touches.len()).all(|k| normal_force[k] <= 0.0 && touches[k].n.dot(&next.v) >= 0.0);
+        let ends = (0..touches.len())
+            .all(|k| normal_force[k] <= 0.0 && touches[k].normal.dot(&next.v) >= 0.0);
         if ends && touches.len() == 1 {
             // The moment of lift-off lies within this step.
             let holds = |time: f64| {
@@ -137,7 +135,7 @@ pub(super) fn follow(
             };
             let [_, hi] = math::bisected([0.0, h], 60, holds);
             at = step(body, touches, &pressed, &at, hi);
-            let n = &touches[0].n;
+            let n = &touches[0].normal;
             let (x, up, g) = (depth(&touches[0], &at), n.dot(&at.v), -n.dot(&body.gravity));
             let out = 2.0 * x / (up + (up * up - 2.0 * g * x).sqrt());
             at.way += (at.v + body.gravity * (0.5 * out)) * out;

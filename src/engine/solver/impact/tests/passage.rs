@@ -59,9 +59,7 @@ fn an_impact_in_parts_is_that_at_once() {
                 assert!((pressed.depth_m + (shift + out.shift_m).z).abs() < 1e-15);
                 shift += out.shift_m;
                 time_s += out.time_s;
-                for (sum, part) in
-                    lost.iter_mut().zip([out.loss.friction, out.loss.damping, out.loss.rolling])
-                {
+                for (sum, part) in lost.iter_mut().zip(out.loss.parts()) {
                     *sum += part;
                 }
             }
@@ -71,7 +69,7 @@ fn an_impact_in_parts_is_that_at_once() {
             assert!(off < 3e-8 * v.norm(), "{shares:?}: {off:e}");
             assert!((time_s - at_once.time_s).abs() < 1e-12 * time_s, "{shares:?}");
             assert!((shift - at_once.shift_m).norm() < 3e-8 * v.norm() * time_s, "{shares:?}");
-            let all = [at_once.loss.friction, at_once.loss.damping, at_once.loss.rolling];
+            let all = at_once.loss.parts();
             for (sum, part) in lost.iter().zip(all) {
                 assert!((sum - part).abs() < 1e-7 * unit_j, "{shares:?}: {lost:?} {all:?}");
             }

@@ -1,13 +1,12 @@
 //! Impacts on one plane.
 
-use super::oracle::{self, Touch};
-use super::{G, apart, case, ground, motion_j, uniforms};
+use super::{G, apart, case, ground, motion_j, oracle, uniforms};
 use crate::ground::{Damping, Law, normal_impact};
 use crate::math;
 use crate::rock::Vec3;
 use crate::solver::body::Body;
-use crate::solver::impact::Plane;
 use crate::solver::impact::plane::Rebound;
+use crate::solver::impact::{FrozenContact, Plane};
 use nalgebra::Rotation3;
 use proptest::prelude::*;
 
@@ -135,7 +134,12 @@ fn gravity_keeps_what_is_too_slow() {
 fn it_is_the_law_as_printed() {
     for (rolling, e) in [(0.0, 0.5), (0.3, 0.5), (0.3, 1.0), (0.0, 0.2), (0.3, 0.2)] {
         let case = case(&ground(1e9, e, rolling), 0.5, G);
-        let touch = Touch { n: Vec3::z(), law: case.1, captured: false, scale: 1.0 };
+        let touch = FrozenContact {
+            normal: Vec3::z(),
+            law: &case.1,
+            captured: false,
+            ..FrozenContact::none()
+        };
         for [v, w] in MOTIONS.map(|motion| motion.map(Vec3::from)) {
             let (slow, t) = oracle::follow(&case.0, &[touch], (v, w), 4000.0);
             for (tolerance, allowed) in [(1e-4, 1.5e-4), (1e-6, 2e-5), (1e-10, 2e-8)] {
@@ -146,9 +150,8 @@ fn it_is_the_law_as_printed() {
                 let way = (fast.shift_m - slow.way).norm() * case.1.omega_rad_s() / v.norm();
                 assert!(way < 3.0 * allowed, "{rolling} {e} {v:?} {w:?} {tolerance:e}: {way:e}");
                 assert!((fast.time_s - t).abs() < 1e-12);
-                let loss = [fast.loss.friction, fast.loss.damping, fast.loss.rolling];
                 let energy = motion_j(&case.0, &v, &w);
-                for (found, printed) in loss.into_iter().zip(slow.lost) {
+                for (found, printed) in fast.loss.parts().into_iter().zip(slow.lost) {
                     let off = (found - printed).abs() / energy;
                     assert!(
                         off < 5.0 * allowed,
@@ -289,7 +292,7 @@ proptest! {
             let work = body.mass * body.gravity.dot(&out.shift_m);
             let scale = before + after + work.abs();
             prop_assert!((before + work - after - out.loss.sum()).abs() < 1e-12 * scale);
-            for part in [out.loss.friction, out.loss.damping, out.loss.rolling] {
+            for part in out.loss.parts() {
                 prop_assert!(part >= 0.0, "{:?}", out.loss);
             }
             prop_assert!(after <= (before + work) * (1.0 + 1e-12));
