@@ -105,7 +105,7 @@ impl DdaScratch {
             self.factor = None;
         }
         let mut load = -(self.springs * self.step.free);
-        for contact in contacts.iter() {
+        for contact in contacts {
             contact.add_load(&mut load);
         }
         load

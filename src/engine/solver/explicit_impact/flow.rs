@@ -13,14 +13,15 @@
 use super::changes::Changes;
 use crate::contact::TOUCH;
 use crate::contact::history::carry;
-use crate::contact::{ContactPoint, Feature, ShortList};
+use crate::contact::{ContactPoint, Feature};
 use crate::ground::NormalElement;
 use crate::rock::Vec3;
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
 use crate::solver::impact::dormand_prince::{Flow, NODES, Rates, put, three};
-use crate::solver::law::{Action, ContactPlace, ZERO};
+use crate::solver::law::{Action, ContactPlace};
 use crate::solver::loss::Loss;
 use crate::solver::stage::End;
+use arrayvec::ArrayVec;
 
 /// Where the way of the centre begins among the numbers that change; velocity, spin and the springs follow.
 pub(super) const WAY: usize = 0;
@@ -78,19 +79,10 @@ pub(super) struct Among<'a, 'w, const C: usize> {
     began: [HeldEnergy; C],
     damped: u32,
     /// Contacts at the state last asked for.
-    pressed: ShortList<PressedContact, C>,
+    pressed: ArrayVec<PressedContact, C>,
 }
 
 impl PressedContact {
-    const NONE: Self = Self {
-        place: 0,
-        touch: ContactPoint::NONE,
-        at: ContactPlace { n: ZERO, penetration: 0.0, shear: ZERO, roll: ZERO },
-        normal: NormalElement::NONE,
-        normal_force: 0.0,
-        slides: false,
-    };
-
     /// What its normal spring holds; the mass is that of the rock (kg).
     fn held(&self, mass: f64) -> HeldEnergy {
         let gives_back = self.normal_force > 0.0 || !self.normal.is_damped(mass);
@@ -114,7 +106,7 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
             face: None,
             began: [HeldEnergy::NONE; C],
             damped: 0,
-            pressed: ShortList::new(PressedContact::NONE),
+            pressed: ArrayVec::new(),
         }
     }
 
@@ -173,7 +165,7 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
     /// contact of that place would end where the step begins, again and again.
     pub(super) fn note_start(&mut self) {
         self.changes.begin(self.pressed.iter().map(|contact| &contact.touch));
-        for contact in self.pressed.iter() {
+        for contact in &self.pressed {
             self.began[contact.place] = contact.held(self.world.body.mass);
         }
     }
@@ -223,7 +215,7 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
     pub(super) fn remember(&mut self) {
         let histories = &mut self.state.histories;
         histories.iter_mut().for_each(|history| history.closed = false);
-        for contact in self.pressed.iter() {
+        for contact in &self.pressed {
             let PressedContact { place, touch, at, normal_force, slides, .. } = *contact;
             let history = &mut histories[place];
             (history.feature, history.triangle) = (touch.feature, touch.triangle);
