@@ -9,6 +9,7 @@ use super::proportion::{Proportion, RULE_OF_THREE, interval_95};
 use crate::frequency::Weights;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 /// Events a year with their 95 % interval, and what moves them.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -211,6 +212,14 @@ impl<'a> Running<'a> {
             far.add(stratum, sums);
         }
         Some(far)
+    }
+
+    /// The classes in which rocks may still count, of some, falling.
+    pub(super) fn open_classes(&self, within: Range<u16>) -> impl Iterator<Item = u16> {
+        let range = (within.start, 0)..(within.end.max(within.start), 0);
+        let mut last = None;
+        let classes = self.open.range(range).rev().map(|((class, _), _)| *class);
+        classes.filter(move |class| last.replace(*class) != Some(*class))
     }
 
     /// Adds rocks of a stratum. Sums depend on the order in their last bits: callers add in a fixed one.

@@ -184,6 +184,48 @@ fn what_may_still_come_has_no_more_energy_than_it_left_with_and_falls_for() {
     near(heavy[1], 0.3, 1e-12);
 }
 
+/// By hand: of 200 rocks of 0.3 events a year one has 1 MJ at a line and ten have 10 kJ; a hundred may still come, with 500 kJ at most. Once in
+/// 100 years, that is of seven rocks, so the energy may be 500 kJ, though no rock had any between 10 kJ and 1 MJ; where they can
+/// have 10.2 kJ it may be that, not that of the rocks seen in the same class of energy.
+#[test]
+fn the_energy_of_a_return_period_reaches_to_what_may_still_come() {
+    let law = FrequencyLaw::Events { per_year: 0.3 };
+    let asked = yearly::asked(vec![RockSource { name: "wall".to_owned(), law }]);
+    let floor = Some(LineFloor { ground_m: 490.0, gravity_m_s2: 10.0 });
+    let lines = [LineInfo { floor, ..yearly::line("road") }];
+    // of a fall from 10 m and 10 m/s: 150 J/kg
+    let high = |most_j: f64| {
+        let way = |index: usize| Row {
+            index,
+            mass_kg: most_j / 150.0,
+            stop: StopKind::TimeUp,
+            end_m: [0.0, 0.0, 500.0],
+            end_velocity_m_s: [10.0, 0.0, 0.0],
+            end_spin_rad_s: [0.0; 3],
+            springs_j: 0.0,
+            ..Row::of(&fall(1), Vec3::zeros())
+        };
+        let rocks = (100..200).filter_map(|k| OpenRock::of(&way(k))).collect();
+        let none = std::iter::empty::<Result<CrossingRow, Infallible>>();
+        let open = OpenRocks::find(rocks, (&lines, |_: &CrossingRow| None), none).unwrap();
+        let mut year = YearSums::new(&asked, &lines, &[]).unwrap();
+        for index in 0..11 {
+            let energy_j = if index == 0 { 1e6 } else { 10e3 };
+            year.add(&mut [yearly::row(index, "road", 1.0, energy_j)]);
+        }
+        year.leave_open(&open);
+        let weights = asked.frequency.as_ref().unwrap().weights(200);
+        let place = year.said(weights).places.remove(0).without_barriers;
+        let [.., known] = &place.returns[..] else { panic!("asked for 40 and 100 years") };
+        near(known.energy_j.unwrap(), 10e3, 1e-12);
+        known.high_95.unwrap()
+    };
+    for most_j in [500e3, 10.2e3, 60e3] {
+        // where the class of energy ends in which it lies: 5 %
+        assert!((most_j..1.06 * most_j).contains(&high(most_j)), "{most_j}: {}", high(most_j));
+    }
+}
+
 /// A map of 10 by 10 cells of 2 m: what ended on it and would have gone on is missing further on, and so is what has fallen out
 /// of the terrain in the middle of the map; what left over the edge of the map, and what came to rest, is not.
 #[test]

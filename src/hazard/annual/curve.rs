@@ -49,7 +49,7 @@ pub(super) struct Step {
     /// With the least energy.
     pub(super) point: ExceedancePoint,
     /// The class of that energy.
-    class: u16,
+    pub(super) class: u16,
     /// Largest over least energy (–): 1 of a rock.
     width: f64,
 }
@@ -96,7 +96,8 @@ impl Ceilings {
     }
 }
 
-/// The curve of rocks given by class, stratum and sums, by **falling** class; its steps fall in energy too.
+/// The curve of rocks given by class, stratum and sums, by **falling** class; its steps fall in energy too. From the largest energy
+/// on down it also steps where rocks may still come with no more: its upper end rises there.
 pub(super) fn curve(
     entries: impl Iterator<Item = (u16, u16, Sums)>,
     running: &mut Running<'_>,
@@ -108,14 +109,18 @@ pub(super) fn curve(
         let energy_j = lower_end_of(class);
         Step { point: point(energy_j, class, (running, ceilings)), class, width: RATIO }
     };
+    let down_to = |below: u16, before: u16, running: &Running<'_>| -> Vec<Step> {
+        let between = running.open_classes(below + 1..before);
+        std::iter::once(before).chain(between).map(|class| of_class(class, running)).collect()
+    };
     for (class, stratum, sums) in entries {
-        if open.is_some_and(|before| before != class) {
-            steps.extend(open.map(|before| of_class(before, running)));
+        if let Some(before) = open.filter(|before| *before != class) {
+            steps.extend(down_to(class, before, running));
         }
         running.add(stratum, &sums);
         open = Some(class);
     }
-    steps.extend(open.map(|before| of_class(before, running)));
+    steps.extend(open.into_iter().flat_map(|before| down_to(0, before, running)));
     never_rising(&mut steps);
     steps
 }
@@ -142,6 +147,11 @@ pub(super) fn resolved(
         left = lower;
         // what lies across the lower end of a class is met in the one below
         let is_deciding = deciding.iter().any(|at| *at == class || *at == class + 1);
+        if is_deciding && running.open_classes(class..class + 1).next().is_some() {
+            // what may still come lies anywhere in its class, the rocks seen below it
+            let point = point(step.point.energy_j, class, (running, ceilings));
+            steps.push(Step { point, ..*step });
+        }
         for equal in inside.chunk_by(|one, next| one.lower_j.total_cmp(&next.lower_j).is_eq()) {
             for rocks in equal {
                 running.add(rocks.stratum, &Sums::many(rocks.rocks));

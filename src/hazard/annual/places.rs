@@ -161,7 +161,9 @@ impl PassageTally {
             |years: &f64| return_energy((&steps, &smooth), ceilings, *years, all.has_exponent);
         let returns = periods.iter().map(energy).collect();
         let risks = self.risks(object, all);
-        let curve = smooth.iter().map(|step| step.point).collect();
+        let least = self.classes.keys().next().map_or(0, |(class, _)| *class);
+        let seen = smooth.iter().filter(|step| step.class >= least);
+        let curve = seen.map(|step| step.point).collect();
         AnnualFigures { passages, above: self.above(all), returns, risks, curve }
     }
 
