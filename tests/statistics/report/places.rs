@@ -274,6 +274,31 @@ fn zones_of_release_are_told_apart() {
     assert_eq!(said(1, 60.0), (0, false));
 }
 
+/// Sectors of a cliff adjoin each other: their names stand beside their middle, whichever way they were drawn, not at the corner of two.
+#[test]
+fn the_name_of_a_zone_stands_at_its_middle() {
+    let name_of = |turned: bool| {
+        let zone = |k: usize| {
+            let x = EAST_M + 20.0 + 60.0 * k as f64;
+            let mut ends = vec![[x, NORTH_M + 185.0], [x + 60.0, NORTH_M + 185.0]];
+            if turned {
+                ends.reverse();
+            }
+            ZoneMark { name: format!("sector {k}"), outline: ReleaseZone::Line(ends) }
+        };
+        let zones = vec![zone(0), zone(1)];
+        let report = Report { zones, marks: Vec::new(), ..site() };
+        let drawn = rockfall::report::drawings(&report);
+        let (_, plan) =
+            drawn.into_iter().find(|(heading, _)| heading.file == "plan.svg").expect("is drawn");
+        let names = plan.svg.lines().filter(|line| line.contains("sector"));
+        names.map(str::to_owned).collect::<Vec<String>>()
+    };
+    let names = name_of(false);
+    assert!(names.len() >= 2);
+    assert_eq!(names, name_of(true));
+}
+
 /// Where one rock has a thousand times the energy of another, both can be read: on a logarithmic scale, which the caption says with
 /// what is left out below.
 #[test]

@@ -2,6 +2,7 @@
 
 use super::super::zone_parts;
 use super::{GAP_PX, Names, Outline, PlacedName, WIDEST, Wanted, farther, outlines};
+use crate::output::ReleaseZone;
 use crate::report::canvas::{Label, SMALL, fitted};
 use crate::report::model::Report;
 use crate::report::panel::Panel;
@@ -20,8 +21,14 @@ impl Names {
         }
         let widest_px = WIDEST * panel.frame.width();
         let letters = || ('A'..='Z').map(String::from);
+        let is_scattered = |name: &str| {
+            let mut own = report.zones.iter().filter(|zone| zone.name == name);
+            own.any(|zone| matches!(zone.outline, ReleaseZone::Points(_)))
+        };
         let written = |words: &mut dyn Iterator<Item = String>| -> Vec<Wanted<'_>> {
-            let places = |(zone, words): (&Outline<'_>, String)| places(&zone.parts, &words);
+            let places = |(zone, words): (&Outline<'_>, String)| {
+                places(zone, is_scattered(zone.name), &words)
+            };
             zones.iter().map(|zone| zone.name).zip(zones.iter().zip(words).map(places)).collect()
         };
         let words = written(&mut zones.iter().map(|zone| fitted(zone.name, SMALL, widest_px)));
@@ -52,33 +59,76 @@ fn zones<'a>(panel: &Panel, report: &'a Report) -> Vec<Outline<'a>> {
     zones
 }
 
-/// Places for the name of a zone: at the ends of its largest part in the frame, or farther off with a stroke.
-fn places(parts: &[Vec<Spot>], words: &str) -> Vec<PlacedName> {
-    let largest = parts.iter().max_by(|one, other| extent(one).total_cmp(&extent(other)));
+/// Places for the name of a zone: beside the middle of the sides of its largest part in the frame, or farther off with a stroke. Those
+/// that its own outline runs through come last.
+fn places(zone: &Outline<'_>, is_scattered: bool, words: &str) -> Vec<PlacedName> {
+    let largest = zone.parts.iter().max_by(|one, other| extent(one).total_cmp(&extent(other)));
     let Some(part) = largest.filter(|part| !part.is_empty()) else { return Vec::new() };
-    let extreme = |of: fn(&Spot) -> f64| {
-        let end = part.iter().copied().max_by(|one, other| of(one).total_cmp(&of(other)));
-        end.unwrap_or_default()
-    };
-    let (top, bottom) = (extreme(|at| -at.1), extreme(|at| at.1));
-    let (left, right) = (extreme(|at| -at.0), extreme(|at| at.0));
+    let [top, bottom, left, right] = if is_scattered { ends(part) } else { middles(part) };
     let label = |(x, y): Spot, (dx, dy): Spot| Label::new(words, (x + dx, y + dy));
     let over = [(top, -GAP_PX), (bottom, GAP_PX)].into_iter().flat_map(|(end, by)| {
         let at = move || label(end, (0.0, by));
         [at().centred(), at(), at().right()]
     });
     let beside = [label(right, (GAP_PX, 0.0)), label(left, (-GAP_PX, 0.0)).right()];
-    let near = over.chain(beside).map(|label| PlacedName { label, stroke: None });
+    let mut near: Vec<Label> = over.chain(beside).collect();
+    near.sort_by_key(|label| zone.crosses(&label.frame()));
+    let near = near.into_iter().map(|label| PlacedName { label, stroke: None });
     near.chain(farther(&[top, bottom], words)).collect()
+}
+
+/// A coordinate on paper (px).
+type PaperAxis = fn(&Spot) -> f64;
+
+/// Right and down.
+const AXES: [PaperAxis; 2] = [|at| at.0, |at| at.1];
+
+/// The highest, lowest, leftmost and rightmost of some points.
+fn ends(points: &[Spot]) -> [Spot; 4] {
+    let end = |of: &dyn Fn(&Spot) -> f64| {
+        let end = points.iter().copied().max_by(|one, other| of(one).total_cmp(&of(other)));
+        end.unwrap_or_default()
+    };
+    let [right, down] = AXES;
+    [end(&|at| -down(at)), end(&down), end(&|at| -right(at)), end(&right)]
+}
+
+/// Where an outline is highest and lowest in the middle of its width, and leftmost and rightmost in the middle of its height: at corners
+/// the next zone may begin.
+fn middles(part: &[Spot]) -> [Spot; 4] {
+    let [right, down] = AXES;
+    let (x, [top, bottom]) = middle(part, right, down);
+    let (y, [left, right]) = middle(part, down, right);
+    [(x, top), (x, bottom), (left, y), (right, y)]
+}
+
+/// The middle of an outline along one axis, and its ends along the other one there.
+fn middle(part: &[Spot], along: PaperAxis, across: PaperAxis) -> (f64, [f64; 2]) {
+    let [low, high] = range(part.iter().map(along));
+    let middle = 0.5 * (low + high);
+    let met = |pair: &[Spot]| -> Option<[f64; 2]> {
+        let [from, to] = [along(&pair[0]), along(&pair[1])];
+        let share = (middle - from) / (to - from);
+        let ends = [across(&pair[0]), across(&pair[1])];
+        let at = ends[0] + share * (ends[1] - ends[0]);
+        if from.total_cmp(&to).is_eq() {
+            return Some(ends).filter(|_| (from - middle).abs() < 1e-9);
+        }
+        Some([at; 2]).filter(|_| (0.0..=1.0).contains(&share))
+    };
+    let all = part.windows(2).filter_map(met).flatten().collect::<Vec<f64>>();
+    // a point has no way
+    let all = if all.is_empty() { part.iter().map(across).collect() } else { all };
+    (middle, range(all.into_iter()))
+}
+
+/// Least and most; 0 of nothing.
+fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    let ends = values.map(|v| [v, v]);
+    ends.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]).unwrap_or_default()
 }
 
 /// Size of a part (px): half the way round it.
 fn extent(part: &[Spot]) -> f64 {
-    let range = |of: fn(&Spot) -> f64| {
-        let [low, high] = [f64::min as fn(f64, f64) -> f64, f64::max];
-        let ends = part.iter().map(of).map(|v| [v, v]);
-        let whole = ends.reduce(|a, b| [low(a[0], b[0]), high(a[1], b[1])]);
-        whole.map_or(0.0, |[least, most]| most - least)
-    };
-    range(|at| at.0) + range(|at| at.1)
+    AXES.map(|along| range(part.iter().map(along))).map(|[least, most]| most - least).iter().sum()
 }
