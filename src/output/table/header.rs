@@ -6,6 +6,9 @@ pub(in crate::output) type Columns = (&'static [&'static str], &'static [&'stati
 /// Most columns that a message names.
 const NAMED: usize = 5;
 
+/// Longest name of a column that is told in full (characters): a file with other separators is one column.
+const LONGEST_NAME: usize = 40;
+
 /// Before which columns of a file a group is missing; none if it has other columns than it should.
 pub(super) fn gaps(found: &[&str], (columns, groups): Columns) -> Option<Vec<usize>> {
     let mut rest = found.strip_prefix(columns)?;
@@ -54,12 +57,21 @@ fn expected<'a>(found: &[&str], (columns, groups): Columns) -> Vec<&'a str> {
 /// The first few columns by name and how many more there are; none of none.
 fn named<'a>(what: &str, columns: impl Iterator<Item = &'a &'a str>) -> Option<String> {
     let all: Vec<&str> = columns.copied().collect();
-    let shown = all[..all.len().min(NAMED)].join(", ");
+    let shown: Vec<String> = all.iter().take(NAMED).map(|name| cut(name)).collect();
+    let shown = shown.join(", ");
     match all.len() {
         0 => None,
         1 => Some(format!("{what} column {shown}")),
         n if n <= NAMED => Some(format!("{what} columns {shown}")),
         n => Some(format!("{what} columns {shown} and {} more", n - NAMED)),
+    }
+}
+
+/// A name, without what is too long to be one.
+fn cut(name: &str) -> String {
+    match name.char_indices().nth(LONGEST_NAME) {
+        Some((end, _)) => format!("{}…", &name[..end]),
+        None => name.to_owned(),
     }
 }
 
@@ -93,5 +105,9 @@ mod tests {
             assert_eq!(flaw(&found, TABLE), said, "{header}");
         }
         assert_eq!(gaps(&["index", "mass_kg", "speed_m_s"], TABLE), Some(vec![]));
+        // as a spreadsheet may save it
+        let semicolons = "ü".repeat(20) + &"index;mass_kg;".repeat(50);
+        let said = format!("{}index;mass_kg;index;…", "ü".repeat(20));
+        assert!(flaw(&[&semicolons], TABLE).ends_with(&said));
     }
 }
