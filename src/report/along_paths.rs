@@ -25,8 +25,10 @@ const RIGHT_PX: f64 = 32.0;
 const UNLIKE: f64 = 10.0;
 /// How far down the curve of the weakest rock is shown, over its largest energy (–): to a fifth of its speed.
 const SHOWN: f64 = 0.04;
-/// Least energy of the scale over the largest (–).
+/// Least energy of the scale over the largest (–): lower only for the weakest rock itself, down to [`FAINTEST`].
 const SMALLEST: f64 = 1e-5;
+/// The same where the largest energy of the weakest rock is less: beyond, it has none to speak of.
+const FAINTEST: f64 = 1e-9;
 
 /// A rock that is shown, and why.
 struct Chosen<'a> {
@@ -130,6 +132,7 @@ impl EnergyScale {
         let median_j = levels(report, ReportQuantity::Translational, 1.0);
         let median_j = median_j.first().map_or(f64::INFINITY, |(_, value)| *value);
         let lowest_j = (least_j * SHOWN).min(0.5 * median_j).max(SMALLEST * most_j);
+        let lowest_j = lowest_j.min(0.3 * least_j).max(FAINTEST * most_j);
         let is_log = ratio > UNLIKE && ratio.is_finite();
         let least_j = is_log.then(|| Axis::ratios(lowest_j, most_j, "").low);
         let (unit, size_j) = energy_unit(most_j);
@@ -153,20 +156,20 @@ impl EnergyScale {
         let said = |least_j: f64| {
             let (unit, size_j) = energy_unit(2.0 * least_j);
             let least = format::plain(math::rounded(least_j / size_j, 3));
-            let ratio = format::significant(self.ratio, 2);
+            let ratio = format::significant(math::rounded(self.ratio, 2), 2);
             fill(words.along().log_scale, &[("ratio", &ratio), ("least", &least), ("unit", &unit)])
         };
         self.least_j.map_or(String::new(), said)
     }
 }
 
-/// Median and P95 of the largest values of all rocks over a unit, by name; none of too few rocks.
+/// Median and P95 of the largest values of all rocks over a unit, by name; none of too few rocks to know both.
 fn levels(report: &Report, quantity: ReportQuantity, unit: f64) -> Vec<(&'static str, f64)> {
     let all = report.quantiles.get(&quantity).into_iter().flatten();
     let at = |asked: f64| all.clone().find(|one| (one.probability - asked).abs() < 1e-9);
-    let named = |(name, probability)| Some((name, at(probability)?.at.value / unit));
-    let found = [("P50", 0.5), ("P95", 0.95)].into_iter().filter_map(named);
-    found.filter(|(_, value)| value.is_finite() && *value > 0.0).collect()
+    let (Some(median), Some(p95)) = (at(0.5), at(0.95)) else { return Vec::new() };
+    let found = [("P50", median), ("P95", p95)].map(|(name, known)| (name, known.at.value / unit));
+    found.into_iter().filter(|(_, value)| value.is_finite() && *value > 0.0).collect()
 }
 
 /// Lines across, named beside the frame: the one that is the smaller lower where they are close.

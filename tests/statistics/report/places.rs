@@ -316,12 +316,27 @@ fn energies_of_unlike_rocks_along_their_ways_are_all_readable() {
         assert!(along.svg.contains(">P95</text>"));
         along.caption
     };
-    let [alike, unlike] = [1.0, 1000.0].map(caption);
+    let [alike, unlike, faint] = [1.0, 1000.0, 123_456.0].map(caption);
     assert!(!alike.contains("logarithmic"), "{alike}");
     assert!(
         unlike.contains("logarithmic") && unlike.contains("a factor of 1\u{2009}000; below"),
         "{unlike}"
     );
+    // 10 kJ beside 1.2 GJ
+    assert!(faint.contains("a factor of 120\u{2009}000; below 2 kJ"), "{faint}");
+}
+
+/// Of too few rocks no P95 is known: then neither figure nor caption has one.
+#[test]
+fn few_rocks_along_their_ways_have_no_percentiles_beside_them() {
+    let mut report = site();
+    for known in report.quantiles.values_mut() {
+        known.retain(|one| one.probability < 0.92);
+    }
+    let drawn = rockfall::report::drawings(&report);
+    let (_, along) =
+        drawn.into_iter().find(|(heading, _)| heading.file == "along.svg").expect("is drawn");
+    assert!(!along.svg.contains(">P50</text>") && !along.caption.contains("P95"));
 }
 
 /// A percentile has the same digits in a figure as in a table: those that its interval leaves.
