@@ -149,28 +149,38 @@ fn no_rock_comes_to_a_line_above_what_its_energy_lifts_it_to() {
     assert!(may_come(StopKind::Failed, 10.0, Some(floor)));
 }
 
+/// A road 10 m below where the rocks of [`may_still_come`] end.
+fn road_below() -> LineInfo {
+    let floor = Some(LineFloor { ground_m: 490.0, gravity_m_s2: 10.0 });
+    LineInfo { floor, ..yearly::line("road") }
+}
+
+/// Rocks that were out of time at 10 m/s above that road: each may come to it with 150 J/kg.
+fn may_still_come(indices: std::ops::Range<usize>, mass_kg: f64) -> OpenRocks {
+    let way = |index: usize| Row {
+        index,
+        mass_kg,
+        stop: StopKind::TimeUp,
+        end_m: [0.0, 0.0, 500.0],
+        end_velocity_m_s: [10.0, 0.0, 0.0],
+        end_spin_rad_s: [0.0; 3],
+        springs_j: 0.0,
+        ..Row::of(&fall(1), Vec3::zeros())
+    };
+    let rocks = indices.filter_map(|k| OpenRock::of(&way(k))).collect();
+    let none = std::iter::empty::<Result<CrossingRow, Infallible>>();
+    OpenRocks::find(rocks, (&[road_below()], |_: &CrossingRow| None), none).unwrap()
+}
+
 /// By hand: 200 rocks of 0.3 events a year that may still come down 10 m to a line. Their energy there is m g h + m v²/2 at most: only where that
 /// is 300 kJ or more do they move the upper end of the passages with so much.
 #[test]
 fn what_may_still_come_has_no_more_energy_than_it_left_with_and_falls_for() {
     let law = FrequencyLaw::Events { per_year: 0.3 };
     let asked = yearly::asked(vec![RockSource { name: "wall".to_owned(), law }]);
-    let floor = Some(LineFloor { ground_m: 490.0, gravity_m_s2: 10.0 });
-    let lines = [LineInfo { floor, ..yearly::line("road") }];
+    let lines = [road_below()];
     let high = |mass_kg: f64| {
-        let way = |index: usize| Row {
-            index,
-            mass_kg,
-            stop: StopKind::TimeUp,
-            end_m: [0.0, 0.0, 500.0],
-            end_velocity_m_s: [10.0, 0.0, 0.0],
-            end_spin_rad_s: [0.0; 3],
-            springs_j: 0.0,
-            ..Row::of(&fall(1), Vec3::zeros())
-        };
-        let rocks = (0..200).filter_map(|k| OpenRock::of(&way(k))).collect();
-        let none = std::iter::empty::<Result<CrossingRow, Infallible>>();
-        let open = OpenRocks::find(rocks, (&lines, |_: &CrossingRow| None), none).unwrap();
+        let open = may_still_come(0..200, mass_kg);
         let mut year = YearSums::new(&asked, &lines, &[]).unwrap();
         year.leave_open(&open);
         let weights = asked.frequency.as_ref().unwrap().weights(200);
@@ -191,23 +201,10 @@ fn what_may_still_come_has_no_more_energy_than_it_left_with_and_falls_for() {
 fn the_energy_of_a_return_period_reaches_to_what_may_still_come() {
     let law = FrequencyLaw::Events { per_year: 0.3 };
     let asked = yearly::asked(vec![RockSource { name: "wall".to_owned(), law }]);
-    let floor = Some(LineFloor { ground_m: 490.0, gravity_m_s2: 10.0 });
-    let lines = [LineInfo { floor, ..yearly::line("road") }];
+    let lines = [road_below()];
     // of a fall from 10 m and 10 m/s: 150 J/kg
     let high = |most_j: f64| {
-        let way = |index: usize| Row {
-            index,
-            mass_kg: most_j / 150.0,
-            stop: StopKind::TimeUp,
-            end_m: [0.0, 0.0, 500.0],
-            end_velocity_m_s: [10.0, 0.0, 0.0],
-            end_spin_rad_s: [0.0; 3],
-            springs_j: 0.0,
-            ..Row::of(&fall(1), Vec3::zeros())
-        };
-        let rocks = (100..200).filter_map(|k| OpenRock::of(&way(k))).collect();
-        let none = std::iter::empty::<Result<CrossingRow, Infallible>>();
-        let open = OpenRocks::find(rocks, (&lines, |_: &CrossingRow| None), none).unwrap();
+        let open = may_still_come(100..200, most_j / 150.0);
         let mut year = YearSums::new(&asked, &lines, &[]).unwrap();
         for index in 0..11 {
             let energy_j = if index == 0 { 1e6 } else { 10e3 };

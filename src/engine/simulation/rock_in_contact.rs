@@ -6,8 +6,9 @@
 
 use super::impacts::{MeshEnergy, Struck};
 use super::recorder::Recorder;
-use crate::contact::ContactPoint;
 use crate::contact::history::ContactHistory;
+use crate::contact::{ContactPoint, Feature};
+use crate::rock::Vec3;
 use crate::solver::contact_state::{Blow, ContactEnvironment, ContactState};
 use crate::solver::roughness::Meeting;
 use nalgebra::Rotation3;
@@ -108,13 +109,8 @@ impl RockInContact<'_, '_> {
             history.impact = if approach_m_s < world.law(history.triangle).capture_m_s {
                 0
             } else {
-                let struck = Struck {
-                    point_m: *c - history.n * world.body.radius,
-                    normal: history.n,
-                    feature: history.feature.kind,
-                    triangle: history.triangle,
-                    approach_m_s,
-                };
+                let of = (history.feature, history.triangle);
+                let struck = patch_struck((c, world.body.radius), &history.n, of, approach_m_s);
                 recorder.begin_impact(&struck, until_s, held_j)
             };
         }
@@ -145,13 +141,9 @@ impl RockInContact<'_, '_> {
         let note = |state: &ContactState, touch: &ContactPoint, (taken_j, is_new)| {
             let approach_m_s = -touch.normal.dot(&state.v);
             if is_new && approach_m_s >= world.law(touch.triangle).capture_m_s {
-                let struck = Struck {
-                    point_m: state.c - touch.normal * world.body.radius,
-                    normal: touch.normal,
-                    feature: touch.feature.kind,
-                    triangle: touch.triangle,
-                    approach_m_s,
-                };
+                let of = (touch.feature, touch.triangle);
+                let at = (&state.c, world.body.radius);
+                let struck = patch_struck(at, &touch.normal, of, approach_m_s);
                 let now_s = recorder.now.time_s;
                 recorder.begin_impact(&struck, now_s, &MeshEnergy::default());
             }
@@ -241,4 +233,15 @@ impl RockInContact<'_, '_> {
             self.recorder.now.turn(&turn);
         }
     }
+}
+
+/// What a rock with its centre at `c` strikes along the normal `n` of a feature, whose triangle answers: the touched point is `P1 = c − R n`.
+fn patch_struck(
+    (c, radius_m): (&Vec3, f64),
+    n: &Vec3,
+    (feature, triangle): (Feature, u32),
+    approach_m_s: f64,
+) -> Struck {
+    let point_m = c - n * radius_m;
+    Struck { point_m, normal: *n, feature: feature.kind, triangle, approach_m_s }
 }
