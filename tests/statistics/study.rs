@@ -13,6 +13,9 @@ use std::process::Command;
 fn every_scheme_reaches_every_exact_case() {
     for case in CASES {
         let terrain = case.terrain();
+        // where no closed form is, a fine computation stands in: seconds, and one for all schemes with springs
+        let of = |scheme| case.is_for(scheme).then(|| case.measures(&terrain, scheme));
+        let [sprung, rigid] = [Scheme::Reference, Scheme::Rigid].map(of);
         for (scheme, fineness) in [
             (Scheme::Adaptive, 1e-2),
             (Scheme::Adaptive, 1e-4),
@@ -25,7 +28,8 @@ fn every_scheme_reaches_every_exact_case() {
             }
             let step = case.settings(scheme, fineness);
             let journey = case.follow(&terrain, &step, &mut Scratch::default());
-            let error = case.error(&case.measures(&terrain, scheme), &journey);
+            let exact = if scheme.has_springs() { &sprung } else { &rigid };
+            let error = case.error(exact.as_ref().unwrap(), &journey);
             let (allowed, why) = case.allowed(&step);
             println!("{:13} {:10} {error:.1e} of {allowed:.1e}", case.name, scheme.name());
             assert!(
