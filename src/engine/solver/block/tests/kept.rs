@@ -1,6 +1,6 @@
 //! What no contact without friction can change: momentum along a plane and along a valley, and the angular momentum about the normal.
 
-use super::springs::{every_scheme, on_springs};
+use super::springs::{every_scheme, on_springs, with_long_steps};
 use super::*;
 use crate::body::{Core, HullFace, eota, sphere_points};
 use crate::random::{Purpose, stream, unit};
@@ -12,7 +12,7 @@ const STIFFNESS_N_M: f64 = 1e9;
 /// Height from which blocks fall (m, above the ball around them), and how long they are followed (s).
 const FALLS_M: f64 = 0.3;
 const LASTS_S: f64 = 2.5;
-/// What rounding may add up to (–): some 1e-16 a step, of which `dda` takes 1e5.
+/// What rounding may add up to (–): some 1e-16 a step, of which `dda` takes 1e4.
 const ROUNDING: f64 = 1e-10;
 /// The same with springs (–): an impact that leaves hardly any motion along its contacts is balanced by all of the motion.
 const GRAZING: f64 = 1e-4;
@@ -84,12 +84,17 @@ fn drifts(case: &mut BlockRun, k: u32, (kept, about): (&[Vec3], Option<Vec3>)) -
 }
 
 fn in_scheme(case: BlockRun, scheme: Scheme) -> BlockRun {
-    if scheme.has_springs() { on_springs(case, scheme, STIFFNESS_N_M) } else { case }
+    if !scheme.has_springs() {
+        return case;
+    }
+    let sprung = on_springs(case, scheme, STIFFNESS_N_M);
+    // what a step gains or loses grows with its length, and what must be kept does not depend on it
+    if scheme.has_fixed_step() { with_long_steps(sprung) } else { sprung }
 }
 
-/// How many blocks of each kind are followed; a fixed step takes a hundred times as many.
+/// How many blocks of each kind are followed; the two that take the most steps have half as many.
 fn throws(scheme: Scheme) -> u32 {
-    if scheme.has_fixed_step() { 1 } else { 4 }
+    scheme.of([2, 4, 2, 4])
 }
 
 /// Contacts without friction push along the normal of a plane: however a block bounces, rocks and slides, `v·s − g·s t` stays along the plane, and
