@@ -38,6 +38,12 @@ pub(crate) fn timed(command: Command) -> Duration {
     begun.elapsed()
 }
 
+/// When a run that takes `whole` is killed by chance `p` of 0..1: at any moment. One that goes on has less before it, about half of it its
+/// figures, which are drawn from the first one: later it has mostly ended, and nothing is killed.
+pub(crate) fn moment(whole: Duration, turn: usize, p: f64) -> Duration {
+    whole.mul_f64(if turn == 0 { p } else { 0.5 * p })
+}
+
 /// Starts the run, kills it after so long; whether it was still running.
 pub(crate) fn kill_after(mut command: Command, delay: Duration) -> bool {
     let mut child = command.stderr(Stdio::piped()).stdout(Stdio::null()).spawn().unwrap();
@@ -69,7 +75,7 @@ fn a_killed_run_is_resumed_to_the_same_bytes() {
         }
         let out = dir.path().join(format!("killed_{runs}"));
         for turn in 0..KILLS_OF_ONE_RUN {
-            let delay = whole.mul_f64(random.random::<f64>());
+            let delay = moment(whole, turn, random.random());
             // `--resume` into nothing begins; a run begun anew over old results is killed too
             let mode = if turn == 0 && runs % 3 == 2 { "--overwrite" } else { "--resume" };
             kills += usize::from(kill_after(run(&out, &[mode]), delay));
