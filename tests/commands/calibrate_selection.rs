@@ -8,6 +8,10 @@ use program::rockfall;
 use rockfall::calibrate::{Calibration, CalibrationStage};
 use rockfall::hazard::{Agreement, ObservedPath};
 use rockfall::output::read_calibration;
+use rockfall::plan::Plan;
+use rockfall::rock::Motion;
+use rockfall::scene::Scene;
+use rockfall::simulation::{Scratch, simulate_release};
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -45,20 +49,18 @@ points_m = [[-30.0, 0.0]]
     file
 }
 
-/// The ways of so many rocks of another seed.
-fn ways(scene: &Path, seed: u64, releases: usize) -> Vec<ObservedPath> {
-    let out = scene.with_extension("out");
-    let (seed, releases) = (seed.to_string(), releases.to_string());
-    let run = ["run", word(scene), "--quiet", "--overwrite", "--seed", &seed];
-    let done = rockfall(&[&run[..], &["--releases", &releases, "--out", word(&out)]].concat());
-    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
-    let rows = fs::read_to_string(out.join("releases.csv")).unwrap();
-    let way = |row: &str| {
-        let cells: Vec<&str> = row.split(',').collect();
-        let [x, y, to_x, to_y] = [5, 6, 8, 9].map(|at| cells[at].parse().unwrap());
-        ObservedPath { start_m: [x, y], end_m: [to_x, to_y] }
+/// The ways of so many rocks of another seed; nothing is written or drawn of them.
+fn ways(file: &Path, seed: u64, releases: usize) -> Vec<ObservedPath> {
+    let mut scene = Scene::read(file).unwrap();
+    (scene.seed, scene.release.count) = (seed, releases);
+    let plan = Plan::of_scene(&scene).unwrap();
+    let mut scratch = Scratch::default();
+    let way = |index| {
+        let fall = simulate_release(&plan, index, None, &mut scratch).unwrap();
+        let place_m = |of: &Motion| (of.position_m + plan.terrain.origin_m).xy().into();
+        ObservedPath { start_m: place_m(&fall.start), end_m: place_m(&fall.end) }
     };
-    rows.lines().skip(1).map(way).collect()
+    (0..releases).map(way).collect()
 }
 
 /// Fits two values, of which the ends tell next to nothing, with ten releases a trial; measured ends and what was found.
