@@ -221,7 +221,7 @@ fn rough_ground_and_soil_change_where_blocks_stop() {
         let (terrain, _) = scene.read_terrain().unwrap();
         let plan = Plan::compile(&scene, terrain).unwrap();
         let mut scratch = Scratch::default();
-        let rocks = 400;
+        let rocks = 150;
         let ways = (0..rocks).map(|index| {
             let fall = simulate_release(&plan, index, None, &mut scratch).unwrap();
             assert!(!matches!(fall.stop, Stop::Failed(_)), "{:?}", fall.stop);
