@@ -68,12 +68,15 @@ fn follow(
     falls
 }
 
+/// How long a stack is watched with each scheme (s). Twenty swings of its slowest spring, that of two equal spheres, where a second of rest
+/// takes seconds; what `adaptive` leaves grows until a second is over.
+const STANDS_S: [f64; 4] = [0.25, 1.0, 0.25, 1.0];
 /// What the rigid limit leaves of an overlap (–, over the radius).
 const RIGID_OVERLAP: f64 = 2e-5;
 
 /// One on the other: the springs are pressed by `(m₁ + m₂) g/p_N` and `m₂ g/p_N`, whatever the ratio of the masses.
 pub(super) fn stack(way: &SchemeSetting, notes: &mut Notes) {
-    let is_rigid = !way.scheme.has_springs();
+    let (is_rigid, stands_s) = (!way.scheme.has_springs(), way.scheme.of(STANDS_S));
     let floor = terrain(make::jittered_plane(40.0, 8, 0.0));
     let mass = |density_kg_m3| Rock { radius_m: RADIUS_M, density_kg_m3 }.mass_kg();
     for ratio in [1e-9, 1e-6, 1e-3, 1.0, 1e3, 1e6, 1e9] {
@@ -87,7 +90,7 @@ pub(super) fn stack(way: &SchemeSetting, notes: &mut Notes) {
         let z = [RADIUS_M - pens[0], 3.0 * RADIUS_M - pens[0] - pens[1]];
         let spheres = [(densities[0], z[0], 0.0), (densities[1], z[1], 0.0)];
         let setting = format!("upper over lower mass {ratio:.0e}");
-        let falls = follow((way, notes, &setting), &floor, &spheres, (GRAVITY_M_S2, 1.0));
+        let falls = follow((way, notes, &setting), &floor, &spheres, (GRAVITY_M_S2, stands_s));
         let [a, b] = &falls[..] else { continue };
         let ends = [a, b].map(|fall| fall.end.position_m.z);
         let found = [RADIUS_M - ends[0], 2.0 * RADIUS_M - (ends[1] - ends[0])];
@@ -99,8 +102,8 @@ pub(super) fn stack(way: &SchemeSetting, notes: &mut Notes) {
         let fastest = [a, b].map(|fall| fall.end.velocity_m_s.norm());
         // places are rounded, and over a step that is a speed; what the rigid limit leaves of an overlap comes within the second
         let placed = 4.0 * f64::EPSILON * z[1] / way.fineness;
-        // sweeps over masses up to 1e9 apart leave a hundred-thousandth of the weight: so much of `g` for a second
-        let swept = 1e-5 * GRAVITY_M_S2;
+        // sweeps over masses up to 1e9 apart leave a hundred-thousandth of the weight: so much of `g` for as long
+        let swept = 1e-5 * GRAVITY_M_S2 * stands_s;
         let bound = way.scheme.of([placed, swept, swept, RIGID_OVERLAP * RADIUS_M]);
         notes.hold(way, &setting, "speed at the end (m/s)", fastest[0].max(fastest[1]), bound);
     }
