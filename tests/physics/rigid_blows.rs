@@ -6,7 +6,7 @@ use crate::common;
 use crate::pairs::{free, momentum, space};
 use crate::patch::fold;
 use common::together::{Sphere, WORLD, World, energy_j, plane};
-use common::{GROUND, terrain};
+use common::{G, GROUND, terrain};
 use rockfall::ground::Ground;
 use rockfall::rock::Vec3;
 use rockfall::simulation::Trajectory;
@@ -249,5 +249,35 @@ fn neighbours_roll_down_a_valley_as_each_alone() {
             [fall, &alone[0]].map(|fall| fall.end.position_m.y - fall.start.position_m.y);
         // steps of a hundredth of a second in both
         assert!(one > 10.0 && (own - one).abs() < 0.01 * one, "{own} for {one} m");
+    }
+}
+
+/// Rocks that fall side by side share their steps: their largest speed, and the time and the speeds of their impacts, are those of the
+/// blow and not those of the ends of the step in which it falls.
+#[test]
+fn speeds_and_times_of_a_blow_are_those_of_its_instant() {
+    const FALL_M: f64 = 1.0;
+    let (fall_s, fast_m_s) = ((2.0 * FALL_M / G).sqrt(), (2.0 * G * FALL_M).sqrt());
+    let ball = |x: f64| -> Sphere { (0.5, 2700.0, [x, 0.0, 0.5 + FALL_M], [0.0; 3], [0.0; 3]) };
+    for (restitution, step_s) in [(0.5, 1e-2), (0.5, 3e-3), (1.0, 1e-2)] {
+        let ground = Ground { restitution: Some(restitution), ..GROUND };
+        let world = World { gravity_m_s2: G, step_s, ground, ..WORLD };
+        let (falls, _) = world.run(&plane(), &[ball(0.0), ball(1.0 + 1e-6)], 0.7);
+        for fall in &falls {
+            let [blow] = &fall.impacts[..] else { panic!("{:?}", fall.impacts) };
+            let most_j = 0.5 * fall.rock.mass_kg() * fast_m_s * fast_m_s;
+            let known = [
+                (fall.extremes.speed_m_s, fast_m_s),
+                (fall.extremes.total_j, most_j),
+                (blow.time_s, fall_s),
+                (blow.speed_in_m_s, fast_m_s),
+            ];
+            for (found, exact) in known {
+                assert!((found / exact - 1.0).abs() < 1e-12, "{step_s} {restitution}: {known:?}");
+            }
+            // both blows are followed together, to 2e-5
+            let kept = blow.speed_out_m_s / fast_m_s;
+            assert!((kept - restitution).abs() < 2e-5, "{step_s}: {kept} for {restitution}");
+        }
     }
 }

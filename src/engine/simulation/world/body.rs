@@ -8,7 +8,7 @@ use super::{BodyState, WorldBody};
 use crate::flight::{FlightEnd, Parabola, time_of_impact_past};
 use crate::release::Release;
 use crate::rock::{Motion, Vec3};
-use crate::simulation::impacts::{MeshEnergy, Struck};
+use crate::simulation::impacts::Struck;
 use crate::simulation::rest::RestCriterion;
 use crate::simulation::rock_in_contact::RockInContact;
 use crate::simulation::settings::RunSettings;
@@ -247,7 +247,14 @@ impl<'a> WorldBody<'a> {
                 triangle: hit.triangle,
                 approach_m_s: hit.approach_m_s,
             };
-            self.recorder.begin_impact(&struck, time_s, &MeshEnergy::default());
+            self.recorder.note_blow(&struck, time_s - hit.before_end_s, hit.speeds_m_s);
+        }
+    }
+
+    /// Notes how it moved before or after a blow in the last step.
+    pub(super) fn note_moment(&mut self, motion: &Motion) {
+        if !matches!(self.state, BodyState::Gone(_)) {
+            self.recorder.note_moment(motion);
         }
     }
 

@@ -324,6 +324,7 @@ impl<'a> IslandWindow<'a> {
         });
         // Only the rigid limit lists hits.
         let mut hits = done.hits.iter().peekable();
+        let mut moments = done.moments.iter().peekable();
         // a contact between two rocks that slips makes both paths "sliding"
         let mut slides = vec![false; self.bodies.len()];
         for pair_history in island
@@ -346,6 +347,9 @@ impl<'a> IslandWindow<'a> {
             effort.unsettled += u64::from(done.unsettled);
             let given = (done.losses[k], done.given[k]);
             go(body, self.settings, self.now_s, given, slides[k]);
+            while let Some(moment) = moments.next_if(|moment| moment.rock == k) {
+                body.note_moment(&moment.motion);
+            }
             body.spend(self.settings);
             std::mem::swap(&mut body.member, &mut island.members[k]);
         }

@@ -1,6 +1,6 @@
 //! What a step of an island did.
 
-use crate::rock::Vec3;
+use crate::rock::{Motion, Vec3};
 use crate::solver::loss::{Given, Loss};
 
 /// What one step did.
@@ -16,6 +16,8 @@ pub struct Done {
     pub rejected: u64,
     /// Impacts on the mesh, rock by rock (`rigid`; with the others the memory of a contact tells).
     pub hits: Vec<Hit>,
+    /// How rocks moved just before and just after their blows, rock by rock (`rigid`: with the others steps end there).
+    pub moments: Vec<BlowMoment>,
     /// Whether contact states did not settle (`dda`, `rigid`).
     pub unsettled: bool,
     /// Bonds that broke.
@@ -31,10 +33,23 @@ pub struct Hit {
     pub normal: Vec3,
     /// Speed of approach along it (m/s).
     pub approach_m_s: f64,
+    /// How long before the end of the step it fell (s).
+    pub before_end_s: f64,
+    /// Speed before it and after it (m/s).
+    pub speeds_m_s: [f64; 2],
     /// Point that is touched (m).
     pub point_m: Vec3,
     /// Where on the mesh.
     pub feature: crate::contact::FeatureKind,
     /// Triangle whose ground answers.
     pub triangle: u32,
+}
+
+/// A rock just before a blow within a step, or just after it.
+#[derive(Debug, Clone, Copy)]
+pub struct BlowMoment {
+    /// The rock, as a place in the island.
+    pub rock: usize,
+    /// Its motion; the time counts from the end of the step (s, 0 or less).
+    pub motion: Motion,
 }
