@@ -60,7 +60,9 @@ fn the_pages_open_in_a_browser() {
     let print = format!("--print-to-pdf={}", pdf.display());
     let _ = browser(&profile, &out.join("report.html"), &[&print, "--no-pdf-header-footer"]);
     let printed = fs::read(&pdf).unwrap();
-    let pages = printed.windows(11).filter(|at| at == b"/Type /Page").count();
+    // "/Pages" are the nodes above them
+    let pages = printed.windows(12).filter(|at| at.starts_with(b"/Type /Page") && at[11] != b's');
+    let pages = pages.count();
     // more of them would be half empty ones
     assert!(printed.starts_with(b"%PDF") && (9..=16).contains(&pages), "{pages} pages");
 }

@@ -107,6 +107,7 @@ footer { margin-top: 40px; padding-top: 8px; border-top: 1px solid #bbb; font-si
   .dense small { font-size: 6.8pt; line-height: 1.2; }
   figure, tr, .warnings, .note, dt, dd { break-inside: avoid; }
   dt { break-after: avoid; }
+  dl { columns: 2; column-gap: 8mm; font-size: 8.5pt; }
   .wide { overflow: visible; }
   figure { margin: 3mm 0 4mm; }
   figure svg { max-height: 150mm; }
