@@ -68,14 +68,6 @@ impl<'a> CellPassages<'a> {
         });
     }
 
-    /// Notes an energy (J) in the cell of a place.
-    pub(super) fn note(&mut self, at: &Vec3, total_j: f64) {
-        let Some(cells) = self.cells else { return };
-        walk(cells, [at; 2], |cell, _, _| {
-            self.found.add(CellPassage { cell, total_j, height_m: 0.0 });
-        });
-    }
-
     /// Whether there are any cells.
     pub(super) fn are_on(&self) -> bool {
         self.cells.is_some()

@@ -4,12 +4,14 @@
 //! rock goes the same way, bit for bit. Everything is in SI units and local coordinates; the writer
 //! adds the terrain's offset.
 
+mod booking;
+
 use super::cells::{CellPassage, CellPassages};
 use super::contact_heights::{StepHeights, TriangleBelow};
 use super::crossings::{Crossing, Crossings};
 use super::form::{AttitudeOnWay, Form, RockFlight, RockInstant, Turned};
 use super::heights::Heights;
-use super::impacts::{Impacts, ImpactsMark, MeshEnergy, Struck};
+use super::impacts::{Impacts, ImpactsMark};
 use super::stretches::{Stretch, Stretches};
 use super::{Effort, Extremes, Ledger, PathPoint, PathState, Stop, Trajectory};
 use crate::flight::Parabola;
@@ -17,7 +19,6 @@ use crate::flight::top::Top;
 use crate::plan::Recorders;
 use crate::release::Release;
 use crate::rock::{Motion, Vec3};
-use crate::solver::loss::Loss;
 use crate::terrain::Terrain;
 
 /// What to keep of a rock's way.
@@ -139,27 +140,19 @@ impl<'a> Recorder<'a> {
     /// Called at both ends of every flight and step: speed and energy along a parabola are largest
     /// at an end, and contact steps are short.
     pub(super) fn note_speed(&mut self) {
-        self.note_motion(&self.instant());
-    }
-
-    /// Notes how the rock moves at a moment within the last step: just before a blow, or just after it.
-    pub(super) fn note_moment(&mut self, motion: &Motion) {
-        let at = RockInstant { motion: *motion, turned: self.turned };
-        let total_j = self.note_motion(&at);
-        self.passages.note(&motion.position_m, total_j);
-        self.stretches.note(&motion.position_m, motion.velocity_m_s.norm(), 0.0);
-    }
-
-    /// Notes speed and energies; the sum of these (J).
-    fn note_motion(&mut self, at: &RockInstant) -> f64 {
-        let one = at.motion.translational_j(&self.form.rock);
-        let two = self.form.rotational_j(at);
+        let one = self.now.translational_j(&self.form.rock);
+        let two = self.form.rotational_j(&self.instant());
         let most = &mut self.extremes;
-        most.speed_m_s = most.speed_m_s.max(at.motion.velocity_m_s.norm());
+        most.speed_m_s = most.speed_m_s.max(self.now.velocity_m_s.norm());
         most.translational_j = most.translational_j.max(one);
         most.rotational_j = most.rotational_j.max(two);
         most.total_j = most.total_j.max(one + two);
-        one + two
+    }
+
+    /// Goes on from a blow that took no time.
+    pub(super) fn go_on_with(&mut self, motion: Motion) {
+        self.now = motion;
+        self.note_speed();
     }
 
     /// Motion and turn as of now.
@@ -323,105 +316,6 @@ impl<'a> Recorder<'a> {
             let state = self.path.last().map_or(PathState::Flight, |last| last.state);
             let now = self.instant();
             self.point(&now, state);
-        }
-    }
-
-    /// Begins an impact on a triangle's patch at the present motion, to end at `until_s` (s) at the latest; `held_j` is what
-    /// the springs of other contacts hold. Returns its number.
-    pub(super) fn begin_impact(
-        &mut self,
-        struck: &Struck,
-        until_s: f64,
-        held_j: &MeshEnergy,
-    ) -> u32 {
-        let times_s = (self.now.time_s, until_s);
-        self.begin_impact_at(struck, times_s, (self.now.velocity_m_s.norm(), None), held_j)
-    }
-
-    /// Notes a blow on a triangle's patch at `time_s` (s) that takes no time, with the speeds before and after it (m/s).
-    pub(super) fn note_blow(&mut self, struck: &Struck, time_s: f64, [before, after]: [f64; 2]) {
-        let held_j = MeshEnergy::default();
-        self.begin_impact_at(struck, (time_s, time_s), (before, Some(after)), &held_j);
-    }
-
-    /// Begins an impact, or goes on with one, as [`Impacts::begin`] says.
-    fn begin_impact_at(
-        &mut self,
-        struck: &Struck,
-        times_s: (f64, f64),
-        speeds_m_s: (f64, Option<f64>),
-        held_j: &MeshEnergy,
-    ) -> u32 {
-        // springs of contacts that are still pressed hold energy that is booked as lost until they
-        // give it back: not this impact's
-        let lost_j = (self.lost_to_each_j().less(held_j), self.ledger.soil_j);
-        let sheet = self.terrain.sheet_of[struck.triangle as usize];
-        let is_tree = self.terrain.sheets[usize::from(sheet)].is_tree;
-        let on = (struck, sheet, is_tree);
-        let (number, is_new) = self.impacts.begin(on, times_s, speeds_m_s, lost_j);
-        self.tree_impact_count += u32::from(is_new && is_tree);
-        number
-    }
-
-    /// Ends the impacts whose time is over or whose patch no longer `holds` the rock; whether those were the last, to be booked.
-    #[must_use]
-    pub(super) fn end_impacts(&mut self, holds: impl Fn(u32) -> bool) -> bool {
-        if !self.impacts.is_any() {
-            return false;
-        }
-        self.impacts.end(self.now.time_s, self.now.velocity_m_s.norm(), holds);
-        !self.impacts.is_any()
-    }
-
-    /// Books what the impacts took that have ended; `held_j` as above.
-    pub(super) fn book_impacts(&mut self, held_j: &MeshEnergy) {
-        self.impacts.book((self.lost_to_each_j().less(held_j), self.ledger.soil_j));
-    }
-
-    /// Ends all impacts where no spring holds anything.
-    pub(super) fn end_all_impacts(&mut self) {
-        if self.end_impacts(|_| false) {
-            self.book_impacts(&MeshEnergy::default());
-        }
-    }
-
-    /// Writes losses into the ledger, what springs take up counted in.
-    pub(super) fn pay(&mut self, loss: &Loss) {
-        self.ledger.friction_j += loss.friction;
-        self.ledger.damping_j += loss.damping;
-        self.ledger.rolling_j += loss.rolling;
-        self.ledger.trees_j += loss.trees;
-    }
-
-    /// Takes what springs hold at the end of an episode out of the losses, and what they `brought` along from before back in.
-    pub(super) fn hold(&mut self, stored: &Loss, brought: &Loss) {
-        let mut back = *brought;
-        back.add(stored, -1.0);
-        self.pay(&back);
-        self.ledger.springs_j -= back.sum();
-    }
-
-    /// Ends an episode in which motion and weight have gained `rise_j` (J), with [`Self::hold`]. What springs hold is not lost, and no gain is
-    /// due to what they have brought: what rises beyond that is an error of the numerics.
-    pub(super) fn end_episode(&mut self, rise_j: f64, stored: &Loss, brought: &Loss) {
-        self.hold(stored, brought);
-        self.ledger.rise_j = self.ledger.rise_j.max(rise_j + stored.sum() - brought.sum());
-    }
-
-    /// All losses so far (J).
-    /// Including what other rocks got or took.
-    pub(super) fn lost_j(&self) -> f64 {
-        let Ledger { friction_j, damping_j, rolling_j, trees_j, soil_j, others_j, .. } =
-            self.ledger;
-        friction_j + damping_j + rolling_j + trees_j + soil_j + others_j + self.ledger.passed_on_j
-    }
-
-    /// Those in contacts with the mesh, those with trees apart.
-    fn lost_to_each_j(&self) -> MeshEnergy {
-        let ledger = &self.ledger;
-        MeshEnergy {
-            slope_j: ledger.friction_j + ledger.damping_j + ledger.rolling_j + ledger.soil_j,
-            trees_j: ledger.trees_j,
         }
     }
 }

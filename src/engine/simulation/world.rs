@@ -81,6 +81,8 @@ struct WorldBody<'a> {
     pressed_m_s: f64,
     /// Mechanical energy and what others had got of it at the beginning of the contact episode (J).
     began_j: (f64, f64),
+    /// When the step began that blows have been gone through of (s), and the mechanical energy then (J).
+    step_began: Option<(f64, f64)>,
 }
 
 /// Where a rock is in its story.
@@ -202,6 +204,7 @@ fn body<'a>(
         foreseen_m_s: 0.0,
         pressed_m_s: 0.0,
         began_j: (0.0, 0.0),
+        step_began: None,
     }
 }
 

@@ -33,6 +33,6 @@ mod sweeps;
 
 pub use assembly::Island;
 pub use body::{BodySlot, IslandBody, Memory};
-pub use outcome::{Done, Hit};
+pub use outcome::{BlowInStep, Done, Hit};
 pub use rigid::TRAVEL;
 pub(crate) use rigid::{RigidIsland, blows_of};

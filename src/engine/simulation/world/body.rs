@@ -14,7 +14,7 @@ use crate::simulation::rock_in_contact::RockInContact;
 use crate::simulation::settings::RunSettings;
 use crate::simulation::{PathState, Stop, Trajectory};
 use crate::solver::contact_state::ContactEnvironment;
-use crate::solver::island::{Hit, IslandBody};
+use crate::solver::island::{BlowInStep, Hit, IslandBody};
 use crate::solver::loss::{Given, Loss};
 use crate::solver::step_control::ONSET;
 
@@ -251,11 +251,25 @@ impl<'a> WorldBody<'a> {
         }
     }
 
-    /// Notes how it moved before or after a blow in the last step.
-    pub(super) fn note_moment(&mut self, motion: &Motion) {
-        if !matches!(self.state, BodyState::Gone(_)) {
-            self.recorder.note_moment(motion);
+    /// Goes through a blow in the step that ends at `time_s` (s): up to it as the rock went, sliding or not, and between blows in flight.
+    pub(super) fn pass(
+        &mut self,
+        settings: &RunSettings,
+        blow: &BlowInStep,
+        (time_s, slides): (f64, bool),
+    ) {
+        if matches!(self.state, BodyState::Gone(_)) {
+            return;
         }
+        let flies = self.member.flew || self.step_began.is_some();
+        let now_s = self.recorder.now.time_s;
+        self.step_began = self.step_began.or(Some((now_s, self.total_j(settings))));
+        // a time that rounding has put before the step began
+        let fell_s = |motion: Motion| (time_s + motion.time_s).max(now_s);
+        let [before, after] = blow.motions.map(|at| Motion { time_s: fell_s(at), ..at });
+        let state = if flies { PathState::Flight } else { PathState::in_contact(slides) };
+        self.recorder.step_as(before, state, flies || self.member.state.is_free());
+        self.recorder.go_on_with(after);
     }
 
     /// Watches how far its velocity has changed.
@@ -281,8 +295,10 @@ impl<'a> WorldBody<'a> {
         (loss, given): (Loss, Given),
         (slides, was_flying): (bool, bool),
     ) {
-        let before_j = self.total_j(settings);
-        let dt = to.time_s - self.recorder.now.time_s;
+        let now_s = self.recorder.now.time_s;
+        let began = self.step_began.take();
+        let (began_s, before_j) = began.unwrap_or_else(|| (now_s, self.total_j(settings)));
+        let dt = to.time_s - began_s;
         // one slipping contact, with mesh or rock, makes the step "sliding"
         let slides = slides || self.member.state.histories.iter().any(|history| history.slides);
         // others alone hold it

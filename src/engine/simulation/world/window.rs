@@ -324,7 +324,7 @@ impl<'a> IslandWindow<'a> {
         });
         // Only the rigid limit lists hits.
         let mut hits = done.hits.iter().peekable();
-        let mut moments = done.moments.iter().peekable();
+        let mut blows = done.blows.iter().peekable();
         // a contact between two rocks that slips makes both paths "sliding"
         let mut slides = vec![false; self.bodies.len()];
         for pair_history in island
@@ -339,6 +339,9 @@ impl<'a> IslandWindow<'a> {
             while let Some(hit) = hits.next_if(|hit| hit.rock == k) {
                 body.hit(hit, self.now_s);
             }
+            while let Some(blow) = blows.next_if(|blow| blow.rock == k) {
+                body.pass(self.settings, blow, (self.now_s, slides[k]));
+            }
             let effort = &mut body.recorder.effort;
             // each rock is charged the steps of its island: work of one rock cannot be told apart in one system
             effort.steps += 1;
@@ -347,9 +350,6 @@ impl<'a> IslandWindow<'a> {
             effort.unsettled += u64::from(done.unsettled);
             let given = (done.losses[k], done.given[k]);
             go(body, self.settings, self.now_s, given, slides[k]);
-            while let Some(moment) = moments.next_if(|moment| moment.rock == k) {
-                body.note_moment(&moment.motion);
-            }
             body.spend(self.settings);
             std::mem::swap(&mut body.member, &mut island.members[k]);
         }

@@ -16,8 +16,8 @@ pub struct Done {
     pub rejected: u64,
     /// Impacts on the mesh, rock by rock (`rigid`; with the others the memory of a contact tells).
     pub hits: Vec<Hit>,
-    /// How rocks moved just before and just after their blows, rock by rock (`rigid`: with the others steps end there).
-    pub moments: Vec<BlowMoment>,
+    /// Blows within the step, rock by rock (`rigid`; with the others blows take time, and steps).
+    pub blows: Vec<BlowInStep>,
     /// Whether contact states did not settle (`dda`, `rigid`).
     pub unsettled: bool,
     /// Bonds that broke.
@@ -45,11 +45,11 @@ pub struct Hit {
     pub triangle: u32,
 }
 
-/// A rock just before a blow within a step, or just after it.
+/// A blow on a rock within a step.
 #[derive(Debug, Clone, Copy)]
-pub struct BlowMoment {
+pub struct BlowInStep {
     /// The rock, as a place in the island.
     pub rock: usize,
-    /// Its motion; the time counts from the end of the step (s, 0 or less).
-    pub motion: Motion,
+    /// Its motion before and after it; times count from the end of the step (s, 0 or less).
+    pub motions: [Motion; 2],
 }

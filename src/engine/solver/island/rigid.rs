@@ -21,7 +21,7 @@ mod sweeps;
 
 use super::body::{BodySlot, IslandBody, note_flights};
 use super::contact_queue::{ContactQueue, ContactsOfRocks};
-use super::outcome::{BlowMoment, Done, Hit};
+use super::outcome::{BlowInStep, Done, Hit};
 use crate::contact::pair::{PairHistory, between};
 use crate::rock::Vec3;
 use crate::solver::body::are_finite;
@@ -55,7 +55,7 @@ pub(crate) struct RigidIsland {
     losses: Vec<Loss>,
     given: Vec<Given>,
     hits: Vec<Hit>,
-    moments: Vec<BlowMoment>,
+    blows_in_step: Vec<BlowInStep>,
     due: BinaryHeap<PendingImpact>,
     /// Which pairs had a blow.
     struck: Vec<bool>,
@@ -108,13 +108,13 @@ impl RigidIsland {
         self.take_over(terrain, (members, pair_histories), dt);
         // blows fall in the order of their times, and are noted rock by rock
         self.hits.sort_by_key(|hit| hit.rock);
-        self.moments.sort_by_key(|moment| moment.rock);
+        self.blows_in_step.sort_by_key(|blow| blow.rock);
         let done = Done {
             dt,
             losses: std::mem::take(&mut self.losses),
             given: std::mem::take(&mut self.given),
             hits: std::mem::take(&mut self.hits),
-            moments: std::mem::take(&mut self.moments),
+            blows: std::mem::take(&mut self.blows_in_step),
             unsettled: !(settled && struck),
             ..Done::default()
         };
@@ -223,7 +223,7 @@ impl RigidIsland {
         self.struck.clear();
         self.struck.resize(pair_histories.len(), false);
         self.hits.clear();
-        self.moments.clear();
+        self.blows_in_step.clear();
         let slowest = pair_histories
             .iter()
             .map(|pair_history| capture_m_s(&pair_history.law))

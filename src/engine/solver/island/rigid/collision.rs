@@ -142,9 +142,12 @@ impl RigidIsland {
         after: &FrozenCollision,
         (taken_j, s): ([f64; BODIES], f64),
     ) {
+        // its own ends stand first, and are noted
+        for &rock in &touching.rocks[self.in_blow.len()..] {
+            self.begin_blow(rock, s);
+        }
         self.in_blow.clear();
         for (k, (&rock, from)) in touching.rocks.iter().zip(rocks).enumerate() {
-            self.note_moment(rock, s);
             let ball = &mut self.balls[rock];
             let (v, w) = after.motions[k];
             let lost_j = ball.energy_j((&from.v, &ball.w)) - ball.energy_j((&v, &w));

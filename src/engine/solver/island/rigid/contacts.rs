@@ -3,7 +3,7 @@
 use crate::contact::ContactPoint;
 use crate::contact::pair::{PairHistory, between};
 use crate::ground::{FrictionLimits, Law};
-use crate::rock::Vec3;
+use crate::rock::{Motion, Vec3};
 use crate::solver::body::{Body, Twist};
 use crate::solver::impact::{BlowTable, blow_along_a_line};
 use crate::solver::island::body::BodySlot;
@@ -80,6 +80,12 @@ impl StepBody {
     pub(super) fn before_end(&self, s: f64) -> (Vec3, Vec3) {
         let gravity = self.body.gravity;
         (self.c - (self.v - gravity * (0.5 * s)) * s, self.v - gravity * s)
+    }
+
+    /// The same with its spin; the time counts from the end of the step.
+    pub(super) fn motion_before_end(&self, s: f64) -> Motion {
+        let (position_m, velocity_m_s) = self.before_end(s);
+        Motion { time_s: -s, position_m, velocity_m_s, spin_rad_s: self.w }
     }
 
     /// Notes that a blow fell `s` (s) before the end of the step.

@@ -12,12 +12,12 @@ use super::contacts::{BallContact, ImpactScene, LIVELY, StepBody, hit_of};
 use super::sweeps::FEW;
 use crate::contact::ContactPoint;
 use crate::contact::pair::{PairHistory, between};
-use crate::rock::{Motion, Vec3};
+use crate::rock::Vec3;
 use crate::solver::body::Twist;
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
 use crate::solver::impact::throw;
 use crate::solver::island::body::IslandBody;
-use crate::solver::island::outcome::BlowMoment;
+use crate::solver::island::outcome::BlowInStep;
 use crate::solver::island::pair_contact::TOUCH;
 use crate::solver::law::capture_m_s;
 use crate::solver::loss::{Given, Loss};
@@ -158,34 +158,28 @@ impl RigidIsland {
         self.in_blow.clear();
         self.in_blow.extend(scene.ends_of(place));
         self.in_blow.dedup();
-        self.note_moments(s);
-        let known = self.hits.len();
+        let (known, noted) = (self.hits.len(), self.blows_in_step.len());
+        for k in 0..self.in_blow.len() {
+            self.begin_blow(self.in_blow[k], s);
+        }
         if place < scene.pair_histories.len() {
             self.blow_pair(scene, place, s);
         } else {
             self.blow_ground(scene, place - scene.pair_histories.len(), s);
         }
-        self.note_moments(s);
+        for blow in &mut self.blows_in_step[noted..] {
+            blow.motions[1] = self.balls[blow.rock].motion_before_end(s);
+        }
         for hit in &mut self.hits[known..] {
             hit.before_end_s = s;
             hit.speeds_m_s[1] = self.balls[hit.rock].before_end(s).1.norm();
         }
     }
 
-    /// Notes how the rocks of a blow move `s` (s) before the end of the step: their speeds are greatest just before a blow or just
-    /// after it, and neither is an end of the step.
-    fn note_moments(&mut self, s: f64) {
-        for k in 0..self.in_blow.len() {
-            self.note_moment(self.in_blow[k], s);
-        }
-    }
-
-    /// The same of one rock.
-    pub(super) fn note_moment(&mut self, rock: usize, s: f64) {
-        let ball = &self.balls[rock];
-        let (position_m, velocity_m_s) = ball.before_end(s);
-        let motion = Motion { time_s: -s, position_m, velocity_m_s, spin_rad_s: ball.w };
-        self.moments.push(BlowMoment { rock, motion });
+    /// Notes how a rock moves that a blow strikes `s` (s) before the end of the step.
+    pub(super) fn begin_blow(&mut self, rock: usize, s: f64) {
+        let motions = [self.balls[rock].motion_before_end(s); 2];
+        self.blows_in_step.push(BlowInStep { rock, motions });
     }
 
     /// Local error of a blow (–).
