@@ -132,8 +132,8 @@ impl Layer {
                 f64::from(cell.passages) / weights.all_rocks().max(1) as f64
             }
             Self::Reach => {
-                let strata = cell.totals_j.entries().iter();
-                proportion(weights, strata.map(|&(_, stratum, n)| (stratum, n as usize))).share
+                let strata = cell.totals_j.rocks();
+                proportion(weights, strata.map(|(stratum, n)| (stratum, n as usize))).share
             }
             Self::Deposits => f64::from(cell.deposits),
             Self::EnergyMax => cell.largest_j,
@@ -155,6 +155,8 @@ pub struct Maps {
     pub frame: MapFrame,
     /// Energies (J) above which rocks are counted: those of [`INTENSITY_J`], then what else is asked for.
     above_j: Vec<f64>,
+    /// Whether energies of return periods are asked for: then cells tell energies apart as well as there is room.
+    is_fine: bool,
     cells: BTreeMap<u32, MapCell>,
 }
 
@@ -163,11 +165,12 @@ pub struct Maps {
 pub struct MapState(Vec<(u32, MapCell)>);
 
 impl Maps {
-    /// Goes on from what earlier rocks left; `energies_j` (J) are those whose frequency is asked for.
+    /// Goes on from what earlier rocks left; `energies_j` (J) are those whose frequency is asked for, none where nothing a year is.
     pub fn new(frame: MapFrame, energies_j: &[f64], state: MapState) -> Self {
         let mut above_j = INTENSITY_J.to_vec();
         above_j.extend(energies_j.iter().filter(|joule| !INTENSITY_J.contains(joule)));
-        Self { frame, above_j, cells: state.0.into_iter().collect() }
+        let is_fine = !energies_j.is_empty();
+        Self { frame, above_j, is_fine, cells: state.0.into_iter().collect() }
     }
 
     /// Number of an energy (J) above which rocks are counted; none of one that was not asked for.
@@ -177,7 +180,7 @@ impl Maps {
 
     /// A cell, and the energies (J) above which its rocks are counted.
     fn known(&mut self, number: u32) -> (&mut MapCell, &[f64]) {
-        let new = || MapCell::new(self.above_j.len());
+        let new = || MapCell::new(self.above_j.len(), self.is_fine);
         (self.cells.entry(number).or_insert_with(new), &self.above_j)
     }
 

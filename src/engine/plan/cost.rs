@@ -27,6 +27,9 @@ const CELL_DISK: f64 = 100.0;
 const CELL_MEMORY: f64 = 60.0;
 /// A cell that rocks have passed (bytes).
 const PASSED_MEMORY: f64 = 250.0;
+/// A class of energy in a cell, where numbers a year are asked for (bytes), and the most of them before they are joined.
+const ENERGY_MEMORY: f64 = 8.0;
+const CELL_ENERGIES: f64 = 2048.0;
 /// A rock in a world with others (bytes).
 const TOGETHER_MEMORY: f64 = 6000.0;
 
@@ -60,10 +63,12 @@ impl Plan {
         };
         let together = if self.rock_against_rock.is_kept() { TOGETHER_MEMORY } else { 0.0 };
         // a rock passes the map from side to side a few times at most
-        let passed = match &self.maps {
-            Part::Kept(map) => cells.min(4.0 * releases * f64::from(map.columns + map.rows)),
+        let passages = match &self.maps {
+            Part::Kept(map) => 4.0 * releases * f64::from(map.columns + map.rows),
             Part::LeftOut(_) => 0.0,
         };
+        let passed = cells.min(passages);
+        let energies = if self.year.is_kept() { passages.min(CELL_ENERGIES * passed) } else { 0.0 };
         Cost {
             releases,
             path_points,
@@ -73,7 +78,8 @@ impl Plan {
                 + POINT_MEMORY * path_points
                 + FALLING_POINT_MEMORY * points * paths.min(IN_HAND)
                 + CELL_MEMORY * cells
-                + PASSED_MEMORY * passed,
+                + PASSED_MEMORY * passed
+                + ENERGY_MEMORY * energies,
         }
     }
 }

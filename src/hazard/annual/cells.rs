@@ -2,7 +2,8 @@
 
 use super::super::maps::{MapCell, Maps};
 use super::super::rate::{Limits, Running, Sums};
-use super::curve::{Ceilings, curve, return_energy};
+use super::curve::{Ceilings, curve, resolved, return_energy};
+use super::energies::EnergyClass;
 use super::{AnnualRequest, Matrix};
 use crate::frequency::{Frequency, Stratum, Weights};
 
@@ -26,8 +27,8 @@ pub struct YearMap {
 /// sources. A frequency is its own derivative by the logarithm of the rates; without power law there is none by the exponent.
 ///
 /// Of the sizes in a stratum (a factor of 2.2 in volume) the derivative by the exponent takes the mean. Energies of return periods are read
-/// from classes of energy (ratio 1.05), as cells keep no rocks one by one; their intervals reach to the far ends of their classes. Levels of
-/// hazard are counted.
+/// from classes of energy (ratio 1.003, up to 1.05 where many rocks pass), as cells keep no rocks one by one; their intervals reach to the
+/// far ends of their classes. Levels of hazard are counted.
 pub fn year_maps(maps: &Maps, asked: &AnnualRequest, weights: &Weights) -> Vec<YearMap> {
     let Some(frequency) = &asked.frequency else { return Vec::new() };
     let scores: Vec<Option<f64>> = frequency.strata().iter().map(Stratum::mean_score).collect();
@@ -53,18 +54,20 @@ pub fn year_maps(maps: &Maps, asked: &AnnualRequest, weights: &Weights) -> Vec<Y
             values.extend(running.estimate(limits));
             values.extend(has_exponent.then(|| running.by_exponent()));
         };
-        let entries = cell.energies().entries();
-        add(&mut entries.iter().map(|&(_, stratum, n)| (stratum, n)), &any);
+        add(&mut cell.energies().rocks(), &any);
         for (energy, limits) in &above {
             let rocks = energy.map_or(&[][..], |energy| cell.above(energy));
             add(&mut rocks.iter().copied(), limits);
         }
         running.clear();
-        let falling = entries.iter().rev();
+        let classes = cell.energies().by_class();
+        let falling = classes.entries().iter().rev();
         let falling = falling.map(|&(class, s, n)| (class, s, sums(s, Sums::many(n))));
-        let steps = curve(falling, &mut running, &ceilings);
+        let smooth = curve(falling, &mut running, &ceilings);
+        let parts: Vec<EnergyClass> = cell.energies().falling().map(EnergyClass::of).collect();
+        let steps = resolved((&smooth, &parts), &mut running, &ceilings, periods);
         for years in periods {
-            let found = return_energy((&steps, &steps), &ceilings, *years, has_exponent);
+            let found = return_energy((&steps, &smooth), &ceilings, *years, has_exponent);
             // an end that is open has no number, nor has the slope of nothing
             let or_none = |value: Option<f64>| value.unwrap_or(f64::NAN);
             values.extend([found.energy_j.unwrap_or(0.0), found.low_95, or_none(found.high_95)]);
@@ -87,7 +90,7 @@ fn level(matrix: &Matrix, (maps, cell): (&Maps, &MapCell), running: &mut Running
         let mut count = |stratum, rocks| running.add(stratum, &Sums::many(rocks));
         let above = |joule| maps.number_of(joule).map_or(&[][..], |energy| cell.above(energy));
         match limit {
-            None => cell.energies().entries().iter().for_each(|&(_, s, n)| count(s, n)),
+            None => cell.energies().rocks().for_each(|(s, n)| count(s, n)),
             Some(joule) => above(joule).iter().for_each(|&(s, n)| count(s, n)),
         }
         running.per_year()

@@ -142,8 +142,7 @@ pub(super) fn resolved(
     let mut left = rocks;
     for step in smooth {
         let class = step.class;
-        let (inside, lower) =
-            left.split_at(left.partition_point(|rocks| class_of(rocks.lower_j) >= class));
+        let (inside, lower) = left.split_at(left.partition_point(|rocks| rocks.class >= class));
         left = lower;
         // what lies across the lower end of a class is met in the one below
         let is_deciding = deciding.iter().any(|at| *at == class || *at == class + 1);

@@ -1,5 +1,7 @@
 //! Energies of the rocks that pass a place: of each rock as long as there is room, of many rocks in narrow classes.
 
+use super::super::classes::{ClassPart, class_of};
+
 /// Energies that are told apart, those of rocks of different strata for themselves: half a megabyte.
 const MOST_ENERGIES: usize = 1 << 15;
 /// Rocks that are sorted in at a time.
@@ -31,8 +33,18 @@ pub(super) struct EnergyCounts {
 pub(super) struct EnergyClass {
     pub(super) lower_j: f64,
     pub(super) upper_j: f64,
+    /// That of equal ratios in which its lower end lies.
+    pub(super) class: u16,
     pub(super) stratum: u16,
     pub(super) rocks: u32,
+}
+
+impl EnergyClass {
+    /// Rocks in a part of a class of equal ratios.
+    pub(super) fn of(part: ClassPart) -> Self {
+        let ClassPart { class, ends: [lower_j, upper_j], stratum, rocks } = part;
+        Self { lower_j, upper_j, class, stratum, rocks }
+    }
 }
 
 impl EnergyCounts {
@@ -61,7 +73,7 @@ impl EnergyCounts {
         let class = |&EnergyCount { key, stratum, rocks }: &EnergyCount| {
             let lower_j = end(key);
             let upper_j = if self.dropped_bits == 0 { lower_j } else { end(key + 1) };
-            EnergyClass { lower_j, upper_j, stratum, rocks }
+            EnergyClass { lower_j, upper_j, class: class_of(lower_j), stratum, rocks }
         };
         all.iter().rev().map(class).collect()
     }

@@ -1,6 +1,6 @@
 //! What is known of one cell of the maps.
 
-use super::super::classes::Counts;
+use super::super::classes::{Counts, FineCounts};
 use super::super::rate::proportion;
 use super::INTENSITY_J;
 use crate::frequency::Weights;
@@ -14,7 +14,7 @@ pub(in crate::hazard) struct MapCell {
     pub(super) deposits: u32,
     pub(super) largest_j: f64,
     pub(super) largest_m: f64,
-    pub(super) totals_j: Counts,
+    pub(super) totals_j: FineCounts,
     pub(super) heights_m: Counts,
     /// Rocks with a total energy of at least each of [`Maps::above_j`](super::Maps): counted, as classes of values would tell them to 5 % of
     /// the energy only.
@@ -22,7 +22,7 @@ pub(in crate::hazard) struct MapCell {
 }
 
 /// A cell on the disk: in the order of its fields, without their names, which would be most of it.
-type PackedCell = (u32, u32, f64, f64, Counts, Counts, Vec<StratumCounts>);
+type PackedCell = (u32, u32, f64, f64, FineCounts, Counts, Vec<StratumCounts>);
 
 impl From<PackedCell> for MapCell {
     fn from(packed: PackedCell) -> Self {
@@ -39,13 +39,15 @@ impl From<MapCell> for PackedCell {
 }
 
 impl MapCell {
-    /// Of which nothing is known yet, with so many energies to count above.
-    pub(super) fn new(energies: usize) -> Self {
-        Self { above: vec![StratumCounts::default(); energies], ..Self::default() }
+    /// Of which nothing is known yet, with so many energies to count above; in narrow classes where energies of return periods
+    /// are read from them.
+    pub(super) fn new(energies: usize, is_fine: bool) -> Self {
+        let totals_j = if is_fine { FineCounts::in_parts() } else { FineCounts::default() };
+        Self { above: vec![StratumCounts::default(); energies], totals_j, ..Self::default() }
     }
 
     /// Total energies of the rocks that pass.
-    pub(in crate::hazard) fn energies(&self) -> &Counts {
+    pub(in crate::hazard) fn energies(&self) -> &FineCounts {
         &self.totals_j
     }
 
@@ -78,8 +80,8 @@ impl MapCell {
                 let needed = (f64::from(self.passages) - rank + 1.0).max(1.0);
                 return f64::from(above.rocks()) >= needed;
             }
-            let strata = self.totals_j.entries().iter();
-            let all = strata.map(|&(_, s, n)| weights.of_stratum(usize::from(s)) * f64::from(n));
+            let strata = self.totals_j.rocks();
+            let all = strata.map(|(s, n)| weights.of_stratum(usize::from(s)) * f64::from(n));
             let all: f64 = all.sum();
             all - above.weight(weights) < 0.95 * all
         };
