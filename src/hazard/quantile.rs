@@ -188,6 +188,15 @@ pub(super) fn between(sorted: &[f64], place: f64) -> f64 {
     if above > below { below + place.fract() * (above - below) } else { below }
 }
 
+impl Percentile {
+    /// Rocks needed before percentile `p` has a two-sided interval with an upper end, `pⁿ ≤ 0.025`: 72 for P95 where 59 bound it on
+    /// one side, more of unlike weight as [`needs`](Self::needs) says.
+    pub fn needs_for_interval(&self, p: f64) -> usize {
+        let both = (math::ln(ONE_TAIL) / math::ln(p)).ceil();
+        (both * self.needs as f64 / needed(p) as f64).ceil() as usize
+    }
+}
+
 /// Fewest rocks of which the largest value bounds percentile `p` with 95 % confidence: `pⁿ ≤ 0.05`.
 pub(super) fn needed(p: f64) -> usize {
     (math::ln(WHOLE_TAIL) / math::ln(p)).ceil() as usize

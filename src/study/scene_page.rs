@@ -75,7 +75,7 @@ pub fn sentence(study: &SceneStudy, statistic: &StudyStatistic, wanted: Option<f
         }
         return format!(
             "{head}: too few rocks for an interval; {} or more are needed.",
-            statistic.own.needs
+            statistic.own.needs_for_interval(f64::from(statistic.percent) / 100.0)
         );
     };
     let steps = statistic.ladder.own_error;

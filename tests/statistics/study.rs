@@ -202,6 +202,10 @@ fn a_panel_without_sampling_says_why() {
     let faults = boxes::faults(&drawn, "error.svg");
     assert!(faults.is_empty(), "{}", faults.join("\n"));
     assert!(study("40", "few").contains("too few rocks for an interval"));
+    // 59 rocks bound a P95 on one side, an interval of it takes 72
+    assert!(study("65", "nearly").contains("too few rocks for an interval"));
+    let page = fs::read_to_string(dir.path().join("nearly/README.md")).unwrap();
+    assert!(page.contains("72 or more are needed") && !page.contains("59 or more"), "{page}");
 }
 
 /// Energies at a line are those of the rocks that cross it in a run, blocks with their own inertia: each percentile of the table is the
