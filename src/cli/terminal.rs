@@ -11,13 +11,14 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 /// Words at the beginning of a line that are coloured.
-const MARKS: [(&str, Style); 7] = [
+const MARKS: [(&str, Style); 8] = [
     ("error:", bold(AnsiColor::Red)),
     ("NOT KEPT:", bold(AnsiColor::Red)),
     ("outside its bound:", bold(AnsiColor::Red)),
     ("warning:", bold(AnsiColor::Yellow)),
     ("interrupted:", bold(AnsiColor::Yellow)),
     ("line \"", bold(AnsiColor::Cyan)),
+    ("object \"", bold(AnsiColor::Cyan)),
     ("barrier \"", bold(AnsiColor::Cyan)),
 ];
 

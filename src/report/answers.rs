@@ -20,7 +20,9 @@ pub fn answers(results: &Results) -> Vec<String> {
     let is_own = |line: &&LineSummary| {
         !line.info.of_barrier && barriers.iter().all(|one| one.barrier.name != line.info.name)
     };
-    let lines = summary.lines.iter().filter(is_own).map(line);
+    let is_object =
+        |line: &LineSummary| summary.asked.objects.iter().any(|one| one.name == line.info.name);
+    let lines = summary.lines.iter().filter(is_own).map(|one| line(one, is_object(one)));
     let places = summary.annual.iter().flat_map(|annual| &annual.places).filter_map(in_a_year);
     lines.chain(barriers.iter().map(barrier)).chain(places).collect()
 }
@@ -43,12 +45,14 @@ fn in_a_year(place: &AnnualPlace) -> Option<String> {
     Some(format!("object \"{name}\": {energy} {unit} or more {}{barriers}", said(&without.rate)))
 }
 
-fn line(of: &LineSummary) -> String {
+fn line(of: &LineSummary, is_object: bool) -> String {
     let name = &of.info.name;
+    let [what, comes, come] =
+        if is_object { ["object", "hits", "hit"] } else { ["line", "crosses", "cross"] };
     if of.reach.count == 0 {
         let may_come = but_may_come(of.reach.censored);
         return format!(
-            "line \"{name}\": no rock crosses it{may_come} {}",
+            "{what} \"{name}\": no rock {comes} it{may_come} {}",
             interval_of_none(&of.reach)
         );
     }
@@ -57,7 +61,7 @@ fn line(of: &LineSummary) -> String {
         found.map_or_else(|| "needs more rocks".to_owned(), said)
     };
     format!(
-        "line \"{name}\": {} of the rocks cross it {}; P95 of energy {}, of height {}",
+        "{what} \"{name}\": {} of the rocks {come} it {}; P95 of energy {}, of height {}",
         share(&of.reach),
         share_interval(&of.reach),
         p95("total_j", energy),
@@ -169,6 +173,24 @@ mod tests {
         assert_eq!(said(940_000, 1_000_000), "94.00 % (93.95 % to 94.05 %)");
         assert_eq!(said(940, 1000), "94 % (92 % to 95 %)");
         assert_eq!(said(0, 1_000_000), "0.0000 % (0.0000 % to 0.0003 %)");
+    }
+
+    /// An object is hit, a line crossed: both stand below each other.
+    #[test]
+    fn objects_are_hit() {
+        let said = |name: &str, is_object: bool| {
+            let info = crate::hazard::LineInfo {
+                name: name.to_owned(),
+                length_m: 1.0,
+                corners_m: Vec::new(),
+                of_barrier: false,
+                floor: None,
+            };
+            let found = crate::hazard::Line::new(info).summary(100);
+            line(&found, is_object)
+        };
+        assert!(said("path", false).starts_with("line \"path\": no rock crosses it"));
+        assert!(said("barn", true).starts_with("object \"barn\": no rock hits it"));
     }
 
     /// None of 2000 bounds a share by 3/2000, one decimal of which would be 0.1 %.

@@ -59,7 +59,7 @@ macro_rules! words {
 words! {
     code, quoted, interval, at_least, at_most, and, release_one, release_many, rock_one,
     rock_many, more_rock_one, more_rock_many, no_interval, interval_95, rockfall_report,
-    stored_path_one, stored_path_many, seed, slope_in_3d, client, project, author, date, question,
+    stored_path_one, stored_path_many, seed, slope_in_3d, client, project, author, date, question, question_zones,
     question_lines, question_barriers, read_first, ch_where, ch_how, ch_lines, ch_barriers,
     ch_year, ch_sure, ch_out, ch_inputs, ch_words, figure, no_error_study, error_study,
     error_study_caption, figures, plan_of, error_head, error_axis, error_time, error_own, error_sampling,

@@ -121,7 +121,13 @@ impl FrequencyLaw {
             Self::Classes(classes) => {
                 let class = |class: &Class| {
                     let Class { volume_m3: [least, largest], per_year } = class;
-                    format!("{per_year} a year of {least} to {largest} m³")
+                    // without spaces: in a list a pattern of words then ends where a class does
+                    let volumes = if least.total_cmp(largest).is_eq() {
+                        least.to_string()
+                    } else {
+                        format!("{least}–{largest}")
+                    };
+                    format!("{per_year} a year of {volumes} m³")
                 };
                 classes.iter().map(class).collect::<Vec<_>>().join(", ")
             }
@@ -185,5 +191,18 @@ impl Stratum {
         let grown = libm::expm1(b * decades);
         let part = if grown > 0.0 { decades / grown } else { 1.0 / b };
         Some(part - math::ln(least))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// One volume is said once: a class of 8 m³ read "8 to 8 m³".
+    #[test]
+    fn one_volume_is_said_once() {
+        let class = |volume_m3, per_year| Class { volume_m3, per_year };
+        let law = FrequencyLaw::Classes(vec![class([8.0, 8.0], 0.2), class([0.5, 2.0], 0.003)]);
+        assert_eq!(law.in_words(), "0.2 a year of 8 m³, 0.003 a year of 0.5–2 m³");
     }
 }

@@ -20,6 +20,7 @@ const CURVE_PX: f64 = 165.0;
 const CHANGES: &str = "What changes from A to B";
 const CHANGES_CAPTION: &str = "Change of each statistic over its value in A, with its 95 % interval; a vermillion diamond where the \
     interval leaves out zero. One in twenty intervals misses by chance.";
+const BEHIND_CAPTION: &str = "A name in quotation marks alone stands for the rocks that the barriers of each run have let through to that place.";
 const CURVES_CAPTION: &str = "Share of the rocks that exceed a value: A full, B dashed ({a} and {b} rocks). Axes end where one in \
     two hundred exceeds in both.";
 /// The same where rocks weigh what they stand for.
@@ -107,6 +108,9 @@ fn changes(groups: &[Group], words: &Words) -> Drawing {
     });
     let beyond = rows.iter().flat_map(|(_, values)| values).any(|x| x.abs() > MOST_CHANGE);
     let mut caption = words.say(CHANGES_CAPTION);
+    if groups.iter().any(|group| group.name.starts_with('“')) {
+        caption = format!("{caption} {}", words.say(BEHIND_CAPTION));
+    }
     if beyond {
         caption =
             format!("{caption} {}", words.say("What lies beyond the frame is drawn at its edge."));

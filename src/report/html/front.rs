@@ -59,7 +59,8 @@ fn question(report: &Report) -> String {
         marks.map(|mark| words.quoted(&mark.name)).collect()
     };
     let (lines, barriers) = (names(false), names(true));
-    let mut asked = words.question.to_owned();
+    let mut asked =
+        if zones(report) > 1 { words.question_zones } else { words.question }.to_owned();
     for (text, names) in [(words.question_lines, lines), (words.question_barriers, barriers)] {
         if !names.is_empty() {
             asked += &fill(text, &[("names", &first_of(&names))]);
@@ -67,6 +68,14 @@ fn question(report: &Report) -> String {
     }
     let mark = if words.code == "fr" { "\u{a0}?" } else { "?" };
     format!("<p class=\"question\">{}{mark}</p>\n", escape(&asked))
+}
+
+/// Zones that rocks come from: outlines of one name are one zone.
+fn zones(report: &Report) -> usize {
+    let mut names: Vec<&str> = report.zones.iter().map(|zone| zone.name.as_str()).collect();
+    names.sort_unstable();
+    names.dedup_by(|next, kept| !next.is_empty() && next == kept);
+    names.len()
 }
 
 /// Names that one sentence still holds; of more it has one less, and says how many there are.

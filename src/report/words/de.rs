@@ -35,6 +35,7 @@ pub(super) static WORDS: Words = Words {
     author: "Verfasser",
     date: "Datum",
     question: "Wie weit kommen Blöcke aus dem Ablösegebiet, wie schnell sind sie und wie hoch springen sie",
+    question_zones: "Wie weit kommen Blöcke aus den Ablösegebieten, wie schnell sind sie und wie hoch springen sie",
     question_lines: ", was kommt bei {names} an",
     question_barriers: ", und was trifft auf {names} und kommt daran vorbei",
     read_first: "Zuerst zu lesen",

@@ -31,6 +31,7 @@ pub(super) static WORDS: Words = Words {
     author: "Author",
     date: "Date",
     question: "How far do rocks from the release zone come, how fast and how high",
+    question_zones: "How far do rocks from the release zones come, how fast and how high",
     question_lines: ", what arrives at {names}",
     question_barriers: ", and what reaches and passes {names}",
     read_first: "Read this first",

@@ -35,6 +35,7 @@ pub(super) static WORDS: Words = Words {
     author: "Auteur",
     date: "Date",
     question: "Jusqu’où vont les blocs partis de la zone de départ, à quelle vitesse et à quelle hauteur",
+    question_zones: "Jusqu’où vont les blocs partis des zones de départ, à quelle vitesse et à quelle hauteur",
     question_lines: ", qu’est-ce qui atteint {names}",
     question_barriers: ", et qu’est-ce qui atteint et franchit {names}",
     read_first: "À lire d’abord",

@@ -35,6 +35,7 @@ pub(super) static WORDS: Words = Words {
     author: "Autore",
     date: "Data",
     question: "Fin dove arrivano i massi dalla zona di distacco, con quale velocità e a quale altezza",
+    question_zones: "Fin dove arrivano i massi dalle zone di distacco, con quale velocità e a quale altezza",
     question_lines: ", che cosa arriva a {names}",
     question_barriers: ", e che cosa raggiunge e supera {names}",
     read_first: "Da leggere per primo",

@@ -147,6 +147,11 @@ mod tests {
         assert!(
             said.starts_with("2 von 3 Zeilen von a.csv") && said.ends_with("behält den Radius")
         );
+        // one volume and a range, in either order
+        let said = words.say("pillar: 0.2 a year of 8 m³, 0.003 a year of 0.5–2 m³");
+        assert_eq!(said, "pillar: 0.2 pro Jahr von 8 m³, 0.003 pro Jahr von 0.5–2 m³");
+        let said = words.say("0.003 a year of 0.5–2 m³, 0.2 a year of 8 m³");
+        assert_eq!(said, "0.003 pro Jahr von 0.5–2 m³, 0.2 pro Jahr von 8 m³");
         let english = Words::of(Language::En);
         assert_eq!(english.say("left out: x"), "left out: x");
         assert_eq!(english.part("flat edges"), "flat edges");

@@ -1,6 +1,7 @@
 //! The page as a reader meets it: what comes first, how figures are numbered, and that all of it can be read on a dark ground.
 
 use super::{inputs, places, slope, svg};
+use rockfall::report::model::{Report, ZoneMark};
 use rockfall::report::{self, html};
 
 /// The first page holds site, question, map and numbers, before all else.
@@ -22,6 +23,19 @@ fn the_first_page_holds_the_answer() {
     ];
     let places = parts.map(|part| page.find(part).unwrap());
     assert!(places.is_sorted(), "{places:?}");
+}
+
+/// Of several zones the question speaks in the plural; outlines of one name are one zone.
+#[test]
+fn the_question_knows_how_many_zones_there_are() {
+    let site = places::site();
+    let of = |names: &[&str]| {
+        let named = |name: &&str| ZoneMark { name: (*name).to_owned(), ..site.zones[0].clone() };
+        let report = Report { zones: names.iter().map(named).collect(), ..places::site() };
+        html::page(&report, &[]).contains("from the release zones come")
+    };
+    assert!(!of(&[""]) && !of(&["wall", "wall"]));
+    assert!(of(&["wall", "gully", "wall"]) && of(&["", ""]));
 }
 
 /// Figures are numbered as a reader meets them, in every language and whatever was drawn.

@@ -14,4 +14,12 @@ pub(super) const SAMPLES: &[(&str, &str)] = &[
         "[[objects]] without [frequency]: how many releases hit them is computed, how often a year and at what risk is not",
         "[[objects]] ohne [frequency]: wie viele Ablösungen sie treffen, wird gerechnet, wie oft im Jahr und mit welchem Risiko nicht",
     ),
+    ("{name}: {a} a year of {b} m³, {rest}", "{name}: {a} pro Jahr von {b} m³, {rest}"),
+    ("{name}: {a} a year of {b} m³", "{name}: {a} pro Jahr von {b} m³"),
+    ("{a} a year of {b} m³, {rest}", "{a} pro Jahr von {b} m³, {rest}"),
+    ("{a} a year of {b} m³", "{a} pro Jahr von {b} m³"),
+    (
+        "A name in quotation marks alone stands for the rocks that the barriers of each run have let through to that place.",
+        "Ein Name in Anführungszeichen allein steht für die Blöcke, die die Schutzbauwerke jeder Rechnung bis dorthin durchgelassen haben.",
+    ),
 ];

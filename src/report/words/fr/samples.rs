@@ -14,4 +14,12 @@ pub(super) const SAMPLES: &[(&str, &str)] = &[
         "[[objects]] without [frequency]: how many releases hit them is computed, how often a year and at what risk is not",
         "[[objects]] sans [frequency]\u{a0}: combien de départs les touchent est calculé, combien de fois par an et avec quel risque ne l’est pas",
     ),
+    ("{name}: {a} a year of {b} m³, {rest}", "{name}\u{a0}: {a} par an de {b} m³, {rest}"),
+    ("{name}: {a} a year of {b} m³", "{name}\u{a0}: {a} par an de {b} m³"),
+    ("{a} a year of {b} m³, {rest}", "{a} par an de {b} m³, {rest}"),
+    ("{a} a year of {b} m³", "{a} par an de {b} m³"),
+    (
+        "A name in quotation marks alone stands for the rocks that the barriers of each run have let through to that place.",
+        "Un nom seul entre guillemets désigne les blocs que les ouvrages de chaque calcul ont laissés passer jusque-là.",
+    ),
 ];

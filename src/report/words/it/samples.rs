@@ -14,4 +14,12 @@ pub(super) const SAMPLES: &[(&str, &str)] = &[
         "[[objects]] without [frequency]: how many releases hit them is computed, how often a year and at what risk is not",
         "[[objects]] senza [frequency]: quanti distacchi li colpiscono è calcolato, quante volte all’anno e con quale rischio no",
     ),
+    ("{name}: {a} a year of {b} m³, {rest}", "{name}: {a} all’anno di {b} m³, {rest}"),
+    ("{name}: {a} a year of {b} m³", "{name}: {a} all’anno di {b} m³"),
+    ("{a} a year of {b} m³, {rest}", "{a} all’anno di {b} m³, {rest}"),
+    ("{a} a year of {b} m³", "{a} all’anno di {b} m³"),
+    (
+        "A name in quotation marks alone stands for the rocks that the barriers of each run have let through to that place.",
+        "Un nome da solo fra virgolette indica i massi che le opere di ogni calcolo hanno lasciato passare fin lì.",
+    ),
 ];
