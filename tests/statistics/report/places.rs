@@ -271,6 +271,8 @@ fn zones_of_release_are_told_apart() {
     // on its rim; in the key; not at all
     assert_eq!(said(2, 60.0), (2, false));
     assert_eq!(said(12, 6.0), (1, true));
+    // more than there are letters have two
+    assert_eq!(said(40, 4.0), (1, true));
     assert_eq!(said(1, 60.0), (0, false));
 }
 

@@ -8,8 +8,15 @@ use crate::report::model::Report;
 use crate::report::panel::Panel;
 use crate::report::svg::path::Spot;
 
-/// More zones than there are letters are told by their outlines alone.
-const MOST_NAMED: usize = 26;
+/// More zones are told by their outlines alone: their key would be longer than the map.
+const MOST_NAMED: usize = 104;
+
+/// Letters of a zone by its number from 0: A to Z, then AA, AB and so on.
+fn letters_of(number: usize) -> String {
+    let letter = |k: usize| char::from(b'A' + (k % 26) as u8);
+    let first = number.checked_div(26).and_then(|round| round.checked_sub(1)).map(letter);
+    first.into_iter().chain([letter(number)]).collect()
+}
 
 impl Names {
     /// Adds the names of the zones where there are several; letters where they would be read as those of others or have no room.
@@ -20,7 +27,7 @@ impl Names {
             return self;
         }
         let widest_px = WIDEST * panel.frame.width();
-        let letters = || ('A'..='Z').map(String::from);
+        let letters = || (0..).map(letters_of);
         let is_scattered = |name: &str| {
             let mut own = report.zones.iter().filter(|zone| zone.name == name);
             own.any(|zone| matches!(zone.outline, ReleaseZone::Points(_)))
