@@ -72,7 +72,8 @@ pub(super) fn draw(report: &Report) -> Option<Drawing> {
         return None;
     }
     let words = report.words();
-    let scale = EnergyScale::of(report, &chosen);
+    let energies = levels(report, ReportQuantity::Translational);
+    let scale = EnergyScale::of(energies.first().map(|(_, median_j)| *median_j), &chosen);
     let curves: [Vec<Vec<(f64, f64)>>; 3] = [
         along(&chosen, |rock, k| rock.path.points[k].speed_m_s),
         // translational energy grows with the square of the speed, and is largest where the speed is
@@ -86,9 +87,9 @@ pub(super) fn draw(report: &Report) -> Option<Drawing> {
         }),
     ];
     let levels = [
-        levels(report, ReportQuantity::Speed, 1.0),
-        levels(report, ReportQuantity::Translational, scale.size_j),
-        levels(report, ReportQuantity::Height, 1.0),
+        levels(report, ReportQuantity::Speed),
+        energies.into_iter().map(|(name, joule)| (name, joule / scale.size_j)).collect(),
+        levels(report, ReportQuantity::Height),
     ];
     let panels = panels((&curves, &levels), &scale, words);
     let bottom = panels[2].frame.bottom + FOOT_PX;
@@ -124,13 +125,13 @@ struct EnergyScale {
 }
 
 impl EnergyScale {
-    fn of(report: &Report, chosen: &[Chosen<'_>]) -> Self {
+    /// Of chosen rocks, where the median of all rocks (J) is known or not.
+    fn of(median_j: Option<f64>, chosen: &[Chosen<'_>]) -> Self {
         let largest = || chosen.iter().map(|rock| rock.fall.max_translational_j);
         let (most_j, least_j) =
             (largest().fold(0.0, f64::max), largest().fold(f64::INFINITY, f64::min));
         let ratio = most_j / least_j;
-        let median_j = levels(report, ReportQuantity::Translational, 1.0);
-        let median_j = median_j.first().map_or(f64::INFINITY, |(_, value)| *value);
+        let median_j = median_j.unwrap_or(f64::INFINITY);
         let lowest_j = (least_j * SHOWN).min(0.5 * median_j).max(SMALLEST * most_j);
         let lowest_j = lowest_j.min(0.3 * least_j).max(FAINTEST * most_j);
         let is_log = ratio > UNLIKE && ratio.is_finite();
@@ -163,12 +164,12 @@ impl EnergyScale {
     }
 }
 
-/// Median and P95 of the largest values of all rocks over a unit, by name; none of too few rocks to know both.
-fn levels(report: &Report, quantity: ReportQuantity, unit: f64) -> Vec<(&'static str, f64)> {
+/// Median and P95 of the largest values of all rocks, by name; none of too few rocks to know both.
+fn levels(report: &Report, quantity: ReportQuantity) -> Vec<(&'static str, f64)> {
     let all = report.quantiles.get(&quantity).into_iter().flatten();
     let at = |asked: f64| all.clone().find(|one| (one.probability - asked).abs() < 1e-9);
     let (Some(median), Some(p95)) = (at(0.5), at(0.95)) else { return Vec::new() };
-    let found = [("P50", median), ("P95", p95)].map(|(name, known)| (name, known.at.value / unit));
+    let found = [("P50", median), ("P95", p95)].map(|(name, known)| (name, known.at.value));
     found.into_iter().filter(|(_, value)| value.is_finite() && *value > 0.0).collect()
 }
 

@@ -6,7 +6,7 @@ use super::super::words::{Words, fill};
 use super::estimate;
 use crate::hazard::{
     Annual, AnnualBarrier, AnnualFigures, AnnualPlace, EventRate, ExceedancePoint, ReturnEnergy,
-    Risk, RiskKind,
+    Risk, RiskKind, Saved,
 };
 use crate::output::Results;
 
@@ -140,6 +140,11 @@ fn both<'a>(
     [(without, &place.without_barriers)].into_iter().chain(with)
 }
 
+/// What barriers keep away from a place; one that no rock meets on the way there has no rows.
+fn kept_away(place: &AnnualPlace) -> impl Iterator<Item = &Saved> {
+    place.saved.iter().filter(|saved| saved.passages.rocks > 0)
+}
+
 fn passages(annual: &Annual, place: &AnnualPlace, words: &Words) -> EstimateTable {
     let all = if place.is_object { words.hits } else { words.passages };
     let or_more = |joule: f64| fill(words.or_more, &[("energy", &format::plain(joule / 1e3))]);
@@ -151,7 +156,7 @@ fn passages(annual: &Annual, place: &AnnualPlace, words: &Words) -> EstimateTabl
             say(or_more(above.energy_j) + which, &above.rate);
         }
     }
-    for saved in &place.saved {
+    for saved in kept_away(place) {
         say(fill(words.kept_away, &[("name", &words.quoted(&saved.barrier))]), &saved.passages);
         for above in &saved.above {
             say(or_more(above.energy_j), &above.rate);
@@ -238,7 +243,7 @@ fn risks(place: &AnnualPlace, words: &Words) -> Option<EstimateTable> {
     for (which, figures) in both(place, words) {
         rows.extend(figures.risks.iter().map(|risk| row(which, risk)));
     }
-    for saved in &place.saved {
+    for saved in kept_away(place) {
         let which = fill(words.risk_kept_away, &[("name", &words.quoted(&saved.barrier))]);
         rows.extend(saved.risks.iter().map(|risk| row(&which, risk)));
     }

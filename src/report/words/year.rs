@@ -47,7 +47,7 @@ const EN: YearWords = YearWords {
     map_by_exponent: "Change of ln(frequency) with exponent",
     map_level: "Level: {name}",
     maps_caption: "A year, not conditional on release, cell by cell and without barriers: return period of passages with {energy} kJ or more, and the energy that is passed once in {years} years (no colour: rocks come more seldom). 10 % more events a year at the sources make all frequencies 10 % larger.{exponent}{level} Intervals and derivatives of all layers lie in maps/ as GeoTIFF.",
-    maps_by_exponent: " Change with exponent: 2 means 20 % more passages where the exponents of all power laws are 0.1 larger, their events of 1 m³ or more kept.",
+    maps_by_exponent: " Change with exponent, of the same passages: 2 means 20 % more of them where the exponents of all power laws are 0.1 larger, their events of 1 m³ or more kept.",
     maps_level: " Levels by the table of the scene, “{name}”; its source: {source}.",
     weighed_needs: " Of rocks that differ in weight as many are needed as are worth 59 of equal weight.",
 };
@@ -63,7 +63,7 @@ const DE: YearWords = YearWords {
     map_by_exponent: "Änderung von ln(Häufigkeit) mit Exponent",
     map_level: "Stufe: {name}",
     maps_caption: "Pro Jahr, nicht bedingt auf die Ablösung, Zelle für Zelle und ohne Schutzbauwerke: Wiederkehrperiode der Durchgänge mit {energy} kJ oder mehr, und die Energie, die einmal in {years} Jahren überschritten wird (ohne Farbe: Blöcke kommen seltener). 10 % mehr Ereignisse pro Jahr an den Quellen machen alle Häufigkeiten 10 % größer.{exponent}{level} Intervalle und Ableitungen aller Ebenen liegen in maps/ als GeoTIFF.",
-    maps_by_exponent: " Änderung mit dem Exponenten: 2 heißt 20 % mehr Durchgänge, wenn die Exponenten aller Potenzgesetze um 0.1 größer sind und die Ereignisse ab 1 m³ bleiben.",
+    maps_by_exponent: " Änderung derselben Durchgänge mit dem Exponenten: 2 heißt 20 % mehr, wenn die Exponenten aller Potenzgesetze um 0.1 größer sind und die Ereignisse ab 1 m³ bleiben.",
     maps_level: " Stufen nach der Tabelle der Szene, „{name}“; ihre Quelle: {source}.",
     weighed_needs: " Von Blöcken mit verschiedenem Gewicht braucht es so viele, wie 59 mit gleichem wert sind.",
 };
@@ -79,7 +79,7 @@ const FR: YearWords = YearWords {
     map_by_exponent: "Variation de ln(fréquence) avec l’exposant",
     map_level: "Degré\u{a0}: {name}",
     maps_caption: "Par an, non conditionnel au départ, maille par maille et sans ouvrages\u{a0}: période de retour des passages avec {energy} kJ ou plus, et énergie dépassée une fois en {years} ans (sans couleur\u{a0}: les blocs viennent plus rarement). 10 % d’événements en plus par an aux sources augmentent toutes les fréquences de 10 %.{exponent}{level} Intervalles et dérivées de toutes les couches sont dans maps/ en GeoTIFF.",
-    maps_by_exponent: " Variation avec l’exposant\u{a0}: 2 veut dire 20 % de passages en plus si les exposants de toutes les lois de puissance sont plus grands de 0.1, leurs événements dès 1 m³ gardés.",
+    maps_by_exponent: " Variation des mêmes passages avec l’exposant\u{a0}: 2 veut dire 20 % en plus si les exposants de toutes les lois de puissance sont plus grands de 0.1, leurs événements dès 1 m³ gardés.",
     maps_level: " Degrés selon la table de la scène, «\u{a0}{name}\u{a0}»\u{a0}; sa source\u{a0}: {source}.",
     weighed_needs: " De blocs de poids différents, il en faut autant qu’en valent 59 de poids égal.",
 };
@@ -95,7 +95,7 @@ const IT: YearWords = YearWords {
     map_by_exponent: "Variazione di ln(frequenza) con l’esponente",
     map_level: "Grado: {name}",
     maps_caption: "All’anno, non condizionato al distacco, cella per cella e senza barriere: tempo di ritorno dei passaggi con {energy} kJ o più, ed energia superata una volta in {years} anni (senza colore: i massi arrivano più di rado). Il 10 % di eventi in più all’anno alle sorgenti rende tutte le frequenze maggiori del 10 %.{exponent}{level} Intervalli e derivate di tutti gli strati sono in maps/ come GeoTIFF.",
-    maps_by_exponent: " Variazione con l’esponente: 2 vuol dire il 20 % di passaggi in più se gli esponenti di tutte le leggi di potenza sono maggiori di 0.1, mantenuti i loro eventi da 1 m³ in su.",
+    maps_by_exponent: " Variazione degli stessi passaggi con l’esponente: 2 vuol dire il 20 % in più se gli esponenti di tutte le leggi di potenza sono maggiori di 0.1, mantenuti i loro eventi da 1 m³ in su.",
     maps_level: " Gradi secondo la tabella della scena, «{name}»; la sua fonte: {source}.",
     weighed_needs: " Di massi con pesi diversi ne servono tanti quanti ne valgono 59 di peso uguale.",
 };

@@ -159,7 +159,7 @@ pub fn plant(file: &Path, list: &TreeList, terrain: &Terrain) -> Result<Vec<Face
             let (low, high) = (low + origin_m, high + origin_m);
             let found = format!("found no slope at ({}, {})", tree.x_m, tree.y_m);
             let remedy = format!(
-                "write a place on the slope, its box is {}..{} east, {}..{} north, in map coordinates (`mesh stems` takes them with --origin-m)",
+                "write a place on the slope, its box is {}..{} east, {}..{} north, in map coordinates; a slope file with coordinates of its own needs origin_m in the scene (`mesh stems`: --origin-m)",
                 low.x, high.x, low.y, high.y
             );
             let place = format!("{} {number}", list.counted);
