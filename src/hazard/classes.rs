@@ -63,11 +63,6 @@ impl Counts {
     /// The class below whose upper end at least the share `p` of all weight lies, by its middle; 0 of nothing. With equal
     /// weights it holds the ⌈p n⌉-th smallest value.
     pub(super) fn percentile(&self, p: f64, weights: &Weights) -> f64 {
-        self.percentile_class(p, weights).map_or(0.0, middle_of)
-    }
-
-    /// That class; none of nothing.
-    fn percentile_class(&self, p: f64, weights: &Weights) -> Option<u16> {
         let equal = weights.are_equal();
         let weight = |&(_, stratum, count): &(u16, u16, u32)| {
             let one = if equal { 1.0 } else { weights.of_stratum(usize::from(stratum)) };
@@ -78,11 +73,11 @@ impl Counts {
         for entry in &self.0 {
             below += weight(entry);
             if below >= p * all {
-                return Some(entry.0);
+                return middle_of(entry.0);
             }
         }
         // rounding may keep the last sum from reaching the whole
-        self.0.last().map(|(class, ..)| *class)
+        self.0.last().map_or(0.0, |(class, ..)| middle_of(*class))
     }
 }
 

@@ -138,7 +138,11 @@ impl Layer {
             Self::Deposits => f64::from(cell.deposits),
             Self::EnergyMax => cell.largest_j,
             // the middle of the highest class may lie above the largest value in it
-            Self::EnergyP95 => cell.totals_j.percentile(0.95, weights).min(cell.largest_j),
+            Self::EnergyP95 => {
+                // of whole classes: with and without a frequency the maps of equal rocks are the same
+                let classes = cell.totals_j.by_class();
+                classes.percentile(0.95, weights).min(cell.largest_j)
+            }
             Self::HeightMax => cell.largest_m,
             Self::HeightP95 => cell.heights_m.percentile(0.95, weights).min(cell.largest_m),
             Self::Intensity => cell.intensity(weights),

@@ -1,7 +1,6 @@
 //! Counts over parts of the [classes](super) of equal ratio: as narrow as there is room for.
 
 use super::{Counts, RATIO, class_of, lower_end_of};
-use crate::frequency::Weights;
 use crate::math;
 use serde::{Deserialize, Serialize};
 
@@ -116,15 +115,6 @@ impl FineCounts {
         let share = f64::from(within) / f64::from(1u16 << self.halvings);
         lower_end_of(class) * math::pow(RATIO, share)
     }
-
-    /// The part below whose upper end at least the share `p` of all weight lies, by its middle, as of [`Counts::percentile`].
-    pub(in crate::hazard) fn percentile(&self, p: f64, weights: &Weights) -> f64 {
-        let found = self.counts.percentile_class(p, weights);
-        found.filter(|part| part >> self.halvings > 0).map_or(0.0, |part| {
-            let [low, high] = [self.end(part), self.end(part + 1)];
-            (low * high).sqrt()
-        })
-    }
 }
 
 /// The part of a class that a value lies in.
@@ -192,7 +182,7 @@ mod tests {
         }
     }
 
-    /// Whole classes are those that were counted without parts, and so are their percentiles to half a class.
+    /// Whole classes are those that are counted without parts.
     #[test]
     fn whole_classes_are_as_without_parts() {
         let (mut fine, mut whole, mut plain) =
@@ -203,14 +193,6 @@ mod tests {
             plain.add(energy_j(k), 0);
         }
         assert!(fine.by_class() == plain && whole.by_class() == plain);
-        let weights = Weights::equal(3_000);
-        let [fine, whole, plain] = [
-            fine.percentile(0.95, &weights),
-            whole.percentile(0.95, &weights),
-            plain.percentile(0.95, &weights),
-        ];
-        assert!((whole / plain - 1.0).abs() < 1e-12, "{whole} {plain}");
-        assert!((fine / plain - 1.0).abs() < 0.025, "{fine} {plain}");
     }
 
     /// What lies beyond all classes, nothing and what is smaller than told apart have their place.
