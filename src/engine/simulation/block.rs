@@ -242,11 +242,9 @@ impl Roll<'_> {
             let kept = self.scars.leave(&self.world.body, &self.moving.v);
             self.slow(kept);
         }
-        self.recorder.now.velocity_m_s = self.moving.v;
-        self.recorder.now.spin_rad_s = self.moving.spin(block);
+        let (velocity_m_s, spin_rad_s) = (self.moving.v, self.moving.spin(block));
         self.recorder.turned = Some(turned(block, &self.moving));
-        // the largest speed may be the one right after an impact
-        self.recorder.note_speed();
+        self.recorder.go_on_with(Motion { velocity_m_s, spin_rad_s, ..self.recorder.now });
         self.recorder.end_all_impacts();
         is_free
     }

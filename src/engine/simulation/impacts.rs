@@ -75,16 +75,6 @@ struct InHand {
     /// time.
     until_s: f64,
     over_s: Option<f64>,
-    /// Of a blow that takes no time: the speed after it (m/s), known at once. It is over when it falls.
-    left_m_s: Option<f64>,
-}
-
-impl InHand {
-    /// Since when it is over (s), if it is: a blow that takes no time is so as soon as time goes on.
-    fn over_s(&self, now_s: f64) -> Option<f64> {
-        let fell_s = self.left_m_s.map(|_| self.until_s).filter(|fell_s| *fell_s < now_s);
-        self.over_s.or(fell_s)
-    }
 }
 
 /// The impacts of one rock.
@@ -152,13 +142,13 @@ impl Impacts {
         self.hand.list.iter().flatten().filter(|impact| impact.over_s.is_none())
     }
 
-    /// Begins one on a sheet at `now_s` (s) and a speed (m/s), to end at `until_s` at the latest, or goes on with that of the same patch;
-    /// `left_m_s` is the speed after a blow that takes no time, `lost_j` is what has gone into contacts with the mesh so far, and what of it into soil. Returns its number, and whether it is a new one.
+    /// Begins one on a sheet at `now_s` (s) and `speed_m_s`, to end at `until_s` at the latest, or goes on with that of the same patch;
+    /// `lost_j` is what has gone into contacts with the mesh so far, and what of it into soil. Returns its number, and whether it is a new one.
     pub(super) fn begin(
         &mut self,
         (struck, sheet, is_tree): (&Struck, u16, bool),
         (now_s, until_s): (f64, f64),
-        (speed_m_s, left_m_s): (f64, Option<f64>),
+        speed_m_s: f64,
         lost_j: (MeshEnergy, f64),
     ) -> (u32, bool) {
         if !self.is_any() {
@@ -169,21 +159,19 @@ impl Impacts {
         // the same sheet and nearly the same normal: a rock that rolls over a seam strikes no
         // second patch
         let is_same = |impact: &&mut InHand| {
-            impact.over_s(now_s).is_some_and(|over_s| now_s - over_s <= SAME_IMPACT_S)
+            impact.over_s.is_some_and(|over_s| now_s - over_s <= SAME_IMPACT_S)
                 && impact.sheet == sheet
                 && impact.normal.dot(&struck.normal) > SAME_GRIP
         };
         if let Some(impact) = self.hand.list.iter_mut().flatten().find(is_same) {
             let number = impact.number;
-            let normal = struck.normal;
-            *impact = InHand { normal, weight, until_s, over_s: None, left_m_s, ..*impact };
+            *impact = InHand { normal: struck.normal, weight, until_s, over_s: None, ..*impact };
             return (number, false);
         }
         self.count += 1;
         let number = self.count;
         let normal = struck.normal;
-        let over_s = None;
-        let impact = InHand { number, sheet, is_tree, normal, weight, until_s, over_s, left_m_s };
+        let impact = InHand { number, sheet, is_tree, normal, weight, until_s, over_s: None };
         *self.hand.place() = Some(impact);
         if self.keeps_rows {
             self.rows.push(Impact {
@@ -204,12 +192,10 @@ impl Impacts {
     pub(super) fn end(&mut self, now_s: f64, speed_m_s: f64, holds: impl Fn(u32) -> bool) {
         for impact in self.hand.list.iter_mut().flatten() {
             if impact.over_s.is_none() && (now_s >= impact.until_s || !holds(impact.number)) {
-                let over_s = impact.over_s(now_s).unwrap_or(now_s);
-                impact.over_s = Some(over_s);
+                impact.over_s = Some(now_s);
                 if self.keeps_rows {
                     // numbers count from 1, rows from 0
-                    let row = &mut self.rows[impact.number as usize - 1];
-                    row.speed_out_m_s = impact.left_m_s.unwrap_or(speed_m_s);
+                    self.rows[impact.number as usize - 1].speed_out_m_s = speed_m_s;
                 }
             }
         }

@@ -139,7 +139,7 @@ impl<'a> Recorder<'a> {
     ///
     /// Called at both ends of every flight and step: speed and energy along a parabola are largest
     /// at an end, and contact steps are short.
-    pub(super) fn note_speed(&mut self) {
+    fn note_speed(&mut self) {
         let one = self.now.translational_j(&self.form.rock);
         let two = self.form.rotational_j(&self.instant());
         let most = &mut self.extremes;
@@ -149,7 +149,7 @@ impl<'a> Recorder<'a> {
         most.total_j = most.total_j.max(one + two);
     }
 
-    /// Goes on from a blow that took no time.
+    /// Goes on from a blow that took no time: the largest speed may be the one right after it.
     pub(super) fn go_on_with(&mut self, motion: Motion) {
         self.now = motion;
         self.note_speed();

@@ -15,35 +15,14 @@ impl Recorder<'_> {
         held_j: &MeshEnergy,
     ) -> u32 {
         let times_s = (self.now.time_s, until_s);
-        self.begin_impact_at(struck, times_s, (self.now.velocity_m_s.norm(), None), held_j)
-    }
-
-    /// Notes a blow on a triangle's patch at `time_s` (s) that takes no time, with the speeds before and after it (m/s).
-    pub(in crate::simulation) fn note_blow(
-        &mut self,
-        struck: &Struck,
-        time_s: f64,
-        [before, after]: [f64; 2],
-    ) {
-        let held_j = MeshEnergy::default();
-        self.begin_impact_at(struck, (time_s, time_s), (before, Some(after)), &held_j);
-    }
-
-    /// Begins an impact, or goes on with one, as [`Impacts::begin`] says.
-    fn begin_impact_at(
-        &mut self,
-        struck: &Struck,
-        times_s: (f64, f64),
-        speeds_m_s: (f64, Option<f64>),
-        held_j: &MeshEnergy,
-    ) -> u32 {
         // springs of contacts that are still pressed hold energy that is booked as lost until they
         // give it back: not this impact's
         let lost_j = (self.lost_to_each_j().less(held_j), self.ledger.soil_j);
+        let speed_m_s = self.now.velocity_m_s.norm();
         let sheet = self.terrain.sheet_of[struck.triangle as usize];
         let is_tree = self.terrain.sheets[usize::from(sheet)].is_tree;
         let on = (struck, sheet, is_tree);
-        let (number, is_new) = self.impacts.begin(on, times_s, speeds_m_s, lost_j);
+        let (number, is_new) = self.impacts.begin(on, times_s, speed_m_s, lost_j);
         self.tree_impact_count += u32::from(is_new && is_tree);
         number
     }

@@ -8,7 +8,7 @@ use super::{BodyState, WorldBody};
 use crate::flight::{FlightEnd, Parabola, time_of_impact_past};
 use crate::release::Release;
 use crate::rock::{Motion, Vec3};
-use crate::simulation::impacts::Struck;
+use crate::simulation::impacts::{MeshEnergy, Struck};
 use crate::simulation::rest::RestCriterion;
 use crate::simulation::rock_in_contact::RockInContact;
 use crate::simulation::settings::RunSettings;
@@ -211,7 +211,7 @@ impl<'a> WorldBody<'a> {
 
     /// Notes one step of its island in the rigid limit: rocks that fly touch and fly on within a step, too.
     ///
-    /// Unlike with springs there is no memory that tells of an impact: `hit` was told of each
+    /// Unlike with springs there is no memory that tells of an impact: `pass` was told of each
     /// before.
     pub(super) fn stride(
         &mut self,
@@ -224,7 +224,7 @@ impl<'a> WorldBody<'a> {
             return;
         }
         let to = self.motion_at(time_s);
-        // its impacts are listed as hits
+        // its impacts are listed with its blows
         self.member.state.histories.iter_mut().for_each(|history| history.announced = true);
         if self.member.flew && self.member.flying && !self.member.was_touched {
             self.recorder.step_as(to, PathState::Flight, true);
@@ -232,30 +232,18 @@ impl<'a> WorldBody<'a> {
         }
         let flew = self.member.flew;
         self.touch(settings, to, given, (slides, flew));
+        self.recorder.book_impacts(&MeshEnergy::default());
         if self.member.flying {
             self.lands = None;
         }
     }
 
-    /// Notes an impact on the mesh in the step that ends at `time_s` (s).
-    pub(super) fn hit(&mut self, hit: &Hit, time_s: f64) {
-        if self.state == BodyState::Moving {
-            let struck = Struck {
-                point_m: hit.point_m,
-                normal: hit.normal,
-                feature: hit.feature,
-                triangle: hit.triangle,
-                approach_m_s: hit.approach_m_s,
-            };
-            self.recorder.note_blow(&struck, time_s - hit.before_end_s, hit.speeds_m_s);
-        }
-    }
-
-    /// Goes through a blow in the step that ends at `time_s` (s): up to it as the rock went, sliding or not, and between blows in flight.
+    /// Goes through a blow, and the impacts on the mesh that are its own, in the step that ends at `time_s` (s): up to it as the rock went,
+    /// sliding or not, and between blows in flight. What the impacts took is known at the end of the step.
     pub(super) fn pass(
         &mut self,
         settings: &RunSettings,
-        blow: &BlowInStep,
+        (blow, hits): (&BlowInStep, &[Hit]),
         (time_s, slides): (f64, bool),
     ) {
         if matches!(self.state, BodyState::Gone(_)) {
@@ -269,7 +257,13 @@ impl<'a> WorldBody<'a> {
         let [before, after] = blow.motions.map(|at| Motion { time_s: fell_s(at), ..at });
         let state = if flies { PathState::Flight } else { PathState::in_contact(slides) };
         self.recorder.step_as(before, state, flies || self.member.state.is_free());
+        for hit in hits {
+            let &Hit { point_m, normal, feature, triangle, approach_m_s, .. } = hit;
+            let struck = Struck { point_m, normal, feature, triangle, approach_m_s };
+            self.recorder.begin_impact(&struck, before.time_s, &MeshEnergy::default());
+        }
         self.recorder.go_on_with(after);
+        let _ = self.recorder.end_impacts(|_| false);
     }
 
     /// Watches how far its velocity has changed.

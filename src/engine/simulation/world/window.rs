@@ -322,9 +322,8 @@ impl<'a> IslandWindow<'a> {
             largest: rocks,
             ..WorldStats::default()
         });
-        // Only the rigid limit lists hits.
-        let mut hits = done.hits.iter().peekable();
-        let mut blows = done.blows.iter().peekable();
+        // only the rigid limit lists blows, and what each has struck of the mesh
+        let (mut blows, mut hits) = (done.blows.iter().peekable(), &done.hits[..]);
         // a contact between two rocks that slips makes both paths "sliding"
         let mut slides = vec![false; self.bodies.len()];
         for pair_history in island
@@ -336,11 +335,10 @@ impl<'a> IslandWindow<'a> {
         }
         for (k, body) in self.bodies.iter_mut().enumerate() {
             std::mem::swap(&mut body.member, &mut island.members[k]);
-            while let Some(hit) = hits.next_if(|hit| hit.rock == k) {
-                body.hit(hit, self.now_s);
-            }
             while let Some(blow) = blows.next_if(|blow| blow.rock == k) {
-                body.pass(self.settings, blow, (self.now_s, slides[k]));
+                let (own, others) = hits.split_at(blow.hits);
+                body.pass(self.settings, (blow, own), (self.now_s, slides[k]));
+                hits = others;
             }
             let effort = &mut body.recorder.effort;
             // each rock is charged the steps of its island: work of one rock cannot be told apart in one system

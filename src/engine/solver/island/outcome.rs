@@ -14,7 +14,7 @@ pub struct Done {
     pub given: Vec<Given>,
     /// Steps tried and thrown away.
     pub rejected: u64,
-    /// Impacts on the mesh, rock by rock (`rigid`; with the others the memory of a contact tells).
+    /// Impacts on the mesh, rock by rock and blow by blow (`rigid`; with the others the memory of a contact tells).
     pub hits: Vec<Hit>,
     /// Blows within the step, rock by rock (`rigid`; with the others blows take time, and steps).
     pub blows: Vec<BlowInStep>,
@@ -33,10 +33,6 @@ pub struct Hit {
     pub normal: Vec3,
     /// Speed of approach along it (m/s).
     pub approach_m_s: f64,
-    /// How long before the end of the step it fell (s).
-    pub before_end_s: f64,
-    /// Speed before it and after it (m/s).
-    pub speeds_m_s: [f64; 2],
     /// Point that is touched (m).
     pub point_m: Vec3,
     /// Where on the mesh.
@@ -52,4 +48,6 @@ pub struct BlowInStep {
     pub rock: usize,
     /// Its motion before and after it; times count from the end of the step (s, 0 or less).
     pub motions: [Motion; 2],
+    /// How many of the impacts on the mesh are its own.
+    pub hits: usize,
 }

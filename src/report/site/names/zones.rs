@@ -14,7 +14,7 @@ const MOST_NAMED: usize = 104;
 /// Letters of a zone by its number from 0: A to Z, then AA, AB and so on.
 fn letters_of(number: usize) -> String {
     let letter = |k: usize| char::from(b'A' + (k % 26) as u8);
-    let first = number.checked_div(26).and_then(|round| round.checked_sub(1)).map(letter);
+    let first = (number >= 26).then(|| letter(number / 26 - 1));
     first.into_iter().chain([letter(number)]).collect()
 }
 

@@ -128,8 +128,8 @@ impl RigidIsland {
             taken_j[contact.ends.first] += loss.sum();
             self.losses[rock].add(&loss.on(&world, at.triangle), 1.0);
             if approach_m_s >= capture_m_s(contact.law) {
-                let StruckRock { c, v, .. } = &rocks[contact.ends.first];
-                self.hits.push(hit_of(rock, at, (c, v, body.radius), approach_m_s));
+                let centre = (&rocks[contact.ends.first].c, body.radius);
+                self.hits.push(hit_of(rock, at, centre, approach_m_s));
             }
         }
         taken_j

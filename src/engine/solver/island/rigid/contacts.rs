@@ -112,20 +112,17 @@ pub(super) struct ImpactScene<'s> {
     pub(super) pair_histories: &'s [PairHistory],
 }
 
-/// The impact of rock `k`, which comes with its centre at `c` and a velocity `v` (m/s), at a touch; when it fell and how fast it left is
-/// told where the blow is over.
+/// The impact of rock `k`, with its centre at `c`, at a touch.
 pub(super) fn hit_of(
     k: usize,
     touch: &ContactPoint,
-    (c, v, radius): (&Vec3, &Vec3, f64),
+    (c, radius): (&Vec3, f64),
     approach_m_s: f64,
 ) -> Hit {
     Hit {
         rock: k,
         normal: touch.normal,
         approach_m_s,
-        before_end_s: 0.0,
-        speeds_m_s: [v.norm(); 2],
         point_m: c - touch.normal * radius,
         feature: touch.feature.kind,
         triangle: touch.triangle,

@@ -169,17 +169,14 @@ impl RigidIsland {
         }
         for blow in &mut self.blows_in_step[noted..] {
             blow.motions[1] = self.balls[blow.rock].motion_before_end(s);
-        }
-        for hit in &mut self.hits[known..] {
-            hit.before_end_s = s;
-            hit.speeds_m_s[1] = self.balls[hit.rock].before_end(s).1.norm();
+            blow.hits = self.hits[known..].iter().filter(|hit| hit.rock == blow.rock).count();
         }
     }
 
     /// Notes how a rock moves that a blow strikes `s` (s) before the end of the step.
     pub(super) fn begin_blow(&mut self, rock: usize, s: f64) {
         let motions = [self.balls[rock].motion_before_end(s); 2];
-        self.blows_in_step.push(BlowInStep { rock, motions });
+        self.blows_in_step.push(BlowInStep { rock, motions, hits: 0 });
     }
 
     /// Local error of a blow (–).
@@ -239,7 +236,7 @@ impl RigidIsland {
             ball.c += (broken.motion.0 - v) * s;
             ball.w = broken.motion.1;
             self.losses[k].trees += broken.taken_j;
-            self.hits.push(hit_of(k, &touch, (&at, &v, body.radius), -touch.normal.dot(&v)));
+            self.hits.push(hit_of(k, &touch, (&at, body.radius), -touch.normal.dot(&v)));
             state.fell_broken(&world, &broken);
             return ball.is_struck(s);
         }
@@ -270,7 +267,7 @@ impl RigidIsland {
         let how = (ball.blows >= LIVELY, tolerance);
         let mut note = |other: &ContactPoint, loss: &Loss, approach_m_s: Option<f64>| {
             self.losses[k].add(loss, 1.0);
-            let hit = |approach_m_s| hit_of(k, other, (at, v, body.radius), approach_m_s);
+            let hit = |approach_m_s| hit_of(k, other, (at, body.radius), approach_m_s);
             self.hits.extend(approach_m_s.map(hit));
         };
         let motion = (v, &ball.w);
