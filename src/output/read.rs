@@ -14,6 +14,8 @@ use crate::hazard::{
 use crate::terrain::geotiff;
 use crate::terrain::grid::Grid;
 use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{BufRead, BufReader, ErrorKind};
 use std::path::{Path, PathBuf};
 
 /// The complete results in a folder.
@@ -148,6 +150,28 @@ impl Results {
     /// As [`Self::rows`].
     pub fn paths(&self) -> Result<impl Iterator<Item = Result<PathRow>>> {
         if_there(self.dir.join(PATHS), (&PathRow::COLUMNS, &[&PathRow::SHAPE_COLUMNS]))
+    }
+
+    /// How many rows `paths.csv` has at most: its lines. Quickly counted, where nothing of them need be known.
+    ///
+    /// # Errors
+    /// The file is there but cannot be read.
+    pub fn path_points(&self) -> Result<usize> {
+        let path = self.dir.join(PATHS);
+        let open = match File::open(&path) {
+            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(0),
+            open => open.map_err(Error::file("read", &path))?,
+        };
+        let (mut file, mut lines) = (BufReader::new(open), 0);
+        loop {
+            let bytes = file.fill_buf().map_err(Error::file("read", &path))?;
+            if bytes.is_empty() {
+                return Ok(lines);
+            }
+            lines += bytes.iter().filter(|byte| **byte == b'\n').count();
+            let length = bytes.len();
+            file.consume(length);
+        }
     }
 
     /// Writes the vectors of `maps/`: ends, what stands on the map, and paths where they were kept.

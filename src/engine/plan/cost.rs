@@ -15,8 +15,14 @@ const ROW_DISK: f64 = 450.0;
 const ROW_MEMORY: f64 = 220.0;
 /// A point of a path in `paths.csv`, GeoJSON and VTK together (bytes).
 const POINT_DISK: f64 = 350.0;
-/// A point of a path while the report is drawn (bytes).
-const POINT_MEMORY: f64 = 72.0;
+/// The program itself, and what its figures need (bytes).
+const PROGRAM_MEMORY: f64 = 25e6;
+/// A triangle as it is read and laid into the index (bytes).
+const TRIANGLE_MEMORY: f64 = 130.0;
+/// A point of a path while the view in three dimensions is drawn (bytes), and the most of them that it shows; a path (bytes).
+const POINT_MEMORY: f64 = 260.0;
+const SHOWN_POINTS: f64 = 4e5;
+const PATH_MEMORY: f64 = 2e4;
 /// A point of a path while its rock falls (bytes).
 const FALLING_POINT_MEMORY: f64 = 104.0;
 /// Rocks that fall or wait for the disk at a time, at least.
@@ -44,7 +50,9 @@ pub struct Cost {
     pub cells: f64,
     /// Results on the disk (bytes).
     pub disk_bytes: f64,
-    /// Memory (bytes), the meshes aside.
+    /// Memory of the program and its meshes, as if they stood there alone (bytes) …
+    pub mesh_bytes: f64,
+    /// … and of results (bytes).
     pub memory_bytes: f64,
 }
 
@@ -74,8 +82,10 @@ impl Plan {
             path_points,
             cells,
             disk_bytes: ROW_DISK * releases + POINT_DISK * path_points + CELL_DISK * cells,
+            mesh_bytes: PROGRAM_MEMORY + TRIANGLE_MEMORY * self.terrain.triangles.len() as f64,
             memory_bytes: (ROW_MEMORY + together) * releases
-                + POINT_MEMORY * path_points
+                + POINT_MEMORY * path_points.min(SHOWN_POINTS)
+                + PATH_MEMORY * paths
                 + FALLING_POINT_MEMORY * points * paths.min(IN_HAND)
                 + CELL_MEMORY * cells
                 + PASSED_MEMORY * passed
@@ -99,7 +109,7 @@ impl Cost {
             return Ok(());
         }
         Err(Error::Request(format!(
-            "found a run that may take {self}; write fewer releases, [record] paths or a longer path_step_s, or larger cells of [maps], or say --yes (asked above {} of memory or {} of disk)",
+            "found a run that may take {self}; write fewer releases, [record] paths or a longer path_step_s, or larger cells of [maps], or say --yes (asked above {} of memory beside program and meshes, or {} of disk)",
             size(MOST_MEMORY),
             size(MOST_DISK)
         )))
@@ -108,11 +118,11 @@ impl Cost {
 
 impl fmt::Display for Cost {
     fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { releases, path_points, cells, disk_bytes, memory_bytes } = *self;
+        let Self { releases, path_points, cells, disk_bytes, mesh_bytes, memory_bytes } = *self;
         write!(
             to,
             "{} of memory and {} of disk: {releases} releases, up to {path_points:.0} points of paths, {cells} cells of maps",
-            size(memory_bytes),
+            size(mesh_bytes + memory_bytes),
             size(disk_bytes)
         )
     }

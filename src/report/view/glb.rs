@@ -244,8 +244,8 @@ impl GltfScene<'_> {
             put("materials", materials());
         }
         put("meshes", meshes);
-        let bytes = bin.close(&mut put);
-        parts::file(&head, &bytes)
+        let numbers = bin.close(&mut put);
+        parts::file(&head, numbers)
     }
 }
 

@@ -67,40 +67,30 @@ impl Ways {
         hull_of: impl Fn(usize) -> Option<BlockHull>,
         hulls: &mut BlockHulls,
     ) -> Result<Self> {
+        let every = results.path_points()?.div_ceil(MOST_POINTS).max(1);
         let mut ways: Vec<ViewPath> = Vec::new();
-        let mut spin_rad_s = Vec3::zeros();
+        let mut reading: Option<PathReading> = None;
         let first = rows.first().map_or(0, |row| row.index);
         for row in results.paths()? {
             let row = row?;
             let Some(rock) = row.index.checked_sub(first).and_then(|k| rows.get(k)) else {
                 break;
             };
-            if ways.last().is_none_or(|way| way.release != row.index) {
+            if reading.as_ref().is_none_or(|reading| reading.path.release != row.index) {
                 let (release, radius_m) = (row.index, rock.radius_m);
                 if let Some(hull) = hull_of(release) {
                     hulls.add(release, hull);
                 }
                 let hull = hulls.number(release);
-                ways.push(ViewPath { release, radius_m, hull, instants: Vec::new() });
+                let path = ViewPath { release, radius_m, hull, instants: Vec::new() };
+                let next = PathReading { path, every, seen: 0, last: None, skipped: None };
+                ways.extend(reading.replace(next).and_then(PathReading::end));
             }
-            let Some(way) = ways.last_mut() else { break };
-            let is_ahead = way.instants.last().is_none_or(|last| row.time_s > last.time_s);
-            if is_ahead && is_finite(&row.position_m) && row.time_s.is_finite() {
-                let mut instant = instant(&row, rock, hulls.hull(row.index));
-                if let Some(last) = way.instants.last() {
-                    let spun = spin_rad_s + Vec3::from(row.spin_rad_s);
-                    instant.spun_rad = spun * (0.5 * (row.time_s - last.time_s));
-                }
-                spin_rad_s = row.spin_rad_s.into();
-                way.instants.push(instant);
+            if let Some(reading) = &mut reading {
+                reading.add(&row, rock, hulls.hull(row.index));
             }
         }
-        ways.retain(|way| !way.instants.is_empty());
-        let points: usize = ways.iter().map(|way| way.instants.len()).sum();
-        let every = points.div_ceil(MOST_POINTS).max(1);
-        for way in &mut ways {
-            thin(&mut way.instants, every);
-        }
+        ways.extend(reading.and_then(PathReading::end));
         Ok(Self { ways, every })
     }
 
@@ -156,6 +146,50 @@ impl Ways {
     }
 }
 
+/// A path as it is read, of which every so many instants are kept, and the last.
+struct PathReading {
+    path: ViewPath,
+    every: usize,
+    /// Instants so far.
+    seen: usize,
+    /// Time (s) and spin (rad/s) of the last of them.
+    last: Option<(f64, Vec3)>,
+    /// The last of them, if it has not been kept; what has spun since the one that was adds up.
+    skipped: Option<PathInstant>,
+}
+
+impl PathReading {
+    /// Adds a row, unless it is no number or goes back in time.
+    fn add(&mut self, row: &PathRow, rock: &Row, hull: Option<&BlockHull>) {
+        let is_ahead = self.last.is_none_or(|(time_s, _)| row.time_s > time_s);
+        if !(is_ahead && is_finite(&row.position_m) && row.time_s.is_finite()) {
+            return;
+        }
+        let (mut instant, spin_rad_s) = (instant(row, rock, hull), Vec3::from(row.spin_rad_s));
+        if let Some((time_s, before_rad_s)) = self.last {
+            let since = self.skipped.map_or_else(Vec3::zeros, |skipped| skipped.spun_rad);
+            let mean_rad_s = (before_rad_s + spin_rad_s) * 0.5;
+            instant.spun_rad = since + mean_rad_s * (row.time_s - time_s);
+        }
+        self.last = Some((row.time_s, spin_rad_s));
+        if self.seen.is_multiple_of(self.every) {
+            self.path.instants.push(instant);
+            self.skipped = None;
+        } else {
+            self.skipped = Some(instant);
+        }
+        self.seen += 1;
+    }
+
+    /// The path; none if it has no instant.
+    fn end(self) -> Option<ViewPath> {
+        let Self { mut path, skipped, .. } = self;
+        path.instants.extend(skipped);
+        path.instants.shrink_to_fit();
+        (!path.instants.is_empty()).then_some(path)
+    }
+}
+
 fn instant(row: &PathRow, rock: &Row, hull: Option<&BlockHull>) -> PathInstant {
     let speed = Vec3::from(row.velocity_m_s).norm();
     let attitude = row.attitude.unwrap_or([1.0, 0.0, 0.0, 0.0]);
@@ -170,19 +204,4 @@ fn instant(row: &PathRow, rock: &Row, hull: Option<&BlockHull>) -> PathInstant {
     let total_j = rock.mass_kg * (0.5 * speed * speed + turning);
     let spun_rad = Vec3::zeros();
     PathInstant { time_s: row.time_s, place_m: row.position_m, total_j, attitude, spun_rad }
-}
-
-/// Keeps every so many instants, and the last; what has spun between them adds up.
-fn thin(instants: &mut Vec<PathInstant>, every: usize) {
-    let last = instants.len().saturating_sub(1);
-    let (mut k, mut spun_rad) = (0, Vec3::zeros());
-    instants.retain_mut(|instant| {
-        k += 1;
-        spun_rad += instant.spun_rad;
-        let is_kept = (k - 1) % every == 0 || k - 1 == last;
-        if is_kept {
-            instant.spun_rad = std::mem::take(&mut spun_rad);
-        }
-        is_kept
-    });
 }

@@ -107,8 +107,8 @@ impl RigidIsland {
         let finite = self.balls.iter().all(StepBody::is_finite);
         self.take_over(terrain, (members, pair_histories), dt);
         // blows fall in the order of their times, and are noted rock by rock
-        self.hits.sort_by_key(|hit| hit.rock);
-        self.blows_in_step.sort_by_key(|blow| blow.rock);
+        self.hits.sort_by_cached_key(|hit| hit.rock);
+        self.blows_in_step.sort_by_cached_key(|blow| blow.rock);
         let done = Done {
             dt,
             losses: std::mem::take(&mut self.losses),

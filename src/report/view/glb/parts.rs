@@ -93,16 +93,15 @@ impl Bin {
         self.add(TIMES, times.iter().flat_map(|t| t.to_le_bytes()), accessor)
     }
 
-    /// Lists buffer, views and accessors, and gives the bytes.
-    pub(super) fn close(mut self, put: &mut impl FnMut(&str, Vec<Value>)) -> Vec<u8> {
-        let (mut bytes, mut views, mut number) = (Vec::new(), Vec::new(), [0; 6]);
+    /// Lists buffer, views and accessors, and gives the bytes of the views, one after the other.
+    pub(super) fn close(mut self, put: &mut impl FnMut(&str, Vec<Value>)) -> [Vec<u8>; 6] {
+        let (mut length, mut views, mut number) = (0, Vec::new(), [0; 6]);
         for (kind, (own, (target, stride))) in self.views.iter().zip(USES).enumerate() {
             if own.is_empty() {
                 continue;
             }
             number[kind] = views.len();
-            let mut view =
-                json!({ "buffer": 0, "byteOffset": bytes.len(), "byteLength": own.len() });
+            let mut view = json!({ "buffer": 0, "byteOffset": length, "byteLength": own.len() });
             if let Some(target) = target {
                 view["target"] = target.into();
             }
@@ -110,18 +109,18 @@ impl Bin {
                 view["byteStride"] = stride.into();
             }
             views.push(view);
-            bytes.extend(own);
+            length += own.len();
         }
         for accessor in &mut self.accessors {
             let kind = accessor["bufferView"].as_u64().unwrap_or(0) as usize;
             accessor["bufferView"] = number[kind].into();
         }
-        if !bytes.is_empty() {
-            put("buffers", vec![json!({ "byteLength": bytes.len() })]);
+        if length > 0 {
+            put("buffers", vec![json!({ "byteLength": length })]);
         }
         put("bufferViews", views);
         put("accessors", self.accessors);
-        bytes
+        self.views
     }
 }
 
@@ -177,25 +176,31 @@ fn cut(places: &mut Vec<[f32; 3]>, [a, b, c]: [u32; 3]) -> [[u32; 3]; 4] {
     [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
 }
 
-/// Head and numbers as a binary glTF file.
-pub(super) fn file(head: &Value, bytes: &[u8]) -> Vec<u8> {
+/// Head and numbers as a binary glTF file. What is written is let go: the numbers are most of the memory that a report takes.
+pub(super) fn file(head: &Value, views: [Vec<u8>; 6]) -> Vec<u8> {
     const MAGIC: &[u8; 4] = b"glTF";
     const VERSION: u32 = 2;
-    let mut chunks = Vec::new();
-    let mut chunk = |kind: &[u8; 4], data: &[u8], filler: u8| {
-        let padded = data.len().next_multiple_of(4);
-        chunks.extend((padded as u32).to_le_bytes());
-        chunks.extend(kind);
-        chunks.extend(data);
-        chunks.resize(chunks.len() + padded - data.len(), filler);
-    };
-    chunk(b"JSON", head.to_string().as_bytes(), b' ');
-    if !bytes.is_empty() {
-        chunk(b"BIN\0", bytes, 0);
-    }
-    let mut file = MAGIC.to_vec();
+    const HEADS: usize = 28;
+    let head = head.to_string();
+    let numbers: usize = views.iter().map(Vec::len).sum();
+    let padded = |length: usize| length.next_multiple_of(4);
+    let mut file = Vec::with_capacity(HEADS + padded(head.len()) + padded(numbers));
+    file.extend(MAGIC);
     file.extend(VERSION.to_le_bytes());
-    file.extend((12 + chunks.len() as u32).to_le_bytes());
-    file.extend(chunks);
+    let length_at = file.len();
+    file.extend([0; 4]);
+    let mut chunk =
+        |kind: &[u8; 4], length: usize, data: &mut dyn Iterator<Item = Vec<u8>>, filler| {
+            file.extend((padded(length) as u32).to_le_bytes());
+            file.extend(kind);
+            data.for_each(|data| file.extend(data));
+            file.resize(padded(file.len()), filler);
+        };
+    chunk(b"JSON", head.len(), &mut std::iter::once(head.into_bytes()), b' ');
+    if numbers > 0 {
+        chunk(b"BIN\0", numbers, &mut views.into_iter(), 0);
+    }
+    let length = file.len() as u32;
+    file[length_at..length_at + 4].copy_from_slice(&length.to_le_bytes());
     file
 }
