@@ -10,6 +10,7 @@ pub mod faces;
 pub mod facets;
 pub mod features;
 pub mod floor;
+mod ground;
 pub mod formats;
 pub mod geotiff;
 pub mod grid;
@@ -87,7 +88,8 @@ pub struct Terrain {
 
 impl Terrain {
     /// Indexes a welded mesh.
-    pub fn new(welded: Welded, sheets: Vec<Sheet>) -> Self {
+    pub fn new(mut welded: Welded, sheets: Vec<Sheet>) -> Self {
+        welded.forget_parts();
         let is_many = welded.triangles.len() > MANY_TRIANGLES;
         let sizes = if is_many { index::Sizes::SMALL } else { index::Sizes::FAST };
         let corners = |t: u32| welded.corners_m(t as usize);

@@ -42,6 +42,7 @@ pub mod stage;
 pub mod tableau;
 pub mod environment;
 mod springs;
+pub mod struck;
 pub(crate) mod stems;
 pub(crate) mod roughness;
 pub(crate) mod scar;

@@ -3,9 +3,8 @@
 use crate::hazard::LineFloor;
 use crate::plan::{EvaluationLine, Footprint, LinePiece, Part, Plan};
 use crate::scene::Corner;
-use crate::terrain::Terrain;
 
-/// Length of the pieces that a line is looked at in, and distance of the places asked for ground (m).
+/// Length of the pieces that a line is looked at in (m): boxes round short ones hold few triangles beside it.
 const PIECE_M: f64 = 2.0;
 
 /// The floor of a line or object; none where some of it lies beside the terrain or over a hole, and where rocks can push
@@ -14,22 +13,21 @@ pub(super) fn floor(plan: &Plan, line: &EvaluationLine) -> Option<LineFloor> {
     if plan.rock_against_rock.is_kept() {
         return None;
     }
-    let reach_m = match line.footprint {
-        None => 0.0,
-        Some(Footprint::Area) => largest_radius_m(plan)?,
-        Some(Footprint::Strip { half_width_m }) => half_width_m + largest_radius_m(plan)?,
-    };
-    let boxes = match line.footprint {
-        Some(Footprint::Area) => vec![whole(line)?],
-        _ => pieces(line, reach_m.max(PIECE_M)),
-    };
-    let grown = boxes.into_iter().map(|[low, high]| {
-        [[low[0] - reach_m, low[1] - reach_m], [high[0] + reach_m, high[1] + reach_m]]
-    });
-    let lowest = grown.map(|within| lowest_m(&plan.terrain, within));
-    let local_m = lowest.reduce(|one, other| Some(one?.min(other?)))??;
-    let ground_m = local_m + plan.terrain.origin_m.z;
+    let terrain = &plan.terrain;
+    let local_m = match line.footprint {
+        None => lowest_m(pieces(line, PIECE_M), |ends| terrain.lowest_along(ends)),
+        Some(footprint) => {
+            let (boxes, reach_m) = boxes(line, footprint, largest_radius_m(plan)?)?;
+            lowest_m(boxes, |within| terrain.lowest_in(grown(within, reach_m)))
+        }
+    }?;
+    let ground_m = local_m + terrain.origin_m.z;
     Some(LineFloor { ground_m, gravity_m_s2: plan.gravity_m_s2 })
+}
+
+/// The lowest of some; none if one is not known.
+fn lowest_m(places: Vec<[Corner; 2]>, of: impl Fn([Corner; 2]) -> Option<f64>) -> Option<f64> {
+    places.into_iter().try_fold(f64::INFINITY, |lowest, place| Some(of(place)?.min(lowest)))
 }
 
 /// The largest radius of a sphere; none where nothing bounds it, or where blocks reach farther.
@@ -39,45 +37,48 @@ fn largest_radius_m(plan: &Plan) -> Option<f64> {
     (largest_m.is_finite() && !plan.releases.has_blocks()).then_some(largest_m)
 }
 
-/// Boxes round the pieces of a line, south-western and north-eastern corner (m, local).
+/// Boxes round an object, and how far beyond them a rock of some radius still hits it (m).
+fn boxes(
+    line: &EvaluationLine,
+    footprint: Footprint,
+    radius_m: f64,
+) -> Option<(Vec<[Corner; 2]>, f64)> {
+    match footprint {
+        Footprint::Area => {
+            let all = pieces(line, f64::INFINITY).into_iter().map(around);
+            Some((vec![all.reduce(both)?], radius_m))
+        }
+        Footprint::Strip { half_width_m } => {
+            let reach_m = half_width_m + radius_m;
+            let short = pieces(line, reach_m.max(PIECE_M));
+            Some((short.into_iter().map(around).collect(), reach_m))
+        }
+    }
+}
+
+/// The pieces of a line, each cut so that none is longer than this (m); both ends of each (m, local).
 fn pieces(line: &EvaluationLine, long_m: f64) -> Vec<[Corner; 2]> {
     let of_piece = |piece: &LinePiece| {
         let (from, way) = (piece.from_m, piece.way_m);
         let parts = (piece.length_m() / long_m).ceil().max(1.0);
         let at = move |k: u32| [0, 1].map(|axis| from[axis] + f64::from(k) / parts * way[axis]);
-        (0..parts as u32).map(move |k| around(at(k), at(k + 1)))
+        (0..parts as u32).map(move |k| [at(k), at(k + 1)])
     };
     line.pieces.iter().flat_map(of_piece).collect()
 }
 
-/// The box round all of a line.
-fn whole(line: &EvaluationLine) -> Option<[Corner; 2]> {
-    let pieces = pieces(line, f64::INFINITY).into_iter();
-    pieces.reduce(|one, other| [around(one[0], other[0])[0], around(one[1], other[1])[1]])
-}
-
-/// The box round two places.
-fn around(one: Corner, other: Corner) -> [Corner; 2] {
+/// The box round two places: south-western and north-eastern corner.
+fn around([one, other]: [Corner; 2]) -> [Corner; 2] {
     let of = |end: fn(f64, f64) -> f64| [0, 1].map(|axis| end(one[axis], other[axis]));
     [of(f64::min), of(f64::max)]
 }
 
-/// No ground in a box is lower (m, local): the lowest corner of a triangle that comes into it. None where ground lacks.
-fn lowest_m(terrain: &Terrain, [low, high]: [Corner; 2]) -> Option<f64> {
-    let places = |axis: usize| {
-        let parts = ((high[axis] - low[axis]) / PIECE_M).ceil().max(1.0);
-        let width = high[axis] - low[axis];
-        (0..=parts as u32).map(move |k| low[axis] + f64::from(k) / parts * width)
-    };
-    let mut all = places(0).flat_map(|x| places(1).map(move |y| (x, y)));
-    if !all.all(|(x, y)| terrain.ground_below(x, y).is_some()) {
-        return None;
-    }
-    let mut lowest_m = f64::INFINITY;
-    terrain.index.over_way([low, high], f64::INFINITY, |start, count| {
-        for triangle in (start..start + count).filter(|t| !terrain.is_tree(*t)) {
-            lowest_m = terrain.corners_m(triangle).iter().map(|c| c.z).fold(lowest_m, f64::min);
-        }
-    });
-    Some(lowest_m)
+/// The box round two boxes.
+fn both([low, high]: [Corner; 2], [other_low, other_high]: [Corner; 2]) -> [Corner; 2] {
+    [around([low, other_low])[0], around([high, other_high])[1]]
+}
+
+/// A box, larger by a distance on all sides (m).
+fn grown([low, high]: [Corner; 2], by_m: f64) -> [Corner; 2] {
+    [low.map(|at| at - by_m), high.map(|at| at + by_m)]
 }

@@ -12,6 +12,7 @@ use super::weld::{Tally, Welded};
 use crate::rock::Vec3;
 use std::cmp::Reverse;
 use std::collections::{BTreeSet, BinaryHeap};
+use std::sync::OnceLock;
 
 /// Distance along the mesh between chosen vertices over the edge length wanted (–): the distance from vertex to vertex along
 /// edges is on average this much longer than the straight one, and neighbours are chosen a little further apart than they
@@ -69,6 +70,7 @@ fn empty(terrain: &Terrain) -> Welded {
         covered: Tally::default(),
         moved_corners: 0,
         splits: Splits::default(),
+        parts: OnceLock::new(),
     }
 }
 

@@ -16,7 +16,6 @@ pub use overlaps::Overlap;
 use crate::error::{Error, Result};
 use crate::rock::Vec3;
 use crate::terrain::stl::{Format, Spacing};
-use crate::terrain::weld::parts::Parts;
 use crate::terrain::weld::{Piece, Tally, Welded};
 use std::path::Path;
 
@@ -132,10 +131,10 @@ impl Health {
         is_slope: &(dyn Fn(u32) -> bool + Sync),
     ) -> Self {
         let edges = &welded.edges;
-        let parts = Parts::of(welded);
-        let mut gaps = gaps::gaps(welded, &parts, is_slope);
+        let parts = welded.parts();
+        let mut gaps = gaps::gaps(welded, parts, is_slope);
         gaps.truncate(MOST_NAMED);
-        let mut overlaps = overlaps::overlaps(welded, &parts, is_slope);
+        let mut overlaps = overlaps::overlaps(welded, parts, is_slope);
         overlaps.truncate(MOST_NAMED);
         let odd = measure::odd_edges(welded);
         let [low_m, high_m] = measure::box_m(welded);
@@ -159,7 +158,7 @@ impl Health {
             split_into: welded.splits.pieces,
             t_junctions_left: welded.splits.left.clone(),
             flipped_edges: odd.flipped,
-            parts: parts.sizes,
+            parts: parts.sizes.clone(),
             gaps,
             overlaps,
             low_m,

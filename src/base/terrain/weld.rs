@@ -12,8 +12,10 @@ use crate::terrain::edges::{self, Edges};
 use crate::terrain::faces::Mesh;
 use crate::terrain::merge::Merger;
 use crate::terrain::stl::Soup;
+use parts::Parts;
 use split::Splits;
 use std::path::Path;
+use std::sync::OnceLock;
 
 /// Weld tolerance relative to the longest side of the box of the model (–).
 const TOLERANCE_OF_SIZE: f64 = 1e-6;
@@ -114,6 +116,8 @@ pub struct Welded {
     pub moved_corners: usize,
     /// What was done where a vertex lies on an edge.
     pub splits: Splits,
+    /// What hangs together, once it was asked for.
+    pub(super) parts: OnceLock<Parts>,
 }
 
 /// Welds the pieces into one mesh around the whole-metre centre of their box.
@@ -162,6 +166,7 @@ pub(super) fn join(
         covered: Tally::default(),
         moved_corners: 0,
         splits: Splits::default(),
+        parts: OnceLock::new(),
     };
     welded.take(pieces, &frame);
     if welded.triangles.is_empty() {
@@ -255,6 +260,16 @@ impl CommonBox {
 }
 
 impl Welded {
+    /// The parts of the mesh as it is now.
+    pub(super) fn parts(&self) -> &Parts {
+        self.parts.get_or_init(|| Parts::of(self))
+    }
+
+    /// Frees what is known of parts: nobody asks for it once the mesh is indexed.
+    pub(super) fn forget_parts(&mut self) {
+        self.parts.take();
+    }
+
     /// A local point in map coordinates.
     pub fn on_map(&self, local_m: Vec3) -> Vec3 {
         local_m + self.origin_m

@@ -8,7 +8,7 @@
 mod impacts;
 
 use super::form::{Form, RockInstant, Turned};
-use super::impacts::{MeshEnergy, Struck};
+use super::impacts::MeshEnergy;
 use super::recorder::{Keep, Recorder};
 use super::rest::RestCriterion;
 use super::settings::RunSettings;
@@ -29,6 +29,7 @@ use crate::solver::environment::ContactEnvironment;
 use crate::solver::roughness::RoughFacets;
 use crate::solver::scar::{Scars, taken_j};
 use crate::solver::step_control::StepError;
+use crate::solver::struck::Struck;
 
 /// One block on its way.
 struct Roll<'a> {

@@ -9,10 +9,11 @@
 //! took by itself is not known. The energy `m (n·v)²/2` that an approach along its normal brings
 //! is, and it is what a dashpot takes from.
 
-use super::{FeatureKind, Impact};
+use super::Impact;
 use crate::contact::MOST;
 use crate::contact::history::SAME_GRIP;
 use crate::rock::Vec3;
+use crate::solver::struck::Struck;
 
 /// A patch struck again so soon after it has let go (s) is the same impact: its springs opened for an instant, or the rock went
 /// on over the side of a triangle.
@@ -41,21 +42,6 @@ impl MeshEnergy {
     pub(super) fn less(&self, other: &Self) -> Self {
         Self { slope_j: self.slope_j - other.slope_j, trees_j: self.trees_j - other.trees_j }
     }
-}
-
-/// A patch that is struck.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Struck {
-    /// Where (m).
-    pub(super) point_m: Vec3,
-    /// Normal of the patch there.
-    pub(super) normal: Vec3,
-    /// What of the mesh it is.
-    pub(super) feature: FeatureKind,
-    /// Triangle whose ground answers.
-    pub(super) triangle: u32,
-    /// Speed of approach along the normal (m/s).
-    pub(super) approach_m_s: f64,
 }
 
 /// An impact under way, or one that is just over.

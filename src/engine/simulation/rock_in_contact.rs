@@ -4,13 +4,13 @@
 //! An impact here is a contact that begins with an approach above the capture speed: only those
 //! rebound, are counted and get a row.
 
-use super::impacts::{MeshEnergy, Struck};
+use super::impacts::MeshEnergy;
 use super::recorder::Recorder;
+use crate::contact::ContactPoint;
 use crate::contact::history::ContactHistory;
-use crate::contact::{ContactPoint, Feature};
-use crate::rock::Vec3;
 use crate::solver::contact_state::{Blow, ContactEnvironment, ContactState};
 use crate::solver::roughness::Meeting;
+use crate::solver::struck::Struck;
 use nalgebra::Rotation3;
 use std::f64::consts::PI;
 
@@ -110,7 +110,7 @@ impl RockInContact<'_, '_> {
                 0
             } else {
                 let of = (history.feature, history.triangle);
-                let struck = patch_struck((c, world.body.radius), &history.n, of, approach_m_s);
+                let struck = Struck::by_ball((c, world.body.radius), &history.n, of, approach_m_s);
                 recorder.begin_impact(&struck, until_s, held_j)
             };
         }
@@ -143,7 +143,7 @@ impl RockInContact<'_, '_> {
             if is_new && approach_m_s >= world.law(touch.triangle).capture_m_s {
                 let of = (touch.feature, touch.triangle);
                 let at = (&state.c, world.body.radius);
-                let struck = patch_struck(at, &touch.normal, of, approach_m_s);
+                let struck = Struck::by_ball(at, &touch.normal, of, approach_m_s);
                 let now_s = recorder.now.time_s;
                 recorder.begin_impact(&struck, now_s, &MeshEnergy::default());
             }
@@ -233,15 +233,4 @@ impl RockInContact<'_, '_> {
             self.recorder.now.turn(&turn);
         }
     }
-}
-
-/// What a rock with its centre at `c` strikes along the normal `n` of a feature, whose triangle answers: the touched point is `P1 = c − R n`.
-fn patch_struck(
-    (c, radius_m): (&Vec3, f64),
-    n: &Vec3,
-    (feature, triangle): (Feature, u32),
-    approach_m_s: f64,
-) -> Struck {
-    let point_m = c - n * radius_m;
-    Struck { point_m, normal: *n, feature: feature.kind, triangle, approach_m_s }
 }

@@ -7,7 +7,6 @@
 //! lies beside it: O(n log n).
 
 use super::Welded;
-use super::parts::Parts;
 use crate::parallel;
 use crate::rock::Vec3;
 use crate::terrain::index::{Index, Sizes};
@@ -54,7 +53,7 @@ impl Welded {
     /// All triangles beside the largest part of the mesh, and those of it that share an edge with two others or lie folded back
     /// on the next one; none if the mesh is one sheet.
     fn suspects(&self) -> Option<Suspects> {
-        let parts = Parts::of(self);
+        let parts = self.parts();
         // part 0 is the largest
         let is_one = parallel::map(parts.of.len(), |t| {
             parts.of[t] != 0 || (0..3).any(|k| self.is_doubled(3 * t as u32 + k))

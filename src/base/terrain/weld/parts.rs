@@ -5,6 +5,7 @@ use crate::parallel;
 use crate::terrain::groups::Groups;
 
 /// The parts, numbered from 0, the largest first.
+#[derive(Debug, Clone, PartialEq)]
 pub(in crate::terrain) struct Parts {
     /// Triangles of each part.
     pub(in crate::terrain) sizes: Vec<usize>,
@@ -14,7 +15,7 @@ pub(in crate::terrain) struct Parts {
 
 impl Parts {
     /// Of a mesh as it is now: triangles that are left out or split later change them.
-    pub(in crate::terrain) fn of(welded: &Welded) -> Self {
+    pub(super) fn of(welded: &Welded) -> Self {
         let mut groups = groups(welded);
         let mut of: Vec<u32> =
             (0..welded.triangles.len() as u32).map(|t| groups.lowest(t)).collect();

@@ -7,15 +7,21 @@ use crate::terrain::edges::Edges;
 impl Welded {
     /// Lists the edges, once triangles that are there twice are dropped.
     pub(super) fn list_edges(&mut self) {
-        self.edges = Edges::of(&self.triangles);
+        self.find_edges();
         let again = self.duplicates();
         if !again.is_empty() {
             self.edges = Edges::default();
             let mut duplicates = std::mem::take(&mut self.duplicates);
             self.drop_triangles(&again, &mut duplicates);
             self.duplicates = duplicates;
-            self.edges = Edges::of(&self.triangles);
+            self.find_edges();
         }
+    }
+
+    /// Finds the edges of the triangles as they are now; what was known of parts was of those before.
+    fn find_edges(&mut self) {
+        self.edges = Edges::of(&self.triangles);
+        self.forget_parts();
     }
 
     /// Drops triangles that those before them cover.
@@ -28,7 +34,7 @@ impl Welded {
             let mut tally = Tally::default();
             self.drop_triangles(&covered, &mut tally);
             self.covered = tally;
-            self.edges = Edges::of(&self.triangles);
+            self.find_edges();
         }
     }
 

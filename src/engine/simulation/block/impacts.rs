@@ -1,12 +1,13 @@
 //! Impacts of a block in a scheme with springs: noted down as they begin and end, and on rough ground turned against the facets
 //! that it meets, as spheres are (`simulation::rock_in_contact`).
 
-use super::super::impacts::{MeshEnergy, Struck};
+use super::super::impacts::MeshEnergy;
 use super::super::rock_in_contact::IMPACT_TIMES;
 use super::{Roll, turned};
 use crate::rock::Vec3;
 use crate::solver::loss::Loss;
 use crate::solver::roughness::Meeting;
+use crate::solver::struck::Struck;
 use nalgebra::Rotation3;
 use std::f64::consts::PI;
 

@@ -2,8 +2,9 @@
 
 use super::Recorder;
 use crate::simulation::Ledger;
-use crate::simulation::impacts::{MeshEnergy, Struck};
+use crate::simulation::impacts::MeshEnergy;
 use crate::solver::loss::Loss;
+use crate::solver::struck::Struck;
 
 impl Recorder<'_> {
     /// Begins an impact on a triangle's patch at the present motion, to end at `until_s` (s) at the latest; `held_j` is what

@@ -8,7 +8,7 @@ use super::{BodyState, WorldBody};
 use crate::flight::{FlightEnd, Parabola, time_of_impact_past};
 use crate::release::Release;
 use crate::rock::{Motion, Vec3};
-use crate::simulation::impacts::{MeshEnergy, Struck};
+use crate::simulation::impacts::MeshEnergy;
 use crate::simulation::rest::RestCriterion;
 use crate::simulation::rock_in_contact::RockInContact;
 use crate::simulation::settings::RunSettings;
@@ -258,9 +258,7 @@ impl<'a> WorldBody<'a> {
         let state = if flies { PathState::Flight } else { PathState::in_contact(slides) };
         self.recorder.step_as(before, state, flies || self.member.state.is_free());
         for hit in hits {
-            let &Hit { point_m, normal, feature, triangle, approach_m_s, .. } = hit;
-            let struck = Struck { point_m, normal, feature, triangle, approach_m_s };
-            self.recorder.begin_impact(&struck, before.time_s, &MeshEnergy::default());
+            self.recorder.begin_impact(&hit.struck, before.time_s, &MeshEnergy::default());
         }
         self.recorder.go_on_with(after);
         let _ = self.recorder.end_impacts(|_| false);

@@ -1,7 +1,8 @@
 //! What a step of an island did.
 
-use crate::rock::{Motion, Vec3};
+use crate::rock::Motion;
 use crate::solver::loss::{Given, Loss};
+use crate::solver::struck::Struck;
 
 /// What one step did.
 #[derive(Debug, Clone, Default)]
@@ -29,16 +30,8 @@ pub struct Done {
 pub struct Hit {
     /// The rock, as a place in the island.
     pub rock: usize,
-    /// Normal of the patch there.
-    pub normal: Vec3,
-    /// Speed of approach along it (m/s).
-    pub approach_m_s: f64,
-    /// Point that is touched (m).
-    pub point_m: Vec3,
-    /// Where on the mesh.
-    pub feature: crate::contact::FeatureKind,
-    /// Triangle whose ground answers.
-    pub triangle: u32,
+    /// What it strikes.
+    pub struck: Struck,
 }
 
 /// A blow on a rock within a step.

@@ -9,6 +9,7 @@ use crate::solver::impact::{BlowTable, blow_along_a_line};
 use crate::solver::island::body::BodySlot;
 use crate::solver::island::outcome::Hit;
 use crate::solver::rigid::GroundContact;
+use crate::solver::struck::Struck;
 use crate::terrain::Terrain;
 
 /// One rock inside a step.
@@ -112,21 +113,10 @@ pub(super) struct ImpactScene<'s> {
     pub(super) pair_histories: &'s [PairHistory],
 }
 
-/// The impact of rock `k`, with its centre at `c`, at a touch.
-pub(super) fn hit_of(
-    k: usize,
-    touch: &ContactPoint,
-    (c, radius): (&Vec3, f64),
-    approach_m_s: f64,
-) -> Hit {
-    Hit {
-        rock: k,
-        normal: touch.normal,
-        approach_m_s,
-        point_m: c - touch.normal * radius,
-        feature: touch.feature.kind,
-        triangle: touch.triangle,
-    }
+/// The impact of rock `k`, of which centre and radius are given, at a touch.
+pub(super) fn hit_of(k: usize, touch: &ContactPoint, ball: (&Vec3, f64), approach_m_s: f64) -> Hit {
+    let on = (touch.feature, touch.triangle);
+    Hit { rock: k, struck: Struck::by_ball(ball, &touch.normal, on, approach_m_s) }
 }
 
 /// The impulses of one contact: normal (N s), along the surface (N s), of rolling (N m s).

@@ -1,0 +1,33 @@
+//! A patch of the mesh that a rock strikes.
+
+use crate::contact::{Feature, FeatureKind};
+use crate::rock::Vec3;
+
+/// A patch that is struck.
+#[derive(Debug, Clone, Copy)]
+pub struct Struck {
+    /// Where (m).
+    pub point_m: Vec3,
+    /// Normal of the patch there.
+    pub normal: Vec3,
+    /// What of the mesh it is.
+    pub feature: FeatureKind,
+    /// Triangle whose ground answers.
+    pub triangle: u32,
+    /// Speed of approach along the normal (m/s).
+    pub approach_m_s: f64,
+}
+
+impl Struck {
+    /// What a ball with its centre at `c` strikes along the normal of a feature, whose triangle answers: the touched point is
+    /// `P1 = c − R n`.
+    pub fn by_ball(
+        (c, radius_m): (&Vec3, f64),
+        normal: &Vec3,
+        (feature, triangle): (Feature, u32),
+        approach_m_s: f64,
+    ) -> Self {
+        let point_m = c - normal * radius_m;
+        Self { point_m, normal: *normal, feature: feature.kind, triangle, approach_m_s }
+    }
+}
