@@ -84,6 +84,11 @@ impl Results {
         read(dir)
     }
 
+    /// Whether what rocks cross under a name is an object, which they hit; else it is a line.
+    pub fn is_object(&self, name: &str) -> bool {
+        self.summary.asked.objects.iter().any(|object| object.name == name)
+    }
+
     /// Statistics of one quantity over all rocks: percentiles and mean with their 95 % intervals, in SI units.
     pub fn statistic(&self, quantity: Quantity) -> Statistic {
         self.hazard.statistic(quantity)

@@ -348,7 +348,9 @@ pub(super) fn retention(lines: &[ReportLine], words: &Words) -> Drawing {
         canvas.outline(&frame, Pen::full(INK, 0.8));
         panel.x_axis(canvas);
     });
-    Drawing { svg, caption: words.retention_caption.to_owned() }
+    let is_any = lines.iter().any(|line| line.arriving.is_some());
+    let colours = if is_any { words.retention_colours } else { "" };
+    Drawing { svg, caption: format!("{}{colours}", words.retention_caption) }
 }
 
 /// The share that reaches a line, and what is left of it behind barriers; a lower bound has its sign.
@@ -357,19 +359,17 @@ fn reach_in_words(line: &ReportLine, words: &Words) -> Label {
         let share = percent_shown(reach.value);
         format!("{}{share}", format::sign(reach.is))
     };
-    let left =
-        line.behind.as_ref().map(|behind| fill(words.left, &[("share", &said(&behind.reach))]));
+    let left = line.arriving.map(|arriving| fill(words.left, &[("share", &said(&arriving))]));
     Label::new(said(&line.reach), (0.0, 0.0)).followed_by(left.unwrap_or_default())
 }
 
 fn bar(canvas: &Canvas<'_>, panel: &Panel, (line, name, y): (&ReportLine, &str, f64)) {
     let frame = panel.frame;
     let at = |share: f64| panel.at((100.0 * share).clamp(0.0, panel.x.high), 0.0).0;
-    let behind = line.behind.as_ref().map(|behind| behind.reach);
-    let rows = [(Some(line.reach), SKY, -7.0), (behind, GREEN, 1.0)];
+    let rows = [(Some(line.reach), SKY, -7.0), (line.arriving, GREEN, 1.0)];
     for (reach, colour, top) in rows {
         let Some(reach) = reach else { continue };
-        let tall = if behind.is_some() { 7.0 } else { 14.0 };
+        let tall = if line.arriving.is_some() { 7.0 } else { 14.0 };
         let bar = PaperFrame {
             left: frame.left,
             right: at(reach.value),

@@ -82,7 +82,7 @@ words! {
     farthest, along_caption, line_title, nobody_line, the_line, the_line_of_barrier, where_pass,
     first_crossing, energy_exceeded, height_exceeded, line_behind, line_caption, line_axis,
     energy_axis, share_of_releases, with_barriers, without, without_barriers, retention,
-    retention_axis, retention_caption, left, line_table, object_table, line_note, object_note,
+    retention_axis, retention_caption, retention_colours, left, line_table, object_table, line_note, object_note,
     arrives_title, arrives_note, line_without, line_with, col_reach, col_speed, col_energy,
     col_height_vertical, col_height_normal, barrier_name, nobody_barrier, barrier_cloud,
     stopped_by_height, stopped_by_place, barrier_caption, barrier_design, barrier_no_design,

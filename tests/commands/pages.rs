@@ -3,6 +3,7 @@
 #![allow(clippy::print_stderr, reason = "what was not tried must be said")]
 
 use crate::program::rockfall;
+use crate::site::{Folder, scene};
 use rockfall::plan::Plan;
 use rockfall::report::words::Words;
 use rockfall::scene::{Language, Scene};
@@ -110,6 +111,33 @@ fn blocks_on_springs() -> [Plan; 2] {
     fs::write(&file, text.replace("\"rigid\"", "\"adaptive\"")).unwrap();
     let plan = || Plan::of_scene(&Scene::read(&file).unwrap()).unwrap();
     [plan(), plan().without_kernels()]
+}
+
+/// The figure of retention shows what one barrier lets through to the next, which meets fewer rocks than cross its line; of a
+/// single barrier there is nothing to tell apart, and the caption speaks of one colour.
+#[test]
+fn retention_shows_what_arrives_at_a_barrier_behind_another() {
+    let dir = Folder::new();
+    dir.slope();
+    let barrier = |name: &str, north_m: f64| {
+        format!(
+            "[[barriers]]\nname = \"{name}\"\npoints_m = [[2600002.0, {north_m:?}], [2600058.0, {north_m:?}]]\n\
+             height_m = 1.5\ncapacity_j = 1e6\n"
+        )
+    };
+    let upper = barrier("upper", 1_200_070.5);
+    let line =
+        "[[lines]]\nname = \"edge\"\npoints_m = [[2600002.0, 1200080.5], [2600058.0, 1200080.5]]\n";
+    for (name, more, is_two) in [
+        ("one", line.to_owned() + &upper, false),
+        ("two", upper.clone() + &barrier("lower", 1_200_050.5), true),
+    ] {
+        let out = dir.run(name, &scene("file = \"dem.tif\"", &more));
+        let figure = fs::read_to_string(out.join("figures/retention.svg")).unwrap();
+        assert_eq!(figure.contains("with barriers"), is_two, "{name}");
+        let page = fs::read_to_string(out.join("report.html")).unwrap();
+        assert_eq!(page.contains("Light: without barriers"), is_two, "{name}");
+    }
 }
 
 /// What the plan of every example says is said in every language, part and text.

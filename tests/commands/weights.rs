@@ -76,11 +76,11 @@ fn what_is_compared_is_what_each_run_says() {
     let named = |list: &Value, name: &str| -> Value {
         list.as_array().unwrap().iter().find(|one| one["name"] == name).unwrap().clone()
     };
-    let group = "\"Line “road”, barriers left aside\"";
+    let group = "\"Object “road”, barriers left aside\"";
     let line = |of: &Value| named(&of["lines"], "road");
     let place = |of: &Value| named(&of["annual"]["places"], "road");
     let reach = |of: &Value| 100.0 * line(of)["reach"]["share"].as_f64().unwrap();
-    check(group, "Cross it", &reach);
+    check(group, "Hit it", &reach);
     check(group, "Total energy, P50", &|of| {
         line(of)["statistics"]["total_j"]["percentiles"]["p50"]["value"].as_f64().unwrap() / 1e3
     });

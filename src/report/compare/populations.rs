@@ -273,7 +273,7 @@ fn at_lines(run: &Results, names: &[String], among: &Arc<CountedReleases>) -> Re
     let arrived = arrived(&barriers, names, &rows)?;
     let mut found = Vec::new();
     for (name, arrived) in names.iter().zip(arrived) {
-        let crossing = crossing(name, &rows, among);
+        let crossing = crossing((name, run.is_object(name)), &rows, among);
         let is_barrier = barriers.iter().any(|barrier| barrier.name == *name);
         let barriers_stop = is_barrier || arrived.len() < crossing.shares[0].releases.len();
         let arriving = arriving(name, (&barriers, &arrived), among);
@@ -291,14 +291,19 @@ fn at_place(
     CountedShare { name: name.to_owned(), releases, among: Arc::clone(among), come }
 }
 
-fn crossing(name: &str, rows: &[CrossingRow], among: &Arc<CountedReleases>) -> Population {
+fn crossing(
+    (name, is_object): (&str, bool),
+    rows: &[CrossingRow],
+    among: &Arc<CountedReleases>,
+) -> Population {
+    let (what, come) = if is_object { ("Object", "Hit it") } else { ("Line", "Cross it") };
     let own = || rows.iter().filter(|row| row.line == name);
     let values = |of: fn(&CrossingRow) -> f64| own().map(|row| (row.index, of(row))).collect();
     let cross = own().map(|row| row.index).collect();
     Population {
-        name: format!("Line “{name}”, barriers left aside"),
+        name: format!("{what} “{name}”, barriers left aside"),
         among: Arc::clone(among),
-        shares: vec![at_place("Cross it", cross, (among, true))],
+        shares: vec![at_place(come, cross, (among, true))],
         values: vec![
             (ComparedQuantity::Energy, values(CrossingRow::total_j)),
             (ComparedQuantity::Height, values(|row| row.height_m)),

@@ -39,11 +39,6 @@ pub(super) fn shown(results: &Results) -> impl Iterator<Item = (usize, &hazard::
     own.enumerate().map(|(k, line)| (k + 1, line))
 }
 
-/// Objects stand with what a year brings.
-fn is_object(results: &Results, name: &str) -> bool {
-    results.summary.asked.objects.iter().any(|object| object.name == name)
-}
-
 /// The barrier on a line, if one stands there.
 fn barrier_on<'a>(results: &'a Results, name: &str) -> Option<&'a Barrier> {
     let mut barriers = results.summary.barriers.iter().map(|one| &one.barrier);
@@ -75,7 +70,7 @@ pub(super) fn lines(results: &Results, ground: Option<&GroundRaster>) -> Result<
     let is_weighted = results.hazard.weights().is_some();
     let elevation = |corners: &[[f64; 2]]| ground.map_or(f64::NAN, |g| mean_height(g, corners));
     let mut lines: Vec<ReportLine> = shown(results)
-        .filter(|(_, line)| !is_object(results, &line.info.name))
+        .filter(|(_, line)| !results.is_object(&line.info.name))
         .map(|(number, line)| ReportLine {
             number,
             is_barrier: barrier_on(results, &line.info.name).is_some(),
@@ -94,6 +89,10 @@ pub(super) fn lines(results: &Results, ground: Option<&GroundRaster>) -> Result<
         line.behind = residual
             .filter(|at| !at.behind.is_empty())
             .map(|at| behind(line, at, (&weights, results)));
+        line.arriving = match &line.behind {
+            Some(behind) => Some(behind.reach),
+            None => arriving(results, &line.name),
+        };
         let all = || line.crossings.iter();
         let open: Vec<usize> = results.open.at(&line.name).collect();
         line.energy_exceedance = exceedance(all().map(energy), (&weights, &open));
@@ -153,6 +152,13 @@ fn behind(line: &ReportLine, at: &Residual, (weights, results): (&Weights, &Resu
     }
 }
 
+/// Share of the releases that arrive at a barrier, where one before it stops some of those that cross its line.
+fn arriving(results: &Results, name: &str) -> Option<Estimate> {
+    let mut barriers = results.summary.barriers.iter();
+    let barrier = barriers.find(|one| one.barrier.name == name)?;
+    (barrier.arriving.count < barrier.crossing).then(|| of_share(&barrier.arriving))
+}
+
 /// Mean height of the ground along a line (m); NaN where there is none.
 fn mean_height(ground: &GroundRaster, corners: &[[f64; 2]]) -> f64 {
     let pieces = corners.windows(2).flat_map(|pair| {
@@ -210,6 +216,7 @@ fn empty(line: &hazard::Line, releases: usize) -> ReportLine {
         energy_exceedance: Vec::new(),
         height_exceedance: Vec::new(),
         behind: None,
+        arriving: None,
     }
 }
 
@@ -231,7 +238,7 @@ pub(super) fn tables(results: &Results, words: &Words) -> Vec<EstimateTable> {
         let [share, low, high] =
             format::percents([reach.share, reach.low_95, reach.high_95], |_| 2);
         let count = |n: usize| format::decimal(n as f64, 0);
-        let (title, plain, weighted) = if is_object(results, &line.info.name) {
+        let (title, plain, weighted) = if results.is_object(&line.info.name) {
             (words.object_table, words.object_note, by_frequency::OBJECT)
         } else {
             (words.line_table, words.line_note, by_frequency::LINE)

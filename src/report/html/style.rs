@@ -113,6 +113,7 @@ footer { margin-top: 40px; padding-top: 8px; border-top: 1px solid #bbb; font-si
   figure svg { max-height: 150mm; }
   .sheet svg { max-height: 205mm; }
   figcaption { font-size: 8pt; line-height: 1.35; margin-top: 1mm; max-width: none; }
+  footer { margin-top: 4mm; break-before: avoid; }
   pre { font-size: 7.8pt; }
   pre, .warnings { print-color-adjust: exact; -webkit-print-color-adjust: exact; }
 }

@@ -171,8 +171,10 @@ pub struct ReportLine {
     pub energy_exceedance: Vec<BandPoint>,
     /// Share of all releases that cross higher than `x` (m).
     pub height_exceedance: Vec<BandPoint>,
-    /// What is left by the barriers before it; none where rocks meet no barrier before.
+    /// What is left by the barriers before it; none where rocks meet no barrier before, and of a barrier's own line.
     pub behind: Option<Behind>,
+    /// Share of the releases that still arrive, on a barrier's own line too; none where no barrier before stops any.
+    pub arriving: Option<Estimate>,
 }
 
 impl ReportLine {

@@ -77,6 +77,7 @@ fn line(number: usize, name: &str, rocks: usize) -> ReportLine {
             energy_exceedance: curve(4e3),
             height_exceedance: curve(0.02),
         }),
+        arriving: (number == 2).then(|| Estimate::new(0.01, 0.005, 0.02)),
     }
 }
 

@@ -188,6 +188,7 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
     ("no rock", "kein Block"),
     ("All releases", "Alle Ablösungen"),
     ("Line “{name}”, barriers left aside", "Linie „{name}“, ohne Schutzbauwerke"),
+    ("Object “{name}”, barriers left aside", "Objekt „{name}“, ohne Schutzbauwerke"),
     (
         "“{name}”, behind the barriers of each run",
         "„{name}“, hinter den Schutzbauwerken jedes Laufs",
@@ -199,6 +200,7 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
     ("Failed", "Fehlgeschlagen"),
     ("Not released", "Nicht abgelöst"),
     ("Cross it", "Queren sie"),
+    ("Hit it", "Treffen es"),
     ("Arrive", "Kommen an"),
     ("Pass it", "Passieren es"),
     ("Drop", "Höhenverlust"),

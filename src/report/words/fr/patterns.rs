@@ -188,6 +188,7 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
     ("no rock", "aucun bloc"),
     ("All releases", "Tous les départs"),
     ("Line “{name}”, barriers left aside", "Ligne «\u{a0}{name}\u{a0}», sans les ouvrages"),
+    ("Object “{name}”, barriers left aside", "Objet «\u{a0}{name}\u{a0}», sans les ouvrages"),
     (
         "“{name}”, behind the barriers of each run",
         "«\u{a0}{name}\u{a0}», derrière les ouvrages de chaque calcul",
@@ -199,6 +200,7 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
     ("Failed", "Échoués"),
     ("Not released", "Non partis"),
     ("Cross it", "La franchissent"),
+    ("Hit it", "Le touchent"),
     ("Arrive", "Arrivent"),
     ("Pass it", "Le passent"),
     ("Drop", "Dénivelé"),
