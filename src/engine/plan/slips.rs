@@ -9,6 +9,8 @@ const ROCK_KG_M3: [f64; 2] = [1000.0, 5000.0];
 const RADIANS: f64 = 1.6;
 /// Capacity below which a number is rather in kJ (J): nets are tested from 100 kJ on (EAD 340059).
 const LEAST_NET_J: f64 = 10e3;
+/// Energy below which a number is rather in kJ (J): thin stems break at some kJ, and weak intensities end at 30 kJ.
+const LEAST_J: f64 = 1e3;
 /// Radius of the largest single rocks (m): above, a number is rather in cm or mm.
 const LARGEST_M: f64 = 20.0;
 /// Codes that EPSG gives to coordinate systems.
@@ -16,9 +18,11 @@ const EPSG: std::ops::RangeInclusive<u32> = 1024..=32_767;
 /// Runs of codes that EPSG gives to geographic systems, whose coordinates are degrees, and the most used single ones.
 const GEOGRAPHIC: [std::ops::RangeInclusive<u32>; 6] =
     [4120..=4389, 4600..=4646, 4657..=4763, 4490..=4490, 4937..=4937, 4979..=4979];
+/// Web Mercator, whose lengths are those of the equator: elsewhere slopes come out too gentle.
+const WEB_MERCATOR: u32 = 3857;
 
-/// What looks like a slip of units.
-pub(super) fn of(scene: &Scene) -> Vec<String> {
+/// What looks like a slip of units; the meshes may name a system where the scene does not.
+pub(super) fn of(scene: &Scene, mesh_epsg: Option<u32>) -> Vec<String> {
     let mut found = Vec::new();
     found.extend(density(scene.rocks.density_kg_m3));
     let largest_m = scene.rocks.radius_m().reckoned()[2];
@@ -45,8 +49,31 @@ pub(super) fn of(scene: &Scene) -> Vec<String> {
             1e3 * barrier.capacity_j
         ));
     }
-    found.extend(scene.epsg.and_then(epsg));
+    let asked = scene.frequency.as_ref().and_then(|table| table.energies_j.as_deref());
+    found.extend(asked.and_then(limit));
+    found.extend(scene.grounds.iter().filter_map(|(name, ground)| stems(name, ground)));
+    found.extend(scene.epsg.or(mesh_epsg).and_then(epsg));
     found
+}
+
+/// A limit of energy that is rather in kJ.
+fn limit(limits_j: &[f64]) -> Option<String> {
+    let energy_j = limits_j.iter().find(|energy_j| **energy_j < LEAST_J)?;
+    let in_kj = 1e3 * energy_j;
+    Some(format!(
+        "[frequency] energies_j holds {energy_j}: a thrown pebble has as much; is it in kJ? write {in_kj:e}"
+    ))
+}
+
+/// Stems that break at a touch, as their limit is rather in kJ.
+fn stems(name: &str, ground: &GroundTable) -> Option<String> {
+    let most_j = ground.breaks_above_j.as_ref()?.support().1;
+    let in_kj = 1e3 * most_j;
+    (most_j < LEAST_J).then(|| {
+        format!(
+            "[grounds.{name}] breaks_above_j = {most_j} breaks every stem at a touch; is it in kJ? write {in_kj:e}"
+        )
+    })
 }
 
 /// Friction that grows with the way slipped, written so that it falls.
@@ -83,6 +110,11 @@ fn epsg(code: u32) -> Option<String> {
             EPSG.end()
         ));
     }
+    if code == WEB_MERCATOR {
+        return Some(format!(
+            "epsg = {code} (Web Mercator) stretches lengths by 1/cos(latitude), 1.46 at 46.8°, and leaves heights: slopes are too gentle; bring the data into the projected system of the country, as 2056 (LV95)"
+        ));
+    }
     GEOGRAPHIC.iter().any(|run| run.contains(&code)).then(|| {
         format!(
             "epsg = {code} is a geographic system in degrees; coordinates are metres here: name the projected system of the meshes, as 2056 (LV95)"
@@ -113,16 +145,35 @@ mod tests {
         }
     }
 
+    /// Energies written in kJ are said, those in J are not; stems that all stand for good have none.
+    #[test]
+    fn energies_in_kj_are_said() {
+        let ground = |more: &str| -> GroundTable {
+            let spring = "normal_stiffness_n_m = 1e8\ntangential_ratio = 0.5\nrestitution = 0.2\n";
+            toml::from_str(&format!("{spring}friction_angle_deg = 30.0\n{more}")).unwrap()
+        };
+        for (more, is_said) in [
+            ("", false),
+            ("breaks_above_j = 50.0", true),
+            ("breaks_above_j = { uniform = [30.0, 120.0] }", true),
+            ("breaks_above_j = { uniform = [500.0, 90e3] }", false),
+        ] {
+            assert_eq!(stems("spruce", &ground(more)).is_some(), is_said, "{more}");
+        }
+        assert!(limit(&[30.0, 300.0]).is_some_and(|said| said.contains("write 3e4")));
+        assert!(limit(&[30e3, 300e3]).is_none() && limit(&[]).is_none());
+    }
+
     /// What the issue found in scenes, and what must not be taken for a slip.
     #[test]
     fn slips_are_seen_and_usual_values_are_not() {
         assert!(density(2.7).is_some_and(|said| said.contains("write 2700")));
         assert!(density(2700.0).is_none() && density(1800.0).is_none());
         assert!(density(27_000.0).is_some());
-        for wrong in [99_999, 4326, 4258, 4150, 0] {
+        for wrong in [99_999, 4326, 4258, 4150, 0, 3857] {
             assert!(epsg(wrong).is_some(), "{wrong}");
         }
-        for right in [2056, 21_781, 31_287, 25_832, 32_632, 3857, 5972, 2154] {
+        for right in [2056, 21_781, 31_287, 25_832, 32_632, 5972, 2154] {
             assert!(epsg(right).is_none(), "{right}");
         }
     }
