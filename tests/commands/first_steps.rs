@@ -53,6 +53,26 @@ fn a_sketched_scene_asks_for_its_ground_and_then_runs() {
     }
 }
 
+/// The terrain is named as seen from the scene, also in another folder: both can be moved together. A mesh says nothing of a map, and
+/// what to write of it stands there.
+#[test]
+fn a_sketched_scene_finds_its_terrain_from_another_folder() {
+    let dir = tempfile::tempdir().unwrap();
+    let (meshes, scenes) = (dir.path().join("daten/gelände"), dir.path().join("scenes"));
+    fs::create_dir_all(&meshes).unwrap();
+    fs::create_dir(&scenes).unwrap();
+    let (mesh, file) = (meshes.join("slope.stl"), scenes.join("first.toml"));
+    fs::copy("terrain/quick_slope.stl", &mesh).unwrap();
+    let (code, _, stderr) = said(&["init", word(&mesh), word(&file)]);
+    assert_eq!(code, Some(0), "{stderr}");
+    let scene = fs::read_to_string(&file).unwrap();
+    assert!(scene.contains("mesh = \"../daten/gelände/slope.stl\""), "{scene}");
+    assert!(scene.contains("# origin_m = [") && scene.contains("# epsg = "), "{scene}");
+    fs::write(&file, filled_in(&scene)).unwrap();
+    let (code, _, stderr) = said(&["plan", word(&file)]);
+    assert_eq!(code, Some(0), "{stderr}");
+}
+
 /// The examples at the end of a sketched scene lie on its terrain, in map coordinates: without their # they are a line, a
 /// barrier and maps.
 #[test]

@@ -9,7 +9,7 @@ use crate::terrain::health::Health;
 use crate::terrain::read::MeshSource;
 use crate::terrain::walls::places_before;
 use crate::terrain::{Sheet, Terrain};
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 /// The text of a scene for the terrain in a file (a mesh or an elevation model), as it would stand in `scene_file`.
 ///
@@ -35,11 +35,16 @@ pub fn sketch(terrain_file: &Path, scene_file: &Path) -> Result<String> {
     Ok(format!(
         "{HEAD}title = {}\nseed = 2017\n{}\n[[terrain]]\n{key} = {}           # {triangles} triangles\nground = \"slope\"\n{GROUND}{}{}",
         quoted(&name),
-        terrain.epsg.map_or_else(String::new, |code| format!("epsg = {code}\n")),
+        terrain.epsg.map_or_else(|| system(is_stl).to_owned(), |code| format!("epsg = {code}\n")),
         quoted(&path.to_string_lossy()),
         release(&cliff, &terrain),
         REST.replace("LINE", &across(&health)),
     ))
+}
+
+/// What to write of the map's system where the file names none.
+fn system(is_stl: bool) -> &'static str {
+    if is_stl { ORIGIN } else { EPSG }
 }
 
 /// A line over the middle of the terrain, from a quarter of its width to three: an example where rocks may come.
@@ -55,6 +60,14 @@ const HEAD: &str = "\
 # A first scene, written by `rockfall init`. Every key is explained in docs/scene.md.
 #   rockfall plan SCENE      what will be computed, what is left out and why
 #   rockfall run SCENE       all releases, results and report
+";
+
+const EPSG: &str = "# epsg = 2056                      # of the map coordinates: written into rasters and vector files\n";
+
+const ORIGIN: &str = "\
+# CHECK: meshes are often exported with a map position subtracted. Then write it here, and add it to all coordinates below.
+# origin_m = [2600000.0, 1200000.0, 0.0]
+# epsg = 2056                      # of the map coordinates: written into rasters and vector files
 ";
 
 const GROUND: &str = "
@@ -144,5 +157,12 @@ fn seen_from(scene_file: &Path, terrain_file: &Path) -> PathBuf {
     };
     let both = folder.canonicalize().ok().zip(terrain_file.canonicalize().ok());
     let Some((folder, terrain)) = both else { return terrain_file.to_owned() };
-    terrain.strip_prefix(&folder).map_or_else(|_| terrain.clone(), Path::to_owned)
+    let pairs = folder.components().zip(terrain.components());
+    let common = pairs.take_while(|(one, other)| one == other).count();
+    // nothing in common but the root: the way there would be as long as the whole
+    if common < 2 {
+        return terrain;
+    }
+    let up = folder.components().skip(common).map(|_| Component::ParentDir);
+    up.chain(terrain.components().skip(common)).collect()
 }
