@@ -347,7 +347,7 @@ pub(super) static WORDS: Words = Words {
     nobody_year: "{place}: keiner von {rocks} Blöcken, so aussagekräftig wie {effective} gleichen Gewichts, kommt hierher: weniger als {rate} pro Jahr (Vertrauen 95\u{2009}%).",
     hits_of: "Treffer von {name}",
     passages_of: "Durchgänge bei {name}",
-    year_barriers: " Voll: als gäbe es kein Schutzbauwerk; gestrichelt: was keines davor aufhält.",
+    year_barriers: " Voll: als gäbe es kein Schutzbauwerk; gestrichelt: was die Schutzbauwerke durchlassen.",
     year_caption: "Pro Jahr, nicht bedingt auf die Ablösung: Häufigkeit der {what} mit mindestens der Gesamtenergie e, λ(E ≥ e), mit punktweisem 95-%-Band. Grau: Häufigkeiten der Wiederkehrperioden.{barriers} Über der größten Energie aller Blöcke ist die Kurve unbekannt; ihr Band sagt, wie wenig.",
     object: "Objekt {name}",
     line: "Linie {name}",

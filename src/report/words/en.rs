@@ -343,7 +343,7 @@ pub(super) static WORDS: Words = Words {
     nobody_year: "{place}: none of {rocks} rocks, as precise as {effective} of equal weight, comes here: fewer than {rate} a year (95\u{2009}% confidence).",
     hits_of: "hits of {name}",
     passages_of: "passages of {name}",
-    year_barriers: " Full: as if there were no barrier; dashed: what no barrier stops before.",
+    year_barriers: " Full: as if there were no barrier; dashed: what the barriers let through.",
     year_caption: "A year, not conditional on release: frequency of {what} with at least the total energy e, λ(E ≥ e), with pointwise 95 % band. Grey: frequencies of the return periods.{barriers} Above the largest energy of any rock the curve is not known; its band says how little.",
     object: "object {name}",
     line: "line {name}",

@@ -347,7 +347,7 @@ pub(super) static WORDS: Words = Words {
     nobody_year: "{place}\u{a0}: aucun des {rocks} blocs, valant {effective} de poids égal, n’y arrive\u{a0}: moins de {rate} par an (confiance 95\u{2009}%).",
     hits_of: "impacts sur {name}",
     passages_of: "passages à {name}",
-    year_barriers: " Plein\u{a0}: comme sans ouvrage\u{a0}; tirets\u{a0}: ce qu’aucun ouvrage n’arrête avant.",
+    year_barriers: " Plein\u{a0}: comme sans ouvrage\u{a0}; tirets\u{a0}: ce que les ouvrages laissent passer.",
     year_caption: "Par an, non conditionnel au départ\u{a0}: fréquence des {what} avec au moins l’énergie totale e, λ(E ≥ e), avec bande ponctuelle à 95 %. Gris\u{a0}: fréquences des périodes de retour.{barriers} Au-delà de la plus grande énergie de tous les blocs la courbe est inconnue\u{a0}; sa bande dit combien peu.",
     object: "objet {name}",
     line: "ligne {name}",

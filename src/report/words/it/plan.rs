@@ -45,7 +45,7 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ("[paths]", "traiettorie"),
     ("[impacts]", "impatti"),
     ("[lines]", "linee"),
-    ("[barriers]", "opere"),
+    ("[barriers]", "barriere"),
     ("[objects]", "oggetti"),
     ("[frequency]", "frequenza"),
     ("[maps]", "mappe"),

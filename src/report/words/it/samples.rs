@@ -20,6 +20,6 @@ pub(super) const SAMPLES: &[(&str, &str)] = &[
     ("{a} a year of {b} m³", "{a} all’anno di {b} m³"),
     (
         "A name in quotation marks alone stands for the rocks that the barriers of each run have let through to that place.",
-        "Un nome da solo fra virgolette indica i massi che le opere di ogni calcolo hanno lasciato passare fin lì.",
+        "Un nome da solo fra virgolette indica i massi che le barriere di ogni calcolo hanno lasciato passare fin lì.",
     ),
 ];
