@@ -11,11 +11,15 @@
 //! | face | vertex | foot inside the face; the vertex behind none of its own edges, and none of them goes straight on in another |
 //!
 //! Only edges and vertices that stand out of the mesh take part, so most pairs need no test at all.
+//!
+//! A pair that presses goes on beyond the ends and the rims of its features, at the points of both that are nearest, until it lets go: the distance
+//! of two convex sets has neither a jump nor a kink. Where an edge of the block slides off over its corner, the corner presses too, and what
+//! the edge's spring held would be lost.
 
 use super::neighbours::SAME;
 use super::neighbours::{Neighbours, Peak, SharpEdge};
 use super::{ContactPoint, ContactPoints, Feature};
-use crate::body::{Block, Ridge};
+use crate::body::{Block, HullFace, Ridge};
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
 use nalgebra::Rotation3;
@@ -138,11 +142,12 @@ impl Placed<'_> {
         let ball = self.block.ball_m;
         let lever = p - self.pose.centre - touch.normal * ball;
         let near = SAME * ball;
-        let known = found.iter().any(|other| {
+        let is_known = found.iter().any(|other| {
             (other.normal - touch.normal).norm_squared() <= SAME * SAME
                 && (other.lever - lever).norm_squared() <= near * near
         });
-        if !known {
+        // what presses has a spring of its own, also where another contact comes to the same place
+        if !is_known || self.holds(part, touch.feature) {
             found.push(BlockTouch {
                 part: part as u16,
                 feature: touch.feature,
@@ -171,11 +176,15 @@ impl Placed<'_> {
         let low = self.low_corners(&nearest, reach);
         for (part, ridge) in self.low_ridges(low) {
             let [a, b] = ridge.ends.map(|k| self.corners[usize::from(k)]);
-            let Some((s, t)) = crossing((a, b - a), (edge.a, edge.along)) else { continue };
-            if s <= 0.0 || s >= 1.0 || t <= 0.0 || t >= edge.length {
-                continue;
-            }
-            let (p, foot) = (a + (b - a) * s, edge.a + edge.along * t);
+            let cross = crossing((a, b - a), (edge.a, edge.along));
+            let inside = |(s, t): &(f64, f64)| *s > 0.0 && *s < 1.0 && *t > 0.0 && *t < edge.length;
+            let [p, foot] = match cross.filter(inside) {
+                Some((s, t)) => [a + (b - a) * s, edge.a + edge.along * t],
+                None if self.holds(part, edge.feature) => {
+                    nearest_at_ends([a, b], [edge.a, edge.a + edge.along * edge.length])
+                }
+                None => continue,
+            };
             let off = p - foot;
             let distance = off.norm();
             if distance >= reach || distance <= DIRECTION_SLACK * self.block.ball_m {
@@ -219,10 +228,10 @@ impl Placed<'_> {
         for (part, ridge) in self.low_ridges(low) {
             let [a, b] = ridge.ends.map(|k| self.corners[usize::from(k)]);
             let s = (peak.p - a).dot(&(b - a)) / (b - a).norm_squared();
-            let p = a + (b - a) * s;
+            let p = a + (b - a) * s.clamp(0.0, 1.0);
             let distance = (p - peak.p).norm();
-            if s <= 0.0
-                || s >= 1.0
+            let is_beside = s <= 0.0 || s >= 1.0;
+            if is_beside && !self.holds(part, peak.feature)
                 || distance >= reach
                 || distance <= DIRECTION_SLACK * self.block.ball_m
             {
@@ -248,16 +257,41 @@ impl Placed<'_> {
         let before = self.corners.len() + self.block.core.ridges.len();
         for (k, face) in self.block.core.faces.iter().enumerate() {
             let part = before + k;
-            let height = face.normal.dot(&own) - face.level;
-            if height <= 0.0 || height >= reach || !self.block.core.is_over(face, &own) {
-                continue;
-            }
-            let normal = -(self.pose.attitude * face.normal);
-            let p = peak.p + normal * height;
-            if touches(part, &normal) && !covered(&p, height) {
-                self.add((part, &p), &point(peak.feature, peak.triangle, (normal, height)), found);
+            let is_held = self.holds(part, peak.feature);
+            let Some((p, normal)) = self.on_face(face, (&peak.p, &own), is_held) else { continue };
+            let distance = normal.dot(&(p - peak.p));
+            if distance < reach && touches(part, &normal) && !covered(&p, distance) {
+                let touch = point(peak.feature, peak.triangle, (normal, distance));
+                self.add((part, &p), &touch, found);
             }
         }
+    }
+
+    /// The point of a face of the block that is nearest to a point in front of it, `own` in the block's frame, and the direction there:
+    /// over the face, or for a pair that is held also beside it.
+    fn on_face(
+        &self,
+        face: &HullFace,
+        (at, own): (&Vec3, &Vec3),
+        is_held: bool,
+    ) -> Option<(Vec3, Vec3)> {
+        let height = face.normal.dot(own) - face.level;
+        if height > 0.0 && self.block.core.is_over(face, own) {
+            let normal = -(self.pose.attitude * face.normal);
+            return Some((at + normal * height, normal));
+        }
+        let p = self.on_rim(face, at);
+        let normal = (p - at).try_normalize(DIRECTION_SLACK * self.block.ball_m)?;
+        is_held.then_some((p, normal))
+    }
+
+    /// The point of the rim of a face of the block that is nearest to a point.
+    fn on_rim(&self, face: &HullFace, at: &Vec3) -> Vec3 {
+        let place = |k: &u8| self.corners[usize::from(*k)];
+        let ends = face.corners.iter().zip(face.corners.iter().cycle().skip(1));
+        let feet = ends.map(|(a, b)| foot_between([place(a), place(b)], at));
+        let away2 = |p: &Vec3| (p - at).norm_squared();
+        feet.min_by(|p, q| away2(p).total_cmp(&away2(q))).unwrap_or(*at)
     }
 
     /// Whether a point of the mesh may be nearer to the core than `reach` (m).
@@ -293,8 +327,12 @@ impl Placed<'_> {
 
     /// How far the normal of a pair may be out of bounds (–).
     fn slack(&self, part: usize, feature: Feature) -> f64 {
-        let held = self.held.contains(&(part as u16, feature));
-        if held { HELD_SLACK } else { DIRECTION_SLACK }
+        if self.holds(part, feature) { HELD_SLACK } else { DIRECTION_SLACK }
+    }
+
+    /// Whether a pair presses already.
+    fn holds(&self, part: usize, feature: Feature) -> bool {
+        self.held.contains(&(part as u16, feature))
     }
 }
 
@@ -311,6 +349,23 @@ fn crossing((p, e): (Vec3, Vec3), (a, f): (Vec3, Vec3)) -> Option<(f64, f64)> {
         return None;
     }
     Some(((ef * fw - ew) / across, (ee * fw - ef * ew) / across))
+}
+
+/// The point of a line between two ends that is nearest to `p`.
+fn foot_between([a, b]: [Vec3; 2], p: &Vec3) -> Vec3 {
+    let way = b - a;
+    a + way * ((p - a).dot(&way) / way.norm_squared()).clamp(0.0, 1.0)
+}
+
+/// Where two lines that do not cross between their ends are nearest: a point on each, one of which is an end.
+fn nearest_at_ends(one: [Vec3; 2], other: [Vec3; 2]) -> [Vec3; 2] {
+    let from = one.map(|p| [p, foot_between(other, &p)]);
+    let to = other.map(|p| [foot_between(one, &p), p]);
+    let nearer = |near: [Vec3; 2], next: [Vec3; 2]| {
+        let away2 = |[p, q]: [Vec3; 2]| (p - q).norm_squared();
+        if away2(next) < away2(near) { next } else { near }
+    };
+    [from[1], to[0], to[1]].into_iter().fold(from[0], nearer)
 }
 
 /// Keeps the `most` contacts that span most: the deepest, then always the one farthest from those kept.
