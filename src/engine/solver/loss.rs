@@ -22,6 +22,18 @@ impl Loss {
         Self { friction, damping, rolling, trees: 0.0 }
     }
 
+    /// On the slope, of parts by friction, damping and rolling of which only the sum is exact: what one of them seems to give back in a step,
+    /// as friction that follows a spin which rolling friction slows, the others take less.
+    pub(crate) fn sharing([friction, damping, rolling]: [f64; 3]) -> Self {
+        let parts = [friction, damping, rolling];
+        let (sum, taken) = (friction + damping + rolling, parts.map(|part| part.max(0.0)));
+        if sum < 0.0 || parts.iter().all(|part| *part >= 0.0) {
+            return Self::on_slope(parts);
+        }
+        let share = sum / taken.iter().sum::<f64>().max(f64::MIN_POSITIVE);
+        Self::on_slope(taken.map(|part| part * share))
+    }
+
     /// By friction, damping and rolling, and on trees.
     pub(crate) fn parts(&self) -> [f64; 4] {
         [self.friction, self.damping, self.rolling, self.trees]
@@ -81,5 +93,21 @@ impl Given {
     /// All of it.
     pub fn sum(&self) -> f64 {
         self.lost + self.passed_on
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Where friction follows a spin that rolling friction slows, the mean motion of a step makes it give a little back: none of a ledger is below 0.
+    #[test]
+    fn parts_of_a_loss_take_and_give_nothing_back() {
+        let loss = Loss::sharing([-0.2, 0.5, 1.0]);
+        assert!(loss.friction == 0.0 && (loss.sum() - 1.3).abs() < 1e-15, "{loss:?}");
+        assert!((loss.rolling / loss.damping - 2.0).abs() < 1e-15, "{loss:?}");
+        assert_eq!(Loss::sharing([0.1, 0.2, 0.3]), Loss::on_slope([0.1, 0.2, 0.3]));
+        // a gain stays one, to be seen
+        assert_eq!(Loss::sharing([-0.2, 0.1, 0.0]), Loss::on_slope([-0.2, 0.1, 0.0]));
     }
 }

@@ -120,7 +120,7 @@ impl GroundContact {
     pub(crate) fn loss(&self, body: &Body, (v, w): &Twist) -> Loss {
         let friction = -self.shear_force.dot(&body.slip(self.n(), v, w));
         let damping = -self.normal_force * self.n().dot(v);
-        Loss::on_slope([friction, damping, -self.turn.dot(w)])
+        Loss::sharing([friction, damping, -self.turn.dot(w)])
     }
 }
 
