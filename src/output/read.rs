@@ -168,15 +168,10 @@ impl Results {
             open => open.map_err(Error::file("read", &path))?,
         };
         let (mut file, mut lines) = (BufReader::new(open), 0);
-        loop {
-            let bytes = file.fill_buf().map_err(Error::file("read", &path))?;
-            if bytes.is_empty() {
-                return Ok(lines);
-            }
-            lines += bytes.iter().filter(|byte| **byte == b'\n').count();
-            let length = bytes.len();
-            file.consume(length);
+        while file.skip_until(b'\n').map_err(Error::file("read", &path))? > 0 {
+            lines += 1;
         }
+        Ok(lines)
     }
 
     /// Writes the vectors of `maps/`: ends, what stands on the map, and paths where they were kept.
