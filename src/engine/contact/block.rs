@@ -14,7 +14,7 @@
 //!
 //! A pair that presses goes on beyond the ends and the rims of its features, at the points of both that are nearest, until it lets go: the distance
 //! of two convex sets has neither a jump nor a kink. Where an edge of the block slides off over its corner, the corner presses too, and what
-//! the edge's spring held would be lost.
+//! the edge's spring held would be lost. Where the next feature begins there, it takes the spring over: `remember` of the blocks' springs.
 
 use super::neighbours::SAME;
 use super::neighbours::{Neighbours, Peak, SharpEdge};
@@ -69,6 +69,8 @@ pub struct BlockTouch {
     pub gap_m: f64,
     /// Stiffness relative to that of a single point (–), of a corner pressed into a fold; see [`ContactPoint::gain2`].
     pub gain2: f64,
+    /// Whether it is past the ends of its features, and there only because it presses already.
+    pub is_past: bool,
 }
 
 /// A block at a pose, with its corners there.
@@ -125,7 +127,7 @@ pub fn touches(
         near.touches(terrain, p, sees, &mut of_ball);
         (*seen, *far) = (*p, of_ball.iter().map(|touch| touch.distance_m).fold(sees, f64::min));
         for touch in of_ball.iter().filter(|touch| touch.distance_m < reach) {
-            placed.add((k, p), touch, found);
+            placed.add((k, p), (touch, false), found);
         }
     }
     for edge in near.sharp_edges() {
@@ -138,7 +140,12 @@ pub fn touches(
 
 impl Placed<'_> {
     /// Adds the contact of a core point `p` on a part of the block, unless it is there already.
-    fn add(&self, (part, p): (usize, &Vec3), touch: &ContactPoint, found: &mut Vec<BlockTouch>) {
+    fn add(
+        &self,
+        (part, p): (usize, &Vec3),
+        (touch, is_past): (&ContactPoint, bool),
+        found: &mut Vec<BlockTouch>,
+    ) {
         let ball = self.block.ball_m;
         let lever = p - self.pose.centre - touch.normal * ball;
         let near = SAME * ball;
@@ -156,6 +163,7 @@ impl Placed<'_> {
                 lever,
                 gap_m: touch.distance_m - ball,
                 gain2: touch.gain2,
+                is_past,
             });
         }
     }
@@ -178,7 +186,8 @@ impl Placed<'_> {
             let [a, b] = ridge.ends.map(|k| self.corners[usize::from(k)]);
             let cross = crossing((a, b - a), (edge.a, edge.along));
             let inside = |(s, t): &(f64, f64)| *s > 0.0 && *s < 1.0 && *t > 0.0 && *t < edge.length;
-            let [p, foot] = match cross.filter(inside) {
+            let within = cross.filter(inside);
+            let [p, foot] = match within {
                 Some((s, t)) => [a + (b - a) * s, edge.a + edge.along * t],
                 None if self.holds(part, edge.feature) => {
                     nearest_at_ends([a, b], [edge.a, edge.a + edge.along * edge.length])
@@ -198,7 +207,8 @@ impl Placed<'_> {
             {
                 continue;
             }
-            self.add((part, &p), &point(edge.feature, edge.triangle, (normal, distance)), found);
+            let touch = point(edge.feature, edge.triangle, (normal, distance));
+            self.add((part, &p), (&touch, within.is_none()), found);
         }
     }
 
@@ -243,11 +253,8 @@ impl Placed<'_> {
                 && self.faces_out(&ridge.into, &normal, slack)
                 && !covered(&p, distance)
             {
-                self.add(
-                    (part, &p),
-                    &point(peak.feature, peak.triangle, (normal, distance)),
-                    found,
-                );
+                let touch = point(peak.feature, peak.triangle, (normal, distance));
+                self.add((part, &p), (&touch, is_beside), found);
             }
         }
         // a face that lies on a straight edge is held where its own edges cross that edge, however many vertices divide it
@@ -262,7 +269,8 @@ impl Placed<'_> {
             let distance = normal.dot(&(p - peak.p));
             if distance < reach && touches(part, &normal) && !covered(&p, distance) {
                 let touch = point(peak.feature, peak.triangle, (normal, distance));
-                self.add((part, &p), &touch, found);
+                let is_past = !self.block.core.is_over(face, &own);
+                self.add((part, &p), (&touch, is_past), found);
             }
         }
     }

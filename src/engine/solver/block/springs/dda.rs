@@ -130,6 +130,8 @@ impl Footing {
             }
         }
         if self.touches.found.len() > self.springs.contacts.len() {
+            // what has been solved for keeps its place
+            self.touches.found.iter_mut().for_each(|touch| touch.is_past = false);
             self.remember(world, (block, mean));
             let springs = &mut self.springs;
             std::mem::swap(&mut springs.contacts, &mut springs.solved);

@@ -110,18 +110,40 @@ impl Footing {
             let known = self.springs.histories.iter().position(|history| history.is_of(touch));
             of_touch.push(known.filter(|k| !of_touch.contains(&Some(*k))));
         }
-        for k in 0..of_touch.len() {
+        let mut k = 0;
+        while k < of_touch.len() {
             if of_touch[k].is_none() {
                 let touch = self.touches.found[k];
-                let point = moving.pose.centre + touch.lever;
-                let near = self.springs.nearest(&touch, (&point, block.ball_m), &of_touch);
+                let near = self.memory_near((block, moving), &touch, &of_touch);
+                let before = of_touch.iter().position(|own| near.is_some() && *own == near);
                 of_touch[k] = near.or_else(|| {
                     let new = self.begin(world, &touch, (block, moving));
                     Some(self.springs.add(&new))
                 });
+                if let Some(before) = before {
+                    of_touch.remove(before);
+                    self.touches.found.remove(before);
+                    k -= usize::from(before < k);
+                }
             }
+            k += 1;
         }
         self.of_touch = of_touch;
+    }
+
+    /// The memory of a contact that has come from a feature nearby, which no other has, or one that is past the ends of its features.
+    fn memory_near(
+        &self,
+        (block, moving): (&Block, &Moving),
+        touch: &BlockTouch,
+        of_touch: &[Option<usize>],
+    ) -> Option<usize> {
+        let point = moving.pose.centre + touch.lever;
+        let is_taken = |memory: usize| {
+            let by = of_touch.iter().position(|own| *own == Some(memory));
+            by.is_some_and(|by| !goes_on(block, touch, &self.touches.found[by]))
+        };
+        self.springs.nearest(touch, (&point, block.ball_m), is_taken)
     }
 
     /// A new memory.
@@ -159,6 +181,15 @@ impl Footing {
     }
 }
 
+/// Whether a new contact of an edge or a face of the block goes on for one that is past the ends of its features: with the next feature of the
+/// mesh, or the next part of the block. Both would press else, the new one from where it is: at each joint of a
+/// crest a block that slides along it would sink by what its weight presses in.
+fn goes_on(block: &Block, new: &BlockTouch, before: &BlockTouch) -> bool {
+    before.is_past
+        && !block.core.is_corner(new.part)
+        && (new.part == before.part || new.feature == before.feature)
+}
+
 /// The share of the mass that a contact moves among those that touch with it (–): `G_ii/Σ_j G_ij` along the normals.
 fn share_of<'t>(mass: &Mass, touch: &BlockTouch, all: impl Iterator<Item = &'t BlockTouch>) -> f64 {
     let along = |one: &BlockTouch, other: &BlockTouch| {
@@ -189,10 +220,10 @@ impl super::Springs {
         &self,
         touch: &BlockTouch,
         (point, ball_m): (&Vec3, f64),
-        taken: &[Option<usize>],
+        is_taken: impl Fn(usize) -> bool,
     ) -> Option<usize> {
         let fits = |(k, history): &(usize, &BlockHistory)| {
-            !taken.contains(&Some(*k)) && history.n.dot(&touch.normal) > SAME_GRIP
+            !is_taken(*k) && history.n.dot(&touch.normal) > SAME_GRIP
         };
         let away = |history: &BlockHistory| (history.point - point).norm();
         let both = self.histories.iter().enumerate().filter(fits);

@@ -226,6 +226,43 @@ fn an_edge_that_slides_off_over_its_end_keeps_its_energy() {
     }
 }
 
+/// Straight crests along x, 0.4 m apart, divided every 0.1 m.
+fn crests() -> Terrain {
+    let at = |i: i32, j: i32| {
+        let z = if j.rem_euclid(2) == 1 { 0.0 } else { -0.2 };
+        Vec3::new(0.1 * f64::from(i), 0.2 * f64::from(j), z)
+    };
+    let cell = |(i, j): (i32, i32)| {
+        let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+        [[a, b, c], [a, c, d]]
+    };
+    terrain((-10..50).flat_map(|i| (-4..4).map(move |j| (i, j))).flat_map(cell).collect())
+}
+
+/// A box slides along two divided crests as deep as its weight presses it in: edges of the box go on from one edge of the mesh to the next with
+/// the spring that they have. It sank by that depth at each joint, 0.4 mm (30 times) in 3 m, and was faster for it.
+#[test]
+fn a_block_slides_along_divided_crests_without_sinking() {
+    for scheme in every_scheme().into_iter().filter(|scheme| scheme.has_springs()) {
+        let body = block(&box_surface([0.7, 0.7, 0.4]), 0.05);
+        let mut case = on_springs(BlockRun::new(crests(), body, (0.0, 0.4)), scheme, 1e8);
+        if scheme.has_fixed_step() {
+            case = with_long_steps(case);
+        }
+        let start = [Vec3::z() * 0.2, Vec3::x() * 2.0, Vec3::zeros()];
+        let mut moving = case.start(Rotation3::identity(), start);
+        let level = moving.pose.centre.z;
+        case.follow(&mut moving, 1.5, |_, _| ());
+        let pressed_m = case.block.mass_kg * G / 4e8;
+        let (deep, fast) = ((level - moving.pose.centre.z) / pressed_m, moving.v.x);
+        println!("{scheme:?}: {deep} of the depth at rest, {fast} m/s");
+        assert!(
+            (deep - 1.0).abs() < 0.02 && (fast - 2.0).abs() < 1e-6,
+            "{scheme:?}: {deep} {fast}"
+        );
+    }
+}
+
 /// A block that has come to rest, or slides, takes long steps: what it may climb with is nothing, and not a rounding of its energy, which made
 /// a million steps of a second.
 #[test]
