@@ -13,7 +13,7 @@ mod stiffness;
 mod recorders;
 
 pub use annual::YearPlan;
-pub use cost::Cost;
+pub use cost::{Cost, MOST_SHOWN_POINTS};
 pub use inputs::VERSION;
 pub use listing::PlanEntry;
 pub use recorders::{EvaluationLine, Footprint, LinePiece, MapGrid, Recorders};

@@ -264,33 +264,27 @@ impl Placed<'_> {
         let before = self.corners.len() + self.block.core.ridges.len();
         for (k, face) in self.block.core.faces.iter().enumerate() {
             let part = before + k;
-            let is_held = self.holds(part, peak.feature);
-            let Some((p, normal)) = self.on_face(face, (&peak.p, &own), is_held) else { continue };
+            let height = face.normal.dot(&own) - face.level;
+            let over = || self.block.core.is_over(face, &own);
+            let (p, normal, is_past) = if height > 0.0 && height < reach && over() {
+                let normal = -(self.pose.attitude * face.normal);
+                (peak.p + normal * height, normal, false)
+            } else if self.holds(part, peak.feature) {
+                let p = self.on_rim(face, &peak.p);
+                let Some(normal) = (p - peak.p).try_normalize(DIRECTION_SLACK * self.block.ball_m)
+                else {
+                    continue;
+                };
+                (p, normal, !over())
+            } else {
+                continue;
+            };
             let distance = normal.dot(&(p - peak.p));
             if distance < reach && touches(part, &normal) && !covered(&p, distance) {
                 let touch = point(peak.feature, peak.triangle, (normal, distance));
-                let is_past = !self.block.core.is_over(face, &own);
                 self.add((part, &p), (&touch, is_past), found);
             }
         }
-    }
-
-    /// The point of a face of the block that is nearest to a point in front of it, `own` in the block's frame, and the direction there:
-    /// over the face, or for a pair that is held also beside it.
-    fn on_face(
-        &self,
-        face: &HullFace,
-        (at, own): (&Vec3, &Vec3),
-        is_held: bool,
-    ) -> Option<(Vec3, Vec3)> {
-        let height = face.normal.dot(own) - face.level;
-        if height > 0.0 && self.block.core.is_over(face, own) {
-            let normal = -(self.pose.attitude * face.normal);
-            return Some((at + normal * height, normal));
-        }
-        let p = self.on_rim(face, at);
-        let normal = (p - at).try_normalize(DIRECTION_SLACK * self.block.ball_m)?;
-        is_held.then_some((p, normal))
     }
 
     /// The point of the rim of a face of the block that is nearest to a point.

@@ -19,9 +19,10 @@ const POINT_DISK: f64 = 350.0;
 const PROGRAM_MEMORY: f64 = 25e6;
 /// A triangle as it is read and laid into the index (bytes).
 const TRIANGLE_MEMORY: f64 = 130.0;
-/// A point of a path while the view in three dimensions is drawn (bytes), and the most of them that it shows; a path (bytes).
+/// Most points of all paths together that the view in three dimensions shows.
+pub const MOST_SHOWN_POINTS: usize = 400_000;
+/// One of them while it is drawn (bytes), and a path (bytes).
 const POINT_MEMORY: f64 = 260.0;
-const SHOWN_POINTS: f64 = 4e5;
 const PATH_MEMORY: f64 = 2e4;
 /// A point of a path while its rock falls (bytes).
 const FALLING_POINT_MEMORY: f64 = 104.0;
@@ -84,7 +85,7 @@ impl Plan {
             disk_bytes: ROW_DISK * releases + POINT_DISK * path_points + CELL_DISK * cells,
             mesh_bytes: PROGRAM_MEMORY + TRIANGLE_MEMORY * self.terrain.triangles.len() as f64,
             memory_bytes: (ROW_MEMORY + together) * releases
-                + POINT_MEMORY * path_points.min(SHOWN_POINTS)
+                + POINT_MEMORY * path_points.min(MOST_SHOWN_POINTS as f64)
                 + PATH_MEMORY * paths
                 + FALLING_POINT_MEMORY * points * paths.min(IN_HAND)
                 + CELL_MEMORY * cells

@@ -26,12 +26,12 @@ impl Loss {
     /// as friction that follows a spin which rolling friction slows, the others take less.
     pub(crate) fn sharing([friction, damping, rolling]: [f64; 3]) -> Self {
         let parts = [friction, damping, rolling];
-        let (sum, taken) = (friction + damping + rolling, parts.map(|part| part.max(0.0)));
+        let (sum, mut taken) = (friction + damping + rolling, parts.map(|part| part.max(0.0)));
         if sum < 0.0 || parts.iter().all(|part| *part >= 0.0) {
             return Self::on_slope(parts);
         }
-        let share = sum / taken.iter().sum::<f64>().max(f64::MIN_POSITIVE);
-        Self::on_slope(taken.map(|part| part * share))
+        shared(sum, &mut taken);
+        Self::on_slope(taken)
     }
 
     /// By friction, damping and rolling, and on trees.
@@ -62,6 +62,19 @@ impl Loss {
     /// All of it.
     pub fn sum(&self) -> f64 {
         self.friction + self.damping + self.rolling + self.trees
+    }
+}
+
+/// Shares what is known to be lost as the steps have summed it up.
+/// The total is exact, from energies; the parts are sums along the steps and only share it.
+pub(super) fn shared(lost: f64, parts: &mut [f64]) {
+    let sum: f64 = parts.iter().sum();
+    if sum > 0.0 {
+        for part in parts {
+            *part *= lost / sum;
+        }
+    } else {
+        parts[1] = lost;
     }
 }
 

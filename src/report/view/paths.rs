@@ -8,12 +8,11 @@ use crate::error::Result;
 use crate::hazard::Row;
 use crate::math;
 use crate::output::{PathRow, Results};
+use crate::plan::MOST_SHOWN_POINTS;
 use crate::report::format;
 use crate::rock::Vec3;
 use serde_json::json;
 
-/// Most points of all paths together; of more, every second, third … of each path is shown.
-const MOST_POINTS: usize = 400_000;
 /// Thousandths of a second: the unit of times.
 const TICKS_PER_S: f64 = 1e3;
 /// Steps of energy in a decade: 2.3 % each.
@@ -67,7 +66,8 @@ impl Ways {
         hull_of: impl Fn(usize) -> Option<BlockHull>,
         hulls: &mut BlockHulls,
     ) -> Result<Self> {
-        let every = results.path_points()?.div_ceil(MOST_POINTS).max(1);
+        // of more points than that every second, third … of each path is shown
+        let every = results.path_points()?.div_ceil(MOST_SHOWN_POINTS).max(1);
         let mut ways: Vec<ViewPath> = Vec::new();
         let mut reading: Option<PathReading> = None;
         let first = rows.first().map_or(0, |row| row.index);

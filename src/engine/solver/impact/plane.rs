@@ -17,7 +17,7 @@ use crate::math;
 use crate::rock::Vec3;
 use crate::solver::body::Body;
 use crate::solver::contact_frame::{Along, Local, dot, square};
-use crate::solver::loss::Loss;
+use crate::solver::loss::{Loss, shared};
 
 pub(crate) use blow_table::BlowTable;
 pub(crate) use passage::{NormalPassage, PressedIn};
@@ -255,19 +255,6 @@ impl Plane {
             (end.v, end.w) = (end.v.map(|v| v * slower), end.w.map(|w| w * slower));
         }
         (before - energy(end.v, end.w)).max(0.0)
-    }
-}
-
-/// Shares what is known to be lost as the steps have summed it up.
-/// The total is exact, from energies; the parts are sums along the steps and only share it.
-pub(super) fn shared(lost: f64, parts: &mut [f64]) {
-    let sum: f64 = parts.iter().sum();
-    if sum > 0.0 {
-        for part in parts {
-            *part *= lost / sum;
-        }
-    } else {
-        parts[1] = lost;
     }
 }
 

@@ -17,14 +17,14 @@ mod contacts;
 mod rates;
 
 use super::dormand_prince::{Attempt, Stages, growth, sum_up};
-use super::plane::{LOCAL, Plane, shared};
+use super::plane::{LOCAL, Plane};
 use super::{ImpactEffort, Settled, StepLength};
 use crate::contact::MOST;
 use crate::ground::Law;
 use crate::math;
 use crate::rock::Vec3;
 use crate::solver::body::{Body, STILL, Twist};
-use crate::solver::loss::Loss;
+use crate::solver::loss::{Loss, shared};
 pub(crate) use bodies::{BODIES, CONTACTS, FrozenCollision, collide};
 use contacts::{AfterImpact, SwitchTime};
 use rates::ContactRates;

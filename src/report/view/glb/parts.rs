@@ -180,25 +180,25 @@ fn cut(places: &mut Vec<[f32; 3]>, [a, b, c]: [u32; 3]) -> [[u32; 3]; 4] {
 pub(super) fn file(head: &Value, views: [Vec<u8>; 6]) -> Vec<u8> {
     const MAGIC: &[u8; 4] = b"glTF";
     const VERSION: u32 = 2;
-    const HEADS: usize = 28;
-    let head = head.to_string();
+    let head = head.to_string().into_bytes();
     let numbers: usize = views.iter().map(Vec::len).sum();
-    let padded = |length: usize| length.next_multiple_of(4);
-    let mut file = Vec::with_capacity(HEADS + padded(head.len()) + padded(numbers));
+    let mut file = Vec::with_capacity(head.len() + numbers + 64);
     file.extend(MAGIC);
     file.extend(VERSION.to_le_bytes());
     let length_at = file.len();
     file.extend([0; 4]);
-    let mut chunk =
-        |kind: &[u8; 4], length: usize, data: &mut dyn Iterator<Item = Vec<u8>>, filler| {
-            file.extend((padded(length) as u32).to_le_bytes());
-            file.extend(kind);
-            data.for_each(|data| file.extend(data));
-            file.resize(padded(file.len()), filler);
-        };
-    chunk(b"JSON", head.len(), &mut std::iter::once(head.into_bytes()), b' ');
+    let mut chunk = |kind: &[u8; 4], data: Vec<Vec<u8>>, filler: u8| {
+        let length: usize = data.iter().map(Vec::len).sum();
+        file.extend((length.next_multiple_of(4) as u32).to_le_bytes());
+        file.extend(kind);
+        for data in data {
+            file.extend(data);
+        }
+        file.resize(file.len().next_multiple_of(4), filler);
+    };
+    chunk(b"JSON", vec![head], b' ');
     if numbers > 0 {
-        chunk(b"BIN\0", numbers, &mut views.into_iter(), 0);
+        chunk(b"BIN\0", views.into(), 0);
     }
     let length = file.len() as u32;
     file[length_at..length_at + 4].copy_from_slice(&length.to_le_bytes());
