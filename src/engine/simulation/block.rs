@@ -261,7 +261,9 @@ impl Roll<'_> {
 
     /// Ploughs on from where the step began, and leaves the scar if it is free.
     fn plough(&mut self, from: &Vec3, is_free: bool) {
-        let normal = self.footing.touching(self.block).next().map(|touch| touch.normal);
+        let (world, scars) = (&self.world, &self.scars);
+        let on_soil = |touch: &&BlockTouch| scars.lie_on(world.ground_of(touch.triangle));
+        let normal = self.footing.touching(self.block).find(on_soil).map(|touch| touch.normal);
         let way_m = (self.moving.pose.centre - from).norm();
         let ends = is_free.then_some(self.moving.v);
         let kept = self.scars.plough(&self.world.body, (way_m, normal), ends);

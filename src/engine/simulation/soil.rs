@@ -60,7 +60,11 @@ impl Fall<'_> {
     pub(super) fn soil_after_step(&mut self, before: &Vec3, dt: f64) {
         self.soil.last_step_s = dt;
         if self.soil.scars.are_any() {
-            let normal = self.state.histories.first().map(|history| history.n);
+            let world = self.settings.around(self.body, self.laws);
+            let on_soil = |history: &&ContactHistory| {
+                self.soil.scars.lie_on(world.ground_of(history.triangle))
+            };
+            let normal = self.state.histories.iter().find(on_soil).map(|history| history.n);
             let way_m = (self.state.c - before).norm();
             let ends = self.state.is_free().then_some(self.state.v);
             let kept = self.soil.scars.plough(&self.body, (way_m, normal), ends);

@@ -65,6 +65,15 @@ impl Scars {
         self.is_any
     }
 
+    /// Whether this ground has soil that drags.
+    ///
+    /// A scar lies in the plane of a contact with such a ground, whatever else the rock meets in it: a
+    /// stem that it leans on is no floor that it could climb away from.
+    #[inline]
+    pub(crate) fn lie_on(&self, ground: u16) -> bool {
+        self.layers.get(usize::from(ground)).is_some_and(Option::is_some)
+    }
+
     /// An impact on a ground, on a plane with this normal, with an approach (m/s) of a rock at a speed (m/s): what it keeps of its
     /// speed on the way in (–).
     pub(crate) fn enter(
@@ -92,7 +101,7 @@ impl Scars {
         math::exp(-drag_per_m3 * swept_m3(body.radius, depth_m, cosine))
     }
 
-    /// What the rock keeps of its speed on a way (m) along the plane (–), in a contact with this normal if any is known; and of the
+    /// What the rock keeps of its speed on a way (m) along the plane (–), in a contact with soil with this normal if any is known; and of the
     /// velocity before with which the contact `ends`, if it does.
     pub(crate) fn plough(
         &mut self,
