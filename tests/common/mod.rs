@@ -69,6 +69,8 @@ pub struct Case {
     pub shear_memory: bool,
     pub impact_kernels: bool,
     pub ground: Ground,
+    /// Of sheets with ground 1.
+    pub other: Option<Ground>,
     pub rock: Rock,
     pub capture_speed_m_s: Option<f64>,
     pub rest_time_s: f64,
@@ -82,6 +84,7 @@ pub const CASE: Case = Case {
     shear_memory: true,
     impact_kernels: true,
     ground: GROUND,
+    other: None,
     rock: ROCK,
     capture_speed_m_s: None,
     rest_time_s: 0.3,
@@ -127,7 +130,8 @@ impl Case {
             velocity_m_s: v.into(),
             spin_rad_s: w.into(),
         };
-        let release = Release { rock: self.rock, motion, grounds: vec![self.ground] };
+        let grounds = [self.ground].into_iter().chain(self.other).collect();
+        let release = Release { rock: self.rock, motion, grounds };
         let random = stream(seed, Purpose::Impacts, 0);
         let keep = Keep { path_step_s: self.path_step_s, impacts: true };
         let mut fallen = simulate(&course, &release, keep, random, &mut Scratch::default());

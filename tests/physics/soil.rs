@@ -3,7 +3,7 @@
 
 use crate::common;
 
-use common::{CASE, Case, G, ROWS, Row, hold, terrain};
+use common::{CASE, Case, G, ROWS, Row, hold, terrain, terrain_of_files};
 use rockfall::ground::{Ground, Scar, SlipFriction, cut_area_m2, swept_m3};
 use rockfall::rock::Vec3;
 use rockfall::simulation::{Scratch, Trajectory};
@@ -127,6 +127,35 @@ fn a_rock_that_stays_in_its_scar_ploughs() {
         hold(&row, "way ploughed", [run.end.position_m.x, way, way], allowed);
         let speed = begins / (1.0 + ka * begins * time);
         hold(&row, "speed ploughing", [run.end.velocity_m_s.x, speed, speed], allowed);
+    }
+}
+
+/// Soil that ends at a cliff, along a smooth wall without soil that the rock is pushed against: the wall is no floor of the scar. Over the
+/// cliff it leaves its scar and digs a new one 1 m below, as without the wall.
+#[test]
+fn a_wall_beside_a_scar_is_not_its_floor() {
+    let at = |x: f64, y: f64, z: f64| Vec3::new(x, y, z);
+    let level = |x: [f64; 2], z: f64| {
+        let [a, b, c, d] =
+            [at(x[0], -9.0, z), at(x[1], -9.0, z), at(x[1], 9.0, z), at(x[0], 9.0, z)];
+        [[a, b, c], [a, c, d]]
+    };
+    let soil: Vec<_> = [level([-2.0, 2.0], 0.0), level([2.5, 90.0], -1.0)].concat();
+    let wall = vec![[at(-200.0, 0.0, -99.0), at(200.0, 0.0, -99.0), at(0.0, 0.0, 99.0)]];
+    let open = terrain(soil.clone());
+    let mut walled = terrain_of_files(vec![soil, wall], Some(1e-9));
+    walled.sheets[1].ground = 1;
+    for row in ROWS {
+        let case = slick(&row, 0.0, Some(MEADOW));
+        let case = Case { other: Some(Ground { scar: None, ..case.ground }), ..case };
+        let r = case.rock.radius_m;
+        let soil_j = |terrain: &Terrain, aside: f64| {
+            let start = [[0.0, -1.0001 * r, r], [10.0, aside, -5.0], [0.0; 3]];
+            case.run(terrain, start, 1.0).ledger.soil_j
+        };
+        let (free, beside) = (soil_j(&open, 0.0), soil_j(&walled, 0.2));
+        println!("{}: {free} {beside}", row.name);
+        assert!((beside / free - 1.0).abs() < 0.02, "{}: {free} {beside}", row.name);
     }
 }
 

@@ -131,6 +131,8 @@ impl Roll<'_> {
             }
             let now_s = self.recorder.now.time_s;
             let left = self.settings.longest_s - now_s;
+            let kept = self.scars.plough_ahead();
+            self.slow(kept);
             let most_s = left.min(self.scars.longest_s(self.moving.v.norm()));
             let from = self.moving.pose.centre;
             let mut done = match self.step(most_s) {
@@ -272,6 +274,9 @@ impl Roll<'_> {
 
     /// Takes a share of the speed of the centre; the soil has it.
     fn slow(&mut self, kept: f64) {
+        if kept >= 1.0 {
+            return;
+        }
         self.recorder.ledger.soil_j += taken_j(&self.world.body, &self.moving.v, kept);
         self.moving.v *= kept;
         self.footing.springs.refresh();

@@ -14,7 +14,7 @@ use super::settings::RunSettings;
 use super::{Stop, Trajectory};
 use crate::error::Result;
 use crate::flight::{Parabola, time_of_impact_past};
-use crate::ground::{Capture, Damping, Law};
+use crate::ground::{Damping, Law};
 use crate::plan::{PATH_STEP_S, Part, Plan};
 use crate::random::{Purpose, RandomStream, stream};
 use crate::release::{DrawnShape, Release};
@@ -63,7 +63,8 @@ impl Scratch {
 
     /// Fills in the laws of all grounds for one rock. The damping ratio of a restitution takes a root search, so it is
     /// kept as long as the restitution of a ground stays the same.
-    fn make_laws(&mut self, release: &Release, capture: &Capture) {
+    fn make_laws(&mut self, release: &Release, settings: &RunSettings) {
+        let capture = settings.capture();
         self.damping.truncate(release.grounds.len());
         self.laws.clear();
         for (k, ground) in release.grounds.iter().enumerate() {
@@ -71,9 +72,9 @@ impl Scratch {
                 self.damping.truncate(k);
                 self.damping.push(Damping::of(ground.restitution));
             }
-            self.laws.push(Law::new(ground, &self.damping[k], &release.rock, capture));
+            self.laws.push(Law::new(ground, &self.damping[k], &release.rock, &capture));
         }
-        self.scars.begin(&release.grounds);
+        self.scars.begin(&release.grounds, settings.step.scheme.has_springs());
     }
 }
 
@@ -88,7 +89,7 @@ pub fn simulate(
     random: RandomStream,
     scratch: &mut Scratch,
 ) -> Trajectory {
-    scratch.make_laws(release, &settings.capture());
+    scratch.make_laws(release, settings);
     scratch.state.near.forget();
     (scratch.state.near.tested, scratch.state.sweeps) = (0, 0);
     scratch.state.raise_stems(settings.terrain, &random);
@@ -126,7 +127,7 @@ pub fn simulate_block(
     random: RandomStream,
     scratch: &mut Scratch,
 ) -> Trajectory {
-    scratch.make_laws(release, &settings.capture());
+    scratch.make_laws(release, settings);
     let Scratch { laws, footing, scars, .. } = scratch;
     follow_block(settings, (release, drawn), keep, (laws, random), (footing, scars))
 }

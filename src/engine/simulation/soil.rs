@@ -40,6 +40,8 @@ impl Fall<'_> {
         let longest_s = self.in_contact().before_step();
         self.answer_blow();
         self.state.plane.ploughs = self.soil.scars.are_any();
+        let kept = self.soil.scars.plough_ahead();
+        self.slow(kept);
         let mut longest_s = longest_s.min(self.soil.scars.longest_s(self.state.v.norm()));
         if self.soil.slip.is_any() {
             self.soil.slips = self.fastest_slip();
