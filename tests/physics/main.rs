@@ -35,6 +35,7 @@ mod roughness;
 mod schemes_agree;
 mod sheets;
 mod soil;
+mod stem_loads;
 mod stems;
 mod struck_through;
 mod tangential;

@@ -44,6 +44,36 @@ name = "behind the release"
 points_m = [[0.0, 0.5], [40.0, 0.5]]
 "#;
 
+/// Rocks thrown along y straight over the corner at which two pieces meet: none passes between the pieces by rounding, and the
+/// corner is met once.
+#[test]
+fn a_corner_is_crossed_once() {
+    let text =
+        std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/quick.toml"))
+            .unwrap();
+    let (physics, _) = text.split_once("[release]").unwrap();
+    let point = |k: u32| format!("[18.3, {}, 30.0]", 45.0 + 0.0137 * f64::from(k));
+    let points: Vec<String> = (0..60).map(point).collect();
+    let mut lines = String::new();
+    for k in 0..20 {
+        let (west, east) = (49.1 + 0.37 * f64::from(k), 57.9 - 0.21 * f64::from(k));
+        let corners = format!("[[10.1, {west}], [18.3, 53.7], [30.7, {east}]]");
+        lines += &format!("[[lines]]\nname = \"{k}\"\npoints_m = {corners}\n");
+    }
+    let plan = plan_of(&format!(
+        "{physics}\n[release]\ncount = 60\nvelocity_m_s = [0.0, 12.0, 3.0]\nspin_rad_s = [0.0, 0.0, 0.0]\n\
+         points_m = [{}]\n{lines}",
+        points.join(",")
+    ));
+    for (index, fall) in falls(&plan, 60).iter().enumerate() {
+        assert_eq!(fall.crossings.len(), 20, "rock {index}");
+        for crossing in &fall.crossings {
+            let corner_m = (18.3_f64 - 10.1).hypot(53.7 - (49.1 + 0.37 * crossing.line as f64));
+            assert!((crossing.along_m - corner_m).abs() < 1e-9 && crossing.times == 1);
+        }
+    }
+}
+
 /// A rock thrown flat from 20 m above the meadow flies past the line before it lands. By hand: at 10 m/s the line 8 m
 /// away is passed after 0.8 s, 0.5 · 9.81 · 0.8² lower, at `v_z` = −7.848 m/s, 8 m along.
 #[test]

@@ -135,6 +135,7 @@ impl Roll<'_> {
             self.slow(kept);
             let most_s = left.min(self.scars.longest_s(self.moving.v.norm()));
             let from = self.moving.pose.centre;
+            self.footing.press_stem(&self.world);
             let mut done = match self.step(most_s) {
                 Ok(done) => done,
                 Err(stuck) => return Some(Stop::Failed(stuck.to_string())),
@@ -232,6 +233,7 @@ impl Roll<'_> {
         self.footing.aside = struck;
         let broken_j = self.footing.break_stems(&self.world, block, &mut self.moving);
         self.recorder.ledger.trees_j += broken_j;
+        self.footing.press_stem(&self.world);
         let loss = self.footing.strike(&self.world, block, &mut self.moving);
         if loss.is_none() && broken_j <= 0.0 {
             return false;

@@ -156,21 +156,9 @@ impl<'a> Crossings<'a> {
             if !evaluation_line.is_near(low, high) {
                 continue;
             }
-            let last = evaluation_line.pieces.len() - 1;
-            // a line may be crossed several times within one step: all are counted, the first is kept
-            let mut met: Vec<(f64, f64)> = Vec::new();
-            for (k, piece) in evaluation_line.pieces.iter().enumerate() {
-                for s in when(piece) {
-                    let share = piece.share(flat(&at(s).motion.position_m));
-                    // a corner belongs to the piece that it begins
-                    if (0.0..1.0).contains(&share) || k == last && share <= 1.0 && share > 0.0 {
-                        met.push((s, piece.along_m + share * piece.length_m()));
-                    }
-                }
-            }
-            met.sort_by(|one, other| one.0.total_cmp(&other.0));
-            if let Some(&(s, along_m)) = met.first() {
-                self.note(line, (at(s), along_m), met.len() as u32);
+            let met = meetings(evaluation_line, &when, |s| flat(&at(s).motion.position_m));
+            if let Some(first) = met.first() {
+                self.note(line, (at(first.s), first.along_m), met.len() as u32);
             }
         }
         self.clear = self.clear_around([low, high]);
@@ -236,6 +224,61 @@ impl<'a> Crossings<'a> {
 /// A mesh may be wound either way.
 fn up(normal: Vec3) -> Vec3 {
     if normal.z < 0.0 { -normal } else { normal }
+}
+
+/// A way that comes as near to a corner of a line (m) meets both of its pieces there: rounding, some 1e-12 m, must not let a
+/// rock pass between them.
+const CORNER_M: f64 = 1e-9;
+
+/// Where a way meets a piece of a line.
+struct Meeting {
+    /// Share of the way (–).
+    s: f64,
+    /// Along the line (m).
+    along_m: f64,
+    /// The end of the piece, if it is met there.
+    corner_m: Option<Corner>,
+}
+
+impl Meeting {
+    /// With a piece that is met at `at_m` after a share `s` of the way; none beyond its ends.
+    fn of(piece: &LinePiece, s: f64, at_m: Corner) -> Option<Self> {
+        let length_m = piece.length_m();
+        let along_m = piece.share(at_m) * length_m;
+        if !(-CORNER_M..=length_m + CORNER_M).contains(&along_m) {
+            return None;
+        }
+        let end = |k: usize| piece.from_m[k] + piece.way_m[k];
+        let corner_m = if along_m <= CORNER_M {
+            Some(piece.from_m)
+        } else {
+            (along_m >= length_m - CORNER_M).then(|| [0, 1].map(end))
+        };
+        Some(Self { s, along_m: piece.along_m + along_m.clamp(0.0, length_m), corner_m })
+    }
+
+    /// Whether both are at one corner.
+    fn is_at_corner_of(&self, other: &Self) -> bool {
+        let apart_m =
+            |(one, other): (Corner, Corner)| math::hypot(one[0] - other[0], one[1] - other[1]);
+        self.corner_m.zip(other.corner_m).is_some_and(|corners| apart_m(corners) <= CORNER_M)
+    }
+}
+
+/// Where a way meets a line, in the order of the way: a line may be met several times, at a corner once.
+fn meetings(
+    line: &EvaluationLine,
+    when: impl Fn(&LinePiece) -> Vec<f64>,
+    at_m: impl Fn(f64) -> Corner,
+) -> Vec<Meeting> {
+    let at_m = &at_m;
+    let of_piece = |piece: &LinePiece| -> Vec<Meeting> {
+        when(piece).into_iter().filter_map(|s| Meeting::of(piece, s, at_m(s))).collect()
+    };
+    let mut met: Vec<Meeting> = line.pieces.iter().flat_map(of_piece).collect();
+    met.sort_by(|one, other| one.s.total_cmp(&other.s));
+    met.dedup_by(|next, kept| next.is_at_corner_of(kept));
+    met
 }
 
 /// Nearer than this (m) touches: a hit is found to 1e-5 m of way, and a rim that comes no deeper over an object than 1e-9 m may be missed.

@@ -17,6 +17,8 @@ pub(crate) struct StemLoad {
     pub(super) taken: Vec<(u32, f64)>,
     /// The stem pressed hardest at the last look.
     pub(super) pressed: Option<u32>,
+    /// What stems took that broke within the step, and that is among its losses (J).
+    pub(super) broken_j: f64,
 }
 
 impl StemLoad {
@@ -27,7 +29,7 @@ impl StemLoad {
         gone.reserve(stems.count());
         self.taken.clear();
         self.taken.reserve(stems.count());
-        self.pressed = None;
+        (self.pressed, self.broken_j) = (None, 0.0);
         let mut random = beside(random, Purpose::Stems);
         self.limits_j.clear();
         let limits = stems.limits_j.iter();

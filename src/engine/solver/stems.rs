@@ -66,8 +66,10 @@ impl ContactState {
             return false;
         };
         self.stem_load.look(world.terrain, stems, &self.histories);
-        let Some(stem) = self.stem_load.pressed else { return false };
-        let Some(beyond_j) = self.stem_load.yields(stems, stem, loss.trees) else { return false };
+        // what broke in the limit of stiff springs has had its energy and is gone: the rest went into what stands
+        let standing_j = loss.trees - std::mem::take(&mut self.stem_load.broken_j);
+        let Some(stem) = self.stem_load.pressed.filter(|_| standing_j != 0.0) else { return false };
+        let Some(beyond_j) = self.stem_load.yields(stems, stem, standing_j) else { return false };
         // the push of all contacts with this stem: energy is given back along it
         let normal_force: Vec3 = self
             .histories
@@ -110,8 +112,15 @@ impl ContactState {
         })
     }
 
-    /// A stem is gone.
+    /// What is struck at a triangle is pressed: what the blow takes there is its load, also if the rock has left at the end.
+    pub(crate) fn press_stem(&mut self, terrain: &Terrain, triangle: u32) {
+        let stem = terrain.stems.as_ref().and_then(|stems| stems.of_triangle(triangle));
+        self.stem_load.pressed = stem.or(self.stem_load.pressed);
+    }
+
+    /// A stem is gone within a step whose losses hold what it took.
     pub(crate) fn fell_broken(&mut self, world: &ContactEnvironment, broken: &Broken) {
+        self.stem_load.broken_j += broken.taken_j;
         if let Some(stems) = world.terrain.stems.as_ref() {
             self.fell(stems, broken.stem);
         }
@@ -134,11 +143,16 @@ impl ContactState {
             let Some(broken) = self.broken_by(world, touch, (&self.v, &self.w)) else { continue };
             let of_stem =
                 |history: &ContactHistory| stems.of_triangle(history.triangle) == Some(broken.stem);
-            let is_new = !self.histories.iter().any(of_stem);
+            // only the blow that falls next has been announced: a memory alone is of a rock that rolls up to the stem
+            let known = |one: &&ContactHistory| one.announced && !one.captured && of_stem(one);
+            let is_new = !self.is_struck
+                || !self.histories.iter().chain(self.struck.iter()).any(|one| known(&one));
             note(self, touch, (broken.taken_j, is_new));
             (self.v, self.w) = broken.motion;
             self.fell(stems, broken.stem);
         }
+        // what stands and throws the rock off is forgotten with the step
+        self.stem_load.look(world.terrain, stems, &self.histories);
     }
 
     /// A stem is gone for this rock, with all that its contacts remember.

@@ -14,8 +14,8 @@ use crate::rock::Vec3;
 /// Step (rad of the contact's oscillation).
 /// 5e-3 rad with a midpoint rule: an error of some 1e-5 of the speed, over at most 4000 steps.
 const STEP: f64 = 5e-3;
-/// A rock comes to rest along the normal within this (rad), however heavily damped.
-const COMES_TO_REST: f64 = 20.0;
+/// A rock has come off within this (rad), or creeps out so heavily damped that nothing is left to take.
+const COMES_OFF: f64 = 20.0;
 /// Halvings of the step in which it gives way: all the digits there are.
 pub(super) const BISECTIONS: u32 = 60;
 
@@ -52,13 +52,20 @@ impl Pressing {
         }
     }
 
+    /// Whether it is still on its way in, or pushed out.
+    fn presses(&self, law: &Law) -> bool {
+        let apart_m_s = self.at.n.dot(&self.v);
+        let force = law.normal(false).pull_or_push(self.at.penetration, apart_m_s);
+        apart_m_s < 0.0 || force > 0.0
+    }
+
     fn motion_j(&self, body: &Body) -> f64 {
         0.5 * (body.mass * self.v.norm_squared() + body.inertia * self.w.norm_squared())
     }
 }
 
 /// Velocity and spin with which a rock leaves something with normal `n` that gives way once it has taken `limit_j`, springs and
-/// friction included. `None` if it stands until the rock comes to rest along the normal.
+/// friction included. `None` if it stands until the rock has come off: friction goes on taking while the spring pushes out.
 pub(crate) fn yielding_impact(
     body: &Body,
     (law, n): (&Law, &Vec3),
@@ -70,7 +77,7 @@ pub(crate) fn yielding_impact(
     let left_j = rock.motion_j(body) - limit_j;
     let step = STEP / law.omega_rad_s();
     let mut gone = 0.0;
-    while n.dot(&rock.v) < 0.0 && gone < COMES_TO_REST {
+    while rock.presses(law) && gone < COMES_OFF {
         let next = rock.after(body, law, step);
         if next.motion_j(body) <= left_j {
             // halving is safe where the energy taken is not monotone: the interval always ends with

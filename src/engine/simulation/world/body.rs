@@ -217,12 +217,14 @@ impl<'a> WorldBody<'a> {
         &mut self,
         settings: &RunSettings,
         time_s: f64,
-        given: (Loss, Given),
+        (mut loss, given): (Loss, Given),
         slides: bool,
     ) {
         if matches!(self.state, BodyState::Gone(_)) {
             return;
         }
+        let rock = self.in_contact(settings);
+        rock.state.bend(&rock.world, &mut loss);
         let to = self.motion_at(time_s);
         // its impacts are listed with its blows
         self.member.state.histories.iter_mut().for_each(|history| history.announced = true);
@@ -231,7 +233,7 @@ impl<'a> WorldBody<'a> {
             return;
         }
         let flew = self.member.flew;
-        self.touch(settings, to, given, (slides, flew));
+        self.touch(settings, to, (loss, given), (slides, flew));
         self.recorder.book_impacts(&MeshEnergy::default());
         if self.member.flying {
             self.lands = None;

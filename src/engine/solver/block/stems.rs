@@ -75,12 +75,9 @@ impl Footing {
         loss: &mut Loss,
     ) {
         let Some(stems) = world.terrain.stems.as_ref().filter(|_| loss.trees > 0.0) else { return };
-        let touched = self.touches.found.iter().filter_map(|touch| {
-            stems.of_triangle(touch.triangle).map(|stem| (stem, touch.gap_m, touch.normal))
-        });
-        let Some((stem, _, normal)) = touched.min_by(|one, other| one.1.total_cmp(&other.1)) else {
-            return;
-        };
+        // the block may have left what it pressed within the step
+        let normal = self.press_stem(world).unwrap_or_else(Vec3::zeros);
+        let Some(stem) = self.stem_load.pressed else { return };
         if let Some(beyond_j) = self.stem_load.yields(stems, stem, loss.trees) {
             moving.v += given_back(block.mass_kg, &moving.v, beyond_j, &normal);
             self.springs.refresh();
@@ -89,10 +86,22 @@ impl Footing {
         }
     }
 
+    /// Notes which stem the contacts of the last look press deepest, and the normal there; as before if they press none.
+    pub(crate) fn press_stem(&mut self, world: &ContactEnvironment) -> Option<Vec3> {
+        let stems = world.terrain.stems.as_ref()?;
+        let touched = self.touches.found.iter().filter_map(|touch| {
+            stems.of_triangle(touch.triangle).map(|stem| (stem, touch.gap_m, touch.normal))
+        });
+        let (stem, _, normal) = touched.min_by(|one, other| one.1.total_cmp(&other.1))?;
+        self.stem_load.pressed = Some(stem);
+        Some(normal)
+    }
+
     /// A stem is gone for this block.
     fn fell(&mut self, stem: u32) {
         self.near.gone.push(stem);
         self.near.forget();
+        self.stem_load.pressed = None;
         self.looked = None;
         self.springs.forget_look();
     }

@@ -254,6 +254,7 @@ impl RigidIsland {
         let tolerance = self.impact_tolerance();
         let IslandBody { state, body, laws, .. } = &mut *scene.members[k];
         let world = ContactEnvironment { terrain: scene.terrain, body: *body, laws };
+        state.press_stem(scene.terrain, touch.triangle);
         let meeting = Meeting { n: touch.normal, triangle: touch.triangle, c: *at, v: *v };
         let turn = state.facets.struck(&world, &meeting);
         // how near something is at that instant is known as well as the parabola is the way of the rock
