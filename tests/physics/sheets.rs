@@ -1,14 +1,18 @@
 //! Sheets that lie on each other, as tiles and buildings from several files do: no corners in common, borders on the others' faces.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use crate::common;
 use crate::patch::{kept, pressed};
 use common::*;
 use rockfall::contact::neighbours::Neighbours;
 use rockfall::ground::Ground;
+use rockfall::plan::Plan;
 use rockfall::rock::{Rock, Vec3};
+use rockfall::scene::Scene;
+use rockfall::simulation::{Scratch, simulate_release};
 use rockfall::solver::Scheme;
 use rockfall::terrain::Terrain;
-use rockfall::terrain::stl::Facet;
+use rockfall::terrain::stl::{Facet, write_binary};
 
 /// Two tiles, welded as in a scene without a tolerance of its own.
 fn welded(tiles: [Vec<Facet>; 2]) -> Terrain {
@@ -165,6 +169,45 @@ fn the_same_corners_with_other_diagonals_are_one_sheet() {
                     (&one.end, one.effort.steps),
                     "{scheme:?}"
                 );
+            }
+        }
+    }
+}
+
+/// Boxes that land on one of two level sheets, nearer to each other than their corners are round, lie on the upper one and gain nothing. Of two sheets
+/// that touch a corner at one point only one had a spring: boxes sank to the lower one with `rigid`, and what the upper one pushed
+/// when it came in as a whole threw them up with up to a hundred times their energy with springs.
+#[test]
+fn blocks_lie_on_the_upper_of_two_sheets() {
+    let dir = tempfile::tempdir().unwrap();
+    let file = |name: &str, z: f64| {
+        write_binary(&dir.path().join(name), &sheet(-10.0, 1, |_, _| z)).unwrap();
+    };
+    file("lower.stl", 0.0);
+    for (scheme, rolling) in
+        [("adaptive", 0.0), ("adaptive", 0.3), ("reference", 0.0), ("rigid", 0.0), ("rigid", 0.3)]
+    {
+        for over_m in [0.001, 0.005, 0.05] {
+            file("upper.stl", over_m);
+            let text = format!(
+                "title = \"t\"\nseed = 1\n[[terrain]]\nmesh = \"lower.stl\"\nground = \"g\"\n[[terrain]]\nmesh = \"upper.stl\"\n\
+                 ground = \"g\"\n[grounds.g]\nnormal_stiffness_n_m = 2e9\nshear_stiffness_n_m = 5e8\nfriction_angle_deg = 30.0\n\
+                 restitution = 0.0\nrolling_friction = {rolling}\n[rocks]\ndensity_kg_m3 = 2700.0\nradius_m = 0.3\n\
+                 [[rocks.shapes]]\nkind = \"box\"\ncorner_radius = 0.2\naxes = [1.5, 1.0, 0.8]\n[release]\ncount = 8\n\
+                 height_m = 0.5\nvelocity_m_s = [0.0, 0.0, -3.0]\nspin_rad_s = [1.0, 0.0, 0.0]\npoints_m = [[0.0, 0.0]]\n\
+                 [solver]\nscheme = \"{scheme}\"\nlongest_s = 6.0\n"
+            );
+            let scene = Scene::parse(&text, &dir.path().join("scene.toml")).unwrap();
+            let (terrain, _) = scene.read_terrain().unwrap();
+            let plan = Plan::compile(&scene, terrain).unwrap();
+            let mut scratch = Scratch::default();
+            for index in 0..8 {
+                let fall = simulate_release(&plan, index, None, &mut scratch).unwrap();
+                let height_m = fall.end.position_m.z + plan.terrain.origin_m.z - over_m;
+                // half of the smallest side is 0.182 m
+                assert!(height_m > 0.1815, "{scheme} {rolling} {over_m} {index}: {height_m}");
+                let gained = -fall.ledger.remainder_j / fall.released_j;
+                assert!(gained < 1e-3, "{scheme} {rolling} {over_m} {index}: {gained}");
             }
         }
     }

@@ -147,11 +147,13 @@ impl Placed<'_> {
         found: &mut Vec<BlockTouch>,
     ) {
         let ball = self.block.ball_m;
-        let lever = p - self.pose.centre - touch.normal * ball;
+        let (lever, gap_m) = (p - self.pose.centre - touch.normal * ball, touch.distance_m - ball);
         let near = SAME * ball;
+        // sheets over each other touch the same point of the block at different distances: each has its spring
         let is_known = found.iter().any(|other| {
             (other.normal - touch.normal).norm_squared() <= SAME * SAME
                 && (other.lever - lever).norm_squared() <= near * near
+                && (other.gap_m - gap_m).abs() <= near
         });
         // what presses has a spring of its own, also where another contact comes to the same place
         if !is_known || self.holds(part, touch.feature) {
@@ -161,7 +163,7 @@ impl Placed<'_> {
                 triangle: touch.triangle,
                 normal: touch.normal,
                 lever,
-                gap_m: touch.distance_m - ball,
+                gap_m,
                 gain2: touch.gain2,
                 is_past,
             });
