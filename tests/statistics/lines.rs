@@ -54,12 +54,12 @@ fn a_corner_is_crossed_once() {
     let (physics, _) = text.split_once("[release]").unwrap();
     let point = |k: u32| format!("[18.3, {}, 30.0]", 45.0 + 0.0137 * f64::from(k));
     let points: Vec<String> = (0..60).map(point).collect();
-    let mut lines = String::new();
-    for k in 0..20 {
+    let line = |k: u32| {
         let (west, east) = (49.1 + 0.37 * f64::from(k), 57.9 - 0.21 * f64::from(k));
         let corners = format!("[[10.1, {west}], [18.3, 53.7], [30.7, {east}]]");
-        lines += &format!("[[lines]]\nname = \"{k}\"\npoints_m = {corners}\n");
-    }
+        format!("[[lines]]\nname = \"{k}\"\npoints_m = {corners}\n")
+    };
+    let lines: String = (0..20).map(line).collect();
     let plan = plan_of(&format!(
         "{physics}\n[release]\ncount = 60\nvelocity_m_s = [0.0, 12.0, 3.0]\nspin_rad_s = [0.0, 0.0, 0.0]\n\
          points_m = [{}]\n{lines}",

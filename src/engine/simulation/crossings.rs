@@ -231,7 +231,7 @@ fn up(normal: Vec3) -> Vec3 {
 const CORNER_M: f64 = 1e-9;
 
 /// Where a way meets a piece of a line.
-struct Meeting {
+struct LineMeeting {
     /// Share of the way (–).
     s: f64,
     /// Along the line (m).
@@ -240,7 +240,7 @@ struct Meeting {
     corner_m: Option<Corner>,
 }
 
-impl Meeting {
+impl LineMeeting {
     /// With a piece that is met at `at_m` after a share `s` of the way; none beyond its ends.
     fn of(piece: &LinePiece, s: f64, at_m: Corner) -> Option<Self> {
         let length_m = piece.length_m();
@@ -270,12 +270,12 @@ fn meetings(
     line: &EvaluationLine,
     when: impl Fn(&LinePiece) -> Vec<f64>,
     at_m: impl Fn(f64) -> Corner,
-) -> Vec<Meeting> {
+) -> Vec<LineMeeting> {
     let at_m = &at_m;
-    let of_piece = |piece: &LinePiece| -> Vec<Meeting> {
-        when(piece).into_iter().filter_map(|s| Meeting::of(piece, s, at_m(s))).collect()
+    let of_piece = |piece: &LinePiece| -> Vec<LineMeeting> {
+        when(piece).into_iter().filter_map(|s| LineMeeting::of(piece, s, at_m(s))).collect()
     };
-    let mut met: Vec<Meeting> = line.pieces.iter().flat_map(of_piece).collect();
+    let mut met: Vec<LineMeeting> = line.pieces.iter().flat_map(of_piece).collect();
     met.sort_by(|one, other| one.s.total_cmp(&other.s));
     met.dedup_by(|next, kept| next.is_at_corner_of(kept));
     met
