@@ -176,7 +176,7 @@ fn the_same_corners_with_other_diagonals_are_one_sheet() {
 
 /// Boxes that land on one of two level sheets, nearer to each other than their corners are round, lie on the upper one and gain nothing. Of two sheets
 /// that touch a corner at one point only one had a spring: boxes sank to the lower one with `rigid`, and what the upper one pushed
-/// when it came in as a whole threw them up with up to a hundred times their energy with springs.
+/// when it came in as a whole threw them up with springs, with up to 175 times their energy.
 #[test]
 fn blocks_lie_on_the_upper_of_two_sheets() {
     let dir = tempfile::tempdir().unwrap();
