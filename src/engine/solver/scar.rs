@@ -85,15 +85,10 @@ impl Pace {
 
     /// Share of its way (–) that the last step of a contact is in contact.
     ///
-    /// `rigid` finds out that contact is over by a step in which nothing pushes: all of that was flight.
-    /// Springs let go somewhere in the step, and where is not resolved: half is as likely too much as
-    /// too little. But an impact that is followed as a whole ends where it lets go.
+    /// Contact ends somewhere in it, and where is not resolved: half is as likely too much as too little.
+    /// But an impact on springs that is followed as a whole ends where it lets go.
     fn share_of_last(&self, has_springs: bool) -> f64 {
-        match (has_springs, self.last_m > 0.0) {
-            (false, _) => 0.0,
-            (true, true) => 0.5,
-            (true, false) => 1.0,
-        }
+        if has_springs && self.last_m == 0.0 { 1.0 } else { 0.5 }
     }
 }
 
