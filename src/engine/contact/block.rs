@@ -15,21 +15,28 @@
 //! A pair that presses goes on beyond the ends and the rims of its features, at the points of both that are nearest, until it lets go: the distance
 //! of two convex sets has neither a jump nor a kink. Where an edge of the block slides off over its corner, the corner presses too, and what
 //! the edge's spring held would be lost. Where the next feature begins there, it takes the spring over: `remember` of the blocks' springs.
+//! That is looked for with the slack with which the pair was held: a box that friction tips forward by a hair is nearest to a crest at its front edge
+//! alone, and its rear edge presses on as it did.
 
+mod lines;
+mod pairs;
+
+use super::neighbours::Neighbours;
 use super::neighbours::SAME;
-use super::neighbours::{Neighbours, Peak, SharpEdge};
 use super::{ContactPoint, ContactPoints, Feature};
 use crate::body::{Block, HullFace, Ridge};
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
+use lines::foot_between;
 use nalgebra::Rotation3;
 
 /// Tests of directions are inclusive to this (–) …
 const DIRECTION_SLACK: f64 = 1e-9;
 /// … and to this for a contact that is held (–, sine of an angle): a block that lies flat on an edge rests on both sides of it.
 const HELD_SLACK: f64 = 0.2;
-/// Edges closer to parallel than this meet at their ends (–, squared sine).
-const PARALLEL: f64 = 1e-12;
+/// A contact whose point was no further away than this is the same one that has gone on to the next feature (–, relative to
+/// the balls' radius).
+pub(crate) const SAME_POINT: f64 = 0.5;
 
 /// Most contacts that act on a block at a time: a block has 64 corners at most, so a prism has half of them on a face. On a face with more than
 /// 32 those that span most are kept.
@@ -71,6 +78,14 @@ pub struct BlockTouch {
     pub gain2: f64,
     /// Whether it is past the ends of its features, and there only because it presses already.
     pub is_past: bool,
+}
+
+impl BlockTouch {
+    /// Whether a pair may go on for this one, which is past the ends of its features: with the next feature of the mesh, or the next part
+    /// of the block.
+    pub(crate) fn hands_on(&self, part: u16, feature: Feature) -> bool {
+        self.is_past && (self.part == part || self.feature == feature)
+    }
 }
 
 /// A block at a pose, with its corners there.
@@ -130,16 +145,22 @@ pub fn touches(
             placed.add((k, p), (touch, false), found);
         }
     }
-    for edge in near.sharp_edges() {
-        placed.on_edge((near, terrain), &edge, reach, found);
-    }
-    for peak in near.peaks() {
-        placed.on_peak((near, terrain), &peak, reach, found);
+    // those held come first, and vertices: where one is past its end, the next goes on for it
+    for is_held in [true, false] {
+        if is_held && held.is_empty() {
+            continue;
+        }
+        for peak in near.peaks() {
+            placed.on_peak((near, terrain), &peak, (reach, is_held), found);
+        }
+        for edge in near.sharp_edges() {
+            placed.on_edge((near, terrain), &edge, (reach, is_held), found);
+        }
     }
 }
 
 impl Placed<'_> {
-    /// Adds the contact of a core point `p` on a part of the block, unless it is there already.
+    /// Adds the contact of a core point `p` on a part of the block, unless it is there already; one that is past its end gives way to it.
     fn add(
         &self,
         (part, p): (usize, &Vec3),
@@ -147,145 +168,32 @@ impl Placed<'_> {
         found: &mut Vec<BlockTouch>,
     ) {
         let ball = self.block.ball_m;
-        let (lever, gap_m) = (p - self.pose.centre - touch.normal * ball, touch.distance_m - ball);
+        let new = BlockTouch {
+            part: part as u16,
+            feature: touch.feature,
+            triangle: touch.triangle,
+            normal: touch.normal,
+            lever: p - self.pose.centre - touch.normal * ball,
+            gap_m: touch.distance_m - ball,
+            gain2: touch.gain2,
+            is_past,
+        };
         let near = SAME * ball;
         // sheets over each other touch the same point of the block at different distances: each has its spring
-        let is_known = found.iter().any(|other| {
-            (other.normal - touch.normal).norm_squared() <= SAME * SAME
-                && (other.lever - lever).norm_squared() <= near * near
-                && (other.gap_m - gap_m).abs() <= near
+        let mut known = found.iter_mut().filter(|other| {
+            (other.normal - new.normal).norm_squared() <= SAME * SAME
+                && (other.lever - new.lever).norm_squared() <= near * near
+                && (other.gap_m - new.gap_m).abs() <= near
         });
         // what presses has a spring of its own, also where another contact comes to the same place
-        if !is_known || self.holds(part, touch.feature) {
-            found.push(BlockTouch {
-                part: part as u16,
-                feature: touch.feature,
-                triangle: touch.triangle,
-                normal: touch.normal,
-                lever,
-                gap_m,
-                gain2: touch.gain2,
-                is_past,
-            });
-        }
-    }
-
-    /// The block's edges that cross an edge of the mesh.
-    fn on_edge(
-        &self,
-        (near, terrain): (&Neighbours, &Terrain),
-        edge: &SharpEdge,
-        reach: f64,
-        found: &mut Vec<BlockTouch>,
-    ) {
-        let along = edge.along.dot(&(self.pose.centre - edge.a)).clamp(0.0, edge.length);
-        let nearest = edge.a + edge.along * along;
-        if !self.is_near(&nearest, reach) {
-            return;
-        }
-        let low = self.low_corners(&nearest, reach);
-        for (part, ridge) in self.low_ridges(low) {
-            let [a, b] = ridge.ends.map(|k| self.corners[usize::from(k)]);
-            let cross = crossing((a, b - a), (edge.a, edge.along));
-            let inside = |(s, t): &(f64, f64)| *s > 0.0 && *s < 1.0 && *t > 0.0 && *t < edge.length;
-            let within = cross.filter(inside);
-            let [p, foot] = match within {
-                Some((s, t)) => [a + (b - a) * s, edge.a + edge.along * t],
-                None if self.holds(part, edge.feature) => {
-                    nearest_at_ends([a, b], [edge.a, edge.a + edge.along * edge.length])
-                }
-                None => continue,
-            };
-            let off = p - foot;
-            let distance = off.norm();
-            if distance >= reach || distance <= DIRECTION_SLACK * self.block.ball_m {
-                continue;
+        if self.holds(part, touch.feature) {
+            found.push(new);
+        } else if let Some(other) = known.next() {
+            if other.hands_on(new.part, new.feature) {
+                *other = new;
             }
-            let normal = off / distance;
-            let slack = self.slack(part, edge.feature);
-            if edge.outward.iter().any(|out| out.dot(&normal) < -slack)
-                || !self.faces_out(&ridge.into, &normal, slack)
-                || edge.at_border && near.is_covered(terrain, edge.feature, &foot, (&p, distance))
-            {
-                continue;
-            }
-            let touch = point(edge.feature, edge.triangle, (normal, distance));
-            self.add((part, &p), (&touch, within.is_none()), found);
-        }
-    }
-
-    /// The block's edges and faces over a vertex of the mesh.
-    fn on_peak(
-        &self,
-        (near, terrain): (&Neighbours, &Terrain),
-        peak: &Peak,
-        reach: f64,
-        found: &mut Vec<BlockTouch>,
-    ) {
-        if !self.is_near(&peak.p, reach) {
-            return;
-        }
-        let low = self.low_corners(&peak.p, reach);
-        if low == 0 {
-            return;
-        }
-        let own = self.pose.attitude.inverse_transform_vector(&(peak.p - self.pose.centre));
-        let touches = |part: usize, normal: &Vec3| {
-            let slack = self.slack(part, peak.feature);
-            peak.edges.iter().all(|edge| edge.dot(normal) <= slack)
-        };
-        let covered = |p: &Vec3, distance: f64| {
-            peak.at_border && near.is_covered(terrain, peak.feature, &peak.p, (p, distance))
-        };
-        for (part, ridge) in self.low_ridges(low) {
-            let [a, b] = ridge.ends.map(|k| self.corners[usize::from(k)]);
-            let s = (peak.p - a).dot(&(b - a)) / (b - a).norm_squared();
-            let p = a + (b - a) * s.clamp(0.0, 1.0);
-            let distance = (p - peak.p).norm();
-            let is_beside = s <= 0.0 || s >= 1.0;
-            if is_beside && !self.holds(part, peak.feature)
-                || distance >= reach
-                || distance <= DIRECTION_SLACK * self.block.ball_m
-            {
-                continue;
-            }
-            let normal = (p - peak.p) / distance;
-            let slack = self.slack(part, peak.feature);
-            if touches(part, &normal)
-                && self.faces_out(&ridge.into, &normal, slack)
-                && !covered(&p, distance)
-            {
-                let touch = point(peak.feature, peak.triangle, (normal, distance));
-                self.add((part, &p), (&touch, is_beside), found);
-            }
-        }
-        // a face that lies on a straight edge is held where its own edges cross that edge, however many vertices divide it
-        if peak.is_straight(DIRECTION_SLACK) {
-            return;
-        }
-        let before = self.corners.len() + self.block.core.ridges.len();
-        for (k, face) in self.block.core.faces.iter().enumerate() {
-            let part = before + k;
-            let height = face.normal.dot(&own) - face.level;
-            let over = || self.block.core.is_over(face, &own);
-            let (p, normal, is_past) = if height > 0.0 && height < reach && over() {
-                let normal = -(self.pose.attitude * face.normal);
-                (peak.p + normal * height, normal, false)
-            } else if self.holds(part, peak.feature) {
-                let p = self.on_rim(face, &peak.p);
-                let Some(normal) = (p - peak.p).try_normalize(DIRECTION_SLACK * self.block.ball_m)
-                else {
-                    continue;
-                };
-                (p, normal, !over())
-            } else {
-                continue;
-            };
-            let distance = normal.dot(&(p - peak.p));
-            if distance < reach && touches(part, &normal) && !covered(&p, distance) {
-                let touch = point(peak.feature, peak.triangle, (normal, distance));
-                self.add((part, &p), (&touch, is_past), found);
-            }
+        } else {
+            found.push(new);
         }
     }
 
@@ -329,47 +237,40 @@ impl Placed<'_> {
         into.iter().all(|into| into.dot(&own) >= -slack)
     }
 
-    /// How far the normal of a pair may be out of bounds (–).
-    fn slack(&self, part: usize, feature: Feature) -> f64 {
-        if self.holds(part, feature) { HELD_SLACK } else { DIRECTION_SLACK }
+    /// How far the normal of a pair may be out of the bounds of its part of the block, and of its feature of the mesh (–). Where it goes on for one that
+    /// is past its end, what stays the same is held as it was; `is_same` tells whether the mesh's edge is the same line.
+    fn slacks(
+        &self,
+        (part, feature): (usize, Feature),
+        (at, found): (&Vec3, &[BlockTouch]),
+        is_same: impl Fn(Feature) -> bool,
+    ) -> [f64; 2] {
+        if self.holds(part, feature) {
+            return [HELD_SLACK; 2];
+        }
+        let part = part as u16;
+        let near = |touch: &&BlockTouch| {
+            let away = touch.lever + touch.normal * self.block.ball_m + self.pose.centre - at;
+            away.norm() <= SAME_POINT * self.block.ball_m
+        };
+        let mut before = found.iter().filter(|touch| touch.hands_on(part, feature)).filter(near);
+        match before.next() {
+            Some(one) if one.part != part => [DIRECTION_SLACK, HELD_SLACK],
+            Some(one) if is_same(one.feature) => [HELD_SLACK; 2],
+            Some(_) => [HELD_SLACK, DIRECTION_SLACK],
+            None => [DIRECTION_SLACK; 2],
+        }
     }
 
     /// Whether a pair presses already.
     fn holds(&self, part: usize, feature: Feature) -> bool {
         self.held.contains(&(part as u16, feature))
     }
-}
 
-fn point(feature: Feature, triangle: u32, (normal, distance_m): (Vec3, f64)) -> ContactPoint {
-    ContactPoint { feature, triangle, normal, distance_m, gain2: 1.0 }
-}
-
-/// Where two endless lines are nearest: the share along the first direction, the way along the second, a unit vector.
-fn crossing((p, e): (Vec3, Vec3), (a, f): (Vec3, Vec3)) -> Option<(f64, f64)> {
-    let w = p - a;
-    let (ee, ef, ew, fw) = (e.norm_squared(), e.dot(&f), e.dot(&w), f.dot(&w));
-    let across = ee - ef * ef;
-    if across <= PARALLEL * ee {
-        return None;
+    /// Whether a part of the block presses on a feature already.
+    fn holds_any(&self, feature: Feature) -> bool {
+        self.held.iter().any(|(_, other)| *other == feature)
     }
-    Some(((ef * fw - ew) / across, (ee * fw - ef * ew) / across))
-}
-
-/// The point of a line between two ends that is nearest to `p`.
-fn foot_between([a, b]: [Vec3; 2], p: &Vec3) -> Vec3 {
-    let way = b - a;
-    a + way * ((p - a).dot(&way) / way.norm_squared()).clamp(0.0, 1.0)
-}
-
-/// Where two lines that do not cross between their ends are nearest: a point on each, one of which is an end.
-fn nearest_at_ends(one: [Vec3; 2], other: [Vec3; 2]) -> [Vec3; 2] {
-    let from = one.map(|p| [p, foot_between(other, &p)]);
-    let to = other.map(|p| [foot_between(one, &p), p]);
-    let nearer = |near: [Vec3; 2], next: [Vec3; 2]| {
-        let away2 = |[p, q]: [Vec3; 2]| (p - q).norm_squared();
-        if away2(next) < away2(near) { next } else { near }
-    };
-    [from[1], to[0], to[1]].into_iter().fold(from[0], nearer)
 }
 
 /// Keeps the `most` contacts that span most: the deepest, then always the one farthest from those kept.

@@ -8,6 +8,9 @@ use super::Neighbours;
 use crate::contact::{Feature, FeatureKind};
 use crate::rock::Vec3;
 
+/// Edges that go on in a straight line do so to this, in their direction and over their length (–).
+const STRAIGHT: f64 = 1e-6;
+
 /// An edge of the mesh that stands out, as a block meets it.
 ///
 /// From `a` along the unit vector `along` for `length` (m); `outward` are unit vectors in the
@@ -23,6 +26,15 @@ pub(crate) struct SharpEdge<'a> {
     pub(crate) at_border: bool,
 }
 
+impl SharpEdge<'_> {
+    /// Whether another edge is a part of the same straight line.
+    pub(crate) fn goes_straight_on(&self, other: &Self) -> bool {
+        let off = |way: Vec3| way - self.along * self.along.dot(&way);
+        off(other.along).norm() <= STRAIGHT
+            && off(other.a - self.a).norm() <= STRAIGHT * self.length
+    }
+}
+
 /// A vertex of the mesh that stands out, as a block meets it.
 /// At `p` (m); `edges` are unit vectors along the edges that start there.
 #[derive(Debug, Clone, Copy)]
@@ -35,6 +47,11 @@ pub(crate) struct Peak<'a> {
 }
 
 impl Peak<'_> {
+    /// Whether it is the top of its edges along a direction, to a sine of `slack` (–).
+    pub(crate) fn is_top(&self, up: &Vec3, slack: f64) -> bool {
+        self.edges.iter().all(|edge| edge.dot(up) <= slack)
+    }
+
     /// Whether an edge goes straight on through the vertex, to a sine of `slack` (–): such a vertex only divides an edge, and stands out no further.
     pub(crate) fn is_straight(&self, slack: f64) -> bool {
         let goes_on = |one: &Vec3| {

@@ -3,7 +3,7 @@
 use super::super::{Footing, Moving, TOUCH};
 use crate::body::Block;
 use crate::contact::Feature;
-use crate::contact::block::BlockTouch;
+use crate::contact::block::{BlockTouch, SAME_POINT};
 use crate::contact::history::{SAME_GRIP, carry};
 use crate::ground::Law;
 use crate::rock::Vec3;
@@ -11,9 +11,6 @@ use crate::solver::block::solve::Mass;
 use crate::solver::environment::ContactEnvironment;
 use crate::solver::law::capture_m_s;
 
-/// A contact whose point was no further away than this is the same one that has gone on to the next feature (–, relative to
-/// the balls' radius).
-const SAME_POINT: f64 = 0.5;
 /// What other contacts take off the answer of one at most (–): where they push each other up, its mass would grow without bound.
 const LEAST_SHARED: f64 = 0.25;
 
@@ -185,9 +182,7 @@ impl Footing {
 /// mesh, or the next part of the block. Both would press else, the new one from where it is: at each joint of a
 /// crest a block that slides along it would sink by what its weight presses in.
 fn goes_on(block: &Block, new: &BlockTouch, before: &BlockTouch) -> bool {
-    before.is_past
-        && !block.core.is_corner(new.part)
-        && (new.part == before.part || new.feature == before.feature)
+    !block.core.is_corner(new.part) && before.hands_on(new.part, new.feature)
 }
 
 /// The share of the mass that a contact moves among those that touch with it (–): `G_ii/Σ_j G_ij` along the normals.

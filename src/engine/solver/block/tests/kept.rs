@@ -226,17 +226,32 @@ fn an_edge_that_slides_off_over_its_end_keeps_its_energy() {
     }
 }
 
-/// Straight crests along x, 0.4 m apart, divided every 0.1 m.
-fn crests() -> Terrain {
+/// Straight crests along x, 0.4 m apart, from so many cells of so many metres before the origin to so many past it.
+fn crests(cell_m: f64, cells: std::ops::Range<i32>) -> Terrain {
     let at = |i: i32, j: i32| {
         let z = if j.rem_euclid(2) == 1 { 0.0 } else { -0.2 };
-        Vec3::new(0.1 * f64::from(i), 0.2 * f64::from(j), z)
+        Vec3::new(cell_m * f64::from(i), 0.2 * f64::from(j), z)
     };
     let cell = |(i, j): (i32, i32)| {
         let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
         [[a, b, c], [a, c, d]]
     };
-    terrain((-10..50).flat_map(|i| (-4..4).map(move |j| (i, j))).flat_map(cell).collect())
+    terrain(cells.flat_map(|i| (-4..4).map(move |j| (i, j))).flat_map(cell).collect())
+}
+
+/// How deep a box is that has slid along two crests from 2 m/s, over the depth at rest, and how fast (–, m/s).
+fn slid_along(scheme: Scheme, crests: Terrain, (friction, lasts_s): (f64, f64)) -> (f64, f64) {
+    let body = block(&box_surface([0.7, 0.7, 0.4]), 0.05);
+    let mut case = on_springs(BlockRun::new(crests, body, (friction, 0.4)), scheme, 1e8);
+    if scheme.has_fixed_step() {
+        case = with_long_steps(case);
+    }
+    let start = [Vec3::z() * 0.2, Vec3::x() * 2.0, Vec3::zeros()];
+    let mut moving = case.start(Rotation3::identity(), start);
+    let level = moving.pose.centre.z;
+    case.follow(&mut moving, lasts_s, |_, _| ());
+    let pressed_m = case.block.mass_kg * G / 4e8;
+    ((level - moving.pose.centre.z) / pressed_m, moving.v.x)
 }
 
 /// A box slides along two divided crests as deep as its weight presses it in: edges of the box go on from one edge of the mesh to the next with
@@ -244,22 +259,37 @@ fn crests() -> Terrain {
 #[test]
 fn a_block_slides_along_divided_crests_without_sinking() {
     for scheme in every_scheme().into_iter().filter(|scheme| scheme.has_springs()) {
-        let body = block(&box_surface([0.7, 0.7, 0.4]), 0.05);
-        let mut case = on_springs(BlockRun::new(crests(), body, (0.0, 0.4)), scheme, 1e8);
-        if scheme.has_fixed_step() {
-            case = with_long_steps(case);
-        }
-        let start = [Vec3::z() * 0.2, Vec3::x() * 2.0, Vec3::zeros()];
-        let mut moving = case.start(Rotation3::identity(), start);
-        let level = moving.pose.centre.z;
-        case.follow(&mut moving, 1.5, |_, _| ());
-        let pressed_m = case.block.mass_kg * G / 4e8;
-        let (deep, fast) = ((level - moving.pose.centre.z) / pressed_m, moving.v.x);
+        let (deep, fast) = slid_along(scheme, crests(0.1, -10..50), (0.0, 1.5));
         println!("{scheme:?}: {deep} of the depth at rest, {fast} m/s");
         assert!(
             (deep - 1.0).abs() < 0.02 && (fast - 2.0).abs() < 1e-6,
             "{scheme:?}: {deep} {fast}"
         );
+    }
+}
+
+/// Friction tips the box forward by a hair, and the crests are then nearest to its front edge alone: its rear edge presses all the same, and hands its
+/// spring on at each joint. It was let go there, and the rear sank until it lay flat again: 5.7 times the depth at rest where the box has stopped.
+#[test]
+fn a_block_that_friction_slows_does_not_sink_into_divided_crests() {
+    for scheme in every_scheme().into_iter().filter(|scheme| scheme.has_springs()) {
+        let (deep, fast) = slid_along(scheme, crests(0.1, -10..50), (0.3, 0.6));
+        println!("{scheme:?}: {deep} of the depth at rest, {fast} m/s");
+        assert!(
+            (deep - 1.0).abs() < 0.02 && (fast - (2.0 - 0.3 * G * 0.6)).abs() < 1e-4,
+            "{scheme:?}: {deep} {fast}"
+        );
+    }
+}
+
+/// Where the crests begin under the box, its face lies on their ends until its rear edge comes to them, and then that edge on the crests: 1.57 times
+/// the depth at rest was left of that.
+#[test]
+fn a_face_hands_its_springs_on_to_its_edge() {
+    for scheme in every_scheme().into_iter().filter(|scheme| scheme.has_springs()) {
+        let (deep, _) = slid_along(scheme, crests(12.0, 0..1), (0.3, 0.6));
+        println!("{scheme:?}: {deep} of the depth at rest");
+        assert!((deep - 1.0).abs() < 0.02, "{scheme:?}: {deep}");
     }
 }
 

@@ -1,0 +1,34 @@
+//! Where lines are nearest.
+
+use crate::rock::Vec3;
+
+/// Edges closer to parallel than this meet at their ends (–, squared sine).
+const PARALLEL: f64 = 1e-12;
+
+/// Where two endless lines are nearest: the share along the first direction, the way along the second, a unit vector.
+pub(super) fn crossing((p, e): (Vec3, Vec3), (a, f): (Vec3, Vec3)) -> Option<(f64, f64)> {
+    let w = p - a;
+    let (ee, ef, ew, fw) = (e.norm_squared(), e.dot(&f), e.dot(&w), f.dot(&w));
+    let across = ee - ef * ef;
+    if across <= PARALLEL * ee {
+        return None;
+    }
+    Some(((ef * fw - ew) / across, (ee * fw - ef * ew) / across))
+}
+
+/// The point of a line between two ends that is nearest to `p`.
+pub(super) fn foot_between([a, b]: [Vec3; 2], p: &Vec3) -> Vec3 {
+    let way = b - a;
+    a + way * ((p - a).dot(&way) / way.norm_squared()).clamp(0.0, 1.0)
+}
+
+/// Where two lines that do not cross between their ends are nearest: a point on each, one of which is an end.
+pub(super) fn nearest_at_ends(one: [Vec3; 2], other: [Vec3; 2]) -> [Vec3; 2] {
+    let from = one.map(|p| [p, foot_between(other, &p)]);
+    let to = other.map(|p| [foot_between(one, &p), p]);
+    let nearer = |near: [Vec3; 2], next: [Vec3; 2]| {
+        let away2 = |[p, q]: [Vec3; 2]| (p - q).norm_squared();
+        if away2(next) < away2(near) { next } else { near }
+    };
+    [from[1], to[0], to[1]].into_iter().fold(from[0], nearer)
+}
