@@ -81,7 +81,8 @@ pub(crate) fn settle(
         };
         *rejected += 1;
         *trial.h() = dt * ratio;
-        if dt * ratio * trial.omega() < SHORTEST {
+        // one that began so short may be tried again as it is
+        if ratio < 1.0 && dt * ratio * trial.omega() < SHORTEST {
             return Err(StepFailure::Unsettled);
         }
     }
@@ -89,4 +90,53 @@ pub(crate) fn settle(
 
 fn grown(control: &Control, dt: f64, error: f64) -> f64 {
     dt * (SAFETY * math::pow(error, -control.tableau.exponent)).clamp(RATIO.0, RATIO.1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solver::Scheme;
+    use crate::solver::step_control::RESOLVED;
+
+    /// A contact that has popped up at the start of a step: it has to press at once, which the step is then tried with.
+    struct Popped {
+        h: f64,
+        presses: bool,
+    }
+
+    impl TrialStep for Popped {
+        fn h(&mut self) -> &mut f64 {
+            &mut self.h
+        }
+
+        fn limit(&mut self) -> f64 {
+            f64::INFINITY
+        }
+
+        fn omega(&self) -> f64 {
+            1.0
+        }
+
+        fn try_step(&mut self, dt: f64) -> TryOutcome {
+            if std::mem::replace(&mut self.presses, true) {
+                TryOutcome::Error(0.5)
+            } else {
+                TryOutcome::Cut((RESOLVED / dt).min(1.0))
+            }
+        }
+    }
+
+    /// A step may begin shorter than any that helps, after an impact that ended with such a one or because little is asked for: to try it again as it is
+    /// is not to give up. Boxes that slid on blunt folds failed so with `reference`: 3 of 200, and 2 of 8 where edges were let go as well.
+    #[test]
+    fn a_step_that_begins_short_settles() {
+        let tableau = Scheme::Reference.tableau().unwrap();
+        let control = Control { tableau, tolerance: 1e-8, impact: 1e-10, impact_kernels: true };
+        let short = [1.0, 1e-6, 0.5 * SHORTEST, 1e-3 * SHORTEST];
+        for (h, most_s) in short.into_iter().flat_map(|h| [(h, 1.0), (1.0, h)]) {
+            let (mut trial, mut rejected) = (Popped { h, presses: false }, 0);
+            let dt = settle(&mut trial, &control, most_s, &mut rejected);
+            assert!(dt.is_ok_and(|dt| dt > 0.0 && dt <= most_s), "{h:e} {most_s:e}: {dt:?}");
+        }
+    }
 }
