@@ -88,15 +88,10 @@ impl Placed<'_> {
             if self.holds(part, peak.feature) != is_held {
                 continue;
             }
-            let [a, b] = ridge.ends.map(|k| self.corners[usize::from(k)]);
-            let s = (peak.p - a).dot(&(b - a)) / (b - a).norm_squared();
-            let p = a + (b - a) * s.clamp(0.0, 1.0);
+            let (p, is_beside) = self.foot_on(ridge, &peak.p);
             let distance = (p - peak.p).norm();
-            let is_beside = s <= 0.0 || s >= 1.0;
-            if is_beside && !is_held
-                || distance >= reach
-                || distance <= DIRECTION_SLACK * self.block.ball_m
-            {
+            let is_apart = distance > DIRECTION_SLACK * self.block.ball_m && distance < reach;
+            if is_beside && !is_held || !is_apart {
                 continue;
             }
             let normal = (p - peak.p) / distance;
@@ -114,6 +109,13 @@ impl Placed<'_> {
         if !peak.is_straight(DIRECTION_SLACK) {
             self.faces_on(on, peak, (reach, is_held), found);
         }
+    }
+
+    /// The point of an edge of the block that is nearest to `p`, and whether that is an end of it.
+    fn foot_on(&self, ridge: &Ridge, p: &Vec3) -> (Vec3, bool) {
+        let [a, b] = ridge.ends.map(|k| self.corners[usize::from(k)]);
+        let s = (p - a).dot(&(b - a)) / (b - a).norm_squared();
+        (a + (b - a) * s.clamp(0.0, 1.0), s <= 0.0 || s >= 1.0)
     }
 
     /// The block's faces over a vertex of the mesh: those held, or all others.
