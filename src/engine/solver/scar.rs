@@ -6,7 +6,7 @@
 //! changes of speed at three instants and along one way, each the closed form of the drag alone, `|v|' = −(C ρ_s A/2m) |v|²`:
 //!
 //! - at the touch: the way in, straight along the velocity from the surface to the depth `d`;
-//! - while contact lasts: the way along the plane, at the depth `d`;
+//! - while contact lasts: the way along the plane, at the depth `d`, half of that of each step before it and the rest after it;
 //! - when contact ends: the way out, straight again, and the scar is left; or, where the speed along the normal is too small to rise
 //!   through the soil against gravity, the hop back to the plane, and the scar goes on.
 //!
