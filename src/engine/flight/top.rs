@@ -185,6 +185,12 @@ pub fn spin_of(inertia: [f64; 3], attitude: &Rotation3<f64>, momentum: &Vec3) ->
     attitude * Vec3::new(own.x / inertia[0], own.y / inertia[1], own.z / inertia[2])
 }
 
+/// The angular momentum (kg m²/s, terrain frame) of a body with these moments of inertia about its principal axes (kg m²) and this spin (rad/s).
+pub fn momentum_of(inertia: [f64; 3], attitude: &Rotation3<f64>, spin: &Vec3) -> Vec3 {
+    let own = attitude.inverse_transform_vector(spin);
+    attitude * own.component_mul(&Vec3::from(inertia))
+}
+
 /// Pairs of equal moments, each with the third axis.
 fn equal_pairs(inertia: [f64; 3]) -> impl Iterator<Item = (usize, usize, usize)> {
     // relative to the larger moment

@@ -29,7 +29,7 @@ use crate::body::Block;
 use crate::contact::block::{BlockTouch, BlockTouches, Pose};
 use crate::contact::neighbours::Neighbours;
 use crate::flight::block::WindowScratch;
-use crate::flight::top::{attitude_after, spin_of};
+use crate::flight::top::{attitude_after, momentum_of, spin_of};
 use crate::rock::{Motion, Vec3};
 use energy::ActingAlong;
 use nalgebra::{Matrix3, Rotation3};
@@ -113,9 +113,7 @@ impl Moving {
         (centre, attitude): (Vec3, Rotation3<f64>),
         motion: &Motion,
     ) -> Self {
-        let own = attitude.inverse_transform_vector(&motion.spin_rad_s);
-        let own = own.component_mul(&Vec3::from(block.inertia_kg_m2));
-        let momentum = attitude * own;
+        let momentum = momentum_of(block.inertia_kg_m2, &attitude, &motion.spin_rad_s);
         Self { pose: Pose { centre, attitude }, v: motion.velocity_m_s, momentum }
     }
 

@@ -4,6 +4,7 @@ use super::rolling::Turning;
 use super::solve::{BlockContact, Mass, turning_limit};
 use super::{Footing, Moving};
 use crate::body::Block;
+use crate::flight::top::momentum_of;
 use crate::rock::Vec3;
 use crate::solver::environment::ContactEnvironment;
 use crate::solver::loss::Loss;
@@ -16,6 +17,10 @@ const NOTHING_LEFT: f64 = 1e-7;
 
 /// Along what contacts act on a block. One without friction acts along its normal alone: with one such normal the momentum across it and the
 /// angular momentum about it are not theirs to change, with two the momentum square to both. Friction acts along everything.
+///
+/// The angular momentum `L = n·ℓ` about one normal leaves the block a spin `n L/(n·I n)` at least, the one of least energy. The rest
+/// of its turning is what a contact can change, and holds an energy of its own, ≥ 0: what is square to `n` in `ℓ` itself does not, unless `n` is a
+/// principal axis, and a box that slid on its corner had less than none to pay for the error of a step.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct ActingAlong {
     /// Directions square to each other, and how many.
@@ -26,7 +31,7 @@ pub(super) struct ActingAlong {
 }
 
 /// The part of a motion along which contacts act, and what it changes in the energy of motion: scaled by `1 + δ` it adds
-/// `slope δ + curvature δ²/2`.
+/// `slope δ + curvature δ²/2`. Both are twice its own energy, but for the weight that slowing it takes away.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PartOfMotion {
     v: Vec3,
@@ -61,15 +66,18 @@ impl ActingAlong {
         all
     }
 
-    /// What of a velocity and an angular momentum they act along.
-    fn of(&self, (v, momentum): (&Vec3, &Vec3)) -> (Vec3, Vec3) {
+    /// What of the velocity and the angular momentum of a block they act along.
+    fn of(&self, block: &Block, Moving { pose, v, momentum }: &Moving) -> (Vec3, Vec3) {
         if self.everything {
             return (*v, *momentum);
         }
         let known = &self.normals[..self.count];
         let turns = match known {
             [] => Vec3::zeros(),
-            [n] => momentum - n * n.dot(momentum),
+            [n] => {
+                let about = momentum_of(block.inertia_kg_m2, &pose.attitude, n);
+                momentum - about * (n.dot(momentum) / n.dot(&about))
+            }
             _ => *momentum,
         };
         (known.iter().map(|n| n * n.dot(v)).sum(), turns)
@@ -77,7 +85,7 @@ impl ActingAlong {
 }
 
 impl PartOfMotion {
-    /// Energy in it (J), if nothing else turns the block.
+    /// Energy in it (J).
     pub(super) fn energy_j(&self) -> f64 {
         0.5 * self.slope_j
     }
@@ -101,12 +109,10 @@ impl PartOfMotion {
 impl Moving {
     /// The part of its motion along which contacts act.
     pub(super) fn part(&self, block: &Block, along: &ActingAlong) -> PartOfMotion {
-        let (v, momentum) = along.of((&self.v, &self.momentum));
+        let (v, momentum) = along.of(block, self);
         let w = self.mass(block).inverse * momentum;
-        let linear_j = block.mass_kg * v.norm_squared();
-        let (slope_j, curvature_j) =
-            (linear_j + self.momentum.dot(&w), linear_j + momentum.dot(&w));
-        PartOfMotion { v, momentum, slope_j, curvature_j }
+        let twice_j = block.mass_kg * v.norm_squared() + momentum.dot(&w);
+        PartOfMotion { v, momentum, slope_j: twice_j, curvature_j: twice_j }
     }
 
     /// Takes energy (J) from a part of its motion; gives it where it is negative.

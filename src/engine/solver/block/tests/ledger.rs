@@ -4,6 +4,7 @@ use super::cases::peak;
 use super::springs::{SCHEMES, on_springs};
 use super::*;
 use crate::solver::Scheme;
+use crate::solver::block::energy::ActingAlong;
 
 /// A slope of 1 : 2 of cells of a metre, with heights off by up to 0.17 m.
 fn uneven() -> Terrain {
@@ -94,5 +95,37 @@ fn what_the_motion_pays_for_is_booked() {
         assert!((held_j / whole_j - 1.0).abs() < 1e-3, "{scheme:?}: {held_j:e} of {whole_j} J");
         let off_j = lost_j - booked_j;
         assert!(off_j.abs() < 1e-3 * whole_j, "{scheme:?}: {lost_j:e} {booked_j:e} J");
+    }
+}
+
+/// Boxes that spin on a plane about an axis near its normal, and touch it with any corner, `k` of them.
+fn tops(k: u8) -> impl Iterator<Item = (Rotation3<f64>, Vec3)> {
+    (0..k).map(|k| {
+        let x = f64::from(k);
+        let attitude = turn(&Vec3::x_axis(), 0.9 * x + 0.4) * turn(&Vec3::y_axis(), 0.5 + 0.3 * x);
+        (attitude, Vec3::new(4.0 * sin(3.0 * x), 4.0 * cos(5.0 * x), 20.0))
+    })
+}
+
+/// A contact without friction cannot change the angular momentum `L` about its normal. Of the energy of turning that leaves `L²/(2 n·I n)`, that of
+/// the spin `n L/(n·I n)`; what it can change is the rest, which is never below 0, and all of it can be paid with.
+#[test]
+fn what_a_contact_acts_along_has_an_energy_of_its_own() {
+    let made =
+        BlockRun::new(slope(0.0, 10.0), block(&box_surface([1.0, 0.8, 0.4]), 0.05), (0.0, 0.0));
+    let mut along = ActingAlong::default();
+    along.take_in(&Vec3::z(), false);
+    for (attitude, w) in tops(40) {
+        let mut moving = made.start(attitude, [Vec3::zeros(), Vec3::new(3.0, 0.0, -0.1), w]);
+        let (motion_j, about) = (moving.motion_j(&made.block), moving.momentum.z);
+        let inertia = moving.mass(&made.block).inverse.try_inverse().unwrap()[(2, 2)];
+        let across_j = 0.5 * (made.block.mass_kg * 9.0 + about * about / inertia);
+        let part = moving.part(&made.block, &along);
+        let off_j = part.energy_j() + across_j - motion_j;
+        assert!(part.energy_j() >= 0.0 && off_j.abs() < 1e-12 * motion_j, "{part:?} {off_j:e}");
+        moving.pay(&part, part.most_j());
+        let left_j = moving.motion_j(&made.block) - across_j;
+        assert!(left_j.abs() < 1e-12 * motion_j, "{left_j:e} of {motion_j}");
+        assert!((moving.momentum.z - about).abs() < 1e-12 * about.abs() && moving.v.x == 3.0);
     }
 }
