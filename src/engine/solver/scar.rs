@@ -244,7 +244,7 @@ mod tests {
             let mut ahead = 1.0;
             let parts: f64 = (0..7).map(|_| scars.plough(&body, (0.1, None), None)).product();
             scars.pace = Pace::default();
-            for way_m in [0.1, 0.2, 0.02, 0.08, 0.3, 0.0, 0.0] {
+            for way_m in [0.1, 0.2, 0.02, 0.08, 0.1, 0.2] {
                 ahead *= scars.plough_ahead();
                 ahead *= scars.plough(&body, (way_m, None), None);
             }
