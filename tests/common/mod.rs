@@ -12,11 +12,12 @@ pub mod together;
 pub mod zoo;
 
 use rockfall::ground::Ground;
-use rockfall::plan::RestRule;
+use rockfall::plan::{Plan, RestRule};
 use rockfall::random::{Purpose, stream};
 use rockfall::release::Release;
 use rockfall::rock::{Motion, Rock, Vec3};
-use rockfall::simulation::{Keep, RunSettings, Scratch, Trajectory, simulate};
+use rockfall::scene::Scene;
+use rockfall::simulation::{Keep, RunSettings, Scratch, Trajectory, simulate, simulate_release};
 use rockfall::solver::{Scheme, Settings};
 use rockfall::terrain::stl::{Facet, Soup};
 use rockfall::terrain::weld::{Piece, Up, weld};
@@ -25,6 +26,21 @@ use std::path::Path;
 
 /// Gravity of the exact cases (m/s²), as in the paper's Table 1.
 pub const G: f64 = 9.8;
+
+/// The plan of a scene with this text whose meshes lie in a directory.
+pub fn plan_in(dir: &Path, text: &str) -> Plan {
+    let scene = Scene::parse(text, &dir.join("scene.toml")).unwrap();
+    let (terrain, _) = scene.read_terrain().unwrap();
+    Plan::compile(&scene, terrain).unwrap()
+}
+
+/// All releases of a plan.
+pub fn falls(plan: &Plan) -> Vec<Trajectory> {
+    let mut scratch = Scratch::default();
+    (0..plan.count)
+        .map(|index| simulate_release(plan, index, None, &mut scratch).unwrap())
+        .collect()
+}
 
 /// A terrain of one sheet, without recentring noise: the facets' own coordinates are local when their box is
 /// centred on whole metres.

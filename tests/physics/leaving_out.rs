@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot read its scene has failed")]
 
 use crate::common;
+use common::falls;
 use common::zoo::{KINDS, between, dice, point, zoo};
 use rockfall::contact::neighbours::{Neighbours, PressedPath};
 use rockfall::contact::{ContactPoint, ContactPoints};
@@ -9,7 +10,7 @@ use rockfall::flight::{FlightEnd, Parabola, time_of_impact};
 use rockfall::plan::Plan;
 use rockfall::rock::Vec3;
 use rockfall::scene::Scene;
-use rockfall::simulation::{Effort, Scratch, Trajectory, simulate_release};
+use rockfall::simulation::{Effort, Trajectory};
 use rockfall::terrain::Terrain;
 use std::path::Path;
 
@@ -20,13 +21,6 @@ fn plan(scene: &str) -> Plan {
     scene.record.impacts = Some(false);
     let (terrain, _) = scene.read_terrain().unwrap();
     Plan::compile(&scene, terrain).unwrap()
-}
-
-fn falls(plan: &Plan) -> Vec<Trajectory> {
-    let mut scratch = Scratch::default();
-    (0..plan.count)
-        .map(|index| simulate_release(plan, index, None, &mut scratch).unwrap())
-        .collect()
 }
 
 #[test]

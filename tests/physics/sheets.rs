@@ -6,10 +6,7 @@ use crate::patch::{kept, pressed};
 use common::*;
 use rockfall::contact::neighbours::Neighbours;
 use rockfall::ground::Ground;
-use rockfall::plan::Plan;
 use rockfall::rock::{Rock, Vec3};
-use rockfall::scene::Scene;
-use rockfall::simulation::{Scratch, simulate_release};
 use rockfall::solver::Scheme;
 use rockfall::terrain::Terrain;
 use rockfall::terrain::stl::{Facet, write_binary};
@@ -197,12 +194,9 @@ fn blocks_lie_on_the_upper_of_two_sheets() {
                  height_m = 0.5\nvelocity_m_s = [0.0, 0.0, -3.0]\nspin_rad_s = [1.0, 0.0, 0.0]\npoints_m = [[0.0, 0.0]]\n\
                  [solver]\nscheme = \"{scheme}\"\nlongest_s = 6.0\n"
             );
-            let scene = Scene::parse(&text, &dir.path().join("scene.toml")).unwrap();
-            let (terrain, _) = scene.read_terrain().unwrap();
-            let plan = Plan::compile(&scene, terrain).unwrap();
-            let mut scratch = Scratch::default();
-            for index in 0..8 {
-                let fall = simulate_release(&plan, index, None, &mut scratch).unwrap();
+            let plan = plan_in(dir.path(), &text);
+            for fall in falls(&plan) {
+                let index = fall.index;
                 let height_m = fall.end.position_m.z + plan.terrain.origin_m.z - over_m;
                 // half of the smallest side is 0.182 m
                 assert!(height_m > 0.1815, "{scheme} {rolling} {over_m} {index}: {height_m}");

@@ -1,10 +1,9 @@
 //! What stems have taken so far counts in every scheme, also where a rock comes and goes within one step.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use rockfall::plan::Plan;
+use crate::common;
 use rockfall::rock::Vec3;
-use rockfall::scene::Scene;
-use rockfall::simulation::{Scratch, Trajectory, simulate_release};
+use rockfall::simulation::Trajectory;
 use rockfall::terrain::make::{Stem, stem};
 use rockfall::terrain::stl::{Facet, write_binary};
 use std::f64::consts::PI;
@@ -27,13 +26,7 @@ fn falls(trees: &[Facet], trunk: &str, more: &str) -> Vec<Trajectory> {
          friction_angle_deg = 30.0\nrestitution = 0.4\n[grounds.trunk]\nnormal_stiffness_n_m = 1e10\n\
          shear_stiffness_n_m = 0.25e10\n{trunk}\n[rocks]\ndensity_kg_m3 = 2700.0\nradius_m = 0.4\n{more}"
     );
-    let scene = Scene::parse(&text, &dir.path().join("scene.toml")).unwrap();
-    let (terrain, _) = scene.read_terrain().unwrap();
-    let plan = Plan::compile(&scene, terrain).unwrap();
-    let mut scratch = Scratch::default();
-    (0..scene.release.count)
-        .map(|k| simulate_release(&plan, k, None, &mut scratch).unwrap())
-        .collect()
+    common::falls(&common::plan_in(dir.path(), &text))
 }
 
 /// `m v²/2` at 10 m/s (J).

@@ -14,11 +14,21 @@ fn plan_of(text: &str) -> Plan {
     Plan::compile(&scene, terrain).unwrap()
 }
 
-fn quick(more: &str) -> Plan {
+/// The quick example up to a section, and what follows instead.
+fn quick_until(section: &str, more: &str) -> Plan {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/quick.toml");
     let text = std::fs::read_to_string(file).unwrap();
-    let (physics, _) = text.split_once("[[lines]]").unwrap();
-    plan_of(&format!("{physics}\n{more}"))
+    let (before, _) = text.split_once(section).unwrap();
+    plan_of(&format!("{before}\n{more}"))
+}
+
+fn quick(more: &str) -> Plan {
+    quick_until("[[lines]]", more)
+}
+
+/// Its slope and rocks, with a release of its own.
+fn thrown(release: &str) -> Plan {
+    quick_until("[release]", release)
 }
 
 fn falls(plan: &Plan, count: usize) -> Vec<Trajectory> {
@@ -48,10 +58,6 @@ points_m = [[0.0, 0.5], [40.0, 0.5]]
 /// corner is met once.
 #[test]
 fn a_corner_is_crossed_once() {
-    let text =
-        std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/quick.toml"))
-            .unwrap();
-    let (physics, _) = text.split_once("[release]").unwrap();
     let point = |k: u32| format!("[18.3, {}, 30.0]", 45.0 + 0.0137 * f64::from(k));
     let points: Vec<String> = (0..60).map(point).collect();
     let line = |k: u32| {
@@ -60,8 +66,8 @@ fn a_corner_is_crossed_once() {
         format!("[[lines]]\nname = \"{k}\"\npoints_m = {corners}\n")
     };
     let lines: String = (0..20).map(line).collect();
-    let plan = plan_of(&format!(
-        "{physics}\n[release]\ncount = 60\nvelocity_m_s = [0.0, 12.0, 3.0]\nspin_rad_s = [0.0, 0.0, 0.0]\n\
+    let plan = thrown(&format!(
+        "[release]\ncount = 60\nvelocity_m_s = [0.0, 12.0, 3.0]\nspin_rad_s = [0.0, 0.0, 0.0]\n\
          points_m = [{}]\n{lines}",
         points.join(",")
     ));
@@ -78,14 +84,10 @@ fn a_corner_is_crossed_once() {
 /// away is passed after 0.8 s, 0.5 · 9.81 · 0.8² lower, at `v_z` = −7.848 m/s, 8 m along.
 #[test]
 fn a_flight_crosses_where_the_parabola_says() {
-    let text =
-        std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/quick.toml"))
-            .unwrap();
-    let (physics, _) = text.split_once("[release]").unwrap();
-    let plan = plan_of(&format!(
-        "{physics}\n[release]\ncount = 1\nvelocity_m_s = [0.0, 10.0, 0.0]\nspin_rad_s = [0.0, 3.0, 0.0]\n\
-         points_m = [[18.0, 45.0, 30.0]]\n[[lines]]\nname = \"l\"\npoints_m = [[10.0, 53.0], [30.0, 53.0]]\n"
-    ));
+    let plan = thrown(
+        "[release]\ncount = 1\nvelocity_m_s = [0.0, 10.0, 0.0]\nspin_rad_s = [0.0, 3.0, 0.0]\n\
+         points_m = [[18.0, 45.0, 30.0]]\n[[lines]]\nname = \"l\"\npoints_m = [[10.0, 53.0], [30.0, 53.0]]\n",
+    );
     let fall = &falls(&plan, 1)[0];
     let crossing = fall.crossings[0];
     let origin = plan.terrain.origin_m;
@@ -181,14 +183,10 @@ fn watching_changes_no_rock() {
 /// known to have crossed again.
 #[test]
 fn a_rock_that_comes_back_crosses_twice_and_counts_once() {
-    let text =
-        std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/quick.toml"))
-            .unwrap();
-    let (physics, _) = text.split_once("[release]").unwrap();
-    let plan = plan_of(&format!(
-        "{physics}\n[release]\ncount = 1\nvelocity_m_s = [0.0, -8.0, 6.0]\nspin_rad_s = [0.0, 0.0, 0.0]\n\
-         points_m = [[18.0, 45.0, 6.0]]\n[[lines]]\nname = \"l\"\npoints_m = [[0.0, 40.0], [40.0, 40.0]]\n"
-    ));
+    let plan = thrown(
+        "[release]\ncount = 1\nvelocity_m_s = [0.0, -8.0, 6.0]\nspin_rad_s = [0.0, 0.0, 0.0]\n\
+         points_m = [[18.0, 45.0, 6.0]]\n[[lines]]\nname = \"l\"\npoints_m = [[0.0, 40.0], [40.0, 40.0]]\n",
+    );
     let fall = &falls(&plan, 1)[0];
     let crossing = fall.crossings[0];
     assert_eq!((fall.crossings.len(), crossing.times), (1, 2), "{:?}", fall.end);

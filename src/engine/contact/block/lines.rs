@@ -16,10 +16,16 @@ pub(super) fn crossing((p, e): (Vec3, Vec3), (a, f): (Vec3, Vec3)) -> Option<(f6
     Some(((ef * fw - ew) / across, (ee * fw - ef * ew) / across))
 }
 
-/// The point of a line between two ends that is nearest to `p`.
-pub(super) fn foot_between([a, b]: [Vec3; 2], p: &Vec3) -> Vec3 {
+/// The point of a line between two ends that is nearest to `p`, and whether that is an end of it.
+pub(super) fn foot_or_end([a, b]: [Vec3; 2], p: &Vec3) -> (Vec3, bool) {
     let way = b - a;
-    a + way * ((p - a).dot(&way) / way.norm_squared()).clamp(0.0, 1.0)
+    let s = (p - a).dot(&way) / way.norm_squared();
+    (a + way * s.clamp(0.0, 1.0), s <= 0.0 || s >= 1.0)
+}
+
+/// The point of a line between two ends that is nearest to `p`.
+pub(super) fn foot_between(ends: [Vec3; 2], p: &Vec3) -> Vec3 {
+    foot_or_end(ends, p).0
 }
 
 /// Where two lines that do not cross between their ends are nearest: a point on each, one of which is an end.

@@ -1,6 +1,6 @@
 //! Pairs of an edge or a face of the block with an edge or a vertex of the mesh.
 
-use super::lines::{crossing, nearest_at_ends};
+use super::lines::{crossing, foot_or_end, nearest_at_ends};
 use super::{BlockTouch, DIRECTION_SLACK, Placed};
 use crate::body::Ridge;
 use crate::contact::neighbours::{Neighbours, Peak, SharpEdge};
@@ -88,7 +88,8 @@ impl Placed<'_> {
             if self.holds(part, peak.feature) != is_held {
                 continue;
             }
-            let (p, is_beside) = self.foot_on(ridge, &peak.p);
+            let ends = ridge.ends.map(|k| self.corners[usize::from(k)]);
+            let (p, is_beside) = foot_or_end(ends, &peak.p);
             let distance = (p - peak.p).norm();
             let is_apart = distance > DIRECTION_SLACK * self.block.ball_m && distance < reach;
             if is_beside && !is_held || !is_apart {
@@ -109,13 +110,6 @@ impl Placed<'_> {
         if !peak.is_straight(DIRECTION_SLACK) {
             self.faces_on(on, peak, (reach, is_held), found);
         }
-    }
-
-    /// The point of an edge of the block that is nearest to `p`, and whether that is an end of it.
-    fn foot_on(&self, ridge: &Ridge, p: &Vec3) -> (Vec3, bool) {
-        let [a, b] = ridge.ends.map(|k| self.corners[usize::from(k)]);
-        let s = (p - a).dot(&(b - a)) / (b - a).norm_squared();
-        (a + (b - a) * s.clamp(0.0, 1.0), s <= 0.0 || s >= 1.0)
     }
 
     /// The block's faces over a vertex of the mesh: those held, or all others.

@@ -254,43 +254,39 @@ fn slid_along(scheme: Scheme, crests: Terrain, (friction, lasts_s): (f64, f64)) 
     ((level - moving.pose.centre.z) / pressed_m, moving.v.x)
 }
 
+/// With springs of every scheme such a box is as deep as its weight presses it in, and has the speed (m/s) that `is_right` says.
+fn slides_as_deep_as_at_rest(
+    (cell_m, cells): (f64, std::ops::Range<i32>),
+    slide: (f64, f64),
+    is_right: impl Fn(f64) -> bool,
+) {
+    for scheme in every_scheme().into_iter().filter(|scheme| scheme.has_springs()) {
+        let (deep, fast) = slid_along(scheme, crests(cell_m, cells.clone()), slide);
+        println!("{scheme:?}: {deep} of the depth at rest, {fast} m/s");
+        assert!((deep - 1.0).abs() < 0.02 && is_right(fast), "{scheme:?}: {deep} {fast}");
+    }
+}
+
 /// A box slides along two divided crests as deep as its weight presses it in: edges of the box go on from one edge of the mesh to the next with
 /// the spring that they have. It sank by that depth at each joint, 0.4 mm (30 times) in 3 m, and was faster for it.
 #[test]
 fn a_block_slides_along_divided_crests_without_sinking() {
-    for scheme in every_scheme().into_iter().filter(|scheme| scheme.has_springs()) {
-        let (deep, fast) = slid_along(scheme, crests(0.1, -10..50), (0.0, 1.5));
-        println!("{scheme:?}: {deep} of the depth at rest, {fast} m/s");
-        assert!(
-            (deep - 1.0).abs() < 0.02 && (fast - 2.0).abs() < 1e-6,
-            "{scheme:?}: {deep} {fast}"
-        );
-    }
+    slides_as_deep_as_at_rest((0.1, -10..50), (0.0, 1.5), |fast| (fast - 2.0).abs() < 1e-6);
 }
 
 /// Friction tips the box forward by a hair, and the crests are then nearest to its front edge alone: its rear edge presses all the same, and hands its
 /// spring on at each joint. It was let go there, and the rear sank until it lay flat again: 5.7 times the depth at rest where the box has stopped.
 #[test]
 fn a_block_that_friction_slows_does_not_sink_into_divided_crests() {
-    for scheme in every_scheme().into_iter().filter(|scheme| scheme.has_springs()) {
-        let (deep, fast) = slid_along(scheme, crests(0.1, -10..50), (0.3, 0.6));
-        println!("{scheme:?}: {deep} of the depth at rest, {fast} m/s");
-        assert!(
-            (deep - 1.0).abs() < 0.02 && (fast - (2.0 - 0.3 * G * 0.6)).abs() < 1e-4,
-            "{scheme:?}: {deep} {fast}"
-        );
-    }
+    let slowed = |fast: f64| (fast - (2.0 - 0.3 * G * 0.6)).abs() < 1e-4;
+    slides_as_deep_as_at_rest((0.1, -10..50), (0.3, 0.6), slowed);
 }
 
 /// Where the crests begin under the box, its face lies on their ends until its rear edge comes to them, and then that edge on the crests: 1.57 times
 /// the depth at rest was left of that.
 #[test]
 fn a_face_hands_its_springs_on_to_its_edge() {
-    for scheme in every_scheme().into_iter().filter(|scheme| scheme.has_springs()) {
-        let (deep, _) = slid_along(scheme, crests(12.0, 0..1), (0.3, 0.6));
-        println!("{scheme:?}: {deep} of the depth at rest");
-        assert!((deep - 1.0).abs() < 0.02, "{scheme:?}: {deep}");
-    }
+    slides_as_deep_as_at_rest((12.0, 0..1), (0.3, 0.6), |_| true);
 }
 
 /// A block that has come to rest, or slides, takes long steps: what it may climb with is nothing, and not a rounding of its energy, which made
