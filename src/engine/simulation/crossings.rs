@@ -6,6 +6,7 @@ use crate::plan::{EvaluationLine, Footprint, LinePiece};
 use crate::rock::{Motion, Vec3};
 use crate::scene::Corner;
 use crate::terrain::Terrain;
+use arrayvec::ArrayVec;
 
 /// A rock's first crossing of a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,6 +48,8 @@ pub(super) struct Crossings<'a> {
     form: Form<'a>,
     lines: &'a [EvaluationLine],
     found: Vec<Crossing>,
+    /// Work space for where a way meets one line.
+    met: Vec<LineMeeting>,
     /// South-western and north-eastern corner of a box in plan view in which nothing can be met: most steps are short and
     /// far from all lines. None where nothing is known of it.
     clear: Option<[Corner; 2]>,
@@ -57,7 +60,7 @@ const KEPT: f64 = 0.999;
 
 impl<'a> Crossings<'a> {
     pub(super) fn of(terrain: &'a Terrain, form: Form<'a>, lines: &'a [EvaluationLine]) -> Self {
-        Self { terrain, form, lines, found: Vec::new(), clear: None }
+        Self { terrain, form, lines, found: Vec::new(), met: Vec::new(), clear: None }
     }
 
     /// So far.
@@ -126,7 +129,7 @@ impl<'a> Crossings<'a> {
     fn pass(
         &mut self,
         hull: [Corner; 4],
-        when: impl Fn(&LinePiece) -> Vec<f64>,
+        when: impl Fn(&LinePiece) -> WayShares,
         at: impl Fn(f64) -> RockInstant,
     ) {
         // box of the way in plan view: most steps end here, without a look at any line
@@ -156,9 +159,9 @@ impl<'a> Crossings<'a> {
             if !evaluation_line.is_near(low, high) {
                 continue;
             }
-            let met = meetings(evaluation_line, &when, |s| flat(&at(s).motion.position_m));
-            if let Some(first) = met.first() {
-                self.note(line, (at(first.s), first.along_m), met.len() as u32);
+            meetings(evaluation_line, &when, |s| flat(&at(s).motion.position_m), &mut self.met);
+            if let Some(&LineMeeting { s, along_m, .. }) = self.met.first() {
+                self.note(line, (at(s), along_m), self.met.len() as u32);
             }
         }
         self.clear = self.clear_around([low, high]);
@@ -230,7 +233,11 @@ fn up(normal: Vec3) -> Vec3 {
 /// rock pass between them.
 const CORNER_M: f64 = 1e-9;
 
+/// Shares of a way (–), rising: a cubic meets a straight line three times at most.
+type WayShares = ArrayVec<f64, 3>;
+
 /// Where a way meets a piece of a line.
+#[derive(Debug)]
 struct LineMeeting {
     /// Share of the way (–).
     s: f64,
@@ -265,20 +272,22 @@ impl LineMeeting {
     }
 }
 
-/// Where a way meets a line, in the order of the way: a line may be met several times, at a corner once.
+/// Writes over `met` where a way meets a line, in the order of the way: a line may be met several times, at a corner once.
 fn meetings(
     line: &EvaluationLine,
-    when: impl Fn(&LinePiece) -> Vec<f64>,
+    when: impl Fn(&LinePiece) -> WayShares,
     at_m: impl Fn(f64) -> Corner,
-) -> Vec<LineMeeting> {
-    let at_m = &at_m;
-    let of_piece = |piece: &LinePiece| -> Vec<LineMeeting> {
-        when(piece).into_iter().filter_map(|s| LineMeeting::of(piece, s, at_m(s))).collect()
-    };
-    let mut met: Vec<LineMeeting> = line.pieces.iter().flat_map(of_piece).collect();
-    met.sort_by(|one, other| one.s.total_cmp(&other.s));
+    met: &mut Vec<LineMeeting>,
+) {
+    met.clear();
+    for piece in &line.pieces {
+        met.extend(when(piece).into_iter().filter_map(|s| LineMeeting::of(piece, s, at_m(s))));
+    }
+    // at one share of the way, in the order of the line
+    met.sort_unstable_by(|one, other| {
+        one.s.total_cmp(&other.s).then(one.along_m.total_cmp(&other.along_m))
+    });
     met.dedup_by(|next, kept| next.is_at_corner_of(kept));
-    met
 }
 
 /// Nearer than this (m) touches: a hit is found to 1e-5 m of way, and a rim that comes no deeper over an object than 1e-9 m may be missed.
@@ -325,10 +334,10 @@ const HALVINGS: u32 = 60;
 ///
 /// The curve stays within the hull of its ordinates, so one look at their signs tells most steps; between its extremes
 /// (a quadratic) it is monotone, and halving finds the place to the last bit.
-fn roots(ordinates: [f64; 4]) -> Vec<f64> {
+fn roots(ordinates: [f64; 4]) -> WayShares {
     let [b0, b1, b2, b3] = ordinates;
     if ordinates.iter().all(|b| *b > 0.0) || ordinates.iter().all(|b| *b <= 0.0) {
-        return Vec::new();
+        return WayShares::new();
     }
     // Bernstein form: Σ C(3, k) s^k (1 − s)^(3 − k) b_k
     let value = |s: f64| {
@@ -341,7 +350,8 @@ fn roots(ordinates: [f64; 4]) -> Vec<f64> {
     let (a, b, c) = (c0 - 2.0 * c1 + c2, c1 - c0, c0);
     let root = (b * b - a * c).sqrt();
     let q = -(b + root.copysign(b));
-    let mut ends: Vec<f64> = [q / a, c / q].into_iter().filter(|s| *s > 0.0 && *s < 1.0).collect();
+    let mut ends: ArrayVec<f64, 4> =
+        [q / a, c / q].into_iter().filter(|s| *s > 0.0 && *s < 1.0).collect();
     ends.extend([0.0, 1.0]);
     ends.sort_by(f64::total_cmp);
     // the ends of the step are taken as they are, so that the next step sees the same side
