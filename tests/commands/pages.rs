@@ -185,3 +185,43 @@ fn sources_and_first_warnings_are_said_in_every_language() {
         }
     }
 }
+
+fn plan_of(path: &Path, text: &str) -> Plan {
+    Plan::of_scene(&Scene::parse(text, path).unwrap()).unwrap()
+}
+
+/// Whatever looks like another unit is said in every language.
+#[test]
+fn slips_of_units_are_said_in_every_language() {
+    let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
+    // stiff enough for what is too large
+    let quick = fs::read_to_string(examples.join("quick.toml")).unwrap().replace("e8", "e12");
+    let spruce = "restitution = 0.2\nbreaks_above_j = 50.0\n";
+    let slip = "friction_angle_deg = 32.0\nslip_friction = { max = 0.2, kappa_per_m = 0.7, beta_per_s = 20.0 }\n";
+    let weak = "\n[[barriers]]\nname = \"net\"\npoints_m = [[2.0, 40.0], [38.0, 40.0]]\nheight_m = 3.0\ncapacity_j = 100.0\n";
+    for (written, slipped, hint) in [
+        ("density_kg_m3 = 2700.0", "density_kg_m3 = 2.7", "t/m³"),
+        ("density_kg_m3 = 2700.0", "density_kg_m3 = 27000.0", "rock has about"),
+        ("friction_angle_deg = 32.0", "friction_angle_deg = 0.56", "radians"),
+        ("friction_angle_deg = 32.0\n", slip, "slip_friction.max"),
+        ("restitution = 0.2\n", spruce, "breaks_above_j"),
+        ("seed = 1\n", "seed = 1\nepsg = 99999\n", "no code of EPSG"),
+        ("seed = 1\n", "seed = 1\nepsg = 4326\n", "geographic"),
+        ("seed = 1\n", "seed = 1\nepsg = 3857\n", "Web Mercator"),
+        ("max = 0.8 }", "max = 80.0 }", "in cm or mm"),
+        ("\n[maps]", &format!("{weak}\n[maps]"), "capacity_j"),
+    ] {
+        assert!(quick.contains(written), "{written}");
+        let plan = plan_of(&examples.join("slips.toml"), &quick.replacen(written, slipped, 1));
+        assert!(
+            plan.warnings.iter().any(|said| said.contains(hint)),
+            "{hint}: {:?}",
+            plan.warnings
+        );
+        for language in [Language::De, Language::Fr, Language::It] {
+            let unknown =
+                plan.warnings.iter().find(|said| Words::of(language).knows(said).is_none());
+            assert_eq!(unknown, None, "{language:?}");
+        }
+    }
+}

@@ -3,6 +3,7 @@
 mod patterns;
 mod plan;
 mod samples;
+mod slips;
 
 use super::{Words, glossary};
 
@@ -390,6 +391,6 @@ pub(super) static WORDS: Words = Words {
     ],
     glossary: glossary::IT,
     // What the program records in English, and its words here
-    said: &[plan::PLAN, patterns::RECORDED, samples::SAMPLES],
+    said: &[plan::PLAN, patterns::RECORDED, samples::SAMPLES, slips::SLIPS],
     view: patterns::VIEW,
 };

@@ -1,0 +1,49 @@
+//! What is said of numbers that look like another unit in English, in German.
+
+/// By patterns, as for the plan.
+pub(super) const SLIPS: &[(&str, &str)] = &[
+    (
+        "[rocks] radius_m reaches {r}: larger than any single rock; is it in cm or mm? write metres",
+        "[rocks] radius_m reicht bis {r}: größer als jeder einzelne Block; in cm oder mm? Meter schreiben",
+    ),
+    (
+        "[grounds.{name}] friction_angle_deg = {a} is next to no friction; is it in radians? that would be {b}",
+        "[grounds.{name}] friction_angle_deg = {a} ist so gut wie keine Reibung; im Bogenmaß? das wäre {b}",
+    ),
+    (
+        "[grounds.{name}] slip_friction.max = {a} is below the friction coefficient {b} of friction_angle_deg = {c}: friction falls with the way slipped; write {d} or more",
+        "[grounds.{name}] slip_friction.max = {a} liegt unter dem Reibungsbeiwert {b} von friction_angle_deg = {c}: die Reibung fällt mit dem Gleitweg; {d} oder mehr schreiben",
+    ),
+    (
+        "[[barriers]] \"{name}\" capacity_j = {a} takes next to nothing; is it in kJ? write {b}",
+        "[[barriers]] \"{name}\" capacity_j = {a} nimmt so gut wie nichts auf; in kJ? {b} schreiben",
+    ),
+    (
+        "[frequency] energies_j holds {a}: a thrown pebble has as much; is it in kJ? write {b}",
+        "[frequency] energies_j enthält {a}: so viel hat ein geworfener Kiesel; in kJ? {b} schreiben",
+    ),
+    (
+        "[grounds.{name}] breaks_above_j = {a} breaks every stem at a touch; is it in kJ? write {b}",
+        "[grounds.{name}] breaks_above_j = {a} bricht jeden Stamm bei der ersten Berührung; in kJ? {b} schreiben",
+    ),
+    (
+        "[rocks] density_kg_m3 = {a}: rock has about 2700; is it in t/m³? write {b}",
+        "[rocks] density_kg_m3 = {a}: Gestein hat etwa 2700; in t/m³? {b} schreiben",
+    ),
+    (
+        "[rocks] density_kg_m3 = {a}: rock has about 2700",
+        "[rocks] density_kg_m3 = {a}: Gestein hat etwa 2700",
+    ),
+    (
+        "epsg = {a} is no code of EPSG ({b} to {c}): rasters are written without a system",
+        "epsg = {a} ist kein Code von EPSG ({b} bis {c}): Raster werden ohne Bezugssystem geschrieben",
+    ),
+    (
+        "epsg = {a} (Web Mercator) stretches lengths by 1/cos(latitude), 1.46 at 46.8°, and leaves heights: slopes are too gentle; bring the data into the projected system of the country, as 2056 (LV95)",
+        "epsg = {a} (Web Mercator) streckt Längen um 1/cos(Breite), 1.46 bei 46.8°, und lässt Höhen, wie sie sind: Hänge sind zu flach; die Daten in das projizierte System des Landes bringen, etwa 2056 (LV95)",
+    ),
+    (
+        "epsg = {a} is a geographic system in degrees; coordinates are metres here: name the projected system of the meshes, as 2056 (LV95)",
+        "epsg = {a} ist ein geographisches System in Grad; Koordinaten sind hier Meter: das projizierte System der Netze nennen, etwa 2056 (LV95)",
+    ),
+];
