@@ -209,7 +209,10 @@ impl Scene {
             let radius_m = Distribution::listed(radii_m).map_err(refuse)?;
             self.rocks.radius_m = Some(radius_m);
             let wrong = |wrong: Complaint| {
-                let found = wrong.found.unwrap_or_else(|| "found another".to_owned());
+                let (least_m, most_m) =
+                    self.rocks.radius_m.as_ref().map_or((0.0, 0.0), Distribution::support);
+                let radii = || format!("found blocks with a radius of {least_m:?} to {most_m:?} m");
+                let found = wrong.found.unwrap_or_else(radii);
                 Error::input(table, "radius_m or mass_kg", found, wrong.remedy)
             };
             self.rocks.check().map_err(wrong)?;

@@ -10,6 +10,7 @@ use super::row::{Row, StopKind};
 use super::sample::Sample;
 use crate::error::{Error, Result};
 use crate::file::{self, LONGEST_TEXT};
+use crate::gis::FARTHEST_M;
 use crate::math;
 use crate::scene::MeasuredEnds;
 use serde::{Deserialize, Serialize};
@@ -95,31 +96,43 @@ impl ObservedPath {
     /// A file that cannot be read, a row without these numbers, or an end nearer to its release than any computed one may be.
     pub fn read(ends: &MeasuredEnds) -> Result<Vec<Self>> {
         let path = ends.file.as_path();
-        let wrong = |why: csv::Error| {
-            let line = why.position().map_or(1, csv::Position::line);
-            let remedy = "write numbers in the columns release_x_m, release_y_m, x_m, y_m";
-            Error::input(path, format!("line {line}"), why.to_string(), remedy)
-        };
         let file = file::read_table(path, LONGEST_TEXT)?;
         let mut reader = csv::Reader::from_reader(file);
-        let way = |row: Measured| Self {
-            start_m: [row.release_x_m, row.release_y_m],
-            end_m: [row.x_m, row.y_m],
+        let headers = reader.headers().cloned().unwrap_or_default();
+        let way = |row: csv::Result<csv::StringRecord>| {
+            let row = row.map_err(|why| (line_of(why.position()), why.to_string()))?;
+            let line = line_of(row.position());
+            let measured = row.deserialize(Some(&headers)).map_err(|why| (line, why.to_string()));
+            let way = measured.map(|row: Measured| Self {
+                start_m: [row.release_x_m, row.release_y_m],
+                end_m: [row.x_m, row.y_m],
+            })?;
+            // a number that is none, or no place, would go into every mean
+            let far = way.start_m.iter().chain(&way.end_m).find(|m| !(m.abs() < FARTHEST_M));
+            far.map_or(Ok((line, way)), |m| Err((line, format!("found {m:?}"))))
         };
-        let ways: Result<Vec<Self>> =
-            reader.deserialize().map(|row| row.map(way).map_err(wrong)).collect();
-        let ways = ways?;
+        let ways: std::result::Result<Vec<(u64, Self)>, (u64, String)> =
+            reader.records().map(way).collect();
+        let ways = ways.map_err(|(line, found)| {
+            let remedy = "write numbers in the columns release_x_m, release_y_m, x_m, y_m, map coordinates within 1e8 m";
+            Error::input(path, format!("line {line}"), found, remedy)
+        })?;
         if ways.len() < 2 {
             let found = format!("found {} measured ends", ways.len());
             return Err(Error::input(path, "rows", found, "write at least two"));
         }
-        if let Some(at) = ways.iter().position(|way| !way.ran(ends.least_runout_m)) {
-            let found = format!("found an end {:.2} m from its release", ways[at].runout_m());
+        if let Some((line, way)) = ways.iter().find(|(_, way)| !way.ran(ends.least_runout_m)) {
+            let found = format!("found an end {:.2} m from its release", way.runout_m());
             let remedy = "write a smaller least_runout_m in [calibrate], which is for lists without such ends";
-            return Err(Error::input(path, format!("line {}", at + 2), found, remedy));
+            return Err(Error::input(path, format!("line {line}"), found, remedy));
         }
-        Ok(ways)
+        Ok(ways.into_iter().map(|(_, way)| way).collect())
     }
+}
+
+/// The line of a file, from 1.
+fn line_of(position: Option<&csv::Position>) -> u64 {
+    position.map_or(1, csv::Position::line)
 }
 
 /// The column that tells which throws are of one block.

@@ -125,7 +125,8 @@ fn every_bad_mesh_is_refused_with_its_message() {
         let promised = format!("{}/{message}", folder.display());
         assert_eq!(refusal(rockfall(&["mesh", "check", mesh.to_str().unwrap()])), promised);
         fs::write(&scene, scene_over(&mesh)).unwrap();
-        let said = rockfall(&["run", scene.to_str().unwrap(), "--out", out.to_str().unwrap()]);
+        let said =
+            rockfall(&["run", scene.to_str().unwrap(), "--out", out.to_str().unwrap(), "--quiet"]);
         let said = refusal(said);
         // that a mesh cannot be read at all is found before the meshes are looked at, and names the scene's key
         let read = said == promised || said.starts_with(scene.to_str().unwrap());
@@ -174,6 +175,39 @@ fn unreadable_files_are_refused() {
         let said = refusal(rockfall(&["mesh", "check", locked.to_str().unwrap()]));
         assert!(said.contains("locked.stl: cannot read: Permission denied"), "{said}");
         assert!(said.ends_with("take the right to use this one"), "{said}");
+    }
+}
+
+/// Numbers of a table that are none, or no place on a map, are refused with their line; a size that no block has with
+/// what it would be.
+#[test]
+fn numbers_of_tables_that_are_none_are_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    let (scene, table) = (dir.path().join("scene.toml"), dir.path().join("table.csv"));
+    let text = fs::read_to_string("tests/bad/scheme_unknown.toml").unwrap();
+    let mesh = fs::canonicalize("tests/bad/square.stl").unwrap();
+    let good = text.replace("square.stl", mesh.to_str().unwrap()).replace("adaptve", "rigid");
+    let measured = format!("{good}\n[calibrate]\ndeposits = \"table.csv\"\n");
+    let released = good.replace("points_m = [[5.0, 5.0]]", "table = \"table.csv\"");
+    let ends = "release_x_m,release_y_m,x_m,y_m\n5,5,5,9";
+    for (scene_text, rows, said) in [
+        (&measured, format!("{ends}\n5,5,nan,8\n"), "line 3: found NaN; write numbers"),
+        (&measured, format!("{ends}\n5,inf,5,8\n"), "line 3: found inf; write numbers"),
+        (&measured, format!("{ends}\n5,5,5,1e300\n"), "line 3: found 1e300; write numbers"),
+        (&measured, format!("{ends}\n5,5,5,wide\n"), "line 3: CSV deserialize error"),
+        (
+            &released,
+            "x_m,y_m,radius_m\n5,5,1e-4\n".to_owned(),
+            "radius_m or mass_kg: found blocks with a radius of 0.0001 to 0.0001 m; write a value in 0.001..1000.0",
+        ),
+    ] {
+        fs::write(&scene, scene_text).unwrap();
+        fs::write(&table, rows).unwrap();
+        let out = dir.path().join("out");
+        let answer =
+            rockfall(&["run", scene.to_str().unwrap(), "--out", out.to_str().unwrap(), "--quiet"]);
+        let heard = refusal(answer);
+        assert!(heard.starts_with(&format!("{}: {said}", table.display())), "{heard}");
     }
 }
 

@@ -28,6 +28,10 @@ pub(super) fn of(message: &str) -> Said {
     }
     if message.starts_with("unknown field") || message.starts_with("unknown variant") {
         let (word, known) = quoted.split_first().unwrap_or((&"", &[]));
+        // the parser's own name for what a date holds
+        if word.starts_with("$__toml") {
+            return Said::new("found a date or time", suggest("", known));
+        }
         return Said::new(format!("found the unknown word {word}"), suggest(word, known));
     }
     for kind in ["invalid type: ", "invalid value: ", "invalid length "] {
@@ -45,6 +49,10 @@ pub(super) fn of(message: &str) -> Said {
     }
     if message == "duplicate key" {
         return Said::new("found it a second time", "write every key and every table once");
+    }
+    if message == "wanted string or table" {
+        let remedy = "write one of the words of this key in quotes; docs/scene.md lists them";
+        return Said::new("found no text", remedy);
     }
     match message.split_once("; ") {
         Some((found, remedy)) => Said::new(found, remedy),
