@@ -266,6 +266,26 @@ fn an_oblique_impact_on_springs() {
     }
 }
 
+/// A ball that skids, rolls and is stopped by rolling friction rests a time of the rule after it has become slow, with every
+/// scheme: on a plane steps may go on for half a second and more, and rest was seen at their ends.
+#[test]
+fn rest_comes_when_it_is_due() {
+    let (mu, rolling_friction, speed_m_s) = (GROUND.friction_angle_rad.tan(), 0.2, 1.0);
+    let skids_s = speed_m_s / (G * (mu + 2.5 * (mu - rolling_friction)));
+    let rolls_s = (speed_m_s - mu * G * skids_s - 0.02) / (5.0 / 7.0 * rolling_friction * G);
+    for row in ROWS {
+        for rest_time_s in [0.3, 1.0] {
+            let ground = Ground { rolling_friction, ..stiff(1e11) };
+            let case = Case { ground, rest_time_s, ..row.case };
+            let start = [lying(&case, &row, 0.0), [speed_m_s, 0.0, 0.0], STILL];
+            let run = case.run(&planes(0.0)[1], start, 10.0);
+            let late_s = run.end.time_s - (skids_s + rolls_s + rest_time_s);
+            assert_eq!(run.stop, Stop::AtRest, "{}", row.name);
+            assert!(late_s.abs() < 0.02, "{}, {rest_time_s} s: {late_s} s late", row.name);
+        }
+    }
+}
+
 /// `rigid` is the limit of stiff springs of the same law: its rebound is that of `reference` at 1e13 N/m to 1e-4 of the impact
 /// speed, sticking and slipping, with and without rolling friction.
 #[test]

@@ -129,11 +129,13 @@ impl Roll<'_> {
             if self.meet() {
                 return None;
             }
-            let now_s = self.recorder.now.time_s;
+            let began = self.recorder.now;
+            let now_s = began.time_s;
             let left = self.settings.longest_s - now_s;
+            let calm_s = calm.longest_s(&began, block.bound_m, &self.settings.rest);
             let kept = self.scars.plough_ahead();
             self.slow(kept);
-            let most_s = left.min(self.scars.longest_s(self.moving.v.norm()));
+            let most_s = left.min(calm_s).min(self.scars.longest_s(self.moving.v.norm()));
             let from = self.moving.pose.centre;
             self.footing.press_stem(&self.world);
             let mut done = match self.step(most_s) {
@@ -166,7 +168,7 @@ impl Roll<'_> {
                 return ends;
             }
             // the largest radius: a corner must not move either
-            calm.note(done.dt, &to, block.bound_m, &self.settings.rest);
+            calm.note(done.dt, [&began, &to], block.bound_m, &self.settings.rest);
             if calm.rests() {
                 return Some(Stop::AtRest);
             }

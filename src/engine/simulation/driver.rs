@@ -257,10 +257,13 @@ impl Fall<'_> {
     fn steps(&mut self, stepper: &mut Stepper) -> Option<Stop> {
         let mut calm = RestCriterion::from(self.state.c);
         loop {
-            let now_s = self.recorder.now.time_s;
+            let from = self.recorder.now;
+            let now_s = from.time_s;
             let left = self.settings.longest_s - now_s;
-            // the shorter of the time left and of the way after which roughness, soil or slip change the law
-            let most = left.min(self.before_step());
+            let calm_s = calm.longest_s(&from, self.body.radius, &self.settings.rest);
+            // the shortest of the time left, of what tells rest, and of the way after which roughness, soil or slip change
+            // the law
+            let most = left.min(calm_s).min(self.before_step());
             let before = self.state.c;
             let world = self.settings.around(self.body, self.laws);
             let mut done = match solver::advance(stepper, &world, self.state, most) {
@@ -297,7 +300,7 @@ impl Fall<'_> {
                 return ends;
             }
             // rest: slow for long enough, and neither faster nor farther at the end than at the start
-            calm.note(done.dt, &to, self.body.radius, &self.settings.rest);
+            calm.note(done.dt, [&from, &to], self.body.radius, &self.settings.rest);
             if calm.rests() {
                 return Some(Stop::AtRest);
             }

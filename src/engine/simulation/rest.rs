@@ -13,6 +13,9 @@
 //! ```
 //!
 //! Ways are counted as vectors, so a jitter to and fro adds up to nothing.
+//!
+//! Steps over a plane may be far longer than the time of the rule. A rock that is slow therefore takes none beyond the half
+//! that it is in, and a step in which it has become slow is no part of it: rest comes when it is due, whatever the steps.
 
 use crate::plan::RestRule;
 use crate::rock::{Motion, Vec3};
@@ -23,6 +26,10 @@ const GROWTH: f64 = 0.01;
 /// Change of the mean velocity from one half of the rule's time to the next that is still rest (–, relative to the rule's
 /// speed): with the usual rule 0.013 m/s², what a ball has that rolls on 0.1° without rolling friction.
 const TURNS: f64 = 0.1;
+
+/// Shortest step that is asked for to end with a half of the rule's time (–, relative to that time): what rounding leaves
+/// of a half must not become a step of no length.
+const SHORTEST: f64 = 0.01;
 
 /// How calm one rock has been.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,17 +52,29 @@ impl RestCriterion {
         Self { from_m: position_m, turned_m, half_s: 0.0, before_m_s: None, rests: false }
     }
 
-    /// Notes a step of `dt` (s) that ended in `to`, of a rock of this radius (m).
-    pub(super) fn note(&mut self, dt: f64, to: &Motion, radius_m: f64, rule: &RestRule) {
-        // a rock that spins on the spot moves at its rim: it does not rest
-        let rim_m_s = to.spin_rad_s * radius_m;
-        // too fast: the clock starts again from here
-        if to.velocity_m_s.norm().max(rim_m_s.norm()) >= rule.speed_m_s {
+    /// The longest step (s) from `now` of a rock of this radius (m): to the end of the half that is on.
+    pub(super) fn longest_s(&self, now: &Motion, radius_m: f64, rule: &RestRule) -> f64 {
+        if !is_slow(now, radius_m, rule) {
+            return f64::INFINITY;
+        }
+        (0.5 * rule.time_s - self.half_s).max(SHORTEST * rule.time_s)
+    }
+
+    /// Notes a step of `dt` (s) between two instants, of a rock of this radius (m).
+    pub(super) fn note(
+        &mut self,
+        dt: f64,
+        [from, to]: [&Motion; 2],
+        radius_m: f64,
+        rule: &RestRule,
+    ) {
+        // too fast, or only now slow: the clock starts again from here
+        if ![from, to].iter().all(|motion| is_slow(motion, radius_m, rule)) {
             *self = Self::from(to.position_m);
             return;
         }
         self.half_s += dt;
-        self.turned_m += rim_m_s * dt;
+        self.turned_m += to.spin_rad_s * (radius_m * dt);
         // half of the rule's time is over: its mean speed is compared with that of the half before
         if self.half_s >= 0.5 * rule.time_s {
             let by_time = 1.0 / self.half_s.max(f64::MIN_POSITIVE);
@@ -76,24 +95,59 @@ impl RestCriterion {
     }
 }
 
+/// Whether a rock is slower than the rule's speed.
+fn is_slow(motion: &Motion, radius_m: f64, rule: &RestRule) -> bool {
+    // a rock that spins on the spot moves at its rim: it does not rest
+    let rim_m_s = radius_m * motion.spin_rad_s.norm();
+    motion.velocity_m_s.norm().max(rim_m_s) < rule.speed_m_s
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     const RULE: RestRule = RestRule { speed_m_s: 0.02, time_s: 0.3 };
 
-    /// Time after which a rock with velocity `v(t)` is at rest, within 1 s.
+    /// Time after which a rock with velocity `v(t)` is at rest, within 1 s, in steps as long as it may take and no longer
+    /// than `most_s`.
+    fn rests_in(most_s: f64, v: impl Fn(f64) -> f64) -> Option<f64> {
+        let still = Vec3::zeros();
+        let at = |time_s: f64, x: f64| Motion {
+            time_s,
+            position_m: Vec3::new(x, 0.0, 0.0),
+            velocity_m_s: Vec3::new(v(time_s), 0.0, 0.0),
+            spin_rad_s: still,
+        };
+        let mut now = at(0.0, 0.0);
+        let mut calm = RestCriterion::from(still);
+        while now.time_s < 1.0 {
+            let dt = most_s.min(calm.longest_s(&now, 0.5, &RULE));
+            let middle_s = now.time_s + 0.5 * dt;
+            let to = at(now.time_s + dt, now.position_m.x + v(middle_s) * dt);
+            calm.note(dt, [&now, &to], 0.5, &RULE);
+            now = to;
+            if calm.rests() {
+                return Some(now.time_s);
+            }
+        }
+        None
+    }
+
     fn rests_after(v: impl Fn(f64) -> f64) -> Option<f64> {
-        let (still, dt) = (Vec3::zeros(), 1e-3);
-        let mut to =
-            Motion { time_s: 0.0, position_m: still, velocity_m_s: still, spin_rad_s: still };
-        let mut calm = RestCriterion::from(to.position_m);
-        (1..=1000).map(|k| f64::from(k) * dt).find(|t| {
-            to.velocity_m_s.x = v(*t);
-            to.position_m.x += v(t - 0.5 * dt) * dt;
-            calm.note(dt, &to, 0.5, &RULE);
-            calm.rests()
-        })
+        rests_in(1e-3, v)
+    }
+
+    /// However long the steps could be: a rock that stands rests when the rule's time is over, and one that comes to a stand
+    /// within a step of 0.2 s when it is over from the end of that step.
+    #[test]
+    fn long_steps_put_rest_off_by_no_more_than_the_one_that_stops_the_rock() {
+        assert!((rests_in(10.0, |_| 0.0).unwrap() - 0.3).abs() < 1e-12);
+        let stops = |t: f64| (0.25 - 1.4 * t).max(0.0);
+        let due_s = (0.25 - 0.02) / 1.4 + 0.3;
+        for most_s in [1e-3, 0.02, 0.2] {
+            let found_s = rests_in(most_s, stops).unwrap();
+            assert!(due_s - 1e-12 <= found_s && found_s < due_s + most_s, "{most_s}: {found_s}");
+        }
     }
 
     /// Constant, slowing down, jittering: at rest after the rule's time. Speeding up, even by a five-hundredth of gravity:

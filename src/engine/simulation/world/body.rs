@@ -289,9 +289,9 @@ impl<'a> WorldBody<'a> {
         (loss, given): (Loss, Given),
         (slides, was_flying): (bool, bool),
     ) {
-        let now_s = self.recorder.now.time_s;
+        let from = self.recorder.now;
         let began = self.step_began.take();
-        let (began_s, before_j) = began.unwrap_or_else(|| (now_s, self.total_j(settings)));
+        let (began_s, before_j) = began.unwrap_or_else(|| (from.time_s, self.total_j(settings)));
         let dt = to.time_s - began_s;
         // one slipping contact, with mesh or rock, makes the step "sliding"
         let slides = slides || self.member.state.histories.iter().any(|history| history.slides);
@@ -315,7 +315,7 @@ impl<'a> WorldBody<'a> {
         if self.member.flying {
             self.end_episode(settings);
         }
-        self.calm.note(dt, &to, self.member.body.radius, &settings.rest);
+        self.calm.note(dt, [&from, &to], self.member.body.radius, &settings.rest);
     }
 
     /// Largest rise of energy over the contact episode that ends now.
