@@ -338,7 +338,10 @@ fn measured_blocks_are_replayed_one_by_one() {
         ("x_m,y_m,radius_m\n", "rows: found no block"),
         ("x_m,y_m,radius_m\n1,north,1\n", "line 2: found `north`"),
         ("x_m,y_m,mass_kg\n1,1,-5\n", "line 2: found -5"),
-        ("x_m,y_m,radius_m\n1,1,1e-9\n", "radius_m or mass_kg: found another; write a value in"),
+        (
+            "x_m,y_m,radius_m\n1,1,1e-9\n",
+            "radius_m or mass_kg: found blocks with a radius of 1e-9 to 1e-9 m; write a value in",
+        ),
     ] {
         let said = hash(text).unwrap_err().to_string();
         assert!(said.contains("blocks.csv") && said.contains(says), "{said}");
