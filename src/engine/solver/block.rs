@@ -7,6 +7,7 @@
 //!
 //! An impact is that of stiff springs ([`strike`](Footing::strike)).
 
+mod ahead;
 mod energy;
 mod facet;
 mod look;
@@ -31,6 +32,7 @@ use crate::contact::neighbours::Neighbours;
 use crate::flight::block::WindowScratch;
 use crate::flight::top::{attitude_after, momentum_of, spin_of};
 use crate::rock::{Motion, Vec3};
+use ahead::Came;
 use energy::ActingAlong;
 use nalgebra::{Matrix3, Rotation3};
 use rolling::Turning;
@@ -203,16 +205,19 @@ impl Footing {
             .min(TURN * corner_way / spin.norm().max(f64::MIN_POSITIVE));
         let (start, before_j) = (moving.clone(), moving.motion_j(block));
         let dt = dt.min(moving.climbs_s((block.mass_kg, &world.body.gravity), before_j));
-        let dt = self.closing(world, (block, moving), dt);
-        moving.drift(block, 0.5 * dt);
-        self.look(world, block, &moving.pose, AHEAD * block.ball_m);
+        let dt = self.to_middle(world, block, (&start, moving), dt);
         let (mass, weight) = (moving.mass(block), world.body.gravity * dt);
         let (v, w) = (moving.v, moving.spin(block));
         self.contacts.clear();
         let slip_m_s = self.slip_m_s(block, &start);
         let out_m_s = LET_OUT * (world.body.gravity.norm() * block.radius_m).sqrt();
         for touch in &self.touches.found {
-            let goal = goal((block, out_m_s), (&start, moving), touch, dt);
+            let came = Came::of(block, [&start, moving], touch, dt);
+            // stopped within the step, it would give nothing back
+            if came.strikes(world, block, touch) {
+                continue;
+            }
+            let goal = came.goal(touch, dt, out_m_s);
             let ahead_m = 0.5 * dt * slip_m_s;
             self.contacts.push(self.contact(world, (&mass, touch), ahead_m, goal));
         }
@@ -272,41 +277,6 @@ impl Footing {
                 && (pushed || up <= 0.0)
         })
     }
-
-    /// Cuts a step where a gap closes faster than the capture speed: the impact comes at its end.
-    fn closing(
-        &self,
-        world: &ContactEnvironment,
-        (block, moving): (&Block, &Moving),
-        dt: f64,
-    ) -> f64 {
-        let most = TOUCH * block.radius_m;
-        self.touches.found.iter().filter(|touch| touch.gap_m > most).fold(dt, |dt, touch| {
-            let speed = moving.approach_m_s(block, touch);
-            let fast = speed >= capture_m_s(world.law(touch.triangle));
-            if fast { dt.min((touch.gap_m / speed).max(1e-9)) } else { dt }
-        })
-    }
-}
-
-/// The velocity that a contact point seeks in the middle of a step: along the normal what ends the step at the surface, along the surface
-/// what ends it where it began, as far as turning has moved it.
-/// What was pressed in is let out with `out_m_s` (m/s) at most.
-fn goal(
-    (block, out_m_s): (&Block, f64),
-    (start, middle): (&Moving, &Moving),
-    touch: &BlockTouch,
-    dt: f64,
-) -> Vec3 {
-    let n = &touch.normal;
-    let core = middle.pose.attitude.inverse_transform_vector(&(touch.lever + n * block.ball_m));
-    let began = start.at(block, &(start.pose.attitude * core - n * block.ball_m));
-    let turned = middle.at(block, &touch.lever) - began;
-    let gap = touch.gap_m - 0.5 * dt * n.dot(&(began + turned * 0.5));
-    // a contact that was pressed in is let out slowly: it must not be thrown
-    let out = (-2.0 * gap / dt).min(out_m_s);
-    let up = n.dot(&turned);
-    n * (out - up) - (turned - n * up)
 }
 
 #[cfg(test)]

@@ -1,0 +1,106 @@
+//! What comes to a block within a step: how long that may be, and what its contacts ask for.
+
+use super::{AHEAD, Footing, Moving, TOUCH};
+use crate::body::Block;
+use crate::contact::block::BlockTouch;
+use crate::rock::Vec3;
+use crate::solver::environment::ContactEnvironment;
+use crate::solver::law::capture_m_s;
+
+/// Looks into the middle of a step that an impact cuts, at most.
+const LOOKS: u32 = 4;
+/// A step is cut again where the impact comes sooner by more than this (–).
+const SOONER: f64 = 1e-3;
+/// No step is cut shorter (s).
+const SHORTEST_S: f64 = 1e-9;
+
+/// How a contact in the middle of a step came there.
+pub(super) struct Came {
+    /// Velocity of the point of the block at the start of the step, and what turning has added (m/s).
+    began: Vec3,
+    turned: Vec3,
+    /// Gap at the start (m).
+    gap_m: f64,
+}
+
+impl Came {
+    /// The contact `touch` of a block in the middle of a step of `dt`.
+    pub(super) fn of(
+        block: &Block,
+        [start, middle]: [&Moving; 2],
+        touch: &BlockTouch,
+        dt: f64,
+    ) -> Self {
+        let n = &touch.normal;
+        let core = middle.pose.attitude.inverse_transform_vector(&(touch.lever + n * block.ball_m));
+        let began = start.at(block, &(start.pose.attitude * core - n * block.ball_m));
+        let turned = middle.at(block, &touch.lever) - began;
+        let gap_m = touch.gap_m - 0.5 * dt * n.dot(&(began + turned * 0.5));
+        Self { began, turned, gap_m }
+    }
+
+    /// Whether it comes to the block as an impact: it did not touch, and closes faster than its ground captures.
+    pub(super) fn strikes(
+        &self,
+        world: &ContactEnvironment,
+        block: &Block,
+        touch: &BlockTouch,
+    ) -> bool {
+        let speed = -touch.normal.dot(&self.began);
+        self.gap_m > TOUCH * block.radius_m && speed >= capture_m_s(world.law(touch.triangle))
+    }
+
+    /// The velocity that the contact point seeks in the middle of a step: along the normal what ends the step at the surface, along the surface
+    /// what ends it where it began, as far as turning has moved it.
+    /// What was pressed in is let out with `out_m_s` (m/s) at most.
+    pub(super) fn goal(&self, touch: &BlockTouch, dt: f64, out_m_s: f64) -> Vec3 {
+        let n = &touch.normal;
+        // a contact that was pressed in is let out slowly: it must not be thrown
+        let out = (-2.0 * self.gap_m / dt).min(out_m_s);
+        let up = n.dot(&self.turned);
+        n * (out - up) - (self.turned - n * up)
+    }
+}
+
+impl Footing {
+    /// Drifts from the start to the middle of a step of at most `dt` and looks for contacts there; how long the step is (s).
+    ///
+    /// What closes faster than its ground captures is an impact, and comes at the end of the step. Where cells are smaller than a step
+    /// only the look in the middle finds it.
+    pub(super) fn to_middle(
+        &mut self,
+        world: &ContactEnvironment,
+        block: &Block,
+        (start, moving): (&Moving, &mut Moving),
+        mut dt: f64,
+    ) -> f64 {
+        dt = self.closing(world, block, [start, start], (0.0, dt));
+        for look in 1..=LOOKS {
+            *moving = start.clone();
+            moving.drift(block, 0.5 * dt);
+            self.look(world, block, &moving.pose, AHEAD * block.ball_m);
+            let sooner = self.closing(world, block, [start, moving], (0.5 * dt, dt));
+            if look == LOOKS || sooner >= dt * (1.0 - SOONER) {
+                break;
+            }
+            dt = sooner;
+        }
+        dt
+    }
+
+    /// Cuts a step of `dt` (s) where an impact comes, as it looks `gone` (s) from its start.
+    fn closing(
+        &self,
+        world: &ContactEnvironment,
+        block: &Block,
+        [start, now]: [&Moving; 2],
+        (gone, dt): (f64, f64),
+    ) -> f64 {
+        self.touches.found.iter().fold(dt, |dt, touch| {
+            let speed = now.approach_m_s(block, touch);
+            let strikes = speed > 0.0
+                && Came::of(block, [start, now], touch, 2.0 * gone).strikes(world, block, touch);
+            if strikes { dt.min((gone + touch.gap_m / speed).max(SHORTEST_S)) } else { dt }
+        })
+    }
+}
