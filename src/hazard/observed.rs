@@ -108,7 +108,11 @@ impl ObservedPath {
                 end_m: [row.x_m, row.y_m],
             })?;
             // a number that is none, or no place, would go into every mean
-            let far = way.start_m.iter().chain(&way.end_m).find(|m| !(m.abs() < FARTHEST_M));
+            let far = way
+                .start_m
+                .iter()
+                .chain(&way.end_m)
+                .find(|m| !(-FARTHEST_M..=FARTHEST_M).contains(*m));
             far.map_or(Ok((line, way)), |m| Err((line, format!("found {m:?}"))))
         };
         let ways: std::result::Result<Vec<(u64, Self)>, (u64, String)> =
