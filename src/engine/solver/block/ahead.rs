@@ -19,8 +19,9 @@ pub(super) struct Came {
     /// Velocity of the point of the block at the start of the step, and what turning has added (m/s).
     began: Vec3,
     turned: Vec3,
-    /// Gap at the start (m).
+    /// Gap at the start, and the least it can have been (m).
     gap_m: f64,
+    least_gap_m: f64,
 }
 
 impl Came {
@@ -36,7 +37,10 @@ impl Came {
         let began = start.at(block, &(start.pose.attitude * core - n * block.ball_m));
         let turned = middle.at(block, &touch.lever) - began;
         let gap_m = touch.gap_m - 0.5 * dt * n.dot(&(began + turned * 0.5));
-        Self { began, turned, gap_m }
+        // a pair of edges moves on along both, and so is no point of the block: the slower of the two speeds cannot make a gap of one that was pressed in
+        let slower = n.dot(&began).max(n.dot(&(began + turned)));
+        let least_gap_m = touch.gap_m - 0.5 * dt * slower;
+        Self { began, turned, gap_m, least_gap_m }
     }
 
     /// Whether it comes to the block as an impact: it did not touch, and closes faster than its ground captures.
@@ -47,7 +51,7 @@ impl Came {
         touch: &BlockTouch,
     ) -> bool {
         let speed = -touch.normal.dot(&self.began);
-        self.gap_m > TOUCH * block.radius_m && speed >= capture_m_s(world.law(touch.triangle))
+        self.least_gap_m > TOUCH * block.radius_m && speed >= capture_m_s(world.law(touch.triangle))
     }
 
     /// The velocity that the contact point seeks in the middle of a step: along the normal what ends the step at the surface, along the surface
