@@ -304,9 +304,8 @@ fn a_block_at_rest_takes_long_steps() {
     }
 }
 
-/// A box that slides with its face on a plane comes to a ramp of 20°. Before the fold the foot of a corner on the ramp's plane lies below the ramp, so
-/// that the look with which a step begins does not find the pair, and that in the middle does, fast. It stopped dead within the step, and a blow that gives all
-/// back cost up to an eighth of the energy, by where the steps fell.
+/// A box that slides with its face on a plane comes to a ramp of 20°, and is thrown off it with all of its energy wherever steps fall. A look before the
+/// fold need not find the pair of a corner and the ramp, whose foot lies below it.
 #[test]
 fn what_comes_within_a_step_is_struck_and_not_stopped() {
     let angle = 20_f64.to_radians();
