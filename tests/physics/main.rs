@@ -40,4 +40,5 @@ mod stems;
 mod struck_through;
 mod tangential;
 mod traps;
+mod uneven_ground;
 mod world_ledger;

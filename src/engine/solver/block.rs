@@ -205,19 +205,17 @@ impl Footing {
             .min(TURN * corner_way / spin.norm().max(f64::MIN_POSITIVE));
         let (start, before_j) = (moving.clone(), moving.motion_j(block));
         let dt = dt.min(moving.climbs_s((block.mass_kg, &world.body.gravity), before_j));
-        let dt = self.to_middle(world, block, (&start, moving), dt);
+        let dt = self.drift_to_middle(world, block, (&start, moving), dt);
         let (mass, weight) = (moving.mass(block), world.body.gravity * dt);
         let (v, w) = (moving.v, moving.spin(block));
         self.contacts.clear();
         let slip_m_s = self.slip_m_s(block, &start);
         let out_m_s = LET_OUT * (world.body.gravity.norm() * block.radius_m).sqrt();
-        for touch in &self.touches.found {
-            let came = Came::of(block, [&start, moving], touch, dt);
-            // stopped within the step, it would give nothing back
-            if came.strikes(world, block, touch) {
-                continue;
-            }
-            let goal = came.goal(touch, dt, out_m_s);
+        let came = |touch: &BlockTouch| Came::of(block, [&start, moving], touch, dt);
+        // stopped within the step, what strikes would give nothing back
+        self.set_aside(|touch| !came(touch).strikes(world, block, touch));
+        for touch in &self.aside {
+            let goal = came(touch).goal(touch, dt, out_m_s);
             let ahead_m = 0.5 * dt * slip_m_s;
             self.contacts.push(self.contact(world, (&mass, touch), ahead_m, goal));
         }

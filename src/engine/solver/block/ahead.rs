@@ -71,7 +71,7 @@ impl Footing {
     ///
     /// What closes faster than its ground captures is an impact, and comes at the end of the step. Where cells are smaller than a step
     /// only the look in the middle finds it.
-    pub(super) fn to_middle(
+    pub(super) fn drift_to_middle(
         &mut self,
         world: &ContactEnvironment,
         block: &Block,

@@ -1,8 +1,8 @@
 //! What a block can touch where it is.
 
-use super::Footing;
+use super::{Footing, TOUCH};
 use crate::body::Block;
-use crate::contact::block::{MOST_TOUCHES, Pose, keep_widest, touches};
+use crate::contact::block::{BlockTouch, MOST_TOUCHES, Pose, keep_widest, touches};
 use crate::solver::environment::ContactEnvironment;
 
 /// Features are collected for a way of the centre (–, relative to the radius of the sphere of equal volume) …
@@ -40,7 +40,7 @@ impl Footing {
         touches(&mut self.near, world.terrain, (block, pose), reach_m, &mut self.touches);
     }
 
-    /// Looks for the contacts of a block that are no wider apart than `reach_m`: the widest give way where there are too many.
+    /// Looks for the contacts of a block that are no wider apart than `reach_m`, unless that was the last look.
     pub(crate) fn look(
         &mut self,
         world: &ContactEnvironment,
@@ -54,8 +54,20 @@ impl Footing {
         }
         self.look_at_all(world, (block, pose), reach_m);
         self.looked = Some((*pose, reach_m));
-        if self.touches.found.len() > MOST_TOUCHES {
-            keep_widest(&mut self.touches.found, MOST_TOUCHES);
+    }
+
+    /// Sets aside the contacts that touch, as [`Self::set_aside`].
+    pub(super) fn set_touching_aside(&mut self, block: &Block) {
+        let most = TOUCH * block.radius_m;
+        self.set_aside(|touch| touch.gap_m <= most);
+    }
+
+    /// Sets aside the contacts found that are `wanted`: where more than can act at a time, those that span most.
+    pub(super) fn set_aside(&mut self, wanted: impl Fn(&BlockTouch) -> bool) {
+        self.aside.clear();
+        self.aside.extend(self.touches.found.iter().filter(|touch| wanted(touch)));
+        if self.aside.len() > MOST_TOUCHES {
+            keep_widest(&mut self.aside, MOST_TOUCHES);
         }
     }
 }

@@ -99,7 +99,8 @@ impl Footing {
         let (v, w) = (moving.v, moving.spin(block));
         let mut wanted = std::mem::take(&mut self.wanted);
         wanted.clear();
-        wanted.extend(self.touching(block).map(|touch| {
+        self.set_touching_aside(block);
+        wanted.extend(self.aside.iter().map(|touch| {
             let law = world.law(touch.triangle);
             let back = if Self::is_struck(world, (block, moving), touch) {
                 let speed = moving.approach_m_s(block, touch);

@@ -3,6 +3,10 @@
 /// By patterns, as for the plan.
 pub(super) const SLIPS: &[(&str, &str)] = &[
     (
+        "[rocks] density_kg_m3 = {a}: rock has about 2700",
+        "[rocks] density_kg_m3 = {a}: Gestein hat etwa 2700",
+    ),
+    (
         "[rocks] radius_m reaches {r}: larger than any single rock; is it in cm or mm? write metres",
         "[rocks] radius_m reicht bis {r}: größer als jeder einzelne Block; in cm oder mm? Meter schreiben",
     ),
@@ -29,10 +33,6 @@ pub(super) const SLIPS: &[(&str, &str)] = &[
     (
         "[rocks] density_kg_m3 = {a}: rock has about 2700; is it in t/m³? write {b}",
         "[rocks] density_kg_m3 = {a}: Gestein hat etwa 2700; in t/m³? {b} schreiben",
-    ),
-    (
-        "[rocks] density_kg_m3 = {a}: rock has about 2700",
-        "[rocks] density_kg_m3 = {a}: Gestein hat etwa 2700",
     ),
     (
         "epsg = {a} is no code of EPSG ({b} to {c}): rasters are written without a system",

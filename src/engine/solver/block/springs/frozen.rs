@@ -67,9 +67,8 @@ impl Footing {
         world: &ContactEnvironment,
         (block, moving): (&Block, &mut Moving),
     ) -> Option<Loss> {
-        let mut touches = std::mem::take(&mut self.aside);
-        touches.clear();
-        touches.extend(self.touching(block).take(MOST_TOUCHES));
+        self.set_touching_aside(block);
+        let touches = std::mem::take(&mut self.aside);
         let thrown = self.thrown(world, (block, moving), &touches);
         self.aside = touches;
         let (next, taken) = thrown?;
