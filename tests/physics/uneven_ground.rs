@@ -1,4 +1,4 @@
-//! Flat blocks on cells far smaller than they are: more of the mesh is near them than can act on them at a time.
+//! Flat blocks on ground that they meet at many places in one step.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use crate::common::{falls, plan_in};
@@ -22,24 +22,51 @@ fn uneven() -> Vec<Facet> {
     (0..CELLS * CELLS).flat_map(cell).collect()
 }
 
-/// An elastic box without friction that falls flat keeps its energy: of hundreds of peaks below its face 32 were kept that span most, so that the
-/// next one came into it unseen and was stopped dead as a contact pressed in before; half of such boxes lost up to nine tenths of their energy.
-#[test]
-fn elastic_boxes_that_fall_flat_on_fine_cells_keep_their_energy() {
+/// Teeth of 1 m and 22°, 16 m along and across.
+fn teeth() -> Vec<Facet> {
+    let corner = |x: i32, y: f64| Vec3::new(f64::from(x), y, 0.4 * f64::from(x.rem_euclid(2)));
+    let strip = |x: i32| {
+        let [a, b, c, d] =
+            [(x, -8.0), (x + 1, -8.0), (x + 1, 8.0), (x, 8.0)].map(|(x, y)| corner(x, y));
+        [[a, b, c], [a, c, d]]
+    };
+    (-8..8).flat_map(strip).collect()
+}
+
+/// Elastic boxes without friction that fall flat on a mesh keep their energy to this share; `release` says how many, how large and where.
+fn keep_their_energy(mesh: &[Facet], release: &str, share: f64) {
     let dir = tempfile::tempdir().unwrap();
-    write_binary(&dir.path().join("uneven.stl"), &uneven()).unwrap();
-    let text = "title = \"t\"\nseed = 1\n[[terrain]]\nmesh = \"uneven.stl\"\nground = \"g\"\n[grounds.g]\n\
+    write_binary(&dir.path().join("uneven.stl"), mesh).unwrap();
+    let text = format!(
+        "title = \"t\"\nseed = 1\n[[terrain]]\nmesh = \"uneven.stl\"\nground = \"g\"\n[grounds.g]\n\
          normal_stiffness_n_m = 1e9\ntangential_ratio = 0.4\nfriction_angle_deg = 0.0\nrestitution = 1.0\n\
-         rolling_friction = 0.0\n[rocks]\ndensity_kg_m3 = 2700.0\nradius_m = 0.4\n[[rocks.shapes]]\nkind = \"box\"\n\
-         corner_radius = 0.15\naxes = [1.5, 1.0, 0.7]\n[release]\ncount = 16\nheight_m = { uniform = [0.5, 1.0] }\n\
-         velocity_m_s = [0.0, 0.0, { uniform = [-6.0, 0.0] }]\nspin_rad_s = [0.0, 0.0, 0.0]\n\
-         orientation = [1.0, 0.0, 0.0, 0.0]\npoints_m = [[-0.1, -0.1], [0.1, 0.1]]\n[solver]\nscheme = \"rigid\"\n\
-         longest_s = 1.2\n";
-    let falls = falls(&plan_in(dir.path(), text));
+         rolling_friction = 0.0\n[solver]\nscheme = \"rigid\"\nlongest_s = 4.0\n[rocks]\ndensity_kg_m3 = 2700.0\n\
+         shapes = [{{ kind = \"box\", corner_radius = 0.15, axes = [1.5, 1.0, 0.7] }}]\n{release}\
+         height_m = {{ uniform = [0.5, 1.0] }}\nspin_rad_s = [0.0, 0.0, 0.0]\norientation = [1.0, 0.0, 0.0, 0.0]\n"
+    );
+    let falls = falls(&plan_in(dir.path(), &text));
     assert!(falls.iter().all(|fall| fall.impact_count > 0));
     for fall in falls {
         let lost = fall.ledger.damping_j / fall.released_j;
-        // blows slower than the capture speed, a thousandth of the fall's, give nothing back
-        assert!(lost.abs() < 1e-4, "release {}: {lost:e} of its energy", fall.index);
+        assert!(lost.abs() < share, "release {}: {lost:e} of its energy", fall.index);
     }
+}
+
+/// Of hundreds of peaks below a face 32 were kept that span most, so that the next one came into it unseen and was stopped dead as a contact
+/// pressed in before; half of such boxes lost up to nine tenths of their energy.
+#[test]
+fn elastic_boxes_that_fall_flat_on_fine_cells_keep_their_energy() {
+    let release = "radius_m = 0.4\n[release]\ncount = 16\npoints_m = [[-0.1, -0.1], [0.1, 0.1]]\n\
+         velocity_m_s = [0.0, 0.0, { uniform = [-6.0, 0.0] }]\n";
+    // blows slower than the capture speed, a thousandth of the fall's, give nothing back
+    keep_their_energy(&uneven(), release, 1e-4);
+}
+
+/// What only the look in the middle of a step saw was stopped dead within the step: of 200 such boxes 6 lost up to 0.07 of their energy.
+#[test]
+fn elastic_boxes_that_fall_flat_on_teeth_keep_their_energy() {
+    let release = "radius_m = 0.1\n[release]\ncount = 64\n\
+         points_m = [[-0.2, -0.1], [0.1, 0.3], [0.25, -0.3], [-0.35, 0.2]]\n\
+         velocity_m_s = [{ uniform = [-0.5, 0.5] }, { uniform = [-0.5, 0.5] }, { uniform = [-6.0, 0.0] }]\n";
+    keep_their_energy(&teeth(), release, 1e-9);
 }
