@@ -3,7 +3,7 @@
 
 use crate::error::{Error, Result};
 use std::fs::{self, File};
-use std::io::{Cursor, Read, Seek, Write};
+use std::io::{Read, Seek, Write};
 use std::path::{Path, PathBuf};
 
 /// Longest text a scene, a list or a table may have (bytes).
@@ -59,12 +59,21 @@ fn refuse_pointer(file: &mut File, path: &Path) -> Result<()> {
 ///
 /// # Errors
 /// As [`read`].
-pub fn read_table(path: &Path, longest: u64) -> Result<Cursor<Vec<u8>>> {
+pub fn read_table(path: &Path, longest: u64) -> Result<Vec<u8>> {
     let mut bytes = read(path, longest)?;
     let mut before = 0;
     bytes.retain(|&byte| std::mem::replace(&mut before, byte) != b'\r' || byte != b'\n');
     bytes.iter_mut().filter(|byte| **byte == b'\r').for_each(|byte| *byte = b'\n');
-    Ok(Cursor::new(bytes))
+    Ok(bytes)
+}
+
+/// The line of a row in a table that was read so, from 1: the reader of tables says where it began to look for the row, which is before
+/// the empty lines that it passes over.
+pub fn line_of(table: &[u8], position: Option<&csv::Position>) -> u64 {
+    let Some(position) = position else { return 1 };
+    let rest = table.get(position.byte() as usize..).unwrap_or_default();
+    let empty = rest.iter().take_while(|&&byte| byte == b'\n').count();
+    position.line() + empty as u64
 }
 
 /// Reads a whole file, see [`open`].

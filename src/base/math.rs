@@ -74,6 +74,14 @@ pub fn rounded(value: f64, digits: usize) -> f64 {
     format!("{:.*e}", digits.max(1) - 1, value).parse().unwrap_or(value)
 }
 
+/// A number of two significant digits that is no smaller, at most a tenth larger, for advice like "write 130 or more"; `value` positive.
+pub fn rounded_up(value: f64) -> f64 {
+    let unit = 10.0f64.powi(log10(value).floor() as i32 - 1);
+    let up = rounded((value / unit).ceil() * unit, 2);
+    // a logarithm or product that rounding has put just below
+    if up >= value { up } else { rounded(up + unit, 2) }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -85,6 +93,19 @@ mod tests {
             let x = exp(1e-3 * f64::from(k) - 12.0);
             assert_eq!(sin_cos(x), (sin(x), cos(x)));
             assert_eq!(sin_cos(-x), (sin(-x), cos(-x)));
+        }
+    }
+
+    #[test]
+    fn numbers_rounded_up_are_no_smaller() {
+        assert_eq!(
+            [123.4, 120.0, 0.0991, 9.95, 1.0].map(rounded_up),
+            [130.0, 120.0, 0.1, 10.0, 1.0]
+        );
+        for k in 1..5000 {
+            let value = exp(0.01 * f64::from(k) - 20.0);
+            let up = rounded_up(value);
+            assert!(up >= value && up <= 1.1001 * value, "{value} {up}");
         }
     }
 

@@ -223,6 +223,7 @@ impl Plan {
         let mut lines = recorders::evaluation_lines(scene, &terrain)?;
         warnings.extend(recorders::crossing_themselves(scene));
         lines.extend(annual::evaluation_lines(scene, &terrain)?);
+        warnings.extend(recorders::beside_the_terrain(&lines, &terrain));
         let lines = Some(lines).filter(|lines| !lines.is_empty());
         annual::over_release(&tried.made, lines.as_deref(), &mut warnings);
         let longest_s = scene.solver.longest_s.unwrap_or(LONGEST_S);

@@ -96,10 +96,11 @@ impl ObservedPath {
     /// A file that cannot be read, a row without these numbers, or an end nearer to its release than any computed one may be.
     pub fn read(ends: &MeasuredEnds) -> Result<Vec<Self>> {
         let path = ends.file.as_path();
-        let file = file::read_table(path, LONGEST_TEXT)?;
-        let mut reader = csv::Reader::from_reader(file);
+        let table = file::read_table(path, LONGEST_TEXT)?;
+        let mut reader = csv::Reader::from_reader(&table[..]);
         let headers = reader.headers().cloned().unwrap_or_default();
         let way = |row: csv::Result<csv::StringRecord>| {
+            let line_of = |position: Option<&csv::Position>| file::line_of(&table, position);
             let row = row.map_err(|why| (line_of(why.position()), why.to_string()))?;
             let line = line_of(row.position());
             let measured = row.deserialize(Some(&headers)).map_err(|why| (line, why.to_string()));
@@ -134,11 +135,6 @@ impl ObservedPath {
     }
 }
 
-/// The line of a file, from 1.
-fn line_of(position: Option<&csv::Position>) -> u64 {
-    position.map_or(1, csv::Position::line)
-}
-
 /// The column that tells which throws are of one block.
 #[derive(Debug, Deserialize)]
 struct BlockColumn {
@@ -152,8 +148,8 @@ impl ObservedPath {
     /// # Errors
     /// A file that cannot be read.
     pub fn read_blocks(path: &Path) -> Result<Vec<String>> {
-        let file = file::read_table(path, LONGEST_TEXT)?;
-        let rows = csv::Reader::from_reader(file).into_deserialize();
+        let table = file::read_table(path, LONGEST_TEXT)?;
+        let rows = csv::Reader::from_reader(&table[..]).into_deserialize();
         let blocks = rows.map(|row: csv::Result<BlockColumn>| row.ok().map(|thrown| thrown.block));
         Ok(blocks.collect::<Option<_>>().unwrap_or_default())
     }

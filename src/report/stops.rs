@@ -15,8 +15,10 @@ use crate::simulation::Stop;
 
 const LINE_PX: f64 = 30.0;
 const BAR_PX: f64 = 15.0;
-/// Room right of the bars for count, share and interval (px).
+/// Room right of the bars for count, share and interval (px), at least; what is said there takes as much as it needs.
 const RIGHT_PX: f64 = 250.0;
+/// From a bar's frame to what is said beside it, and from there to the figure's edge (px).
+const BESIDE_PX: f64 = 10.0;
 const TOP_PX: f64 = 8.0;
 
 /// Draws the bars.
@@ -26,7 +28,11 @@ pub(super) fn draw(report: &Report) -> Drawing {
     let bottom = TOP_PX + lines * LINE_PX;
     let names = report.stops.iter().map(|share| text_width(name(&share.stop, words), SMALL));
     let left = names.fold(94.0, f64::max) + 16.0;
-    let frame = PaperFrame { left, top: TOP_PX, right: WIDTH_PX - RIGHT_PX, bottom };
+    let said: Vec<Label> =
+        report.stops.iter().map(|share| said(share, report.is_weighted, words)).collect();
+    let beside = said.iter().map(|label| label.width_px() + 2.0 * BESIDE_PX);
+    let right = WIDTH_PX - beside.fold(RIGHT_PX, f64::max);
+    let frame = PaperFrame { left, top: TOP_PX, right, bottom };
     let ends = report.stops.iter().flat_map(|share| [share.share.value, share.share.high]);
     // the axis ends where the longest bar and its interval do
     let most = Axis::from_zero(ends.map(|share| 100.0 * share), "").high.min(100.0);
@@ -34,8 +40,8 @@ pub(super) fn draw(report: &Report) -> Drawing {
     let panel = Panel::new(frame, x, Axis::linear(0.0, lines, ""));
     let svg = paint("stops", (WIDTH_PX, bottom + FOOT_PX), words.stops_alt, |canvas| {
         panel.grid_upright(canvas);
-        for (line, share) in report.stops.iter().enumerate() {
-            bar(canvas, &panel, (line, share, report.is_weighted), words);
+        for (line, (share, said)) in report.stops.iter().zip(said).enumerate() {
+            bar(canvas, &panel, (line, share, said), words);
         }
         if report.stops.is_empty() {
             panel.nothing(canvas, words.no_release);
@@ -62,7 +68,7 @@ fn name(stop: &Stop, words: &Words) -> &'static str {
 fn bar(
     canvas: &Canvas<'_>,
     panel: &Panel,
-    (line, share, is_weighted): (usize, &StopShare, bool),
+    (line, share, said): (usize, &StopShare, Label),
     words: &Words,
 ) {
     let y = panel.frame.top + (line as f64 + 0.5) * LINE_PX;
@@ -82,20 +88,25 @@ fn bar(
         }
     }
     canvas.text(&Label::new(name(&share.stop, words), (panel.frame.left - 8.0, y)).right());
+    canvas.text(&said.moved((panel.frame.right + BESIDE_PX, y)));
+}
+
+/// Share, interval and count of a reason.
+fn said(share: &StopShare, is_weighted: bool, words: &Words) -> Label {
     let count = format::decimal(share.count as f64, 0);
+    let percent = share.share;
     let decimals = decimals_for(percent.high - percent.low);
     let [share, low, high] =
         format::percents([percent.value, percent.low, percent.high], |_| decimals);
     let interval = words.interval(&low, &high);
-    let computed = fill(&words.say(by_frequency::COUNT), &[("n", &count)]);
     // a weighted share is not that of the count
     let (head, interval) = if is_weighted {
+        let computed = fill(&words.say(by_frequency::COUNT), &[("n", &count)]);
         (share, format!("{interval}; {computed}"))
     } else {
         (format!("{count} ({share})"), interval)
     };
-    let x = panel.frame.right + 10.0;
-    canvas.text(&Label::new(head, (x, y)).followed_by(interval));
+    Label::new(head, (0.0, 0.0)).followed_by(interval)
 }
 
 /// Decimals of a percentage that an interval of some width (share) leaves meaningful.

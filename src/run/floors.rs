@@ -1,7 +1,7 @@
 //! The lowest ground under lines and objects: what a rock must have the energy to come up to.
 
 use crate::hazard::LineFloor;
-use crate::plan::{EvaluationLine, Footprint, LinePiece, Part, Plan};
+use crate::plan::{EvaluationLine, Footprint, Part, Plan};
 use crate::scene::Corner;
 
 /// Length of the pieces that a line is looked at in (m): boxes round short ones hold few triangles beside it.
@@ -15,7 +15,7 @@ pub(super) fn floor(plan: &Plan, line: &EvaluationLine) -> Option<LineFloor> {
     }
     let terrain = &plan.terrain;
     let local_m = match line.footprint {
-        None => lowest_m(pieces(line, PIECE_M), |ends| terrain.lowest_along(ends)),
+        None => lowest_m(line.cut(PIECE_M), |ends| terrain.lowest_along(ends)),
         Some(footprint) => {
             let (boxes, reach_m) = boxes(line, footprint, largest_radius_m(plan)?)?;
             lowest_m(boxes, |within| terrain.lowest_in(grown(within, reach_m)))
@@ -45,26 +45,15 @@ fn boxes(
 ) -> Option<(Vec<[Corner; 2]>, f64)> {
     match footprint {
         Footprint::Area => {
-            let all = pieces(line, f64::INFINITY).into_iter().map(around);
+            let all = line.cut(f64::INFINITY).into_iter().map(around);
             Some((vec![all.reduce(both)?], radius_m))
         }
         Footprint::Strip { half_width_m } => {
             let reach_m = half_width_m + radius_m;
-            let short = pieces(line, reach_m.max(PIECE_M));
+            let short = line.cut(reach_m.max(PIECE_M));
             Some((short.into_iter().map(around).collect(), reach_m))
         }
     }
-}
-
-/// The pieces of a line, each cut so that none is longer than this (m); both ends of each (m, local).
-fn pieces(line: &EvaluationLine, long_m: f64) -> Vec<[Corner; 2]> {
-    let of_piece = |piece: &LinePiece| {
-        let (from, way) = (piece.from_m, piece.way_m);
-        let parts = (piece.length_m() / long_m).ceil().max(1.0);
-        let at = move |k: u32| [0, 1].map(|axis| from[axis] + f64::from(k) / parts * way[axis]);
-        (0..parts as u32).map(move |k| [at(k), at(k + 1)])
-    };
-    line.pieces.iter().flat_map(of_piece).collect()
 }
 
 /// The box round two places: south-western and north-eastern corner.

@@ -337,7 +337,7 @@ fn measured_blocks_are_replayed_one_by_one() {
         ("x_m,radius_m\n1,1\n", "line 1: found the columns x_m, radius_m"),
         ("x_m,y_m,radius_m\n", "rows: found no block"),
         ("x_m,y_m,radius_m\n1,north,1\n", "line 2: found `north`"),
-        ("x_m,y_m,mass_kg\n1,1,-5\n", "line 2: found -5"),
+        ("x_m,y_m,mass_kg\n\n1,1,-5\n", "line 3: found -5"),
         (
             "x_m,y_m,radius_m\n1,1,1e-9\n",
             "radius_m or mass_kg: found blocks with a radius of 1e-9 to 1e-9 m; write a value in",

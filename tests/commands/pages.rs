@@ -192,13 +192,14 @@ fn plan_of(path: &Path, text: &str) -> Plan {
 
 /// Whatever looks like another unit is said in every language.
 #[test]
-fn slips_of_units_are_said_in_every_language() {
+fn slips_are_said_in_every_language() {
     let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
     // stiff enough for what is too large
     let quick = fs::read_to_string(examples.join("quick.toml")).unwrap().replace("e8", "e12");
     let spruce = "restitution = 0.2\nbreaks_above_j = 50.0\n";
     let slip = "friction_angle_deg = 32.0\nslip_friction = { max = 0.2, kappa_per_m = 0.7, beta_per_s = 20.0 }\n";
     let weak = "\n[[barriers]]\nname = \"net\"\npoints_m = [[2.0, 40.0], [38.0, 40.0]]\nheight_m = 3.0\ncapacity_j = 100.0\n";
+    let half = "\n[[lines]]\nname = \"path\"\npoints_m = [[20.0, 45.0], [60.0, 45.0]]\n";
     for (written, slipped, hint) in [
         ("density_kg_m3 = 2700.0", "density_kg_m3 = 2.7", "t/m³"),
         ("density_kg_m3 = 2700.0", "density_kg_m3 = 27000.0", "rock has about"),
@@ -210,6 +211,7 @@ fn slips_of_units_are_said_in_every_language() {
         ("seed = 1\n", "seed = 1\nepsg = 3857\n", "Web Mercator"),
         ("max = 0.8 }", "max = 80.0 }", "in cm or mm"),
         ("\n[maps]", &format!("{weak}\n[maps]"), "capacity_j"),
+        ("\n[maps]", &format!("{half}\n[maps]"), "“path”: 20 of its 40 m have no ground below"),
     ] {
         assert!(quick.contains(written), "{written}");
         let plan = plan_of(&examples.join("slips.toml"), &quick.replacen(written, slipped, 1));

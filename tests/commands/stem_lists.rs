@@ -156,19 +156,19 @@ fn lists_that_do_not_fit_are_refused() {
     }
 }
 
-/// A wrong row is named by its line in the file, whatever ends the lines.
+/// A wrong row is named by its line in the file, whatever ends the lines, behind empty lines too.
 #[test]
 fn a_wrong_row_is_named_by_its_line() {
     let dir = Folder::new();
     dir.slope();
     for end in ["\n", "\r\n", "\r"] {
         let (list, slope) = (dir.path("stems.csv"), dir.path("dem.stl"));
-        fs::write(&list, ["x,y,dbh_m,height_m", "1,2,0.3,18", "3,4,0.3,nan", ""].join(end))
+        fs::write(&list, ["x,y,dbh_m,height_m", "1,2,0.3,18", "", "", "3,4,0.3,nan"].join(end))
             .unwrap();
         let files =
             [&list, &slope, &dir.path("out.stl")].map(|path| path.to_str().unwrap().to_owned());
         let answer = rockfall(&["mesh", "stems", &files[0], &files[1], &files[2]]);
         let said = String::from_utf8(answer.stderr).unwrap();
-        assert!(said.contains("line 3: found height_m = NaN"), "{end:?}: {said}");
+        assert!(said.contains("line 5: found height_m = NaN"), "{end:?}: {said}");
     }
 }

@@ -12,6 +12,7 @@ use crate::terrain::edges::{self, Edges};
 use crate::terrain::faces::Mesh;
 use crate::terrain::merge::Merger;
 use crate::terrain::stl::Soup;
+use common_box::CommonBox;
 use parts::Parts;
 use split::Splits;
 use std::path::Path;
@@ -22,12 +23,6 @@ const TOLERANCE_OF_SIZE: f64 = 1e-6;
 
 /// A triangle with an area below this share of its longest edge squared (–) has no normal in `f64`.
 const ZERO_AREA: f64 = 1e-14;
-
-/// Largest coordinate (m); the Earth is 4e7 m around.
-const LARGEST_M: f64 = 1e8;
-
-/// Three corners of this many facets can be numbered with 32 bits.
-const MOST_FACETS: usize = u32::MAX as usize / 3;
 
 /// How many places a [`Tally`] names.
 const EXAMPLES: usize = 5;
@@ -127,7 +122,8 @@ pub struct Welded {
 /// than the tolerance, and chains of close vertices do not collapse.
 ///
 /// # Errors
-/// A scale or tolerance that is not usable, coordinates larger than the Earth, or no triangle with an area.
+/// A scale or tolerance that is not usable, coordinates larger than the Earth, pieces or triangles far from all others, or no
+/// triangle with an area.
 pub fn weld(pieces: &[Piece], map_origin_m: Vec3, tolerance_m: Option<f64>) -> Result<Welded> {
     join(pieces, map_origin_m, tolerance_m).map(Joined::finish)
 }
@@ -146,7 +142,8 @@ pub(super) fn join(
     tolerance_m: Option<f64>,
 ) -> Result<Joined> {
     let frame = CommonBox::around(pieces)?;
-    let tolerance_m = tolerance_m.unwrap_or(TOLERANCE_OF_SIZE * frame.size_m);
+    let own_m = tolerance_m;
+    let tolerance_m = own_m.unwrap_or(TOLERANCE_OF_SIZE * frame.size_m);
     if !(tolerance_m >= 0.0 && tolerance_m.is_finite()) {
         return Err(Error::Request(format!(
             "weld tolerance = {tolerance_m} m is not a length; write 0 or a few millimetres (0.001)"
@@ -168,7 +165,10 @@ pub(super) fn join(
         splits: Splits::default(),
         parts: OnceLock::new(),
     };
-    welded.take(pieces, &frame);
+    let collapsed = welded.take(pieces, &frame);
+    if own_m.is_none() {
+        far::check_collapsed(pieces, &collapsed, (tolerance_m, frame.size_m))?;
+    }
     if welded.triangles.is_empty() {
         return Err(nothing_left(pieces, &welded));
     }
@@ -202,60 +202,6 @@ impl Piece<'_> {
             return Err(Error::input(self.file, "scale", found, remedy));
         }
         Ok(())
-    }
-
-    /// Its first facet with a coordinate beyond [`LARGEST_M`].
-    fn too_far(&self) -> Error {
-        let far = |&corner: &Vec3| self.placed(corner).amax() > LARGEST_M;
-        let facets = &self.soup.facets;
-        let is_far = |&number: &usize| facets.at(number).iter().any(far);
-        let number = (0..facets.len()).find(is_far).unwrap_or(0);
-        let found = format!("coordinates beyond {LARGEST_M:e} m, more than around the Earth");
-        let remedy = "check the unit and `scale`, or repair the mesh where it was made";
-        Error::input(self.file, format!("triangle {}", number + 1), found, remedy)
-    }
-}
-
-/// The common box of all pieces.
-struct CommonBox {
-    /// Centre, rounded to whole metres: coordinates read as `f32` subtract it without rounding.
-    centre_m: Vec3,
-    /// Longest side.
-    size_m: f64,
-    facets: usize,
-}
-
-impl CommonBox {
-    fn around(pieces: &[Piece]) -> Result<Self> {
-        let nothing = (Vec3::repeat(LARGEST_M), Vec3::repeat(-LARGEST_M));
-        let both =
-            |one: (Vec3, Vec3), other: (Vec3, Vec3)| (one.0.inf(&other.0), one.1.sup(&other.1));
-        let (mut low, mut high) = nothing;
-        for piece in pieces {
-            piece.check_scale()?;
-            let box_of = |facet: [Vec3; 3]| {
-                let [a, b, c] = facet.map(|corner| piece.placed(corner));
-                (a.inf(&b).inf(&c), a.sup(&b).sup(&c))
-            };
-            let of_piece = parallel::fold(
-                piece.soup.facets.len(),
-                &nothing,
-                |all, number| both(all, box_of(piece.soup.facets.at(number))),
-                both,
-            );
-            if of_piece.0.min() < -LARGEST_M || of_piece.1.max() > LARGEST_M {
-                return Err(piece.too_far());
-            }
-            (low, high) = both((low, high), of_piece);
-        }
-        let facets = pieces.iter().map(|piece| piece.soup.facets.len()).sum();
-        if facets > MOST_FACETS {
-            return Err(Error::Request(format!(
-                "the terrain has {facets} facets; thin it out to {MOST_FACETS} or fewer"
-            )));
-        }
-        let size_m = (high - low).max().max(0.0); // negative without any facet
-        Ok(Self { centre_m: (low / 2.0 + high / 2.0).map(f64::round), size_m, facets })
     }
 }
 
@@ -291,10 +237,11 @@ impl Welded {
         self.vertices_m[b as usize] - self.vertices_m[a as usize]
     }
 
-    /// Merges vertices and keeps every facet that has an area.
-    fn take(&mut self, pieces: &[Piece], frame: &CommonBox) {
+    /// Merges vertices and keeps every facet that has an area; how many of each piece had one before.
+    fn take(&mut self, pieces: &[Piece], frame: &CommonBox) -> Vec<usize> {
+        let mut collapsed = vec![0; pieces.len()];
         let mut merger = Merger::new(self.tolerance_m, frame.size_m, 3 * frame.facets);
-        for piece in pieces {
+        for (piece, collapsed) in pieces.iter().zip(&mut collapsed) {
             let facets = &piece.soup.facets;
             // `+ 0.0` turns −0.0 into 0.0.
             let local = |corner: Vec3| (piece.placed(corner) - frame.centre_m).map(|x| x + 0.0);
@@ -305,6 +252,7 @@ impl Welded {
             let flat = parallel::filter(all.len(), |number| !has_area(&merged(number as usize)));
             for &number in &flat {
                 self.zero_area.add(merged(number as usize)[0] + self.origin_m);
+                *collapsed += usize::from(has_area(&facets.at(number as usize).map(local)));
             }
             let mut numbers: Vec<u32> = (0..all.len() as u32).collect();
             drop_at(&mut numbers, &flat);
@@ -314,6 +262,7 @@ impl Welded {
             append(&mut self.triangles, all);
         }
         self.vertices_m = merger.into_kept_m();
+        collapsed
     }
 
     /// Vertices that only dropped triangles used go; the others keep their order.
@@ -379,7 +328,9 @@ fn nothing_left(pieces: &[Piece], welded: &Welded) -> Error {
     )
 }
 
+mod common_box;
 mod covered;
+mod far;
 mod numbers;
 pub(in crate::terrain) mod parts;
 mod repeated;

@@ -116,6 +116,29 @@ pub(super) fn crossing_themselves(scene: &Scene) -> Vec<String> {
     lines.chain(barriers).filter_map(said).collect()
 }
 
+/// Length of the pieces of a line of which it is asked whether there is ground below (m), and how many of a long line.
+const ASKED: (f64, f64) = (1.0, 2000.0);
+/// Of a line no more than this share may have no ground below without being said (–): ends may reach over the slope's brim.
+const BESIDE: f64 = 0.1;
+
+/// Says which lines lie beside the terrain in a large part: what would come there is not computed.
+pub(super) fn beside_the_terrain(lines: &[EvaluationLine], terrain: &Terrain) -> Vec<String> {
+    let said = |line: &EvaluationLine| {
+        let pieces = line.cut(ASKED.0.max(line.length_m() / ASKED.1));
+        let lacks = |ends: &&[Corner; 2]| terrain.lowest_along(**ends).is_none();
+        let length_m = |[from, to]: &[Corner; 2]| math::hypot(to[0] - from[0], to[1] - from[1]);
+        let beside_m: f64 = pieces.iter().filter(lacks).map(length_m).sum();
+        (beside_m > BESIDE * line.length_m()).then(|| {
+            format!(
+                "line “{}”: {beside_m:.0} of its {:.0} m have no ground below; what comes there is not computed, and its numbers hold for the rest",
+                line.name,
+                line.length_m()
+            )
+        })
+    };
+    lines.iter().filter_map(said).collect()
+}
+
 impl EvaluationLine {
     /// The evaluation line over a line given in map coordinates.
     pub fn new(name: &str, line: &Polyline, origin_m: Vec3) -> Self {
@@ -194,6 +217,17 @@ impl EvaluationLine {
         self.pieces.iter().filter(crosses).count() % 2 == 1
     }
 
+    /// Its pieces, cut into equal parts no longer than this (m, local).
+    pub fn cut(&self, long_m: f64) -> Vec<[Corner; 2]> {
+        let of_piece = |piece: &LinePiece| {
+            let (from, way) = (piece.from_m, piece.way_m);
+            let parts = (piece.length_m() / long_m).ceil().max(1.0);
+            let at = move |k: u32| [0, 1].map(|axis| from[axis] + f64::from(k) / parts * way[axis]);
+            (0..parts as u32).map(move |k| [at(k), at(k + 1)])
+        };
+        self.pieces.iter().flat_map(of_piece).collect()
+    }
+
     /// Its length (m).
     pub fn length_m(&self) -> f64 {
         self.pieces.last().map_or(0.0, |last| last.along_m + last.length_m())
@@ -256,8 +290,9 @@ impl MapGrid {
         let (columns, rows) = (count(west_m, high.x), count(south_m, high.y));
         if columns * rows > MOST_CELLS {
             let found = format!("found {cell_m}, which gives {columns} x {rows} cells");
-            let least = cell_m * (columns * rows / MOST_CELLS).sqrt();
-            let remedy = format!("write {least:.1e} or more");
+            // the last column and row may be begun anew
+            let least = 1.001 * cell_m * (columns * rows / MOST_CELLS).sqrt();
+            let remedy = format!("write {} or more", math::rounded_up(least));
             return Err(Error::input(scene, "[maps] cell_m", found, remedy));
         }
         Ok(Self { west_m, south_m, cell_m, columns: columns as u32, rows: rows as u32 })
@@ -311,7 +346,8 @@ pub(super) fn profile_step_m(scene: &Scene, terrain: &Terrain) -> Result<f64> {
     };
     if longest_m > MOST_STRETCHES * asked {
         let found = format!("found {asked} on a terrain of {longest_m:.0} m");
-        let remedy = format!("write {:.1e} or more", longest_m / MOST_STRETCHES);
+        let least = math::rounded_up(longest_m / MOST_STRETCHES);
+        let remedy = format!("write {least} or more");
         return Err(Error::input(&scene.file, "[record] profile_step_m", found, remedy));
     }
     Ok(asked)

@@ -82,17 +82,16 @@ pub(super) fn read(
 ) -> Result<Vec<BlockRow>> {
     let wrong =
         |line: u64, found: String| Error::input(path, format!("line {line}"), found, REMEDY);
-    let file = file::read_table(path, LONGEST_TEXT)?;
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(file);
+    let table = file::read_table(path, LONGEST_TEXT)?;
+    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(&table[..]);
     let headers = reader.headers().cloned().unwrap_or_default();
     let columns = BlockColumns::of(&headers, has_height).map_err(|found| wrong(1, found))?;
     columns.check_size(size_from).map_err(|found| wrong(1, found))?;
     let mut blocks = Vec::new();
     for row in reader.records() {
-        let row = row.map_err(|why| {
-            wrong(why.position().map_or(1, csv::Position::line), format!("found {why}"))
-        })?;
-        let line = row.position().map_or(1, csv::Position::line);
+        let row = row
+            .map_err(|why| wrong(file::line_of(&table, why.position()), format!("found {why}")))?;
+        let line = file::line_of(&table, row.position());
         let sized = (density_kg_m3, size_from.unwrap_or(SizeFrom::Radius));
         let block = columns.block((line, &row), sized).map_err(|found| wrong(line, found))?;
         blocks.push(block);

@@ -107,8 +107,8 @@ pub fn read_list(path: &Path) -> Result<TreeList> {
     if gis::begins_like_drawing(&file::head(path)?) {
         return read_drawn(path);
     }
-    let file = file::read_table(path, LONGEST_TEXT)?;
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(file);
+    let table = file::read_table(path, LONGEST_TEXT)?;
+    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(&table[..]);
     let header = |found: String| Error::input(path, "line 1", found, REMEDY);
     let headers = reader.headers().map_err(|why| header(format!("found {why}")))?.clone();
     if !headers.is_empty() && headers.iter().all(|name| name != "dbh_m") {
@@ -119,9 +119,9 @@ pub fn read_list(path: &Path) -> Result<TreeList> {
     for row in reader.records() {
         let wrong =
             |line: u64, found: String| Error::input(path, format!("line {line}"), found, REMEDY);
-        let line_of = |position: Option<&csv::Position>| position.map_or(1, csv::Position::line);
-        let row = row.map_err(|why| wrong(line_of(why.position()), format!("found {why}")))?;
-        let line = line_of(row.position());
+        let row = row
+            .map_err(|why| wrong(file::line_of(&table, why.position()), format!("found {why}")))?;
+        let line = file::line_of(&table, row.position());
         let TreeRow { x_m, y_m, dbh_m, height_m } =
             row.deserialize(Some(&headers)).map_err(|_| {
                 wrong(line, format!("found {}", row.iter().collect::<Vec<_>>().join(",")))

@@ -206,3 +206,51 @@ proptest! {
         prop_assert_eq!(welded.zero_area.count + welded.duplicates.count + welded.covered.count + welded.triangles.len(), all);
     }
 }
+
+/// A slope of 12 800 triangles in cells of 1.25 m, in map coordinates.
+fn slope_on_the_map() -> Vec<[Vec3; 3]> {
+    let at = v(2_600_000.0, 1_200_000.0, 500.0);
+    let plane = crate::terrain::make::jittered_plane(50.0, 80, 0.6);
+    plane.into_iter().map(|facet| facet.map(|corner| corner + at)).collect()
+}
+
+fn told(answer: Result<Welded>) -> String {
+    answer.err().map(|error| error.to_string()).unwrap_or_default()
+}
+
+/// One triangle at (0, 0, 0) makes the box of a slope on the map so large that corners 2.6 m apart were merged, and the slope was gone.
+#[test]
+fn a_stray_triangle_does_not_take_the_slope_along() {
+    let mut facets = slope_on_the_map();
+    facets.insert(7, [v(0.0, 0.0, 0.0), v(1.0, 0.0, 0.0), v(0.0, 1.0, 0.0)]);
+    let message = told(weld_one(facets.clone(), None));
+    assert!(
+        message.contains("triangle 8 of t.stl lies") && message.contains("weld_tolerance_m"),
+        "{message}"
+    );
+    assert_eq!(weld_one(facets, Some(1e-3)).unwrap().triangles.len(), 12_801);
+}
+
+/// Trees in coordinates of the slope's file beside an elevation model on the map.
+#[test]
+fn files_in_other_coordinates_are_refused() {
+    let slope = Soup::from(slope_on_the_map());
+    let weld_both = |other: &Soup| weld(&[piece(&slope, 0), piece(other, 1)], Vec3::zeros(), None);
+    let tree = Soup::from(crate::terrain::make::tetrahedron(1.0));
+    let message = told(weld_both(&tree));
+    assert!(message.contains("origin_m"), "{message}");
+    let at = v(2_600_060.0, 1_200_000.0, 500.0);
+    let near = Soup::from(vec![[at, at + v(1.0, 0.0, 0.0), at + v(0.0, 1.0, 0.0)]]);
+    assert_eq!(weld_both(&near).unwrap().triangles.len(), 12_801);
+}
+
+/// Trees in millimetres beside a slope in metres: the tolerance that fits their box would flatten the slope.
+#[test]
+fn a_wrong_scale_does_not_flatten_the_slope() {
+    let slope = Soup::from(crate::terrain::make::jittered_plane(50.0, 400, 0.6));
+    let trees = Soup::from(crate::terrain::make::tetrahedron(500_000.0));
+    let millimetres = |scale: f64| [piece(&slope, 0), Piece { scale, ..piece(&trees, 1) }];
+    let message = told(weld(&millimetres(1.0), Vec3::zeros(), None));
+    assert!(message.contains("t.stl: mesh: ") && message.contains("check scale"), "{message}");
+    assert!(weld(&millimetres(1e-3), Vec3::zeros(), None).is_ok());
+}

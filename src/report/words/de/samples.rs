@@ -11,6 +11,10 @@ pub(super) const SAMPLES: &[(&str, &str)] = &[
         "Linie „{name}“: ihre Stücke ab Ecke {a} und ab Ecke {b} kreuzen sich; ein Block zählt einmal, wo er sie zuerst quert. Die Ecken der Reihe nach schreiben, falls die Linie nicht so gemeint ist",
     ),
     (
+        "line “{name}”: {a} of its {b} m have no ground below; what comes there is not computed, and its numbers hold for the rest",
+        "Linie „{name}“: unter {a} ihrer {b} m liegt kein Gelände; was dort ankommt, wird nicht gerechnet, ihre Zahlen gelten für den Rest",
+    ),
+    (
         "[[objects]] without [frequency]: how many releases hit them is computed, how often a year and at what risk is not",
         "[[objects]] ohne [frequency]: wie viele Ablösungen sie treffen, wird gerechnet, wie oft im Jahr und mit welchem Risiko nicht",
     ),

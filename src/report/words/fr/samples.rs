@@ -11,6 +11,10 @@ pub(super) const SAMPLES: &[(&str, &str)] = &[
         "ligne «\u{a0}{name}\u{a0}»\u{a0}: ses tronçons depuis les sommets {a} et {b} se croisent\u{a0}; un bloc compte une fois, là où il la franchit d’abord. Écrire les sommets dans l’ordre si la ligne n’est pas voulue ainsi",
     ),
     (
+        "line “{name}”: {a} of its {b} m have no ground below; what comes there is not computed, and its numbers hold for the rest",
+        "ligne «\u{a0}{name}\u{a0}»\u{a0}: {a} de ses {b} m n’ont pas de terrain dessous\u{a0}; ce qui y arrive n’est pas calculé, ses chiffres valent pour le reste",
+    ),
+    (
         "[[objects]] without [frequency]: how many releases hit them is computed, how often a year and at what risk is not",
         "[[objects]] sans [frequency]\u{a0}: combien de départs les touchent est calculé, combien de fois par an et avec quel risque ne l’est pas",
     ),

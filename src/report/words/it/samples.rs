@@ -11,6 +11,10 @@ pub(super) const SAMPLES: &[(&str, &str)] = &[
         "linea “{name}”: i suoi tratti dai vertici {a} e {b} si incrociano; un blocco conta una volta, dove la attraversa per primo. Scrivere i vertici in ordine se la linea non è voluta così",
     ),
     (
+        "line “{name}”: {a} of its {b} m have no ground below; what comes there is not computed, and its numbers hold for the rest",
+        "linea “{name}”: sotto {a} dei suoi {b} m manca il terreno; ciò che vi arriva non è calcolato, i suoi valori valgono per il resto",
+    ),
+    (
         "[[objects]] without [frequency]: how many releases hit them is computed, how often a year and at what risk is not",
         "[[objects]] senza [frequency]: quanti distacchi li colpiscono è calcolato, quante volte all’anno e con quale rischio no",
     ),
