@@ -3,6 +3,7 @@
 #[cfg(feature = "cloud")]
 mod cloud_tiles;
 mod obj;
+mod odd_cells;
 mod ply;
 pub(super) mod surface;
 #[cfg(test)]

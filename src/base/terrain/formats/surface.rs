@@ -1,6 +1,6 @@
 //! From what a file holds to triangles: crop, coarsen, cut, and say what was done.
 
-use super::{Crop, ElevationModel, Loaded, Options, wider};
+use super::{Crop, ElevationModel, Loaded, Options, odd_cells, wider};
 use crate::error::{Error, Result};
 use crate::rock::Vec3;
 use crate::terrain::facets::Facets;
@@ -171,7 +171,7 @@ impl ElevationModel {
                 grid.columns, grid.rows
             ));
         }
-        self.warnings.extend(zeros_for_no_data(&grid));
+        self.warnings.extend(odd_cells::warnings(&grid));
         if let Some(cell_m) = resample_m {
             if cell_m < grid.cell_m {
                 let found = format!("found {cell_m} m, finer than its cells of {} m", grid.cell_m);
@@ -211,27 +211,6 @@ impl ElevationModel {
         }
         Ok(soup)
     }
-}
-
-/// Share of cells at 0 m (–) above which they are more than a slip of a few.
-const MANY: f64 = 1e-3;
-/// Height of the lowest other cell (m) above which the zeros are no ground: no slope falls so far within a cell.
-const FAR_ABOVE_M: f64 = 50.0;
-
-/// What to say of cells that are exactly 0 m high where all others lie far above: most likely they have no data, and the file
-/// does not say so.
-fn zeros_for_no_data(grid: &Grid) -> Option<String> {
-    let heights = || grid.values.iter().flatten().copied();
-    let zeros = heights().filter(|height| height.abs() <= 0.0).count();
-    let all = heights().count();
-    let others = heights().filter(|height| height.abs() > 0.0);
-    let lowest_m = others.fold(f64::INFINITY, f64::min);
-    let is_odd = zeros < all && zeros as f64 > MANY * all as f64 && lowest_m > FAR_ABOVE_M;
-    is_odd.then(|| {
-        format!(
-            "{zeros} of {all} cells are exactly 0 m high and all others above {lowest_m:.1} m: cells without data? then declare 0 as no data (gdal_translate -a_nodata 0)"
-        )
-    })
 }
 
 /// The facets of all grids, tiles of one model joined; none of other files.

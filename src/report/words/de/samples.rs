@@ -15,6 +15,10 @@ pub(super) const SAMPLES: &[(&str, &str)] = &[
         "Linie „{name}“: unter {a} ihrer {b} m liegt kein Gelände; was dort ankommt, wird nicht gerechnet, ihre Zahlen gelten für den Rest",
     ),
     (
+        "{file}: cells that stand more than {m} m above or below all around them: {n}, the first at ({x}, {y}); errors of measurement, or trees and masts? rocks meet them as ground",
+        "{file}: Zellen, die mehr als {m} m über oder unter allen um sie liegen: {n}, die erste bei ({x}, {y}); Messfehler, oder Bäume und Masten? Blöcke treffen sie als Boden",
+    ),
+    (
         "[[objects]] without [frequency]: how many releases hit them is computed, how often a year and at what risk is not",
         "[[objects]] ohne [frequency]: wie viele Ablösungen sie treffen, wird gerechnet, wie oft im Jahr und mit welchem Risiko nicht",
     ),

@@ -15,6 +15,10 @@ pub(super) const SAMPLES: &[(&str, &str)] = &[
         "ligne «\u{a0}{name}\u{a0}»\u{a0}: {a} de ses {b} m n’ont pas de terrain dessous\u{a0}; ce qui y arrive n’est pas calculé, ses chiffres valent pour le reste",
     ),
     (
+        "{file}: cells that stand more than {m} m above or below all around them: {n}, the first at ({x}, {y}); errors of measurement, or trees and masts? rocks meet them as ground",
+        "{file}\u{a0}: cellules à plus de {m} m au-dessus ou au-dessous de toutes celles qui les entourent\u{a0}: {n}, la première en ({x}, {y})\u{a0}; erreurs de mesure, ou arbres et mâts\u{a0}? les blocs les rencontrent comme sol",
+    ),
+    (
         "[[objects]] without [frequency]: how many releases hit them is computed, how often a year and at what risk is not",
         "[[objects]] sans [frequency]\u{a0}: combien de départs les touchent est calculé, combien de fois par an et avec quel risque ne l’est pas",
     ),

@@ -15,6 +15,10 @@ pub(super) const SAMPLES: &[(&str, &str)] = &[
         "linea “{name}”: sotto {a} dei suoi {b} m manca il terreno; ciò che vi arriva non è calcolato, i suoi valori valgono per il resto",
     ),
     (
+        "{file}: cells that stand more than {m} m above or below all around them: {n}, the first at ({x}, {y}); errors of measurement, or trees and masts? rocks meet them as ground",
+        "{file}: celle a più di {m} m sopra o sotto tutte quelle attorno: {n}, la prima in ({x}, {y}); errori di misura, o alberi e pali? i blocchi le incontrano come suolo",
+    ),
+    (
         "[[objects]] without [frequency]: how many releases hit them is computed, how often a year and at what risk is not",
         "[[objects]] senza [frequency]: quanti distacchi li colpiscono è calcolato, quante volte all’anno e con quale rischio no",
     ),
