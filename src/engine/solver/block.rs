@@ -204,7 +204,7 @@ impl Footing {
             .min(way_m / fastest.max(f64::MIN_POSITIVE))
             .min(TURN * corner_way / spin.norm().max(f64::MIN_POSITIVE));
         let (start, before_j) = (moving.clone(), moving.motion_j(block));
-        let dt = dt.min(moving.climbs_s((block.mass_kg, &world.body.gravity), before_j));
+        let dt = dt.min(moving.climbs_s(block, &world.body.gravity, before_j));
         let dt = self.drift_to_middle(world, block, (&start, moving), dt);
         let (mass, weight) = (moving.mass(block), world.body.gravity * dt);
         let (v, w) = (moving.v, moving.spin(block));

@@ -2,7 +2,7 @@
 
 use super::rolling::Turning;
 use super::solve::{BlockContact, Mass, turning_limit};
-use super::{Footing, Moving};
+use super::{Footing, Moving, TOUCH};
 use crate::body::Block;
 use crate::flight::top::momentum_of;
 use crate::rock::Vec3;
@@ -201,10 +201,16 @@ const SHORTEST_S: f64 = 1e-6;
 
 impl Moving {
     /// How long a step may be (s) in which the block climbs half of its way on the energy that it has (J): where a contact lets out a block
-    /// that hardly moves, a longer one would lift it for nothing.
-    pub(super) fn climbs_s(&self, (mass_kg, gravity): (f64, &Vec3), motion_j: f64) -> f64 {
-        let power_w = -mass_kg * gravity.dot(&self.v);
-        if power_w > 0.0 { (2.0 * motion_j / power_w).max(SHORTEST_S) } else { f64::INFINITY }
+    /// that hardly moves, a longer one would lift it for nothing. What it climbs within a gap that is none is nothing: a block that rests
+    /// on rounding takes steps as long as any other.
+    pub(super) fn climbs_s(&self, block: &Block, gravity: &Vec3, motion_j: f64) -> f64 {
+        // m g v: what the climb takes in a second
+        let power_w = -block.mass_kg * gravity.dot(&self.v);
+        if power_w <= 0.0 {
+            return f64::INFINITY;
+        }
+        let nothing_s = TOUCH * block.radius_m * block.mass_kg * gravity.norm() / power_w;
+        (2.0 * motion_j / power_w).max(nothing_s).max(SHORTEST_S)
     }
 }
 
