@@ -3,6 +3,7 @@
 use super::{Part, Plan};
 use crate::error::{Error, Result};
 use crate::ground::Ground;
+use crate::math;
 use crate::release::{Release, TYPED_DEPTH};
 use crate::scene::Scene;
 use crate::solver::island::broad_phase::{Ball, overlapping};
@@ -58,9 +59,12 @@ fn check_apart(plan: &Plan, ground: &Ground, releases: &[Release]) -> Result<()>
                 &plan.scene_file,
                 "[release]",
                 format!(
-                    "found releases {a} at {a_m:?} and {b} at {b_m:?} to overlap by {overlap_m:.2e} m at the start, where twice what their weight presses in, {pressed_m:.2e} m, is allowed"
+                    "found releases {a} at {a_m:.3?} and {b} at {b_m:.3?} to overlap by {overlap_m:.2e} m at the start, where twice what their weight presses in, {pressed_m:.2e} m, is allowed"
                 ),
-                format!("write points that are at least {} m apart", one.radius + two.radius),
+                format!(
+                    "write points that are at least {} m apart",
+                    math::rounded_up(one.radius + two.radius)
+                ),
             ));
         }
     }
