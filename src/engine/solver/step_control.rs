@@ -178,18 +178,9 @@ fn step(
     }
     let limit = state.longest_step(world, TRAVEL);
     let (omega, known) = (stiffest(world, state), state.histories.len());
-    let mut trial = RockTrial {
-        world,
-        control,
-        state,
-        h,
-        limit,
-        omega,
-        known,
-        end: None,
-        onsets: OnsetSearch::NEW,
-    };
-    done.dt = settle(&mut trial, control, h_max, &mut done.rejected)?;
+    let (end, onsets) = (None, OnsetSearch::NEW);
+    let mut trial = RockTrial { world, control, state, h, limit, omega, known, end, onsets };
+    done.dt = settle(&mut trial, control, (h_max, omega), &mut done.rejected)?;
     done.steps = 1;
     if let Some(end) = trial.end {
         accept(world, control.tableau, state, (&end, done.dt), &mut done.loss);
@@ -220,10 +211,6 @@ impl TrialStep for RockTrial<'_, '_> {
 
     fn limit(&mut self) -> f64 {
         self.limit
-    }
-
-    fn omega(&self) -> f64 {
-        self.omega
     }
 
     fn try_step(&mut self, dt: f64) -> TryOutcome {

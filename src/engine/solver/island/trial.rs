@@ -78,10 +78,6 @@ impl TrialStep for IslandTrial<'_, '_> {
         self.island.travel_limit(TRAVEL)
     }
 
-    fn omega(&self) -> f64 {
-        self.omega
-    }
-
     fn try_step(&mut self, dt: f64) -> TryOutcome {
         let outcome = self.outcome(dt);
         if !matches!(outcome, TryOutcome::Error(error) if error <= 1.0) {
@@ -109,7 +105,7 @@ impl Island<'_> {
         let mut rejected = 0;
         let mut trial =
             IslandTrial { island: self, control, omega, onsets: OnsetSearch::NEW, cuts: 0 };
-        let dt = step_control::settle(&mut trial, control, h_max, &mut rejected)?;
+        let dt = step_control::settle(&mut trial, control, (h_max, omega), &mut rejected)?;
         Ok((dt, rejected))
     }
 

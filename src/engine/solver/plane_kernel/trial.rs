@@ -234,11 +234,12 @@ impl PlaneTrial<'_, '_> {
         done: &mut Advance,
     ) -> Option<StepFailure> {
         // A stem must be asked after every step whether it still stands.
-        let span = if is_tree { 0.0 } else { IMPACT / self.law.omega_rad_s() };
+        let omega = self.law.omega_rad_s();
+        let span = if is_tree { 0.0 } else { IMPACT / omega };
         let (control, mut sum) = (self.control, [0.0; 3]);
         let halt = loop {
             let left = h_max - done.dt;
-            let dt = match settle(self, control, left, &mut done.rejected) {
+            let dt = match settle(self, control, (left, omega), &mut done.rejected) {
                 Ok(dt) => dt,
                 Err(halt) => break Some(halt),
             };
@@ -290,10 +291,6 @@ impl TrialStep for PlaneTrial<'_, '_> {
 
     fn limit(&mut self) -> f64 {
         self.limit
-    }
-
-    fn omega(&self) -> f64 {
-        self.law.omega_rad_s()
     }
 
     fn try_step(&mut self, dt: f64) -> TryOutcome {

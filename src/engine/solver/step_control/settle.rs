@@ -47,19 +47,17 @@ pub(crate) trait TrialStep {
     fn h(&mut self) -> &mut f64;
     /// The longest step that cannot jump over a feature (s).
     fn limit(&mut self) -> f64;
-    /// Stiffest contact (rad/s).
-    fn omega(&self) -> f64;
     /// Tries it with length `dt` (s).
     fn try_step(&mut self, dt: f64) -> TryOutcome;
 }
 
 /// Tries steps until one is accurate and returns its length (s), at most `h_max`, which does not count against the step to
-/// try next.
+/// try next; the stiffest contact has `omega` (rad/s).
 /// The one place where steps are accepted, for stages in space, on a plane and in islands alike.
 pub(crate) fn settle(
     trial: &mut impl TrialStep,
     control: &Control,
-    h_max: f64,
+    (h_max, omega): (f64, f64),
     rejected: &mut u64,
 ) -> Result<f64, StepFailure> {
     loop {
@@ -82,7 +80,7 @@ pub(crate) fn settle(
         *rejected += 1;
         *trial.h() = dt * ratio;
         // one that began so short may be tried again as it is
-        if ratio < 1.0 && dt * ratio * trial.omega() < SHORTEST {
+        if ratio < 1.0 && dt * ratio * omega < SHORTEST {
             return Err(StepFailure::Unsettled);
         }
     }
@@ -113,10 +111,6 @@ mod tests {
             f64::INFINITY
         }
 
-        fn omega(&self) -> f64 {
-            1.0
-        }
-
         fn try_step(&mut self, dt: f64) -> TryOutcome {
             if std::mem::replace(&mut self.presses, true) {
                 TryOutcome::Error(0.5)
@@ -135,7 +129,7 @@ mod tests {
         let short = [1.0, 1e-6, 0.5 * SHORTEST, 1e-3 * SHORTEST];
         for (h, most_s) in short.into_iter().flat_map(|h| [(h, 1.0), (1.0, h)]) {
             let (mut trial, mut rejected) = (Popped { h, presses: false }, 0);
-            let dt = settle(&mut trial, &control, most_s, &mut rejected);
+            let dt = settle(&mut trial, &control, (most_s, 1.0), &mut rejected);
             assert!(dt.is_ok_and(|dt| dt > 0.0 && dt <= most_s), "{h:e} {most_s:e}: {dt:?}");
         }
     }

@@ -53,10 +53,6 @@ impl TrialStep for BlockTrial<'_, '_> {
         self.limit
     }
 
-    fn omega(&self) -> f64 {
-        self.omega
-    }
-
     fn try_step(&mut self, dt: f64) -> TryOutcome {
         let springs = &mut self.footing.springs;
         springs.histories.truncate(springs.known);
@@ -270,7 +266,7 @@ impl Footing {
             made_j: 0.0,
             end: None,
         };
-        let dt = settle(&mut trial, &control, most_s, &mut rejected)?;
+        let dt = settle(&mut trial, &control, (most_s, omega), &mut rejected)?;
         let (next_h, unsettled, made_j) = (trial.h, trial.unsettled, trial.made_j);
         let end = trial.end.ok_or(StepError::Unsettled)?;
         self.springs.h = next_h;
