@@ -11,7 +11,7 @@ pub use law::{
 };
 pub(crate) use law::{
     FixedStepNormal, FrictionElement, FrictionLimits, INSIDE, LinearFriction, NormalElement,
-    NormalLine, within,
+    NormalLine, SliderForce, within,
 };
 pub use soil::{Scar, SlipFriction, cut_area_m2, swept_m3};
 

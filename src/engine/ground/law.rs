@@ -26,7 +26,9 @@ pub use damping::{
     CAPTURE_DAMPING_RATIO, Damping, NormalImpact, damping_ratio, normal_impact, restitution,
     tangential_restitution,
 };
-pub(crate) use friction::{FrictionElement, FrictionLimits, INSIDE, LinearFriction, within};
+pub(crate) use friction::{
+    FrictionElement, FrictionLimits, INSIDE, LinearFriction, SliderForce, within,
+};
 pub(crate) use normal::{FixedStepNormal, NormalElement, NormalLine};
 
 /// Rolling stiffness over `p_s R²` (–); with it the rolling spring is a tenth as stiff as the shear spring.

@@ -10,7 +10,7 @@ use super::friction_rolling::{Answers, Pair, SlipState};
 use crate::contact::Feature;
 use crate::contact::history::ContactHistory;
 pub(crate) use crate::ground::within;
-use crate::ground::{Law, NormalElement};
+use crate::ground::{Law, NormalElement, SliderForce};
 use crate::rock::Vec3;
 
 /// One contact inside a stage: its state at the stage's base and the forces that are sought.
@@ -54,13 +54,9 @@ pub(crate) struct Action {
     /// Normal force (N), ≥ 0, and what it would be if it could pull.
     pub(crate) normal: [f64; 2],
     /// Shear force; the rock feels its opposite at the contact point (N).
-    pub(crate) shear_force: Vec3,
+    pub(crate) shear: SliderForce,
     /// Rolling moment; the rock feels its opposite (N m).
-    pub(crate) rolling_moment: Vec3,
-    /// Rates of the stretches of shear (m/s) and rolling springs (rad/s).
-    pub(crate) rates: [Vec3; 2],
-    /// Squares of the shear force and of the rolling moment that there would be without a cap (N², N² m²).
-    pub(crate) asked2: [f64; 2],
+    pub(crate) rolling: SliderForce,
 }
 
 /// Where a contact is.
@@ -89,34 +85,13 @@ impl Action {
         let pulls = normal.pull_or_push(at.penetration, at.n.dot(v));
         let normal_force = pulls.max(0.0);
         let slip = body.slip(&at.n, v, w);
-        let held = law.shear.held(at.shear);
-        let asked = held + law.shear.damped(slip);
-        let shear_force = law.shear.capped(asked, normal_force);
-        let shear_rate = law.shear.relaxing(shear_force, held);
-        let (mut rolling_moment, mut roll_rate, mut asked_moment2) = (ZERO, ZERO, 0.0);
-        if law.rolling.is_damped() {
-            let wound = law.rolling.held(at.roll);
-            let asked = wound + law.rolling.damped(*w);
-            rolling_moment = law.rolling.capped(asked, normal_force);
-            roll_rate = law.rolling.relaxing(rolling_moment, wound);
-            asked_moment2 = asked.norm_squared();
-        }
-        Self {
-            slip,
-            normal: [normal_force, pulls],
-            shear_force,
-            rolling_moment,
-            rates: [shear_rate, roll_rate],
-            asked2: [asked.norm_squared(), asked_moment2],
-        }
-    }
-
-    /// Power that goes into friction, into spring and dashpot of shear, and into rolling (W), in this order.
-    #[inline]
-    pub(crate) fn powers(&self, w: &Vec3) -> [f64; 3] {
-        let slipping = self.shear_force.dot(&(self.slip - self.rates[0]));
-        let damping = self.shear_force.dot(&self.rates[0]);
-        [slipping, damping, self.rolling_moment.dot(w)]
+        let shear = law.shear.at_rate(at.shear, slip, law.shear.cap(normal_force));
+        let rolling = if law.rolling.is_damped() {
+            law.rolling.at_rate(at.roll, *w, law.rolling.cap(normal_force))
+        } else {
+            SliderForce::default()
+        };
+        Self { slip, normal: [normal_force, pulls], shear, rolling }
     }
 }
 

@@ -1,6 +1,7 @@
 //! Where energy goes in contacts.
 
 use super::environment::ContactEnvironment;
+use crate::rock::Vec3;
 
 /// Power that goes into contacts (W) by kind, or energy (J) once summed over time. What springs store is counted
 /// in; it is nothing once the contact is over.
@@ -20,6 +21,17 @@ impl Loss {
     /// On the slope, by friction, damping and rolling.
     pub(crate) const fn on_slope([friction, damping, rolling]: [f64; 3]) -> Self {
         Self { friction, damping, rolling, trees: 0.0 }
+    }
+
+    /// Power that a contact on the slope takes whose point slips so (m/s) under a shear force (N), of what goes into its normal element and into
+    /// rolling (W). Friction takes what of the slip does not stretch the spring; what stretches it goes into spring and dashpot.
+    #[inline]
+    pub(super) fn of_slip(
+        (shear_force, slip, stretch_rate): (&Vec3, &Vec3, &Vec3),
+        [normal_w, rolling]: [f64; 2],
+    ) -> Self {
+        let friction = shear_force.dot(&(slip - stretch_rate));
+        Self::on_slope([friction, shear_force.dot(stretch_rate) + normal_w, rolling])
     }
 
     /// On the slope, of parts by friction, damping and rolling of which only the sum is exact: what one of them seems to give back in a step,

@@ -152,7 +152,7 @@ impl ContactState {
         let action = Action::of(&world.body, law, &law.normal(false), &at, (&self.v, &self.w));
         (history.shear, history.roll) = (at.shear, at.roll);
         history.normal_force = action.normal[0];
-        history.slides = law.shear.slides2(action.asked2[0], action.normal[0]);
+        history.slides = law.shear.slides2(action.shear.asked2, action.normal[0]);
         history.closed = true;
     }
 }

@@ -28,12 +28,9 @@ impl StageContact {
         w: &Vec3,
         shear_rate: &Vec3,
     ) -> Loss {
-        // friction takes what of the slip does not stretch the spring; what stretches it goes into spring and dashpot
         let slip = world.body.slip(&self.n, v, w);
-        let friction = self.shear_force.dot(&(slip - shear_rate));
-        let damping = self.shear_force.dot(shear_rate) - self.normal_force * self.n.dot(v);
-        let rolling = self.rolling_moment.dot(w);
-        Loss::on_slope([friction, damping, rolling]).on(world, self.triangle)
+        let others = [-self.normal_force * self.n.dot(v), self.rolling_moment.dot(w)];
+        Loss::of_slip((&self.shear_force, &slip, shear_rate), others).on(world, self.triangle)
     }
 
     /// Forces at the present state, for the explicit first stage; returns the rates of shear and rolling springs.
@@ -52,8 +49,8 @@ impl StageContact {
         let law = &self.law;
         let action = Action::of(&world.body, law, &self.normal, &at, (v, w));
         self.normal_force = action.normal[0];
-        (self.shear_force, self.rolling_moment) = (action.shear_force, action.rolling_moment);
-        (action.rates[0], action.rates[1])
+        (self.shear_force, self.rolling_moment) = (action.shear.force, action.rolling.force);
+        (action.shear.stretch_rate, action.rolling.stretch_rate)
     }
 }
 

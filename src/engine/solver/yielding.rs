@@ -39,15 +39,15 @@ impl Pressing {
     fn moved(&self, body: &Body, law: &Law, there: &Self, h: f64) -> Self {
         let n = &there.at.n;
         let acts = Action::of(body, law, &law.normal(false), &there.at, (&there.v, &there.w));
-        let turning = n.cross(&acts.shear_force) * body.radius - acts.rolling_moment;
+        let turning = n.cross(&acts.shear.force) * body.radius - acts.rolling.force;
         Self {
             at: ContactPlace {
                 n: *n,
                 penetration: self.at.penetration - n.dot(&there.v) * h,
-                shear: self.at.shear + acts.rates[0] * h,
-                roll: self.at.roll + acts.rates[1] * h,
+                shear: self.at.shear + acts.shear.stretch_rate * h,
+                roll: self.at.roll + acts.rolling.stretch_rate * h,
             },
-            v: self.v + (n * acts.normal[0] - acts.shear_force) * (h / body.mass),
+            v: self.v + (n * acts.normal[0] - acts.shear.force) * (h / body.mass),
             w: self.w + turning * (h / body.inertia),
         }
     }

@@ -79,6 +79,16 @@ impl FrictionElement {
         self.k * h + self.c
     }
 
+    /// What it does where its spring is stretched and stretches on at a rate, the slider bearing so much.
+    #[inline]
+    pub(crate) fn at_rate(&self, stretch: Vec3, rate: Vec3, cap: f64) -> SliderForce {
+        let held = self.held(stretch);
+        let asked = held + self.damped(rate);
+        let force = within(asked, cap);
+        let stretch_rate = self.relaxing(force, held);
+        SliderForce { force, stretch_rate, asked2: asked.norm_squared() }
+    }
+
     /// Rate at which the spring stretches under `force` where it holds `held`; nothing without a dashpot.
     #[inline]
     pub(crate) fn relaxing(&self, force: Vec3, held: Vec3) -> Vec3 {
@@ -138,6 +148,17 @@ impl FrictionElement {
     pub(crate) fn bonded(&self, h: f64) -> Slider {
         Slider { limit: f64::INFINITY, stiffness: self.over(h), sticks: true }
     }
+}
+
+/// What a friction element does at a motion.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct SliderForce {
+    /// Its force (N) or moment (N m).
+    pub(crate) force: Vec3,
+    /// Rate of its spring's stretch (m/s, rad/s).
+    pub(crate) stretch_rate: Vec3,
+    /// Square of the force that there would be without a cap.
+    pub(crate) asked2: f64,
 }
 
 /// A friction element over a stage, and its mode.

@@ -28,7 +28,7 @@ use super::energy::ActingAlong;
 use super::solve::{BlockContact, GivingWay, Mass};
 use super::{Footing, Moving, Stepped, TOUCH};
 use crate::body::Block;
-use crate::ground::Law;
+use crate::ground::{Law, SliderForce};
 use crate::math;
 use crate::rock::Vec3;
 use crate::solver::Settings;
@@ -121,16 +121,6 @@ pub(crate) struct Springs {
     /// When the impacts that go on are over at the latest (s).
     pub(crate) until_s: f64,
     control: Option<Control>,
-}
-
-/// What a contact asks for at a motion, and how its shear spring goes on.
-struct SpringAnswer {
-    /// Normal force if it could pull (N).
-    pulls: f64,
-    /// Square of the shear force that there would be without a cap (N²).
-    asked2: f64,
-    /// Rate of the stretch (m/s).
-    shear_rate: Vec3,
 }
 
 impl Springs {
@@ -232,17 +222,16 @@ impl SpringContact {
         self.shear_force = (self.n * self.n.dot(impulse) - impulse) / a;
     }
 
-    /// Takes the forces that it has where its point moves by `u` (m/s).
-    fn press(&mut self, u: &Vec3) -> SpringAnswer {
-        let (up, shear) = (self.n.dot(u), &self.law.shear);
+    /// Takes the forces that it has where its point moves by `u` (m/s): the normal force if it could pull (N), and shear.
+    fn press(&mut self, u: &Vec3) -> (f64, SliderForce) {
+        let (up, element) = (self.n.dot(u), &self.law.shear);
         let normal = self.law.normal(self.captured);
         let pulls = normal.pull_or_push(self.penetration.max(0.0), up);
         self.normal_force = pulls.max(0.0);
-        let (slip, held) = (u - self.n * up, shear.held(self.shear));
-        let asked = held + shear.damped(slip);
-        self.shear_force = shear.capped(asked, self.normal_force);
-        let shear_rate = shear.relaxing(self.shear_force, held);
-        SpringAnswer { pulls, asked2: asked.norm_squared(), shear_rate }
+        let cap = element.cap(self.normal_force);
+        let shear = element.at_rate(self.shear, u - self.n * up, cap);
+        self.shear_force = shear.force;
+        (pulls, shear)
     }
 
     /// Energy in its springs at a penetration and a stretch (J, m): nothing where it does not press.
@@ -270,8 +259,7 @@ impl SpringContact {
     /// The same, with what goes into its normal element (W).
     fn shear_power(&self, u: &Vec3, shear_rate: &Vec3, normal_w: f64) -> Loss {
         let slip = u - self.n * self.n.dot(u);
-        let friction = self.shear_force.dot(&(slip - shear_rate));
-        Loss { friction, damping: self.shear_force.dot(shear_rate) + normal_w, ..Loss::default() }
+        Loss::of_slip((&self.shear_force, &slip, shear_rate), [normal_w, 0.0])
     }
 }
 

@@ -285,20 +285,20 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
                 },
             };
             let action = Action::of(body, law, &normal, &at, (&v, &w));
-            let [normal_force, pulls] = action.normal;
-            dv += (n * normal_force - action.shear_force) * by_mass;
-            dw += (n.cross(&action.shear_force) * body.radius - action.rolling_moment) * by_inertia;
-            put(&mut rates.y, SPRINGS + 3 * place, &carry(action.rates[0], &n, &memory.n));
+            let Action { normal: [normal_force, pulls], shear, rolling, slip } = action;
+            dv += (n * normal_force - shear.force) * by_mass;
+            dw += (n.cross(&shear.force) * body.radius - rolling.force) * by_inertia;
+            put(&mut rates.y, SPRINGS + 3 * place, &carry(shear.stretch_rate, &n, &memory.n));
             if Self::rolls::<N>() {
-                put(&mut rates.y, SPRINGS + 3 * (C + place), &action.rates[1]);
+                put(&mut rates.y, SPRINGS + 3 * (C + place), &rolling.stretch_rate);
             }
             let apart = n.dot(&v);
-            let [friction, shear_damping, rolling] = action.powers(&w);
-            let damping = shear_damping + normal.dissipating_w(at.penetration, apart);
+            let others = [normal.dissipating_w(at.penetration, apart), rolling.force.dot(&w)];
+            let power = Loss::of_slip((&shear.force, &slip, &shear.stretch_rate), others);
             rates.q[LOSSES + place] = normal.storing_w(at.penetration, -apart);
             *damped |= u32::from(normal.is_damped(body.mass)) << place;
-            let power = Loss::on_slope([friction, damping, rolling]).on(world, touch.triangle);
-            for (sum, power) in rates.q.iter_mut().zip(power.parts()) {
+            let power = power.on(world, touch.triangle).parts();
+            for (sum, power) in rates.q.iter_mut().zip(power) {
                 *sum += power;
             }
             let (cap, most) = law.limits().caps(normal_force);
@@ -306,9 +306,9 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
             let turn = body.radius * by_inertia;
             rates.kinks[3 * place] =
                 [(normal_force * by_mass).powi(2), (-pulls).max(0.0) * by_mass];
-            rates.kinks[3 * place + 1] = [action.asked2[0] * by_mass * by_mass, cap * by_mass];
-            rates.kinks[3 * place + 2] = [action.asked2[1] * turn * turn, most * turn];
-            let slides = law.shear.slides2(action.asked2[0], normal_force);
+            rates.kinks[3 * place + 1] = [shear.asked2 * by_mass * by_mass, cap * by_mass];
+            rates.kinks[3 * place + 2] = [rolling.asked2 * turn * turn, most * turn];
+            let slides = law.shear.slides2(shear.asked2, normal_force);
             let pressed = PressedContact { place, touch, at, normal, normal_force, slides };
             self.pressed.push(pressed);
         }

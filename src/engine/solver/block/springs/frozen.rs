@@ -15,7 +15,7 @@
 //! at once.
 
 use super::super::energy::ActingAlong;
-use super::{Footing, Moving, RollingSpring, SpringAnswer, SpringContact};
+use super::{Footing, Moving, RollingSpring, SpringContact};
 use crate::body::Block;
 use crate::contact::MOST;
 use crate::contact::block::{BlockTouch, MOST_TOUCHES};
@@ -323,23 +323,23 @@ impl<const N: usize, const P: usize> Flow<N, SUMS, P> for FrozenFlow<'_, '_> {
                 (contact.normal_force, contact.shear_force) = (0.0, Vec3::zeros());
                 continue;
             }
-            let SpringAnswer { pulls, asked2, shear_rate } = contact.press(&u);
+            let (pulls, shear) = contact.press(&u);
             let force = contact.n * contact.normal_force - contact.shear_force;
             push += force;
             torque += contact.lever.cross(&force);
-            put(&mut to.y, at + 1, &shear_rate);
-            loss.add(&contact.power(self.world, &u, &shear_rate), 1.0);
+            put(&mut to.y, at + 1, &shear.stretch_rate);
+            loss.add(&contact.power(self.world, &u, &shear.stretch_rate), 1.0);
             // in units of acceleration, so that times a step they are speeds
             let by_mass = 1.0 / self.mass.mass;
             let (pushes, cap) = (contact.normal_force, contact.law.shear.cap(contact.normal_force));
             to.kinks[2 * k] = [(pushes * by_mass).powi(2), (-pulls).max(0.0) * by_mass];
-            to.kinks[2 * k + 1] = [asked2 * by_mass * by_mass, cap * by_mass];
+            to.kinks[2 * k + 1] = [shear.asked2 * by_mass * by_mass, cap * by_mass];
         }
         if self.rolling.is_on() {
             self.rolling.stretch = three(y, ROLLED);
             let turning = self.rolling.press(&self.contacts, &w);
-            torque -= turning.moment;
-            put(&mut to.y, ROLLED, &turning.rate);
+            torque -= turning.force;
+            put(&mut to.y, ROLLED, &turning.stretch_rate);
             loss.add(&self.rolling.power(self.world, &self.contacts, &w), 1.0);
         }
         to.q = [loss.friction, loss.damping, loss.rolling, loss.trees];

@@ -4,12 +4,11 @@
 //! slider bears is that of each contact.
 
 use super::SpringContact;
-use crate::ground::FrictionElement;
+use crate::ground::{FrictionElement, SliderForce};
 use crate::rock::Vec3;
 use crate::solver::block::rolling::Turning;
 use crate::solver::block::solve::first_guess;
 use crate::solver::environment::ContactEnvironment;
-use crate::solver::law::within;
 use crate::solver::loss::Loss;
 
 /// The rolling spring of a block, and its moment.
@@ -56,18 +55,17 @@ impl RollingSpring {
     }
 
     /// Takes the moment that it has where the block turns with `w` (rad/s), pressed as its contacts are.
-    pub(super) fn press(&mut self, contacts: &[SpringContact], w: &Vec3) -> RollingRate {
+    pub(super) fn press(&mut self, contacts: &[SpringContact], w: &Vec3) -> SliderForce {
         self.base = self.stretch;
-        let Some(element) = &self.element else { return RollingRate::default() };
-        let held = element.held(self.stretch);
-        self.moment = within(held + element.damped(*w), limit_n_m(contacts));
-        RollingRate { moment: self.moment, rate: element.relaxing(self.moment, held) }
+        let Some(element) = &self.element else { return SliderForce::default() };
+        let pressed = element.at_rate(self.stretch, *w, limit_n_m(contacts));
+        self.moment = pressed.force;
+        pressed
     }
 
-    /// Moment, and rate of the stretch in the mean of a stage in which the block has turned for `b` (s).
-    pub(super) fn turned(&self, b: f64) -> RollingRate {
-        let rate = (self.stretch_after(b) - self.base) / b;
-        RollingRate { moment: self.moment, rate }
+    /// Rate of the stretch (rad/s) in the mean of a stage in which the block has turned for `b` (s).
+    pub(super) fn rate_over(&self, b: f64) -> Vec3 {
+        (self.stretch_after(b) - self.base) / b
     }
 
     /// Stretch after the block has turned for `b` (s) (rad).
@@ -113,15 +111,6 @@ impl RollingSpring {
         }
         loss
     }
-}
-
-/// What rolling friction does at a motion.
-#[derive(Debug, Default)]
-pub(super) struct RollingRate {
-    /// The moment that it takes from the block (N m).
-    pub(super) moment: Vec3,
-    /// Rate of its stretch (rad/s).
-    pub(super) rate: Vec3,
 }
 
 /// Largest moment that contacts bear together (N m).

@@ -6,10 +6,11 @@
 
 use super::super::{Footing, Moving, ROUNDING_OF_SPEED, TOUCH, orthonormal};
 use super::newton::solve_springs;
-use super::{BlockRates, SpringAnswer, SpringContact, turn_by, turning};
+use super::{BlockRates, SpringContact, turn_by, turning};
 use crate::body::Block;
 use crate::contact::block::{BlockTouch, Pose};
 use crate::contact::history::carry;
+use crate::ground::SliderForce;
 use crate::rock::Vec3;
 use crate::solver::block::rolling::Turning;
 use crate::solver::block::solve::{BlockContact, Mass, SWEEPS, first_guess, solve};
@@ -245,7 +246,7 @@ impl Footing {
             let u = end.moving.at(block, &contact.lever);
             rate.loss.add(&contact.power(world, &u, &shear_rate), 1.0);
         }
-        rate.rolled = springs.rolling.turned(way_s).rate;
+        rate.rolled = springs.rolling.rate_over(way_s);
         let spin = end.moving.spin(block);
         rate.loss.add(&springs.rolling.power(world, &springs.contacts, &spin), 1.0);
     }
@@ -271,17 +272,17 @@ impl Footing {
         (rate.turned, rate.momentum) = (moving.spin(block), Vec3::zeros());
         for contact in &mut springs.contacts {
             let (n, u) = (contact.n, Mass::at(&contact.lever, (&moving.v, &rate.turned)));
-            let SpringAnswer { shear_rate, .. } = contact.press(&u);
+            let SliderForce { stretch_rate, .. } = contact.press(&u).1;
             let force = n * contact.normal_force - contact.shear_force;
             rate.v += force / block.mass_kg;
             rate.momentum += contact.lever.cross(&force);
             let back = &springs.histories[contact.history].n;
-            rate.shear[contact.history] = carry(shear_rate, &n, back);
-            rate.loss.add(&contact.power(world, &u, &shear_rate), 1.0);
+            rate.shear[contact.history] = carry(stretch_rate, &n, back);
+            rate.loss.add(&contact.power(world, &u, &stretch_rate), 1.0);
         }
         let rolling = springs.rolling.press(&springs.contacts, &rate.turned);
-        rate.momentum -= rolling.moment;
-        rate.rolled = rolling.rate;
+        rate.momentum -= rolling.force;
+        rate.rolled = rolling.stretch_rate;
         rate.loss.add(&springs.rolling.power(world, &springs.contacts, &rate.turned), 1.0);
         springs.rates[0] = rate;
         springs.fresh = true;

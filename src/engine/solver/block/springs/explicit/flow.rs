@@ -244,15 +244,15 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
         u: &Vec3,
         rates: &mut Rates<N, Q, P>,
     ) -> Vec3 {
-        let pressing = contact.press(u);
+        let (pulls, shear) = contact.press(u);
         let place = contact.history;
         let memory = &self.footing.springs.histories[place];
-        let rate = carry(pressing.shear_rate, &contact.n, &memory.n);
+        let rate = carry(shear.stretch_rate, &contact.n, &memory.n);
         put(&mut rates.y, SPRINGS + 3 * place, &rate);
         let (normal, up) = (contact.law.normal(contact.captured), contact.n.dot(u));
         let penetration = contact.penetration.max(0.0);
         let dissipates = normal.dissipating_w(penetration, up);
-        let power = contact.shear_power(u, &pressing.shear_rate, dissipates);
+        let power = contact.shear_power(u, &shear.stretch_rate, dissipates);
         let power = power.on(self.world, contact.triangle);
         for (sum, power) in rates.q.iter_mut().zip([power.friction, power.damping, power.trees]) {
             *sum += power;
@@ -262,8 +262,8 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
         // in units of acceleration, so that times a step they are speeds
         let by_mass = 1.0 / self.block.mass_kg;
         let (pushes, cap) = (contact.normal_force, contact.law.shear.cap(contact.normal_force));
-        rates.kinks[2 * place] = [(pushes * by_mass).powi(2), (-pressing.pulls).max(0.0) * by_mass];
-        rates.kinks[2 * place + 1] = [pressing.asked2 * by_mass * by_mass, cap * by_mass];
+        rates.kinks[2 * place] = [(pushes * by_mass).powi(2), (-pulls).max(0.0) * by_mass];
+        rates.kinks[2 * place + 1] = [shear.asked2 * by_mass * by_mass, cap * by_mass];
         contact.n * pushes - contact.shear_force
     }
 }
