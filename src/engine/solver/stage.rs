@@ -68,13 +68,12 @@ pub struct End {
 impl ContactState {
     /// The base of implicit stage `i`: the state plus the explicit part of the earlier stages.
     pub(crate) fn base(&self, tableau: &Tableau, i: usize, h: f64) -> End {
-        let mut base = End { c: self.c, v: self.v, w: self.w };
-        for (rate, a) in self.rates.iter().zip(tableau.a[i]) {
-            base.c += rate.c * (h * a);
-            base.v += rate.v * (h * a);
-            base.w += rate.w * (h * a);
+        let base = |x, part: fn(&StateRates) -> Vec3| tableau.base((i, h), (x, &self.rates), part);
+        End {
+            c: base(self.c, |rate| rate.c),
+            v: base(self.v, |rate| rate.v),
+            w: base(self.w, |rate| rate.w),
         }
-        base
     }
 
     /// Solves implicit stage `i` of a step of length `h` and stores its rates; `None` if it does not settle.
@@ -142,12 +141,9 @@ impl ContactState {
         for k in 0..self.contact_count {
             let history = self.history_of(world, k, taken, &base.v);
             taken |= 1 << history;
-            let memory = &self.histories[history];
-            let (mut shear, mut roll) = (memory.shear, memory.roll);
-            for (rate, a) in self.rates.iter().zip(tableau.a[i]) {
-                shear += rate.shear[history] * (h * a);
-                roll += rate.roll[history] * (h * a);
-            }
+            let (memory, rates) = (&self.histories[history], &self.rates);
+            let shear = tableau.base((i, h), (memory.shear, rates), |rate| rate.shear[history]);
+            let roll = tableau.base((i, h), (memory.roll, rates), |rate| rate.roll[history]);
             let mut contact = self.contact_of(world, k, history, (shear, roll));
             contact.penetration =
                 world.body.radius - self.touches[k].distance_m - contact.n.dot(&(base.c - at));

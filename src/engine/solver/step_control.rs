@@ -15,13 +15,12 @@ mod settle;
 
 use super::Settings;
 use super::body::Body;
-use super::contact_state::{ContactEnvironment, ContactState, Onset, StateRates};
+use super::contact_state::{ContactEnvironment, ContactState, Onset};
 use super::loss::Loss;
 use super::stage::End;
 use super::tableau::Tableau;
 use crate::contact::history::carry;
 use crate::ground::Law;
-use crate::rock::Vec3;
 pub(crate) use onset::{Begun, MET, MOST_CUTS, OnsetSearch};
 pub(crate) use settle::{StepFailure, TrialStep, TryOutcome, settle};
 
@@ -279,20 +278,14 @@ fn attempt(
     for i in 1..tableau.stages {
         end = Some(state.stage(world, tableau, i, dt)?);
     }
-    let rates = &state.rates[..tableau.stages];
+    let rates = &state.rates;
     let ways2 = (0..state.histories.len())
-        .map(|k| off2(tableau, rates, |rate| rate.shear[k]))
-        .fold(off2(tableau, rates, |rate| rate.c), f64::max);
+        .map(|k| tableau.off(rates, |rate| rate.shear[k]).norm_squared())
+        .fold(tableau.off(rates, |rate| rate.c).norm_squared(), f64::max);
     let worst2 = (ways2 * omega * omega)
-        .max(off2(tableau, rates, |rate| rate.v))
-        .max(off2(tableau, rates, |rate| rate.w) * world.body.radius.powi(2));
+        .max(tableau.off(rates, |rate| rate.v).norm_squared())
+        .max(tableau.off(rates, |rate| rate.w).norm_squared() * world.body.radius.powi(2));
     end.map(|end| (end, dt * worst2.sqrt() / control.tolerance))
-}
-
-/// What the two methods of a tableau differ by in a part of the motion, over the length of the step, squared.
-fn off2(tableau: &Tableau, rates: &[StateRates], part: impl Fn(&StateRates) -> Vec3) -> f64 {
-    let weighted = rates.iter().zip(tableau.error);
-    weighted.fold(Vec3::zeros(), |sum, (rate, weight)| sum + part(rate) * weight).norm_squared()
 }
 
 /// Takes over the step's end: motion, memories, losses.

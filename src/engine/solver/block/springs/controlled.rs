@@ -87,7 +87,10 @@ impl BlockTrial<'_, '_> {
         for i in 1..tableau.stages {
             let base = self.footing.base(self.start, tableau, (i, dt));
             let stage = StageBase { start: self.start, base, times_s: (way_s, way_s) };
-            let shear = |footing: &Footing, k: usize| footing.stretch_at_base(k, tableau, (i, dt));
+            let shear = |Footing { springs, .. }: &Footing, k: usize| {
+                let from = (springs.histories[k].shear, &springs.rates[..]);
+                tableau.base((i, dt), from, |rate| rate.shear[k])
+            };
             let ends = self.footing.stage(self.world, self.block, &stage, shear)?;
             self.unsettled |= self.footing.unsettled;
             let begins_s = self.onsets.first(
@@ -107,16 +110,12 @@ impl BlockTrial<'_, '_> {
     /// Local error of the step over the one allowed (–): ways by the stiffest contact's frequency, turns by the largest radius.
     fn error(&self, dt: f64) -> f64 {
         let tableau = self.control.tableau;
-        let rates = &self.footing.springs.rates[..tableau.stages];
-        let off = |part: fn(&BlockRates) -> Vec3| {
-            rates.iter().zip(tableau.error).map(|(rate, weight)| part(rate) * weight).sum::<Vec3>()
-        };
+        let rates = &self.footing.springs.rates;
+        let off = |part: fn(&BlockRates) -> Vec3| tableau.off(rates, part);
         let (omega, reach) = (self.omega, self.block.bound_m);
         let spin = self.start.mass(self.block).inverse * off(|rate| rate.momentum);
-        let stretch = (0..self.footing.springs.histories.len()).map(|k| {
-            let drift = rates.iter().zip(tableau.error);
-            drift.map(|(rate, weight)| rate.shear[k] * weight).sum::<Vec3>().norm()
-        });
+        let histories = 0..self.footing.springs.histories.len();
+        let stretch = histories.map(|k| tableau.off(rates, |rate| rate.shear[k]).norm());
         let worst = [
             off(|rate| rate.centre).norm() * omega,
             off(|rate| rate.turned).norm() * reach * omega,

@@ -62,16 +62,19 @@ impl StageBase<'_> {
 impl Footing {
     /// The base of implicit stage `i` of a step of length `h` (s) from `start`.
     pub(super) fn base(&self, start: &Moving, tableau: &Tableau, (i, h): (usize, f64)) -> BlockEnd {
-        let rolled = self.springs.rolling.stretch;
-        let mut base = BlockEnd { moving: start.clone(), turned: Vec3::zeros(), rolled };
-        for (rate, a) in self.springs.rates.iter().zip(tableau.a[i]) {
-            base.moving.pose.centre += rate.centre * (h * a);
-            base.moving.v += rate.v * (h * a);
-            base.moving.momentum += rate.momentum * (h * a);
-            base.turned += rate.turned * (h * a);
-            base.rolled += rate.rolled * (h * a);
+        let base =
+            |x, part: fn(&BlockRates) -> Vec3| tableau.base((i, h), (x, &self.springs.rates), part);
+        let Moving { pose: Pose { centre, attitude }, v, momentum } = *start;
+        let pose = Pose { centre: base(centre, |rate| rate.centre), attitude };
+        BlockEnd {
+            moving: Moving {
+                pose,
+                v: base(v, |rate| rate.v),
+                momentum: base(momentum, |rate| rate.momentum),
+            },
+            turned: base(Vec3::zeros(), |rate| rate.turned),
+            rolled: base(self.springs.rolling.stretch, |rate| rate.rolled),
         }
-        base
     }
 
     /// Solves a stage; `None` if geometry and forces do not come to agree. `shear_of` tells the stretch of a history at the base.
@@ -286,17 +289,5 @@ impl Footing {
         rate.loss.add(&springs.rolling.power(world, &springs.contacts, &rate.turned), 1.0);
         springs.rates[0] = rate;
         springs.fresh = true;
-    }
-
-    /// Stretch of a history at the base of stage `i` of a step of length `h` (s).
-    pub(super) fn stretch_at_base(
-        &self,
-        k: usize,
-        tableau: &Tableau,
-        (i, h): (usize, f64),
-    ) -> Vec3 {
-        let rates = self.springs.rates.iter().zip(tableau.a[i]);
-        let grown = |sum, (rate, a): (&BlockRates, &f64)| sum + rate.shear[k] * (h * a);
-        rates.fold(self.springs.histories[k].shear, grown)
     }
 }
