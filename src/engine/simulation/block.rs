@@ -61,7 +61,7 @@ pub(super) fn follow_block(
     let block = &drawn.block;
     let world = settings.around(Body::of_block(block, settings.gravity_m_s2), laws);
     footing.forget();
-    footing.raise_stems(settings.terrain, &random);
+    footing.stem_load.raise(settings.terrain, &random, &mut footing.near.gone);
     (footing.near.tested, footing.sweeps) = (0, 0);
     footing.facets = RoughFacets::of(random, laws);
     footing.slip.begin(&release.grounds);
@@ -146,9 +146,7 @@ impl Roll<'_> {
             self.recorder.effort.steps += 1;
             self.recorder.effort.unsettled += u64::from(done.unsettled);
             self.recorder.pay(&done.loss);
-            if self.scars.are_any() {
-                self.plough(&from, done.is_free);
-            }
+            self.plough(&from, done.is_free);
             let to = Motion {
                 time_s: now_s + done.dt,
                 position_m: self.moving.pose.centre,
@@ -229,7 +227,7 @@ impl Roll<'_> {
             self.recorder.begin_impact(&struck, now_s, &MeshEnergy::default());
         }
         let fastest = self.moving.fastest(block, struck.iter());
-        if let Some(touch) = fastest.filter(|_| self.scars.are_any()) {
+        if let Some(touch) = fastest {
             self.dig(touch.triangle, &touch.normal);
         }
         self.footing.aside = struck;
@@ -267,9 +265,9 @@ impl Roll<'_> {
 
     /// Ploughs on from where the step began, and leaves the scar if it is free.
     fn plough(&mut self, from: &Vec3, is_free: bool) {
-        let (world, scars) = (&self.world, &self.scars);
-        let on_soil = |touch: &&BlockTouch| scars.lie_on(world.ground_of(touch.triangle));
-        let normal = self.footing.touching(self.block).find(on_soil).map(|touch| touch.normal);
+        let contacts =
+            self.footing.touching(self.block).map(|touch| (touch.triangle, touch.normal));
+        let normal = self.scars.floor(&self.world, contacts);
         let way_m = (self.moving.pose.centre - from).norm();
         let ends = is_free.then_some(self.moving.v);
         let kept = self.scars.plough(&self.world.body, (way_m, normal), ends);

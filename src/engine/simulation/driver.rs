@@ -92,7 +92,8 @@ pub fn simulate(
     scratch.make_laws(release, settings);
     scratch.state.near.forget();
     (scratch.state.near.tested, scratch.state.sweeps) = (0, 0);
-    scratch.state.raise_stems(settings.terrain, &random);
+    let state = &mut scratch.state;
+    state.stem_load.raise(settings.terrain, &random, &mut state.near.gone);
     scratch.state.facets = RoughFacets::of(random, &scratch.laws);
     scratch.slip.begin(&release.grounds);
     let mut fall = Fall {

@@ -208,7 +208,7 @@ impl RockInContact<'_, '_> {
             let held_j = self.held_j(|_| true);
             self.recorder.book_impacts(&held_j);
         }
-        if self.state.has_met_its_facet(self.recorder.now.time_s) {
+        if self.state.facets.is_met(self.state.is_free(), self.recorder.now.time_s) {
             self.leave_facet();
         }
     }

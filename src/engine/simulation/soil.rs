@@ -24,12 +24,9 @@ impl Fall<'_> {
     pub(super) fn answer_blow(&mut self) -> f64 {
         let Some(blow) = self.state.blow.take() else { return 1.0 };
         let ground = self.settings.around(self.body, self.laws).ground_of(blow.triangle);
-        let mut kept = 1.0;
-        if self.soil.scars.are_any() {
-            let speeds = (blow.approach_m_s, self.state.v.norm());
-            kept = self.soil.scars.enter(&self.body, (ground, blow.n), speeds);
-            self.slow(kept);
-        }
+        let speeds = (blow.approach_m_s, self.state.v.norm());
+        let kept = self.soil.scars.enter(&self.body, (ground, blow.n), speeds);
+        self.slow(kept);
         self.laws[usize::from(ground)].struck_at(kept * blow.approach_m_s);
         kept
     }
@@ -61,17 +58,13 @@ impl Fall<'_> {
     /// both ends) for friction.
     pub(super) fn soil_after_step(&mut self, before: &Vec3, dt: f64) {
         self.soil.last_step_s = dt;
-        if self.soil.scars.are_any() {
-            let world = self.settings.around(self.body, self.laws);
-            let on_soil = |history: &&ContactHistory| {
-                self.soil.scars.lie_on(world.ground_of(history.triangle))
-            };
-            let normal = self.state.histories.iter().find(on_soil).map(|history| history.n);
-            let way_m = (self.state.c - before).norm();
-            let ends = self.state.is_free().then_some(self.state.v);
-            let kept = self.soil.scars.plough(&self.body, (way_m, normal), ends);
-            self.slow(kept);
-        }
+        let world = self.settings.around(self.body, self.laws);
+        let contacts = self.state.histories.iter().map(|history| (history.triangle, history.n));
+        let normal = self.soil.scars.floor(&world, contacts);
+        let way_m = (self.state.c - before).norm();
+        let ends = self.state.is_free().then_some(self.state.v);
+        let kept = self.soil.scars.plough(&self.body, (way_m, normal), ends);
+        self.slow(kept);
         if let Some(Slips { speed_m_s, n, ground }) = self.soil.slips.take() {
             let after_m_s = self.body.slip(&n, &self.state.v, &self.state.w).norm();
             self.soil.slip.grow(0.5 * (speed_m_s + after_m_s) * dt, Some(ground));

@@ -162,7 +162,8 @@ pub fn simulate_world(
         .map(|(k, release)| {
             let mut body = body(settings, release, keep(k), &mut damping);
             let random = stream(settings.seed, Purpose::Impacts, k);
-            body.member.state.raise_stems(settings.terrain, &random);
+            let state = &mut body.member.state;
+            state.stem_load.raise(settings.terrain, &random, &mut state.near.gone);
             body.member.state.facets = RoughFacets::of(random, &body.member.laws);
             Some(Box::new(body))
         })

@@ -87,7 +87,7 @@ pub(crate) struct Footing {
     /// How far it has slipped.
     pub(crate) slip: Slip,
     /// What it has done to the stems.
-    stem_load: StemLoad,
+    pub(crate) stem_load: StemLoad,
     /// Passes over the contacts.
     pub(crate) sweeps: u64,
     /// Whether the impulses of the last solve did not settle.

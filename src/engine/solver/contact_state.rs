@@ -389,9 +389,4 @@ impl ContactState {
         self.redirect(world, turn * self.v, turn * self.w);
         Some(turn)
     }
-
-    /// Whether the rock is turned against a facet that it has left, or whose time is up at `now_s` (s).
-    pub(crate) fn has_met_its_facet(&self, now_s: f64) -> bool {
-        self.facets.is_met(self.is_free(), now_s)
-    }
 }

@@ -162,7 +162,7 @@ impl RoughFacets {
     }
 
     /// Whether the rock is turned against one that it has left, or whose time is up at `now_s` (s).
-    pub(super) fn is_met(&self, is_free: bool, now_s: f64) -> bool {
+    pub(crate) fn is_met(&self, is_free: bool, now_s: f64) -> bool {
         self.tilt.as_ref().is_some_and(|tilt| is_free || now_s >= tilt.until_s)
     }
 

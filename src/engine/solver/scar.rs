@@ -18,6 +18,7 @@
 //! a scar counts where it digs deeper.
 
 use super::body::Body;
+use super::environment::ContactEnvironment;
 use crate::ground::{Ground, Scar, cut_area_m2, swept_m3};
 use crate::math;
 use crate::rock::Vec3;
@@ -109,13 +110,18 @@ impl Scars {
         self.is_any
     }
 
-    /// Whether this ground has soil that drags.
+    /// The normal of the first of these contacts, by triangle and normal, with a ground that has soil which drags.
     ///
-    /// A scar lies in the plane of a contact with such a ground, whatever else the rock meets in it: a
-    /// stem that it leans on is no floor that it could climb away from.
-    #[inline]
-    pub(crate) fn lie_on(&self, ground: u16) -> bool {
-        self.layers.get(usize::from(ground)).is_some_and(Option::is_some)
+    /// A scar lies in the plane of such a contact, whatever else the rock meets in it: a stem that it leans on is no
+    /// floor that it could climb away from.
+    pub(crate) fn floor(
+        &self,
+        world: &ContactEnvironment,
+        mut contacts: impl Iterator<Item = (u32, Vec3)>,
+    ) -> Option<Vec3> {
+        let is_soft =
+            |ground: u16| self.layers.get(usize::from(ground)).is_some_and(Option::is_some);
+        contacts.find(|(triangle, _)| is_soft(world.ground_of(*triangle))).map(|(_, n)| n)
     }
 
     /// An impact on a ground, on a plane with this normal, with an approach (m/s) of a rock at a speed (m/s): what it keeps of its

@@ -23,7 +23,7 @@ pub(crate) struct StemLoad {
 
 impl StemLoad {
     /// All stems stand again, none of them `gone`, with limits drawn for the rock of this random stream.
-    pub(super) fn raise(&mut self, terrain: &Terrain, random: &RandomStream, gone: &mut Vec<u32>) {
+    pub(crate) fn raise(&mut self, terrain: &Terrain, random: &RandomStream, gone: &mut Vec<u32>) {
         gone.clear();
         let Some(stems) = &terrain.stems else { return };
         gone.reserve(stems.count());

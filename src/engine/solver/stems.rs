@@ -15,7 +15,6 @@ use super::yielding::yielding_impact;
 use crate::contact::ContactPoint;
 use crate::contact::TOUCH;
 use crate::contact::history::ContactHistory;
-use crate::random::RandomStream;
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
 use crate::terrain::stems::Stems;
@@ -35,11 +34,6 @@ pub(crate) struct Broken {
 }
 
 impl ContactState {
-    /// All stems stand again, with limits drawn for the rock of this random stream.
-    pub(crate) fn raise_stems(&mut self, terrain: &Terrain, random: &RandomStream) {
-        self.stem_load.raise(terrain, random, &mut self.near.gone);
-    }
-
     /// Sees whether a stem that is pressed may give way in the next step, and returns the longest step (s) in which it does
     /// not take more than is left of it.
     pub(crate) fn longest_before_yield_s(&mut self, world: &ContactEnvironment) -> f64 {

@@ -87,9 +87,7 @@ impl Roll<'_> {
     /// What an impact that rebounds does to the ground and to stems; it is that of the triangle and the normal of its fastest
     /// contact.
     fn dig_and_break(&mut self, (triangle, n): (u32, &Vec3), until_s: f64) {
-        if self.scars.are_any() {
-            self.dig(triangle, n);
-        }
+        self.dig(triangle, n);
         let broken_j = self.footing.break_stems(&self.world, self.block, &mut self.moving);
         self.recorder.ledger.trees_j += broken_j;
         if broken_j > 0.0 {
@@ -137,7 +135,7 @@ impl Roll<'_> {
             self.recorder.book_impacts(&held_j);
         }
         let now_s = self.recorder.now.time_s;
-        if self.footing.has_met_its_facet(now_s) {
+        if self.footing.facets.is_met(self.footing.springs.is_free(), now_s) {
             self.turn_back();
         }
         self.footing.springs.capture(now_s);

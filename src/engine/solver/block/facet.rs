@@ -102,9 +102,4 @@ impl Footing {
         self.springs.refresh();
         true
     }
-
-    /// Whether the block is turned against a facet that it has left, or whose time is up at `now_s` (s).
-    pub(crate) fn has_met_its_facet(&self, now_s: f64) -> bool {
-        self.facets.is_met(self.springs.is_free(), now_s)
-    }
 }

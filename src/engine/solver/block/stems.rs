@@ -7,20 +7,13 @@
 use super::rolling::Turning;
 use super::{Footing, Moving};
 use crate::body::Block;
-use crate::random::RandomStream;
 use crate::rock::Vec3;
 use crate::solver::environment::ContactEnvironment;
 use crate::solver::loss::Loss;
 use crate::solver::stems::{WITHSTANDS, given_back};
-use crate::terrain::Terrain;
 use crate::terrain::stems::Stems;
 
 impl Footing {
-    /// All stems stand again, with limits drawn for the block of this random stream.
-    pub(crate) fn raise_stems(&mut self, terrain: &Terrain, random: &RandomStream) {
-        self.stem_load.raise(terrain, random, &mut self.near.gone);
-    }
-
     /// Breaks the stems among the contacts that touch which cannot take the current blow; what they took (J).
     pub(crate) fn break_stems(
         &mut self,
@@ -41,16 +34,13 @@ impl Footing {
 
     /// Breaks the first stem that cannot take the blow; it, and what was left of it (J).
     fn break_next(
-        &mut self,
+        &self,
         world: &ContactEnvironment,
         stems: &Stems,
         (block, moving): (&Block, &mut Moving),
     ) -> Option<(u32, f64)> {
         let (mass, motion_j) = (moving.mass(block), moving.motion_j(block));
-        let mut touching = std::mem::take(&mut self.aside);
-        touching.clear();
-        touching.extend(self.touching(block));
-        let broken = touching.iter().find_map(|touch| {
+        self.touching(block).find_map(|touch| {
             let stem = stems.of_triangle(touch.triangle)?;
             let left_j = self.stem_load.left_j(stems, stem);
             let u = moving.at(block, &touch.lever);
@@ -61,9 +51,7 @@ impl Footing {
             contact.impulse = contact.yielding(&u, left_j)?;
             moving.take(&[contact], &Turning::NONE, block.mass_kg);
             Some((stem, left_j))
-        });
-        self.aside = touching;
-        broken
+        })
     }
 
     /// After impulses with these losses: the stem that is touched has taken what went into contacts with trees. Where that is more
