@@ -83,6 +83,12 @@ impl Parabola {
     }
 }
 
+/// A time (s) in which what is as fast as `speed` (m/s) surely goes no further than `way` (m), though its weight may speed it up on the way.
+pub(crate) fn time_within(way: f64, speed: f64, gravity: f64) -> f64 {
+    // way ≥ |v| t + g t²/2, solved for t without cancellation
+    2.0 * way / (speed + (speed * speed + 2.0 * gravity * way).sqrt())
+}
+
 /// How a flight ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum FlightEnd {

@@ -6,6 +6,37 @@
 
 use crate::rock::Vec3;
 
+/// A segment from `a` (m) along a unit vector for its length (m).
+#[derive(Debug, Clone, Copy)]
+pub struct Segment {
+    /// Its first end (m).
+    pub a: Vec3,
+    /// Unit vector towards the other end.
+    pub along: Vec3,
+    /// Its length (m).
+    pub length: f64,
+}
+
+impl Segment {
+    /// The one between two points (m).
+    pub fn between([a, b]: [Vec3; 2]) -> Self {
+        let length = (b - a).norm();
+        Self { a, along: (b - a) / length, length }
+    }
+
+    /// From its first end to the other (m).
+    #[inline]
+    pub fn way(&self) -> Vec3 {
+        self.along * self.length
+    }
+
+    /// Its nearest point to `p` (m).
+    #[inline]
+    pub fn nearest_to(&self, p: &Vec3) -> Vec3 {
+        self.a + self.along * self.along.dot(&(p - self.a)).clamp(0.0, self.length)
+    }
+}
+
 /// The part of a triangle on which its nearest point lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TrianglePart {

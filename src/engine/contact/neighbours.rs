@@ -16,7 +16,7 @@ mod collect;
 
 pub(crate) use offered::{Peak, SharpEdge};
 
-use super::closest::closest_on;
+use super::closest::{Segment, closest_on};
 use super::patch::PatchScratch;
 use super::{ContactPoint, ContactPoints, Feature};
 use crate::contact::FeatureKind;
@@ -125,6 +125,12 @@ impl Neighbours {
                 }
             }
         });
+    }
+
+    /// The directions that belong to an edge or a vertex.
+    #[inline]
+    fn rays_of(&self, (first, end): (u32, u32)) -> &[Vec3] {
+        &self.rays[first as usize..end as usize]
     }
 
     /// Whether what was collected holds for a rock at `centre`.
@@ -237,21 +243,22 @@ impl Neighbours {
         centre: &Vec3,
         reach: f64,
     ) -> Option<ContactPoint> {
-        let to = centre - edge.a;
-        let s = edge.along.dot(&to);
+        let Segment { a, along, length } = edge.line;
+        let to = centre - a;
+        let s = along.dot(&to);
         let slack = SLACK * self.radius;
         // beyond the ends a vertex is nearer
-        if s < -slack || s > edge.length + slack {
+        if s < -slack || s > length + slack {
             return None;
         }
         // the nearest point of the edge: its line's, held between its ends
-        let off = to - edge.along * s.clamp(0.0, edge.length);
+        let off = to - along * s.clamp(0.0, length);
         let distance2 = off.norm_squared();
         if distance2 >= reach * reach {
             return None;
         }
         let distance = distance2.sqrt();
-        let rays = &self.rays[edge.rays.0 as usize..edge.rays.1 as usize];
+        let rays = self.rays_of(edge.rays);
         // the centre must stand outside of every face on the edge: else its nearest point lies on that face
         if distance <= slack || rays.iter().any(|out| out.dot(&off) < -SLACK * distance) {
             return None;
@@ -278,7 +285,7 @@ impl Neighbours {
             return None;
         }
         let distance = distance2.sqrt();
-        let rays = &self.rays[corner.rays.0 as usize..corner.rays.1 as usize];
+        let rays = self.rays_of(corner.rays);
         let feature = Feature { kind: FeatureKind::Vertex, id: corner.id };
         if distance <= SLACK * self.radius
             // the same for the edges at a vertex: one that leads towards the centre comes nearer

@@ -23,7 +23,7 @@ mod clearance;
 mod window;
 
 use super::top::{Bends, ShortTurn, Top};
-use super::{FlightEnd, Parabola, time_of_impact_past};
+use super::{FlightEnd, Parabola, time_of_impact_past, time_within};
 use crate::body::Block;
 use crate::contact::block::Pose;
 use crate::contact::closest::closest_on;
@@ -158,7 +158,8 @@ pub fn first_touch(
         }
         let way = known_way(terrain, block, &tumble.path.centre(t), near);
         // within this time the centre stays inside the ball for which features were collected
-        let ends = (t + time_for(&tumble.path, t, way)).min(longest_s);
+        let speed = tumble.path.velocity(t).norm();
+        let ends = (t + time_within(way, speed, tumble.path.gravity)).min(longest_s);
         if let Some(touch) = advance(terrain, tumble, near, (t, ends), scratch) {
             return FlightEnd::Touch(touch);
         }
@@ -201,13 +202,6 @@ fn known_way(terrain: &Terrain, block: &Block, centre: &Vec3, near: &mut Neighbo
     let core = block.bound_m - block.ball_m;
     near.collect(terrain, centre, block.ball_m, core + way, block.ball_m);
     way
-}
-
-/// A time in which the centre surely moves no further than `way` (m) from where it is at `t`.
-fn time_for(path: &Parabola, t: f64, way: f64) -> f64 {
-    // way ≥ |v| t + g t²/2, solved for t without cancellation
-    let speed = path.velocity(t).norm();
-    2.0 * way / (speed + (speed * speed + 2.0 * path.gravity * way).sqrt())
 }
 
 /// First touch within a window of time, among what was collected.

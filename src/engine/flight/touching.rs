@@ -12,6 +12,7 @@
 use super::edge_windows::EdgeWindows;
 use super::roots::{first_fall, quadratic};
 use super::{Parabola, least, most};
+use crate::contact::closest::Segment;
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
 use crate::terrain::brims::Brim;
@@ -293,9 +294,8 @@ impl Height {
 /// has a part across the edge.
 fn edge(terrain: &Terrain, t: u32, k: usize, flight: &Parabola, window: (f64, f64)) -> Option<f64> {
     let corners = terrain.triangles[t as usize];
-    let [a, b] = [corners[k], corners[(k + 1) % 3]].map(|v| terrain.vertices_m[v as usize]);
-    let length = (b - a).norm();
-    let along = (b - a) / length;
+    let ends_m = [corners[k], corners[(k + 1) % 3]].map(|v| terrain.vertices_m[v as usize]);
+    let Segment { a, along, length } = Segment::between(ends_m);
     // across the edge the problem is plane: a point and a moving centre, again a quartic
     // the part across the edge direction
     let off = |x: Vec3| x - along * along.dot(&x);

@@ -8,6 +8,7 @@ use super::body::Body;
 use super::contact_state::{AHEAD, ContactEnvironment, ContactState, MARGIN};
 use super::plane_state::FIRST_REACH;
 use crate::contact::neighbours::{Neighbours, PressedPath};
+use crate::flight::time_within;
 use crate::rock::Vec3;
 
 /// Longest way on one plane in one step (–, relative to R): from [`FIRST_REACH`] on it doubles where the plane is clear, and is halved where it
@@ -132,5 +133,5 @@ impl ContactState {
 
 /// Longest step in which a rock at `speed` goes no further than `room` (s); its weight may speed it up on the way.
 pub(crate) fn longest_step(body: &Body, speed: f64, room: f64) -> f64 {
-    2.0 * room / (speed + (speed * speed + 2.0 * body.gravity.norm() * room).sqrt())
+    time_within(room, speed, body.gravity.norm())
 }

@@ -3,6 +3,7 @@
 use super::lines::{crossing, foot_or_end, nearest_at_ends};
 use super::{BlockTouch, DIRECTION_SLACK, Placed};
 use crate::body::Ridge;
+use crate::contact::closest::Segment;
 use crate::contact::neighbours::{Neighbours, Peak, SharpEdge};
 use crate::contact::{ContactPoint, Feature};
 use crate::rock::Vec3;
@@ -17,8 +18,7 @@ impl Placed<'_> {
         (reach, is_held): (f64, bool),
         found: &mut Vec<BlockTouch>,
     ) {
-        let along = edge.along.dot(&(self.pose.centre - edge.a)).clamp(0.0, edge.length);
-        let nearest = edge.a + edge.along * along;
+        let nearest = edge.line.nearest_to(&self.pose.centre);
         if is_held && !self.holds_any(edge.feature) || !self.is_near(&nearest, reach) {
             return;
         }
@@ -30,7 +30,9 @@ impl Placed<'_> {
             if self.holds(part, edge.feature) != is_held {
                 continue;
             }
-            let Some((p, foot, is_past)) = self.nearest_of(ridge, edge, is_held) else { continue };
+            let Some((p, foot, is_past)) = self.nearest_of(ridge, &edge.line, is_held) else {
+                continue;
+            };
             let off = p - foot;
             let distance = off.norm();
             if distance >= reach || distance <= DIRECTION_SLACK * self.block.ball_m {
@@ -53,7 +55,7 @@ impl Placed<'_> {
     fn nearest_of(
         &self,
         ridge: &Ridge,
-        edge: &SharpEdge,
+        edge: &Segment,
         is_held: bool,
     ) -> Option<(Vec3, Vec3, bool)> {
         let [a, b] = ridge.ends.map(|k| self.corners[usize::from(k)]);
@@ -62,7 +64,7 @@ impl Placed<'_> {
         if let Some((s, t)) = cross.filter(inside) {
             return Some((a + (b - a) * s, edge.a + edge.along * t, false));
         }
-        let ends = [edge.a, edge.a + edge.along * edge.length];
+        let ends = [edge.a, edge.a + edge.way()];
         is_held.then(|| {
             let [p, foot] = nearest_at_ends([a, b], ends);
             (p, foot, true)

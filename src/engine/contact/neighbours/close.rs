@@ -65,25 +65,24 @@ impl Neighbours {
         let ShortWay { centre, way_m, reach } = &self.around;
         let way = way_m + LONGER * self.radius;
         let farthest = reach + way;
-        let rays_of = |rays: (u32, u32)| &self.rays[rays.0 as usize..rays.1 as usize];
         close.faces.extend(self.all.faces.iter().filter(|face| {
             face.n.dot(&(centre - face.a)).abs() < farthest && face.holds_foot_of(centre, way)
         }));
         close.edges.extend(self.all.edges.iter().filter(|edge| {
-            let to = centre - edge.a;
-            may_meet(&to, (&edge.along, edge.length), (way, farthest))
-                && rays_of(edge.rays).iter().all(|out| out.dot(&to) > -way - SLACK * farthest)
+            let to = centre - edge.line.a;
+            may_meet(&edge.line, centre, (way, farthest))
+                && self.rays_of(edge.rays).iter().all(|out| out.dot(&to) > -way - SLACK * farthest)
         }));
         close.corners.extend(self.all.corners.iter().filter(|corner| {
             let to = centre - corner.p;
             to.norm_squared() < farthest * farthest
-                && rays_of(corner.rays).iter().all(|ray| ray.dot(&to) < way + SLACK * farthest)
+                && self.rays_of(corner.rays).iter().all(|ray| ray.dot(&to) < way + SLACK * farthest)
         }));
         close.saddles.extend(self.all.saddles.iter().filter(|saddle| match saddle {
-            NearSaddle::Edge { a, along, length, rays } => {
-                let to = centre - a;
-                may_meet(&to, (along, *length), (way, farthest))
-                    && rays_of(*rays).iter().all(|out| out.dot(&to) < way)
+            NearSaddle::Edge { line, rays } => {
+                let to = centre - line.a;
+                may_meet(line, centre, (way, farthest))
+                    && self.rays_of(*rays).iter().all(|out| out.dot(&to) < way)
             }
             NearSaddle::Vertex { p, .. } => (centre - p).norm_squared() < farthest * farthest,
         }));

@@ -7,9 +7,9 @@
 
 use super::features::may_meet;
 use super::{NearCorner, NearEdge, NearFace, NearSaddle, Neighbours, SLACK};
+use crate::contact::closest::Segment;
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
-use crate::terrain::brims::Brim;
 use crate::terrain::faces::Face;
 use crate::terrain::seen::Seen;
 
@@ -35,8 +35,13 @@ impl Neighbours {
         let near = self.margin + SLACK * self.radius;
         let brim = &terrain.features.brims[t as usize];
         self.take_vertices(terrain, t, brim.vertices);
-        let (owned, beside) = self.within_sight(brim, height);
-        let (hollow, beside_hollow) = self.hollow_in_sight(brim, height);
+        let (front, back) = ((brim.front, brim.least_front), (brim.back, brim.least_back));
+        let far = [self.reach, self.reach - self.margin];
+        let (owned, beside) = self.in_sight(([front, back], brim.anywhere), height, far);
+        // the cone in which an edge is hollow is the opposite of that in which it stands out
+        let hollows = [(back.0 & 7, back.1), (front.0 & 7, front.1)];
+        let far = [self.radius + self.margin, self.radius];
+        let (hollow, beside_hollow) = self.in_sight((hollows, brim.anywhere & 7), height, far);
         let beside = beside.max(beside_hollow).max(near);
         // `beside` is the farthest beside the triangle at which any of its parts can be touched:
         // beyond it nothing of it is
@@ -69,46 +74,31 @@ impl Neighbours {
         self.all.faces.push(NearFace { id: t, a: face.a, n: face.n, out, rim });
     }
 
-    /// Those of the edges and corners on a triangle's brim that can be touched from the side on which the centre is, and
-    /// how far beside the triangle it can be then (m).
+    /// Those of the edges and corners on a triangle's brim that can be touched, or are hollow, on the side on which the centre is, of those in
+    /// front of it, behind it and anywhere, and how far beside the triangle it can be then (m): `far` from them as it is, and less the margin.
     ///
     /// A normal cone that leans by no more than an angle with the cosine `steepest` is touched only
-    /// from within `reach √(1 − steepest²)` beside the triangle.
+    /// from within `far √(1 − steepest²)` beside the triangle.
     #[inline]
-    fn within_sight(&self, brim: &Brim, height: f64) -> (u8, f64) {
+    fn in_sight(
+        &self,
+        ([front, back], anywhere): ([(u8, f32); 2], u8),
+        height: f64,
+        far: [f64; 2],
+    ) -> (u8, f64) {
         let sure = self.margin + ASIDE * self.reach;
-        let (mut owned, mut steepest) = (0, 1.0);
-        if height >= -sure && brim.front != 0 {
-            (owned, steepest) = (brim.front, brim.least_front);
+        let (mut seen, mut steepest) = (0, 1.0);
+        if height >= -sure && front.0 != 0 {
+            (seen, steepest) = front;
         }
-        if height <= sure && brim.back != 0 {
-            (owned, steepest) = (owned | brim.back, brim.least_back.min(steepest));
+        if height <= sure && back.0 != 0 {
+            (seen, steepest) = (seen | back.0, back.1.min(steepest));
         }
-        if brim.anywhere != 0 {
-            return (owned | brim.anywhere, self.reach);
+        if anywhere != 0 {
+            return (seen | anywhere, far[0]);
         }
         let aside = (1.0 - steepest * steepest).max(0.0).sqrt() + ASIDE_SLACK;
-        (owned, self.margin + (self.reach - self.margin) * f64::from(aside))
-    }
-
-    /// Those of the edges on a triangle's brim that can be hollow on the side on which the centre is, and how far beside
-    /// the triangle it can be where the ball presses into them (m): the cone in which an edge is hollow is the opposite
-    /// of that in which it stands out.
-    #[inline]
-    fn hollow_in_sight(&self, brim: &Brim, height: f64) -> (u8, f64) {
-        let sure = self.margin + ASIDE * self.reach;
-        let (mut hollow, mut steepest) = (0, 1.0);
-        if height >= -sure && brim.back & 7 != 0 {
-            (hollow, steepest) = (brim.back & 7, brim.least_back);
-        }
-        if height <= sure && brim.front & 7 != 0 {
-            (hollow, steepest) = (hollow | brim.front & 7, brim.least_front.min(steepest));
-        }
-        if brim.anywhere & 7 != 0 {
-            return (hollow | brim.anywhere & 7, self.radius + self.margin);
-        }
-        let aside = (1.0 - steepest * steepest).max(0.0).sqrt() + ASIDE_SLACK;
-        (hollow, self.margin + self.radius * f64::from(aside))
+        (seen, self.margin + far[1] * f64::from(aside))
     }
 
     /// Takes an edge that the ball can press into from its hollow side; `face` is the first triangle on it.
@@ -120,30 +110,41 @@ impl Neighbours {
         if edges.is_border(edge) {
             return; // a border has a face on one side only: nothing meets there
         }
-        let ends_m @ [a, b] = terrain.mesh().ends_m(edge);
-        let length = (b - a).norm();
-        let along = (b - a) / length;
-        let to = self.centre - a;
+        let ends_m = terrain.mesh().ends_m(edge);
+        let line = Segment::between(ends_m);
+        let to = self.centre - line.a;
         // distance of the centre from the edge, its ends included: a ball that does not reach it
         // has no saddle there
-        let off = to - along * along.dot(&to).clamp(0.0, length);
+        let off = to - line.along * line.along.dot(&to).clamp(0.0, line.length);
         if off.norm() > self.radius + self.margin {
             return;
         }
-        let first = self.rays.len();
         // an edge of three sheets and more has no simple condition: it is kept whatever the
         // directions
-        if let Some([_, other]) = edges.pair_on(edge) {
-            for outward in [face.outward(&ends_m), terrain.face(other).outward(&ends_m)] {
-                if outward.dot(&off) > self.margin + SLACK * self.radius {
-                    self.rays.truncate(first);
-                    return;
-                }
-                self.rays.push(outward);
-            }
+        let other = edges.pair_on(edge).map(|[_, other]| terrain.face(other));
+        let faces = other.iter().flat_map(|other| [face, other]);
+        let (out, most) =
+            (faces.map(|face| face.outward(&ends_m)), self.margin + SLACK * self.radius);
+        if let Some(rays) = self.keep_rays(out, |outward| outward.dot(&off) > most) {
+            self.all.saddles.push(NearSaddle::Edge { line, rays });
         }
-        let rays = (first as u32, self.rays.len() as u32);
-        self.all.saddles.push(NearSaddle::Edge { a, along, length, rays });
+    }
+
+    /// Keeps the directions that belong to an edge or a vertex; none if one of them `rules_out` that it can be touched.
+    fn keep_rays(
+        &mut self,
+        rays: impl Iterator<Item = Vec3>,
+        rules_out: impl Fn(&Vec3) -> bool,
+    ) -> Option<(u32, u32)> {
+        let first = self.rays.len();
+        for ray in rays {
+            if rules_out(&ray) {
+                self.rays.truncate(first);
+                return None;
+            }
+            self.rays.push(ray);
+        }
+        Some((first as u32, self.rays.len() as u32))
     }
 
     /// Takes the vertices of one triangle that the ball can press into.
@@ -165,35 +166,22 @@ impl Neighbours {
     /// stays beyond its ends, the line farther than the reach, or the centre behind one of its
     /// faces, for all places within the margin.
     fn take_edge(&mut self, terrain: &Terrain, (edge, face): (u32, &Face)) {
-        let ends_m @ [a, b] = terrain.mesh().ends_m(edge);
-        let length = (b - a).norm();
-        let along = (b - a) / length;
-        let to = self.centre - a;
-        if !may_meet(&to, (&along, length), (self.margin, self.reach)) {
+        let ends_m = terrain.mesh().ends_m(edge);
+        let line = Segment::between(ends_m);
+        if !may_meet(&line, &self.centre, (self.margin, self.reach)) {
             return;
         }
-        let first = self.rays.len();
+        let to = self.centre - line.a;
         let edges = &terrain.features.edges;
         // in-plane unit vectors out of each triangle on the edge: `m_i`, and the contact test is (c
         // − p)·m_i ≥ 0 for all of them
         let others = edges.triangles_on(edge).skip(1).map(|t| terrain.face(t).outward(&ends_m));
-        for outward in std::iter::once(face.outward(&ends_m)).chain(others) {
-            if outward.dot(&to) < -self.margin - SLACK * self.radius {
-                self.rays.truncate(first);
-                return;
-            }
-            self.rays.push(outward);
+        let out = std::iter::once(face.outward(&ends_m)).chain(others);
+        let least = -self.margin - SLACK * self.radius;
+        if let Some(rays) = self.keep_rays(out, |outward| outward.dot(&to) < least) {
+            let (triangle, at_border) = (edge / 3, edges.is_border(edge));
+            self.all.edges.push(NearEdge { id: edge, triangle, line, rays, at_border });
         }
-        let (rays, at_border) = ((first as u32, self.rays.len() as u32), edges.is_border(edge));
-        self.all.edges.push(NearEdge {
-            id: edge,
-            triangle: edge / 3,
-            a,
-            along,
-            length,
-            rays,
-            at_border,
-        });
     }
 
     /// A vertex stands out only if every edge at it leads away from the centre: `(c − p)·e_j ≤ 0`,
@@ -204,17 +192,12 @@ impl Neighbours {
         if to.norm() > self.reach {
             return;
         }
-        let first = self.rays.len();
-        for v in terrain.neighbours(id) {
-            let along = (terrain.vertices_m[v as usize] - p).normalize();
-            if along.dot(&to) > self.margin + SLACK * self.radius {
-                self.rays.truncate(first);
-                return;
-            }
-            self.rays.push(along);
+        let others = terrain.neighbours(id);
+        let ways = others.map(|v| (terrain.vertices_m[v as usize] - p).normalize());
+        let most = self.margin + SLACK * self.radius;
+        if let Some(rays) = self.keep_rays(ways, |along| along.dot(&to) > most) {
+            let at_border = terrain.features.is_border_vertex(id, terrain.mesh());
+            self.all.corners.push(NearCorner { id, triangle: owner, p, rays, at_border });
         }
-        let rays = (first as u32, self.rays.len() as u32);
-        let at_border = terrain.features.is_border_vertex(id, terrain.mesh());
-        self.all.corners.push(NearCorner { id, triangle: owner, p, rays, at_border });
     }
 }

@@ -1,5 +1,6 @@
 //! The features that a rock may touch, as they are kept for the tests of each place.
 
+use crate::contact::closest::Segment;
 use crate::contact::{ContactPoint, Feature, FeatureKind};
 use crate::rock::Vec3;
 
@@ -23,12 +24,8 @@ pub(super) struct NearFace {
 pub(super) struct NearEdge {
     pub(super) id: u32,
     pub(super) triangle: u32,
-    /// Its first end (m).
-    pub(super) a: Vec3,
-    /// Unit vector towards the other end.
-    pub(super) along: Vec3,
-    /// Its length (m).
-    pub(super) length: f64,
+    /// Where it is.
+    pub(super) line: Segment,
     /// Range of outward face normals in `rays`.
     pub(super) rays: (u32, u32),
     /// Whether only one face is on it: then another sheet may run through it.
@@ -51,18 +48,19 @@ pub(super) struct NearCorner {
 /// A place where the distance may have a saddle or a maximum inside the ball.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum NearSaddle {
-    /// A hollow edge from `a`, with its direction and length (m) and its range of outward face normals in `rays`.
-    Edge { a: Vec3, along: Vec3, length: f64, rays: (u32, u32) },
+    /// A hollow edge, with its range of outward face normals in `rays`.
+    Edge { line: Segment, rays: (u32, u32) },
     /// A vertex.
     Vertex { id: u32, p: Vec3 },
 }
 
-/// Whether a rock whose centre is `to` (m) from the start of an edge of so much along its unit direction may touch it from nearer than `reach`
-/// while the centre moves up to `way` (m): its foot on the edge, and the line no farther.
+/// Whether a rock at `centre` (m) may touch an edge from nearer than `reach` while the centre moves up to `way` (m): its foot on the edge, and
+/// the line no farther.
 #[inline]
-pub(super) fn may_meet(to: &Vec3, (along, length): (&Vec3, f64), (way, reach): (f64, f64)) -> bool {
-    let s = along.dot(to);
-    s >= -way && s <= length + way && (to - along * s).norm_squared() <= reach * reach
+pub(super) fn may_meet(line: &Segment, centre: &Vec3, (way, reach): (f64, f64)) -> bool {
+    let to = centre - line.a;
+    let s = line.along.dot(&to);
+    s >= -way && s <= line.length + way && (to - line.along * s).norm_squared() <= reach * reach
 }
 
 impl NearFace {

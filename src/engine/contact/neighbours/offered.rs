@@ -5,6 +5,7 @@
 //! the terrain's frame.
 
 use super::Neighbours;
+use crate::contact::closest::Segment;
 use crate::contact::{Feature, FeatureKind};
 use crate::rock::Vec3;
 
@@ -13,15 +14,12 @@ const STRAIGHT: f64 = 1e-6;
 
 /// An edge of the mesh that stands out, as a block meets it.
 ///
-/// From `a` along the unit vector `along` for `length` (m); `outward` are unit vectors in the
-/// planes of its triangles, out of each across the edge.
+/// `outward` are unit vectors in the planes of its triangles, out of each across the edge.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SharpEdge<'a> {
     pub(crate) feature: Feature,
     pub(crate) triangle: u32,
-    pub(crate) a: Vec3,
-    pub(crate) along: Vec3,
-    pub(crate) length: f64,
+    pub(crate) line: Segment,
     pub(crate) outward: &'a [Vec3],
     pub(crate) at_border: bool,
 }
@@ -29,9 +27,10 @@ pub(crate) struct SharpEdge<'a> {
 impl SharpEdge<'_> {
     /// Whether another edge is a part of the same straight line.
     pub(crate) fn goes_straight_on(&self, other: &Self) -> bool {
-        let off = |way: Vec3| way - self.along * self.along.dot(&way);
+        let (line, other) = (&self.line, &other.line);
+        let off = |way: Vec3| way - line.along * line.along.dot(&way);
         off(other.along).norm() <= STRAIGHT
-            && off(other.a - self.a).norm() <= STRAIGHT * self.length
+            && off(other.a - line.a).norm() <= STRAIGHT * line.length
     }
 }
 
@@ -77,10 +76,8 @@ impl Neighbours {
         self.all.edges.iter().map(|edge| SharpEdge {
             feature: Feature { kind: FeatureKind::Edge, id: edge.id },
             triangle: edge.triangle,
-            a: edge.a,
-            along: edge.along,
-            length: edge.length,
-            outward: &self.rays[edge.rays.0 as usize..edge.rays.1 as usize],
+            line: edge.line,
+            outward: self.rays_of(edge.rays),
             at_border: edge.at_border,
         })
     }
@@ -91,7 +88,7 @@ impl Neighbours {
             feature: Feature { kind: FeatureKind::Vertex, id: corner.id },
             triangle: corner.triangle,
             p: corner.p,
-            edges: &self.rays[corner.rays.0 as usize..corner.rays.1 as usize],
+            edges: self.rays_of(corner.rays),
             at_border: corner.at_border,
         })
     }

@@ -6,7 +6,7 @@
 //! few scalar products.
 
 use super::{NearFace, NearSaddle, Neighbours, SLACK};
-use crate::contact::closest::segments_distance2;
+use crate::contact::closest::{Segment, segments_distance2};
 use crate::contact::{ContactPoint, ContactPoints, Feature, FeatureKind};
 use crate::math;
 use crate::rock::Vec3;
@@ -103,16 +103,15 @@ impl Neighbours {
         let Some(own) = self.all.faces.iter().find(|own| own.id == face) else { return false };
         // other triangles of the same plane are no obstacle: their seams are not felt
         let in_plane = |p: &Vec3| self.is_in_plane(own, p);
-        let rays_of = |rays: (u32, u32)| &self.rays[rays.0 as usize..rays.1 as usize];
         let lies_flat = |rays: (u32, u32)| {
-            let rays = rays_of(rays);
+            let rays = self.rays_of(rays);
             rays.len() > 1 && rays.iter().all(|ray| own.n.dot(ray).abs() <= SLACK)
         };
         // Whether the centre may come to stand outside (or inside) of all faces on an edge through `a`: `rays` point out of them
         // and are square to the edge, so any of its points will do.
         let beyond = passage.off_m + SLACK * self.radius;
         let may_stand = |rays: (u32, u32), a: &Vec3, outside: bool| {
-            rays_of(rays).iter().all(|ray| {
+            self.rays_of(rays).iter().all(|ray| {
                 let (low, high) = passage.range(ray, ray.dot(&(passage.start - a)));
                 if outside { high >= -beyond } else { low <= beyond }
             })
@@ -127,17 +126,17 @@ impl Neighbours {
         }) && self.all.edges.iter().all(|edge| {
             // an edge: never near, never with the centre outside of all its faces, or flat in the
             // plane itself
-            !passage.comes_nearer((&edge.a, &(edge.along * edge.length)), reach)
-                || !may_stand(edge.rays, &edge.a, true)
-                || !edge.at_border && lies_flat(edge.rays) && in_plane(&edge.a)
+            !passage.comes_nearer((&edge.line.a, &edge.line.way()), reach)
+                || !may_stand(edge.rays, &edge.line.a, true)
+                || !edge.at_border && lies_flat(edge.rays) && in_plane(&edge.line.a)
         }) && self.all.corners.iter().all(|corner| {
             !passage.comes_nearer((&corner.p, &Vec3::zeros()), reach)
                 || !corner.at_border && lies_flat(corner.rays) && in_plane(&corner.p)
         }) && self.all.saddles.iter().all(|saddle| match saddle {
-            NearSaddle::Edge { a, along, length, rays } => {
-                !passage.comes_nearer((a, &(along * *length)), reach)
-                    || rays.0 < rays.1 && !may_stand(*rays, a, false)
-                    || lies_flat(*rays) && in_plane(a)
+            NearSaddle::Edge { line, rays } => {
+                !passage.comes_nearer((&line.a, &line.way()), reach)
+                    || rays.0 < rays.1 && !may_stand(*rays, &line.a, false)
+                    || lies_flat(*rays) && in_plane(&line.a)
             }
             // a vertex that can be a saddle is only harmless out of reach: its sectors are not
             // looked at here
@@ -177,14 +176,14 @@ impl Neighbours {
         centre: &Vec3,
     ) -> bool {
         saddles.iter().any(|saddle| match saddle {
-            NearSaddle::Edge { a, along, length, rays } => {
+            NearSaddle::Edge { line: Segment { a, along, length }, rays } => {
                 let to = centre - a;
                 let s = along.dot(&to);
                 let off = to - along * s;
                 let slack = SLACK * self.radius;
                 // the foot lies on the edge and the centre inside of both faces: both are minima,
                 // and the edge between them is the saddle
-                let outward = &self.rays[rays.0 as usize..rays.1 as usize];
+                let outward = self.rays_of(*rays);
                 // beyond its ends the edge is as near as its vertices, and those are asked by themselves
                 s >= -slack
                     && s <= length + slack

@@ -5,7 +5,7 @@
 
 use super::clearance::apart_s;
 use super::{CAUTION, TOUCHING, Tumble};
-use crate::contact::closest::closest_on;
+use crate::contact::closest::{Segment, closest_on};
 use crate::contact::neighbours::Neighbours;
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
@@ -25,21 +25,13 @@ pub(super) struct TriangleAhead {
     pub(super) n: Vec3,
 }
 
-/// An edge from `a` along a unit vector for its `length` (m).
-#[derive(Debug, Clone, Copy)]
-pub(super) struct EdgeAhead {
-    pub(super) a: Vec3,
-    pub(super) along: Vec3,
-    pub(super) length: f64,
-}
-
 /// All of them, soonest first; lists keep their memory from window to window.
 #[derive(Debug, Default)]
 pub(super) struct FeaturesAhead {
     /// For the corners of the block.
     pub(super) triangles: Vec<FeatureAhead<TriangleAhead>>,
     /// For its edges: those of the mesh that stand out.
-    pub(super) edges: Vec<FeatureAhead<EdgeAhead>>,
+    pub(super) edges: Vec<FeatureAhead<Segment>>,
     /// For its faces: vertices of the mesh that stand out (m).
     pub(super) peaks: Vec<FeatureAhead<Vec3>>,
 }
@@ -68,14 +60,6 @@ impl BallAhead<'_> {
     }
 }
 
-impl EdgeAhead {
-    /// Its nearest point to `p` (m).
-    #[inline]
-    pub(super) fn nearest_to(&self, p: &Vec3) -> Vec3 {
-        self.a + self.along * self.along.dot(&(p - self.a)).clamp(0.0, self.length)
-    }
-}
-
 impl FeaturesAhead {
     /// Those among the `near` ones that may be met in a window of the flight that `begins` and `ends` (s).
     pub(super) fn look(
@@ -94,10 +78,7 @@ impl FeaturesAhead {
             let nearest = closest_on(&terrain.corners_m(id), &ball.centre);
             (TriangleAhead { id, a: face.a, n: face.n }, nearest)
         });
-        let edges = near.sharp_edges().map(|edge| {
-            let edge = EdgeAhead { a: edge.a, along: edge.along, length: edge.length };
-            (edge, edge.nearest_to(&ball.centre))
-        });
+        let edges = near.sharp_edges().map(|edge| (edge.line, edge.line.nearest_to(&ball.centre)));
         let peaks = near.peaks().map(|peak| (peak.p, peak.p));
         list(&mut self.triangles, triangles, (&ball, ends));
         list(&mut self.edges, edges, (&ball, ends));

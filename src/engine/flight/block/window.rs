@@ -157,7 +157,7 @@ impl WindowSearch<'_> {
             if (middle - edge.nearest_to(&middle)).norm_squared() > far * far {
                 continue;
             }
-            let end = edge.a + edge.along * edge.length;
+            let end = edge.a + edge.way();
             let (p, q) = nearest_of_segments((a.p, b.p), (edge.a, end));
             let Some(n) = (p - q).try_normalize(0.0) else { continue };
             let off_plane = self.off_plane(&ends, (&n, &q), least);
