@@ -41,6 +41,26 @@ pub struct Ground {
 }
 
 impl Ground {
+    /// A smooth ground of a normal and a shear stiffness (N/m), a friction angle (rad) and a restitution, without rolling friction and soil.
+    pub const fn smooth(
+        [normal_stiffness_n_m, shear_stiffness_n_m]: [f64; 2],
+        friction_angle_rad: f64,
+        restitution: Option<f64>,
+    ) -> Self {
+        Self {
+            normal_stiffness_n_m,
+            shear_stiffness_n_m,
+            friction_angle_rad,
+            restitution,
+            rolling_friction: 0.0,
+            roughness_rad: 0.0,
+            roughness_length_m: None,
+            slip_friction: None,
+            scar: None,
+            restitution_half_m_s: None,
+        }
+    }
+
     /// Coefficient of friction `tan φ` (–).
     pub fn friction_coefficient(&self) -> f64 {
         math::tan(self.friction_angle_rad)

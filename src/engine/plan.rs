@@ -48,7 +48,12 @@ impl<T> Part<T> {
 
     /// Whether it is kept.
     pub fn is_kept(&self) -> bool {
-        matches!(self, Self::Kept(_))
+        self.kept().is_some()
+    }
+
+    /// What is kept, if it is.
+    pub fn kept(&self) -> Option<&T> {
+        if let Self::Kept(kept) = self { Some(kept) } else { None }
     }
 }
 
@@ -335,9 +340,9 @@ impl Plan {
     /// What every rock is watched for.
     pub fn recorders(&self) -> Recorders<'_> {
         Recorders {
-            lines: if let Part::Kept(lines) = &self.lines { lines } else { &[] },
-            cells: if let Part::Kept(cells) = &self.maps { Some(cells) } else { None },
-            profile_step_m: if let Part::Kept(step_m) = self.profile { Some(step_m) } else { None },
+            lines: self.lines.kept().map_or(&[], |lines| lines),
+            cells: self.maps.kept(),
+            profile_step_m: self.profile.kept().copied(),
         }
     }
 
@@ -346,8 +351,8 @@ impl Plan {
     #[must_use]
     pub fn keep_everything(self) -> Self {
         let plan = self.without_kernels();
-        let triangles = if let Part::Kept(triangles) = plan.trees { triangles } else { 0 };
-        let step_s = if let Part::Kept(paths) = &plan.paths { paths.step_s } else { PATH_STEP_S };
+        let triangles = plan.trees.kept().copied().unwrap_or_default();
+        let step_s = plan.paths.kept().map_or(PATH_STEP_S, |paths| paths.step_s);
         Self {
             trees: Part::Kept(triangles),
             rolling: Part::Kept(()),

@@ -23,18 +23,7 @@ pub const GRAVITY_M_S2: f64 = 9.8;
 pub const ROCK: Rock = Rock { radius_m: 0.5, density_kg_m3: 2700.0 };
 
 /// The ground of the cases: springs and friction of the paper's Table 1, with a restitution of 0.5.
-pub const GROUND: Ground = Ground {
-    normal_stiffness_n_m: 1e9,
-    shear_stiffness_n_m: 0.25e9,
-    friction_angle_rad: std::f64::consts::FRAC_PI_6,
-    restitution: Some(0.5),
-    rolling_friction: 0.0,
-    roughness_rad: 0.0,
-    roughness_length_m: None,
-    slip_friction: None,
-    scar: None,
-    restitution_half_m_s: None,
-};
+pub const GROUND: Ground = Ground::smooth([1e9, 0.25e9], std::f64::consts::FRAC_PI_6, Some(0.5));
 
 /// A ground on springs of a normal stiffness (N/m), along the surface a quarter of it, as in the paper's Table 1.
 pub fn with_springs(ground: Ground, normal_stiffness_n_m: f64) -> Ground {

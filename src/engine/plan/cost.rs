@@ -1,6 +1,6 @@
 //! What a run may take of memory and disk, estimated before it begins.
 
-use super::{Part, Plan};
+use super::Plan;
 use crate::error::{Error, Result};
 use std::fmt;
 
@@ -61,21 +61,15 @@ impl Plan {
     /// What computing so many of its releases may take.
     pub fn cost(&self, releases: usize) -> Cost {
         let releases = releases as f64;
-        let (paths, points) = match &self.paths {
-            Part::Kept(paths) => (releases.min(paths.first as f64), self.longest_s / paths.step_s),
-            Part::LeftOut(_) => (0.0, 0.0),
-        };
+        let (paths, points) = self.paths.kept().map_or((0.0, 0.0), |paths| {
+            (releases.min(paths.first as f64), self.longest_s / paths.step_s)
+        });
         let path_points = paths * (points + 2.0);
-        let cells = match &self.maps {
-            Part::Kept(map) => f64::from(map.columns) * f64::from(map.rows),
-            Part::LeftOut(_) => 0.0,
-        };
+        let map = self.maps.kept().map(|map| [map.columns, map.rows].map(f64::from));
+        let cells = map.map_or(0.0, |[columns, rows]| columns * rows);
         let together = if self.rock_against_rock.is_kept() { TOGETHER_MEMORY } else { 0.0 };
         // a rock passes the map from side to side a few times at most
-        let passages = match &self.maps {
-            Part::Kept(map) => 4.0 * releases * f64::from(map.columns + map.rows),
-            Part::LeftOut(_) => 0.0,
-        };
+        let passages = map.map_or(0.0, |[columns, rows]| 4.0 * releases * (columns + rows));
         let passed = cells.min(passages);
         let energies = if self.year.is_kept() { passages.min(CELL_ENERGIES * passed) } else { 0.0 };
         Cost {

@@ -1,6 +1,6 @@
 //! What the grounds of a scene ask of the plan: stems that give way, sources of values, grounds without use.
 
-use super::{Part, apart, slips};
+use super::{Part, apart, can_exceed_0, slips};
 use crate::contact::pair::Strength;
 use crate::error::{Error, Result};
 use crate::ground::{Damping, Ground, Scar, swept_m3, tangential_restitution};
@@ -113,10 +113,8 @@ fn endless_rolling(scene: &Scene) -> impl Iterator<Item = String> {
 
 /// Warns of rolling friction beside shapes: what was fitted to spheres holds blocks back twice.
 fn rolling_of_blocks(scene: &Scene) -> impl Iterator<Item = String> {
-    let can_roll = |ground: &GroundTable| {
-        ground.rolling_friction.as_ref().is_some_and(|value| value.support().1 > 0.0)
-    };
-    let rolls = scene.grounds.iter().filter(move |(_, ground)| can_roll(ground));
+    let rolls = scene.grounds.iter();
+    let rolls = rolls.filter(|(_, ground)| can_exceed_0(ground.rolling_friction.as_ref()));
     rolls.filter(|_| scene.has_blocks()).map(|(name, _)| {
         format!(
             "[grounds.{name}] rolling_friction acts on blocks beside their shape, which already holds them back as they roll: keep only what soft ground takes; a value that was fitted to spheres counts the shape twice"
@@ -156,17 +154,9 @@ pub(super) fn tree_triangles(terrain: &Terrain) -> Option<usize> {
 
 /// How rocks answer each other.
 pub(super) fn between_rocks(scene: &Scene) -> Option<Ground> {
-    scene.rocks.contact.as_ref().map(|contact| Ground {
-        normal_stiffness_n_m: contact.normal_stiffness_n_m,
-        shear_stiffness_n_m: contact.shear_stiffness_n_m,
-        friction_angle_rad: contact.friction_angle_deg.to_radians(),
-        restitution: contact.restitution,
-        rolling_friction: 0.0,
-        roughness_rad: 0.0,
-        roughness_length_m: None,
-        slip_friction: None,
-        scar: None,
-        restitution_half_m_s: None,
+    scene.rocks.contact.as_ref().map(|contact| {
+        let springs = [contact.normal_stiffness_n_m, contact.shear_stiffness_n_m];
+        Ground::smooth(springs, contact.friction_angle_deg.to_radians(), contact.restitution)
     })
 }
 

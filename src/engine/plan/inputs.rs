@@ -57,13 +57,13 @@ fn ground_row(scene: &Scene, name: &str, ground: &GroundTable) -> (String, Strin
         ),
         format!("friction angle {}", words(&ground.friction_angle_deg, "°")),
     ];
-    let mut say = |name: &str, value: Option<&Distribution>, unit: &str| {
-        parts.extend(value.map(|value| format!("{name} {}", words(value, unit))));
+    let said = |name: &str, value: Option<&Distribution>, unit: &str| {
+        value.map(|value| format!("{name} {}", words(value, unit)))
     };
-    say("restitution", ground.restitution.as_ref(), "");
-    say("rolling friction", ground.rolling_friction.as_ref(), "");
-    say("roughness", ground.roughness_deg.as_ref(), "°");
-    say("roughness length", ground.roughness_length_m.as_ref(), "m");
+    parts.extend(said("restitution", ground.restitution.as_ref(), ""));
+    parts.extend(said("rolling friction", ground.rolling_friction.as_ref(), ""));
+    parts.extend(said("roughness", ground.roughness_deg.as_ref(), "°"));
+    parts.extend(said("roughness length", ground.roughness_length_m.as_ref(), "m"));
     if let Some(soil) = &ground.slip_friction {
         parts.push(format!(
             "friction grows with slip to {}, κ {} 1/m, forgotten with {} 1/s",
@@ -76,11 +76,9 @@ fn ground_row(scene: &Scene, name: &str, ground: &GroundTable) -> (String, Strin
             scar.strength_kn_m2, scar.soil_density_kg_m3, scar.drag
         ));
     }
-    let mut say = |name: &str, value: Option<&Distribution>, unit: &str| {
-        parts.extend(value.map(|value| format!("{name} {}", words(value, unit))));
-    };
-    say("half of the restitution is left at", ground.restitution_half_speed_m_s.as_ref(), " m/s");
-    say("gives way above", ground.breaks_above_j.as_ref(), " J");
+    let half = ground.restitution_half_speed_m_s.as_ref();
+    parts.extend(said("half of the restitution is left at", half, " m/s"));
+    parts.extend(said("gives way above", ground.breaks_above_j.as_ref(), " J"));
     if let Some(known) = ground.like.as_deref().and_then(known_ground) {
         parts.push(format!("like {}", known.name));
     }

@@ -118,18 +118,9 @@ pub(super) fn capture_m_s(scene: &Scene, step: &Settings) -> Vec<f64> {
     let rock = rock(scene, median(scene.rocks.radius_m()));
     let of = |table: &GroundTable| {
         let normal_stiffness_n_m = median(&table.normal_stiffness_n_m);
-        let ground = Ground {
-            normal_stiffness_n_m,
-            shear_stiffness_n_m: table.shear_n_m(normal_stiffness_n_m, median),
-            friction_angle_rad: median(&table.friction_angle_deg).to_radians(),
-            restitution: table.restitution.as_ref().map(median),
-            rolling_friction: 0.0,
-            roughness_rad: 0.0,
-            roughness_length_m: None,
-            slip_friction: None,
-            scar: None,
-            restitution_half_m_s: None,
-        };
+        let springs = [normal_stiffness_n_m, table.shear_n_m(normal_stiffness_n_m, median)];
+        let friction_rad = median(&table.friction_angle_deg).to_radians();
+        let ground = Ground::smooth(springs, friction_rad, table.restitution.as_ref().map(median));
         let damping = Damping::of(ground.restitution);
         Law::new(&ground, &damping, &rock, &capture).capture_m_s
     };

@@ -62,29 +62,19 @@ impl Scene {
 
     /// Zones, lines, barriers and grounds that stand in files.
     pub(super) fn take_drawn(&mut self) -> std::result::Result<(), Refusal> {
-        let (mut lines, mut barriers) = (Vec::new(), Vec::new());
-        for (index, entry) in self.line_entries.iter().enumerate() {
-            let read = match &entry.file {
-                None => entry.written().map(|line| vec![line]).map_err(Into::into),
-                Some(file) => self.same_system(file, "file").and_then(|()| entry.read(file)),
-            };
-            lines.extend(read.map_err(|wrong: Refusal| wrong.in_entry(index, "lines"))?);
-        }
-        for (index, entry) in self.barrier_entries.iter().enumerate() {
-            let read = match &entry.file {
-                None => entry.written().map(|barrier| vec![barrier]).map_err(Into::into),
-                Some(file) => self.same_system(file, "file").and_then(|()| entry.read(file)),
-            };
-            barriers.extend(read.map_err(|wrong: Refusal| wrong.in_entry(index, "barriers"))?);
-        }
+        let lines = of_entries(&self.line_entries, "lines", |entry| {
+            let Some(file) = &entry.file else { return Ok(vec![entry.written()?]) };
+            self.same_system(file, "file").and_then(|()| entry.read(file))
+        })?;
+        let barriers = of_entries(&self.barrier_entries, "barriers", |entry| {
+            let Some(file) = &entry.file else { return Ok(vec![entry.written()?]) };
+            self.same_system(file, "file").and_then(|()| entry.read(file))
+        })?;
         let grounds: Vec<&str> = self.grounds.keys().map(String::as_str).collect();
-        let mut patches = Vec::new();
-        for (index, zones) in self.ground_zones.iter().enumerate() {
-            let read = self
-                .same_system(&zones.file, "file")
-                .and_then(|()| zones.read(&zones.file, &grounds));
-            patches.extend(read.map_err(|wrong| wrong.in_entry(index, "ground_zones"))?);
-        }
+        let patches = of_entries(&self.ground_zones, "ground_zones", |zones| {
+            let same = self.same_system(&zones.file, "file");
+            same.and_then(|()| zones.read(&zones.file, &grounds))
+        })?;
         let zones = self.release.zones.as_deref().map(|file| {
             self.same_system(file, "zones")?;
             Zones::read(file).map_err(Refusal::from)
@@ -254,6 +244,19 @@ impl Scene {
         );
         all
     }
+}
+
+/// What the entries of a list say together.
+fn of_entries<E, T>(
+    entries: &[E],
+    list: &str,
+    take: impl Fn(&E) -> std::result::Result<Vec<T>, Refusal>,
+) -> std::result::Result<Vec<T>, Refusal> {
+    let mut all = Vec::new();
+    for (index, entry) in entries.iter().enumerate() {
+        all.extend(take(entry).map_err(|wrong| wrong.in_entry(index, list))?);
+    }
+    Ok(all)
 }
 
 /// Refuses a drawing in another system than that of `whose`.

@@ -15,7 +15,6 @@ use super::step_control::Advance;
 use crate::contact::TOUCH;
 use crate::contact::history::ContactHistory;
 use crate::contact::neighbours::PressedPath;
-use crate::ground::NormalElement;
 use crate::rock::Vec3;
 
 /// Share of its slip that an impact is taken to stop, at most, before that is known (–): one that loses nothing turns it round.
@@ -64,7 +63,7 @@ impl ContactState {
     ///
     /// Where it is tells how far it is in: touches may have been looked for elsewhere.
     fn pressed_in_plane(&self, world: &ContactEnvironment) -> Option<(ContactHistory, PressedIn)> {
-        if !is_on_face(world, self) || self.may_yield || !NormalElement::has_closed_form() {
+        if !is_on_face(world, self) || self.may_yield {
             return None;
         }
         let (history, depth_m) = (self.histories[0], self.sunk(world));

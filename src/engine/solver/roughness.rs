@@ -208,16 +208,9 @@ mod tests {
     /// that length.
     fn spacing(step: f64) -> f64 {
         let ground = Ground {
-            normal_stiffness_n_m: 1e9,
-            shear_stiffness_n_m: 0.25e9,
-            friction_angle_rad: 0.6,
-            restitution: Some(0.5),
-            rolling_friction: 0.3,
             roughness_rad: 0.25,
             roughness_length_m: Some(0.5),
-            slip_friction: None,
-            scar: None,
-            restitution_half_m_s: None,
+            ..Ground::smooth([1e9, 0.25e9], 0.6, Some(0.5))
         };
         let corners = [Vec3::zeros(), Vec3::x() * 9.0, Vec3::y() * 9.0];
         let soup = Soup::from(vec![corners]);

@@ -89,12 +89,6 @@ impl NormalElement {
         self.p_n * (penetration - h * apart_m_s) - self.c_n * apart_m_s
     }
 
-    /// Whether the normal motion of an impact on a plane has the closed form of a linear spring and dashpot.
-    #[inline]
-    pub(crate) const fn has_closed_form() -> bool {
-        true
-    }
-
     /// The element of a patch of stiffness `gain2 = |a|²` (–) whose dashpot takes `share` of its own (–), see [`Law::of_patch`].
     #[inline]
     pub(crate) fn of_patch(&self, gain2: f64, share: f64) -> Self {

@@ -83,18 +83,7 @@ fn law_of(ground: &Ground, block: &Block, capture_m_s: f64) -> Law {
 
 impl BlockRun {
     fn new(terrain: Terrain, block: Block, (friction, e): (f64, f64)) -> Self {
-        let ground = Ground {
-            normal_stiffness_n_m: 1e9,
-            shear_stiffness_n_m: 0.25e9,
-            friction_angle_rad: atan(friction),
-            restitution: Some(e),
-            rolling_friction: 0.0,
-            roughness_rad: 0.0,
-            roughness_length_m: None,
-            slip_friction: None,
-            scar: None,
-            restitution_half_m_s: None,
-        };
+        let ground = Ground::smooth([1e9, 0.25e9], atan(friction), Some(e));
         // slower than that an elastic block would lose what is captured
         let law = law_of(&ground, &block, if e < 1.0 { 1e-3 } else { 0.0 });
         let lost = Loss::default();

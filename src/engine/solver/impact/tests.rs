@@ -15,18 +15,8 @@ const G: f64 = 9.8;
 
 /// The ground of the exact cases: friction angle 30°, `p_s = p_N/4`.
 fn ground(p_n: f64, e: f64, rolling_friction: f64) -> Ground {
-    Ground {
-        normal_stiffness_n_m: p_n,
-        shear_stiffness_n_m: 0.25 * p_n,
-        friction_angle_rad: std::f64::consts::FRAC_PI_6,
-        restitution: Some(e),
-        rolling_friction,
-        roughness_rad: 0.0,
-        roughness_length_m: None,
-        slip_friction: None,
-        scar: None,
-        restitution_half_m_s: None,
-    }
+    let springs = [p_n, 0.25 * p_n];
+    Ground { rolling_friction, ..Ground::smooth(springs, std::f64::consts::FRAC_PI_6, Some(e)) }
 }
 
 /// A rock and its law.
