@@ -17,7 +17,7 @@ mod changes;
 mod flow;
 
 use super::contact_state::{ContactEnvironment, ContactState};
-use super::impact::dormand_prince::{Attempt, Stages, Tried, growth, three};
+use super::impact::dormand_prince::{Attempt, Flow, Stages, Tried, growth, three};
 use super::impact::{LOCAL, StepLength};
 use super::loss::Loss;
 use super::plane_ahead::longest_step;
@@ -166,7 +166,7 @@ impl ContactState {
         let mut bounds = self.step_bounds(world, scale, h_max);
         let mut flow = Among::<C>::new(world, self, (bounds.omega, bounds.allowed));
         let mut stages = Stages::<N, Q, P>::NONE;
-        flow.rates_of(0, &flow.begin::<N>(), stages.first());
+        flow.rates(0, &flow.begin::<N>(), stages.first());
         // what the present place touches is met whatever becomes of the tries
         flow.state.accept_meetings(world.least_impact_m_s());
         loop {
@@ -349,7 +349,7 @@ fn end_of_step<const C: usize, const N: usize, const Q: usize, const P: usize>(
     };
     if change.is_some() {
         // from now on what has waited presses, and what has ended counts no more
-        flow.rates_of(0, &y_end, stages.first());
+        flow.rates(0, &y_end, stages.first());
     }
     let end = flow.end(&y_end);
     let mut loss = flow.taken_up(&sums);

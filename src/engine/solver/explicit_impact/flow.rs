@@ -229,14 +229,13 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
     pub(super) fn end<const N: usize>(&self, y: &[f64; N]) -> End {
         End { c: self.state.c + three(y, WAY), v: three(y, V), w: three(y, W) }
     }
+}
 
+impl<const C: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, P>
+    for Among<'_, '_, C>
+{
     /// Writes the rates at `y` over `rates`, at stage `node` of a step, 0 at its ends; its contacts are those of the rock's state then.
-    pub(super) fn rates_of<const N: usize, const Q: usize, const P: usize>(
-        &mut self,
-        node: usize,
-        y: &[f64; N],
-        rates: &mut Rates<N, Q, P>,
-    ) {
+    fn rates(&mut self, node: usize, y: &[f64; N], rates: &mut Rates<N, Q, P>) {
         *rates = Rates::NONE;
         let (c, v, w) = (self.state.c + three(y, WAY), three(y, V), three(y, W));
         self.look(&c);
@@ -315,15 +314,6 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
         put(&mut rates.y, WAY, &v);
         put(&mut rates.y, V, &dv);
         put(&mut rates.y, W, &dw);
-    }
-}
-
-impl<const C: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, P>
-    for Among<'_, '_, C>
-{
-    #[inline]
-    fn rates(&mut self, node: usize, y: &[f64; N], to: &mut Rates<N, Q, P>) {
-        self.rates_of(node, y, to);
     }
 
     /// A spring that nothing presses on any more holds nothing: how it relaxes does not matter.

@@ -19,7 +19,7 @@ use crate::ground::Law;
 use crate::solver::environment::ContactEnvironment;
 use crate::solver::explicit_impact::{BALANCED, FIRST, LONGEST_RAD, SHORTEST_RAD, judge};
 use crate::solver::impact::LOCAL;
-use crate::solver::impact::dormand_prince::{Attempt, Stages};
+use crate::solver::impact::dormand_prince::{Attempt, Flow, Stages};
 use crate::solver::loss::Loss;
 use crate::solver::step_control::{Control, StepError};
 use flow::{BlockFlow, ErrorScale, LOSSES};
@@ -163,7 +163,7 @@ impl Footing {
         let mut flow = BlockFlow::<C>::new(world, self, on, scale);
         let y = flow.begin::<N>();
         let mut stages = Stages::<N, Q, P>::NONE;
-        flow.rates_of(0, &y, stages.first());
+        flow.rates(0, &y, stages.first());
         flow.settle_contacts();
         let (mut onsets, mut is_open) = (0, false);
         loop {

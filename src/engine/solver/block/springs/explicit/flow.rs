@@ -181,44 +181,6 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
         self.onset = Some(self.onset.map_or(share, |before: f64| before.min(share)));
     }
 
-    /// Writes the rates at `y`, a state of stage `node`, over `rates`; contacts are those of `y` then.
-    pub(super) fn rates_of<const N: usize, const Q: usize, const P: usize>(
-        &mut self,
-        node: usize,
-        y: &[f64; N],
-        rates: &mut Rates<N, Q, P>,
-    ) {
-        *rates = Rates::NONE;
-        // the try is cut where a contact begins: what comes later is thrown away
-        if self.onset.is_some() {
-            return;
-        }
-        let (moving, turned) = self.at(y);
-        self.touch_at(&moving, y);
-        let spin = moving.spin(self.block);
-        let mut contacts = std::mem::take(&mut self.footing.springs.contacts);
-        let (mut dv, mut torque) = (self.world.body.gravity, Vec3::zeros());
-        for contact in &mut contacts {
-            let u = moving.v + spin.cross(&contact.lever);
-            let place = contact.history;
-            if place >= self.known && !self.is_open {
-                self.note_onset(node, contact.penetration, contact.n.dot(&u));
-            } else if place < C {
-                let force = self.press(contact, &u, rates);
-                dv += force / self.block.mass_kg;
-                torque += contact.lever.cross(&force);
-            } else {
-                self.is_crowded = true;
-            }
-        }
-        self.footing.springs.contacts = contacts;
-        put(&mut rates.y, WAY, &moving.v);
-        put(&mut rates.y, TURNED, &turning(&turned, &spin));
-        put(&mut rates.y, V, &dv);
-        put(&mut rates.y, MOMENTUM, &torque);
-        self.moving = moving;
-    }
-
     /// Looks for the contacts of the block at a state.
     fn touch_at<const N: usize>(&mut self, moving: &Moving, y: &[f64; N]) {
         let (world, block) = (self.world, self.block);
@@ -271,9 +233,37 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
 impl<const C: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, P>
     for BlockFlow<'_, '_, C>
 {
-    #[inline]
-    fn rates(&mut self, node: usize, y: &[f64; N], to: &mut Rates<N, Q, P>) {
-        self.rates_of(node, y, to);
+    /// Writes the rates at `y`, a state of stage `node`, over `rates`; contacts are those of `y` then.
+    fn rates(&mut self, node: usize, y: &[f64; N], rates: &mut Rates<N, Q, P>) {
+        *rates = Rates::NONE;
+        // the try is cut where a contact begins: what comes later is thrown away
+        if self.onset.is_some() {
+            return;
+        }
+        let (moving, turned) = self.at(y);
+        self.touch_at(&moving, y);
+        let spin = moving.spin(self.block);
+        let mut contacts = std::mem::take(&mut self.footing.springs.contacts);
+        let (mut dv, mut torque) = (self.world.body.gravity, Vec3::zeros());
+        for contact in &mut contacts {
+            let u = moving.v + spin.cross(&contact.lever);
+            let place = contact.history;
+            if place >= self.known && !self.is_open {
+                self.note_onset(node, contact.penetration, contact.n.dot(&u));
+            } else if place < C {
+                let force = self.press(contact, &u, rates);
+                dv += force / self.block.mass_kg;
+                torque += contact.lever.cross(&force);
+            } else {
+                self.is_crowded = true;
+            }
+        }
+        self.footing.springs.contacts = contacts;
+        put(&mut rates.y, WAY, &moving.v);
+        put(&mut rates.y, TURNED, &turning(&turned, &spin));
+        put(&mut rates.y, V, &dv);
+        put(&mut rates.y, MOMENTUM, &torque);
+        self.moving = moving;
     }
 
     /// Ways, turns and stretches times `ω`, spin times the largest radius, all in m/s. A spring that nothing presses on any more holds
