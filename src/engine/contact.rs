@@ -180,11 +180,6 @@ impl ContactPoints {
         self.retain(|touch| touch.distance_m < reach);
     }
 
-    /// Forgets those that are nearer than `reach` (m).
-    fn drop_nearer(&mut self, reach: f64) {
-        self.retain(|touch| touch.distance_m >= reach);
-    }
-
     /// Forgets those that are not `wanted`.
     pub(crate) fn retain(&mut self, wanted: impl Fn(&ContactPoint) -> bool) {
         self.0.retain(|touch| wanted(touch));

@@ -212,7 +212,7 @@ impl Neighbours {
         touches: &mut ContactPoints,
     ) {
         // what does not reach the ball yet stays as it is: a patch is only what is pressed in
-        touches.drop_nearer(self.radius);
+        touches.retain(|touch| touch.distance_m >= self.radius);
         let mut patches = std::mem::take(&mut self.patches);
         patches.find(
             terrain,
