@@ -272,6 +272,19 @@ impl Footing {
     }
 }
 
+impl super::SpringContact {
+    /// Where it opens and where it slips, for an explicit pair: what is asked of its normal element, squared, and what that would pull with, and
+    /// the same of shear. Both in units of acceleration for a mass (kg), so that times a step they are speeds.
+    pub(super) fn kinks(&self, (pulls, asked2): (f64, f64), mass_kg: f64) -> [[f64; 2]; 2] {
+        let (by_mass, pushes) = (1.0 / mass_kg, self.normal_force);
+        let cap = self.law.shear.cap(pushes);
+        [
+            [(pushes * by_mass).powi(2), (-pulls).max(0.0) * by_mass],
+            [asked2 * by_mass * by_mass, cap * by_mass],
+        ]
+    }
+}
+
 impl super::Springs {
     /// Whether the impact that goes on has just begun.
     fn is_new(&self) -> bool {

@@ -19,7 +19,6 @@ use super::{Footing, Moving, RollingSpring, SpringContact};
 use crate::body::Block;
 use crate::contact::MOST;
 use crate::contact::block::{BlockTouch, MOST_TOUCHES};
-use crate::ground::Law;
 use crate::rock::Vec3;
 use crate::solver::block::solve::Mass;
 use crate::solver::environment::ContactEnvironment;
@@ -91,7 +90,7 @@ impl Footing {
             let friction = self.slip.friction(ground, world.law(touch.triangle), 0.0);
             let approach_m_s = moving.approach_m_s(block, touch);
             let law = Self::law_of_touch(world, &mass, touch, (approach_m_s, touches.iter()));
-            let mut contact = SpringContact::frozen((k, touch), law, friction);
+            let mut contact = SpringContact::just_touching((k, touch), &law, friction);
             contact.captured = approach_m_s < capture_m_s(&law);
             contact.waits = approach_m_s < 0.0;
             contacts.push(contact);
@@ -113,28 +112,6 @@ impl Footing {
         };
         self.springs.contacts = flow.contacts;
         end
-    }
-}
-
-impl SpringContact {
-    /// Contact `k` where the block just touches, with a coefficient of friction (–).
-    fn frozen((k, touch): (usize, &BlockTouch), law: Law, friction: f64) -> Self {
-        let mut law = law.of_patch(touch.gain2, 1.0);
-        law.rub_with(friction);
-        Self {
-            history: k,
-            law,
-            captured: false,
-            waits: false,
-            triangle: touch.triangle,
-            n: touch.normal,
-            lever: touch.lever,
-            offset_m: 0.0,
-            penetration: 0.0,
-            shear: Vec3::zeros(),
-            normal_force: 0.0,
-            shear_force: Vec3::zeros(),
-        }
     }
 }
 
@@ -281,7 +258,7 @@ impl FrozenFlow<'_, '_> {
         let friction = self.contacts[k].law.friction_coefficient();
         let rebounds =
             self.contacts.iter().any(|one| !one.waits && !one.captured && one.normal_force > 0.0);
-        let mut contact = SpringContact::frozen((k, touch), law, friction);
+        let mut contact = SpringContact::just_touching((k, touch), &law, friction);
         contact.captured = approach_m_s < capture_m_s(&law) && !rebounds;
         self.contacts[k] = contact;
         y[at] = y[at].max(0.0);
@@ -329,11 +306,8 @@ impl<const N: usize, const P: usize> Flow<N, SUMS, P> for FrozenFlow<'_, '_> {
             torque += contact.lever.cross(&force);
             put(&mut to.y, at + 1, &shear.stretch_rate);
             loss.add(&contact.power(self.world, &u, &shear.stretch_rate), 1.0);
-            // in units of acceleration, so that times a step they are speeds
-            let by_mass = 1.0 / self.mass.mass;
-            let (pushes, cap) = (contact.normal_force, contact.law.shear.cap(contact.normal_force));
-            to.kinks[2 * k] = [(pushes * by_mass).powi(2), (-pulls).max(0.0) * by_mass];
-            to.kinks[2 * k + 1] = [shear.asked2 * by_mass * by_mass, cap * by_mass];
+            let kinks = contact.kinks((pulls, shear.asked2), self.mass.mass);
+            to.kinks[2 * k..2 * k + 2].copy_from_slice(&kinks);
         }
         if self.rolling.is_on() {
             self.rolling.stretch = three(y, ROLLED);

@@ -10,7 +10,7 @@ use super::{BlockRates, SpringContact, turn_by, turning};
 use crate::body::Block;
 use crate::contact::block::{BlockTouch, Pose};
 use crate::contact::history::carry;
-use crate::ground::SliderForce;
+use crate::ground::{Law, SliderForce};
 use crate::rock::Vec3;
 use crate::solver::block::rolling::Turning;
 use crate::solver::block::solve::{BlockContact, Mass, SWEEPS, first_guess, solve};
@@ -56,6 +56,32 @@ impl StageBase<'_> {
             attitude: orthonormal(&(turn_by(&turned) * self.start.pose.attitude)),
         };
         BlockEnd { moving: Moving { pose, v, momentum }, turned, rolled: self.base.rolled }
+    }
+}
+
+impl SpringContact {
+    /// The contact of memory `history` where the block just touches, with a coefficient of friction (–).
+    pub(super) fn just_touching(
+        (history, touch): (usize, &BlockTouch),
+        law: &Law,
+        friction: f64,
+    ) -> Self {
+        let mut law = law.of_patch(touch.gain2, 1.0);
+        law.rub_with(friction);
+        Self {
+            history,
+            law,
+            captured: false,
+            waits: false,
+            triangle: touch.triangle,
+            n: touch.normal,
+            lever: touch.lever,
+            offset_m: 0.0,
+            penetration: 0.0,
+            shear: Vec3::zeros(),
+            normal_force: 0.0,
+            shear_force: Vec3::zeros(),
+        }
     }
 }
 
@@ -141,31 +167,21 @@ impl Footing {
         for (k, touch) in self.touches.found.iter().enumerate() {
             let Some(history) = self.of_touch[k] else { continue };
             let memory = &self.springs.histories[history];
-            let mut law = memory.law.of_patch(touch.gain2, 1.0);
-            law.rub_with(self.slip.friction(
-                world.ground_of(touch.triangle),
-                &law,
-                self.springs.ahead_m,
-            ));
+            let ground = world.ground_of(touch.triangle);
+            let friction = self.slip.friction(ground, &memory.law, self.springs.ahead_m);
             let offset_m = self.offset_m((start, guess), touch, (block, history));
             contacts.push(SpringContact {
-                history,
                 offset_m,
-                law,
                 captured: memory.captured,
                 waits: self.springs.new_wait
                     && history >= self.springs.known
                     && !memory.captured
                     && memory.approach_m_s > 0.0,
-                triangle: touch.triangle,
-                n: touch.normal,
-                lever: touch.lever,
                 penetration: way_s * touch.normal.dot(&guess.at(block, &touch.lever))
                     - touch.gap_m
                     - offset_m,
                 shear: carry(shear_of(self, history), &memory.n, &touch.normal),
-                normal_force: 0.0,
-                shear_force: Vec3::zeros(),
+                ..SpringContact::just_touching((history, touch), &memory.law, friction)
             });
         }
         self.springs.rolling.take_up(&contacts);

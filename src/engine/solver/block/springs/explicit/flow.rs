@@ -221,12 +221,9 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
         }
         rates.q[LOSSES + place] = normal.storing_w(penetration, -up);
         self.damped[place] = normal.is_damped(self.block.mass_kg);
-        // in units of acceleration, so that times a step they are speeds
-        let by_mass = 1.0 / self.block.mass_kg;
-        let (pushes, cap) = (contact.normal_force, contact.law.shear.cap(contact.normal_force));
-        rates.kinks[2 * place] = [(pushes * by_mass).powi(2), (-pulls).max(0.0) * by_mass];
-        rates.kinks[2 * place + 1] = [shear.asked2 * by_mass * by_mass, cap * by_mass];
-        contact.n * pushes - contact.shear_force
+        let kinks = contact.kinks((pulls, shear.asked2), self.block.mass_kg);
+        rates.kinks[2 * place..2 * place + 2].copy_from_slice(&kinks);
+        contact.n * contact.normal_force - contact.shear_force
     }
 }
 
