@@ -58,13 +58,15 @@ impl Fall<'_> {
     /// both ends) for friction.
     pub(super) fn soil_after_step(&mut self, before: &Vec3, dt: f64) {
         self.soil.last_step_s = dt;
-        let world = self.settings.around(self.body, self.laws);
-        let contacts = self.state.histories.iter().map(|history| (history.triangle, history.n));
-        let normal = self.soil.scars.floor(&world, contacts);
-        let way_m = (self.state.c - before).norm();
-        let ends = self.state.is_free().then_some(self.state.v);
-        let kept = self.soil.scars.plough(&self.body, (way_m, normal), ends);
-        self.slow(kept);
+        if self.soil.scars.are_any() {
+            let world = self.settings.around(self.body, self.laws);
+            let contacts = self.state.histories.iter().map(|history| (history.triangle, history.n));
+            let normal = self.soil.scars.floor(&world, contacts);
+            let way_m = (self.state.c - before).norm();
+            let ends = self.state.is_free().then_some(self.state.v);
+            let kept = self.soil.scars.plough(&self.body, (way_m, normal), ends);
+            self.slow(kept);
+        }
         if let Some(Slips { speed_m_s, n, ground }) = self.soil.slips.take() {
             let after_m_s = self.body.slip(&n, &self.state.v, &self.state.w).norm();
             self.soil.slip.grow(0.5 * (speed_m_s + after_m_s) * dt, Some(ground));
