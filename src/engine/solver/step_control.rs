@@ -243,19 +243,25 @@ impl TrialStep for RockTrial<'_, '_> {
 /// only take.
 fn gains(world: &ContactEnvironment, state: &ContactState, end: &End, hh: f64) -> bool {
     let body = &world.body;
-    let motion = 0.5 * (body.mass * end.v.norm_squared() + body.inertia * end.w.norm_squared());
-    let lifted = -body.mass * body.gravity.dot(&(end.c - state.c));
-    let before = state.motion_j(body) + state.stored;
+    let [before, after] = energies_j(body, state, (end, hh));
     // Positions are rounded to about 1e-13 of a slope's size: times the forces, that much work is not known.
     let contacts = state.stage_contacts().iter();
     let force = body.mass * body.gravity.norm() + contacts.map(|one| one.normal_force).sum::<f64>();
     let unknown = ROUNDING * before + PLACE_ROUNDING * body.radius * force;
-    motion + lifted + pressed_j(state, end, hh) > before + unknown
+    after > before + unknown
+}
+
+/// Motion, height over the step's start and springs of a rock (J), at the start of a step and at its end.
+pub(crate) fn energies_j(body: &Body, state: &ContactState, (end, hh): (&End, f64)) -> [f64; 2] {
+    let motion = 0.5 * (body.mass * end.v.norm_squared() + body.inertia * end.w.norm_squared());
+    // height relative to the start of the step: absolute heights would cost digits
+    let lifted = -body.mass * body.gravity.dot(&(end.c - state.c));
+    [state.motion_j(body) + state.stored, motion + lifted + pressed_j(state, end, hh)]
 }
 
 /// Energy in the springs of the contacts that are closed at the end of the step (J).
 /// `Σ (p_N pen² + p_s ξ² + k_r θ²)/2` over what is closed.
-pub(crate) fn pressed_j(state: &ContactState, end: &End, hh: f64) -> f64 {
+fn pressed_j(state: &ContactState, end: &End, hh: f64) -> f64 {
     let closed = state.stage_contacts().iter().filter(|contact| contact.is_closed(&end.v, hh));
     let stored = closed.map(|contact| {
         let (penetration, law) = (contact.pen_at(&end.v, hh).max(0.0), &contact.law);
@@ -278,14 +284,20 @@ fn attempt(
     for i in 1..tableau.stages {
         end = Some(state.stage(world, tableau, i, dt)?);
     }
+    let off2 = off2(tableau, state, (omega, world.body.radius));
+    end.map(|end| (end, dt * off2.sqrt() / control.tolerance))
+}
+
+/// Square of the local error of a rock over the length of the step (m²/s⁴): ways and stretches times the frequency of the stiffest contact
+/// (rad/s), spin times the radius (m).
+pub(crate) fn off2(tableau: &Tableau, state: &ContactState, (omega, radius): (f64, f64)) -> f64 {
     let rates = &state.rates;
     let ways2 = (0..state.histories.len())
         .map(|k| tableau.off(rates, |rate| rate.shear[k]).norm_squared())
         .fold(tableau.off(rates, |rate| rate.c).norm_squared(), f64::max);
-    let worst2 = (ways2 * omega * omega)
+    (ways2 * omega * omega)
         .max(tableau.off(rates, |rate| rate.v).norm_squared())
-        .max(tableau.off(rates, |rate| rate.w).norm_squared() * world.body.radius.powi(2));
-    end.map(|end| (end, dt * worst2.sqrt() / control.tolerance))
+        .max(tableau.off(rates, |rate| rate.w).norm_squared() * radius.powi(2))
 }
 
 /// Takes over the step's end: motion, memories, losses.

@@ -155,12 +155,8 @@ impl<'a> Island<'a> {
         // `unknown`: energy that rounding of the places alone may make, weight and normal forces times a length
         let (mut before, mut after, mut unknown) = (0.0, 0.0, 0.0);
         for IslandBody { state, body, end, .. } in self.members.iter().map(|member| &**member) {
-            let motion =
-                0.5 * (body.mass * end.v.norm_squared() + body.inertia * end.w.norm_squared());
-            // height relative to the start of the step: absolute heights would cost digits
-            let lifted = -body.mass * body.gravity.dot(&(end.c - state.c));
-            before += state.motion_j(body) + state.stored;
-            after += motion + lifted + step_control::pressed_j(state, end, hh);
+            let [own_before, own_after] = step_control::energies_j(body, state, (end, hh));
+            (before, after) = (before + own_before, after + own_after);
             unknown += step_control::PLACE_ROUNDING * body.radius * body.mass * body.gravity.norm();
         }
         for pair_history in self.pair_histories.iter().filter(|pair_history| pair_history.is_held())
@@ -263,7 +259,6 @@ impl<'a> Island<'a> {
     /// Largest error of the embedded method over what is allowed to the rock (1/s).
     fn error(&self, control: &Control) -> f64 {
         let tableau = control.tableau;
-        let weights = &tableau.error[..tableau.stages];
         let over_allowed: Vec<f64> =
             self.members.iter().map(|member| 1.0 / member.allowed_m_s(control.impact)).collect();
         let mut worst2 = 0.0f64;
@@ -279,31 +274,14 @@ impl<'a> Island<'a> {
                 omegas[k] = omegas[k].max(pair_history.law.omega_rad_s());
             }
             // error of the shear stretch (m/s as a rate), times ω to compare with an acceleration
-            let sums = rates.iter().zip(weights);
-            let drift = sums.fold(Vec3::zeros(), |sum, (rate, weight)| sum + rate * *weight);
+            let drift = tableau.off(rates, |rate| *rate);
             let by =
                 over_allowed[pair_history.a as usize].max(over_allowed[pair_history.b as usize]);
             worst2 =
                 worst2.max(drift.norm_squared() * (pair_history.law.omega_rad_s() * by).powi(2));
         }
         for ((member, omega), by) in self.members.iter().zip(&omegas).zip(&over_allowed) {
-            // the embedded method's difference in place, velocity and spin, each as an acceleration: ω² x, v̇ and R ẇ
-            let mut off = [Vec3::zeros(); 3];
-            for (rate, weight) in member.state.rates.iter().zip(weights) {
-                off[0] += rate.c * *weight;
-                off[1] += rate.v * *weight;
-                off[2] += rate.w * *weight;
-            }
-            let mut stretch2 = off[0].norm_squared();
-            for k in 0..member.state.histories.len() {
-                let sums = member.state.rates.iter().zip(weights);
-                let drift =
-                    sums.fold(Vec3::zeros(), |sum, (rate, weight)| sum + rate.shear[k] * *weight);
-                stretch2 = stretch2.max(drift.norm_squared());
-            }
-            let own2 = (stretch2 * omega * omega)
-                .max(off[1].norm_squared())
-                .max(off[2].norm_squared() * member.body.radius.powi(2));
+            let own2 = step_control::off2(tableau, &member.state, (*omega, member.body.radius));
             worst2 = worst2.max(own2 * by * by);
         }
         worst2.sqrt()

@@ -114,10 +114,8 @@ impl Island<'_> {
             // the remembered stretch is turned with the normal: the spring stays in the tangent plane
             let from = if pair_history.is_held() { pair_history.n } else { pair.n };
             // base of the stretch: as for places, the state and the earlier stages
-            let mut shear = pair_history.shear;
-            for (rate, a) in self.pair_rates[k].iter().zip(tableau.a[i]) {
-                shear += rate * (h * a);
-            }
+            let from_rates = (pair_history.shear, &self.pair_rates[k][..]);
+            let shear = tableau.base((i, h), from_rates, |rate| *rate);
             pair.shear = carry(shear, &from, &pair.n);
             (pair.normal_force, pair.shear_force) = self.pair_forces[k];
             self.pairs.push(pair);
