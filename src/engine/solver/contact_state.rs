@@ -354,6 +354,12 @@ impl ContactState {
         self.fresh = false;
     }
 
+    /// Largest `√(p_N/m)` among its contacts with the mesh (rad/s), 0 if there is none.
+    pub(super) fn stiffest_rad_s(&self, world: &ContactEnvironment) -> f64 {
+        let omegas = self.histories.iter().map(|one| world.law(one.triangle).omega_rad_s());
+        omegas.fold(0.0, f64::max)
+    }
+
     /// Whether nothing presses on the rock any more.
     pub fn is_free(&self) -> bool {
         self.histories.iter().all(|history| !history.closed)

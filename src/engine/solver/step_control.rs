@@ -122,11 +122,7 @@ pub fn first_step(world: &ContactEnvironment, state: &ContactState) -> f64 {
 
 /// Largest `√(p_N/m)` among the contacts (rad/s).
 fn stiffest(world: &ContactEnvironment, state: &ContactState) -> f64 {
-    let omega = state
-        .histories
-        .iter()
-        .map(|history| world.law(history.triangle).omega_rad_s())
-        .fold(0.0, f64::max);
+    let omega = state.stiffest_rad_s(world);
     if omega > 0.0 { omega } else { world.laws.iter().map(Law::omega_rad_s).fold(0.0, f64::max) }
 }
 

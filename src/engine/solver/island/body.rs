@@ -226,11 +226,7 @@ impl IslandBody {
     /// Stiffest contact with the mesh (rad/s), 0 if there is none.
     pub fn omega(&self, terrain: &Terrain) -> f64 {
         let world = ContactEnvironment { terrain, body: self.body, laws: &self.laws };
-        self.state
-            .histories
-            .iter()
-            .map(|history| world.law(history.triangle).omega_rad_s())
-            .fold(0.0, f64::max)
+        self.state.stiffest_rad_s(&world)
     }
 }
 
