@@ -225,19 +225,15 @@ impl Scene {
 
     /// Files with drawings: table, entry and key that name them.
     fn drawings(&self) -> Vec<(Named, &Path)> {
+        let lists: [(&'static str, Vec<Option<&Path>>); 3] = [
+            ("lines", self.line_entries.iter().map(|one| one.file.as_deref()).collect()),
+            ("barriers", self.barrier_entries.iter().map(|one| one.file.as_deref()).collect()),
+            ("ground_zones", self.ground_zones.iter().map(|one| Some(&*one.file)).collect()),
+        ];
         let mut all: Vec<(Named, &Path)> = Vec::new();
-        for (index, line) in self.line_entries.iter().enumerate() {
-            all.extend(
-                line.file.iter().map(|file| (("lines", Some(index), "file"), file.as_path())),
-            );
-        }
-        for (index, barrier) in self.barrier_entries.iter().enumerate() {
-            all.extend(
-                barrier.file.iter().map(|file| (("barriers", Some(index), "file"), file.as_path())),
-            );
-        }
-        for (index, zones) in self.ground_zones.iter().enumerate() {
-            all.push((("ground_zones", Some(index), "file"), &zones.file));
+        for (list, files) in lists {
+            let files = files.into_iter().enumerate();
+            all.extend(files.filter_map(|(k, file)| Some(((list, Some(k), "file"), file?))));
         }
         all.extend(
             self.release.zones.iter().map(|file| (("release", None, "zones"), file.as_path())),
