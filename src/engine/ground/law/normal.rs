@@ -79,14 +79,8 @@ impl NormalElement {
 
     /// The same of a bond, which pulls as well as it pushes.
     #[inline]
-    pub(crate) fn bond(&self, penetration: f64, h: f64) -> BondLine {
-        BondLine { pressed: self.p_n * penetration, per_speed: self.p_n * h + self.c_n }
-    }
-
-    /// Force of a bond at the end of a stage where the speed apart is known (N).
-    #[inline]
-    pub(crate) fn bond_force(&self, penetration: f64, apart_m_s: f64, h: f64) -> f64 {
-        self.p_n * (penetration - h * apart_m_s) - self.c_n * apart_m_s
+    pub(crate) fn bond(&self, penetration: f64, h: f64) -> NormalLine {
+        NormalLine { a: self.p_n * penetration, b: self.p_n * h + self.c_n }
     }
 
     /// The element of a patch of stiffness `gain2 = |a|²` (–) whose dashpot takes `share` of its own (–), see [`Law::of_patch`].
@@ -196,28 +190,11 @@ impl NormalLine {
     pub(crate) fn at(&self, speed: f64) -> f64 {
         (self.a - self.b * speed).max(0.0)
     }
-}
 
-/// The force of a bond over a stage, linear wherever it is.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct BondLine {
-    /// Force at no speed (N).
-    pressed: f64,
-    /// Change of the force with the speed apart (N s/m).
-    per_speed: f64,
-}
-
-impl BondLine {
-    /// Force for a normal speed `vn` without the bond's own effect (m/s); `inv_m` is the reciprocal of the mass it moves (1/kg).
+    /// Force of a bond for a normal speed `vn` without the bond's own effect (m/s); `inv_m` is the reciprocal of the mass it moves (1/kg).
     #[inline]
-    pub(crate) fn force(&self, vn: f64, h: f64, inv_m: f64) -> f64 {
-        (self.pressed - self.per_speed * vn) / (1.0 + self.per_speed * h * inv_m)
-    }
-}
-
-impl From<BondLine> for NormalLine {
-    fn from(bond: BondLine) -> Self {
-        Self { a: bond.pressed, b: bond.per_speed }
+    pub(crate) fn pull_or_push(&self, vn: f64, h: f64, inv_m: f64) -> f64 {
+        (self.a - self.b * vn) / (1.0 + self.b * h * inv_m)
     }
 }
 

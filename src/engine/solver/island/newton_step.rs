@@ -97,7 +97,7 @@ impl Linear {
         let ends = pair.ends.map(|k| &motions[k]);
         let (law, speed, trial) = (&pair.law, pair.speed(ends), pair.trial(ends, h));
         let (normal, slider) = if pair.bond.is_some() {
-            (pair.normal.bond(pair.penetration, h).into(), law.shear.bonded(h))
+            (pair.normal.bond(pair.penetration, h), law.shear.bonded(h))
         } else {
             (pair.line(h), law.shear.left(h, (&pair.shear_force, pair.normal_force)))
         };

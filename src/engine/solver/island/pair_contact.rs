@@ -142,7 +142,8 @@ impl PairContact {
         }
         let free = self.trial(ends, h) / (1.0 + h * self.law.shear.over(h) * self.inv_t);
         if self.bond.is_some() {
-            self.normal_force = self.normal.bond(self.penetration, h).force(vn, h, self.inv_m);
+            let line = self.normal.bond(self.penetration, h);
+            self.normal_force = line.pull_or_push(vn, h, self.inv_m);
             self.shear_force = free;
             return;
         }
@@ -153,7 +154,7 @@ impl PairContact {
     pub(super) fn act_at(&mut self, ends: [&Twist; 2], h: f64) {
         let (speed, stick) = (self.speed(ends), self.trial(ends, h));
         if self.bond.is_some() {
-            self.normal_force = self.normal.bond_force(self.penetration, speed, h);
+            self.normal_force = self.normal.pull_or_push(self.pen_at(speed, h), speed);
             self.shear_force = stick;
         } else {
             self.normal_force = self.line(h).at(speed);
