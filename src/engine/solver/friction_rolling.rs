@@ -7,7 +7,7 @@
 //! a stage of length `h`.
 
 use super::body::Body;
-use super::contact_frame::{Along, Local};
+use super::contact_frame::{Along, Local, square};
 use crate::ground::{INSIDE, Law};
 use crate::rock::Rock;
 
@@ -82,32 +82,10 @@ fn turned(x: Along) -> Along {
     [-x[1], x[0]]
 }
 
+/// Shortens a vector, along the surface or a moment, to at most `cap`.
 #[inline]
-fn size2(x: Along) -> f64 {
-    x[0] * x[0] + x[1] * x[1]
-}
-
-#[inline]
-fn volume2(x: Local) -> f64 {
-    x[0] * x[0] + x[1] * x[1] + x[2] * x[2]
-}
-
-/// Shortens a vector along the surface to at most `cap`.
-#[inline]
-pub(crate) fn cut(x: Along, cap: f64) -> Along {
-    let size2 = size2(x);
-    if size2 > cap * cap {
-        let share = cap / size2.sqrt();
-        [x[0] * share, x[1] * share]
-    } else {
-        x
-    }
-}
-
-/// Shortens a moment to at most `cap`.
-#[inline]
-pub(crate) fn cut_moment(x: Local, cap: f64) -> Local {
-    let size2 = volume2(x);
+pub(crate) fn cut<const N: usize>(x: [f64; N], cap: f64) -> [f64; N] {
+    let size2 = square(x);
     if size2 > cap * cap { x.map(|x| x * (cap / size2.sqrt())) } else { x }
 }
 
@@ -159,8 +137,8 @@ impl Pair<'_> {
     fn solve_anew(&self) -> (SlipState, Along, Local) {
         let (cap_q, cap_m) = self.caps;
         let (q, rolling_moment) = self.both_stick();
-        let m_fits = volume2(rolling_moment) <= cap_m * cap_m;
-        if m_fits && size2(q) <= cap_q * cap_q {
+        let m_fits = square(rolling_moment) <= cap_m * cap_m;
+        if m_fits && square(q) <= cap_q * cap_q {
             return (SlipState::Stick, q, rolling_moment);
         }
         let one = if m_fits { None } else { self.rolls(None) };
@@ -177,7 +155,7 @@ impl Pair<'_> {
         let q = self.shear_at(rolling_moment);
         let rolls = share * INSIDE <= self.answers.share_m;
         let mode = SlipState::Roll(by(ratio, self.caps.1));
-        (rolls && size2(q) <= self.caps.0 * self.caps.0).then_some((mode, q, rolling_moment))
+        (rolls && square(q) <= self.caps.0 * self.caps.0).then_some((mode, q, rolling_moment))
     }
 
     /// Shear at its cap, if the moment then sticks and shear does not.
@@ -186,8 +164,8 @@ impl Pair<'_> {
         let (cap_q, cap_m) = self.caps;
         let q = self.sliding_alone();
         let rolling_moment = self.moment_at(q);
-        let slides = size2(self.shear_at(rolling_moment)) >= (INSIDE * cap_q).powi(2);
-        (slides && volume2(rolling_moment) <= cap_m * cap_m).then_some((
+        let slides = square(self.shear_at(rolling_moment)) >= (INSIDE * cap_q).powi(2);
+        (slides && square(rolling_moment) <= cap_m * cap_m).then_some((
             SlipState::Slide,
             q,
             rolling_moment,
@@ -199,7 +177,7 @@ impl Pair<'_> {
     fn does_both(&self, ratio: Option<f64>) -> Option<(SlipState, Along, Local)> {
         let (cap_q, cap_m) = self.caps;
         let (ratio, q, rolling_moment) = self.both_slip(ratio);
-        let slips = size2(self.shear_at(rolling_moment)) >= cap_q * cap_q
+        let slips = square(self.shear_at(rolling_moment)) >= cap_q * cap_q
             && ratio <= self.answers.c * self.answers.share_m;
         slips.then_some((SlipState::Both(by(ratio, cap_m)), q, rolling_moment))
     }
@@ -233,7 +211,7 @@ impl Pair<'_> {
     fn rolling_alone(&self, guess: Option<f64>) -> (f64, f64, Local) {
         let y = turned(self.a);
         let g = [0, 1].map(|k| self.d[k] + y[k] * (self.answers.er * self.answers.share_q));
-        let (t2, n2, cap) = (size2(g), self.d[2] * self.d[2], self.caps.1);
+        let (t2, n2, cap) = (square(g), self.d[2] * self.d[2], self.caps.1);
         let s = self.answers.er * self.answers.c * self.answers.share_q;
         let guess = guess.filter(|guess| *guess > 0.0);
         let mut ratio = guess.unwrap_or_else(|| cap / (t2 + n2).sqrt().max(f64::MIN_POSITIVE));
@@ -261,7 +239,7 @@ impl Pair<'_> {
     fn sliding_alone(&self) -> Along {
         let y = turned([self.d[0], self.d[1]]);
         let along = [0, 1].map(|k| self.a[k] - y[k] * (self.answers.c * self.answers.share_m));
-        let size = size2(along).sqrt();
+        let size = square(along).sqrt();
         if size > 0.0 { along.map(|x| x * (self.caps.0 / size)) } else { along }
     }
 
@@ -272,14 +250,14 @@ impl Pair<'_> {
         let (cap_q, cap_m) = self.caps;
         let nd = turned([self.d[0], self.d[1]]);
         let lever = self.answers.er * cap_q;
-        let (nd2, wanted) = (size2(nd), self.answers.c * cap_m);
+        let (nd2, wanted) = (square(nd), self.answers.c * cap_m);
         let most2 = nd2 + lever * lever + self.d[2] * self.d[2];
         let guess = guess.filter(|guess| *guess > 0.0);
         let mut ratio = guess.unwrap_or_else(|| wanted / most2.sqrt().max(f64::MIN_POSITIVE));
         let mut e = [0.0; 2];
         for _ in 0..RATIO_STEPS {
             let p = [0, 1].map(|k| self.a[k] - nd[k] * ratio);
-            let over = 1.0 / size2(p).sqrt().max(f64::MIN_POSITIVE);
+            let over = 1.0 / square(p).sqrt().max(f64::MIN_POSITIVE);
             e = p.map(|x| x * over);
             let c = nd[0] * e[0] + nd[1] * e[1];
             let size2 = most2 - 2.0 * lever * c;
@@ -327,11 +305,11 @@ mod tests {
             for mode in [SlipState::Stick, SlipState::Roll(hint), SlipState::Slide, SlipState::Both(hint)] {
                 let (q, rolling_moment) = pair.solve(&mut { mode });
                 let at_m = cut(pair.shear_at(rolling_moment), pair.caps.0);
-                let at_q = cut_moment(pair.moment_at(q), pair.caps.1);
-                let off_q = size2([q[0] - at_m[0], q[1] - at_m[1]]).sqrt();
-                let off_m = volume2([0, 1, 2].map(|k| rolling_moment[k] - at_q[k])).sqrt();
+                let at_q = cut(pair.moment_at(q), pair.caps.1);
+                let off_q = square([q[0] - at_m[0], q[1] - at_m[1]]).sqrt();
+                let off_m = square([0, 1, 2].map(|k| rolling_moment[k] - at_q[k])).sqrt();
                 prop_assert!(off_q <= 1e-11 * pair.caps.0 && off_m <= 1e-11 * pair.caps.1, "{mode:?} {off_q} {off_m}");
-                let (size_q, size_m) = (size2(q).sqrt(), volume2(rolling_moment).sqrt());
+                let (size_q, size_m) = (square(q).sqrt(), square(rolling_moment).sqrt());
                 prop_assert!(size_q <= pair.caps.0 * (1.0 + 1e-12) && size_m <= pair.caps.1 * (1.0 + 1e-12));
             }
         }

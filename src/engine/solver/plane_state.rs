@@ -2,7 +2,7 @@
 
 use super::body::Body;
 use super::contact_frame::{Along, ContactFrame, Local, dot, square};
-use super::friction_rolling::{cut, cut_moment};
+use super::friction_rolling::cut;
 use super::tableau::STAGES;
 use crate::ground::{Law, NormalElement};
 use crate::rock::Vec3;
@@ -177,7 +177,7 @@ impl PlaneState {
         let shear_force = cut(asked, law.shear.cap(normal_force));
         let wound = three(s, ROLL).map(|x| law.rolling.held(x));
         let asked = [0, 1, 2].map(|k| wound[k] + law.rolling.damped(spin[k]));
-        let rolling_moment = cut_moment(asked, law.rolling.cap(normal_force));
+        let rolling_moment = cut(asked, law.rolling.cap(normal_force));
         let (over_s, over_r) = (law.shear.mobility(), law.rolling.mobility());
         let gravity = self.frame.local(&body.gravity);
         let press = PlaneForces { normal_force, shear_force, rolling_moment, closed: true };
