@@ -20,17 +20,13 @@ impl ContactState {
         for touch in self.touches.iter() {
             let penetration = (world.body.radius - touch.distance_m).max(0.0);
             let pressed = touch.gain2 * world.law(touch.triangle).stored_j(penetration, 0.0, 0.0);
-            stored
-                .add(&Loss { damping: pressed, ..Loss::default() }.on(world, touch.triangle), 1.0);
+            stored.add(&Loss::on_slope([0.0, pressed, 0.0]).on(world, touch.triangle), 1.0);
         }
         for history in self.histories.iter() {
             let law = world.law(history.triangle);
             let damping = law.stored_j(0.0, history.shear.norm_squared(), 0.0);
             let rolling = law.stored_j(0.0, 0.0, history.roll.norm_squared());
-            stored.add(
-                &Loss { damping, rolling, ..Loss::default() }.on(world, history.triangle),
-                1.0,
-            );
+            stored.add(&Loss::on_slope([0.0, damping, rolling]).on(world, history.triangle), 1.0);
         }
         stored
     }

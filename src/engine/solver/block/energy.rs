@@ -237,9 +237,8 @@ impl Footing {
         let sum: f64 = self.contacts.iter().flat_map(|contact| part(contact).0).sum();
         let share = if sum > 0.0 { lost_j.max(0.0) / sum } else { 0.0 };
         let mut loss = Loss::default();
-        for ([friction, damping, rolling], triangle) in self.contacts.iter().map(part) {
-            let one = Loss { friction, damping, rolling, ..Loss::default() };
-            loss.add(&one.on(world, triangle), share);
+        for (taken, triangle) in self.contacts.iter().map(part) {
+            loss.add(&Loss::on_slope(taken).on(world, triangle), share);
         }
         loss
     }
