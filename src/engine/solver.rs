@@ -18,6 +18,7 @@ pub(crate) mod block;
 pub mod body;
 pub mod loss;
 pub mod step_control;
+mod ground_change;
 mod plane_ahead;
 mod plane_impact;
 pub mod dda;

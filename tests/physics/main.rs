@@ -15,6 +15,7 @@ mod dda_island;
 mod exact_edge;
 mod exact_plane;
 mod grooves;
+mod ground_border;
 mod heap;
 mod heights;
 mod impact_ledger;

@@ -29,8 +29,11 @@ pub const SAME_GRIP: f64 = 0.7;
 pub struct ContactHistory {
     /// What it touches.
     pub feature: Feature,
-    /// Triangle whose ground answers.
+    /// Triangle that it touches.
     pub triangle: u32,
+    /// Triangle whose ground answers: the one on which its springs were pressed. An impact is answered by one ground from beginning to
+    /// end; what lasts goes over to the ground it touches (`solver::ground_change`).
+    pub springs_of: u32,
     /// Normal to which `shear` is tangent.
     /// Unit, from the mesh to the centre, as of the end of the last accepted step.
     pub n: Vec3,
@@ -73,6 +76,7 @@ impl ContactHistory {
         Self {
             feature: touch.feature,
             triangle: touch.triangle,
+            springs_of: touch.triangle,
             n: touch.normal,
             shear: Vec3::zeros(),
             roll: Vec3::zeros(),
@@ -180,13 +184,17 @@ impl ContactHistories {
         })
     }
 
-    /// Hands the stretches of every contact that is no more to the one that it merged into: `heir` names its feature.
-    /// Whether there was any.
+    /// Hands the stretches of every contact that is no more to the one that it merged into: `heir` names its feature, `are_alike` says
+    /// whether the grounds of two triangles are the same, as a stretch means another force on another ground. Whether there was any.
     ///
     /// Where two contacts meet at a blunt fold they become one patch. Without this its spring would
     /// start slack, and the energy of the one that vanished would be lost from one step to the
     /// next.
-    pub fn merge_lost(&mut self, heir: impl Fn(Feature) -> Option<Feature>) -> bool {
+    pub fn merge_lost(
+        &mut self,
+        heir: impl Fn(Feature) -> Option<Feature>,
+        are_alike: impl Fn(u32, u32) -> bool,
+    ) -> bool {
         let mut merged = false;
         for k in 0..self.len() {
             let lost = self[k];
@@ -195,9 +203,12 @@ impl ContactHistories {
                 continue;
             }
             let Some(feature) = heir(lost.feature) else { continue };
-            if let Some(history) =
-                self.0.iter_mut().find(|history| history.closed && history.feature == feature)
-            {
+            let takes_over = |history: &&mut ContactHistory| {
+                history.closed
+                    && history.feature == feature
+                    && are_alike(history.springs_of, lost.springs_of)
+            };
+            if let Some(history) = self.0.iter_mut().find(takes_over) {
                 history.absorb(&lost);
                 merged = true;
             }

@@ -181,6 +181,18 @@ impl Law {
         Self { rolling: FrictionElement::NONE, ..*self }
     }
 
+    /// The same with the friction of `other`, along the surface and in rolling: springs that may be stretched stay what they are.
+    pub(crate) fn with_friction_of(&self, other: &Self) -> Self {
+        let both = |own: FrictionElement, other: FrictionElement| {
+            if own.is_on() { FrictionElement { limit: other.limit, ..own } } else { other }
+        };
+        Self {
+            shear: both(self.shear, other.shear),
+            rolling: both(self.rolling, other.rolling),
+            ..*self
+        }
+    }
+
     /// `√(p_N/m)` (rad/s): a contact lasts about `π` over this.
     #[inline]
     pub fn omega_rad_s(&self) -> f64 {

@@ -186,11 +186,8 @@ impl RockInContact<'_, '_> {
         if !self.has_springs {
             return 0.0;
         }
-        let omegas = self
-            .state
-            .histories
-            .iter()
-            .map(|history| self.world.law(history.triangle).omega_rad_s());
+        let omegas =
+            self.state.histories.iter().map(|history| self.world.springs_of(history).omega_rad_s());
         let slowest = omegas.fold(f64::INFINITY, f64::min);
         IMPACT_TIMES * PI / slowest
     }

@@ -305,6 +305,7 @@ impl ContactState {
         let history = self.histories.find(touch, &self.touches, taken, || slow && !rebounds);
         if history >= before {
             self.histories[history].met_m_s = if slow { 0.0 } else { -touch.normal.dot(v) };
+            self.part_springs(world, history, k);
             for rate in &mut self.rates {
                 (rate.shear[history], rate.roll[history]) = (Vec3::zeros(), Vec3::zeros());
             }
@@ -333,12 +334,6 @@ impl ContactState {
         }
     }
 
-    /// Hands the springs of contacts that merged into others to those; whether there were any.
-    pub(crate) fn merge_lost(&mut self, world: &ContactEnvironment) -> bool {
-        let Self { histories, near, .. } = self;
-        histories.merge_lost(|feature| near.patch_holding(world.terrain, feature))
-    }
-
     /// All contacts not yet announced rebound after all, from an approach of `speed_m_s`.
     pub(crate) fn rebound(&mut self, world: &ContactEnvironment, speed_m_s: f64) {
         for history in self.histories.iter_mut().filter(|history| !history.announced) {
@@ -356,7 +351,7 @@ impl ContactState {
 
     /// Largest `√(p_N/m)` among its contacts with the mesh (rad/s), 0 if there is none.
     pub(super) fn stiffest_rad_s(&self, world: &ContactEnvironment) -> f64 {
-        let omegas = self.histories.iter().map(|one| world.law(one.triangle).omega_rad_s());
+        let omegas = self.histories.iter().map(|one| world.springs_of(one).omega_rad_s());
         omegas.fold(0.0, f64::max)
     }
 

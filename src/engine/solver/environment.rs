@@ -1,6 +1,7 @@
 //! What a rock in contact meets: the terrain, the law of every ground, and itself.
 
 use super::body::Body;
+use crate::contact::history::ContactHistory;
 use crate::contact::{ContactPoint, TOUCH};
 use crate::ground::Law;
 use crate::rock::Vec3;
@@ -50,12 +51,30 @@ impl ContactEnvironment<'_> {
         LEAST_IMPACT * self.body.fall_speed_m_s()
     }
 
-    /// The law of touch `k` among others of the same instant.
+    /// The law on whose ground the springs of a contact were pressed: that of an impact from beginning to end.
+    #[inline]
+    pub(crate) fn springs_of(&self, history: &ContactHistory) -> &Law {
+        self.law(history.springs_of)
+    }
+
+    /// The law of a lasting contact with `triangle`: its springs, and the friction of the ground that it touches.
+    #[inline]
+    pub(crate) fn lasting_law(&self, history: &ContactHistory, triangle: u32) -> Law {
+        let (springs, touched) = (history.springs_of, triangle);
+        if self.ground_of(springs) == self.ground_of(touched) {
+            *self.law(touched)
+        } else {
+            self.law(springs).with_friction_of(self.law(touched))
+        }
+    }
+
+    /// The same for touch `k` among others of the same instant, whose memory this is.
     /// Patch and neighbours change the dashpot only through the mass that they move: `m/|a|²`.
     #[inline]
-    pub fn law_of(&self, touches: &[ContactPoint], k: usize) -> Law {
+    pub fn law_of(&self, history: &ContactHistory, touches: &[ContactPoint], k: usize) -> Law {
         let touch = &touches[k];
-        self.law(touch.triangle).of_patch(touch.gain2, self.dashpot_share(touches, k))
+        let share = self.dashpot_share(touches, k);
+        self.lasting_law(history, touch.triangle).of_patch(touch.gain2, share)
     }
 
     /// What the dashpot of touch `k` among others of the same instant takes of its own damping (–).

@@ -211,6 +211,7 @@ impl ContactState {
         (self.c, self.v, self.w) = (end.c, end.v, end.w);
         // what the springs store is counted among the losses until they give it back
         self.impact.gained += self.motion_j(body) + lifted + loss.sum() - before;
+        self.impact.mixes |= self.is_on_several_grounds(world);
         self.merge_lost(world);
         self.histories.retain(|history| history.closed);
         self.accept_meetings(world.least_impact_m_s());
@@ -234,7 +235,7 @@ impl ContactState {
             return 0.0;
         }
         let leaves = |history: &ContactHistory| {
-            let law = world.law(history.triangle);
+            let law = world.springs_of(history);
             let n = &history.n;
             let weight = n.dot(&world.body.gravity).min(0.0);
             history.normal_force <= 0.0 && law.lets_go(n.dot(&self.v), weight, dt)
@@ -258,18 +259,20 @@ impl ContactState {
     ///
     /// Velocity and spin are scaled by one factor, so the direction of the rebound does not change.
     /// An impact with `e = 1` and no friction then keeps its energy to rounding. Where no ground has
-    /// friction nothing can turn the rock, and the velocity alone is scaled.
+    /// friction nothing can turn the rock, and the velocity alone is scaled. More than [`BALANCED`] is balanced only where springs of several
+    /// grounds were pressed at once: what these hand over to each other is no error of steps.
     pub(super) fn balance(&mut self, world: &ContactEnvironment) {
         let (body, gained) = (&world.body, self.impact.gained);
         let turns = world.laws.iter().any(|law| law.limits().caps(1.0) != (0.0, 0.0));
         let motion =
             if turns { self.motion_j(body) } else { 0.5 * body.mass * self.v.norm_squared() };
-        if gained.abs() < BALANCED * motion {
+        let most = if self.impact.mixes { 1.0 } else { BALANCED };
+        if gained.abs() < most * motion {
             let kept = (1.0 - gained / motion).sqrt();
             self.v *= kept;
             self.w *= if turns { kept } else { 1.0 };
         }
-        (self.impact.gained, self.impact.left) = (0.0, 0.0);
+        (self.impact.gained, self.impact.left, self.impact.mixes) = (0.0, 0.0, false);
     }
 }
 

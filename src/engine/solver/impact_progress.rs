@@ -16,6 +16,8 @@ pub(crate) struct ImpactProgress {
     pub(super) left: f64,
     /// Energy that the steps have gained (J).
     pub(super) gained: f64,
+    /// Whether springs of several grounds were pressed at once: where their patches meet or part one takes over what the other held.
+    pub(super) mixes: bool,
 }
 
 impl ImpactProgress {
@@ -35,7 +37,7 @@ impl ImpactProgress {
             return;
         }
         if self.left <= 0.0 {
-            (self.h, self.gained) = (0.0, 0.0);
+            (self.h, self.gained, self.mixes) = (0.0, 0.0, false);
         }
         // a further contact within an impact prolongs it, and the fastest approach sets the scale
         // of its error

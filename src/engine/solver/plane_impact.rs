@@ -38,9 +38,9 @@ impl ContactState {
         done: &mut Advance,
     ) -> bool {
         let Some((history, pressed)) = self.pressed_in_plane(world) else { return false };
-        let plane = Plane::new(&world.body, world.law(history.triangle), tolerance);
+        let plane = Plane::new(&world.body, world.springs_of(&history), tolerance);
         let Some(whole) = plane.passage(&history.n, &self.v, pressed.depth_m) else { return false };
-        let least_s = LEAST_RAD / world.law(history.triangle).omega_rad_s();
+        let least_s = LEAST_RAD / world.springs_of(&history).omega_rad_s();
         let (mut passage, mut share) = (whole, 1.0);
         loop {
             if passage.time_s() <= h_max
@@ -95,7 +95,7 @@ impl ContactState {
             PressedPath::of(n, surface, (shift, change_m_s), time_s, deepest_m)
         };
         let slip_m_s = world.body.slip(n, &self.v, &self.w).norm();
-        let rubbed_m_s = world.law(history.triangle).limits().caps(passage.blow_m_s()).0;
+        let rubbed_m_s = world.springs_of(history).limits().caps(passage.blow_m_s()).0;
         // springs at rest change the velocity one way; stretched ones may turn it round, by all that friction bears
         let is_whole = pressed.depth_m == 0.0 && passage.leaves();
         let most_m_s = rubbed_m_s + world.body.gravity.norm() * passage.time_s();
@@ -136,7 +136,7 @@ impl ContactState {
             self.impact.forget();
             return;
         };
-        let law = world.law(triangle);
+        let law = world.springs_of(&self.histories[0]);
         self.impact.pass(law.omega_rad_s() * rebound.time_s);
         if self.impact.left <= 0.0 {
             self.balance(world);

@@ -2,6 +2,7 @@
 
 use super::contact_state::{ContactEnvironment, ContactState};
 use super::loss::Loss;
+use crate::contact::ContactPoint;
 use crate::contact::history::ContactHistory;
 use crate::rock::Vec3;
 
@@ -18,17 +19,24 @@ impl ContactState {
     pub fn stored_j(&self, world: &ContactEnvironment) -> Loss {
         let mut stored = Loss::default();
         for touch in self.touches.iter() {
-            let penetration = (world.body.radius - touch.distance_m).max(0.0);
-            let pressed = touch.gain2 * world.law(touch.triangle).stored_j(penetration, 0.0, 0.0);
+            let pressed = self.pressed_j(world, touch);
             stored.add(&Loss::on_slope([0.0, pressed, 0.0]).on(world, touch.triangle), 1.0);
         }
         for history in self.histories.iter() {
-            let law = world.law(history.triangle);
+            let law = world.springs_of(history);
             let damping = law.stored_j(0.0, history.shear.norm_squared(), 0.0);
             let rolling = law.stored_j(0.0, 0.0, history.roll.norm_squared());
             stored.add(&Loss::on_slope([0.0, damping, rolling]).on(world, history.triangle), 1.0);
         }
         stored
+    }
+
+    /// What the normal spring of a touch holds (J), on the ground that answers for it.
+    fn pressed_j(&self, world: &ContactEnvironment, touch: &ContactPoint) -> f64 {
+        let memory = self.histories.iter().find(|history| history.feature == touch.feature);
+        let law = world.law(memory.map_or(touch.triangle, |history| history.springs_of));
+        let penetration = (world.body.radius - touch.distance_m).max(0.0);
+        touch.gain2 * law.stored_j(penetration, 0.0, 0.0)
     }
 
     /// How much the springs of the contacts hold that `count` (J). Touches are looked for anew, and the last look stays as it was: a
@@ -48,7 +56,7 @@ impl ContactState {
         let touches = std::mem::replace(&mut self.touches, last);
         let others = self.histories.iter().filter(|history| !count(history));
         let of_others = others.map(|history| {
-            let law = world.law(history.triangle);
+            let law = world.springs_of(history);
             let touch = touches.iter().find(|touch| touch.feature == history.feature);
             let pressed = touch.map_or(0.0, |touch| {
                 let penetration = (world.body.radius - touch.distance_m).max(0.0);
@@ -69,7 +77,7 @@ impl ContactState {
     ) -> f64 {
         let (mut now_w, mut grows_w_s) = (0.0, 0.0);
         for history in self.histories.iter().filter(|history| on(history)) {
-            let law = world.law(history.triangle);
+            let law = world.springs_of(history);
             let speed = -history.n.dot(&self.v);
             let (inwards, slip): (f64, Vec3) =
                 (speed.max(0.0), world.body.slip(&history.n, &self.v, &self.w));

@@ -163,7 +163,7 @@ impl ContactState {
         (shear, roll): (Vec3, Vec3),
     ) -> StageContact {
         let (touch, memory) = (&self.touches[k], &self.histories[history]);
-        let law = world.law_of(&self.touches, k);
+        let law = world.law_of(memory, &self.touches, k);
         StageContact {
             history,
             feature: touch.feature,

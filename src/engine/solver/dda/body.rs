@@ -64,8 +64,9 @@ impl<'a> DdaBody<'a> {
         let v = state.v;
         let history = state.history_of(world, k, state.scratch.taken, &v);
         let touch = ContactPoint { distance_m, ..state.touches[k] };
-        let law = world.law_of(&state.touches, k);
-        state.scratch.add(&law, &touch, (history, &state.histories[history]));
+        let memory = &state.histories[history];
+        let law = world.law_of(memory, &state.touches, k);
+        state.scratch.add(&law, &touch, (history, memory));
     }
 
     /// Adds the contacts that the step ran into; whether there are any. Ends with the touches of the step's end.

@@ -210,7 +210,7 @@ impl IslandBody {
         let histories = self.state.histories.iter();
         histories
             .map(|history| {
-                history.normal_force / (self.body.mass * world.law(history.triangle).omega_rad_s())
+                history.normal_force / (self.body.mass * world.springs_of(history).omega_rad_s())
             })
             .sum()
     }

@@ -42,7 +42,7 @@ impl IslandBody {
         let mut is_any = false;
         for history in state.histories.iter_mut().filter(|one| one.captured && one.closed) {
             let approach_m_s = -history.n.dot(&state.v);
-            let law = world.law(history.triangle);
+            let law = world.springs_of(history);
             if law.is_struck_through(history.normal_force, approach_m_s) {
                 history.captured = false;
                 state.impact.meet(approach_m_s, world.least_impact_m_s());

@@ -1,0 +1,80 @@
+//! Where a rock comes from one ground to another while it is pressed in.
+//!
+//! The stiffness of a spring that is pressed must not grow by itself: at one depth a spring of a hundred times the stiffness holds a
+//! hundred times the energy. So the springs of a contact are those of the ground on which they were pressed
+//! ([`ContactHistory::springs_of`]). An impact is answered by that ground to its end. What lasts, a rock that rolls, slides or rests, has
+//! the friction of the ground that it touches at once, and its springs as soon as these hold no more energy: those of a softer ground
+//! at the end of a step, those of a stiffer one when it has let go. Patches of several grounds that meet or part in an impact hand over
+//! what the new spring does not hold; that is balanced when the impact is over.
+
+use super::contact_state::{ContactEnvironment, ContactState};
+use crate::contact::history::{ContactHistory, SAME_GRIP};
+
+/// A contact that is so deep when it comes up is part of one that was there, as patches part (–, relative to R).
+const PRESSED_AT_BIRTH: f64 = 1e-5;
+
+impl ContactState {
+    /// Lets the springs of lasting contacts be those of the ground that they touch, where these hold no more energy.
+    ///
+    /// Asked at the end of a step, with the touches of that place.
+    pub(super) fn follow_grounds(&mut self, world: &ContactEnvironment) {
+        if world.laws.len() == 1 || self.is_rebounding() {
+            return;
+        }
+        for k in 0..self.histories.len() {
+            let before = self.histories[k];
+            if world.ground_of(before.springs_of) != world.ground_of(before.triangle) {
+                let after = ContactHistory { springs_of: before.triangle, ..before };
+                if self.contact_j(world, &after) <= self.contact_j(world, &before) {
+                    self.histories[k] = after;
+                    self.fresh = false;
+                }
+            }
+        }
+    }
+
+    /// Gives a contact that has just come up at touch `k` the springs of a pressed one that it is parted from, if it is.
+    pub(super) fn part_springs(&mut self, world: &ContactEnvironment, place: usize, k: usize) {
+        let touch = &self.touches[k];
+        let pressed_m = world.body.radius - touch.distance_m;
+        if world.laws.len() == 1 || pressed_m <= PRESSED_AT_BIRTH * world.body.radius {
+            return;
+        }
+        let along = |history: &&ContactHistory| history.n.dot(&touch.normal);
+        let is_tree = world.terrain.is_tree(touch.triangle);
+        let pressed = self.histories[..place]
+            .iter()
+            .filter(|one| one.closed && world.terrain.is_tree(one.triangle) == is_tree);
+        let nearest = pressed.max_by(|a, b| along(a).total_cmp(&along(b)));
+        if let Some(one) = nearest.filter(|one| along(one) > SAME_GRIP) {
+            self.histories[place].springs_of = one.springs_of;
+        }
+    }
+
+    /// Hands the springs of contacts that merged into others to those; whether there were any.
+    pub(crate) fn merge_lost(&mut self, world: &ContactEnvironment) -> bool {
+        let Self { histories, near, .. } = self;
+        histories.merge_lost(
+            |feature| near.patch_holding(world.terrain, feature),
+            |one, other| world.ground_of(one) == world.ground_of(other),
+        )
+    }
+
+    /// Whether the springs of its contacts are those of several grounds.
+    pub(super) fn is_on_several_grounds(&self, world: &ContactEnvironment) -> bool {
+        let mut grounds = self.histories.iter().map(|history| world.ground_of(history.springs_of));
+        let first = grounds.next();
+        world.laws.len() > 1 && grounds.any(|ground| Some(ground) != first)
+    }
+
+    /// What the springs of a contact hold (J), its touch being one of the last look.
+    fn contact_j(&self, world: &ContactEnvironment, history: &ContactHistory) -> f64 {
+        let law = world.springs_of(history);
+        let touch = self.touches.iter().find(|touch| touch.feature == history.feature);
+        let pressed_j = touch.map_or(0.0, |touch| {
+            let penetration = (world.body.radius - touch.distance_m).max(0.0);
+            touch.gain2 * law.stored_j(penetration, 0.0, 0.0)
+        });
+        pressed_j + law.stored_j(0.0, history.shear.norm_squared(), history.roll.norm_squared())
+    }
+}
