@@ -39,7 +39,7 @@ pub const MOST: usize = 8;
 pub const TOUCH: f64 = 1e-9;
 
 /// What of the mesh was touched.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum FeatureKind {
     /// Inside of a triangle.
@@ -55,7 +55,7 @@ pub enum FeatureKind {
 /// A kind and a number are the identity of a contact from step to step: the springs' memory is
 /// found again by it. Faces of a flat part are different features all the same, so a rock that
 /// rolls over a seam hands its memory on by its normal (`history`).
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Feature {
     /// Face, edge or vertex.
     pub kind: FeatureKind,

@@ -93,6 +93,7 @@ struct Placed<'a> {
     block: &'a Block,
     pose: &'a Pose,
     corners: &'a [Vec3],
+    /// In order of their features.
     held: &'a [(u16, Feature)],
 }
 
@@ -127,6 +128,8 @@ pub fn touches(
     touches: &mut BlockTouches,
 ) {
     let BlockTouches { found, held, corners, clear } = touches;
+    // hundreds press on cells much smaller than the block, and each feature near is looked up among them
+    held.sort_unstable_by_key(by_feature);
     found.clear();
     corners.clear();
     corners.extend(block.core.corners.iter().map(|own| pose.point(own)));
@@ -264,13 +267,19 @@ impl Placed<'_> {
 
     /// Whether a pair presses already.
     fn holds(&self, part: usize, feature: Feature) -> bool {
-        self.held.contains(&(part as u16, feature))
+        self.held.binary_search_by_key(&(feature, part as u16), by_feature).is_ok()
     }
 
     /// Whether a part of the block presses on a feature already.
     fn holds_any(&self, feature: Feature) -> bool {
-        self.held.iter().any(|(_, other)| *other == feature)
+        let first = self.held.partition_point(|(_, other)| *other < feature);
+        self.held.get(first).is_some_and(|(_, other)| *other == feature)
     }
+}
+
+/// Order of the pairs that press, by which they are looked up.
+fn by_feature(&(part, feature): &(u16, Feature)) -> (Feature, u16) {
+    (feature, part)
 }
 
 /// Keeps the `most` contacts that span most: the deepest, then always the one farthest from those kept.

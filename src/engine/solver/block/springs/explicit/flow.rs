@@ -9,7 +9,7 @@
 //! step's start: one that comes up on the way presses nothing until the step has been cut where it begins, so that within a step the
 //! right side has no jump and the pair's own estimate of the error holds.
 
-use super::super::{SpringContact, turn_by, turning};
+use super::super::{BlockHistory, SpringContact, turn_by, turning};
 use crate::body::Block;
 use crate::contact::Feature;
 use crate::contact::block::Pose;
@@ -66,6 +66,8 @@ pub(super) struct BlockFlow<'a, 'w, const C: usize> {
     /// Energy in the normal spring of each contact at the step's start (J), if it is known, and whether it has a dashpot.
     began_j: [Option<f64>; C],
     damped: [bool; C],
+    /// Stiffness of each contact at the step's start relative to that of a single point (–).
+    began_gain2: [f64; C],
     /// Whether the try has met the same pairs of features throughout.
     pub(super) is_smooth: bool,
     /// The block at the state last asked for.
@@ -96,6 +98,7 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
             is_crowded: false,
             began_j: [Some(0.0); C],
             damped: [false; C],
+            began_gain2: [1.0; C],
             is_smooth: true,
             moving: start.clone(),
         }
@@ -120,8 +123,10 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
         for (first, touch) in self.first.iter_mut().zip(&self.footing.touches.found) {
             *first = (touch.part, touch.feature);
         }
-        for contact in self.footing.springs.contacts.iter().filter(|one| one.history < C) {
+        let contacts = self.footing.springs.contacts.iter().zip(&self.footing.touches.found);
+        for (contact, touch) in contacts.filter(|(contact, _)| contact.history < C) {
             self.began_j[contact.history] = self.known_j(contact);
+            self.began_gain2[contact.history] = touch.gain2;
         }
     }
 
@@ -141,13 +146,15 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
     /// What the step has taken, from its sums, at its end, the state last asked for.
     ///
     /// What a normal spring has taken up is known from both ends of the step where it pushes at both, whatever features came and went between
-    /// them. One whose dashpot has let it go has not given back what it held: there the sum tells.
+    /// them. One whose dashpot has let it go has not given back what it held: there the sum tells. Not so where it has come into a patch,
+    /// whose spring goes on for it and holds what it held: with the sum that would be there twice.
     pub(super) fn taken<const Q: usize>(&self, sums: &[f64; Q]) -> Loss {
         let mut taken = Loss { friction: sums[0], damping: sums[1], trees: sums[2], rolling: 0.0 };
         let springs = &self.footing.springs;
         for (place, history) in springs.histories.iter().enumerate().take(C) {
             let end = springs.contacts.iter().find(|contact| contact.history == place);
-            let gone_j = (!self.damped[place]).then_some(0.0);
+            let gives_back = !self.damped[place] || self.is_absorbed(history);
+            let gone_j = gives_back.then_some(0.0);
             let ended_j = end.map_or(gone_j, |contact| self.known_j(contact));
             let known_j = self.began_j[place].zip(ended_j).map(|(began, ended)| ended - began);
             let damping = known_j.unwrap_or(sums[LOSSES + place]);
@@ -155,6 +162,15 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
             taken.add(&Loss { damping, ..Loss::default() }.on(self.world, triangle), 1.0);
         }
         taken
+    }
+
+    /// Whether a patch of the same part of the block has grown since the step's start, and holds a contact that is there no more.
+    fn is_absorbed(&self, gone: &BlockHistory) -> bool {
+        let contacts = self.footing.springs.contacts.iter().zip(&self.footing.touches.found);
+        let mut known = contacts.filter(|(contact, _)| contact.history < C);
+        known.any(|(contact, touch)| {
+            touch.part == gone.pair().0 && touch.gain2 > self.began_gain2[contact.history]
+        })
     }
 
     /// The block at a state, and its rotation vector since the step's start (rad).
