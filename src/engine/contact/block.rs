@@ -93,6 +93,8 @@ struct Placed<'a> {
     block: &'a Block,
     pose: &'a Pose,
     corners: &'a [Vec3],
+    /// Lowest and highest coordinates of the core in its own frame (m).
+    box_m: [Vec3; 2],
     /// In order of their features.
     held: &'a [(u16, Feature)],
 }
@@ -133,7 +135,9 @@ pub fn touches(
     found.clear();
     corners.clear();
     corners.extend(block.core.corners.iter().map(|own| pose.point(own)));
-    let placed = Placed { block, pose, corners, held };
+    let own = &block.core.corners;
+    let box_m = own.iter().fold([Vec3::zeros(); 2], |[a, b], p| [a.inf(p), b.sup(p)]);
+    let placed = Placed { block, pose, corners, box_m, held };
     let reach = block.ball_m + reach_m;
     let (mut of_ball, sees) = (ContactPoints::default(), near.sees_m().max(reach));
     clear.resize(corners.len(), (Vec3::repeat(f64::INFINITY), 0.0));
@@ -213,6 +217,15 @@ impl Placed<'_> {
     fn is_near(&self, point: &Vec3, reach: f64) -> bool {
         let core = self.block.bound_m - self.block.ball_m;
         (point - self.pose.centre).norm_squared() <= (core + reach).powi(2)
+    }
+
+    /// Whether a straight line between two points of the mesh lies further away than `reach` (m) by one side of the box around the core: on cells much
+    /// smaller than the block most that is near its centre does.
+    fn is_beside(&self, ends: [&Vec3; 2], reach: f64) -> bool {
+        let inverse = self.pose.attitude.inverse();
+        let [a, b] = ends.map(|end| inverse * (end - self.pose.centre));
+        let [low, high] = &self.box_m;
+        (0..3).any(|k| a[k].max(b[k]) < low[k] - reach || a[k].min(b[k]) > high[k] + reach)
     }
 
     /// The block's corners, bit by bit, that stand less than `reach` (m) off the plane through the nearest point of a part of the mesh,

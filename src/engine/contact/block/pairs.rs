@@ -19,7 +19,10 @@ impl Placed<'_> {
         found: &mut Vec<BlockTouch>,
     ) {
         let nearest = edge.line.nearest_to(&self.pose.centre);
-        if is_held && !self.holds_any(edge.feature) || !self.is_near(&nearest, reach) {
+        if is_held && !self.holds_any(edge.feature)
+            || !self.is_near(&nearest, reach)
+            || self.is_beside([&edge.line.a, &(edge.line.a + edge.line.way())], reach)
+        {
             return;
         }
         let is_same = |other: Feature| {
@@ -79,7 +82,10 @@ impl Placed<'_> {
         (reach, is_held): (f64, bool),
         found: &mut Vec<BlockTouch>,
     ) {
-        if is_held && !self.holds_any(peak.feature) || !self.is_near(&peak.p, reach) {
+        if is_held && !self.holds_any(peak.feature)
+            || !self.is_near(&peak.p, reach)
+            || self.is_beside([&peak.p, &peak.p], reach)
+        {
             return;
         }
         let low = self.low_corners(&peak.p, reach);

@@ -19,6 +19,7 @@ mod dda;
 mod explicit;
 mod frozen;
 mod history;
+mod impact_energy;
 mod newton;
 mod rolling;
 mod onset;
@@ -37,8 +38,8 @@ use crate::solver::environment::ContactEnvironment;
 use crate::solver::loss::Loss;
 use crate::solver::step_control::{Control, StepError};
 use crate::solver::tableau::STAGES;
-use explicit::ImpactEnergy;
 pub(crate) use history::BlockHistory;
+use impact_energy::ImpactEnergy;
 use nalgebra::{Rotation3, Unit};
 use rolling::RollingSpring;
 
@@ -240,6 +241,11 @@ impl SpringContact {
         self.law.stored_j(penetration.max(0.0), shear2, 0.0)
     }
 
+    /// Energy in its normal spring at a penetration (J).
+    fn normal_j(&self, penetration: f64) -> f64 {
+        self.law.stored_j(penetration.max(0.0), 0.0, 0.0)
+    }
+
     /// Penetration (m) after a motion of the contact point at `u` (m/s) for `b` (s).
     fn pen_at(&self, u: &Vec3, b: f64) -> f64 {
         self.penetration - b * self.n.dot(u)
@@ -254,6 +260,19 @@ impl SpringContact {
     fn power(&self, world: &ContactEnvironment, u: &Vec3, shear_rate: &Vec3) -> Loss {
         let pushes = -self.normal_force * self.n.dot(u);
         self.shear_power(u, shear_rate, pushes).on(world, self.triangle)
+    }
+
+    /// The same without what goes into a normal spring of no dashpot, which is known at the ends of a step.
+    fn power_of_stage(
+        &self,
+        world: &ContactEnvironment,
+        (block, u): (&Block, &Vec3),
+        shear_rate: &Vec3,
+    ) -> Loss {
+        if self.is_elastic(block.mass_kg) {
+            return self.shear_power(u, shear_rate, 0.0).on(world, self.triangle);
+        }
+        self.power(world, u, shear_rate)
     }
 
     /// The same, with what goes into its normal element (W).

@@ -159,7 +159,11 @@ impl BlockTrial<'_, '_> {
 }
 
 /// How much more energy of motion and height a block has at the end of a step than at its start (J).
-fn gained_j(world: &ContactEnvironment, block: &Block, (start, end): (&Moving, &Moving)) -> f64 {
+pub(super) fn gained_j(
+    world: &ContactEnvironment,
+    block: &Block,
+    (start, end): (&Moving, &Moving),
+) -> f64 {
     let lifted_m = end.pose.centre - start.pose.centre;
     let lifted_j = -block.mass_kg * world.body.gravity.dot(&lifted_m);
     end.motion_j(block) + lifted_j - start.motion_j(block)
@@ -228,13 +232,14 @@ impl Footing {
         (control, most_s, limit): (Control, f64, f64),
     ) -> Result<(Stepped, u64), StepError> {
         self.springs.note_fastest();
-        if self.is_followed(world, &control) {
+        let is_accounted = self.is_accounted(world, &control);
+        if is_accounted && self.has_room() {
             let step = self.explicit_step(world, (block, moving), (&control, most_s, limit))?;
             if let Some(step) = step {
                 return Ok(step);
             }
         }
-        let beyond_j = self.balance(block, moving);
+        let beyond_j = if is_accounted { 0.0 } else { self.balance(block, moving) };
         if !self.springs.fresh {
             self.rates_now(world, (block, moving));
         }
@@ -271,10 +276,18 @@ impl Footing {
         self.springs.h = next_h;
         *moving = end.moving;
         self.springs.grow_old(dt);
-        let mut done = self.accept((block, moving), (&control, dt));
-        let gained_j = gained_j(world, block, (&start, moving)) + done.loss.sum();
-        done.loss.damping += beyond_j + self.springs.pay((block, moving), (made_j, gained_j));
+        let held_j = self.springs.stored_j;
+        let mut done = self.accept(world, (block, moving), (&control, dt));
+        let own_j = gained_j(world, block, (&start, moving)) + done.loss.sum();
+        done.loss.damping += beyond_j + self.springs.pay((block, moving), (made_j, own_j));
         done.unsettled = unsettled;
+        if is_accounted {
+            let own_j = gained_j(world, block, (&start, moving)) + done.loss.sum();
+            self.springs.account((own_j, done.loss.sum()), held_j);
+            if done.is_free {
+                done.loss.damping += self.balance(block, moving);
+            }
+        }
         self.begin_late(world);
         self.check_depth(block)?;
         Ok((done, rejected))
@@ -283,6 +296,7 @@ impl Footing {
     /// Takes over the step's end: memories and losses.
     fn accept(
         &mut self,
+        world: &ContactEnvironment,
         (block, moving): (&Block, &Moving),
         (control, dt): (&Control, f64),
     ) -> Stepped {
@@ -293,6 +307,7 @@ impl Footing {
         for (k, rate) in self.springs.rates[..tableau.stages].iter().enumerate() {
             done.loss.add(&rate.loss, dt * tableau.damped_work_weight(k, left));
         }
+        done.loss.add(&self.taken_up(world, (block, moving), way_s), 1.0);
         self.springs.stored_j = self.pressed_j((block, moving), way_s);
         self.springs.rates.swap(0, tableau.stages - 1);
         self.keep((block, moving), way_s);
@@ -325,6 +340,7 @@ impl Footing {
             let u = moving.at(block, &contact.lever);
             (history.offset_m, history.pressed_m) =
                 (contact.offset_m, contact.pen_at(&u, way_s).max(0.0));
+            history.normal_j = contact.normal_j(history.pressed_m);
             history.closed = contact.normal_force > 0.0 || history.pressed_m > 0.0;
         }
         springs.rolling.keep(way_s);

@@ -10,14 +10,14 @@
 
 mod flow;
 
-use super::super::energy::{ActingAlong, PartOfMotion};
 use super::super::{Footing, Moving, Stepped, TOUCH, orthonormal};
+use super::controlled::gained_j;
 use crate::body::Block;
 use crate::contact::block::{BlockTouch, BlockTouches};
 use crate::contact::pair::LASTS_RAD;
 use crate::ground::Law;
 use crate::solver::environment::ContactEnvironment;
-use crate::solver::explicit_impact::{BALANCED, FIRST, LONGEST_RAD, SHORTEST_RAD, judge};
+use crate::solver::explicit_impact::{FIRST, LONGEST_RAD, SHORTEST_RAD, judge};
 use crate::solver::impact::LOCAL;
 use crate::solver::impact::dormand_prince::{Attempt, Flow, Stages};
 use crate::solver::loss::Loss;
@@ -33,17 +33,6 @@ const ONSETS: u32 = 6;
 /// Contacts with room of their own: the usual case, and the most that are followed here.
 const FEW_PRESS: usize = 2;
 const MOST_PRESS: usize = 6;
-
-/// What becomes of the energy in an impact.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct ImpactEnergy {
-    /// What the steps have gained by themselves (J).
-    gained_j: f64,
-    /// What contacts have taken, with what their springs held before it (J).
-    taken_j: f64,
-    /// What its contacts have acted along.
-    along: ActingAlong,
-}
 
 /// How far a step may go, and how exactly.
 #[derive(Debug, Clone, Copy)]
@@ -63,14 +52,14 @@ struct ExplicitStep {
 }
 
 impl Footing {
-    /// Whether the present contacts are those of an impact that is followed in its own time.
-    pub(super) fn is_followed(&self, world: &ContactEnvironment, control: &Control) -> bool {
+    /// Whether the present contacts are those of an impact whose energy is kept account of: it is followed in its own time, or has too many
+    /// contacts for that.
+    pub(super) fn is_accounted(&self, world: &ContactEnvironment, control: &Control) -> bool {
         let springs = &self.springs;
         let least_m_s = world.least_impact_m_s();
         control.impact_kernels
             // rolling friction of blocks is in the implicit stages alone
             && world.laws.iter().all(|law| !law.rolling.is_on())
-            && springs.histories.len() <= MOST_PRESS
             && springs.histories.iter().any(|one| {
                 one.closed
                     && !one.captured
@@ -79,6 +68,11 @@ impl Footing {
             })
             // a shear spring without a dashpot has a stretch, not a rate, of its own
             && springs.histories.iter().all(|one| !one.law.shear.is_on() || one.law.shear.is_damped())
+    }
+
+    /// Whether there is room to follow the present contacts in their own time.
+    pub(super) fn has_room(&self) -> bool {
+        self.springs.histories.len() <= MOST_PRESS
     }
 
     /// One accepted step of an impact of at most `most_s`, and the tries thrown away; `None` if there is no room for its contacts.
@@ -119,23 +113,16 @@ impl Footing {
             )?;
         }
         let Some(step) = step else { return Ok(None) };
-        let (lifted, before_j) = (step.end.pose.centre - start.pose.centre, start.motion_j(block));
         *moving = step.end;
         self.keep((block, moving), 0.0);
         self.springs.grow_old(step.dt);
-        let stored_j = self.springs.stored_j;
+        let held_j = self.springs.stored_j;
         self.springs.stored_j = self.springs.placed_j();
         self.springs.refresh();
         self.springs.seen = self.sees_the_same(block);
         // what springs store is counted among the losses until they give it back
-        let lifted_j = -block.mass_kg * world.body.gravity.dot(&lifted);
-        let taken_j = step.loss.sum();
-        let began =
-            ImpactEnergy { gained_j: 0.0, taken_j: stored_j, along: ActingAlong::default() };
-        let energy = self.springs.energy.get_or_insert(began);
-        energy.along = energy.along.and_springs(&self.springs.contacts);
-        energy.gained_j += moving.motion_j(block) + lifted_j + taken_j - before_j;
-        energy.taken_j += taken_j;
+        let gained_j = gained_j(world, block, (&start, moving)) + step.loss.sum();
+        self.springs.account((gained_j, step.loss.sum()), held_j);
         let mut done = Stepped { dt: step.dt, loss: step.loss, ..Stepped::default() };
         done.slides = self.springs.histories.iter().any(|history| history.slides);
         let left_s = most_s - step.dt;
@@ -249,26 +236,6 @@ impl Footing {
         *moving = out;
         self.springs.histories.clear();
         out_s
-    }
-
-    /// Gives motion back what the steps of the impact have lost by themselves, or takes what they have gained: what is left of the energy is
-    /// what came in less what the contacts took. What they act along is scaled by one factor, so that the direction of a
-    /// rebound with friction stays. What springs would have given beyond what they had (J) is none: contacts have taken that much more.
-    pub(super) fn balance(&mut self, block: &Block, moving: &mut Moving) -> f64 {
-        let Some(energy) = self.springs.energy.take() else { return 0.0 };
-        let beyond_j = (self.springs.stored_j - energy.taken_j).max(0.0);
-        let gained_j = energy.gained_j + beyond_j;
-        if gained_j == 0.0 {
-            return 0.0;
-        }
-        // where there is hardly any motion along contacts, all of it answers for them
-        let ways = [energy.along, ActingAlong::EVERYTHING].into_iter();
-        let mut parts = ways.map(|along| moving.part(block, &along));
-        let answers = |part: &PartOfMotion| gained_j.abs() < BALANCED * part.energy_j();
-        let Some(part) = parts.find(answers) else { return 0.0 };
-        moving.pay(&part, gained_j);
-        self.springs.refresh();
-        beyond_j
     }
 }
 

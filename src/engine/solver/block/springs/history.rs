@@ -36,6 +36,8 @@ pub(crate) struct BlockHistory {
     pub(super) offset_m: f64,
     /// How far its spring was pressed in at the end of the last step (m).
     pub(super) pressed_m: f64,
+    /// Energy in its normal spring then (J).
+    pub(super) normal_j: f64,
     /// Impulse of the last solve (N s): where the next begins.
     pub(super) impulse: Vec3,
     /// Speed of approach when it began (m/s).
@@ -166,6 +168,7 @@ impl Footing {
             normal_force: 0.0,
             offset_m: 0.0,
             pressed_m: 0.0,
+            normal_j: 0.0,
             impulse: Vec3::zeros(),
             approach_m_s,
             gone_rad: 0.0,

@@ -263,7 +263,7 @@ impl Footing {
             let back = &springs.histories[contact.history].n;
             rate.shear[contact.history] = carry(shear_rate, &contact.n, back);
             let u = end.moving.at(block, &contact.lever);
-            rate.loss.add(&contact.power(world, &u, &shear_rate), 1.0);
+            rate.loss.add(&contact.power_of_stage(world, (block, &u), &shear_rate), 1.0);
         }
         rate.rolled = springs.rolling.rate_over(way_s);
         let spin = end.moving.spin(block);
@@ -297,7 +297,7 @@ impl Footing {
             rate.momentum += contact.lever.cross(&force);
             let back = &springs.histories[contact.history].n;
             rate.shear[contact.history] = carry(stretch_rate, &n, back);
-            rate.loss.add(&contact.power(world, &u, &stretch_rate), 1.0);
+            rate.loss.add(&contact.power_of_stage(world, (block, &u), &stretch_rate), 1.0);
         }
         let rolling = springs.rolling.press(&springs.contacts, &rate.turned);
         rate.momentum -= rolling.force;

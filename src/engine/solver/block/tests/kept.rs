@@ -123,7 +123,7 @@ fn a_plane_without_friction_keeps_what_it_must() {
 }
 
 /// A valley along x between two planes that rise by an angle (rad).
-fn valley(angle: f64) -> Terrain {
+pub(super) fn valley(angle: f64) -> Terrain {
     let at = |x: f64, y: f64| Vec3::new(x, y, y.abs() * crate::math::tan(angle));
     let side = |y: f64| {
         let [a, b, c, d] = [at(-200.0, 0.0), at(200.0, 0.0), at(200.0, y), at(-200.0, y)];
