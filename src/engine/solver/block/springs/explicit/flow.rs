@@ -9,7 +9,7 @@
 //! step's start: one that comes up on the way presses nothing until the step has been cut where it begins, so that within a step the
 //! right side has no jump and the pair's own estimate of the error holds.
 
-use super::super::{BlockHistory, SpringContact, turn_by, turning};
+use super::super::{SpringContact, turn_by, turning};
 use crate::body::Block;
 use crate::contact::Feature;
 use crate::contact::block::Pose;
@@ -43,6 +43,13 @@ pub(super) struct ErrorScale {
     pub(super) begins_m: f64,
 }
 
+/// What the normal spring of a contact holds (J), and whether it gives all of it back: its dashpot has not let it go.
+#[derive(Debug, Clone, Copy)]
+struct HeldEnergy {
+    stored_j: f64,
+    gives_back: bool,
+}
+
 /// A block with up to `C` contacts that press; a contact keeps the place of its memory.
 pub(super) struct BlockFlow<'a, 'w, const C: usize> {
     world: &'a ContactEnvironment<'w>,
@@ -63,8 +70,8 @@ pub(super) struct BlockFlow<'a, 'w, const C: usize> {
     pub(super) onset: Option<f64>,
     /// Whether there were more contacts than places.
     pub(super) is_crowded: bool,
-    /// Energy in the normal spring of each contact at the step's start (J), if it is known, and whether it has a dashpot.
-    began_j: [Option<f64>; C],
+    /// What the normal spring of each contact held at the step's start, and whether it has a dashpot.
+    began: [HeldEnergy; C],
     damped: [bool; C],
     /// Stiffness of each contact at the step's start relative to that of a single point (–).
     began_gain2: [f64; C],
@@ -96,7 +103,7 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
             is_open: false,
             onset: None,
             is_crowded: false,
-            began_j: [Some(0.0); C],
+            began: [HeldEnergy { stored_j: 0.0, gives_back: true }; C],
             damped: [false; C],
             began_gain2: [1.0; C],
             is_smooth: true,
@@ -125,7 +132,7 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
         }
         let contacts = self.footing.springs.contacts.iter().zip(&self.footing.touches.found);
         for (contact, touch) in contacts.filter(|(contact, _)| contact.history < C) {
-            self.began_j[contact.history] = self.known_j(contact);
+            self.began[contact.history] = self.held(contact);
             self.began_gain2[contact.history] = touch.gain2;
         }
     }
@@ -136,41 +143,44 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
         (self.dt, self.is_open, self.onset, self.is_smooth) = (dt, is_open, None, true);
     }
 
-    /// Energy in the normal spring of a contact (J), unless that goes apart faster than spring and dashpot can follow.
-    fn known_j(&self, contact: &SpringContact) -> Option<f64> {
+    /// What the normal spring of a contact holds.
+    fn held(&self, contact: &SpringContact) -> HeldEnergy {
         let normal = contact.law.normal(contact.captured);
-        let pushes = contact.normal_force > 0.0 || !normal.is_damped(self.block.mass_kg);
-        pushes.then(|| normal.stored_j(contact.penetration.max(0.0)))
+        HeldEnergy {
+            stored_j: normal.stored_j(contact.penetration.max(0.0)),
+            gives_back: contact.normal_force > 0.0 || !normal.is_damped(self.block.mass_kg),
+        }
     }
 
     /// What the step has taken, from its sums, at its end, the state last asked for.
     ///
     /// What a normal spring has taken up is known from both ends of the step where it pushes at both, whatever features came and went between
-    /// them. One whose dashpot has let it go has not given back what it held: there the sum tells. Not so where it has come into a patch,
-    /// whose spring goes on for it and holds what it held: with the sum that would be there twice.
+    /// them. One whose dashpot has let it go has not given back what it held: there the sum tells, which cancels against what the dashpot takes there. Not
+    /// so at a part of the block that presses with a patch: contacts that come into it hand over what they hold, and take it with them where it parts.
     pub(super) fn taken<const Q: usize>(&self, sums: &[f64; Q]) -> Loss {
         let mut taken = Loss { friction: sums[0], damping: sums[1], trees: sums[2], rolling: 0.0 };
         let springs = &self.footing.springs;
         for (place, history) in springs.histories.iter().enumerate().take(C) {
             let end = springs.contacts.iter().find(|contact| contact.history == place);
-            let gives_back = !self.damped[place] || self.is_absorbed(history);
-            let gone_j = gives_back.then_some(0.0);
-            let ended_j = end.map_or(gone_j, |contact| self.known_j(contact));
-            let known_j = self.began_j[place].zip(ended_j).map(|(began, ended)| ended - began);
-            let damping = known_j.unwrap_or(sums[LOSSES + place]);
+            let gone = HeldEnergy { stored_j: 0.0, gives_back: !self.damped[place] };
+            let (began, ended) =
+                (self.began[place], end.map_or(gone, |contact| self.held(contact)));
+            let is_known = began.gives_back && ended.gives_back || self.has_patch(history.pair().0);
+            let by_place_j = ended.stored_j - began.stored_j;
+            let damping = if is_known { by_place_j } else { sums[LOSSES + place] };
             let triangle = end.map_or(history.triangle, |contact| contact.triangle);
             taken.add(&Loss { damping, ..Loss::default() }.on(self.world, triangle), 1.0);
         }
         taken
     }
 
-    /// Whether a patch of the same part of the block has grown since the step's start, and holds a contact that is there no more.
-    fn is_absorbed(&self, gone: &BlockHistory) -> bool {
-        let contacts = self.footing.springs.contacts.iter().zip(&self.footing.touches.found);
-        let mut known = contacts.filter(|(contact, _)| contact.history < C);
-        known.any(|(contact, touch)| {
-            touch.part == gone.pair().0 && touch.gain2 > self.began_gain2[contact.history]
-        })
+    /// Whether a part of the block presses with a patch of several points at an end of the step.
+    fn has_patch(&self, part: u16) -> bool {
+        let several = |gain2: f64| (gain2 - 1.0).abs() > 0.0;
+        let mut began = self.footing.springs.histories.iter().zip(self.began_gain2);
+        let mut ends = self.footing.touches.found.iter();
+        began.any(|(history, gain2)| history.pair().0 == part && several(gain2))
+            || ends.any(|touch| touch.part == part && several(touch.gain2))
     }
 
     /// The block at a state, and its rotation vector since the step's start (rad).
