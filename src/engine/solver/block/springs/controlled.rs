@@ -276,21 +276,35 @@ impl Footing {
         self.springs.h = next_h;
         *moving = end.moving;
         self.springs.grow_old(dt);
-        let held_j = self.springs.stored_j;
-        let mut done = self.accept(world, (block, moving), (&control, dt));
-        let own_j = gained_j(world, block, (&start, moving)) + done.loss.sum();
-        done.loss.damping += beyond_j + self.springs.pay((block, moving), (made_j, own_j));
+        let step = (block, &start, &mut *moving);
+        let mut done = self.book(world, step, (&control, dt), (made_j, is_accounted));
+        done.loss.damping += beyond_j;
         done.unsettled = unsettled;
+        self.begin_late(world);
+        self.check_depth(block)?;
+        Ok((done, rejected))
+    }
+
+    /// Books what an accepted step from `start` has taken; the motion pays for what its error has made (J). Of an impact account is kept until it is over.
+    fn book(
+        &mut self,
+        world: &ContactEnvironment,
+        (block, start, moving): (&Block, &Moving, &mut Moving),
+        (control, dt): (&Control, f64),
+        (made_j, is_accounted): (f64, bool),
+    ) -> Stepped {
+        let held_j = self.springs.stored_j;
+        let mut done = self.accept(world, (block, moving), (control, dt));
+        let own_j = gained_j(world, block, (start, moving)) + done.loss.sum();
+        done.loss.damping += self.springs.pay((block, moving), (made_j, own_j));
         if is_accounted {
-            let own_j = gained_j(world, block, (&start, moving)) + done.loss.sum();
+            let own_j = gained_j(world, block, (start, moving)) + done.loss.sum();
             self.springs.account((own_j, done.loss.sum()), held_j);
             if done.is_free {
                 done.loss.damping += self.balance(block, moving);
             }
         }
-        self.begin_late(world);
-        self.check_depth(block)?;
-        Ok((done, rejected))
+        done
     }
 
     /// Takes over the step's end: memories and losses.
