@@ -25,6 +25,7 @@ use super::stage::End;
 use super::step_control::{Advance, StepError, TRAVEL};
 use crate::contact::TOUCH;
 use crate::contact::history::{ContactHistory, HISTORIES};
+pub(super) use flow::HeldEnergy;
 use flow::{Among, LOSSES, V, WAY};
 
 /// First step of an impact (rad of its oscillation).

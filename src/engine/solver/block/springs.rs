@@ -262,19 +262,6 @@ impl SpringContact {
         self.shear_power(u, shear_rate, pushes).on(world, self.triangle)
     }
 
-    /// The same without what goes into a normal spring of no dashpot, which is known at the ends of a step.
-    fn power_of_stage(
-        &self,
-        world: &ContactEnvironment,
-        (block, u): (&Block, &Vec3),
-        shear_rate: &Vec3,
-    ) -> Loss {
-        if self.is_elastic(block.mass_kg) {
-            return self.shear_power(u, shear_rate, 0.0).on(world, self.triangle);
-        }
-        self.power(world, u, shear_rate)
-    }
-
     /// The same, with what goes into its normal element (W).
     fn shear_power(&self, u: &Vec3, shear_rate: &Vec3, normal_w: f64) -> Loss {
         let slip = u - self.n * self.n.dot(u);

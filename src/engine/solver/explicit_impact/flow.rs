@@ -50,15 +50,15 @@ pub(super) struct PressedContact {
 
 /// What a normal spring holds.
 #[derive(Debug, Clone, Copy)]
-struct HeldEnergy {
+pub(in crate::solver) struct HeldEnergy {
     /// As its place says (J).
-    stored_j: f64,
+    pub(in crate::solver) stored_j: f64,
     /// Whether that goes back into motion; not where the rock goes apart faster than spring and dashpot can follow.
-    gives_back: bool,
+    pub(in crate::solver) gives_back: bool,
 }
 
 impl HeldEnergy {
-    const NONE: Self = Self { stored_j: 0.0, gives_back: true };
+    pub(in crate::solver) const NONE: Self = Self { stored_j: 0.0, gives_back: true };
 }
 
 /// A rock with up to `C` contacts; a contact keeps the place of its memory.

@@ -1,6 +1,7 @@
 //! Schemes `adaptive` and `reference` for blocks: a diagonally implicit tableau with error control.
 
 use super::super::{Footing, Moving, Stepped, TURN};
+use super::impact_energy::gained_j;
 use super::onset::Onsets;
 use super::stage::{BlockEnd, StageBase};
 use super::{BlockHistory, BlockRates, Springs};
@@ -156,17 +157,6 @@ impl BlockTrial<'_, '_> {
         let speed_m_s = (2.0 * part.energy_j() / mass_kg).sqrt();
         PAYABLE * self.allowed * mass_kg * speed_m_s
     }
-}
-
-/// How much more energy of motion and height a block has at the end of a step than at its start (J).
-pub(super) fn gained_j(
-    world: &ContactEnvironment,
-    block: &Block,
-    (start, end): (&Moving, &Moving),
-) -> f64 {
-    let lifted_m = end.pose.centre - start.pose.centre;
-    let lifted_j = -block.mass_kg * world.body.gravity.dot(&lifted_m);
-    end.motion_j(block) + lifted_j - start.motion_j(block)
 }
 
 impl Springs {

@@ -11,7 +11,7 @@
 mod flow;
 
 use super::super::{Footing, Moving, Stepped, TOUCH, orthonormal};
-use super::controlled::gained_j;
+use super::impact_energy::gained_j;
 use crate::body::Block;
 use crate::contact::block::{BlockTouch, BlockTouches};
 use crate::contact::pair::LASTS_RAD;

@@ -6,6 +6,7 @@
 use super::super::energy::{ActingAlong, PartOfMotion};
 use super::{Footing, Moving, SpringContact, Springs};
 use crate::body::Block;
+use crate::rock::Vec3;
 use crate::solver::environment::ContactEnvironment;
 use crate::solver::explicit_impact::BALANCED;
 use crate::solver::loss::Loss;
@@ -21,10 +22,35 @@ pub(super) struct ImpactEnergy {
     along: ActingAlong,
 }
 
+/// How much more energy of motion and height a block has at the end of a step than at its start (J).
+pub(super) fn gained_j(
+    world: &ContactEnvironment,
+    block: &Block,
+    (start, end): (&Moving, &Moving),
+) -> f64 {
+    let lifted_m = end.pose.centre - start.pose.centre;
+    let lifted_j = -block.mass_kg * world.body.gravity.dot(&lifted_m);
+    end.motion_j(block) + lifted_j - start.motion_j(block)
+}
+
 impl SpringContact {
     /// Whether its normal spring gives back all that it takes up from a mass (kg).
     pub(super) fn is_elastic(&self, mass_kg: f64) -> bool {
         !self.law.normal(self.captured).is_damped(mass_kg)
+    }
+
+    /// Power that goes into it (W) at a velocity `u` of the contact point (m/s), but for a normal spring without a dashpot: what that takes up is known at the
+    /// ends of a step.
+    pub(super) fn power_of_stage(
+        &self,
+        world: &ContactEnvironment,
+        (block, u): (&Block, &Vec3),
+        shear_rate: &Vec3,
+    ) -> Loss {
+        if self.is_elastic(block.mass_kg) {
+            return self.shear_power(u, shear_rate, 0.0).on(world, self.triangle);
+        }
+        self.power(world, u, shear_rate)
     }
 }
 

@@ -17,6 +17,7 @@ use crate::contact::history::carry;
 use crate::rock::Vec3;
 use crate::solver::block::{Footing, Moving, TOUCH};
 use crate::solver::environment::ContactEnvironment;
+use crate::solver::explicit_impact::HeldEnergy;
 use crate::solver::impact::dormand_prince::{Flow, NODES, Rates, put, three};
 use crate::solver::loss::Loss;
 use nalgebra::Matrix3;
@@ -41,13 +42,6 @@ pub(super) struct ErrorScale {
     pub(super) allowed: f64,
     /// Penetration (m) up to which a contact that comes up need not be met more exactly.
     pub(super) begins_m: f64,
-}
-
-/// What the normal spring of a contact holds (J), and whether it gives all of it back: its dashpot has not let it go.
-#[derive(Debug, Clone, Copy)]
-struct HeldEnergy {
-    stored_j: f64,
-    gives_back: bool,
 }
 
 /// A block with up to `C` contacts that press; a contact keeps the place of its memory.
@@ -103,7 +97,7 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
             is_open: false,
             onset: None,
             is_crowded: false,
-            began: [HeldEnergy { stored_j: 0.0, gives_back: true }; C],
+            began: [HeldEnergy::NONE; C],
             damped: [false; C],
             began_gain2: [1.0; C],
             is_smooth: true,
