@@ -88,13 +88,16 @@ impl BlockTouch {
     }
 }
 
+/// Edges of the mesh near a block from which on it pays to ask first which of them lie beside it.
+const MANY: usize = 64;
+
 /// A block at a pose, with its corners there.
 struct Placed<'a> {
     block: &'a Block,
     pose: &'a Pose,
     corners: &'a [Vec3],
     /// Lowest and highest coordinates of the core in its own frame (m).
-    box_m: [Vec3; 2],
+    box_m: Option<[Vec3; 2]>,
     /// In order of their features.
     held: &'a [(u16, Feature)],
 }
@@ -135,8 +138,9 @@ pub fn touches(
     found.clear();
     corners.clear();
     corners.extend(block.core.corners.iter().map(|own| pose.point(own)));
-    let own = &block.core.corners;
-    let box_m = own.iter().fold([Vec3::zeros(); 2], |[a, b], p| [a.inf(p), b.sup(p)]);
+    let own = block.core.corners.iter();
+    let around = || own.fold([Vec3::zeros(); 2], |[a, b], p| [a.inf(p), b.sup(p)]);
+    let box_m = (near.lines() > MANY).then(around);
     let placed = Placed { block, pose, corners, box_m, held };
     let reach = block.ball_m + reach_m;
     let (mut of_ball, sees) = (ContactPoints::default(), near.sees_m().max(reach));
@@ -222,9 +226,9 @@ impl Placed<'_> {
     /// Whether a straight line between two points of the mesh lies further away than `reach` (m) by one side of the box around the core: on cells much
     /// smaller than the block most that is near its centre does.
     fn is_beside(&self, ends: [&Vec3; 2], reach: f64) -> bool {
+        let Some([low, high]) = &self.box_m else { return false };
         let inverse = self.pose.attitude.inverse();
         let [a, b] = ends.map(|end| inverse * (end - self.pose.centre));
-        let [low, high] = &self.box_m;
         (0..3).any(|k| a[k].max(b[k]) < low[k] - reach || a[k].min(b[k]) > high[k] + reach)
     }
 

@@ -71,6 +71,11 @@ impl Neighbours {
         leaves_s.fold(f64::INFINITY, f64::min) * u.norm()
     }
 
+    /// How many edges can be touched from where the centre is.
+    pub(crate) fn lines(&self) -> usize {
+        self.all.edges.len()
+    }
+
     /// The edges that can be touched from where the centre is, with unit directions out of their triangles.
     pub(crate) fn sharp_edges(&self) -> impl Iterator<Item = SharpEdge<'_>> {
         self.all.edges.iter().map(|edge| SharpEdge {
