@@ -66,7 +66,7 @@ pub const WAYS: [SchemeSetting; 4] = [
 type StabilityTrial = fn(&SchemeSetting, &mut Notes);
 
 /// Every case by name. To add one: a function and a row.
-const TRIALS: [(&str, StabilityTrial); 33] = [
+const TRIALS: [(&str, StabilityTrial); 34] = [
     ("impact", impacts::impact),
     ("step and tolerance", fineness::steps),
     ("shear memory", fineness::memory),
@@ -80,6 +80,7 @@ const TRIALS: [(&str, StabilityTrial); 33] = [
     ("edge and corner", geometry::edge_and_corner),
     ("elastic folds", folds::elastic),
     ("noisy meshes", folds::noisy),
+    ("borders of grounds", folds::borders),
     ("larger than its cells", folds::larger_than_cells),
     ("slides over cells", folds::slides),
     ("parallel walls", geometry::parallel_walls),

@@ -63,6 +63,14 @@ pub struct Piece<'a> {
     pub sheet: u16,
 }
 
+/// The box of a piece, from its lowest to its highest corner (m); of nothing, turned inside out.
+type PieceBox = (Vec3, Vec3);
+
+/// Longest side of a box (m), 0 without any facet.
+fn longest_m((low, high): &PieceBox) -> f64 {
+    (high - low).max().max(0.0)
+}
+
 /// How often something was found, and where the first few are.
 #[derive(Debug, Clone, Default, PartialEq, serde::Serialize)]
 pub struct Tally {

@@ -14,7 +14,7 @@ use crate::solver::step_control::ROUNDING;
 use crate::solver::{Stepper, advance};
 use crate::study::bench::{GROUND, ROCK, SETUP, Setup, settings, terrain, with_springs};
 use crate::study::cases::meshes::{bumpy, fold};
-use crate::terrain::Terrain;
+use crate::terrain::{Sheet, Terrain};
 use std::f64::consts::PI;
 
 /// What the energy of a rock did, springs included.
@@ -65,17 +65,18 @@ impl Watched<'_> {
     }
 }
 
-/// Follows a rock from touch to touch; nothing where a step fails.
+/// Follows a rock from touch to touch over these grounds, by the numbers of the terrain's sheets; nothing where a step fails.
 fn watch(
     way: &SchemeSetting,
-    setup: &Setup,
+    (setup, grounds): (&Setup, &[Ground]),
     terrain: &Terrain,
     capture_m_s: Option<f64>,
 ) -> Option<Energy> {
     let capture =
         Capture { own_m_s: capture_m_s, tolerance_m_s: 0.0, gravity_m_s2: setup.gravity_m_s2 };
-    let damping = Damping::of(setup.ground.restitution);
-    let laws = [Law::new(&setup.ground, &damping, &setup.rock, &capture)];
+    let law =
+        |ground: &Ground| Law::new(ground, &Damping::of(ground.restitution), &setup.rock, &capture);
+    let laws: Vec<Law> = grounds.iter().map(law).collect();
     let body = Body::new(&setup.rock, setup.gravity_m_s2);
     let world = ContactEnvironment { terrain, body, laws: &laws };
     let (state, probe) = (ContactState::default(), ContactState::default());
@@ -130,7 +131,7 @@ fn conserve(
     (setup, terrain, turn): (&Setup, &Terrain, f64),
 ) {
     let omega = setup.omega();
-    let energy = watch(way, setup, terrain, Some(0.0));
+    let energy = watch(way, (setup, &[setup.ground]), terrain, Some(0.0));
     let (change, rise) =
         energy.map_or((f64::NAN, f64::NAN), |energy| ((energy.kept - 1.0).abs(), energy.rise));
     let law = "change of energy where nothing takes any";
@@ -191,6 +192,48 @@ pub(super) fn noisy(way: &SchemeSetting, notes: &mut Notes) {
     }
 }
 
+/// e = 1 without friction on noisy ground whose cells are in turn of a soft and a hard ground: springs hand over what they hold, or lose it, and
+/// make none.
+pub(super) fn borders(way: &SchemeSetting, notes: &mut Notes) {
+    for (cell, cells, noise) in [(1.0, 6, 0.05), (0.25, 24, 0.02)] {
+        let ground = checkered(terrain(bumpy(cells, cell, noise)), cell);
+        for (stiff, place) in [(1e9, [0.03, -0.05]), (1e10, [-0.21, 0.14]), (1e10, [0.33, 0.02])] {
+            let setup = Setup {
+                ground: elastic_ground(stiff),
+                centre_m: Vec3::new(place[0], place[1], 0.8),
+                velocity_m_s: Vec3::new(12.0, 1.0, -8.0),
+                longest_s: 0.1,
+                ..SETUP
+            };
+            let grounds = [elastic_ground(1e8), setup.ground];
+            let kept = watch(way, (&setup, &grounds), &ground, Some(0.0)).map(|energy| energy.kept);
+            let setting = format!("1e8 and {stiff:.0e} N/m, R/cell {}, at {place:?}", 0.5 / cell);
+            let error = impact_error(way, setup.omega());
+            if way.scheme.has_fixed_step() {
+                let law = "energy made where nothing takes any";
+                notes.hold(way, setting, law, kept.map_or(f64::NAN, |kept| kept - 1.0), error);
+            } else {
+                let law = "change of energy where nothing takes any";
+                let change = kept.map_or(f64::NAN, |kept| (kept - 1.0).abs());
+                notes.hold(way, setting, law, change, error.max(DIGITS));
+            }
+        }
+    }
+}
+
+/// The same terrain with two grounds, cell by cell in turn.
+fn checkered(mut terrain: Terrain, cell_m: f64) -> Terrain {
+    let hard = Sheet { ground: 1, ..terrain.sheets[0].clone() };
+    terrain.sheets.push(hard);
+    for t in 0..terrain.sheet_of.len() {
+        let face = terrain.face(t as u32);
+        let middle = face.a + (face.e1 + face.e2) / 3.0 + terrain.origin_m;
+        let cell = [middle.x, middle.y].map(|at| (at / cell_m).floor() as i64);
+        terrain.sheet_of[t] = u16::from((cell[0] + cell[1]).rem_euclid(2) == 1);
+    }
+    terrain
+}
+
 /// e = 0.5 on noise that the rock does not see: it rebounds as from a plane. The rigid limit strikes one corner alone, and
 /// rebounds from that.
 pub(super) fn larger_than_cells(way: &SchemeSetting, notes: &mut Notes) {
@@ -232,7 +275,8 @@ pub(super) fn slides(way: &SchemeSetting, notes: &mut Notes) {
         longest_s: 0.5,
         ..SETUP
     };
-    let rise = watch(way, &setup, &ground, None).map_or(f64::NAN, |energy| energy.rise);
+    let energy = watch(way, (&setup, &[setup.ground]), &ground, None);
+    let rise = energy.map_or(f64::NAN, |energy| energy.rise);
     let law = "rise within an episode, losses not netted";
     // what moves across the ground, of all: the fall, the throw, and the way up the faces, inclined by a hundredth
     let across = (0.2f64.powi(2) + 0.04f64.powi(2)) / 16.0;

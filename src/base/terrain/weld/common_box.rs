@@ -1,6 +1,6 @@
 //! The common box of all files of a mesh.
 
-use super::{Piece, far};
+use super::{Piece, PieceBox, far, longest_m};
 use crate::error::{Error, Result};
 use crate::parallel;
 use crate::rock::Vec3;
@@ -10,9 +10,6 @@ const LARGEST_M: f64 = 1e8;
 
 /// Three corners of this many facets can be numbered with 32 bits.
 const MOST_FACETS: usize = u32::MAX as usize / 3;
-
-/// A box, from its lowest to its highest corner (m); of nothing, turned inside out.
-pub(super) type Span = (Vec3, Vec3);
 
 /// The common box of all pieces.
 pub(super) struct CommonBox {
@@ -27,7 +24,7 @@ impl CommonBox {
     /// # Errors
     /// A scale that is not usable, coordinates larger than the Earth, too many facets, pieces far from each other.
     pub(super) fn around(pieces: &[Piece]) -> Result<Self> {
-        let spans: Vec<Span> = pieces.iter().map(Piece::span).collect::<Result<_>>()?;
+        let spans: Vec<PieceBox> = pieces.iter().map(Piece::span).collect::<Result<_>>()?;
         let facets = pieces.iter().map(|piece| piece.soup.facets.len()).sum();
         if facets > MOST_FACETS {
             return Err(Error::Request(format!(
@@ -41,21 +38,16 @@ impl CommonBox {
     }
 }
 
-const NOTHING: Span =
+const NOTHING: PieceBox =
     (Vec3::new(LARGEST_M, LARGEST_M, LARGEST_M), Vec3::new(-LARGEST_M, -LARGEST_M, -LARGEST_M));
 
-fn both(one: Span, other: Span) -> Span {
+fn both(one: PieceBox, other: PieceBox) -> PieceBox {
     (one.0.inf(&other.0), one.1.sup(&other.1))
-}
-
-/// Longest side of a box (m), 0 without any facet.
-pub(super) fn longest_m((low, high): &Span) -> f64 {
-    (high - low).max().max(0.0)
 }
 
 impl Piece<'_> {
     /// Its box.
-    fn span(&self) -> Result<Span> {
+    fn span(&self) -> Result<PieceBox> {
         self.check_scale()?;
         let box_of = |facet: [Vec3; 3]| {
             let [a, b, c] = facet.map(|corner| self.placed(corner));

@@ -3,8 +3,7 @@
 //! Corners are merged within a share of the common box. A file in other coordinates, or one triangle at (0, 0, 0) of a slope in map
 //! coordinates, makes that box, and with it the tolerance, so large that the slope itself collapses.
 
-use super::common_box::{Span, longest_m};
-use super::{Piece, TOLERANCE_OF_SIZE};
+use super::{Piece, PieceBox, TOLERANCE_OF_SIZE, longest_m};
 use crate::error::{Error, Result};
 use crate::math;
 use crate::rock::Vec3;
@@ -20,18 +19,18 @@ const SAMPLES: usize = 1000;
 ///
 /// # Errors
 /// Names the file that lies the farthest from the first one.
-pub(super) fn check_apart(pieces: &[Piece], spans: &[Span], size_m: f64) -> Result<()> {
+pub(super) fn check_apart(pieces: &[Piece], spans: &[PieceBox], size_m: f64) -> Result<()> {
     let side_by_side_m: f64 = spans.iter().map(longest_m).sum();
     let Some((first, others)) = pieces.split_first() else { return Ok(()) };
     if size_m <= APART * side_by_side_m {
         return Ok(());
     }
-    let middle = |span: &Span| span.0 / 2.0 + span.1 / 2.0;
-    let off_m = |span: &Span| (middle(span) - middle(&spans[0])).norm();
+    let middle = |span: &PieceBox| span.0 / 2.0 + span.1 / 2.0;
+    let off_m = |span: &PieceBox| (middle(span) - middle(&spans[0])).norm();
     let farthest = others
         .iter()
         .zip(&spans[1..])
-        .filter(|(piece, _)| piece.soup.facets.len() > 0)
+        .filter(|(piece, _)| !piece.soup.facets.is_empty())
         .max_by(|a, b| off_m(a.1).total_cmp(&off_m(b.1)));
     let Some((piece, span)) = farthest else { return Ok(()) };
     let found = format!(

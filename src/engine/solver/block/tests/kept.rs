@@ -317,7 +317,7 @@ fn rounding_that_lifts_a_block_cuts_no_step() {
         let moving = case.start(Rotation3::identity(), start);
         moving.climbs_s(&case.block, &gravity, moving.motion_j(&case.block))
     };
-    assert_eq!(climbs_s(-1e-8), f64::INFINITY);
+    assert!(climbs_s(-1e-8).is_infinite());
     assert!(climbs_s(1e-8) > 0.1, "{}", climbs_s(1e-8));
     let slow_s = climbs_s(1e-2);
     assert!((slow_s - 1e-2 / G).abs() < 1e-6 * slow_s, "{slow_s}");
