@@ -23,7 +23,8 @@ impl ContactState {
         }
         for k in 0..self.histories.len() {
             let before = self.histories[k];
-            if world.ground_of(before.springs_of) != world.ground_of(before.triangle) {
+            let is_seen = self.touches.iter().any(|touch| touch.feature == before.feature);
+            if is_seen && world.ground_of(before.springs_of) != world.ground_of(before.triangle) {
                 let after = ContactHistory { springs_of: before.triangle, ..before };
                 if self.contact_j(world, &after) <= self.contact_j(world, &before) {
                     self.histories[k] = after;
@@ -65,16 +66,5 @@ impl ContactState {
         let mut grounds = self.histories.iter().map(|history| world.ground_of(history.springs_of));
         let first = grounds.next();
         world.laws.len() > 1 && grounds.any(|ground| Some(ground) != first)
-    }
-
-    /// What the springs of a contact hold (J), its touch being one of the last look.
-    fn contact_j(&self, world: &ContactEnvironment, history: &ContactHistory) -> f64 {
-        let law = world.springs_of(history);
-        let touch = self.touches.iter().find(|touch| touch.feature == history.feature);
-        let pressed_j = touch.map_or(0.0, |touch| {
-            let penetration = (world.body.radius - touch.distance_m).max(0.0);
-            touch.gain2 * law.stored_j(penetration, 0.0, 0.0)
-        });
-        pressed_j + law.stored_j(0.0, history.shear.norm_squared(), history.roll.norm_squared())
     }
 }

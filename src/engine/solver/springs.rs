@@ -4,6 +4,7 @@ use super::contact_state::{ContactEnvironment, ContactState};
 use super::loss::Loss;
 use crate::contact::ContactPoint;
 use crate::contact::history::ContactHistory;
+use crate::ground::Law;
 use crate::rock::Vec3;
 
 impl ContactState {
@@ -19,7 +20,9 @@ impl ContactState {
     pub fn stored_j(&self, world: &ContactEnvironment) -> Loss {
         let mut stored = Loss::default();
         for touch in self.touches.iter() {
-            let pressed = self.pressed_j(world, touch);
+            let memory = self.histories.iter().find(|history| history.feature == touch.feature);
+            let law = world.law(memory.map_or(touch.triangle, |history| history.springs_of));
+            let pressed = pressed_j(world, touch, law);
             stored.add(&Loss::on_slope([0.0, pressed, 0.0]).on(world, touch.triangle), 1.0);
         }
         for history in self.histories.iter() {
@@ -31,12 +34,12 @@ impl ContactState {
         stored
     }
 
-    /// What the normal spring of a touch holds (J), on the ground that answers for it.
-    fn pressed_j(&self, world: &ContactEnvironment, touch: &ContactPoint) -> f64 {
-        let memory = self.histories.iter().find(|history| history.feature == touch.feature);
-        let law = world.law(memory.map_or(touch.triangle, |history| history.springs_of));
-        let penetration = (world.body.radius - touch.distance_m).max(0.0);
-        touch.gain2 * law.stored_j(penetration, 0.0, 0.0)
+    /// What the springs of one contact hold (J), its touch being one of the last look.
+    pub(super) fn contact_j(&self, world: &ContactEnvironment, history: &ContactHistory) -> f64 {
+        let law = world.springs_of(history);
+        let touch = self.touches.iter().find(|touch| touch.feature == history.feature);
+        touch.map_or(0.0, |touch| pressed_j(world, touch, law))
+            + law.stored_j(0.0, history.shear.norm_squared(), history.roll.norm_squared())
     }
 
     /// How much the springs of the contacts hold that `count` (J). Touches are looked for anew, and the last look stays as it was: a
@@ -53,18 +56,10 @@ impl ContactState {
         self.know(world, &c);
         self.near.touches(world.terrain, &c, world.body.radius, &mut self.touches);
         let all = self.stored_j(world).sum();
-        let touches = std::mem::replace(&mut self.touches, last);
         let others = self.histories.iter().filter(|history| !count(history));
-        let of_others = others.map(|history| {
-            let law = world.springs_of(history);
-            let touch = touches.iter().find(|touch| touch.feature == history.feature);
-            let pressed = touch.map_or(0.0, |touch| {
-                let penetration = (world.body.radius - touch.distance_m).max(0.0);
-                touch.gain2 * law.stored_j(penetration, 0.0, 0.0)
-            });
-            pressed + law.stored_j(0.0, history.shear.norm_squared(), history.roll.norm_squared())
-        });
-        all - of_others.sum::<f64>()
+        let of_others: f64 = others.map(|history| self.contact_j(world, history)).sum();
+        self.touches = last;
+        all - of_others
     }
 
     /// A time (s) within which the contacts of `on` take no more than `work_j`: their forces do not grow faster than springs
@@ -87,4 +82,10 @@ impl ContactState {
         }
         2.0 * work_j / (now_w + (now_w * now_w + 4.0 * grows_w_s * work_j).sqrt())
     }
+}
+
+/// What the normal spring of a touch holds (J) by a law.
+fn pressed_j(world: &ContactEnvironment, touch: &ContactPoint, law: &Law) -> f64 {
+    let penetration = (world.body.radius - touch.distance_m).max(0.0);
+    touch.gain2 * law.stored_j(penetration, 0.0, 0.0)
 }
