@@ -181,6 +181,16 @@ impl Law {
         Self { rolling: FrictionElement::NONE, ..*self }
     }
 
+    /// Whether its springs are as stiff as those of `other`; what has no friction has no spring that could be another.
+    pub(crate) fn has_springs_of(&self, other: &Self) -> bool {
+        let are_alike = |own: &FrictionElement, other: &FrictionElement| {
+            !(own.is_on() && other.is_on()) || own.k.to_bits() == other.k.to_bits()
+        };
+        self.p_n.to_bits() == other.p_n.to_bits()
+            && are_alike(&self.shear, &other.shear)
+            && are_alike(&self.rolling, &other.rolling)
+    }
+
     /// The same with the friction of `other`, along the surface and in rolling: springs that may be stretched stay what they are.
     pub(crate) fn with_friction_of(&self, other: &Self) -> Self {
         let both = |own: FrictionElement, other: FrictionElement| {

@@ -206,10 +206,12 @@ impl ContactState {
         self.look(world, &c, world.body.radius * (1.0 + TOUCH));
         // An impact rebounds or not as a whole, by its fastest approach.
         let captured = self.touches.iter().all(|touch| world.captures(touch, &v));
-        for (k, touch) in self.touches.iter().enumerate() {
-            self.histories.find(touch, &self.touches, (1 << k) - 1, || captured);
+        for k in 0..self.touches.len() {
+            let touch = &self.touches[k];
+            let place = self.histories.find(touch, &self.touches, (1 << k) - 1, || captured);
             if !captured {
                 self.impact.meet(-touch.normal.dot(&v), world.least_impact_m_s());
+                self.part_springs(world, place, k);
             }
         }
     }

@@ -51,17 +51,31 @@ impl ContactEnvironment<'_> {
         LEAST_IMPACT * self.body.fall_speed_m_s()
     }
 
-    /// The law on whose ground the springs of a contact were pressed: that of an impact from beginning to end.
+    /// Whether the grounds of two triangles have the same springs.
+    #[inline]
+    pub(super) fn are_alike(&self, one: u32, other: u32) -> bool {
+        self.ground_of(one) == self.ground_of(other)
+            || self.law(one).has_springs_of(self.law(other))
+    }
+
+    /// The law of a contact with `triangle` in an impact: that of the ground on which its springs were pressed, where it has others.
+    #[inline]
+    pub(super) fn impact_law(&self, history: &ContactHistory, triangle: u32) -> &Law {
+        let is_alike = self.are_alike(history.springs_of, triangle);
+        self.law(if is_alike { triangle } else { history.springs_of })
+    }
+
+    /// The same with the triangle that it touched last.
     #[inline]
     pub(crate) fn springs_of(&self, history: &ContactHistory) -> &Law {
-        self.law(history.springs_of)
+        self.impact_law(history, history.triangle)
     }
 
     /// The law of a lasting contact with `triangle`: its springs, and the friction of the ground that it touches.
     #[inline]
     pub(crate) fn lasting_law(&self, history: &ContactHistory, triangle: u32) -> Law {
         let (springs, touched) = (history.springs_of, triangle);
-        if self.ground_of(springs) == self.ground_of(touched) {
+        if self.are_alike(springs, touched) {
             *self.law(touched)
         } else {
             self.law(springs).with_friction_of(self.law(touched))

@@ -260,7 +260,7 @@ impl ContactState {
     ///
     /// Velocity and spin are scaled by one factor, so the direction of the rebound does not change.
     /// An impact with `e = 1` and no friction then keeps its energy to rounding. Where no ground has
-    /// friction nothing can turn the rock, and the velocity alone is scaled. More than [`BALANCED`] is balanced only where springs of several
+    /// friction nothing can turn the rock, and the velocity alone is scaled. More than [`BALANCED`] is taken only where springs of several
     /// grounds were pressed at once: what these hand over to each other is no error of steps.
     pub(super) fn balance(&mut self, world: &ContactEnvironment) {
         let (body, gained) = (&world.body, self.impact.gained);
@@ -268,7 +268,7 @@ impl ContactState {
         let motion =
             if turns { self.motion_j(body) } else { 0.5 * body.mass * self.v.norm_squared() };
         let most = if self.impact.mixes { 1.0 } else { BALANCED };
-        if gained.abs() < most * motion {
+        if (-BALANCED * motion..most * motion).contains(&gained) {
             let kept = (1.0 - gained / motion).sqrt();
             self.v *= kept;
             self.w *= if turns { kept } else { 1.0 };

@@ -4,7 +4,7 @@
 //! hundred times the energy. So the springs of a contact are those of the ground on which they were pressed
 //! ([`ContactHistory::springs_of`]). An impact is answered by that ground to its end. What lasts, a rock that rolls, slides or rests, has
 //! the friction of the ground that it touches at once, and its springs as soon as these hold no more energy: those of a softer ground
-//! at the end of a step, those of a stiffer one when it has let go. Patches of several grounds that meet or part in an impact hand over
+//! at the end of a step in which little is lost so, those of a stiffer one when it has let go. Patches of several grounds that meet or part in an impact hand over
 //! what the new spring does not hold; that is balanced when the impact is over.
 
 use super::contact_state::{ContactEnvironment, ContactState};
@@ -12,6 +12,10 @@ use crate::contact::history::{ContactHistory, SAME_GRIP};
 
 /// A contact that is so deep when it comes up is part of one that was there, as patches part (–, relative to R).
 const PRESSED_AT_BIRTH: f64 = 1e-5;
+
+/// What lasting contact loses to softer springs at most, of motion and of the weight lifted by the radius (–): what weight presses in is less. A contact that
+/// is pressed harder, as in a slow impact, waits until it is let out.
+const LOSES: f64 = 1e-3;
 
 impl ContactState {
     /// Lets the springs of lasting contacts be those of the ground that they touch, where these hold no more energy.
@@ -21,12 +25,15 @@ impl ContactState {
         if world.laws.len() == 1 || self.is_rebounding() {
             return;
         }
+        let body = &world.body;
+        let most_j = LOSES * (self.motion_j(body) + body.mass * body.gravity.norm() * body.radius);
         for k in 0..self.histories.len() {
             let before = self.histories[k];
             let is_seen = self.touches.iter().any(|touch| touch.feature == before.feature);
-            if is_seen && world.ground_of(before.springs_of) != world.ground_of(before.triangle) {
+            if is_seen && !world.are_alike(before.springs_of, before.triangle) {
                 let after = ContactHistory { springs_of: before.triangle, ..before };
-                if self.contact_j(world, &after) <= self.contact_j(world, &before) {
+                let lost_j = self.contact_j(world, &before) - self.contact_j(world, &after);
+                if (0.0..=most_j).contains(&lost_j) {
                     self.histories[k] = after;
                     self.fresh = false;
                 }
@@ -34,18 +41,22 @@ impl ContactState {
         }
     }
 
-    /// Gives a contact that has just come up at touch `k` the springs of a pressed one that it is parted from, if it is.
+    /// Gives a contact that has just come up at touch `k` the springs of a pressed one that it is parted from, if it is, and in an impact of
+    /// one on a like side: at a blunt fold their patches meet, and only of equal springs does the energy stay what it was.
     pub(super) fn part_springs(&mut self, world: &ContactEnvironment, place: usize, k: usize) {
         let touch = &self.touches[k];
         let pressed_m = world.body.radius - touch.distance_m;
-        if world.laws.len() == 1 || pressed_m <= PRESSED_AT_BIRTH * world.body.radius {
+        let is_parted = pressed_m > PRESSED_AT_BIRTH * world.body.radius;
+        let rebounds = self.is_rebounding();
+        if world.laws.len() == 1 || !(is_parted || rebounds) {
             return;
         }
         let along = |history: &&ContactHistory| history.n.dot(&touch.normal);
         let is_tree = world.terrain.is_tree(touch.triangle);
         let pressed = self.histories[..place]
             .iter()
-            .filter(|one| one.closed && world.terrain.is_tree(one.triangle) == is_tree);
+            .filter(|one| one.closed || rebounds)
+            .filter(|one| world.terrain.is_tree(one.triangle) == is_tree);
         let nearest = pressed.max_by(|a, b| along(a).total_cmp(&along(b)));
         if let Some(one) = nearest.filter(|one| along(one) > SAME_GRIP) {
             self.histories[place].springs_of = one.springs_of;
@@ -57,14 +68,13 @@ impl ContactState {
         let Self { histories, near, .. } = self;
         histories.merge_lost(
             |feature| near.patch_holding(world.terrain, feature),
-            |one, other| world.ground_of(one) == world.ground_of(other),
+            |one, other| world.are_alike(one, other),
         )
     }
 
     /// Whether the springs of its contacts are those of several grounds.
     pub(super) fn is_on_several_grounds(&self, world: &ContactEnvironment) -> bool {
-        let mut grounds = self.histories.iter().map(|history| world.ground_of(history.springs_of));
-        let first = grounds.next();
-        world.laws.len() > 1 && grounds.any(|ground| Some(ground) != first)
+        let [first, others @ ..] = &self.histories[..] else { return false };
+        others.iter().any(|other| !world.are_alike(first.springs_of, other.springs_of))
     }
 }

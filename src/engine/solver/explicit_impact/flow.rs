@@ -269,7 +269,7 @@ impl<const C: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, 
                 continue;
             }
             let (n, memory) = (touch.normal, &state.histories[place]);
-            let law = world.springs_of(memory);
+            let law = world.impact_law(memory, touch.triangle);
             // a patch of stiffness |a|² has its dashpot times |a|; parallel patches share theirs
             let share = world.dashpot_share_beside(&state.touches, k, changes.gone());
             let normal = law.normal(memory.captured).of_patch(touch.gain2, share);
