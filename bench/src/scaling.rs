@@ -22,16 +22,8 @@ use std::sync::atomic::AtomicBool;
 const ROCK: Rock = Rock { radius_m: 0.05, density_kg_m3: 2700.0 };
 /// Table 1, with a restitution of 0.5.
 const GROUND: Ground = Ground {
-    normal_stiffness_n_m: 1e9,
-    shear_stiffness_n_m: 0.25e9,
-    friction_angle_rad: std::f64::consts::FRAC_PI_6,
-    restitution: Some(0.5),
     rolling_friction: 0.05,
-    roughness_rad: 0.0,
-    roughness_length_m: None,
-    slip_friction: None,
-    scar: None,
-    restitution_half_m_s: None,
+    ..Ground::smooth([1e9, 0.25e9], std::f64::consts::FRAC_PI_6, Some(0.5))
 };
 /// Distance of the spheres at the start (m), as in example 3.
 const SPACING_M: f64 = 0.12;

@@ -42,6 +42,25 @@ pub fn falls(plan: &Plan) -> Vec<Trajectory> {
         .collect()
 }
 
+/// So many cells of a size (m) each way around the origin, uneven by `uneven_m`: the number of a cell, and its two triangles.
+pub fn uneven_cells(
+    cells: i32,
+    cell_m: f64,
+    uneven_m: f64,
+) -> impl Iterator<Item = ([i32; 2], [Facet; 2])> {
+    let corner = move |i: i32, j: i32| {
+        let (x, y, half) = (f64::from(i), f64::from(j), f64::from(cells / 2));
+        let z = uneven_m * (0.7 * x * x + 1.3 * y * y + 0.9 * x * y).sin();
+        Vec3::new(cell_m * (x - half), cell_m * (y - half), z)
+    };
+    (0..cells * cells).map(move |k| {
+        let (i, j) = (k / cells, k % cells);
+        let [a, b, c, d] =
+            [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)].map(|(i, j)| corner(i, j));
+        ([i, j], [[a, b, c], [a, c, d]])
+    })
+}
+
 /// A terrain of one sheet, without recentring noise: the facets' own coordinates are local when their box is
 /// centred on whole metres.
 pub fn terrain(facets: Vec<Facet>) -> Terrain {
@@ -63,18 +82,7 @@ pub fn terrain_of_files(files: Vec<Vec<Facet>>, tolerance_m: Option<f64>) -> Ter
 pub const ROCK: Rock = Rock { radius_m: 0.5, density_kg_m3: 2700.0 };
 
 /// The ground of the exact cases: Table 1 with restitution 0.5.
-pub const GROUND: Ground = Ground {
-    normal_stiffness_n_m: 1e9,
-    shear_stiffness_n_m: 0.25e9,
-    friction_angle_rad: std::f64::consts::FRAC_PI_6,
-    restitution: Some(0.5),
-    rolling_friction: 0.0,
-    roughness_rad: 0.0,
-    roughness_length_m: None,
-    slip_friction: None,
-    scar: None,
-    restitution_half_m_s: None,
-};
+pub const GROUND: Ground = Ground::smooth([1e9, 0.25e9], std::f64::consts::FRAC_PI_6, Some(0.5));
 
 /// A case: one rock on one ground.
 #[derive(Debug, Clone, Copy)]

@@ -1,24 +1,16 @@
 //! Rocks that come from one ground to another while they are pressed in: springs of unlike stiffness make no energy.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use crate::common::{falls, plan_in};
+use crate::common::{falls, plan_in, uneven_cells};
 use rockfall::rock::Vec3;
 use rockfall::simulation::Trajectory;
 use rockfall::terrain::stl::{Facet, write_binary};
 
 /// Cells of a mesh around the origin, uneven by `uneven_m`, in turn of the one and the other file.
 fn checkered(cell_m: f64, uneven_m: f64) -> [Vec<Facet>; 2] {
-    const CELLS: i32 = 40;
-    let corner = |i: i32, j: i32| {
-        let (x, y) = (f64::from(i), f64::from(j));
-        let z = uneven_m * (0.7 * x * x + 1.3 * y * y + 0.9 * x * y).sin();
-        Vec3::new(cell_m * (x - 20.0), cell_m * (y - 20.0), z)
-    };
     let mut files = [Vec::new(), Vec::new()];
-    for (i, j) in (0..CELLS * CELLS).map(|k| (k / CELLS, k % CELLS)) {
-        let [a, b, c, d] =
-            [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)].map(|(i, j)| corner(i, j));
-        files[(i + j) as usize % 2].extend([[a, b, c], [a, c, d]]);
+    for ([i, j], facets) in uneven_cells(40, cell_m, uneven_m) {
+        files[(i + j) as usize % 2].extend(facets);
     }
     files
 }

@@ -1,26 +1,14 @@
 //! Flat blocks on ground that they meet at many places in one step.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use crate::common::{falls, plan_in};
+use crate::common::{falls, plan_in, uneven_cells};
 use rockfall::rock::Vec3;
 use rockfall::simulation::Trajectory;
 use rockfall::terrain::stl::{Facet, write_binary};
 
 /// Cells of a size (m), uneven by 4 mm, around the origin.
 fn uneven(cell_m: f64) -> Vec<Facet> {
-    const CELLS: i32 = 80;
-    let corner = |i: i32, j: i32| {
-        let (x, y) = (f64::from(i), f64::from(j));
-        let z = 0.004 * (0.7 * x * x + 1.3 * y * y + 0.9 * x * y).sin();
-        Vec3::new(cell_m * (x - 40.0), cell_m * (y - 40.0), z)
-    };
-    let cell = |k: i32| {
-        let (i, j) = (k / CELLS, k % CELLS);
-        let [a, b, c, d] =
-            [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)].map(|(i, j)| corner(i, j));
-        [[a, b, c], [a, c, d]]
-    };
-    (0..CELLS * CELLS).flat_map(cell).collect()
+    uneven_cells(80, cell_m, 0.004).flat_map(|(_, facets)| facets).collect()
 }
 
 /// Teeth of 1 m and 22°, 16 m along and across.

@@ -18,16 +18,8 @@ use std::time::Instant;
 pub const ROCK: Rock = Rock { radius_m: 0.5, density_kg_m3: 2700.0 };
 /// The ground: springs of the paper's Table 1, friction 35°, restitution 0.4, rolling friction 0.5.
 pub const GROUND: Ground = Ground {
-    normal_stiffness_n_m: 1e9,
-    shear_stiffness_n_m: 0.25e9,
-    friction_angle_rad: 35.0 * std::f64::consts::PI / 180.0,
-    restitution: Some(0.4),
     rolling_friction: 0.5,
-    roughness_rad: 0.0,
-    roughness_length_m: None,
-    slip_friction: None,
-    scar: None,
-    restitution_half_m_s: None,
+    ..Ground::smooth([1e9, 0.25e9], 35.0 * std::f64::consts::PI / 180.0, Some(0.4))
 };
 /// Gravity (m/s²).
 pub const GRAVITY_M_S2: f64 = 9.8;

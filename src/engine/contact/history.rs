@@ -185,7 +185,7 @@ impl ContactHistories {
     }
 
     /// Hands the stretches of every contact that is no more to the one that it merged into: `heir` names its feature, `are_alike` says
-    /// whether the grounds of two triangles are the same, as a stretch means another force on another ground. Whether there was any.
+    /// whether the grounds of two triangles have the same springs, as a stretch means another force by others. Whether there was any.
     ///
     /// Where two contacts meet at a blunt fold they become one patch. Without this its spring would
     /// start slack, and the energy of the one that vanished would be lost from one step to the

@@ -161,9 +161,8 @@ pub(crate) fn remember(
         let k = state.histories.find(touch, &touches, taken, || true);
         taken |= 1 << k;
         let history = &mut state.histories[k];
-        (history.feature, history.triangle, history.n) =
-            (touch.feature, touch.triangle, touch.normal);
-        history.springs_of = touch.triangle;
+        (history.feature, history.n) = (touch.feature, touch.normal);
+        (history.triangle, history.springs_of) = (touch.triangle, touch.triangle);
         // A touch that separates faster than the capture speed lets go.
         history.closed = holds(&v) && touch.normal.dot(&v) < capture_m_s(world.law(touch.triangle));
         history.slides = world.body.slip(&history.n, &v, &state.w).norm() > 1e-6 * (1.0 + v.norm());
