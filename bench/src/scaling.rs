@@ -184,6 +184,7 @@ pub fn world(scheme: Scheme, spheres: usize, (longest_s, before): (f64, Option<u
         step_s: if scheme == Scheme::Rigid { STEPS_S.1 } else { STEPS_S.0 },
         shear_memory: true,
         impact_kernels: true,
+        rigid_heaps: true,
         corner_way: rockfall::solver::CORNER_WAY,
         capture_speed_m_s: None,
     };

@@ -364,10 +364,11 @@ impl Plan {
         }
     }
 
-    /// The same plan with every impact followed step by step, of blocks by implicit stages: the same motion within the error allowed.
+    /// The same plan with every impact followed step by step, of blocks by implicit stages, in heaps too: the same motion within the error
+    /// allowed, in heaps up to the limit of stiff springs.
     #[must_use]
     pub fn without_kernels(mut self) -> Self {
-        self.step.impact_kernels = false;
+        (self.step.impact_kernels, self.step.rigid_heaps) = (false, false);
         self
     }
 }

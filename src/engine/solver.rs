@@ -54,6 +54,12 @@ use contact_state::{ContactEnvironment, ContactState};
 pub use scheme::Scheme;
 use step_control::{Advance, Control, StepError};
 
+/// The usual longest step of the scheme `rigid` (s).
+pub const RIGID_STEP_S: f64 = 0.01;
+
+/// Most rocks that hold each other and have springs yet, where heaps go on in the rigid limit.
+pub(crate) const MOST_WITH_SPRINGS: usize = 16;
+
 /// The usual [`Settings::corner_way`] (–).
 pub const CORNER_WAY: f64 = 0.3;
 
@@ -71,11 +77,21 @@ pub struct Settings {
     /// Whether impacts have kernels of their own: those of spheres on one plane are followed as a whole, those of blocks by explicit stages;
     /// if not, step by step like any other, and by implicit stages (`adaptive`, `reference`).
     pub impact_kernels: bool,
+    /// Whether heaps of many rocks that touch go on in the rigid limit (`adaptive`, without bonds).
+    pub rigid_heaps: bool,
     /// Blocks: longest way of a corner in one step over the radius of its rounding (–); a block turns no further than a tenth of it (rad).
     /// In the rigid limit three times as far while every corner skids over one triangle.
     pub corner_way: f64,
     /// Impacts slower than this do not rebound (m/s); `None` = the speed that numerics and ground ask for.
     pub capture_speed_m_s: Option<f64>,
+}
+
+impl Settings {
+    /// The same in the limit of stiff springs, with its usual longest step.
+    #[must_use]
+    pub const fn in_rigid_limit(self) -> Self {
+        Self { scheme: self.scheme.limit(), step_s: RIGID_STEP_S, ..self }
+    }
 }
 
 /// The stepping of one contact episode.

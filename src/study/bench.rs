@@ -200,6 +200,7 @@ pub fn settings(scheme: Scheme, fineness: f64, capture_speed_m_s: Option<f64>) -
         step_s: if by_tolerance { f64::INFINITY } else { fineness },
         shear_memory: true,
         impact_kernels: true,
+        rigid_heaps: true,
         corner_way: CORNER_WAY,
         capture_speed_m_s,
     }

@@ -27,6 +27,7 @@ impl<'a> Episode<'a> {
             step_s: case.step_s,
             shear_memory: case.shear_memory,
             impact_kernels: case.impact_kernels,
+            rigid_heaps: true,
             corner_way: rockfall::solver::CORNER_WAY,
             capture_speed_m_s: None,
         };

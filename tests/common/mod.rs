@@ -136,6 +136,7 @@ impl Case {
             step_s: self.step_s,
             shear_memory: self.shear_memory,
             impact_kernels: self.impact_kernels,
+            rigid_heaps: true,
             corner_way: rockfall::solver::CORNER_WAY,
             capture_speed_m_s: self.capture_speed_m_s,
         };

@@ -25,6 +25,8 @@ pub struct World {
     pub stiffness_n_m: f64,
     pub friction_angle_rad: f64,
     pub step_s: f64,
+    /// Whether heaps go on in the rigid limit (`adaptive`).
+    pub rigid_heaps: bool,
     pub ground: Ground,
     pub rest_time_s: f64,
     pub strength: Strength,
@@ -40,6 +42,7 @@ pub const WORLD: World = World {
     stiffness_n_m: GROUND.normal_stiffness_n_m,
     friction_angle_rad: std::f64::consts::FRAC_PI_6,
     step_s: 0.01,
+    rigid_heaps: true,
     ground: GROUND,
     rest_time_s: 0.3,
     strength: Strength { tensile_pa: 0.0, cohesion_pa: 0.0 },
@@ -62,6 +65,7 @@ impl World {
             step_s: self.step_s,
             shear_memory: true,
             impact_kernels: true,
+            rigid_heaps: self.rigid_heaps,
             corner_way: rockfall::solver::CORNER_WAY,
             capture_speed_m_s: CASE.capture_speed_m_s,
         };

@@ -230,6 +230,7 @@ fn a_breaking_stem_spins_the_rock_no_more_than_it_can() {
             step_s: case.step_s,
             shear_memory: true,
             impact_kernels: true,
+            rigid_heaps: true,
             corner_way: rockfall::solver::CORNER_WAY,
             capture_speed_m_s: None,
         };

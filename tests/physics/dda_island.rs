@@ -25,6 +25,7 @@ fn settings(case: &Case) -> Settings {
         step_s: case.step_s,
         shear_memory: case.shear_memory,
         impact_kernels: true,
+        rigid_heaps: true,
         corner_way: rockfall::solver::CORNER_WAY,
         capture_speed_m_s: None,
     }

@@ -53,6 +53,7 @@ impl World {
             step_s: 1e-5,
             shear_memory: true,
             impact_kernels: true,
+            rigid_heaps: true,
             corner_way: rockfall::solver::CORNER_WAY,
             capture_speed_m_s: CASE.capture_speed_m_s,
         };

@@ -17,6 +17,7 @@ mod exact_plane;
 mod grooves;
 mod ground_border;
 mod heap;
+mod heaps_unloaded;
 mod heights;
 mod impact_ledger;
 mod ledger;

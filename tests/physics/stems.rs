@@ -71,6 +71,7 @@ pub(crate) fn shoot_from(
         step_s: if scheme == Scheme::Dda { 1e-5 } else { 1e-2 },
         shear_memory: true,
         impact_kernels: true,
+        rigid_heaps: true,
         corner_way: rockfall::solver::CORNER_WAY,
         capture_speed_m_s: None,
     };

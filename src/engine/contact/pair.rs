@@ -208,7 +208,13 @@ impl PairHistory {
 
     /// The rocks no longer touch.
     pub fn part(&mut self) {
-        (self.closed, self.impact) = (false, PairImpact::default());
+        self.closed = false;
+        self.forget_springs();
+    }
+
+    /// Goes on with springs at rest.
+    pub(crate) fn forget_springs(&mut self) {
+        self.impact = PairImpact::default();
         (self.normal_force, self.shear_force, self.shear) = (0.0, Vec3::zeros(), Vec3::zeros());
     }
 

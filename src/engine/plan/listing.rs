@@ -131,11 +131,7 @@ impl Plan {
         list.part("soil", soil, |lines| lines.join("; "));
         list.part("rock against rock", rock_against_rock, |ground| one_world(step.scheme, ground));
         list.part("coupled solve", coupled_solve, |()| {
-            let how = if step.scheme.has_springs() {
-                ""
-            } else {
-                "; impacts in the order of their times, sustained contact swept"
-            };
+            let how = settings::islands(step, bonds.is_kept());
             format!("islands of rocks that may touch, each with its own step{how}")
         });
         list.part("bonds", bonds, |strength| {

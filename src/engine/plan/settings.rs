@@ -1,14 +1,12 @@
 //! The step in force: what the scene asks for, the rest filled in.
 
 use crate::scene::SolverTable;
-use crate::solver::{CORNER_WAY, Settings};
+use crate::solver::{CORNER_WAY, MOST_WITH_SPRINGS, RIGID_STEP_S, Settings};
 
 /// Local error of the adaptive scheme (m/s): statistics of runout no longer change below it.
 const TOLERANCE_M_S: f64 = 0.05;
 /// Local error of the reference scheme (m/s).
 const REFERENCE_TOLERANCE_M_S: f64 = 1e-8;
-/// Largest step of the rigid scheme (s).
-const RIGID_STEP_S: f64 = 0.01;
 
 /// The step in force, defaults filled in. What a scheme has no use for is 0 (tolerance) or without limit (step).
 pub(super) fn in_force(solver: &SolverTable) -> Settings {
@@ -22,6 +20,7 @@ pub(super) fn in_force(solver: &SolverTable) -> Settings {
         step_s: solver.step_s.unwrap_or(step_s),
         shear_memory: solver.shear_memory.unwrap_or(true),
         impact_kernels: scheme.controls_error(),
+        rigid_heaps: scheme.leaves_heaps_rigid(),
         corner_way: solver.corner_way.unwrap_or(CORNER_WAY),
         capture_speed_m_s: solver.capture_speed_m_s,
     }
@@ -49,6 +48,19 @@ pub(super) fn block_impacts(step: &Settings, rolls: bool) -> Option<&'static str
     } else {
         "left out: every impact of a block goes by implicit stages"
     })
+}
+
+/// How islands are stepped, in words.
+pub(super) fn islands(step: &Settings, has_bonds: bool) -> String {
+    if !step.scheme.has_springs() {
+        return "; impacts in the order of their times, sustained contact swept".to_owned();
+    }
+    if !step.rigid_heaps || has_bonds {
+        return String::new();
+    }
+    format!(
+        "; heaps of more than {MOST_WITH_SPRINGS} that touch go on as with rigid: what a spring does within a blow is left out there"
+    )
 }
 
 /// Scheme and step in force, in words.

@@ -16,6 +16,7 @@ mod snapshot;
 mod subdivide;
 mod body;
 mod prediction;
+mod heaps;
 mod cached_pairs;
 
 use super::driver::kept;
@@ -81,6 +82,8 @@ struct WorldBody<'a> {
     pressed_m_s: f64,
     /// Mechanical energy and what others had got of it at the beginning of the contact episode (J).
     began_j: (f64, f64),
+    /// Whether its contacts have no springs: in the rigid limit, and in heaps.
+    is_unloaded: bool,
     /// When the step began that blows have been gone through of (s), and the mechanical energy then (J).
     step_began: Option<(f64, f64)>,
 }
@@ -168,7 +171,9 @@ pub fn simulate_world(
             Some(Box::new(body))
         })
         .collect();
-    let mut world = BodyWorld::new(settings, material, bodies);
+    let step = heaps::step_in_heaps(settings.step, material);
+    let heaps = step.as_ref().map(|step| RunSettings { step, ..*settings });
+    let mut world = BodyWorld::new((settings, heaps.as_ref()), material, bodies);
     world.bond(material);
     world.run(stop, observe).then(|| {
         let statistics = world.statistics;
@@ -204,6 +209,7 @@ fn body<'a>(
         off: (Vec3::zeros(), 0.0),
         foreseen_m_s: 0.0,
         pressed_m_s: 0.0,
+        is_unloaded: !settings.step.scheme.has_springs(),
         began_j: (0.0, 0.0),
         step_began: None,
     }
@@ -234,5 +240,15 @@ impl BodyWorld<'_> {
             self.hold(a);
             self.hold(b);
         }
+    }
+
+    /// The journeys, complete.
+    pub(super) fn end(self, releases: &[Release]) -> Vec<Trajectory> {
+        let Self { settings, bodies, now_s, .. } = self;
+        let bodies = bodies.into_iter().flatten().enumerate();
+        bodies
+            .zip(releases)
+            .map(|((k, body), release)| body.end(settings, k, release, now_s))
+            .collect()
     }
 }

@@ -29,6 +29,7 @@ mod active_set;
 mod rigid;
 mod stage;
 mod trial;
+mod unload;
 mod sweeps;
 
 pub use assembly::Island;
@@ -36,3 +37,4 @@ pub use body::{BodySlot, IslandBody, Memory};
 pub use outcome::{BlowInStep, Done, Hit};
 pub use rigid::TRAVEL;
 pub(crate) use rigid::{RigidIsland, blows_of};
+pub use unload::unload_pair;

@@ -26,6 +26,12 @@ impl Scheme {
         if self.has_springs() { Self::Reference } else { Self::Rigid }
     }
 
+    /// The scheme that is the limit of stiff springs of the same law.
+    #[must_use]
+    pub const fn limit(self) -> Self {
+        if self.has_springs() { Self::Rigid } else { self }
+    }
+
     /// Its name in scene files and results.
     pub const fn name(self) -> &'static str {
         match self {
@@ -45,6 +51,11 @@ impl Scheme {
     /// Whether contacts have springs; the rigid limit has none.
     pub const fn has_springs(self) -> bool {
         !matches!(self, Self::Rigid)
+    }
+
+    /// Whether heaps of many rocks go on in the rigid limit: where springs are there for their error, not as a measure of others.
+    pub const fn leaves_heaps_rigid(self) -> bool {
+        matches!(self, Self::Adaptive)
     }
 
     /// Whether it takes the steps it is given, however large their error.

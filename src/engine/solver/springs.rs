@@ -2,10 +2,11 @@
 
 use super::contact_state::{ContactEnvironment, ContactState};
 use super::loss::Loss;
-use crate::contact::ContactPoint;
 use crate::contact::history::ContactHistory;
+use crate::contact::{ContactPoint, MOST};
 use crate::ground::Law;
 use crate::rock::Vec3;
+use arrayvec::ArrayVec;
 
 impl ContactState {
     /// Energy in the springs of the contacts (J), by the kind it was counted under:
@@ -40,6 +41,21 @@ impl ContactState {
         let touch = self.touches.iter().find(|touch| touch.feature == history.feature);
         touch.map_or(0.0, |touch| pressed_j(world, touch, law))
             + law.stored_j(0.0, history.shear.norm_squared(), history.roll.norm_squared())
+    }
+
+    /// What the normal springs of impacts under way hold (J): normal, triangle and energy of each.
+    pub(super) fn pressed_in_impacts(
+        &mut self,
+        world: &ContactEnvironment,
+    ) -> ArrayVec<(Vec3, u32, f64), MOST> {
+        let c = self.c;
+        self.look(world, &c, world.body.radius);
+        let of_touch = |touch: &ContactPoint| {
+            let history = self.histories.iter().find(|one| one.feature == touch.feature)?;
+            let energy_j = pressed_j(world, touch, world.springs_of(history));
+            (!history.captured).then_some((touch.normal, touch.triangle, energy_j))
+        };
+        self.touches.iter().filter_map(of_touch).collect()
     }
 
     /// How much the springs of the contacts hold that `count` (J). Touches are looked for anew, and the last look stays as it was: a

@@ -79,6 +79,7 @@ fn rocks(
         step_s: f64::INFINITY,
         shear_memory: true,
         impact_kernels: true,
+        rigid_heaps: true,
         corner_way: crate::solver::CORNER_WAY,
         capture_speed_m_s: None,
     };

@@ -14,8 +14,6 @@ use super::window::IslandWindow;
 use super::{BodyState, PairMaterial, TOUCHING, WorldBody, WorldStats, law_between};
 use crate::contact::pair::PairHistory;
 use crate::ground::{Capture, Damping, Ground, Law};
-use crate::release::Release;
-use crate::simulation::Trajectory;
 use crate::simulation::settings::RunSettings;
 use crate::solver::impact::BlowTable;
 use crate::solver::island::broad_phase::{Ball, overlapping};
@@ -44,7 +42,9 @@ const WINDOWS_RIGID: usize = 8;
 /// All rocks of a world.
 pub(super) struct BodyWorld<'a> {
     /// Scheme, terrain, recorders and limits, the same for all rocks.
-    settings: &'a RunSettings<'a>,
+    pub(super) settings: &'a RunSettings<'a>,
+    /// The same for heaps that go on in the rigid limit, if they do.
+    pub(super) heaps: Option<&'a RunSettings<'a>>,
     /// What contacts between two rocks are made of: springs, friction, and the damping of their restitution.
     answer: (Ground, Damping),
     /// Impacts slower than this rule says do not rebound.
@@ -68,12 +68,13 @@ pub(super) struct BodyWorld<'a> {
 impl<'a> BodyWorld<'a> {
     /// A world at time 0, with no contacts and no bonds.
     pub(super) fn new(
-        settings: &'a RunSettings<'a>,
+        (settings, heaps): (&'a RunSettings<'a>, Option<&'a RunSettings<'a>>),
         answer: &PairMaterial,
         bodies: Vec<Option<Box<WorldBody<'a>>>>,
     ) -> Self {
         let mut world = Self {
             settings,
+            heaps,
             answer: (answer.ground, Damping::of(answer.ground.restitution)),
             capture: settings.capture(),
             bodies,
@@ -84,7 +85,7 @@ impl<'a> BodyWorld<'a> {
             blows: None,
             spare: Vec::new(),
         };
-        if world.is_rigid() && world.bodies.len() > 1 {
+        if (world.is_rigid() || heaps.is_some()) && world.bodies.len() > 1 {
             let [a, b] = [0, 1].map(|k| &world.body(k).member.body);
             world.blows = blows_of(&world.law(0, 1), [a, b]).map(Arc::new);
         }
@@ -361,9 +362,10 @@ impl<'a> BodyWorld<'a> {
         for (list, pair_histories) in lists.into_iter().zip(pair_histories) {
             // rocks move by pointer into the island: nothing is copied
             let ids: Vec<u32> = list.iter().map(|&k| present[k as usize]).collect();
+            let settings = self.settings_of(&ids, &pair_histories);
             let bodies = ids.iter().filter_map(|&k| self.bodies[k as usize].take()).collect();
             let times_s = (self.now_s, end_s);
-            let mut job = IslandWindow::new(self.settings, ids, bodies, pair_histories, times_s);
+            let mut job = IslandWindow::new(settings, ids, bodies, pair_histories, times_s);
             job.rigid =
                 self.spare.pop().unwrap_or_else(|| RigidIsland::of_material(self.blows.clone()));
             jobs.push(job);
@@ -386,15 +388,5 @@ impl<'a> BodyWorld<'a> {
         for (&k, body) in ids.iter().zip(bodies) {
             self.bodies[k as usize] = Some(body);
         }
-    }
-
-    /// The journeys, complete.
-    pub(super) fn end(self, releases: &[Release]) -> Vec<Trajectory> {
-        let Self { settings, bodies, now_s, .. } = self;
-        let bodies = bodies.into_iter().flatten().enumerate();
-        bodies
-            .zip(releases)
-            .map(|((k, body), release)| body.end(settings, k, release, now_s))
-            .collect()
     }
 }

@@ -266,11 +266,8 @@ impl<'a> WorldBody<'a> {
         let _ = self.recorder.end_impacts(|_| false);
     }
 
-    /// Watches how far its velocity has changed.
-    ///
-    /// Largest change since the reference, not the last: a rock that is hit and hit back has
-    /// deviated all the same.
-    fn watch(&mut self) {
+    /// Watches how far its velocity has changed since the reference: a rock that is hit and hit back has deviated all the same.
+    pub(super) fn watch(&mut self) {
         self.off.1 = self.off.1.max((self.member.state.v - self.off.0).norm());
     }
 
@@ -299,8 +296,7 @@ impl<'a> WorldBody<'a> {
         let is_off_ground = self.member.state.is_free();
         self.recorder.step_as(to, PathState::in_contact(slides), is_off_ground);
         self.recorder.pay(&loss);
-        self.recorder.ledger.others_j += given.lost;
-        self.recorder.ledger.passed_on_j += given.passed_on;
+        self.give(&given);
         // energy balance of the step: what motion, friction, dashpots and other rocks do not account for is numerical
         let change = self.total_j(settings) - before_j + loss.sum() + given.sum();
         self.recorder.ledger.remainder_j -= change;
@@ -316,6 +312,12 @@ impl<'a> WorldBody<'a> {
             self.end_episode(settings);
         }
         self.calm.note(dt, [&from, &to], self.member.body.radius, &settings.rest);
+    }
+
+    /// Writes down what other rocks, and contacts with them, have got (J).
+    pub(super) fn give(&mut self, given: &Given) {
+        self.recorder.ledger.others_j += given.lost;
+        self.recorder.ledger.passed_on_j += given.passed_on;
     }
 
     /// Largest rise of energy over the contact episode that ends now.
@@ -344,7 +346,10 @@ impl<'a> WorldBody<'a> {
     }
 
     /// The rock in contact and its notes.
-    fn in_contact<'r>(&'r mut self, settings: &RunSettings<'r>) -> RockInContact<'r, 'a> {
+    pub(super) fn in_contact<'r>(
+        &'r mut self,
+        settings: &RunSettings<'r>,
+    ) -> RockInContact<'r, 'a> {
         let IslandBody { state, body, laws, .. } = &mut *self.member;
         let world = ContactEnvironment { terrain: settings.terrain, body: *body, laws };
         let has_springs = settings.step.scheme.has_springs();

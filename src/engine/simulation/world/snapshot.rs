@@ -27,6 +27,7 @@ pub(super) struct Kept {
     calm: RestCriterion,
     h: f64,
     pressed_m_s: f64,
+    is_unloaded: bool,
     began_j: (f64, f64),
 }
 
@@ -41,6 +42,7 @@ impl WorldBody<'_> {
             calm: self.calm,
             h: self.h,
             pressed_m_s: self.pressed_m_s,
+            is_unloaded: self.is_unloaded,
             began_j: self.began_j,
         }
     }
@@ -52,7 +54,7 @@ impl WorldBody<'_> {
         self.state.clone_from(&kept.state);
         self.lands.clone_from(&kept.lands);
         (self.calm, self.h, self.began_j) = (kept.calm, kept.h, kept.began_j);
-        self.pressed_m_s = kept.pressed_m_s;
+        (self.pressed_m_s, self.is_unloaded) = (kept.pressed_m_s, kept.is_unloaded);
     }
 
     /// When this is gone through again, it is known how far the rock was deviated.

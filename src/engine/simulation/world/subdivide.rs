@@ -36,6 +36,7 @@ impl IslandWindow<'_> {
     /// From cheap to dear: all fly and nothing happens; a rigid heap; parts that do not meet; all
     /// of it together.
     pub(super) fn run(&mut self) {
+        self.load_or_unload();
         if self.is_rigid_heap() {
             self.run_rigid();
             return;

@@ -20,6 +20,7 @@ pub(super) fn on_springs(mut case: BlockRun, scheme: Scheme, p_n: f64) -> BlockR
         step_s: 0.01 / case.law.omega_rad_s(),
         shear_memory: true,
         impact_kernels: true,
+        rigid_heaps: true,
         corner_way: CORNER_WAY,
         capture_speed_m_s: Some(case.law.capture_m_s),
     });

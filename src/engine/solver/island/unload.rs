@@ -1,0 +1,68 @@
+//! Unloading springs: what they hold goes into motion, so that contact may go on in the limit of stiff springs.
+//!
+//! A spring of an impact under way gives back what it holds along its normal: where the contact still comes in, the impact begins anew
+//! with what it had come with; where it goes out, it is over. What lasting contact and shear springs hold is lost, as it would be where
+//! the contact opens: weight presses in little.
+
+use super::body::IslandBody;
+use crate::contact::pair::{PairHistory, between};
+use crate::rock::Vec3;
+use crate::solver::contact_state::ContactEnvironment;
+use crate::solver::loss::{Given, Loss};
+use crate::terrain::Terrain;
+
+/// Impulse along the normal (N s) by which a contact of effective mass `mass` (kg) with the normal speed apart `speed` (m/s) gets
+/// `energy_j` of motion: it goes on the way it goes.
+fn impulse(mass: f64, speed: f64, energy_j: f64) -> f64 {
+    let after = (speed * speed + 2.0 * energy_j / mass).sqrt();
+    mass * (if speed < 0.0 { -after } else { after } - speed)
+}
+
+impl IslandBody {
+    /// Unloads its contacts with the mesh; what that takes (J) is negative.
+    pub fn unload(&mut self, terrain: &Terrain) -> Loss {
+        let Self { state, body, laws, .. } = self;
+        let world = ContactEnvironment { terrain, body: *body, laws };
+        let mut loss = Loss::default();
+        let pressed = state.pressed_in_impacts(&world);
+        for (n, triangle, energy_j) in pressed {
+            state.v += n * (impulse(body.mass, n.dot(&state.v), energy_j) / body.mass);
+            loss.add(&Loss::on_slope([0.0, -energy_j, 0.0]).on(&world, triangle), 1.0);
+        }
+        self.forget_springs();
+        loss
+    }
+
+    /// Contacts go on with springs at rest.
+    pub fn forget_springs(&mut self) {
+        let state = &mut self.state;
+        for history in state.histories.iter_mut() {
+            (history.shear, history.roll) = (Vec3::zeros(), Vec3::zeros());
+            (history.normal_force, history.met_m_s) = (0.0, 0.0);
+            (history.captured, history.announced, history.impact) = (true, true, 0);
+        }
+        state.impact.forget();
+        state.plane.forget();
+        state.struck.clear();
+        (state.is_struck, state.fresh) = (false, false);
+        self.kept.clear();
+    }
+}
+
+/// Unloads the contact of two rocks; what each gives (J).
+pub fn unload_pair(pair: &mut PairHistory, [a, b]: [&mut IslandBody; 2]) -> [Given; 2] {
+    let (n, distance) = between(&a.state.c, &b.state.c);
+    let depth_m = (a.body.radius + b.body.radius - distance).max(0.0);
+    let energy_j = if pair.captured { 0.0 } else { pair.law.stored_j(depth_m, 0.0, 0.0) };
+    pair.forget_springs();
+    pair.captured = true;
+    let mass = a.body.mass * b.body.mass / (a.body.mass + b.body.mass);
+    let push = n * impulse(mass, n.dot(&(a.state.v - b.state.v)), energy_j);
+    let work = |one: &mut IslandBody, push: Vec3| {
+        let before = one.state.v;
+        one.state.v += push / one.body.mass;
+        // the work of the impulse on the rock, by the mean velocity
+        -0.5 * push.dot(&(before + one.state.v))
+    };
+    Given::of_ends([work(a, push), work(b, -push)])
+}
