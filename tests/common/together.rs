@@ -121,3 +121,12 @@ pub fn energy_j(falls: &[Trajectory], at_end: bool, g: f64) -> f64 {
     };
     falls.iter().map(energy).sum()
 }
+
+/// Two far triangles whose box is 100 m wide: nothing but the other spheres is touched.
+pub fn space() -> Terrain {
+    let corner = |at: f64| {
+        let p = Vec3::repeat(at);
+        [p, p + Vec3::x(), p + Vec3::y()]
+    };
+    terrain(vec![corner(-50.0), corner(50.0)])
+}

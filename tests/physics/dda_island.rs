@@ -2,8 +2,8 @@
 #![allow(clippy::unwrap_used, reason = "a test whose step fails has failed")]
 
 use crate::common;
-use crate::pairs::space;
 
+use common::together::space;
 use common::{CASE, Case, G, ROCK, terrain};
 use rockfall::contact::pair::PairHistory;
 use rockfall::flight::{FlightEnd, Parabola, time_of_impact};

@@ -3,7 +3,8 @@
 
 use crate::common;
 
-use common::{CASE, G, GROUND, terrain};
+use common::together::{plane, space};
+use common::{CASE, G, GROUND};
 use rockfall::contact::pair::Strength;
 use rockfall::ground::Ground;
 use rockfall::plan::{Recorders, RestRule};
@@ -14,7 +15,6 @@ use rockfall::simulation::{
 };
 use rockfall::solver::{Scheme, Settings};
 use rockfall::terrain::Terrain;
-use rockfall::terrain::make::jittered_plane;
 use std::f64::consts::PI;
 use std::sync::atomic::AtomicBool;
 
@@ -88,18 +88,6 @@ impl World {
         }
         (falls, census)
     }
-}
-
-fn space() -> Terrain {
-    let corner = |at: f64| {
-        let p = Vec3::repeat(at);
-        [p, p + Vec3::x(), p + Vec3::y()]
-    };
-    terrain(vec![corner(-50.0), corner(50.0)])
-}
-
-fn plane() -> Terrain {
-    terrain(jittered_plane(40.0, 8, 0.0))
 }
 
 fn free(x: f64, v: [f64; 3]) -> Sphere {

@@ -3,35 +3,25 @@
 
 use crate::common;
 
-use common::together::{Sphere, WORLD, World, plane};
+use crate::pairs::momentum;
+use common::together::{Sphere, WORLD, World, energy_j, space};
 use common::{G, GROUND, terrain};
 use rockfall::ground::Ground;
-use rockfall::rock::Vec3;
-use rockfall::simulation::{Stop, Trajectory};
+use rockfall::simulation::Stop;
 use rockfall::solver::Scheme;
 use rockfall::terrain::make::containers;
 
 const R: f64 = 0.1;
 const ADAPTIVE: World = World { scheme: Scheme::Adaptive, tolerance_m_s: 0.05, ..WORLD };
 
-fn kinetic_j(fall: &Trajectory, at_end: bool) -> f64 {
-    let motion = if at_end { fall.end } else { fall.start };
-    motion.translational_j(&fall.rock) + motion.rotational_j(&fall.rock)
-}
-
-/// Sum over the rocks, at the start and at the end.
-fn sums(falls: &[Trajectory], of: impl Fn(&Trajectory, bool) -> f64) -> [f64; 2] {
-    [false, true].map(|at_end| falls.iter().map(|fall| of(fall, at_end)).sum())
-}
-
-/// A cube of `side`³ spheres a hair apart, high above the ground, into which one as heavy flies.
+/// A cube of `side`³ spheres a hair apart in space, into which one of twice the radius flies.
 fn struck_cube(side: usize) -> Vec<Sphere> {
     let middle = 0.5 * (side as f64 - 1.0);
     let at = |k: usize| 2.0001 * R * (k as f64 - middle);
-    let cell = |k: usize| [at(k % side), at(k / side % side), 20.0 + at(k / (side * side))];
+    let cell = |k: usize| [at(k % side), at(k / side % side), at(k / (side * side))];
     let mut all: Vec<Sphere> =
         (0..side.pow(3)).map(|k| (R, 2700.0, cell(k), [0.0; 3], [0.0; 3])).collect();
-    let start = [-4.0 * R - at(side - 1), 0.3 * R, 20.0 + 0.2 * R];
+    let start = [-4.0 * R - at(side - 1), 0.3 * R, 0.2 * R];
     all.push((2.0 * R, 2700.0, start, [20.0, 0.0, 0.0], [0.0; 3]));
     all
 }
@@ -41,54 +31,51 @@ fn struck_cube(side: usize) -> Vec<Sphere> {
 /// part of the energy is.
 #[test]
 fn a_cube_that_is_struck_keeps_momentum_and_energy() {
-    let world =
-        World { restitution: 1.0, friction_angle_rad: 0.0, stiffness_n_m: 1e7, ..ADAPTIVE };
-    let (falls, _) = world.run(&plane(), &struck_cube(4), 0.1);
-    let [before, after] = sums(&falls, kinetic_j);
+    let world = World { restitution: 1.0, friction_angle_rad: 0.0, stiffness_n_m: 1e7, ..ADAPTIVE };
+    let (falls, census) = world.run(&space(), &struck_cube(4), 0.1);
+    let (_, with_springs) =
+        World { rigid_heaps: false, ..world }.run(&space(), &struck_cube(4), 0.1);
+    assert!(census.rock_steps < with_springs.rock_steps, "{census:?} {with_springs:?}");
+    let [before, after] = [false, true].map(|at_end| energy_j(&falls, at_end, 0.0));
     assert!((after - before).abs() < 2e-3 * before, "{before} {after}");
-    let momentum = |at_end: bool| {
-        falls.iter().fold(Vec3::zeros(), |sum, fall| {
-            let motion = if at_end { fall.end } else { fall.start };
-            sum + motion.velocity_m_s * fall.rock.mass_kg()
-        })
-    };
-    let (before, after) = (momentum(false), momentum(true));
+    let [(before, _), (after, _)] = [false, true].map(|at_end| momentum(&falls, at_end));
     assert!((after - before).norm() < 1e-10 * before.norm(), "{before} {after}");
 }
 
-/// Spheres of 10 cm above a box.
+/// Spheres of 10 cm above a box whose middle is at x = 0.65 m.
 fn rain(count: usize) -> Vec<Sphere> {
     let cell = |k: usize| {
         let [x, y] = [k % 4, k / 4 % 4].map(|k| 2.3 * R * (k as f64 - 1.5));
         let off = 1e-3 * ((k * 37 % 11) as f64 - 5.0);
-        [x + off, y - off, 1.2 + 2.3 * R * (k / 16) as f64]
+        [0.65 + x + off, y - off, 1.2 + 2.3 * R * (k / 16) as f64]
     };
     (0..count).map(|k| (R, 2700.0, cell(k), [0.3, 0.1, 0.0], [0.0; 3])).collect()
 }
 
-/// Spheres fall into two boxes and come to rest as a heap: with springs in all contacts and with heaps in the rigid limit they lie as high, and
-/// the balance of every rock closes as well. The steps of the whole are a small part.
+/// Spheres fall into a box and come to rest as a heap: with springs in all contacts and with heaps in the rigid limit they lie as high, and
+/// the balance of every rock closes as well, in less than half of the steps.
 #[test]
 fn a_heap_lies_as_with_springs() {
     let ground = Ground { rolling_friction: 0.1, ..GROUND };
-    let boxes = terrain(containers(1.6, 1.0, 2.0, 0.2));
+    let boxes = terrain(containers(0.9, 0.45, 3.0, 0.2));
     let story = |rigid_heaps: bool| {
         let world = World { gravity_m_s2: G, ground, rigid_heaps, ..ADAPTIVE };
         let (falls, census) = world.run(&boxes, &rain(48), 4.0);
         assert!(falls.iter().all(|fall| fall.stop == Stop::AtRest || fall.stop == Stop::TimeUp));
         let mean_z = falls.iter().map(|fall| fall.end.position_m.z).sum::<f64>() / 48.0;
-        let start_j: f64 =
-            falls.iter().map(|fall| fall.rock.mass_kg() * G * (fall.start.position_m.z - mean_z)).sum();
+        let start_j: f64 = falls
+            .iter()
+            .map(|fall| fall.rock.mass_kg() * G * (fall.start.position_m.z - mean_z))
+            .sum();
         let off: f64 = falls.iter().map(|fall| fall.ledger.remainder_j).sum();
         let passed: f64 = falls.iter().map(|fall| fall.ledger.passed_on_j).sum();
-        let [_, left_j] = sums(&falls, kinetic_j);
+        let left_j = energy_j(&falls, true, 0.0);
         (mean_z, [off, passed, left_j].map(|j| j / start_j), census.rock_steps)
     };
     let (springs, limit) = (story(false), story(true));
-    println!("{springs:?} {limit:?}");
     assert!((springs.0 - limit.0).abs() < 0.2 * R, "{springs:?} {limit:?}");
     for j in limit.1 {
-        assert!(j.abs() < 2e-3, "{limit:?}");
+        assert!(j.abs() < 4e-3, "{limit:?}");
     }
-    assert!(3 * limit.2 < springs.2, "{springs:?} {limit:?}");
+    assert!(2 * limit.2 < springs.2, "{springs:?} {limit:?}");
 }

@@ -4,8 +4,7 @@
 
 use crate::common;
 
-use crate::pairs::space;
-use common::together::{Sphere, WORLD, World, energy_j, plane};
+use common::together::{Sphere, WORLD, World, energy_j, plane, space};
 use rockfall::ground::{damping_ratio, normal_impact};
 use rockfall::rock::{Rock, Vec3};
 use rockfall::simulation::Trajectory;

@@ -3,7 +3,8 @@
 
 use crate::common;
 
-use common::{CASE, GROUND, terrain};
+use common::together::{plane, space};
+use common::{CASE, GROUND};
 use rockfall::contact::pair::Strength;
 use rockfall::ground::Ground;
 use rockfall::plan::RestRule;
@@ -14,7 +15,6 @@ use rockfall::simulation::{
 };
 use rockfall::solver::{Scheme, Settings};
 use rockfall::terrain::Terrain;
-use rockfall::terrain::make::jittered_plane;
 use std::sync::atomic::AtomicBool;
 
 /// Spheres in one world.
@@ -91,19 +91,6 @@ impl World {
         }
         falls
     }
-}
-
-fn plane() -> Terrain {
-    terrain(jittered_plane(40.0, 8, 0.0))
-}
-
-/// Two far triangles whose box is 100 m wide: nothing but the other spheres is touched.
-pub(crate) fn space() -> Terrain {
-    let corner = |at: f64| {
-        let p = Vec3::repeat(at);
-        [p, p + Vec3::x(), p + Vec3::y()]
-    };
-    terrain(vec![corner(-50.0), corner(50.0)])
 }
 
 pub(crate) fn free(x: f64, y: f64, v: [f64; 3]) -> Sphere {

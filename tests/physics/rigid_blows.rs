@@ -3,7 +3,8 @@
 
 use crate::common;
 
-use crate::pairs::{free, momentum, space};
+use crate::common::together::space;
+use crate::pairs::{free, momentum};
 use crate::patch::fold;
 use common::together::{Sphere, WORLD, World, energy_j, plane};
 use common::{G, GROUND, terrain};

@@ -3,13 +3,11 @@
 
 use crate::common;
 
-use common::together::{Sphere, WORLD, World, energy_j, plane};
-use common::{G, GROUND, terrain};
+use common::together::{Sphere, WORLD, World, energy_j, plane, space};
+use common::{G, GROUND};
 use rockfall::ground::{Ground, damping_ratio};
-use rockfall::rock::Vec3;
 use rockfall::simulation::Trajectory;
 use rockfall::solver::Scheme;
-use rockfall::terrain::Terrain;
 use std::f64::consts::PI;
 
 const STIFFNESS_N_M: f64 = 1e8;
@@ -112,15 +110,6 @@ fn a_blow_on_a_column_is_answered_by_the_ground() {
             assert!(off < ALLOWED, "{count} balls, e = {restitution}, {scheme:?} {size}: {off:e}");
         }
     }
-}
-
-/// Nothing to touch but two triangles far away.
-fn space() -> Terrain {
-    let corner = |at: f64| {
-        let p = Vec3::repeat(at);
-        [p, p + Vec3::x(), p + Vec3::y()]
-    };
-    terrain(vec![corner(-50.0), corner(50.0)])
 }
 
 /// Newton's cradle, and a triangle of balls that another breaks: whether they overlap by less than an atom or are as far apart changes
