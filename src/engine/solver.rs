@@ -58,7 +58,7 @@ use step_control::{Advance, Control, StepError};
 pub const RIGID_STEP_S: f64 = 0.01;
 
 /// Most rocks that hold each other and have springs yet, where heaps go on in the rigid limit.
-pub(crate) const MOST_WITH_SPRINGS: usize = 16;
+pub(crate) const MOST_WITH_SPRINGS: usize = 8;
 
 /// The usual [`Settings::corner_way`] (–).
 pub const CORNER_WAY: f64 = 0.3;
