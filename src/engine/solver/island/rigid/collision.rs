@@ -2,10 +2,12 @@
 //!
 //! A ball that falls on one that lies on the ground is answered by the ground, and a blow on a row of rocks in touch runs through it:
 //! taken pair by pair that would be another law than that of springs. In islands of more rocks than one impact is followed with, in
-//! heaps, blows are taken pair by pair: each of them would run through all that lie there.
+//! heaps, blows are taken pair by pair: each of them would run through all that lie there. A boulder that falls on a stone is answered
+//! by the ground below it there too.
 
 use super::RigidIsland;
 use super::contacts::{ImpactScene, LIVELY, StepBody, hit_of};
+use crate::contact::ContactPoint;
 use crate::contact::pair::between;
 use crate::rock::Vec3;
 use crate::solver::contact_state::ContactEnvironment;
@@ -17,6 +19,15 @@ use crate::solver::law::capture_m_s;
 use crate::solver::rigid::HELD;
 use arrayvec::ArrayVec;
 use nalgebra::Rotation3;
+
+/// Most rocks that a blow is followed with in an island of more than [`BODIES`]: a light one on the mesh, and a heavy one that strikes it.
+const TOGETHER_IN_HEAP: usize = 2;
+/// By how much the heavy one is heavier (–): taken by itself it would be stopped by blow after blow, and lose nearly all to the light one.
+const MUCH_LIGHTER: f64 = 2.0;
+/// A rock that is no farther from the mesh at the end of the step (–, relative to R) may have touched it at a blow …
+const BESIDE_MESH: f64 = 0.02;
+/// … which presses it there if it pushes it against the normal, by this cosine.
+const PRESSED_ON: f64 = -0.2;
 
 /// What a blow begins with.
 pub(super) struct BlowStart {
@@ -70,10 +81,11 @@ impl RigidIsland {
         blow: &BlowStart,
         s: f64,
     ) -> bool {
-        if self.balls.len() > BODIES {
+        let most = if self.balls.len() > BODIES { TOGETHER_IN_HEAP } else { BODIES };
+        if most < BODIES && !self.is_between(scene, blow) {
             return false;
         }
-        let Some(touching) = self.touching(scene, blow, s) else { return false };
+        let Some(touching) = self.touching(scene, blow, (s, most)) else { return false };
         let at_blow = |rock: &usize| {
             let (c, v) = self.balls[*rock].before_end(s);
             StruckRock { c, v, on_mesh: false }
@@ -161,8 +173,28 @@ impl RigidIsland {
         }
     }
 
-    /// Rocks that touch the ends of a blow, and those that touch these; `None` if they are too many.
-    fn touching(&self, scene: &ImpactScene, blow: &BlowStart, s: f64) -> Option<TouchingRocks> {
+    /// Whether a blow presses a rock onto the mesh, by its last look, that is much lighter than the one which strikes it.
+    fn is_between(&self, scene: &ImpactScene, blow: &BlowStart) -> bool {
+        let Some(pair) = blow.pair else { return false };
+        let pair = &scene.pair_histories[pair];
+        let [a, b] = [pair.a, pair.b].map(|k| k as usize);
+        let (n, _) = between(&self.balls[a].c, &self.balls[b].c);
+        let masses = [a, b].map(|k| self.balls[k].body.mass);
+        let (light, push) = if masses[0] < masses[1] { (a, n) } else { (b, -n) };
+        let IslandBody { state, body, .. } = &*scene.members[light];
+        let reach = body.radius * (1.0 + BESIDE_MESH);
+        let presses = |touch: &ContactPoint| touch.normal.dot(&push) < PRESSED_ON;
+        masses[0].max(masses[1]) > MUCH_LIGHTER * body.mass
+            && state.touches.iter().any(|touch| touch.distance_m <= reach && presses(touch))
+    }
+
+    /// Rocks that touch the ends of a blow, and those that touch these; `None` if they are more than `most`.
+    fn touching(
+        &self,
+        scene: &ImpactScene,
+        blow: &BlowStart,
+        (s, most): (f64, usize),
+    ) -> Option<TouchingRocks> {
         let mut touching = TouchingRocks::default();
         for &rock in &self.in_blow {
             touching.add_rock(rock)?;
@@ -178,6 +210,9 @@ impl RigidIsland {
                 let apart = a.before_end(s).0 - b.before_end(s).0;
                 let reach = a.body.radius + b.body.radius + HELD * a.body.radius.min(b.body.radius);
                 if apart.norm_squared() <= reach * reach {
+                    if touching.rocks.len() > most {
+                        return None;
+                    }
                     for end in ends {
                         touching.add_rock(end as usize)?;
                     }
@@ -185,7 +220,7 @@ impl RigidIsland {
                 }
             }
         }
-        Some(touching)
+        (touching.rocks.len() <= most).then_some(touching)
     }
 
     /// The contacts of a blow: pairs, then those with the mesh rock by rock; `None` if they are too many.
