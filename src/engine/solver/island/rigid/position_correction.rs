@@ -11,6 +11,7 @@ use crate::contact::pair::{PairHistory, between};
 use crate::rock::Vec3;
 use crate::solver::contact_state::ContactEnvironment;
 use crate::solver::island::body::IslandBody;
+use crate::solver::loss::{Given, Loss};
 
 /// Overlap of two rocks that is left alone: what their weight presses springs in, within bounds (–, relative to the smaller
 /// radius).
@@ -151,26 +152,69 @@ impl RigidIsland {
     /// (Paid by motion alone, the lifting of 1e-5 R would stop a heap that begins to slide.)
     fn pay_for_height(&mut self) {
         // heights of all rocks together: what one rock sinks pays for what another rises
-        let mut net_j = 0.0;
+        let (mut net_j, mut risen_j, mut sunk_j) = (0.0, 0.0, 0.0);
         for (k, (ball, from)) in self.balls.iter_mut().zip(&self.places).enumerate() {
             ball.moved = ball.c != *from;
             let lifted_j = -ball.body.mass * ball.body.gravity.dot(&(ball.c - from));
             self.given[k].passed_on -= lifted_j;
             net_j += lifted_j;
+            risen_j += lifted_j.max(0.0);
+            sunk_j -= lifted_j.min(0.0);
         }
-        let owed_j = net_j - self.taken_j.max(0.0);
-        if owed_j > 0.0 {
-            self.pay_together(owed_j);
+        if net_j <= 0.0 {
+            // what has sunk more than others rose is lost
+            return self.share_out(|_, given, lifted_j| {
+                let lost_j = -net_j * (-lifted_j).max(0.0) / sunk_j.max(f64::MIN_POSITIVE);
+                (given.lost, given.passed_on) = (given.lost + lost_j, given.passed_on - lost_j);
+            });
+        }
+        let covered_j = net_j.min(self.taken_j.max(0.0));
+        let paid_j = self.give_back(covered_j) + self.pay_together(net_j - covered_j);
+        let unpaid_j = net_j - paid_j;
+        if unpaid_j > 0.0 {
+            // nobody has it: the error of the step has made it
+            self.share_out(|_, given, lifted_j| {
+                given.passed_on += unpaid_j * lifted_j.max(0.0) / risen_j;
+            });
         }
     }
 
-    /// Takes energy (J) out of the motion of all rocks that are pushed, each its share.
+    /// Goes through what rocks lost and gave, with the energy that the height of each has gained (J).
+    fn share_out(&mut self, mut book: impl FnMut(&mut Loss, &mut Given, f64)) {
+        let ways = self.balls.iter().zip(&self.places);
+        for ((ball, from), (loss, given)) in ways.zip(self.losses.iter_mut().zip(&mut self.given)) {
+            book(loss, given, -ball.body.mass * ball.body.gravity.dot(&(ball.c - from)));
+        }
+    }
+
+    /// Takes back energy (J) from what is booked as lost in this step, from every rock its share; how much there was.
+    fn give_back(&mut self, wanted_j: f64) -> f64 {
+        let booked = self.losses.iter().zip(&self.given);
+        let booked_j: f64 =
+            booked.map(|(loss, given)| loss.damping.max(0.0) + given.lost.max(0.0)).sum();
+        if wanted_j <= 0.0 || booked_j <= 0.0 {
+            return 0.0;
+        }
+        let share = (wanted_j / booked_j).min(1.0);
+        for (loss, given) in self.losses.iter_mut().zip(&mut self.given) {
+            let back = [loss.damping, given.lost].map(|own_j| share * own_j.max(0.0));
+            loss.damping -= back[0];
+            given.lost -= back[1];
+            given.passed_on += back[0] + back[1];
+        }
+        share * booked_j
+    }
+
+    /// Takes energy (J) out of the motion of all rocks that are pushed, each its share; how much they had.
     /// In proportion to what each has, so that directions and ratios of speeds stay.
-    fn pay_together(&mut self, owed_j: f64) {
+    fn pay_together(&mut self, owed_j: f64) -> f64 {
         let takes_part = |ball: &StepBody| ball.pushed || ball.moved;
         let motion_j: f64 =
             self.balls.iter().filter(|ball| takes_part(ball)).map(StepBody::motion_j).sum();
-        let share = if motion_j > 0.0 { (owed_j / motion_j).min(1.0) } else { 0.0 };
+        if owed_j <= 0.0 || motion_j <= 0.0 {
+            return 0.0;
+        }
+        let share = (owed_j / motion_j).min(1.0);
         for (ball, given) in self.balls.iter_mut().zip(&mut self.given) {
             if takes_part(ball) {
                 let own_j = share * ball.motion_j();
@@ -178,6 +222,7 @@ impl RigidIsland {
                 given.passed_on += own_j;
             }
         }
+        share * motion_j
     }
 }
 
