@@ -6,6 +6,7 @@ use crate::contact::{ContactPoint, TOUCH};
 use crate::ground::Law;
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
+use std::borrow::Cow;
 
 /// An approach slower than this is no impact (–, relative to `√(g R)`).
 const LEAST_IMPACT: f64 = 1e-3;
@@ -58,28 +59,21 @@ impl ContactEnvironment<'_> {
             || self.law(one).has_springs_of(self.law(other))
     }
 
-    /// The law of a contact with `triangle` in an impact: that of the ground on which its springs were pressed, where it has others.
+    /// The law of a contact with `triangle`: the springs that were pressed, and all else of the ground that it touches.
     #[inline]
-    pub(super) fn impact_law(&self, history: &ContactHistory, triangle: u32) -> &Law {
-        let is_alike = self.are_alike(history.springs_of, triangle);
-        self.law(if is_alike { triangle } else { history.springs_of })
+    pub(crate) fn law_touched(&self, history: &ContactHistory, triangle: u32) -> Cow<'_, Law> {
+        let (pressed, touched) = (history.springs_of, self.law(triangle));
+        if self.are_alike(pressed, triangle) {
+            Cow::Borrowed(touched)
+        } else {
+            Cow::Owned(touched.on_springs_of(self.law(pressed)))
+        }
     }
 
     /// The same with the triangle that it touched last.
     #[inline]
-    pub(crate) fn springs_of(&self, history: &ContactHistory) -> &Law {
-        self.impact_law(history, history.triangle)
-    }
-
-    /// The law of a lasting contact with `triangle`: its springs, and the friction of the ground that it touches.
-    #[inline]
-    pub(crate) fn lasting_law(&self, history: &ContactHistory, triangle: u32) -> Law {
-        let (springs, touched) = (history.springs_of, triangle);
-        if self.are_alike(springs, touched) {
-            *self.law(touched)
-        } else {
-            self.law(springs).with_friction_of(self.law(touched))
-        }
+    pub(crate) fn springs_of(&self, history: &ContactHistory) -> Cow<'_, Law> {
+        self.law_touched(history, history.triangle)
     }
 
     /// The same for touch `k` among others of the same instant, whose memory this is.
@@ -88,7 +82,7 @@ impl ContactEnvironment<'_> {
     pub fn law_of(&self, history: &ContactHistory, touches: &[ContactPoint], k: usize) -> Law {
         let touch = &touches[k];
         let share = self.dashpot_share(touches, k);
-        self.lasting_law(history, touch.triangle).of_patch(touch.gain2, share)
+        self.law_touched(history, touch.triangle).of_patch(touch.gain2, share)
     }
 
     /// What the dashpot of touch `k` among others of the same instant takes of its own damping (–).

@@ -38,7 +38,7 @@ impl ContactState {
         done: &mut Advance,
     ) -> bool {
         let Some((history, pressed)) = self.pressed_in_plane(world) else { return false };
-        let plane = Plane::new(&world.body, world.springs_of(&history), tolerance);
+        let plane = Plane::new(&world.body, &world.springs_of(&history), tolerance);
         let Some(whole) = plane.passage(&history.n, &self.v, pressed.depth_m) else { return false };
         let least_s = LEAST_RAD / world.springs_of(&history).omega_rad_s();
         let (mut passage, mut share) = (whole, 1.0);
@@ -148,7 +148,7 @@ impl ContactState {
             shear: pressed.shear_m,
             roll: pressed.roll_rad,
         };
-        let action = Action::of(&world.body, law, &law.normal(false), &at, (&self.v, &self.w));
+        let action = Action::of(&world.body, &law, &law.normal(false), &at, (&self.v, &self.w));
         (history.shear, history.roll) = (at.shear, at.roll);
         history.normal_force = action.normal[0];
         history.slides = law.shear.slides2(action.shear.asked2, action.normal[0]);

@@ -60,7 +60,7 @@ impl ContactState {
         let limit = self.longest_on_plane_s(world, history.feature.id, (wished_s, usual_m));
         self.see_along(world, &(self.v * wished_s).cap_magnitude(usual_m));
         let usual_s = longest_step(&world.body, self.v.norm(), usual_m);
-        let law = &world.lasting_law(&history, history.triangle);
+        let law = &world.springs_of(&history);
         let normal = law.normal(history.captured);
         // from the centre, not from the last step's sum: ways of many steps do not drift off the
         // plane

@@ -39,7 +39,7 @@ impl ContactState {
     pub(super) fn contact_j(&self, world: &ContactEnvironment, history: &ContactHistory) -> f64 {
         let law = world.springs_of(history);
         let touch = self.touches.iter().find(|touch| touch.feature == history.feature);
-        touch.map_or(0.0, |touch| pressed_j(world, touch, law))
+        touch.map_or(0.0, |touch| pressed_j(world, touch, &law))
             + law.stored_j(0.0, history.shear.norm_squared(), history.roll.norm_squared())
     }
 
