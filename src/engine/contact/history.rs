@@ -31,8 +31,8 @@ pub struct ContactHistory {
     pub feature: Feature,
     /// Triangle that it touches.
     pub triangle: u32,
-    /// Triangle whose ground answers: the one on which its springs were pressed. An impact is answered by one ground from beginning to
-    /// end; what lasts goes over to the ground it touches (`solver::ground_change`).
+    /// Triangle on whose ground its springs were pressed, which has their stiffness and damping. Those of an impact stay the same from
+    /// beginning to end; what lasts goes over to the ground it touches (`solver::ground_change`).
     pub springs_of: u32,
     /// Normal to which `shear` is tangent.
     /// Unit, from the mesh to the centre, as of the end of the last accepted step.

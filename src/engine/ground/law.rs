@@ -191,27 +191,14 @@ impl Law {
             && are_alike(&self.rolling, &other.rolling)
     }
 
-    /// The same on the springs of `pressed`, which stay as stiff as they are while they hold something: friction is that of this law, and so are
-    /// the damping ratios, on which restitution depends.
-    pub(crate) fn on_springs_of(&self, pressed: &Self) -> Self {
-        // `c = 2 ζ √(k m)`
-        let over = |k: f64, own: f64| (k / own).sqrt();
-        let on = |element: FrictionElement, pressed: FrictionElement| {
-            if !pressed.is_on() {
-                return element;
-            }
-            let c = if element.is_on() { element.c * over(pressed.k, element.k) } else { pressed.c };
-            FrictionElement { k: pressed.k, c, ..element }
+    /// The same with the friction of `other`, along the surface and in rolling: springs that may be stretched stay what they are.
+    pub(crate) fn with_friction_of(&self, other: &Self) -> Self {
+        let both = |own: FrictionElement, other: FrictionElement| {
+            if own.is_on() { FrictionElement { limit: other.limit, ..own } } else { other }
         };
-        let damping = over(pressed.p_n, self.p_n);
         Self {
-            p_n: pressed.p_n,
-            c_n: self.c_n * damping,
-            c_n_captured: self.c_n_captured * damping,
-            shear: on(self.shear, pressed.shear),
-            rolling: on(self.rolling, pressed.rolling),
-            critical: pressed.critical,
-            omega: pressed.omega,
+            shear: both(self.shear, other.shear),
+            rolling: both(self.rolling, other.rolling),
             ..*self
         }
     }

@@ -59,14 +59,14 @@ impl ContactEnvironment<'_> {
             || self.law(one).has_springs_of(self.law(other))
     }
 
-    /// The law of a contact with `triangle`: the springs that were pressed, and all else of the ground that it touches.
+    /// The law of a contact with `triangle`: springs and dashpots of the ground on which it was pressed, friction of the one that it touches.
     #[inline]
     pub(crate) fn law_touched(&self, history: &ContactHistory, triangle: u32) -> Cow<'_, Law> {
         let (pressed, touched) = (history.springs_of, self.law(triangle));
         if self.are_alike(pressed, triangle) {
             Cow::Borrowed(touched)
         } else {
-            Cow::Owned(touched.on_springs_of(self.law(pressed)))
+            Cow::Owned(self.law(pressed).with_friction_of(touched))
         }
     }
 

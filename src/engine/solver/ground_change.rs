@@ -1,9 +1,10 @@
 //! Where a rock comes from one ground to another while it is pressed in.
 //!
 //! The stiffness of a spring that is pressed must not grow by itself: at one depth a spring of a hundred times the stiffness holds a
-//! hundred times the energy. So the springs of a contact are those of the ground on which they were pressed
-//! ([`ContactHistory::springs_of`]). An impact is answered by that ground to its end, on both sides of a blunt fold. What lasts, a rock that rolls, slides or rests, has
-//! the friction of the ground that it touches at once, and its springs as soon as these hold no more energy: those of a softer ground
+//! hundred times the energy. So springs and dashpots of a contact are those of the ground on which they were pressed
+//! ([`ContactHistory::springs_of`]); friction holds no energy, and is that of the ground that is touched, in an impact as in all else
+//! ([`ContactEnvironment::law_touched`]). An impact is answered by the springs of that one ground to its end, on both sides of a blunt fold. What lasts, a rock
+//! that rolls, slides or rests, has the springs of the ground that it touches as soon as these hold no more energy: those of a softer ground
 //! at the end of a step in which little is lost so, those of a stiffer one when it has let go. Patches of several grounds that meet or part in an impact hand over
 //! what the new spring does not hold; that is balanced when the impact is over.
 
