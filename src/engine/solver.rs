@@ -135,7 +135,14 @@ pub fn advance(
     h_max: f64,
 ) -> Result<Advance, StepError> {
     match stepper {
-        Stepper::Controlled(control, h) => step_control::advance(world, control, state, h, h_max),
+        Stepper::Controlled(control, h) => {
+            let raised = state.rise_on_stiffer(world);
+            let mut done = step_control::advance(world, control, state, h, h_max)?;
+            if let Some(loss) = raised {
+                done.loss.add(&loss, 1.0);
+            }
+            Ok(done)
+        }
         Stepper::Dda(fixed) => fixed.advance(world, state, h_max),
         Stepper::Rigid(longest) => rigid::advance(world, state, *longest, h_max),
     }

@@ -198,3 +198,41 @@ fn rolling_across_borders_of_grounds_throws_no_rock() {
         }
     }
 }
+
+/// A rock that rolls from soft ground on hard is thrown off a ramp of hard ground as if it came from nowhere else: on the springs of the soft ground it lay so
+/// deep that ramp and plane were one patch to it, and it was pressed up without a blow.
+#[test]
+fn a_ramp_behind_a_border_throws_off_what_rolls_on_it() {
+    let [soft, _] = halves();
+    let (angle, v_m_s) = (3.0_f64.to_radians(), 8.0);
+    let strip = |[x0, z0]: [f64; 2], [x1, z1]: [f64; 2]| {
+        let corner = |x: f64, y: f64, z: f64| Vec3::new(x, y, z);
+        let [a, b, c, d] =
+            [corner(x0, -9.0, z0), corner(x1, -9.0, z1), corner(x1, 9.0, z1), corner(x0, 9.0, z0)];
+        [[a, b, c], [a, c, d]]
+    };
+    let (sin, cos) = angle.sin_cos();
+    let ramp = strip([1.0, 0.0], [1.0 + 20.0 * cos, 20.0 * sin]);
+    let hard = [strip([0.0, 0.0], [1.0, 0.0]), ramp].concat();
+    for scheme in ["adaptive", "reference"] {
+        let more = format!(
+            "[release]\ncount = 1\nheight_m = 0.0\nvelocity_m_s = [{v_m_s:?}, 0.0, 0.0]\nspin_rad_s = [0.0, {:?}, 0.0]\n\
+             points_m = [[-1.0, 0.3]]\n[solver]\nscheme = \"{scheme}\"\nlongest_s = {:?}\n",
+            2.0 * v_m_s,
+            2.0 / v_m_s + 0.002
+        );
+        let apart_m_s = ["3e7", "1e9"].map(|first| {
+            let all =
+                on_two_grounds(&[soft.clone(), hard.clone()], [first, "1e9"], (0.6, 30.0), &more);
+            let fall = &all[0];
+            let off = fall.ledger.remainder_j / fall.start.kinetic_j(&fall.rock);
+            assert!(off.abs() < 1e-5, "{scheme} {first}: {off:e}");
+            fall.end.velocity_m_s.z * cos - fall.end.velocity_m_s.x * sin
+        });
+        assert!(apart_m_s[1] > 0.4 * v_m_s * sin, "{scheme}: {apart_m_s:?}");
+        assert!(
+            (apart_m_s[0] - apart_m_s[1]).abs() < 0.02 * apart_m_s[1],
+            "{scheme}: {apart_m_s:?}"
+        );
+    }
+}

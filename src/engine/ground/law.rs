@@ -191,6 +191,17 @@ impl Law {
             && are_alike(&self.rolling, &other.rolling)
     }
 
+    /// What shares of depth and stretches its springs have under a load that those of `other` bear (–): normal, shear and rolling, 1 where they are no
+    /// stiffer.
+    pub(crate) fn shares_of(&self, other: &Self) -> [f64; 3] {
+        let share = |own: f64, other: f64| if own > other { other / own } else { 1.0 };
+        [
+            share(self.p_n, other.p_n),
+            share(self.shear.k, other.shear.k),
+            share(self.rolling.k, other.rolling.k),
+        ]
+    }
+
     /// The same with the friction of `other`, along the surface and in rolling: springs that may be stretched stay what they are.
     pub(crate) fn with_friction_of(&self, other: &Self) -> Self {
         let both = |own: FrictionElement, other: FrictionElement| {

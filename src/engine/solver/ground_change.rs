@@ -5,11 +5,16 @@
 //! ([`ContactHistory::springs_of`]); friction holds no energy, and is that of the ground that is touched, in an impact as in all else
 //! ([`ContactEnvironment::law_touched`]). An impact is answered by the springs of that one ground to its end, on both sides of a blunt fold. What lasts, a rock
 //! that rolls, slides or rests, has the springs of the ground that it touches as soon as these hold no more energy: those of a softer ground
-//! at the end of a step in which little is lost so, those of a stiffer one when it has let go. Patches of several grounds that meet or part in an impact hand over
+//! at the end of a step in which little is lost so, those of a stiffer one when it has let go, or when a rock alone lies on one face of it: it is lifted to where
+//! these bear the same load (in worlds it is not, where a rock that moves farther than it was said to may come into another). Patches of several grounds that meet or part in an impact hand over
 //! what the new spring does not hold; that is balanced when the impact is over.
 
 use super::contact_state::{ContactEnvironment, ContactState};
+use super::loss::Loss;
+use super::plane_kernel::is_on_face;
+use crate::contact::TOUCH;
 use crate::contact::history::{ContactHistory, SAME_GRIP};
+use crate::rock::Vec3;
 
 /// A contact that is so deep when it comes up is part of one that was there, as patches part (–, relative to R).
 const PRESSED_AT_BIRTH: f64 = 1e-5;
@@ -17,6 +22,17 @@ const PRESSED_AT_BIRTH: f64 = 1e-5;
 /// What lasting contact loses to softer springs at most, of motion and of the weight lifted by the radius (–): what weight presses in is less. A contact that
 /// is pressed harder, as in a slow impact, waits until it is let out.
 const LOSES: f64 = 1e-3;
+
+/// What a rock does that comes on stiffer springs under the load of its softer ones.
+struct Rise {
+    /// The memory of its contact with the new springs.
+    after: ContactHistory,
+    /// How far it is lifted (m).
+    way: Vec3,
+    /// What that costs, and what of it the softer spring gives back (J).
+    lifted_j: f64,
+    given_j: f64,
+}
 
 impl ContactState {
     /// Lets the springs of lasting contacts be those of the ground that they touch, where these hold no more energy.
@@ -40,6 +56,53 @@ impl ContactState {
                 }
             }
         }
+    }
+
+    /// Lifts a rock that lies on one face of stiffer ground, on the springs of the softer one from which it came, to the depth at which those of the face
+    /// bear the same load; the softer spring and the motion pay for the height. Returns what the spring gives back, booked as taken when it was pressed.
+    ///
+    /// Its depth on soft ground would blunt the folds ahead: ramps of 2 to 4° of hard ground were met as one patch with what it lay on, without a blow.
+    pub(super) fn rise_on_stiffer(&mut self, world: &ContactEnvironment) -> Option<Loss> {
+        if world.laws.len() == 1 || self.is_rebounding() || !is_on_face(world, self) {
+            return None;
+        }
+        let Rise { after, way, lifted_j, given_j } = self.rise(world)?;
+        let (motion_j, paid_j) = (self.motion_j(&world.body), lifted_j - given_j);
+        if paid_j > LOSES * motion_j || !self.is_alone_at(world, &(self.c + way)) {
+            return None;
+        }
+        self.leave_plane(world);
+        let kept = (1.0 - paid_j / motion_j).sqrt();
+        (self.c, self.v, self.w) = (self.c + way, self.v * kept, self.w * kept);
+        self.histories[0] = after;
+        self.fresh = false;
+        Some(Loss::on_slope([0.0, -given_j, 0.0]).on(world, after.triangle))
+    }
+
+    /// How a rock on one face would come on its springs, if these are stiffer than those that it lies on.
+    fn rise(&self, world: &ContactEnvironment) -> Option<Rise> {
+        let (before, pressed_m) = (self.histories[0], self.sunk(world));
+        if world.are_alike(before.springs_of, before.triangle) {
+            return None;
+        }
+        let mut after = ContactHistory { springs_of: before.triangle, ..before };
+        let (soft, stiff) = (world.springs_of(&before), world.springs_of(&after));
+        let [normal, shear, roll] = stiff.shares_of(&soft);
+        (after.shear, after.roll) = (before.shear * shear, before.roll * roll);
+        let way = before.n * (pressed_m * (1.0 - normal));
+        let lifted_j = -world.body.mass * world.body.gravity.dot(&way);
+        let freed_j =
+            soft.stored_j(pressed_m, 0.0, 0.0) - stiff.stored_j(pressed_m * normal, 0.0, 0.0);
+        let rises = lifted_j > 0.0 && freed_j > 0.0;
+        // what weight does not hold, a spring that is let out, gives no height
+        rises.then(|| Rise { after, way, lifted_j, given_j: freed_j.min(lifted_j) })
+    }
+
+    /// Whether a rock on one face touches nothing else at `c`.
+    fn is_alone_at(&mut self, world: &ContactEnvironment, c: &Vec3) -> bool {
+        let feature = self.histories[0].feature;
+        self.look(world, c, world.body.radius * (1.0 + TOUCH));
+        self.touches.iter().all(|touch| touch.feature == feature)
     }
 
     /// Gives a contact that has just come up at touch `k` the springs of a pressed one that it is parted from, if it is, and in an impact of
