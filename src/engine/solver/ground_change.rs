@@ -63,7 +63,9 @@ impl ContactState {
     ///
     /// Its depth on soft ground would blunt the folds ahead: ramps of 2 to 4° of hard ground were met as one patch with what it lay on, without a blow.
     pub(super) fn rise_on_stiffer(&mut self, world: &ContactEnvironment) -> Option<Loss> {
-        if world.laws.len() == 1 || self.is_rebounding() || !is_on_face(world, self) {
+        let [one] = &self.histories[..] else { return None };
+        let is_at_home = world.laws.len() == 1 || world.are_alike(one.springs_of, one.triangle);
+        if is_at_home || self.is_rebounding() || !is_on_face(world, self) {
             return None;
         }
         let Rise { after, way, lifted_j, given_j } = self.rise(world)?;
@@ -82,9 +84,6 @@ impl ContactState {
     /// How a rock on one face would come on its springs, if these are stiffer than those that it lies on.
     fn rise(&self, world: &ContactEnvironment) -> Option<Rise> {
         let (before, pressed_m) = (self.histories[0], self.sunk(world));
-        if world.are_alike(before.springs_of, before.triangle) {
-            return None;
-        }
         let mut after = ContactHistory { springs_of: before.triangle, ..before };
         let (soft, stiff) = (world.springs_of(&before), world.springs_of(&after));
         let [normal, shear, roll] = stiff.shares_of(&soft);
