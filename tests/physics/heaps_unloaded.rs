@@ -74,8 +74,8 @@ fn a_heap_lies_as_with_springs() {
     };
     let (springs, limit) = (story(false), story(true));
     assert!((springs.0 - limit.0).abs() < 0.2 * R, "{springs:?} {limit:?}");
-    for j in limit.1 {
-        assert!(j.abs() < 4e-3, "{limit:?}");
+    for (j, most) in limit.1.into_iter().zip([1e-3, 1e-12, 1e-3]) {
+        assert!(j.abs() < most, "{limit:?}");
     }
     assert!(2 * limit.2 < springs.2, "{springs:?} {limit:?}");
 }

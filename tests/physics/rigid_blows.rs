@@ -282,3 +282,21 @@ fn speeds_and_times_of_a_blow_are_those_of_its_instant() {
         }
     }
 }
+
+/// A boulder that falls on stones a fifth of its radius which lie apart on the ground is thrown off as much among 25 of them, an island of more rocks than one blow
+/// is followed with, as among 9: what lies out of its way changes nothing. Blow by blow between boulder and stone it was stopped dead.
+#[test]
+fn stones_out_of_the_way_change_no_rebound() {
+    let rebound = |side: usize| {
+        let at = |k: usize| 0.45 * (k as f64 - 0.5 * (side as f64 - 1.0));
+        let stone = |k: usize| (0.2, 2700.0, [at(k % side), at(k / side), 0.2], [0.0; 3], [0.0; 3]);
+        let mut rocks: Vec<Sphere> = (0..side * side).map(stone).collect();
+        rocks.push((1.0, 2700.0, [0.03, 0.02, 1.45], [0.0, 0.0, -10.0], [0.0; 3]));
+        let world = World { gravity_m_s2: G, restitution: 0.4, ..WORLD };
+        let (falls, census) = world.run(&plane(), &rocks, 0.1);
+        assert_eq!(census.unsettled, 0);
+        falls[side * side].end.velocity_m_s.z
+    };
+    let (few, many) = (rebound(3), rebound(5));
+    assert!(few > 5.0 && (many - few).abs() < 1e-2 * few, "{few} {many}");
+}

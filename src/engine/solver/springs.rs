@@ -52,7 +52,7 @@ impl ContactState {
         self.look(world, &c, world.body.radius);
         let of_touch = |touch: &ContactPoint| {
             let history = self.histories.iter().find(|one| one.feature == touch.feature)?;
-            let energy_j = pressed_j(world, touch, world.springs_of(history));
+            let energy_j = pressed_j(world, touch, &world.springs_of(history));
             (!history.captured).then_some((touch.normal, touch.triangle, energy_j))
         };
         self.touches.iter().filter_map(of_touch).collect()
