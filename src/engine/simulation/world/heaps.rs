@@ -88,7 +88,9 @@ impl IslandWindow<'_> {
         for body in self.bodies.iter_mut().filter(|body| body.is_unloaded) {
             body.member.forget_springs();
         }
-        self.pair_histories.iter_mut().for_each(PairHistory::forget_springs);
+        // others in the island may have springs already
+        let of_heap = |pair: &&mut PairHistory| self.bodies[pair.a as usize].is_unloaded;
+        self.pair_histories.iter_mut().filter(of_heap).for_each(PairHistory::forget_springs);
     }
 }
 
