@@ -25,6 +25,12 @@ const COLUMNS: usize = 2;
 const PLOT_PX: f64 = 112.0;
 const HEAD_PX: f64 = 38.0;
 const ROW_PX: f64 = HEAD_PX + PLOT_PX + FOOT_PX + 4.0;
+/// What of the axis of reach angles is still seen as a bar (degrees).
+const LEAST_DEG: f64 = 0.5;
+/// Between two numbers of a head.
+const GAP: &str = " · ";
+/// Room left of a frame that a head's second line may take, where the labels of its axis stand below (px).
+const HEAD_BESIDE_PX: f64 = 40.0;
 /// Pens of the marked percentiles, most common first.
 const MARKED: [(f64, Pen); 3] = [
     (0.50, Pen::full(INK, 1.3)),
@@ -77,6 +83,8 @@ impl<'a> DistributionPanel<'a> {
             si.iter().map(|(v, weight)| (v / unit_size, *weight)).collect();
         let bins = match quantity {
             _ if quantity.is_energy() => EqualBins::of_ratios(&values),
+            // its axis shows what is observed elsewhere besides
+            ReportQuantity::ReachAngle => EqualBins::clipped(&values).seen(&values, LEAST_DEG),
             _ => EqualBins::clipped(&values),
         };
         let words = report.words();
@@ -106,7 +114,7 @@ impl<'a> DistributionPanel<'a> {
             words.push(format!("+{} →", format::decimal(self.bins.beyond as f64, 0)));
         }
         let above = PaperFrame { top: self.panel.frame.top - head_px, ..self.panel.frame };
-        head(canvas, &above, self.quantity.name(said), &words.join(" · "));
+        head(canvas, &above, self.quantity.name(said), &words);
         if self.bins.is_empty() {
             let why = match self.largest {
                 _ if total == 0 => said.no_release,
@@ -136,16 +144,41 @@ impl<'a> DistributionPanel<'a> {
 }
 
 /// Name left and numbers right, in two lines where they do not fit in one.
-fn head(canvas: &Canvas<'_>, frame: &PaperFrame, name: &str, words: &str) {
+fn head(canvas: &Canvas<'_>, frame: &PaperFrame, name: &str, words: &[String]) {
     let y = frame.top;
-    let fits = bold_width(name, NORMAL) + text_width(words, SMALL) + 8.0 < frame.width();
+    let room = frame.width() - bold_width(name, NORMAL) - 8.0;
+    let fits = text_width(&words.join(GAP), SMALL) < room;
     canvas.text(&Label::new(name, (frame.left, y)).bold().sized(NORMAL));
     let y = if fits { y } else { y + 15.0 };
-    let words = fitted(words, SMALL, frame.width());
+    let words = last_of(words, frame.width() + HEAD_BESIDE_PX);
     canvas.text(&Label::new(words, (frame.right, y)).right().coloured(GREY));
+}
+
+/// As many of the last words as have room: tables hold all percentiles, the maximum is read here.
+fn last_of(words: &[String], width_px: f64) -> String {
+    let from = |k: usize| words[k..].join(GAP);
+    let fits = |said: &String| text_width(said, SMALL) <= width_px;
+    let whole = (0..words.len()).map(from).find(fits);
+    whole.unwrap_or_else(|| fitted(words.last().map_or("", String::as_str), SMALL, width_px))
 }
 
 /// Name with its unit.
 fn titled(name: &str, unit: &str) -> String {
     if unit.is_empty() { name.to_owned() } else { format!("{name} ({unit})") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_maximum_is_never_cut_off() {
+        let words = ["P50 667 000", "P95 2 850 000", "P99 3 190 000", "max 3 506 000"];
+        let words = words.map(str::to_owned);
+        assert_eq!(last_of(&words, 600.0), words.join(GAP));
+        let said = last_of(&words, 300.0);
+        assert!(said.ends_with("P99 3 190 000 · max 3 506 000") && !said.contains('…'), "{said}");
+        assert_eq!(last_of(&words, 100.0), words[3]);
+        assert_eq!(last_of(&[], 100.0), "");
+    }
 }

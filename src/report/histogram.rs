@@ -38,6 +38,13 @@ impl EqualBins {
     /// Bins of round width, about √n of them, of values with what each weighs.
     pub(super) fn of(values: &[(f64, f64)]) -> Self {
         let finite = finite(values);
+        let bins = (finite.len() as f64).sqrt().clamp(LEAST_BINS, MOST_BINS);
+        let width = range(&finite).map_or(1.0, |(low, high)| nice_step(spread(low, high) / bins));
+        Self::of_width(values, width)
+    }
+
+    fn of_width(values: &[(f64, f64)], width: f64) -> Self {
+        let finite = finite(values);
         let none = Self {
             from: 0.0,
             width: 1.0,
@@ -48,8 +55,6 @@ impl EqualBins {
             is_log: false,
         };
         let Some((low, high)) = range(&finite) else { return none };
-        let bins = (finite.len() as f64).sqrt().clamp(LEAST_BINS, MOST_BINS);
-        let width = nice_step(spread(low, high) / bins);
         let from = (low / width).floor() * width;
         let bin = |v: f64| ((v - from) / width + 1e-9).floor().max(0.0) as usize;
         let mut weights = vec![0.0; bin(high) + 1];
@@ -57,6 +62,12 @@ impl EqualBins {
             weights[bin(v)] += weight;
         }
         Self { from, width, weights, ..none }
+    }
+
+    /// The same on an axis so much wider that bars of this width (`least`) are just seen: not narrower in all than that.
+    pub(super) fn seen(self, values: &[(f64, f64)], least: f64) -> Self {
+        let whole = self.width * self.weights.len() as f64;
+        if self.is_empty() || whole >= least { self } else { Self::of_width(values, least) }
     }
 
     /// Bins up to the 99.5th percentile where the rest lies far out; how many lie beyond is counted.

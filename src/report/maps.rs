@@ -10,7 +10,7 @@ use super::colour::{self, INK, ORANGE, SKY, VERMILLION};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
 use super::model::{CellMap, MapMark, Report, energy_unit};
-use super::panel::{FOOT_PX, Panel};
+use super::panel::{FOOT_PX, Panel, with_room};
 use super::plan_view::ground::Shaded;
 use super::profile::NEEDS;
 use super::site::{self, names::Names};
@@ -246,43 +246,40 @@ fn short_title(title: &str, left_px: f64) -> String {
 
 /// Equal frames over all cells reached, two beside each other, at equal scale; and the height of the sheet.
 fn panels(report: &Report, maps: &CellMap, layers: &[ClassedMap]) -> (Vec<Panel>, f64) {
-    let words = report.words();
-    let (mut x, mut y) = maps.extent();
-    let half = 0.5 * WIDTH_PX;
-    let square = PaperFrame { left: 0.0, top: 0.0, right: 240.0, bottom: 240.0 };
-    let axes = |x: (f64, f64), y: (f64, f64)| {
-        (Axis::linear(x.0, x.1, words.easting), Axis::linear(y.0, y.1, words.northing))
-    };
-    // seven digits of a northing need their room
-    let (across, up) = axes(x, y);
-    let room = Panel::new(square, across, up).room_left();
-    // half of the last label of an axis stands beside its frame
-    let beside = 0.5 * text_width(&format::decimal(x.1, 0), SMALL);
-    let widest = half - room - beside.max(8.0);
-    let scale = (widest / (x.1 - x.0)).min(TALLEST_PX / (y.1 - y.0));
-    // a slender map is given some ground beside it
-    let more = 0.5 * (widest / scale - (x.1 - x.0)).max(0.0);
-    x = (x.0 - more, x.1 + more);
-    let least = 0.5 * (150.0 / scale - (y.1 - y.0)).max(0.0);
-    y = (y.0 - least, y.1 + least);
-    let height = scale * (y.1 - y.0);
+    let first = with_room(|left| panel_beside(report, maps, left));
+    let (width, height) = (first.frame.width(), first.frame.height());
     let mut panels = Vec::new();
     let mut top = TOP_PX;
     for row in layers.chunks(2) {
-        for left in [0.0, half].into_iter().take(row.len()) {
-            let frame = PaperFrame {
-                left: left + room,
-                top,
-                right: left + room + widest,
-                bottom: top + height,
-            };
-            let (across, up) = axes(x, y);
-            panels.push(Panel::new(frame, across, up));
+        for beside in [0.0, 0.5 * WIDTH_PX].into_iter().take(row.len()) {
+            let left = beside + first.frame.left;
+            let frame = PaperFrame { left, top, right: left + width, bottom: top + height };
+            panels.push(Panel::new(frame, first.x.clone(), first.y.clone()));
         }
-        let lines = row.iter().map(|layer| key_places(layer, widest).1).max().unwrap_or(1);
+        let lines = row.iter().map(|layer| key_places(layer, width).1).max().unwrap_or(1);
         top += height + FOOT_PX + 6.0 + lines as f64 * KEY_PX + TOP_PX + 4.0;
     }
     (panels, top - TOP_PX)
+}
+
+/// The upper left frame with so much room on its left (px).
+fn panel_beside(report: &Report, maps: &CellMap, left: f64) -> Panel {
+    let words = report.words();
+    let (mut x, mut y) = maps.extent();
+    // half of the last label of an axis stands beside its frame
+    let beside = 0.5 * text_width(&format::decimal(x.1, 0), SMALL);
+    let width = 0.5 * WIDTH_PX - left - beside.max(8.0);
+    let scale = (width / (x.1 - x.0)).min(TALLEST_PX / (y.1 - y.0));
+    // a slender map is given some ground beside it
+    let more = 0.5 * (width / scale - (x.1 - x.0)).max(0.0);
+    x = (x.0 - more, x.1 + more);
+    let least = 0.5 * (150.0 / scale - (y.1 - y.0)).max(0.0);
+    y = (y.0 - least, y.1 + least);
+    let bottom = TOP_PX + scale * (y.1 - y.0);
+    let frame = PaperFrame { left, top: TOP_PX, right: left + width, bottom };
+    let [across, up] = [(x, words.easting), (y, words.northing)]
+        .map(|((low, high), title)| Axis::linear(low, high, title));
+    Panel::new(frame, across, up)
 }
 
 /// The cells of one class; neighbours in a row are one rectangle.

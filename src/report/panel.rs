@@ -12,6 +12,8 @@ const TICK_PX: f64 = 4.0;
 const GAP_PX: f64 = 3.0;
 /// Room of an axis title with its gap (px).
 const TITLE_PX: f64 = NORMAL + 8.0;
+/// Most turns until a frame and the room of its labels agree.
+const LABEL_TURNS: usize = 5;
 /// From so many marks on, marks shrink to dots.
 pub(super) const MANY: usize = 400;
 /// How far a drawn line may lie from the true one (px): below what a printer shows.
@@ -42,6 +44,21 @@ pub fn align<const N: usize>(panels: [&mut Panel; N]) {
         panel.labels_px = widest;
         panel.frame.left = panel.room_left();
     }
+}
+
+/// A panel whose labels have the room that they need; `of` makes it with so much on its left (px).
+///
+/// The ticks need room, and what room is left may decide the ticks: a few turns agree.
+pub fn with_room(of: impl Fn(f64) -> Panel) -> Panel {
+    let mut panel = of(0.0);
+    for _ in 0..LABEL_TURNS {
+        let room = panel.room_left();
+        if room <= panel.frame.left {
+            break;
+        }
+        panel = of(room);
+    }
+    panel
 }
 
 impl Panel {
@@ -126,7 +143,10 @@ impl Panel {
             let at = (x, bottom + TICK_PX + GAP_PX);
             write_if_any(canvas, &Label::new(tick.label, at).below().centred());
         }
+        // the title of a slender frame stays on the paper too
+        let half = 0.5 * text_width(&self.x.title, NORMAL) + 1.0;
         let middle = 0.5 * (self.frame.left + self.frame.right);
+        let middle = middle.min(canvas.size_px().0 - half).max(half);
         let below = bottom + TICK_PX + GAP_PX + SMALL + 5.0;
         let title = Label::new(self.x.title.clone(), (middle, below)).below().centred();
         write_if_any(canvas, &title.sized(NORMAL));

@@ -4,12 +4,12 @@ mod along;
 mod names;
 
 use super::axis::Axis;
-use super::canvas::{Canvas, Pen, paint};
+use super::canvas::{Canvas, NORMAL, Pen, paint, text_width};
 use super::colour::BLUE;
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
 use super::model::{MapMark, Path, Report};
-use super::panel::{FOOT_PX, Panel};
+use super::panel::{FOOT_PX, Panel, with_room};
 use super::svg::path::{PaperFrame, Spot};
 use super::words::fill;
 use crate::math;
@@ -22,6 +22,8 @@ const TOP_PX: f64 = 24.0;
 /// Least and greatest height of the profile (px).
 const PROFILE_PX: (f64, f64) = (130.0, 350.0);
 const RIGHT_PX: f64 = WIDTH_PX - 16.0;
+/// A path shorter than this (px) is no line that is seen.
+const STILL_PX: f64 = 1.0;
 const GROUND_FILL: RGBColor = RGBColor(205, 198, 188);
 const GROUND_LINE: RGBColor = RGBColor(94, 78, 62);
 
@@ -30,8 +32,9 @@ pub(super) fn draw(report: &Report) -> Drawing {
     let line = FallLine::of(report);
     let view = View::of(report, &line);
     let height = view.ground.frame.bottom + FOOT_PX;
-    // a steep profile is slender at one scale in both directions
-    let width = view.ground.frame.right + (WIDTH_PX - RIGHT_PX);
+    // a steep profile is slender at one scale in both directions, its title is not
+    let title = text_width(&view.ground.x.title, NORMAL) + 2.0;
+    let width = (view.ground.frame.right + (WIDTH_PX - RIGHT_PX)).max(title);
     let svg = paint("side", (width, height), report.words().side_title, |canvas| {
         view.profile(canvas, report, &line);
         name_marks(canvas, std::slice::from_ref(&view.ground), &view.marks);
@@ -66,9 +69,8 @@ impl View {
         let x = Axis::linear(along.0, along.1, words.along_fall_line);
         let frame =
             PaperFrame { left: 0.0, top: TOP_PX, right: RIGHT_PX, bottom: TOP_PX + PROFILE_PX.0 };
-        let mut ground = Panel::new(frame, x, Axis::linear(z.0, z.1, words.elevation_axis));
-        ground.frame.left = ground.room_left();
-        to_scale(&mut ground);
+        let whole = Panel::new(frame, x, Axis::linear(z.0, z.1, words.elevation_axis));
+        let mut ground = with_room(|left| to_scale(&whole, left));
         let marks = marks_within(report, line, (ground.x.low, ground.x.high));
         let more = more_above_px(&ground, &marks);
         ground.frame.top += more;
@@ -93,6 +95,9 @@ impl View {
         let opacity = (1.0 - 0.3 * math::log10(report.paths.len().max(1) as f64)).clamp(0.2, 0.9);
         for path in &paths {
             canvas.line(path, Pen { opacity, ..Pen::full(BLUE, 0.7) });
+            if let Some(spot) = stays(path) {
+                canvas.disc(spot, 1.5, BLUE);
+            }
         }
         let median: Vec<(f64, f64)> = below.iter().map(|&[s, _, z, _]| (s, z)).collect();
         panel.line(canvas, &median, Pen::full(GROUND_LINE, 1.5));
@@ -101,6 +106,13 @@ impl View {
         }
         panel.axes(canvas);
     }
+}
+
+/// Where a path is that goes nowhere.
+fn stays(path: &[Spot]) -> Option<Spot> {
+    let &(x, y) = path.first()?;
+    let is_near = |spot: &Spot| (spot.0 - x).abs() < STILL_PX && (spot.1 - y).abs() < STILL_PX;
+    path.iter().all(is_near).then_some((x, y))
 }
 
 /// Lines and barriers that cross the fall line in a range (m), by rising distance along it.
@@ -112,8 +124,11 @@ fn marks_within(report: &Report, line: &FallLine, (from, to): (f64, f64)) -> Vec
     marks
 }
 
-/// Gives the profile one scale in both directions: what is too high for the page becomes narrower.
-fn to_scale(panel: &mut Panel) {
+/// The profile with so much room on its left (px), at one scale in both directions: what is too high for the page
+/// becomes narrower.
+fn to_scale(whole: &Panel, left: f64) -> Panel {
+    let mut panel = whole.clone();
+    panel.frame.left = left;
     let (wide, high) = (panel.x.high - panel.x.low, panel.y.high - panel.y.low);
     let px_per_m = (panel.frame.width() / wide).min(PROFILE_PX.1 / high);
     panel.frame.right = panel.frame.left + px_per_m * wide;
@@ -121,4 +136,5 @@ fn to_scale(panel: &mut Panel) {
     panel.frame.bottom = panel.frame.top + height;
     // a low profile shows more sky instead
     panel.y.high = panel.y.low + height / px_per_m;
+    panel
 }

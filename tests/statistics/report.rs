@@ -4,6 +4,7 @@ pub(crate) mod boxes;
 mod page;
 mod places;
 mod raster;
+mod slender;
 mod slope;
 mod studies;
 mod svg;
@@ -58,6 +59,8 @@ fn inputs() -> Vec<(&'static str, Report)> {
         ("barriers", Report { barriers: vec![net(60), net(0)], ..slope::report(30, 5) }),
         ("site", places::site()),
         ("left", left()),
+        ("metres", slender::metres()),
+        ("steep", slender::steep()),
     ]
 }
 

@@ -7,6 +7,10 @@ use crate::report::words::{Words, fill};
 
 /// Places at which the ground below the paths is taken.
 const PLACES: f64 = 160.0;
+/// Paper below the lowest ground, over the margin (–).
+const SOME_GROUND: f64 = 0.5;
+/// Ground so far below the rocks, over the length shown (–), is still shown.
+const NEAR_GROUND: f64 = 0.25;
 
 /// The line from the mean release to the mean end, in plan view.
 #[derive(Debug, Clone, Copy)]
@@ -81,7 +85,15 @@ impl FallLine {
         let along = (along.0 - margin, along.1 + margin);
         let z = range.z.unwrap_or((0.0, 1.0));
         let margin = (0.05 * (z.1 - z.0)).max(0.02 * (along.1 - along.0));
-        (along, (z.0 - margin, z.1 + margin))
+        // the ground below rocks that hardly fall is seen too
+        let ends = report.releases.iter().flat_map(|fall| [fall.start_m, fall.end_m]);
+        let ground = report.ground.iter().flat_map(|ground| {
+            ends.clone().map(|[x, y, _]| ground.height_at(x, y) - SOME_GROUND * margin)
+        });
+        // but not that far below rocks which are still in flight
+        let lowest = z.0 - NEAR_GROUND * (along.1 - along.0);
+        let low = ground.filter(|low| *low >= lowest).fold(z.0 - margin, f64::min);
+        (along, (low, z.1 + margin))
     }
 
     /// The ground under the paths themselves: (distance, lowest, median, highest) at steps along the line.
