@@ -153,6 +153,87 @@ fn check_shear(scene: &Scene) -> Result<()> {
     Ok(())
 }
 
+/// What presses the springs deepest: the largest rock, by its sharpest corner.
+struct Deepest {
+    rock: Rock,
+    /// Radius of what presses in (m): that of a sphere, or of the corner of a block.
+    pressed_m: f64,
+    /// How deep it should press in, over that radius (–).
+    share: f64,
+    is_corner: bool,
+}
+
+impl Deepest {
+    fn of(scene: &Scene) -> Self {
+        let rock = rock(scene, scene.rocks.radius_m().reckoned()[2]);
+        let corner = scene.sharpest();
+        let pressed_m = corner.unwrap_or(1.0) * rock.radius_m;
+        let share = if corner.is_some() { CORNER_DEPTH } else { IMPACT_DEPTH };
+        Self { rock, pressed_m, share, is_corner: corner.is_some() }
+    }
+}
+
+/// The springs of one table and what presses them.
+struct PressedSprings {
+    table: String,
+    /// The softest (N/m).
+    softest: f64,
+    /// The largest restitution (–).
+    liveliest: f64,
+    /// Mass that an impact moves (kg).
+    moved_kg: f64,
+    /// Speed at which no impact is faster (m/s).
+    fastest_m_s: f64,
+    /// Largest share of that speed that one rock has (–).
+    one_rock: f64,
+}
+
+impl PressedSprings {
+    /// Stiffness at which an impact of some speed (m/s) presses no deeper than a share of the radius (N/m):
+    /// `p_N ≥ e m v²/depth²`, from the largest penetration `√e v/ω`.
+    fn least(&self, deepest: &Deepest, speed_m_s: f64, share: f64) -> f64 {
+        let depth_m = share * deepest.pressed_m;
+        self.liveliest * self.moved_kg * (speed_m_s / depth_m).powi(2)
+    }
+
+    /// Refuses what cannot carry the rock or hold its fastest impact.
+    fn carry(&self, scene: &Scene, deepest: &Deepest) -> Result<()> {
+        let radius_m = deepest.rock.radius_m;
+        let at_rest = deepest.rock.mass_kg() * scene.gravity_m_s2 / (STATIC_DEPTH * radius_m);
+        if self.softest >= at_rest.max(self.least(deepest, self.fastest_m_s, 1.0)) {
+            return Ok(());
+        }
+        let usual_m_s = self.fastest_m_s.min(SELDOM_PASSED_M_S);
+        let usual = at_rest.max(self.least(deepest, usual_m_s, deepest.share));
+        let of = if deepest.is_corner { " with such corners" } else { "" };
+        let found = format!(
+            "found {:e}, too soft for a rock of {radius_m:.3} m{of} at up to {:.0} m/s: it would sink in",
+            self.softest, self.fastest_m_s
+        );
+        let remedy = format!("write {:.1e} or more", 1.05 * usual);
+        let place = format!("{} normal_stiffness_n_m", self.table);
+        Err(Error::input(&scene.file, place, found, remedy))
+    }
+
+    /// Warns of what impacts press deeper than a rigid rock would go.
+    fn sinks(&self, deepest: &Deepest) -> Option<FastWarning> {
+        let usual_m_s = self.fastest_m_s.min(SELDOM_PASSED_M_S);
+        let needed = self.least(deepest, usual_m_s, deepest.share);
+        if self.softest >= needed {
+            return None;
+        }
+        let Deepest { rock, pressed_m, share, is_corner } = deepest;
+        let above_m_s =
+            share * pressed_m * (self.softest / (self.liveliest * self.moved_kg)).sqrt();
+        let whose = if *is_corner { "its corners'" } else { "its" };
+        let text = format!(
+            "{} normal_stiffness_n_m = {:e} lets a rock of {:.3} m sink in by more than {share} of {whose} radius in impacts above {above_m_s:.1} m/s; {needed:.1e} would hold it up to {usual_m_s:.0} m/s",
+            self.table, self.softest, rock.radius_m,
+        );
+        Some(FastWarning { above_m_s: self.one_rock * above_m_s, text })
+    }
+}
+
 /// Refuses springs that cannot carry the largest rock and warns of those that an impact presses too deep.
 pub(super) fn check(
     scene: &Scene,
@@ -162,60 +243,58 @@ pub(super) fn check(
     if !scene.solver.scheme().has_springs() {
         return check_shear(scene);
     }
-    let largest = rock(scene, scene.rocks.radius_m().reckoned()[2]);
-    // what presses in: a sphere, or the corner of a block
-    let sharpest = scene.sharpest();
-    let (pressed_m, deepest) = match sharpest {
-        Some(corner) => (corner * largest.radius_m, CORNER_DEPTH),
-        None => (largest.radius_m, IMPACT_DEPTH),
-    };
-    let whose = if sharpest.is_some() { "its corners'" } else { "its" };
-    let of = if sharpest.is_some() { " with such corners" } else { "" };
-    let fastest_m_s = fastest_m_s(scene, terrain);
-    for (name, ground) in &scene.grounds {
-        let softest = ground.normal_stiffness_n_m.reckoned()[0];
-        let liveliest = ground.restitution.as_ref().map_or(1.0, |e| e.support().1);
-        // p_N ≥ e m v²/depth², from the largest penetration √e v/ω of an impact
-        let least =
-            |v: f64, depth: f64| liveliest * largest.mass_kg() * (v / (depth * pressed_m)).powi(2);
-        let at_rest = largest.mass_kg() * scene.gravity_m_s2 / (STATIC_DEPTH * largest.radius_m);
-        if softest < at_rest.max(least(fastest_m_s, 1.0)) {
-            let usual = at_rest.max(least(fastest_m_s.min(SELDOM_PASSED_M_S), deepest));
-            let place = format!("[grounds.{name}] normal_stiffness_n_m");
-            let found = format!(
-                "found {softest:e}, too soft for a rock of {:.3} m{of} at up to {fastest_m_s:.0} m/s: it would sink in",
-                largest.radius_m
-            );
-            let remedy = format!("write {:.1e} or more", 1.05 * usual.max(at_rest));
-            return Err(Error::input(&scene.file, place, found, remedy));
-        }
-        let needed = least(fastest_m_s.min(SELDOM_PASSED_M_S), deepest);
-        if softest < needed {
-            let above_m_s =
-                deepest * pressed_m * (softest / (liveliest * largest.mass_kg())).sqrt();
-            let text = format!(
-                "[grounds.{name}] normal_stiffness_n_m = {softest:e} lets a rock of {:.3} m sink in by more than {deepest} of {whose} radius in impacts above {above_m_s:.1} m/s; {needed:.1e} would hold it up to {:.0} m/s",
-                largest.radius_m,
-                fastest_m_s.min(SELDOM_PASSED_M_S),
-            );
-            warnings.push(FastWarning { above_m_s, text });
-        }
+    let deepest = Deepest::of(scene);
+    let fall2 = fall2_m2_s2(scene, terrain);
+    let grounds = scene.grounds.iter().map(|(name, ground)| PressedSprings {
+        table: format!("[grounds.{name}]"),
+        softest: ground.normal_stiffness_n_m.reckoned()[0],
+        liveliest: ground.restitution.as_ref().map_or(1.0, |e| e.support().1),
+        moved_kg: deepest.rock.mass_kg(),
+        fastest_m_s: (start2_m2_s2(scene, fastest) + fall2).sqrt(),
+        one_rock: 1.0,
+    });
+    let contact = scene.rocks.contact.as_ref().filter(|_| scene.release.together);
+    let between = contact.map(|contact| PressedSprings {
+        table: "[rocks.contact]".to_owned(),
+        softest: contact.normal_stiffness_n_m,
+        liveliest: contact.restitution.unwrap_or(1.0),
+        // two that are alike move as one of half the mass against a wall
+        moved_kg: 0.5 * deepest.rock.mass_kg(),
+        // one falls on another that rests, or both are thrown at each other
+        fastest_m_s: (start2_m2_s2(scene, closing) + fall2).sqrt(),
+        one_rock: 0.5,
+    });
+    for springs in grounds.chain(between) {
+        springs.carry(scene, &deepest)?;
+        warnings.extend(springs.sinks(&deepest));
     }
     check_shear(scene)
 }
 
-/// Speed of a rock that falls freely from the highest start to the lowest vertex (m/s): no rock is faster.
-fn fastest_m_s(scene: &Scene, terrain: &Terrain) -> f64 {
+/// Largest speed of one rock between two components (m/s).
+fn fastest([low, high]: [f64; 2]) -> f64 {
+    low.abs().max(high.abs())
+}
+
+/// Largest speed at which two rocks with components between two come together (m/s).
+fn closing([low, high]: [f64; 2]) -> f64 {
+    fastest([low, high]).max(high - low)
+}
+
+/// Square of a speed at release (m²/s²).
+fn start2_m2_s2(scene: &Scene, of: fn([f64; 2]) -> f64) -> f64 {
+    let components = scene.release.velocity_m_s.iter().map(Distribution::reckoned);
+    components.map(|[low, _, high]| of([low, high]).powi(2)).sum()
+}
+
+/// What a free fall from the highest start to the lowest vertex adds to the square of a speed (m²/s²): no rock is faster.
+fn fall2_m2_s2(scene: &Scene, terrain: &Terrain) -> f64 {
     let (low, high) = terrain.index.bounds();
     let release = &scene.release;
     let gap = release.height_m.as_ref().map_or(0.0, |height| height.support().1);
     let points = release.points_m.iter().flatten().filter_map(|point| point.height_m);
     let highest = points.map(|z| z - terrain.origin_m.z).fold(high.z + gap, f64::max);
-    let start2 = release.velocity_m_s.iter().map(|component| {
-        let [low, _, high] = component.reckoned();
-        low.abs().max(high.abs()).powi(2)
-    });
-    (start2.sum::<f64>() + 2.0 * scene.gravity_m_s2 * (highest - low.z)).sqrt()
+    2.0 * scene.gravity_m_s2 * (highest - low.z)
 }
 
 fn rock(scene: &Scene, radius_m: f64) -> Rock {
