@@ -240,7 +240,7 @@ pub struct Trajectory {
     pub stretches: Vec<Stretch>,
     /// Energy ledger.
     pub ledger: Ledger,
-    /// Potential energy released plus kinetic energy at the start (J): the scale of the ledger.
+    /// Potential energy released plus kinetic energy at the start (J): the scale of the ledger of a rock alone.
     pub released_j: f64,
     /// Cost.
     pub effort: Effort,
@@ -286,8 +286,29 @@ impl Trajectory {
         math::atan2(self.drop_m(), self.runout_m()).to_degrees()
     }
 
-    /// `|numerical remainder| / energy released` (–).
+    /// `|numerical remainder| / energy at the rock's disposal` (–); for a rock that met no other, the energy released.
     pub fn energy_balance_error(&self) -> f64 {
-        if self.released_j > 0.0 { self.ledger.remainder_j.abs() / self.released_j } else { 0.0 }
+        let remainder_j = self.ledger.remainder_j.abs();
+        match self.disposal_j() {
+            disposal_j if disposal_j > 0.0 => remainder_j / disposal_j,
+            // rounding of a rock that neither fell nor was struck is no error of what it had
+            _ if remainder_j == 0.0 || self.is_by_itself() => 0.0,
+            _ => 1.0,
+        }
+    }
+
+    /// Energy released and received from other rocks, or the largest it had where that is more: one that is struck and
+    /// strikes on keeps nothing of what went through it (J).
+    fn disposal_j(&self) -> f64 {
+        if self.is_by_itself() {
+            return self.released_j;
+        }
+        let received_j = (-self.ledger.passed_on_j).max(0.0);
+        (self.released_j.max(0.0) + received_j).max(self.extremes.total_j)
+    }
+
+    /// Whether it met no other rock.
+    fn is_by_itself(&self) -> bool {
+        self.ledger.passed_on_j == 0.0 && self.ledger.others_j == 0.0
     }
 }

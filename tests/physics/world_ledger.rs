@@ -78,6 +78,27 @@ fn the_row_of_a_rock_in_a_heap_adds_up() {
     }
 }
 
+/// A rock at rest on which another falls has no energy of its own: what is left is measured by what it was given.
+#[test]
+fn the_remainder_of_a_struck_rock_is_a_share_of_what_it_was_given() {
+    let falls_on = [0.05, 0.0, 20.0];
+    let pair: Vec<Sphere> =
+        [[0.0, 0.0, 0.1], falls_on].map(|at| (0.1, 2700.0, at, [0.0; 3], [0.0; 3])).into();
+    let (falls, _) =
+        World { scheme: Scheme::Adaptive, tolerance_m_s: 1e-2, ..HEAP }.run(&plane(), &pair, 5.0);
+    let struck = &falls[0];
+    let own = struck.released_j / -struck.ledger.passed_on_j;
+    let share = struck.energy_balance_error();
+    println!("own energy over what was given {own:e}, remainder {share:e}: {:?}", struck.ledger);
+    assert!(own < 1e-3, "it was struck: {:?}", struck.ledger);
+    assert!(share < 1e-2 && (share > 0.0) == (struck.ledger.remainder_j != 0.0), "{share}");
+    let never = Trajectory { released_j: -1.0, ..struck.clone() };
+    assert!(
+        never.energy_balance_error() > 0.0,
+        "one that ends higher than it began has a remainder too"
+    );
+}
+
 /// Facets turn rocks that others strike meanwhile: turning them back leaves the energy of that step in the books.
 #[test]
 fn the_row_of_a_rock_in_a_heap_on_rough_ground_adds_up() {
