@@ -201,12 +201,14 @@ pub fn escape(text: &str) -> String {
     safe
 }
 
-/// A sentence begins with a capital letter, but for the name of a file, and ends with a full stop.
+/// A sentence begins with a capital letter, but for the name of a file or of a key, and ends with a full stop.
 pub(super) fn sentence(text: &str) -> String {
-    let word = text.split_whitespace().next().unwrap_or_default();
+    let mut words = text.split_whitespace();
+    let word = words.next().unwrap_or_default();
+    let is_key = word.contains('_') || words.next() == Some("=");
     let is_file = word.trim_end_matches(['.', ':', ',']).contains(['.', '/', '\\']);
     let mut letters = text.chars();
-    let first = if is_file { None } else { letters.next() };
+    let first = if is_file || is_key { None } else { letters.next() };
     let whole: String = first.into_iter().flat_map(char::to_uppercase).chain(letters).collect();
     if whole.ends_with(['.', '!', '?', '…']) { whole } else { whole + "." }
 }
@@ -257,6 +259,17 @@ mod tests {
         assert_eq!(sentence("zones.geojson says so"), "zones.geojson says so.");
         assert_eq!(sentence("../drawn/zones says so"), "../drawn/zones says so.");
         assert_eq!(sentence("mesh: coarse"), "Mesh: coarse.");
+    }
+
+    #[test]
+    fn keys_keep_their_small_letters() {
+        assert_eq!(sentence("step_s = 0.1 is long"), "step_s = 0.1 is long.");
+        assert_eq!(
+            sentence("epsg = 4326 is a geographic system"),
+            "epsg = 4326 is a geographic system."
+        );
+        assert_eq!(sentence("rocks fall."), "Rocks fall.");
+        assert_eq!(sentence("a/b.stl: odd"), "a/b.stl: odd.");
     }
 
     #[test]

@@ -131,7 +131,7 @@ fn signed_percent(share: f64) -> String {
 fn table_row(row: &ComparedStatistic, words: &Words) -> String {
     let name = match row.unit {
         "" => row.name_in(words),
-        unit => format!("{} ({unit})", row.name_in(words)),
+        unit => format!("{} ({})", row.name_in(words), words.say(unit)),
     };
     let [a, b, change, interval] = in_words(&row.difference, words);
     let count = |k: usize| format::decimal(row.rocks[k] as f64, 0);

@@ -4,6 +4,7 @@ mod patterns;
 mod plan;
 mod samples;
 mod slips;
+mod warnings;
 
 use super::{Words, glossary};
 
@@ -391,6 +392,6 @@ pub(super) static WORDS: Words = Words {
     ],
     glossary: glossary::FR,
     // What the program records in English, and its words here
-    said: &[plan::PLAN, patterns::RECORDED, samples::SAMPLES, slips::SLIPS],
+    said: &[plan::PLAN, patterns::RECORDED, samples::SAMPLES, slips::SLIPS, warnings::WARNINGS],
     view: patterns::VIEW,
 };

@@ -30,4 +30,8 @@ pub(super) const SAMPLES: &[(&str, &str)] = &[
         "A name in quotation marks alone stands for the rocks that the barriers of each run have let through to that place.",
         "Un nom seul entre guillemets désigne les blocs que les ouvrages de chaque calcul ont laissés passer jusque-là.",
     ),
+    (
+        "islands of rocks that may touch, each with its own step; heaps of more than {n} that touch go on as with rigid: what a spring does within a blow is left out there",
+        "îlots de blocs qui peuvent se toucher, chacun avec son pas\u{a0}; les amas de plus de {n} qui se touchent continuent comme avec rigid\u{a0}: ce que fait un ressort pendant un choc y est omis",
+    ),
 ];

@@ -30,4 +30,8 @@ pub(super) const SAMPLES: &[(&str, &str)] = &[
         "A name in quotation marks alone stands for the rocks that the barriers of each run have let through to that place.",
         "Un nome da solo fra virgolette indica i massi che le barriere di ogni calcolo hanno lasciato passare fin lì.",
     ),
+    (
+        "islands of rocks that may touch, each with its own step; heaps of more than {n} that touch go on as with rigid: what a spring does within a blow is left out there",
+        "isole di massi che possono toccarsi, ciascuna con il suo passo; i cumuli di più di {n} che si toccano continuano come con rigid: ciò che fa una molla durante un urto vi è tralasciato",
+    ),
 ];

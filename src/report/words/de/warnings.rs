@@ -1,0 +1,45 @@
+//! What plan and run warn of in English, in German.
+
+/// By patterns, as for the plan.
+pub(super) const WARNINGS: &[(&str, &str)] = &[
+    ("[grounds.{name}] lies under no mesh", "[grounds.{name}] liegt unter keinem Netz"),
+    (
+        "[grounds.{name}] has breaks_above_j, but no tree: only trees give way",
+        "[grounds.{name}] hat breaks_above_j, aber keinen Baum: nur Bäume geben nach",
+    ),
+    (
+        "[grounds.{name}] like {known}: its source has no rolling friction, and without any nothing stops a sphere that rolls; write rolling_friction",
+        "[grounds.{name}] like {known}: seine Quelle hat keine Rollreibung, und ohne sie hält nichts eine rollende Kugel auf; rolling_friction schreiben",
+    ),
+    (
+        "capture_speed_m_s = {a} is below half the tolerance of {b} m/s: slow rocks may flutter and never come to rest; write {c} or more",
+        "capture_speed_m_s = {a} liegt unter der halben Toleranz von {b} m/s: langsame Blöcke können flattern und nie zur Ruhe kommen; {c} oder mehr schreiben",
+    ),
+    (
+        "{where} omega * step_s = {x} for a rock of {r} m, which is thrown back within one step, the livelier the longer the step: write a step_s below {y}",
+        "{where} omega * step_s = {x} für einen Block von {r} m, der in einem einzigen Schritt zurückgeworfen wird, umso lebhafter, je länger der Schritt: step_s kleiner als {y} schreiben",
+    ),
+    (
+        "step_s = {a} lets a rock fall for {b} s at most before its budget of {c} steps is spent; write a longer step, or a longest_s below that",
+        "step_s = {a} lässt einen Block höchstens {b} s fallen, bis sein Budget von {c} Schritten erschöpft ist; einen längeren Schritt schreiben, oder longest_s darunter",
+    ),
+    (
+        "{a} % of the places drawn for {n} releases have no ground or no room for the rock (a hole, a tree, the edge of the terrain): such a place is drawn again",
+        "{a} % der für {n} Ablösungen gezogenen Orte haben keinen Boden oder keinen Platz für den Block (ein Loch, ein Baum, der Rand des Geländes): ein solcher Ort wird neu gezogen",
+    ),
+    (
+        "{a} of {n} releases tried out find no place to start from: each has a row with the stop reason not_released and counts in no statistic",
+        "{a} von {n} versuchten Ablösungen finden keinen Ort zum Start: jede hat eine Zeile mit dem Endgrund not_released und zählt in keiner Statistik",
+    ),
+    (
+        "{n} releases over {k} classes of size and source: with fewer than {few} each the intervals a year may be too narrow; write count = {c} or more",
+        "{n} Ablösungen auf {k} Klassen von Größe und Quelle: mit weniger als {few} in jeder können die Intervalle pro Jahr zu eng sein; count = {c} oder mehr schreiben",
+    ),
+    ("no ground below", "kein Boden darunter"),
+    ("in the ground or a tree", "im Boden oder in einem Baum"),
+    ("1/year", "1/a"),
+    (
+        "{who}: the rocks of one world meet each other, but all intervals take them for independent and are too narrow for what they share: a change that is clear here may be chance. Run several seeds of each scene and compare.",
+        "{who}: die Blöcke einer gemeinsamen Welt begegnen einander, aber alle Intervalle nehmen sie als unabhängig und sind zu eng für das, was sie teilen: eine Änderung, die hier deutlich ist, kann Zufall sein. Mehrere Startwerte (seed) jeder Szene rechnen und vergleichen.",
+    ),
+];

@@ -1,0 +1,45 @@
+//! What plan and run warn of in English, in French.
+
+/// By patterns, as for the plan.
+pub(super) const WARNINGS: &[(&str, &str)] = &[
+    ("[grounds.{name}] lies under no mesh", "[grounds.{name}] n’est sous aucun maillage"),
+    (
+        "[grounds.{name}] has breaks_above_j, but no tree: only trees give way",
+        "[grounds.{name}] a breaks_above_j, mais aucun arbre\u{a0}: seuls les arbres cèdent",
+    ),
+    (
+        "[grounds.{name}] like {known}: its source has no rolling friction, and without any nothing stops a sphere that rolls; write rolling_friction",
+        "[grounds.{name}] like {known}\u{a0}: sa source n’a pas de frottement de roulement, et sans lui rien n’arrête une sphère qui roule\u{a0}; écrire rolling_friction",
+    ),
+    (
+        "capture_speed_m_s = {a} is below half the tolerance of {b} m/s: slow rocks may flutter and never come to rest; write {c} or more",
+        "capture_speed_m_s = {a} est au-dessous de la moitié de la tolérance de {b} m/s\u{a0}: des blocs lents peuvent trembler sans jamais s’arrêter\u{a0}; écrire {c} ou plus",
+    ),
+    (
+        "{where} omega * step_s = {x} for a rock of {r} m, which is thrown back within one step, the livelier the longer the step: write a step_s below {y}",
+        "{where} omega * step_s = {x} pour un bloc de {r} m, qui est renvoyé en un seul pas, d’autant plus vivement que le pas est long\u{a0}: écrire step_s au-dessous de {y}",
+    ),
+    (
+        "step_s = {a} lets a rock fall for {b} s at most before its budget of {c} steps is spent; write a longer step, or a longest_s below that",
+        "step_s = {a} laisse tomber un bloc {b} s au plus avant que son budget de {c} pas soit épuisé\u{a0}; écrire un pas plus long, ou un longest_s plus court",
+    ),
+    (
+        "{a} % of the places drawn for {n} releases have no ground or no room for the rock (a hole, a tree, the edge of the terrain): such a place is drawn again",
+        "{a} % des lieux tirés pour {n} départs n’ont pas de sol ou pas de place pour le bloc (un trou, un arbre, le bord du terrain)\u{a0}: un tel lieu est tiré à nouveau",
+    ),
+    (
+        "{a} of {n} releases tried out find no place to start from: each has a row with the stop reason not_released and counts in no statistic",
+        "{a} départs sur {n} essayés ne trouvent aucun lieu de départ\u{a0}: chacun a une ligne avec la fin not_released et ne compte dans aucune statistique",
+    ),
+    (
+        "{n} releases over {k} classes of size and source: with fewer than {few} each the intervals a year may be too narrow; write count = {c} or more",
+        "{n} départs pour {k} classes de taille et de source\u{a0}: avec moins de {few} par classe, les intervalles par an peuvent être trop étroits\u{a0}; écrire count = {c} ou plus",
+    ),
+    ("no ground below", "aucun sol dessous"),
+    ("in the ground or a tree", "dans le sol ou dans un arbre"),
+    ("1/year", "1/a"),
+    (
+        "{who}: the rocks of one world meet each other, but all intervals take them for independent and are too narrow for what they share: a change that is clear here may be chance. Run several seeds of each scene and compare.",
+        "{who}\u{a0}: les blocs d’un même monde se rencontrent, mais tous les intervalles les prennent pour indépendants et sont trop étroits pour ce qu’ils partagent\u{a0}: une variation nette ici peut être due au hasard. Calculer avec plusieurs graines (seed) de chaque scène et comparer.",
+    ),
+];

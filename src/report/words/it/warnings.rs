@@ -1,0 +1,45 @@
+//! What plan and run warn of in English, in Italian.
+
+/// By patterns, as for the plan.
+pub(super) const WARNINGS: &[(&str, &str)] = &[
+    ("[grounds.{name}] lies under no mesh", "[grounds.{name}] non è sotto nessuna mesh"),
+    (
+        "[grounds.{name}] has breaks_above_j, but no tree: only trees give way",
+        "[grounds.{name}] ha breaks_above_j, ma nessun albero: solo gli alberi cedono",
+    ),
+    (
+        "[grounds.{name}] like {known}: its source has no rolling friction, and without any nothing stops a sphere that rolls; write rolling_friction",
+        "[grounds.{name}] like {known}: la sua fonte non ha attrito di rotolamento, e senza nulla ferma una sfera che rotola; scrivere rolling_friction",
+    ),
+    (
+        "capture_speed_m_s = {a} is below half the tolerance of {b} m/s: slow rocks may flutter and never come to rest; write {c} or more",
+        "capture_speed_m_s = {a} è sotto la metà della tolleranza di {b} m/s: massi lenti possono vibrare senza mai fermarsi; scrivere {c} o più",
+    ),
+    (
+        "{where} omega * step_s = {x} for a rock of {r} m, which is thrown back within one step, the livelier the longer the step: write a step_s below {y}",
+        "{where} omega * step_s = {x} per un masso di {r} m, che è rigettato in un solo passo, tanto più vivacemente quanto più lungo è il passo: scrivere uno step_s sotto {y}",
+    ),
+    (
+        "step_s = {a} lets a rock fall for {b} s at most before its budget of {c} steps is spent; write a longer step, or a longest_s below that",
+        "step_s = {a} lascia cadere un masso al massimo {b} s prima che il suo budget di {c} passi sia esaurito; scrivere un passo più lungo, o un longest_s più breve",
+    ),
+    (
+        "{a} % of the places drawn for {n} releases have no ground or no room for the rock (a hole, a tree, the edge of the terrain): such a place is drawn again",
+        "{a} % dei luoghi estratti per {n} distacchi non ha suolo o spazio per il masso (un buco, un albero, il bordo del terreno): un tale luogo è estratto di nuovo",
+    ),
+    (
+        "{a} of {n} releases tried out find no place to start from: each has a row with the stop reason not_released and counts in no statistic",
+        "{a} distacchi su {n} provati non trovano un luogo da cui partire: ognuno ha una riga con la fine not_released e non conta in nessuna statistica",
+    ),
+    (
+        "{n} releases over {k} classes of size and source: with fewer than {few} each the intervals a year may be too narrow; write count = {c} or more",
+        "{n} distacchi su {k} classi di dimensione e sorgente: con meno di {few} per classe gli intervalli all’anno possono essere troppo stretti; scrivere count = {c} o più",
+    ),
+    ("no ground below", "nessun suolo sotto"),
+    ("in the ground or a tree", "nel suolo o in un albero"),
+    ("1/year", "1/a"),
+    (
+        "{who}: the rocks of one world meet each other, but all intervals take them for independent and are too narrow for what they share: a change that is clear here may be chance. Run several seeds of each scene and compare.",
+        "{who}: i massi di uno stesso mondo si incontrano, ma tutti gli intervalli li considerano indipendenti e sono troppo stretti per ciò che hanno in comune: una variazione qui netta può essere caso. Calcolare con più semi (seed) di ogni scena e confrontare.",
+    ),
+];
