@@ -78,6 +78,7 @@ impl Comparison {
         notes
             .extend(weighing::note(populations[0].each_ref().map(|of| of.among.standing.as_ref())));
         notes.extend(populations::censored(&populations[0]));
+        notes.extend(weighing::of_worlds(&runs));
         notes.extend(unpaired(paired, one_seed).map(str::to_owned));
         let groups = populations.iter().map(|pair| table::group(pair, paired, same_run)).collect();
         Ok(Self {
@@ -130,9 +131,10 @@ impl Comparison {
         write_atomic(&dir.join(PAGE), page::page(self, &drawn).as_bytes())
     }
 
-    /// The differences that matter most, line by line for a terminal.
+    /// The differences that matter most, line by line for a terminal, and what makes them look surer than they are.
     pub fn headline(&self) -> Vec<String> {
-        table::headline(&self.groups)
+        let of_worlds = self.notes.iter().filter(|note| weighing::is_of_worlds(note));
+        table::headline(&self.groups).into_iter().chain(of_worlds.cloned()).collect()
     }
 
     /// Largest difference of any statistic, in its own unit, and the widest interval: both 0 for a run beside itself.

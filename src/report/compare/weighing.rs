@@ -52,6 +52,25 @@ fn weights(run: &Results, releases: &[usize]) -> RunWeights {
     RunWeights { weights: frequency.weights_of(rocks), is_a_year: true }
 }
 
+/// What is said of rocks that meet each other.
+const OF_WORLDS: &str = "the rocks of one world meet each other, but all intervals take them for independent and are too narrow for what they share: a change that is clear here may be chance. Run several seeds of each scene and compare.";
+
+/// What it means that the rocks of a run share one world; nothing where each has the terrain for itself.
+pub(super) fn of_worlds(runs: &[Results; 2]) -> Option<String> {
+    let is_world = |run: &Results| {
+        let mut parts = run.summary.plan_entries.iter();
+        parts.any(|part| part.name == "rock against rock" && !part.said.starts_with("left out"))
+    };
+    let named = ["A", "B"].into_iter().zip(runs).filter(|(_, run)| is_world(run));
+    let who: Vec<&str> = named.map(|(name, _)| name).collect();
+    (!who.is_empty()).then(|| format!("{}: {OF_WORLDS}", who.join(", ")))
+}
+
+/// Whether a note is one of these.
+pub(super) fn is_of_worlds(note: &str) -> bool {
+    note.ends_with(OF_WORLDS)
+}
+
 /// Those of each run that were released: of pairs, in both runs.
 ///
 /// # Errors
