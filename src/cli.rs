@@ -306,14 +306,17 @@ impl RunArgs {
 
     /// Says how to go on.
     fn interrupted(&self, done: usize, asked: usize) -> ExitCode {
-        let given = std::env::args_os().skip(1).filter(|word| word != "--overwrite");
+        // a world is written as a whole: where nothing is, there is nothing to go on with
+        let is_begun = done > 0;
+        let given = std::env::args_os().skip(1).filter(|word| !is_begun || word != "--overwrite");
         let mut words: Vec<String> =
             given.map(|word| words::quoted(&word.to_string_lossy())).collect();
-        if !self.resume {
+        if is_begun && !self.resume {
             words.push("--resume".to_owned());
         }
+        let how = if is_begun { "go on" } else { "start again" };
         complain(format_args!("interrupted: {done} of {asked} releases are written"));
-        complain(format_args!("go on with: rockfall {}", words.join(" ")));
+        complain(format_args!("{how} with: rockfall {}", words.join(" ")));
         ExitCode::from(INTERRUPTED)
     }
 }

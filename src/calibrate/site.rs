@@ -3,14 +3,14 @@
 use super::parts::{few, parts_of, rows_of};
 use super::{CalibrationStage, Ends, put_all, refuse_weights};
 use crate::ensemble::Ensemble;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::hazard::{
     Agreement, EndDistances, ObservedPath, Row, Weighted, distances, effective, rank, runouts,
 };
 use crate::math;
 use crate::plan::{Part, Plan};
 use crate::random::{RandomStream, unit};
-use crate::scene::{CalibrateTable, CalibrationScore, Scene, VaryTable};
+use crate::scene::{CalibrateTable, CalibrationScore, MeasuredEnds, Scene, VaryTable};
 use crate::simulation::{Scratch, simulate_release};
 use crate::terrain::Terrain;
 use std::path::Path;
@@ -18,6 +18,9 @@ use std::path::Path;
 /// A measured end was released from a place of the scene if that is no farther away (m): positions are measured to a
 /// centimetre or two, and typed with two decimals.
 const SAME_PLACE_M: f64 = 0.1;
+
+/// A measured place so far beside the terrain (m) is still taken: ends are measured to a metre or two.
+const MEASURED_WITHIN_M: f64 = 2.0;
 
 /// Computed ways with their release numbers.
 type ObservedWays = Vec<(usize, ObservedPath)>;
@@ -63,6 +66,33 @@ struct OwnPlaces {
     of_release: Vec<Option<usize>>,
 }
 
+/// Reads measured ways; refuses those that begin or end beside the terrain: no computed rock can come there.
+///
+/// # Errors
+/// As for [`ObservedPath::read`], and such a way.
+fn read_within(ends: &MeasuredEnds, terrain: &Terrain) -> Result<Vec<ObservedPath>> {
+    let (low, high) = terrain.index.bounds();
+    let (low, high) = (low + terrain.origin_m, high + terrain.origin_m);
+    let is_beside = |[x, y]: [f64; 2]| {
+        let is_within = |m: f64, from: f64, to: f64| {
+            (from - MEASURED_WITHIN_M..=to + MEASURED_WITHIN_M).contains(&m)
+        };
+        !is_within(x, low.x, high.x) || !is_within(y, low.y, high.y)
+    };
+    let ways = ObservedPath::read_lines(ends)?;
+    for (line, way) in &ways {
+        if let Some([x, y]) = [way.start_m, way.end_m].into_iter().find(|at| is_beside(*at)) {
+            let found = format!("found a place at [{x:.3}, {y:.3}], beside the terrain");
+            let remedy = format!(
+                "write map coordinates on it ({:.0}..{:.0} east, {:.0}..{:.0} north), or leave the row out",
+                low.x, high.x, low.y, high.y
+            );
+            return Err(Error::input(&ends.file, format!("line {line}"), found, remedy));
+        }
+    }
+    Ok(ways.into_iter().map(|(_, way)| way).collect())
+}
+
 impl CalibrationSite {
     pub(super) fn of(
         scene: &Scene,
@@ -71,18 +101,18 @@ impl CalibrationSite {
     ) -> Result<Self> {
         scene.refuse_world("`calibrate`")?;
         let ends = scene.calibrate.as_ref().map(CalibrateTable::measured);
+        let (terrain, _) = scene.read_terrain()?;
         let (measured, blocks, part) = match &ends {
             Some(ends) => {
                 let deposits = &ends.file;
                 let (measured, blocks) =
-                    (ObservedPath::read(ends)?, ObservedPath::read_blocks(deposits)?);
+                    (read_within(ends, &terrain)?, ObservedPath::read_blocks(deposits)?);
                 let part =
                     parts_of(measured.len(), &blocks, parts).ok_or_else(|| few(deposits, parts))?;
                 (measured, blocks, part)
             }
             None => (Vec::new(), Vec::new(), Vec::new()),
         };
-        let (terrain, _) = scene.read_terrain()?;
         let asked = &scene.release;
         let places: Vec<ThrownFrom> = match &asked.points_m {
             Some(points) => points.iter().map(|point| (point.at_m, None)).collect(),

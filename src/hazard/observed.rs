@@ -95,6 +95,14 @@ impl ObservedPath {
     /// # Errors
     /// A file that cannot be read, a row without these numbers, or an end nearer to its release than any computed one may be.
     pub fn read(ends: &MeasuredEnds) -> Result<Vec<Self>> {
+        Ok(Self::read_lines(ends)?.into_iter().map(|(_, way)| way).collect())
+    }
+
+    /// The same, each with its line in the file.
+    ///
+    /// # Errors
+    /// As for [`ObservedPath::read`].
+    pub fn read_lines(ends: &MeasuredEnds) -> Result<Vec<(u64, Self)>> {
         let path = ends.file.as_path();
         let table = file::read_table(path, LONGEST_TEXT)?;
         let mut reader = csv::Reader::from_reader(&table[..]);
@@ -131,7 +139,7 @@ impl ObservedPath {
             let remedy = "write a smaller least_runout_m in [calibrate], which is for lists without such ends";
             return Err(Error::input(path, format!("line {line}"), found, remedy));
         }
-        Ok(ways.into_iter().map(|(_, way)| way).collect())
+        Ok(ways)
     }
 }
 

@@ -4,7 +4,7 @@ use super::site::ReleaseZone;
 use super::{PathRow, Summary};
 use crate::body::ShapeKind;
 use crate::error::{Error, Result};
-use crate::hazard::{LineSummary, Row};
+use crate::hazard::{BarrierSummary, LineSummary, Row, Statistic};
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
 use serde_json::{Value, json};
@@ -140,6 +140,8 @@ pub(super) fn write_site(folder: &Path, epsg: Option<u32>, summary: &Summary) ->
             said["height_m"] = one.barrier.height_m.into();
             said["capacity_j"] = one.barrier.capacity_j.into();
             said["arriving"] = one.arriving.share.into();
+            said["arriving_total_p95_j"] = arriving_p95(one, &one.energy_j).into();
+            said["arriving_top_p95_m"] = arriving_p95(one, &one.top_m).into();
             said["stopped"] = one.stopped.share.into();
             said["design_height_m"] = one.design_values.as_ref().map(|of| of.height_m).into();
             said["design_energy_j"] = one.design_values.as_ref().map(|of| of.energy_j).into();
@@ -163,6 +165,12 @@ pub(super) fn write_site(folder: &Path, epsg: Option<u32>, summary: &Summary) ->
         file.add(&geometry(zone), &said)?;
     }
     file.finish()
+}
+
+/// A 95th percentile of the rocks that arrive at a barrier, those stopped before left out; none of too few.
+fn arriving_p95(barrier: &BarrierSummary, of: &Statistic) -> Option<f64> {
+    let found = of.percentiles.get("p95");
+    found.filter(|found| barrier.arriving.count >= found.needs).map(|found| found.value)
 }
 
 fn geometry(zone: &ReleaseZone) -> Value {

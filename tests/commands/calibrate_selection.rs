@@ -63,6 +63,22 @@ fn ways(file: &Path, seed: u64, releases: usize) -> Vec<ObservedPath> {
     (0..releases).map(way).collect()
 }
 
+/// No computed rock comes to an end beside the terrain: there is nothing to be fitted to.
+#[test]
+fn an_end_beside_the_terrain_is_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    let ends = "release_x_m,release_y_m,x_m,y_m\n0,0,1,0\n0,0,0,1\n0,0,0,4500\n";
+    fs::write(dir.path().join("off.csv"), ends).unwrap();
+    let vary = r#"vary = [{ ground = "meadow", key = "rolling_friction", from = 0.2, to = 0.8, before = 0.7 }]"#;
+    let more = format!("[calibrate]\ndeposits = \"off.csv\"\n{vary}");
+    let scene = rough(dir.path(), 1, &more);
+    let done = rockfall(&["calibrate", word(&scene), "--out", word(&dir.path().join("fit"))]);
+    let said = String::from_utf8(done.stderr).unwrap();
+    assert_eq!(done.status.code(), Some(2), "{said}");
+    let place = "off.csv: line 4: found a place at [0.000, 4500.000], beside the terrain; write";
+    assert!(said.contains(place), "{said}");
+}
+
 /// Fits two values, of which the ends tell next to nothing, with ten releases a trial; measured ends and what was found.
 fn fit(dir: &Path, seed: u64, held_out: f64) -> (Vec<ObservedPath>, Calibration) {
     let measured = ways(&rough(dir, 0, ""), 100 + seed, 40);

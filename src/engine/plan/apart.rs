@@ -61,14 +61,19 @@ fn check_apart(plan: &Plan, ground: &Ground, releases: &[Release]) -> Result<()>
                 format!(
                     "found releases {a} at {a_m:.3?} and {b} at {b_m:.3?} to overlap by {overlap_m:.2e} m at the start, where twice what their weight presses in, {pressed_m:.2e} m, is allowed"
                 ),
-                format!(
-                    "write points that are at least {} m apart",
-                    math::rounded_up(one.radius + two.radius)
-                ),
+                apart(plan, one.radius + two.radius),
             ));
         }
     }
     Ok(())
+}
+
+/// What to write instead of places that are nearer than this (m).
+fn apart(plan: &Plan, least_m: f64) -> String {
+    let least_m = math::rounded_up(least_m);
+    let drawn = "; places drawn on a line or in an area are as near as chance has them";
+    let drawn = if plan.releases.are_points() { "" } else { drawn };
+    format!("write points_m that are at least {least_m} m apart{drawn}")
 }
 
 /// Mass of two rocks and of all that stands on them, directly or through others (kg).

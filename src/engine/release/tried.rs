@@ -79,11 +79,16 @@ impl Releases {
         })
     }
 
+    /// Whether every place is written, and none drawn.
+    pub(crate) fn are_points(&self) -> bool {
+        self.places.iter().all(|place| matches!(place, Where::Points(_)))
+    }
+
     /// What to say of places drawn in vain, and of releases that found none.
     fn lost_places(&self, (places, made): (usize, usize)) -> Vec<String> {
         let mut warnings = Vec::new();
         let in_vain = places - made;
-        if in_vain > 0 && !self.places.iter().all(|place| matches!(place, Where::Points(_))) {
+        if in_vain > 0 && !self.are_points() {
             warnings.push(format!(
                 "{:.1} % of the places drawn for {TRIED} releases have no ground or no room for the rock (a hole, a tree, the edge of the terrain): such a place is drawn again",
                 100.0 * in_vain as f64 / places as f64

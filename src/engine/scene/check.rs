@@ -90,7 +90,7 @@ impl Allowed {
             Self::NotNegative => "write a number of 0 or more".to_owned(),
             Self::Positive => "write a number above 0".to_owned(),
             Self::Share => "write a value in 0..1".to_owned(),
-            Self::Slope => "write a value in 0..90".to_owned(),
+            Self::Slope => "write a value of 0 or more and below 90".to_owned(),
             Self::Between(least, most) => format!("write a value in {least:?}..{most:?}"),
         }
     }
