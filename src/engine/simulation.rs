@@ -286,7 +286,8 @@ impl Trajectory {
         math::atan2(self.drop_m(), self.runout_m()).to_degrees()
     }
 
-    /// `|numerical remainder| / energy at the rock's disposal` (–); for a rock that met no other, the energy released.
+    /// `|numerical remainder| / energy released` (–); of a rock that owes most of its energy to others, over what it had at
+    /// its disposal.
     pub fn energy_balance_error(&self) -> f64 {
         let remainder_j = self.ledger.remainder_j.abs();
         match self.disposal_j() {
@@ -297,14 +298,13 @@ impl Trajectory {
         }
     }
 
-    /// Energy released and received from other rocks, or the largest it had where that is more: one that is struck and
-    /// strikes on keeps nothing of what went through it (J).
+    /// Energy released (J), where others gave less; else with what it received, or the largest it had where that is more:
+    /// one that is struck and strikes on keeps nothing of what went through it.
     fn disposal_j(&self) -> f64 {
-        if self.is_by_itself() {
-            return self.released_j;
-        }
         let received_j = (-self.ledger.passed_on_j).max(0.0);
-        (self.released_j.max(0.0) + received_j).max(self.extremes.total_j)
+        let most_j = (self.released_j.max(0.0) + received_j).max(self.extremes.total_j);
+        let is_own = self.is_by_itself() || 2.0 * self.released_j >= most_j;
+        if is_own { self.released_j } else { most_j }
     }
 
     /// Whether it met no other rock.
