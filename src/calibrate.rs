@@ -7,6 +7,7 @@
 //! others still, which say how good it is: no score profits from the luck of its rocks. The measured ends are then drawn again
 //! many times: the values that fit these best spread as far as the ends leave them open.
 
+mod beside;
 mod finalists;
 mod fitted;
 mod parts;
@@ -92,6 +93,9 @@ pub struct Calibration {
     /// Shapes of the rocks, as the plans say them; empty for spheres alone.
     #[serde(default)]
     pub shapes: Vec<String>,
+    /// What is to be said of measured ends beside the terrain, scene by scene.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<String>,
     /// Measured ends, and how many independent ones they are worth: throws of one block are alike.
     pub ends: (usize, f64),
 }
@@ -138,6 +142,12 @@ pub fn calibrate(
         told,
         measures,
         shapes: search.shapes(),
+        warnings: search
+            .sites
+            .iter()
+            .filter_map(CalibrationSite::beside)
+            .map(str::to_owned)
+            .collect(),
         ends,
     })
 }
@@ -278,6 +288,7 @@ impl fmt::Display for Calibration {
             )?;
         }
         self.shapes.iter().try_for_each(|shape| writeln!(to, "shape: {shape}"))?;
+        self.warnings.iter().try_for_each(|warning| writeln!(to, "warning: {warning}"))?;
         self.write_trial(to, "before", &self.before)?;
         for (part, trial) in self.held_out.iter().enumerate() {
             let who = format!("fit without part {} of {}", part + 1, self.held_out.len());

@@ -1,16 +1,17 @@
 //! One scene of a calibration and what was measured on it.
 
+use super::beside::read_ways;
 use super::parts::{few, parts_of, rows_of};
 use super::{CalibrationStage, Ends, put_all, refuse_weights};
 use crate::ensemble::Ensemble;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::hazard::{
     Agreement, EndDistances, ObservedPath, Row, Weighted, distances, effective, rank, runouts,
 };
 use crate::math;
 use crate::plan::{Part, Plan};
 use crate::random::{RandomStream, unit};
-use crate::scene::{CalibrateTable, CalibrationScore, MeasuredEnds, Scene, VaryTable};
+use crate::scene::{CalibrateTable, CalibrationScore, Scene, VaryTable};
 use crate::simulation::{Scratch, simulate_release};
 use crate::terrain::Terrain;
 use std::path::Path;
@@ -18,9 +19,6 @@ use std::path::Path;
 /// A measured end was released from a place of the scene if that is no farther away (m): positions are measured to a
 /// centimetre or two, and typed with two decimals.
 const SAME_PLACE_M: f64 = 0.1;
-
-/// A measured place so far beside the terrain (m) is still taken: ends are measured to a metre or two.
-const MEASURED_WITHIN_M: f64 = 2.0;
 
 /// Computed ways with their release numbers.
 type ObservedWays = Vec<(usize, ObservedPath)>;
@@ -38,6 +36,8 @@ pub(super) struct Computed {
 pub(super) struct CalibrationSite {
     scene: Scene,
     measured: Vec<ObservedPath>,
+    /// What is to be said of those beside the terrain.
+    beside: Option<String>,
     /// Least runout of a computed rock that is compared (m).
     least_runout_m: Option<f64>,
     /// The block that each measured end belongs to; empty if the file does not tell.
@@ -66,33 +66,6 @@ struct OwnPlaces {
     of_release: Vec<Option<usize>>,
 }
 
-/// Reads measured ways; refuses those that begin or end beside the terrain: no computed rock can come there.
-///
-/// # Errors
-/// As for [`ObservedPath::read`], and such a way.
-fn read_within(ends: &MeasuredEnds, terrain: &Terrain) -> Result<Vec<ObservedPath>> {
-    let (low, high) = terrain.index.bounds();
-    let (low, high) = (low + terrain.origin_m, high + terrain.origin_m);
-    let is_beside = |[x, y]: [f64; 2]| {
-        let is_within = |m: f64, from: f64, to: f64| {
-            (from - MEASURED_WITHIN_M..=to + MEASURED_WITHIN_M).contains(&m)
-        };
-        !is_within(x, low.x, high.x) || !is_within(y, low.y, high.y)
-    };
-    let ways = ObservedPath::read_lines(ends)?;
-    for (line, way) in &ways {
-        if let Some([x, y]) = [way.start_m, way.end_m].into_iter().find(|at| is_beside(*at)) {
-            let found = format!("found a place at [{x:.3}, {y:.3}], beside the terrain");
-            let remedy = format!(
-                "write map coordinates on it ({:.0}..{:.0} east, {:.0}..{:.0} north), or leave the row out",
-                low.x, high.x, low.y, high.y
-            );
-            return Err(Error::input(&ends.file, format!("line {line}"), found, remedy));
-        }
-    }
-    Ok(ways.into_iter().map(|(_, way)| way).collect())
-}
-
 impl CalibrationSite {
     pub(super) fn of(
         scene: &Scene,
@@ -102,16 +75,16 @@ impl CalibrationSite {
         scene.refuse_world("`calibrate`")?;
         let ends = scene.calibrate.as_ref().map(CalibrateTable::measured);
         let (terrain, _) = scene.read_terrain()?;
-        let (measured, blocks, part) = match &ends {
+        let (measured, beside, blocks, part) = match &ends {
             Some(ends) => {
                 let deposits = &ends.file;
-                let (measured, blocks) =
-                    (read_within(ends, &terrain)?, ObservedPath::read_blocks(deposits)?);
+                let (measured, beside) = read_ways(ends, &terrain)?;
+                let blocks = ObservedPath::read_blocks(deposits)?;
                 let part =
                     parts_of(measured.len(), &blocks, parts).ok_or_else(|| few(deposits, parts))?;
-                (measured, blocks, part)
+                (measured, beside, blocks, part)
             }
-            None => (Vec::new(), Vec::new(), Vec::new()),
+            None => (Vec::new(), None, Vec::new(), Vec::new()),
         };
         let asked = &scene.release;
         let places: Vec<ThrownFrom> = match &asked.points_m {
@@ -132,6 +105,7 @@ impl CalibrationSite {
         let mut site = Self {
             scene,
             measured,
+            beside,
             least_runout_m,
             blocks,
             part,
@@ -159,6 +133,11 @@ impl CalibrationSite {
 
     pub(super) fn file(&self) -> &Path {
         &self.scene.file
+    }
+
+    /// What is to be said of measured ends beside the terrain, if there are any.
+    pub(super) fn beside(&self) -> Option<&str> {
+        self.beside.as_deref()
     }
 
     /// What the plan says of the shapes of its rocks; known once it has computed.
