@@ -59,7 +59,7 @@ pub(super) fn islands(step: &Settings, has_bonds: bool) -> String {
         return String::new();
     }
     format!(
-        "; heaps of more than {MOST_WITH_SPRINGS} that touch go on as with rigid: what a spring does within a blow is left out there"
+        "; heaps of more than {MOST_WITH_SPRINGS} that touch go on as with rigid where none is struck hard: what a spring does within a blow is left out there"
     )
 }
 

@@ -1,21 +1,25 @@
 //! Heaps in the rigid limit: what `adaptive` leaves out where many rocks lie on each other.
 //!
-//! In a heap each blow runs through all that touch, and the step of all is as short as the springs of one ask for, while the heap as a
-//! whole hardly moves. No number of a report hangs on what a spring does within such a blow. So an island in which many rocks hold each
-//! other goes through its windows as with `rigid`, the limit of the same law, until it is small again. Between two windows its springs
-//! are unloaded into motion (`solver::island::unload`), or begin anew at rest. Errors are those of `rigid`: the time of an
-//! impact, and the depth `m g/p_N` that weight presses in.
+//! In a heap each small blow runs through all that touch, and the step of all is as short as the springs of one ask for, while the heap as
+//! a whole hardly moves. So an island in which many rocks hold each other goes through its windows as with `rigid`, the limit of the
+//! same law, until it is small again, or a rock of it is struck hard: what a boulder throws up that falls on a heap hangs on how its blow runs
+//! through all of it, and in large islands of the rigid limit blows go from pair to pair. Between two windows its springs
+//! are unloaded into motion (`solver::island::unload`), or begin anew at rest. Errors are those of `rigid` at such speeds: the time
+//! of an impact, the depth `m g/p_N` that weight presses in, and the spread of small blows.
 
 use super::bodies::BodyWorld;
 use super::window::IslandWindow;
 use super::{PairMaterial, WorldBody};
-use crate::contact::pair::PairHistory;
+use crate::contact::pair::{PairHistory, between};
 use crate::rock::Motion;
 use crate::simulation::settings::RunSettings;
 use crate::solver::island::partition::Partition;
 use crate::solver::island::unload_pair;
 use crate::solver::loss::Given;
 use crate::solver::{MOST_WITH_SPRINGS, Settings};
+
+/// Two rocks that come at each other faster than this strike hard (–, relative to `√(g R)` of the smaller).
+const STRUCK_HARD: f64 = 4.0;
 
 /// The step of heaps where they go on in the rigid limit: not where bonds are to break, as those have springs.
 pub(super) fn step_in_heaps(step: &Settings, answer: &PairMaterial) -> Option<Settings> {
@@ -31,12 +35,28 @@ impl<'a> BodyWorld<'a> {
         let Some(heaps) = self.heaps.filter(|_| ids.len() > MOST_WITH_SPRINGS) else {
             return self.settings;
         };
+        if pairs.iter().any(|pair| self.is_struck_hard([pair.a, pair.b].map(|k| ids[k as usize]))) {
+            return self.settings;
+        }
         let unloaded = ids.iter().filter(|&&k| self.body(k).is_unloaded).count();
         if 2 * unloaded > ids.len() || largest_touching(ids.len(), pairs) > MOST_WITH_SPRINGS {
             heaps
         } else {
             self.settings
         }
+    }
+}
+
+impl BodyWorld<'_> {
+    /// Whether two rocks come so fast at each other that their blow runs through all that they touch: in large islands of the rigid limit it would
+    /// go from pair to pair and die away.
+    fn is_struck_hard(&self, ends: [u32; 2]) -> bool {
+        let [a, b] = ends.map(|k| self.body(k));
+        let [at, other] = [a, b].map(|body| body.position_at(self.settings, self.now_s));
+        let [v, w] = [a, b].map(|body| body.velocity_at(self.settings, self.now_s));
+        let (n, _) = between(&at, &other);
+        let radius = a.member.body.radius.min(b.member.body.radius);
+        -n.dot(&(v - w)) > STRUCK_HARD * (self.settings.gravity_m_s2 * radius).sqrt()
     }
 }
 

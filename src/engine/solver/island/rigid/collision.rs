@@ -27,7 +27,7 @@ const MUCH_LIGHTER: f64 = 2.0;
 /// A rock that is no farther from the mesh at the end of the step (–, relative to R) may have touched it at a blow …
 const BESIDE_MESH: f64 = 0.02;
 /// … which presses it there if it pushes it against the normal, by this cosine.
-const PRESSED_ON: f64 = -0.2;
+const PRESSED_ON: f64 = -0.7;
 
 /// What a blow begins with.
 pub(super) struct BlowStart {
