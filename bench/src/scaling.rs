@@ -10,7 +10,7 @@ use rockfall::rock::{Motion, Rock, Vec3};
 use rockfall::simulation::{
     Keep, Observer, PairMaterial, RunSettings, Stop, Trajectory, WorldStats, simulate_world,
 };
-use rockfall::solver::{Scheme, Settings};
+use rockfall::solver::{RIGID_STEP_S, Scheme, Settings};
 use rockfall::study::bench::{GRAVITY_M_S2, terrain};
 use rockfall::study::processor_time::ProcessorTime;
 use rockfall::terrain::Terrain;
@@ -30,7 +30,7 @@ const SPACING_M: f64 = 0.12;
 /// Local error of the default scheme (m/s).
 const TOLERANCE_M_S: f64 = 0.05;
 /// Step of the paper, and longest step of `rigid` as the plan has it (s).
-const STEPS_S: (f64, f64) = (1e-5, 0.01);
+const STEPS_S: (f64, f64) = (1e-5, RIGID_STEP_S);
 
 /// A part of the story. That of a sphere is the same in all worlds: what is compared between them is the same part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -11,12 +11,23 @@ use std::fs;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
+/// Three rocks of one world in a closed box.
+const THREE: &str =
+    "count = 3\ntogether = true\npoints_m = [[0.5, 0.5, 1.0], [1.0, 1.0, 1.0], [1.5, 1.5, 1.2]]";
+
+/// Contact of rocks without bonds.
+fn contact(restitution: f64) -> String {
+    format!(
+        "[rocks.contact]\nnormal_stiffness_n_m = 1e8\nshear_stiffness_n_m = 1e7\nfriction_angle_deg = 30.0\nrestitution = {restitution:?}\ntensile_strength_pa = 0.0\ncohesion_pa = 0.0"
+    )
+}
+
 /// Rocks that share a world: between plates that leave one the width of an atom, its work is spent, while the others go
 /// on to their rest; in a closed box without loss all end by time or budget.
 #[test]
 fn worlds_that_never_rest_end_by_time_or_budget() {
     let dir = tempfile::tempdir().unwrap();
-    let contact = "[rocks.contact]\nnormal_stiffness_n_m = 1e8\nshear_stiffness_n_m = 1e7\nfriction_angle_deg = 30.0\nrestitution = 1.0\ntensile_strength_pa = 0.0\ncohesion_pa = 0.0";
+    let contact = contact(1.0);
     let plates = [plate(5.0, 0.0), plate(5.0, 0.400_000_001)].concat();
     for scheme in ["rigid", "adaptive"] {
         let more = format!("{contact}\n[solver]\nscheme = \"{scheme}\"");
@@ -44,12 +55,8 @@ fn worlds_that_never_rest_end_by_time_or_budget() {
     }
     for scheme in ["rigid", "adaptive"] {
         let more = format!("{contact}\n[solver]\nscheme = \"{scheme}\"\nlongest_s = 5.0");
-        let asked = Asked {
-            restitution: 1.0,
-            place: "count = 3\ntogether = true\npoints_m = [[0.5, 0.5, 1.0], [1.0, 1.0, 1.0], [1.5, 1.5, 1.2]]",
-            velocity: [3.0, 2.0, 1.0],
-            more: &more,
-        };
+        let asked =
+            Asked { restitution: 1.0, place: THREE, velocity: [3.0, 2.0, 1.0], more: &more };
         let ends = stops(&scene(dir.path(), &closed_box(), &asked), &[]);
         let known = ["time_up", "over_budget"];
         assert!(ends.iter().all(|stop| known.contains(&stop.as_str())), "{scheme}: {ends:?}");
@@ -61,14 +68,9 @@ fn worlds_that_never_rest_end_by_time_or_budget() {
 #[cfg(unix)]
 fn a_terminated_world_is_started_again() {
     let dir = tempfile::tempdir().unwrap();
-    let contact = "[rocks.contact]\nnormal_stiffness_n_m = 1e8\nshear_stiffness_n_m = 1e7\nfriction_angle_deg = 30.0\nrestitution = 1.0\ntensile_strength_pa = 0.0\ncohesion_pa = 0.0";
+    let contact = contact(1.0);
     let more = format!("{contact}\n[solver]\nscheme = \"adaptive\"\nlongest_s = 5000.0");
-    let asked = Asked {
-        restitution: 1.0,
-        place: "count = 3\ntogether = true\npoints_m = [[0.5, 0.5, 1.0], [1.0, 1.0, 1.0], [1.5, 1.5, 1.2]]",
-        velocity: [3.0, 2.0, 1.0],
-        more: &more,
-    };
+    let asked = Asked { restitution: 1.0, place: THREE, velocity: [3.0, 2.0, 1.0], more: &more };
     let scene = scene(dir.path(), &closed_box(), &asked);
     let out = dir.path().join("killed");
     let words = ["run", scene.to_str().unwrap(), "--quiet", "--out", out.to_str().unwrap()];
@@ -94,7 +96,7 @@ fn a_terminated_world_is_started_again() {
 #[test]
 fn a_comparison_of_worlds_says_that_their_rocks_depend_on_each_other() {
     let dir = tempfile::tempdir().unwrap();
-    let contact = "[rocks.contact]\nnormal_stiffness_n_m = 1e8\nshear_stiffness_n_m = 1e7\nfriction_angle_deg = 30.0\nrestitution = 0.5\ntensile_strength_pa = 0.0\ncohesion_pa = 0.0";
+    let contact = contact(0.5);
     for (together, is_said) in [("true", true), ("false", false)] {
         let more = format!("{contact}\n[solver]\nscheme = \"rigid\"\nlongest_s = 0.5");
         let place = format!(

@@ -218,7 +218,7 @@ fn body<'a>(
 /// The contact law of two rocks.
 /// Reduced mass, and the smaller radius as the lever of rolling friction.
 fn law_between(a: &Body, b: &Body, answer: &(Ground, Damping), capture: &Capture) -> Law {
-    let mass = a.mass * b.mass / (a.mass + b.mass);
+    let mass = a.reduced_mass_with(b);
     Law::of_mass(&answer.0, &answer.1, (mass, a.radius.min(b.radius)), capture)
 }
 

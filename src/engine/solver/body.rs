@@ -49,6 +49,11 @@ impl Body {
         }
     }
 
+    /// Mass that moves where two rocks press each other (kg): `m_a m_b/(m_a + m_b)`.
+    pub(crate) fn reduced_mass_with(&self, other: &Self) -> f64 {
+        self.mass * other.mass / (self.mass + other.mass)
+    }
+
     /// Speed of a rock that has fallen by half its radius (m/s): `√(g R)`, what is slow for a rock of its size.
     pub(crate) fn fall_speed_m_s(&self) -> f64 {
         (self.gravity.norm() * self.radius).sqrt()

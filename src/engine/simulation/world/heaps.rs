@@ -35,19 +35,14 @@ impl<'a> BodyWorld<'a> {
         let Some(heaps) = self.heaps.filter(|_| ids.len() > MOST_WITH_SPRINGS) else {
             return self.settings;
         };
-        if pairs.iter().any(|pair| self.is_struck_hard([pair.a, pair.b].map(|k| ids[k as usize]))) {
-            return self.settings;
-        }
         let unloaded = ids.iter().filter(|&&k| self.body(k).is_unloaded).count();
-        if 2 * unloaded > ids.len() || largest_touching(ids.len(), pairs) > MOST_WITH_SPRINGS {
-            heaps
-        } else {
-            self.settings
-        }
+        let is_heap =
+            2 * unloaded > ids.len() || largest_touching(ids.len(), pairs) > MOST_WITH_SPRINGS;
+        let is_struck_hard =
+            |pair: &PairHistory| self.is_struck_hard([pair.a, pair.b].map(|k| ids[k as usize]));
+        if is_heap && !pairs.iter().any(is_struck_hard) { heaps } else { self.settings }
     }
-}
 
-impl BodyWorld<'_> {
     /// Whether two rocks come so fast at each other that their blow runs through all that they touch: in large islands of the rigid limit it would
     /// go from pair to pair and die away.
     fn is_struck_hard(&self, ends: [u32; 2]) -> bool {
@@ -55,8 +50,8 @@ impl BodyWorld<'_> {
         let [at, other] = [a, b].map(|body| body.position_at(self.settings, self.now_s));
         let [v, w] = [a, b].map(|body| body.velocity_at(self.settings, self.now_s));
         let (n, _) = between(&at, &other);
-        let radius = a.member.body.radius.min(b.member.body.radius);
-        -n.dot(&(v - w)) > STRUCK_HARD * (self.settings.gravity_m_s2 * radius).sqrt()
+        let [own, its] = [a, b].map(|body| body.member.body.fall_speed_m_s());
+        -n.dot(&(v - w)) > STRUCK_HARD * own.min(its)
     }
 }
 

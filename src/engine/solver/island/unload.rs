@@ -56,7 +56,7 @@ pub fn unload_pair(pair: &mut PairHistory, [a, b]: [&mut IslandBody; 2]) -> [Giv
     let energy_j = if pair.captured { 0.0 } else { pair.law.stored_j(depth_m, 0.0, 0.0) };
     pair.forget_springs();
     pair.captured = true;
-    let mass = a.body.mass * b.body.mass / (a.body.mass + b.body.mass);
+    let mass = a.body.reduced_mass_with(&b.body);
     let push = n * impulse(mass, n.dot(&(a.state.v - b.state.v)), energy_j);
     let work = |one: &mut IslandBody, push: Vec3| {
         let before = one.state.v;

@@ -210,17 +210,17 @@ impl RigidIsland {
                 let apart = a.before_end(s).0 - b.before_end(s).0;
                 let reach = a.body.radius + b.body.radius + HELD * a.body.radius.min(b.body.radius);
                 if apart.norm_squared() <= reach * reach {
-                    if touching.rocks.len() > most {
-                        return None;
-                    }
                     for end in ends {
                         touching.add_rock(end as usize)?;
+                    }
+                    if touching.rocks.len() > most {
+                        return None;
                     }
                     touching.add_pair(pair)?;
                 }
             }
         }
-        (touching.rocks.len() <= most).then_some(touching)
+        Some(touching)
     }
 
     /// The contacts of a blow: pairs, then those with the mesh rock by rock; `None` if they are too many.

@@ -11,7 +11,7 @@ use crate::contact::pair::{PairHistory, between};
 use crate::rock::Vec3;
 use crate::solver::contact_state::ContactEnvironment;
 use crate::solver::island::body::IslandBody;
-use crate::solver::loss::{Given, Loss};
+use crate::solver::loss::Given;
 
 /// Overlap of two rocks that is left alone: what their weight presses springs in, within bounds (–, relative to the smaller
 /// radius).
@@ -155,7 +155,7 @@ impl RigidIsland {
         let (mut net_j, mut risen_j, mut sunk_j) = (0.0, 0.0, 0.0);
         for (k, (ball, from)) in self.balls.iter_mut().zip(&self.places).enumerate() {
             ball.moved = ball.c != *from;
-            let lifted_j = -ball.body.mass * ball.body.gravity.dot(&(ball.c - from));
+            let lifted_j = ball.lifted_j(from);
             self.given[k].passed_on -= lifted_j;
             net_j += lifted_j;
             risen_j += lifted_j.max(0.0);
@@ -163,7 +163,7 @@ impl RigidIsland {
         }
         if net_j <= 0.0 {
             // what has sunk more than others rose is lost
-            return self.share_out(|_, given, lifted_j| {
+            return self.share_out(|given, lifted_j| {
                 let lost_j = -net_j * (-lifted_j).max(0.0) / sunk_j.max(f64::MIN_POSITIVE);
                 (given.lost, given.passed_on) = (given.lost + lost_j, given.passed_on - lost_j);
             });
@@ -173,17 +173,16 @@ impl RigidIsland {
         let unpaid_j = net_j - paid_j;
         if unpaid_j > 0.0 {
             // nobody has it: the error of the step has made it
-            self.share_out(|_, given, lifted_j| {
+            self.share_out(|given, lifted_j| {
                 given.passed_on += unpaid_j * lifted_j.max(0.0) / risen_j;
             });
         }
     }
 
-    /// Goes through what rocks lost and gave, with the energy that the height of each has gained (J).
-    fn share_out(&mut self, mut book: impl FnMut(&mut Loss, &mut Given, f64)) {
-        let ways = self.balls.iter().zip(&self.places);
-        for ((ball, from), (loss, given)) in ways.zip(self.losses.iter_mut().zip(&mut self.given)) {
-            book(loss, given, -ball.body.mass * ball.body.gravity.dot(&(ball.c - from)));
+    /// Goes through what rocks gave, with the energy that the height of each has gained (J).
+    fn share_out(&mut self, mut book: impl FnMut(&mut Given, f64)) {
+        for ((ball, from), given) in self.balls.iter().zip(&self.places).zip(&mut self.given) {
+            book(given, ball.lifted_j(from));
         }
     }
 
@@ -236,6 +235,11 @@ impl StepBody {
     /// Energy in motion (J).
     fn motion_j(&self) -> f64 {
         self.energy_j((&self.v, &self.w))
+    }
+
+    /// Energy that its height has gained from a place (J).
+    fn lifted_j(&self, from: &Vec3) -> f64 {
+        -self.body.mass * self.body.gravity.dot(&(self.c - from))
     }
 
     /// Loses energy (J) of its motion, as much as it has at most.
