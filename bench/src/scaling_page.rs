@@ -340,6 +340,6 @@ fn key(canvas: &Canvas<'_>) {
         canvas.text(&Label::new(scheme.name(), (x + 9.0, 12.0)).sized(NORMAL).coloured(INK));
         x += 90.0;
     }
-    let words = "dashed: in proportion to the number; s/s: run time over simulated time";
+    let words = "dashed: in proportion; s/s: per simulated second";
     canvas.text(&Label::new(words, (x, 12.0)).coloured(GREY));
 }
