@@ -20,7 +20,7 @@ mod short;
 
 pub(crate) use short::ShortTurn;
 
-use crate::math::elliptic::{Elliptic, Jacobi};
+use crate::math::elliptic::{Elliptic, Jacobi, ThirdKind};
 use crate::math::{self, turn};
 use crate::rock::Vec3;
 use nalgebra::{Matrix3, Rotation3, Unit};
@@ -75,8 +75,8 @@ struct Wobble {
     /// `λ = √((C−B) d_A/(A B C))` (rad/s) and the phase at the start.
     rate: f64,
     u0: f64,
-    /// Characteristic of the third integral (–), never positive.
-    n: f64,
+    /// The third integral, by which the turn about `ℓ` goes.
+    third: ThirdKind,
     /// `L/A` (rad/s) and the factor of the third integral (–), with its value at the start.
     precession: f64,
     factor: f64,
@@ -300,7 +300,7 @@ fn wobble_of(
     let phase = phase_of(w.x / w1m, sign2 * w.y / w2m);
     let u0 = elliptic.first_kind(phase);
     let rate = ((c - b) * d_a / (a * b * c)).sqrt();
-    let n = -(a * w1m / (c * w3m)).powi(2);
+    let third = elliptic.third_kind(-(a * w1m / (c * w3m)).powi(2));
     let triad0 = triad(&l);
     TopMotion::Elliptic(Wobble {
         elliptic,
@@ -309,10 +309,10 @@ fn wobble_of(
         most: [w1m, sign2 * w2m, sign3 * w3m],
         rate,
         u0,
-        n,
+        third,
         precession: size / a,
         factor: -size * d_a / (a * rate * (c * w3m).powi(2)),
-        third0: elliptic.third_kind(n, &elliptic.functions(u0)),
+        third0: third.at(&elliptic.functions(u0)),
         triad: start.matrix() * axes.transpose() * triad0,
         about,
         size,
@@ -350,7 +350,7 @@ impl Wobble {
             b * self.most[1] * sign * sn,
             c * self.most[2] * dn,
         );
-        let third = self.elliptic.third_kind(self.n, &now) - self.third0;
+        let third = self.third.at(&now) - self.third0;
         let psi = self.precession * t + self.factor * third;
         let turned = turn(&self.about, psi).matrix() * self.triad;
         debug_assert!((l.norm() / self.size - 1.0).abs() < 1e-9, "the momentum keeps its size");
