@@ -3,7 +3,7 @@
 //! In a heap each small blow runs through all that touch, and the step of all is as short as the springs of one ask for, while the heap as
 //! a whole hardly moves. So an island in which many rocks hold each other goes through its windows as with `rigid`, the limit of the
 //! same law, until it is small again, or a rock of it is struck hard: what a boulder throws up that falls on a heap hangs on how its blow runs
-//! through all of it, and in large islands of the rigid limit blows go from pair to pair. Between two windows its springs
+//! through all of it, and in large islands of the rigid limit it is followed through the nearest of them alone. Between two windows its springs
 //! are unloaded into motion (`solver::island::unload`), or begin anew at rest. Errors are those of `rigid` at such speeds: the time
 //! of an impact, the depth `m g/p_N` that weight presses in, and the spread of small blows.
 
@@ -16,10 +16,7 @@ use crate::simulation::settings::RunSettings;
 use crate::solver::island::partition::Partition;
 use crate::solver::island::unload_pair;
 use crate::solver::loss::Given;
-use crate::solver::{MOST_WITH_SPRINGS, Settings};
-
-/// Two rocks that come at each other faster than this strike hard (–, relative to `√(g R)` of the smaller).
-const STRUCK_HARD: f64 = 4.0;
+use crate::solver::{MOST_WITH_SPRINGS, STRUCK_HARD, Settings};
 
 /// The step of heaps where they go on in the rigid limit: not where bonds are to break, as those have springs.
 pub(super) fn step_in_heaps(step: &Settings, answer: &PairMaterial) -> Option<Settings> {
@@ -43,8 +40,8 @@ impl<'a> BodyWorld<'a> {
         if is_heap && !pairs.iter().any(is_struck_hard) { heaps } else { self.settings }
     }
 
-    /// Whether two rocks come so fast at each other that their blow runs through all that they touch: in large islands of the rigid limit it would
-    /// go from pair to pair and die away.
+    /// Whether two rocks come so fast at each other that it matters how their blow runs through all that they touch: large islands of the rigid
+    /// limit follow it through the nearest alone.
     fn is_struck_hard(&self, ends: [u32; 2]) -> bool {
         let [a, b] = ends.map(|k| self.body(k));
         let [at, other] = [a, b].map(|body| body.position_at(self.settings, self.now_s));

@@ -2,14 +2,16 @@
 //!
 //! A ball that falls on one that lies on the ground is answered by the ground, and a blow on a row of rocks in touch runs through it:
 //! taken pair by pair that would be another law than that of springs. In islands of more rocks than one impact is followed with, in
-//! heaps, blows are taken pair by pair: each of them would run through all that lie there. A boulder that falls on a stone is answered
-//! by the ground below it there too.
+//! heaps, small blows are taken pair by pair: each of them would run through all that lie there. A rock that strikes hard does so through
+//! the nearest that touch, as many as one impact is followed with: what it throws up hangs on that. And a boulder that falls on a
+//! stone is answered by the ground below it there too.
 
 use super::RigidIsland;
 use super::contacts::{ImpactScene, LIVELY, StepBody, hit_of};
 use crate::contact::ContactPoint;
 use crate::contact::pair::between;
 use crate::rock::Vec3;
+use crate::solver::STRUCK_HARD;
 use crate::solver::contact_state::ContactEnvironment;
 use crate::solver::impact::{
     BODIES, CONTACTS, ContactEnds, FrozenBody, FrozenCollision, FrozenContact, collide,
@@ -29,12 +31,23 @@ const BESIDE_MESH: f64 = 0.02;
 /// … which presses it there if it pushes it against the normal, by this cosine.
 const PRESSED_ON: f64 = -0.7;
 
+/// With how many rocks a blow is followed.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Reach {
+    /// All that touch each other, if they are no more than these.
+    All(usize),
+    /// The nearest of them, as many as one impact is followed with.
+    Nearest,
+}
+
 /// What a blow begins with.
 pub(super) struct BlowStart {
     /// The pair of rocks, or none where one comes to the mesh: its touches are those of its last look.
     pub(super) pair: Option<usize>,
     /// Turn of the facet of rough ground that is struck, if there is one.
     pub(super) turn: Option<Rotation3<f64>>,
+    /// How fast its ends come at each other (m/s).
+    pub(super) approach_m_s: f64,
 }
 
 /// Rocks that touch each other, as places in the island, and their pairs.
@@ -45,14 +58,19 @@ struct TouchingRocks {
 }
 
 impl TouchingRocks {
-    /// Adds a rock that is not among them yet; `None` if there is no room.
-    fn add_rock(&mut self, rock: usize) -> Option<()> {
-        self.rocks.contains(&rock).then_some(()).or_else(|| self.rocks.try_push(rock).ok())
-    }
-
-    /// The same for a pair.
-    fn add_pair(&mut self, pair: usize) -> Option<()> {
-        self.pairs.contains(&pair).then_some(()).or_else(|| self.pairs.try_push(pair).ok())
+    /// Adds a pair that is not among them yet, and its rocks; `None` if there is no room for all of it.
+    fn add(&mut self, pair: usize, ends: [u32; 2]) -> Option<()> {
+        if self.pairs.contains(&pair) {
+            return Some(());
+        }
+        let new = ends.map(|end| end as usize).into_iter().filter(|end| !self.rocks.contains(end));
+        let new: ArrayVec<usize, 2> = new.collect();
+        if new.len() > self.rocks.remaining_capacity() {
+            return None;
+        }
+        self.pairs.try_push(pair).ok()?;
+        self.rocks.extend(new);
+        Some(())
     }
 }
 
@@ -73,7 +91,7 @@ struct StruckRocks {
 }
 
 impl RigidIsland {
-    /// Takes a blow `s` (s) before the end of the step together with all rocks that touch; whether more take part than its own ends
+    /// Takes a blow `s` (s) before the end of the step together with the rocks that touch; whether more take part than its own ends
     /// and not too many.
     pub(super) fn blow_together(
         &mut self,
@@ -81,11 +99,8 @@ impl RigidIsland {
         blow: &BlowStart,
         s: f64,
     ) -> bool {
-        let most = if self.balls.len() > BODIES { TOGETHER_IN_HEAP } else { BODIES };
-        if most < BODIES && !self.is_between(scene, blow) {
-            return false;
-        }
-        let Some(touching) = self.touching(scene, blow, (s, most)) else { return false };
+        let Some(reach) = self.reach(scene, blow) else { return false };
+        let Some(touching) = self.touching(scene, blow, (s, reach)) else { return false };
         let at_blow = |rock: &usize| {
             let (c, v) = self.balls[*rock].before_end(s);
             StruckRock { c, v, on_mesh: false }
@@ -173,6 +188,19 @@ impl RigidIsland {
         }
     }
 
+    /// With how many rocks a blow is followed; `None` if with its own ends alone.
+    fn reach(&self, scene: &ImpactScene, blow: &BlowStart) -> Option<Reach> {
+        if self.balls.len() <= BODIES {
+            return Some(Reach::All(BODIES));
+        }
+        let fall_m_s = |rock: &usize| self.balls[*rock].body.fall_speed_m_s();
+        let slowest = self.in_blow.iter().map(fall_m_s).fold(f64::INFINITY, f64::min);
+        if blow.approach_m_s > STRUCK_HARD * slowest {
+            return Some(Reach::Nearest);
+        }
+        self.is_between(scene, blow).then_some(Reach::All(TOGETHER_IN_HEAP))
+    }
+
     /// Whether a blow presses a rock onto the mesh, by its last look, that is much lighter than the one which strikes it.
     fn is_between(&self, scene: &ImpactScene, blow: &BlowStart) -> bool {
         let Some(pair) = blow.pair else { return false };
@@ -188,18 +216,16 @@ impl RigidIsland {
             && state.touches.iter().any(|touch| touch.distance_m <= reach && presses(touch))
     }
 
-    /// Rocks that touch the ends of a blow, and those that touch these; `None` if they are more than `most`.
+    /// Rocks that touch the ends of a blow, and those that touch these; `None` if they are more than it reaches.
     fn touching(
         &self,
         scene: &ImpactScene,
         blow: &BlowStart,
-        (s, most): (f64, usize),
+        (s, reach): (f64, Reach),
     ) -> Option<TouchingRocks> {
         let mut touching = TouchingRocks::default();
-        for &rock in &self.in_blow {
-            touching.add_rock(rock)?;
-        }
-        blow.pair.map_or(Some(()), |pair| touching.add_pair(pair))?;
+        touching.rocks.extend(self.in_blow.iter().copied());
+        touching.pairs.extend(blow.pair);
         let mut next = 0;
         while let Some(&rock) = touching.rocks.get(next) {
             next += 1;
@@ -208,15 +234,15 @@ impl RigidIsland {
                 let ends = [scene.pair_histories[pair].a, scene.pair_histories[pair].b];
                 let [a, b] = ends.map(|k| &self.balls[k as usize]);
                 let apart = a.before_end(s).0 - b.before_end(s).0;
-                let reach = a.body.radius + b.body.radius + HELD * a.body.radius.min(b.body.radius);
-                if apart.norm_squared() <= reach * reach {
-                    for end in ends {
-                        touching.add_rock(end as usize)?;
+                let touch = a.body.radius + b.body.radius + HELD * a.body.radius.min(b.body.radius);
+                if apart.norm_squared() <= touch * touch {
+                    let added = touching.add(pair, ends);
+                    if reach != Reach::Nearest {
+                        added?;
                     }
-                    if touching.rocks.len() > most {
-                        return None;
-                    }
-                    touching.add_pair(pair)?;
+                }
+                if matches!(reach, Reach::All(most) if touching.rocks.len() > most) {
+                    return None;
                 }
             }
         }

@@ -185,12 +185,17 @@ impl RigidIsland {
     }
 
     fn blow_pair(&mut self, scene: &mut ImpactScene, place: usize, s: f64) {
-        if self.blow_together(scene, &BlowStart { pair: Some(place), turn: None }, s) {
+        let pair_history = &scene.pair_histories[place];
+        let ends = [pair_history.a as usize, pair_history.b as usize];
+        let [a, b] = ends.map(|k| &self.balls[k]);
+        let ((at, v), (other, w)) = (a.before_end(s), b.before_end(s));
+        let approach_m_s = -between(&at, &other).0.dot(&(v - w));
+        if self.blow_together(scene, &BlowStart { pair: Some(place), turn: None, approach_m_s }, s)
+        {
             return;
         }
         let tolerance = self.impact_tolerance();
         let pair_history = &scene.pair_histories[place];
-        let ends = [pair_history.a as usize, pair_history.b as usize];
         let Ok([a, b]) = self.balls.get_disjoint_mut(ends) else { return };
         let at = [&*a, &*b].map(|ball| ball.c - ball.v * s);
         let mut ball_contact = BallContact::new((place, pair_history), [a, b], [&at[0], &at[1]]);
@@ -259,7 +264,8 @@ impl RigidIsland {
         let turn = state.facets.struck(&world, &meeting);
         // how near something is at that instant is known as well as the parabola is the way of the rock
         state.touches.keep_nearer(touch.distance_m.max(body.radius) + HELD * body.radius);
-        if self.blow_together(scene, &BlowStart { pair: None, turn }, s) {
+        let approach_m_s = -touch.normal.dot(v);
+        if self.blow_together(scene, &BlowStart { pair: None, turn, approach_m_s }, s) {
             return;
         }
         let ball = &mut self.balls[k];
