@@ -300,3 +300,27 @@ fn stones_out_of_the_way_change_no_rebound() {
     let (few, many) = (rebound(3), rebound(5));
     assert!(few > 5.0 && (many - few).abs() < 1e-2 * few, "{few} {many}");
 }
+
+/// A ball that strikes a row of balls in touch runs through all of it, among so many others beside it that one blow is not followed with all
+/// of them as well as where it lies alone: from ball to ball, each blow by itself, the far end would be struck far less.
+#[test]
+fn a_hard_blow_runs_through_what_touches_in_a_heap() {
+    let after = |beside: usize| {
+        let ball = |x: f64, y: f64, v: f64| -> Sphere {
+            (0.2, 2700.0, [x, y, 0.2], [v, 0.0, 0.0], [0.0; 3])
+        };
+        let mut rocks = vec![ball(-0.41, 0.0, 10.0)];
+        rocks.extend((0..5).map(|k| ball(0.4 * f64::from(k), 0.0, 0.0)));
+        let lane = |k: usize| ball(0.402 * (k % 4) as f64, 0.402 * (1 + k / 4) as f64, 0.0);
+        rocks.extend((0..beside).map(lane));
+        let world = World { gravity_m_s2: G, restitution: 0.4, ..WORLD };
+        let (falls, _) = world.run(&plane(), &rocks, 0.01);
+        [0, 1, 2, 3, 4, 5].map(|k| falls[k].end.velocity_m_s.x)
+    };
+    let (few, many) = (after(4), after(16));
+    for (few, many) in few.into_iter().zip(many) {
+        assert!((few - many).abs() < 0.02, "{few:?} {many:?}");
+    }
+    let apart = few[5] - few[1];
+    assert!(apart > 1.0, "{few:?}");
+}
