@@ -94,7 +94,7 @@ pub(crate) fn time_within(way: f64, speed: f64, gravity: f64) -> f64 {
 pub enum FlightEnd {
     /// Touches the mesh after so many seconds.
     Touch(f64),
-    /// Has left the box of the mesh after so many seconds, or gone under the slope, and will not touch it again.
+    /// Has passed the last ground below it after so many seconds and will not touch the mesh again.
     Leaves(f64),
     /// Is still flying at the end of the time allowed.
     Flies,
@@ -130,28 +130,39 @@ pub fn time_of_impact_past(
     let limit = longest_s.min(leaves);
     match first_touch(terrain, flight, limit, (gone, tested)) {
         Some(t) => FlightEnd::Touch(t),
-        None if leaves <= longest_s => {
-            FlightEnd::Leaves(under_slope_after(terrain, flight, leaves))
-        }
+        None if leaves <= longest_s => FlightEnd::Leaves(last_over_ground(terrain, flight, leaves)),
         None => FlightEnd::Flies,
     }
 }
 
-/// Places of a last flight at which is looked whether the ball is under the slope.
+/// Places of a last flight at which is looked whether there is ground below the ball.
 const LOOKS: u32 = 64;
 /// Halvings of the time between two of them: 2⁻⁴⁰ of a flight is less than its rounding on a map.
 const HALVINGS: u32 = 40;
 
-/// When a ball that touches nothing any more goes under the slope (s), at the latest when it `leaves` its box: it has fallen
-/// through a hole of the mesh, and where it flies on under it no rock would.
+/// When a ball that touches nothing any more, and `leaves` its box, passes the last ground below it (s): the border of the mesh, however it
+/// runs, or the rim of a hole. Further down it would only fall, with a speed that no rock has; and under the slope no rock would fly on.
 ///
-/// Asked once in the life of a rock: what leaves over the edge of the terrain has no slope above it.
-fn under_slope_after(terrain: &Terrain, flight: &Parabola, leaves: f64) -> f64 {
-    let is_under = |t: f64| terrain.is_under_slope(&flight.centre(t));
+/// Asked once in the life of a rock.
+fn last_over_ground(terrain: &Terrain, flight: &Parabola, leaves: f64) -> f64 {
+    let is_over = |t: f64| {
+        let at = flight.centre(t);
+        terrain.ground_under(at.x, at.y, at.z).is_some()
+    };
     let look = |k: u32| leaves * f64::from(k) / f64::from(LOOKS);
-    let Some(first) = (0..=LOOKS).find(|k| is_under(look(*k))) else { return leaves };
-    let between = [look(first.saturating_sub(1)), look(first)];
-    math::bisected(between, HALVINGS, |t| !is_under(t))[1]
+    let mut last = None;
+    for k in 0..=LOOKS {
+        if is_over(look(k)) {
+            last = Some(k);
+        } else if terrain.is_under_slope(&flight.centre(look(k))) {
+            break;
+        }
+    }
+    match last {
+        None => 0.0,
+        Some(LOOKS) => leaves,
+        Some(k) => math::bisected([look(k), look(k + 1)], HALVINGS, is_over)[0],
+    }
 }
 
 /// When the ball is outside the mesh's box for good (s): beside it, or below it; without gravity also above it.

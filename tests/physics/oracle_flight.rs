@@ -11,6 +11,7 @@ use common::*;
 use rockfall::flight::{FlightEnd, Parabola, time_of_impact};
 use rockfall::rock::Vec3;
 use rockfall::terrain::Terrain;
+use std::f64::consts::FRAC_PI_2;
 
 /// How deep a leap may run into the mesh (m): rounding of quartics, no more.
 const DEEP: f64 = 1e-8;
@@ -197,4 +198,35 @@ fn no_drop_slips_between_triangles() {
         }
     }
     assert_none(&missed, 3000);
+}
+
+/// A flight that touches nothing any more ends where it passes the last ground below it, however the border runs: a square turned by any
+/// angle is left after the same time, and from above a hole at once. What would fall on below the border has a speed that no rock has.
+#[test]
+fn a_flight_leaves_where_the_last_ground_is_below_it() {
+    let around = |turn_rad: f64, k: u32| {
+        let (sin, cos) = (turn_rad + FRAC_PI_2 * f64::from(k)).sin_cos();
+        Vec3::new(10.0 * cos, 10.0 * sin, 0.0)
+    };
+    for turn in 0..7 {
+        let turn_rad = 0.21 * f64::from(turn);
+        let [a, b, c, d] = [0, 1, 2, 3].map(|k| around(turn_rad, k));
+        let square = terrain(vec![[a, b, c], [a, c, d]]);
+        // across the middle of a side, 10/√2 m away, at 5 m/s
+        let out = (a + b).normalize();
+        let flight = |from: Vec3, speed_m_s: f64| Parabola {
+            start: from + Vec3::new(0.0, 0.0, 40.0),
+            velocity: out * speed_m_s,
+            gravity: G,
+            radius: 0.5,
+        };
+        let left = time_of_impact(&square, &flight(Vec3::zeros(), 5.0), 100.0, &mut 0);
+        let FlightEnd::Leaves(t) = left else { panic!("{turn}: {left:?}") };
+        assert!((t - 10.0 / 2f64.sqrt() / 5.0).abs() < 1e-9, "{turn}: {t} s");
+        // a triangle of four is missing: from above it nothing is ever below
+        let middle = Vec3::zeros();
+        let hole = terrain(vec![[middle, b, c], [middle, c, d], [middle, d, a]]);
+        let left = time_of_impact(&hole, &flight(out * 3.0, 0.1), 100.0, &mut 0);
+        assert_eq!(left, FlightEnd::Leaves(0.0), "{turn}");
+    }
 }
