@@ -11,7 +11,8 @@
 //!             c₁ = c₀ + Δt (v₀ + v₁)/2
 //! ```
 //!
-//! What the rock comes to faster than it is captured bears nothing before it is met: the step ends there, and an impact follows.
+//! What the rock comes to bears nothing before it is met: the step ends there, and an impact follows, or, slower than a blow rebounds, the impulses
+//! that hold it from there on.
 //! Geometry is that of the middle of the step: second order where nothing switches, first order
 //! over lift-off and sliding into rolling. What is lost against springs: the time of an impact, and
 //! the penetration at rest, `m g/p_N`.
@@ -36,6 +37,8 @@ pub(super) use contact::{GroundContact, settle, sustained_m_s};
 pub(crate) const HELD: f64 = 1e-4;
 /// Local error of an impact followed in its own time (–, relative to its speed).
 pub(crate) const IMPACT: f64 = 2e-5;
+/// An approach slower than this is none (–, relative to `√(g R)`): what a step leaves of it rubs off no more than rounding of the ground.
+const COMING: f64 = 3e-3;
 /// Share of the slowest approach to a facet from which on a turned rock comes to it (–): turning rounds the approach, and once
 /// the facet is struck there is none.
 const ONTO_FACET: f64 = 0.5;
@@ -68,6 +71,7 @@ pub fn advance(
         state.is_struck = !state.is_struck;
     } else {
         state.is_struck = false;
+        sustained::meet(world, state, &mut done);
         let speed = state.v.norm().max(f64::MIN_POSITIVE);
         let usual = longest.min(TRAVEL * world.body.radius / speed);
         if !state.slide_on_plane(world, (usual, longest), h_max, &mut done) {
@@ -92,6 +96,12 @@ fn hits(world: &ContactEnvironment, state: &ContactState) -> bool {
 /// Whether a rock with velocity `v` hits a touch too fast to be captured.
 pub(super) fn is_fast(world: &ContactEnvironment, touch: &ContactPoint, v: &Vec3) -> bool {
     -touch.normal.dot(v) >= capture_m_s(world.law(touch.triangle))
+}
+
+/// Whether a rock with velocity `v` comes to a touch so fast that it matters when it meets it: a step that began before would hold it on both
+/// sides of a fold at once, and rub.
+fn is_coming(world: &ContactEnvironment, touch: &ContactPoint, v: &Vec3) -> bool {
+    -touch.normal.dot(v) >= COMING * world.body.fall_speed_m_s()
 }
 
 /// Notes the contacts that are about to be struck.

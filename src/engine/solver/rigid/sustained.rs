@@ -1,7 +1,7 @@
 //! One step of sustained contact: what holds the rock bears it, and what it comes to within the step ends the step.
 
 use super::contact::{GroundContact, settle, sustained_m_s};
-use super::{is_fast, remember};
+use super::{is_coming, remember};
 use crate::contact::{ContactPoint, MOST, TOUCH};
 use crate::rock::Vec3;
 use crate::solver::body::Twist;
@@ -40,12 +40,9 @@ pub(super) fn step(
         let Some(met_s) = meets_s(world, state, &tried) else { break };
         tried.hold(world, state, met_s);
     }
-    let (v, w) = (state.v, state.w);
+    let before = (state.v, state.w);
+    let mean = book(world, &tried.contacts, [&before, &tried.after], done);
     (state.v, state.w) = tried.after;
-    let mean = (0.5 * (v + state.v), 0.5 * (w + state.w));
-    for contact in &tried.contacts {
-        done.loss.add(&contact.loss(&world.body, &mean).on(world, contact.triangle), 1.0);
-    }
     // mean of both velocities: the parabola under weight alone is exact
     state.c += mean.0 * tried.dt;
     done.dt = tried.dt;
@@ -55,9 +52,36 @@ pub(super) fn step(
     remember(world, state, |_| pushed);
 }
 
+/// What the rock meets at this instant, too slow to rebound, holds it from now on: impulses that take no time.
+pub(super) fn meet(world: &ContactEnvironment, state: &mut ContactState, done: &mut Advance) {
+    let touches = state.touches.nearer(world.body.radius * (1.0 + TOUCH));
+    if !touches.iter().any(|touch| is_coming(world, touch, &state.v)) {
+        return;
+    }
+    let held = |touch: &ContactPoint| GroundContact::new(0, touch, world.law(touch.triangle));
+    let mut contacts: ArrayVec<GroundContact, MOST> = touches.iter().map(held).collect();
+    let before = (state.v, state.w);
+    let after = settle(&mut contacts, &world.body, before, &mut state.sweeps);
+    book(world, &contacts, [&before, &after], done);
+    (state.v, state.w) = after;
+}
+
+/// Books what contacts took of the motion between two instants; their mean motion.
+fn book(
+    world: &ContactEnvironment,
+    contacts: &[GroundContact],
+    [before, after]: [&Twist; 2],
+    done: &mut Advance,
+) -> Twist {
+    let mean = (0.5 * (before.0 + after.0), 0.5 * (before.1 + after.1));
+    for contact in contacts {
+        done.loss.add(&contact.loss(&world.body, &mean).on(world, contact.triangle), 1.0);
+    }
+    mean
+}
+
 impl HeldStep {
-    /// Takes `dt` (s), with the contacts of the middle, looked for there. What the rock comes to faster than it is captured does nothing
-    /// before it is met.
+    /// Takes `dt` (s), with the contacts of the middle, looked for there. What the rock comes to does nothing before it is met.
     fn hold(&mut self, world: &ContactEnvironment, state: &mut ContactState, dt: f64) {
         let half = state.v * (0.5 * dt);
         let middle = state.c + half;
@@ -65,8 +89,8 @@ impl HeldStep {
         self.dt = dt;
         self.contacts.clear();
         for touch in state.touches.iter() {
-            // what is touched when the step begins is not come to so fast: that were an impact
-            if is_fast(world, touch, &state.v) {
+            // what is touched when the step begins is not come to any more: it has been met
+            if is_coming(world, touch, &state.v) {
                 continue;
             }
             let gap = gap_at_start(world, touch, &half);
@@ -84,15 +108,15 @@ fn gap_at_start(world: &ContactEnvironment, touch: &ContactPoint, half: &Vec3) -
     touch.distance_m - world.body.radius - touch.normal.dot(half)
 }
 
-/// What of the last look the rock comes to faster than it is captured.
+/// What of the last look the rock comes to.
 fn ahead<'s>(
     world: &ContactEnvironment,
     state: &'s ContactState,
 ) -> impl Iterator<Item = &'s ContactPoint> {
-    state.touches.iter().filter(|touch| is_fast(world, touch, &state.v))
+    state.touches.iter().filter(|touch| is_coming(world, touch, &state.v))
 }
 
-/// Cuts a step where a gap to a touch of the last look, that at its start, closes faster than the capture speed.
+/// Cuts a step where a gap to a touch of the last look, that at its start, closes.
 fn closing(world: &ContactEnvironment, state: &ContactState, dt: f64) -> f64 {
     ahead(world, state).fold(dt, |dt, touch| {
         let gap = touch.distance_m - world.body.radius;
