@@ -314,3 +314,35 @@ fn a_wall_bears_nothing_before_it_is_struck() {
         }
     }
 }
+
+/// A sphere that rolls down into a valley of two planes of 5° and up the other side keeps `((0.4 + cos 10°)/1.4)²` of its energy, however slow it
+/// comes: it turns about the new contact at once, and the old one lets go. The step in which it met the other side held it on both,
+/// and it lost two to five times as much where it came too slow to rebound.
+#[test]
+fn a_slow_rock_rolls_through_a_valley() {
+    let fold = 5f64.to_radians();
+    let (sin, cos) = fold.sin_cos();
+    let at = |x: f64, y: f64| Vec3::new(x, y, x.abs() * fold.tan());
+    let quad = |[a, b]: [f64; 2]| {
+        let [p, q, r, s] = [at(a, -5.0), at(b, -5.0), at(b, 5.0), at(a, 5.0)];
+        [[p, q, r], [p, r, s]]
+    };
+    let valley = terrain([[-5.0, 0.0], [0.0, 5.0]].map(quad).concat());
+    let kept = ((0.4 + (2.0 * fold).cos()) / 1.4).powi(2);
+    let radius = ROCK.radius_m;
+    let ground = Ground { restitution: Some(0.0), ..GROUND };
+    let case = Case { scheme: Scheme::Rigid, step_s: 0.01, ground, ..CASE };
+    for way_m in [0.05, 0.1, 0.2, 0.35, 0.5, 0.8] {
+        // from rest, its contact so far up the slope; the way down ends where it touches both sides
+        let along = way_m + radius * fold.tan();
+        let start = [-along * cos + radius * sin, 0.3, along * sin + radius * cos];
+        let came_j = case.rock.mass_kg() * G * way_m * sin;
+        // down and up again, not back to the fold
+        let down_s = (2.0 * way_m / (G * sin / 1.4)).sqrt();
+        let run = case.run(&valley, [start, [0.0; 3], [0.0; 3]], 1.7 * down_s);
+        let ledger = &run.ledger;
+        let lost = (ledger.friction_j + ledger.damping_j + ledger.rolling_j) / came_j;
+        let off = lost / (1.0 - kept) - 1.0;
+        assert!(off.abs() < 0.03, "{way_m} m: {lost} of {}", 1.0 - kept);
+    }
+}
