@@ -122,11 +122,10 @@ pub fn energy_j(falls: &[Trajectory], at_end: bool, g: f64) -> f64 {
     falls.iter().map(energy).sum()
 }
 
-/// Two far triangles whose box is 100 m wide: nothing but the other spheres is touched.
+/// A sheet far below and a triangle far above, whose box is 100 m wide: nothing but the other spheres is touched.
 pub fn space() -> Terrain {
-    let corner = |at: f64| {
-        let p = Vec3::repeat(at);
-        [p, p + Vec3::x(), p + Vec3::y()]
-    };
-    terrain(vec![corner(-50.0), corner(50.0)])
+    let at = |x: f64, y: f64| Vec3::new(x, y, -50.0);
+    let [a, b, c, d] = [at(-50.0, -50.0), at(50.0, -50.0), at(50.0, 50.0), at(-50.0, 50.0)];
+    let p = Vec3::repeat(50.0);
+    terrain(vec![[a, b, c], [a, c, d], [p, p + Vec3::x(), p + Vec3::y()]])
 }

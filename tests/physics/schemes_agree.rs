@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use rockfall::plan::Plan;
 use rockfall::random::Distribution;
 use rockfall::scene::Scene;
-use rockfall::simulation::{Scratch, Trajectory, simulate_release};
+use rockfall::simulation::{Scratch, Stop, Trajectory, simulate_release};
 use rockfall::solver::Scheme;
 use std::path::Path;
 
@@ -140,6 +140,11 @@ fn mean(rocks: &[Trajectory], count: fn(&Trajectory) -> u32) -> (f64, f64) {
     (mean, (square / n).sqrt())
 }
 
+/// Runout (m); of a rock that left over the foot of the slope, as four of ten do at one distance, only that it is longer is known.
+fn runout_if_known_m(fall: &Trajectory) -> f64 {
+    if fall.stop == Stop::LeftTerrain { f64::INFINITY } else { fall.runout_m() }
+}
+
 #[test]
 fn runout_speed_and_energy_do_not_depend_on_the_scheme_on_smooth_ground() {
     schemes_agree(0.0);
@@ -161,7 +166,7 @@ fn schemes_agree(roughness_deg: f64) {
             kolmogorov_smirnov(a.iter().map(of).collect(), b.iter().map(of).collect())
         };
         let found = [
-            apart(Trajectory::runout_m),
+            apart(runout_if_known_m),
             apart(|rock| rock.extremes.speed_m_s),
             apart(|rock| rock.extremes.total_j),
         ];

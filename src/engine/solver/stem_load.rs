@@ -1,9 +1,11 @@
 //! What one rock has done to the stems.
 
-use crate::contact::history::ContactHistories;
+use crate::contact::MOST;
+use crate::contact::history::{ContactHistories, ContactHistory};
 use crate::random::{Purpose, RandomStream, beside};
 use crate::terrain::Terrain;
 use crate::terrain::stems::Stems;
+use arrayvec::ArrayVec;
 
 /// A stem with no more than this left of what it can take (–) gives way: the steps come ever nearer to the end of it.
 const AT_LIMIT: f64 = 1e-6;
@@ -15,8 +17,8 @@ pub(crate) struct StemLoad {
     pub(super) limits_j: Vec<f64>,
     /// Stems touched, and what each has taken (J).
     pub(super) taken: Vec<(u32, f64)>,
-    /// The stem pressed hardest at the last look.
-    pub(super) pressed: Option<u32>,
+    /// The stems pressed at the last look, each with its share (–) of what trees take.
+    pub(super) pressed: ArrayVec<(u32, f64), MOST>,
     /// What stems took that broke within the step, and that is among its losses (J).
     pub(super) broken_j: f64,
 }
@@ -29,7 +31,8 @@ impl StemLoad {
         gone.reserve(stems.count());
         self.taken.clear();
         self.taken.reserve(stems.count());
-        (self.pressed, self.broken_j) = (None, 0.0);
+        self.pressed.clear();
+        self.broken_j = 0.0;
         let mut random = beside(random, Purpose::Stems);
         self.limits_j.clear();
         let limits = stems.limits_j.iter();
@@ -59,13 +62,31 @@ impl StemLoad {
         }
     }
 
-    /// Sees which stem is pressed hardest; a tree that stands for good may be pressed harder.
+    /// This stem alone is pressed.
+    pub(super) fn press(&mut self, stem: u32) {
+        self.pressed.clear();
+        self.pressed.push((stem, 1.0));
+    }
+
+    /// Sees which stems are pressed. Springs hold energy by the squares of their forces, and so what trees take is shared, evenly in the
+    /// limit of stiff springs, where no force is known; a tree that stands for good has its share too.
     pub(super) fn look(&mut self, terrain: &Terrain, stems: &Stems, histories: &ContactHistories) {
-        let trees = histories.iter().filter(|history| terrain.is_tree(history.triangle));
-        if let Some(history) =
-            trees.max_by(|one, other| one.normal_force.total_cmp(&other.normal_force))
-        {
-            self.pressed = stems.of_triangle(history.triangle);
+        let trees = || histories.iter().filter(|history| terrain.is_tree(history.triangle));
+        if trees().next().is_none() {
+            return;
+        }
+        let force2 = |history: &ContactHistory| history.normal_force * history.normal_force;
+        let is_known = trees().any(|history| force2(history) > 0.0);
+        let weight = |history| if is_known { force2(history) } else { 1.0 };
+        let all: f64 = trees().map(weight).sum();
+        self.pressed.clear();
+        for history in trees() {
+            let Some(stem) = stems.of_triangle(history.triangle) else { continue };
+            let share = weight(history) / all;
+            match self.pressed.iter_mut().find(|(known, _)| *known == stem) {
+                Some((_, known)) => *known += share,
+                None => self.pressed.push((stem, share)),
+            }
         }
     }
 }

@@ -40,21 +40,23 @@ impl ContactState {
         let Some(stems) = world.terrain.stems.as_ref() else { return f64::INFINITY };
         self.stem_load.look(world.terrain, stems, &self.histories);
         let motion_j = self.motion_j(&world.body);
-        let load = &self.stem_load;
-        // all of the rock's motion would not break it: no step need be limited
-        let yielding =
-            load.pressed.filter(|stem| load.left_j(stems, *stem) <= WITHSTANDS * motion_j);
-        self.may_yield = yielding.is_some();
-        yielding.map_or(f64::INFINITY, |stem| {
+        let (mut longest_s, mut may_yield) = (f64::INFINITY, false);
+        for &(stem, _) in &self.stem_load.pressed {
             let left_j = self.stem_load.left_j(stems, stem);
-            let of_stem =
-                |history: &ContactHistory| stems.of_triangle(history.triangle) == Some(stem);
-            self.time_to_take_s(world, left_j, of_stem)
-        })
+            // all of the rock's motion would not break it: no step need be limited
+            if left_j <= WITHSTANDS * motion_j {
+                let of_stem =
+                    |history: &ContactHistory| stems.of_triangle(history.triangle) == Some(stem);
+                longest_s = longest_s.min(self.time_to_take_s(world, left_j, of_stem));
+                may_yield = true;
+            }
+        }
+        self.may_yield = may_yield;
+        longest_s
     }
 
-    /// After a step with these losses: the stem pressed hardest has taken what went into contacts with trees. Whether it has
-    /// given way; what the step took beyond the limit is then given back.
+    /// After a step with these losses: the stems pressed have taken what went into contacts with trees. Whether one has
+    /// given way; what the step took beyond its limit is then given back.
     pub(crate) fn bend(&mut self, world: &ContactEnvironment, loss: &mut Loss) -> bool {
         let Some(stems) = world.terrain.stems.as_ref().filter(|_| loss.trees != 0.0) else {
             return false;
@@ -62,29 +64,35 @@ impl ContactState {
         self.stem_load.look(world.terrain, stems, &self.histories);
         // what broke in the limit of stiff springs has had its energy and is gone: the rest went into what stands
         let standing_j = loss.trees - std::mem::take(&mut self.stem_load.broken_j);
-        let Some(stem) = self.stem_load.pressed.filter(|_| standing_j != 0.0) else { return false };
-        let Some(beyond_j) = self.stem_load.yields(stems, stem, standing_j) else { return false };
-        // the push of all contacts with this stem: energy is given back along it
-        let normal_force: Vec3 = self
-            .histories
-            .iter()
-            .filter(|history| stems.of_triangle(history.triangle) == Some(stem))
-            .map(|history| history.n * history.normal_force.max(f64::MIN_POSITIVE))
-            .sum();
-        self.v += given_back(world.body.mass, &self.v, beyond_j, &normal_force);
-        loss.trees -= beyond_j;
-        self.fell(stems, stem);
-        true
+        if standing_j == 0.0 {
+            return false;
+        }
+        let mut gives_way = false;
+        for (stem, share) in self.stem_load.pressed.clone() {
+            let taken_j = share * standing_j;
+            let Some(beyond_j) = self.stem_load.yields(stems, stem, taken_j) else { continue };
+            // the push of all contacts with this stem: energy is given back along it
+            let of_stem =
+                |history: &&ContactHistory| stems.of_triangle(history.triangle) == Some(stem);
+            let push =
+                |history: &ContactHistory| history.n * history.normal_force.max(f64::MIN_POSITIVE);
+            let normal_force: Vec3 = self.histories.iter().filter(of_stem).map(push).sum();
+            self.v += given_back(world.body.mass, &self.v, beyond_j, &normal_force);
+            loss.trees -= beyond_j;
+            self.fell(stems, stem);
+            gives_way = true;
+        }
+        gives_way
     }
 
-    /// How the stem that is struck at `touch` with a velocity and spin gives way, if it cannot take the blow.
+    /// How the stem that is struck at `touch` with a velocity and spin gives way, if it cannot take its `share` (–) of the blow.
     ///
     /// Only asked where the motion could break it at all; the impact itself is followed by
     /// `yielding_impact`.
     pub(crate) fn broken_by(
         &self,
         world: &ContactEnvironment,
-        touch: &ContactPoint,
+        (touch, share): (&ContactPoint, f64),
         motion: (&Vec3, &Vec3),
     ) -> Option<Broken> {
         let stems = world.terrain.stems.as_ref()?;
@@ -95,21 +103,39 @@ impl ContactState {
         let taken_j = self.stem_load.left_j(stems, stem);
         let body = &world.body;
         let speed2 = body.mass * motion.0.norm_squared() + body.inertia * motion.1.norm_squared();
-        if taken_j > WITHSTANDS * 0.5 * speed2 {
+        let all_j = taken_j / share;
+        if all_j > WITHSTANDS * 0.5 * speed2 {
             return None;
         }
-        let law = world.law(touch.triangle);
-        yielding_impact(body, (law, &touch.normal), motion, taken_j).map(|motion| Broken {
+        let contact = (world.law(touch.triangle), &touch.normal);
+        if share < 1.0 {
+            // whether it gives way at all: what is left of it goes into it alone
+            yielding_impact(body, contact, motion, all_j)?;
+        }
+        yielding_impact(body, contact, motion, taken_j).map(|motion| Broken {
             stem,
             motion,
             taken_j,
         })
     }
 
+    /// What share of a blow a tree at `touch` takes of all that are struck at once (–): that of the square of its approach.
+    fn share_of(&self, world: &ContactEnvironment, touch: &ContactPoint) -> f64 {
+        let approach2 = |touch: &ContactPoint| touch.normal.dot(&self.v).min(0.0).powi(2);
+        let stands = |touch: &&ContactPoint| {
+            world.terrain.is_tree(touch.triangle)
+                && !world.terrain.is_gone(touch.triangle, &self.near.gone)
+        };
+        let all: f64 = self.touches.iter().filter(stands).map(approach2).sum();
+        if all > 0.0 { approach2(touch) / all } else { 1.0 }
+    }
+
     /// What is struck at a triangle is pressed: what the blow takes there is its load, also if the rock has left at the end.
     pub(crate) fn press_stem(&mut self, terrain: &Terrain, triangle: u32) {
         let stem = terrain.stems.as_ref().and_then(|stems| stems.of_triangle(triangle));
-        self.stem_load.pressed = stem.or(self.stem_load.pressed);
+        if let Some(stem) = stem {
+            self.stem_load.press(stem);
+        }
     }
 
     /// A stem is gone within a step whose losses hold what it took.
@@ -134,7 +160,8 @@ impl ContactState {
         self.look(world, &c, world.body.radius * (1.0 + TOUCH));
         let touches = self.touches.clone();
         for touch in touches.iter() {
-            let Some(broken) = self.broken_by(world, touch, (&self.v, &self.w)) else { continue };
+            let struck = (touch, self.share_of(world, touch));
+            let Some(broken) = self.broken_by(world, struck, (&self.v, &self.w)) else { continue };
             let of_stem =
                 |history: &ContactHistory| stems.of_triangle(history.triangle) == Some(broken.stem);
             // only the blow that falls next has been announced: a memory alone is of a rock that rolls up to the stem
@@ -156,7 +183,7 @@ impl ContactState {
         self.histories.retain(|history| stems.of_triangle(history.triangle) != Some(stem));
         self.fresh = false;
         self.plane.forget();
-        self.stem_load.pressed = None;
+        self.stem_load.pressed.clear();
     }
 }
 

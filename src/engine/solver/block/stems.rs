@@ -65,7 +65,7 @@ impl Footing {
         let Some(stems) = world.terrain.stems.as_ref().filter(|_| loss.trees > 0.0) else { return };
         // the block may have left what it pressed within the step
         let normal = self.press_stem(world).unwrap_or_else(Vec3::zeros);
-        let Some(stem) = self.stem_load.pressed else { return };
+        let Some(&(stem, _)) = self.stem_load.pressed.first() else { return };
         if let Some(beyond_j) = self.stem_load.yields(stems, stem, loss.trees) {
             moving.v += given_back(block.mass_kg, &moving.v, beyond_j, &normal);
             self.springs.refresh();
@@ -81,7 +81,7 @@ impl Footing {
             stems.of_triangle(touch.triangle).map(|stem| (stem, touch.gap_m, touch.normal))
         });
         let (stem, _, normal) = touched.min_by(|one, other| one.1.total_cmp(&other.1))?;
-        self.stem_load.pressed = Some(stem);
+        self.stem_load.press(stem);
         Some(normal)
     }
 
@@ -89,7 +89,7 @@ impl Footing {
     fn fell(&mut self, stem: u32) {
         self.near.gone.push(stem);
         self.near.forget();
-        self.stem_load.pressed = None;
+        self.stem_load.pressed.clear();
         self.looked = None;
         self.springs.forget_look();
     }

@@ -236,6 +236,10 @@ impl RigidIsland {
                 let apart = a.before_end(s).0 - b.before_end(s).0;
                 let touch = a.body.radius + b.body.radius + HELD * a.body.radius.min(b.body.radius);
                 if apart.norm_squared() <= touch * touch {
+                    // one contact of each rock with the mesh must have room too
+                    if reach == Reach::Nearest && touching.pairs.len() >= CONTACTS - BODIES {
+                        return Some(touching);
+                    }
                     let added = touching.add(pair, ends);
                     if reach != Reach::Nearest {
                         added?;

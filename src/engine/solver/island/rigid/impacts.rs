@@ -236,7 +236,7 @@ impl RigidIsland {
             .min_by(|a, b| a.normal.dot(&v).total_cmp(&b.normal.dot(&v)))
             .copied();
         let Some(touch) = hit else { return ball.is_struck(s) };
-        if let Some(broken) = state.broken_by(&world, &touch, (&v, &ball.w)) {
+        if let Some(broken) = state.broken_by(&world, (&touch, 1.0), (&v, &ball.w)) {
             ball.v += broken.motion.0 - v;
             ball.c += (broken.motion.0 - v) * s;
             ball.w = broken.motion.1;
