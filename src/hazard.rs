@@ -144,9 +144,16 @@ impl Hazard {
     }
 
     /// Events a year that the rocks of each stratum stand for; none without sources. Those that were released
-    /// share them: a rock without a place to start from says nothing of how far rocks come.
+    /// share them: a rock without a place to start from says nothing of how far rocks come. A part of a run, or one rock of it,
+    /// stands for the strata alone that it has releases of.
     pub fn year_weights(&self) -> Option<Weights> {
-        self.frequency.as_ref().map(|one| one.weights_of(self.by_stratum(StopKind::is_released)))
+        self.weights_among(StopKind::is_released)
+    }
+
+    /// The same, shared by the rocks that ended in some ways.
+    fn weights_among(&self, is_one: impl Fn(StopKind) -> bool) -> Option<Weights> {
+        let frequency = self.frequency.as_ref()?;
+        Some(frequency.weights_of(self.by_stratum(is_one)).within(&self.by_stratum(|_| true)))
     }
 
     /// Rocks of each stratum that ended in some ways.
@@ -228,9 +235,7 @@ impl Hazard {
     /// Rocks that ended so, as a share of all releases.
     pub fn ended(&self, stop: StopKind) -> Proportion {
         let count = self.stops.get(&stop).map_or(0, EndCounts::count);
-        // of the releases that are there: a part of a run, or one rock of it, begins in any stratum
-        let weights = self.frequency.as_ref().map(|one| one.weights_of(self.by_stratum(|_| true)));
-        match weights.filter(|weights| !weights.are_equal()) {
+        match self.weights_among(|_| true).filter(|weights| !weights.are_equal()) {
             None => Proportion::new(count, self.rocks()),
             Some(weights) => {
                 let strata = self.stops.get(&stop).map_or(&[][..], |ended| &ended.0);

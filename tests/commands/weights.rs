@@ -322,3 +322,42 @@ fn half_of_the_bars_lie_before_the_median(out: &Path) {
     // a bar is drawn to a tenth of a pixel
     assert!(least <= 0.505 && most >= 0.495, "{least} {most}: {bars:?}, median {median}");
 }
+
+/// A part of a run, or one rock of it, says what its own rocks do: no share is of classes and sources that it has none of. Parts put together
+/// are the run.
+#[test]
+fn a_part_has_shares_of_its_own_rocks() {
+    let dir = tempfile::tempdir().unwrap();
+    let whole = run(dir.path(), "whole", |scene| scene);
+    let scene = dir.path().join("whole.toml");
+    let part = |name: &str, which: &[&str]| -> PathBuf {
+        let out = dir.path().join(name);
+        let (file, to) = (scene.to_str().unwrap(), out.to_str().unwrap());
+        let words = ["run", file, "--quiet", "--releases", "400", "--out", to];
+        let done = rockfall(&[&words, which].concat());
+        assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+        out
+    };
+    for (name, which) in [("one", ["--only", "7"]), ("few", ["--shard", "2/100"])] {
+        let of = summary(&part(name, &which));
+        let shares = of["stop_shares"].as_object().unwrap().values();
+        let all: f64 = shares.map(|share| share["share"].as_f64().unwrap()).sum();
+        assert!((all - 1.0).abs() < 1e-12, "{name}: {all}");
+        for line in of["lines"].as_array().unwrap() {
+            let reach = &line["reach"];
+            let number = |key: &str| reach[key].as_f64().unwrap();
+            let is_all = reach["count"] == of["releases"];
+            assert!(!is_all || (number("share") - 1.0).abs() < 1e-12, "{name}: {line}");
+            assert!(number("low_95") <= number("share") && number("share") <= number("high_95"));
+        }
+    }
+    let parts = ["1/3", "2/3", "3/3"].map(|which| {
+        part(&which.replace('/', "_"), &["--shard", which]).to_str().unwrap().to_owned()
+    });
+    let merged = dir.path().join("merged");
+    let words = ["merge", "--out", merged.to_str().unwrap()];
+    let parts: Vec<&str> = parts.iter().map(String::as_str).collect();
+    let done = rockfall(&[&words, &parts[..]].concat());
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    program::same_results(&whole, &merged);
+}

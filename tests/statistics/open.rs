@@ -249,7 +249,7 @@ fn rocks_that_ended_on_the_map_are_missing_in_it() {
 }
 
 /// By hand: of three sources with 0.1, 0.2 and 0.3 events a year a part of a run holds releases 4 and 5, one of the second and one of the
-/// third. The one that left the terrain stands for 0.3 of 0.6, the one at rest for 0.2, whichever numbers they have.
+/// third. The one that left the terrain stands for 0.3 of the 0.5 of these two, the one at rest for 0.2, whichever numbers they have.
 #[test]
 fn a_part_of_a_run_weighs_its_own_rocks() {
     let source = |per_year: f64| RockSource {
@@ -261,7 +261,7 @@ fn a_part_of_a_run_weighs_its_own_rocks() {
     for (index, stop) in [(4, StopKind::AtRest), (5, StopKind::LeftTerrain)] {
         hazard.add(&Row { index, stop, ..Row::of(&fall(1), Vec3::zeros()) });
     }
-    for (stop, share) in [(StopKind::AtRest, 0.2 / 0.6), (StopKind::LeftTerrain, 0.3 / 0.6)] {
+    for (stop, share) in [(StopKind::AtRest, 0.4), (StopKind::LeftTerrain, 0.6)] {
         let found = hazard.ended(stop);
         assert_eq!((found.count, found.of), (1, 2));
         assert!((found.share - share).abs() < 1e-12, "{stop:?}: {found:?}");

@@ -29,11 +29,24 @@ impl Weights {
         Self { per_year: vec![1.0], rocks: vec![releases] }
     }
 
+    /// The same of a part of a run that has so many releases of each stratum, whatever became of them: a stratum without any in it
+    /// stands for nothing there, else shares would be of events that the part says nothing of.
+    #[must_use]
+    pub fn within(mut self, releases: &[usize]) -> Self {
+        for (stratum, per_year) in self.per_year.iter_mut().enumerate() {
+            if releases.get(stratum).is_none_or(|of_it| *of_it == 0) {
+                *per_year = 0.0;
+            }
+        }
+        self
+    }
+
     /// Whether every rock stands for the same.
     pub fn are_equal(&self) -> bool {
-        let first = self.of_stratum(0);
-        #[expect(clippy::float_cmp, reason = "computed the same way from the same numbers")]
-        (1..self.rocks.len()).all(|stratum| self.of_stratum(stratum) == first)
+        let counts = |stratum: &usize| self.rocks[*stratum] > 0 || self.per_year[*stratum] > 0.0;
+        let mut each = (0..self.rocks.len()).filter(counts).map(|stratum| self.of_stratum(stratum));
+        let first = each.next();
+        each.all(|weight| Some(weight) == first)
     }
 
     /// Number of strata.

@@ -143,8 +143,8 @@ pub(super) fn of(
     ranges: &[Range<usize>; 2],
     paired: bool,
 ) -> Result<(Vec<[Population; 2]>, Vec<String>)> {
-    let whole = CountedReleases::of(runs, ranges.clone().map(Iterator::collect));
-    let among = CountedReleases::of(runs, weighing::released(runs, ranges, paired)?);
+    let whole = CountedReleases::of(runs, ranges, ranges.clone().map(Iterator::collect));
+    let among = CountedReleases::of(runs, ranges, weighing::released(runs, ranges, paired)?);
     let [one, other] = [0, 1].map(|k| all(&runs[k], (&whole[k], &among[k])));
     let mut pairs = vec![[one?, other?]];
     let mut notes = Vec::new();

@@ -24,9 +24,13 @@ pub(super) struct CountedReleases {
 }
 
 impl CountedReleases {
-    /// Some releases of each run.
-    pub(super) fn of(runs: &[Results; 2], releases: [Vec<usize>; 2]) -> [Arc<Self>; 2] {
-        let both = [0, 1].map(|k| weights(&runs[k], &releases[k]));
+    /// Some releases of each run, among `all` that are compared.
+    pub(super) fn of(
+        runs: &[Results; 2],
+        all: &[Range<usize>; 2],
+        releases: [Vec<usize>; 2],
+    ) -> [Arc<Self>; 2] {
+        let both = [0, 1].map(|k| weights(&runs[k], &releases[k], all[k].clone()));
         let are_equal = both.iter().all(|one| one.weights.are_equal());
         let with = |releases: Vec<usize>, standing: RunWeights| {
             Arc::new(Self { releases, standing: (!are_equal).then_some(standing) })
@@ -40,16 +44,21 @@ impl CountedReleases {
     }
 }
 
-/// What some releases of a run stand for.
-fn weights(run: &Results, releases: &[usize]) -> RunWeights {
+/// What some releases of a run stand for, among `all` that are compared.
+fn weights(run: &Results, releases: &[usize], all: Range<usize>) -> RunWeights {
     let Some(frequency) = &run.summary.asked.frequency else {
         return RunWeights { weights: Weights::equal(releases.len()), is_a_year: false };
     };
-    let mut rocks = vec![0; frequency.strata().len()];
-    for release in releases {
-        rocks[frequency.stratum_of(*release)] += 1;
-    }
-    RunWeights { weights: frequency.weights_of(rocks), is_a_year: true }
+    let by_stratum = |releases: &mut dyn Iterator<Item = usize>| {
+        let mut rocks = vec![0; frequency.strata().len()];
+        releases.for_each(|release| rocks[frequency.stratum_of(release)] += 1);
+        rocks
+    };
+    let rocks = by_stratum(&mut releases.iter().copied());
+    let there = by_stratum(&mut all.clone());
+    // of a part of the sources there is no number a year
+    let is_a_year = there.iter().all(|rocks| *rocks > 0);
+    RunWeights { weights: frequency.weights_of(rocks).within(&there), is_a_year }
 }
 
 /// What is said of rocks that meet each other.
@@ -95,8 +104,11 @@ pub(super) fn released(
 
 /// Whether the same release number means a rock of the same source and class in both: else they are different rocks.
 pub(super) fn are_alike(runs: &[Results; 2]) -> bool {
-    let all = |run: &Results| run.summary.identity.range().collect::<Vec<_>>();
-    if runs.iter().all(|run| weights(run, &all(run)).weights.are_equal()) {
+    let are_equal = |run: &Results| {
+        let all = run.summary.identity.range();
+        weights(run, &all.clone().collect::<Vec<_>>(), all).weights.are_equal()
+    };
+    if runs.iter().all(are_equal) {
         return true;
     }
     let sources = |run: &Results| -> Vec<usize> {
