@@ -79,7 +79,7 @@ impl Terrain {
             lay(patches, sources, &mut soups, map_origin_m)?;
         let pieces: Vec<Piece> = pieces(sources, &soups).collect();
         let files = FileHealth::of_all(&pieces, map_origin_m);
-        let joined = weld::join(&pieces, map_origin_m, tolerance_m)?;
+        let joined = weld::join_files(&pieces, map_origin_m, tolerance_m)?;
         drop(pieces);
         drop(soups);
         let mut welded = joined.finish();

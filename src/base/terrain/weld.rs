@@ -144,11 +144,32 @@ pub(super) struct Joined(Welded);
 ///
 /// # Errors
 /// As [`weld`].
-pub(super) fn join(
+fn join(pieces: &[Piece], map_origin_m: Vec3, tolerance_m: Option<f64>) -> Result<Joined> {
+    join_all(pieces, map_origin_m, tolerance_m).map(|(joined, _)| joined)
+}
+
+/// The same for the files of a scene, which a tolerance of its own must not take apart.
+///
+/// # Errors
+/// As [`weld`], and a tolerance that merges away more than a trace of a piece.
+pub(super) fn join_files(
     pieces: &[Piece],
     map_origin_m: Vec3,
     tolerance_m: Option<f64>,
 ) -> Result<Joined> {
+    let (joined, lost) = join_all(pieces, map_origin_m, tolerance_m)?;
+    if let Some(tolerance_m) = tolerance_m {
+        collapsed::check(pieces, &lost, tolerance_m)?;
+    }
+    Ok(joined)
+}
+
+/// Joins the pieces; which triangles of each lost their area.
+fn join_all(
+    pieces: &[Piece],
+    map_origin_m: Vec3,
+    tolerance_m: Option<f64>,
+) -> Result<(Joined, Vec<Vec<u32>>)> {
     let frame = CommonBox::around(pieces)?;
     let own_m = tolerance_m;
     let tolerance_m = own_m.unwrap_or(TOLERANCE_OF_SIZE * frame.size_m);
@@ -173,14 +194,14 @@ pub(super) fn join(
         splits: Splits::default(),
         parts: OnceLock::new(),
     };
-    let collapsed = welded.take(pieces, &frame);
+    let lost = welded.take(pieces, &frame);
     if own_m.is_none() {
-        far::check_collapsed(pieces, &collapsed, (tolerance_m, frame.size_m))?;
+        far::check_collapsed(pieces, &lost, (tolerance_m, frame.size_m))?;
     }
     if welded.triangles.is_empty() {
         return Err(nothing_left(pieces, &welded));
     }
-    Ok(Joined(welded))
+    Ok((Joined(welded), lost))
 }
 
 impl Joined {
@@ -245,9 +266,9 @@ impl Welded {
         self.vertices_m[b as usize] - self.vertices_m[a as usize]
     }
 
-    /// Merges vertices and keeps every facet that has an area; how many of each piece had one before.
-    fn take(&mut self, pieces: &[Piece], frame: &CommonBox) -> Vec<usize> {
-        let mut collapsed = vec![0; pieces.len()];
+    /// Merges vertices and keeps every facet that has an area; which of each piece had one before.
+    fn take(&mut self, pieces: &[Piece], frame: &CommonBox) -> Vec<Vec<u32>> {
+        let mut collapsed = vec![Vec::new(); pieces.len()];
         let mut merger = Merger::new(self.tolerance_m, frame.size_m, 3 * frame.facets);
         for (piece, collapsed) in pieces.iter().zip(&mut collapsed) {
             let facets = &piece.soup.facets;
@@ -260,7 +281,8 @@ impl Welded {
             let flat = parallel::filter(all.len(), |number| !has_area(&merged(number as usize)));
             for &number in &flat {
                 self.zero_area.add(merged(number as usize)[0] + self.origin_m);
-                *collapsed += usize::from(has_area(&facets.at(number as usize).map(local)));
+                let had_one = has_area(&facets.at(number as usize).map(local));
+                collapsed.extend(had_one.then_some(number));
             }
             let mut numbers: Vec<u32> = (0..all.len() as u32).collect();
             drop_at(&mut numbers, &flat);
@@ -336,6 +358,7 @@ fn nothing_left(pieces: &[Piece], welded: &Welded) -> Error {
     )
 }
 
+mod collapsed;
 mod common_box;
 mod covered;
 mod far;

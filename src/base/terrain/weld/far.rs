@@ -3,6 +3,7 @@
 //! Corners are merged within a share of the common box. A file in other coordinates, or one triangle at (0, 0, 0) of a slope in map
 //! coordinates, makes that box, and with it the tolerance, so large that the slope itself collapses.
 
+use super::collapsed::MOST_LOST;
 use super::{Piece, PieceBox, TOLERANCE_OF_SIZE, longest_m};
 use crate::error::{Error, Result};
 use crate::math;
@@ -10,8 +11,6 @@ use crate::rock::Vec3;
 
 /// The common box is no larger than so many times all files side by side (–).
 const APART: f64 = 10.0;
-/// Of the triangles no more than one in so many loses its area by merging.
-const COLLAPSED: usize = 10;
 /// Triangles that tell where most of them lie.
 const SAMPLES: usize = 1000;
 
@@ -51,11 +50,12 @@ pub(super) fn check_apart(pieces: &[Piece], spans: &[PieceBox], size_m: f64) -> 
 /// Names the first such file, and the triangle that lies the farthest from most others.
 pub(super) fn check_collapsed(
     pieces: &[Piece],
-    collapsed: &[usize],
+    collapsed: &[Vec<u32>],
     (tolerance_m, size_m): (f64, f64),
 ) -> Result<()> {
     let of = |piece: &Piece| piece.soup.facets.len();
-    let spoiled = pieces.iter().zip(collapsed).find(|(piece, lost)| COLLAPSED * **lost > of(piece));
+    let counts = collapsed.iter().map(Vec::len);
+    let spoiled = pieces.iter().zip(counts).find(|(piece, lost)| MOST_LOST * lost > of(piece));
     let (Some((piece, lost)), Some((far, number, off_m))) = (spoiled, farthest(pieces)) else {
         return Ok(());
     };

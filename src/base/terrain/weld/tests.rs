@@ -254,3 +254,31 @@ fn a_wrong_scale_does_not_flatten_the_slope() {
     assert!(message.contains("t.stl: mesh: ") && message.contains("check scale"), "{message}");
     assert!(weld(&millimetres(1e-3), Vec3::zeros(), None).is_ok());
 }
+
+/// A tolerance longer than the edges merges the slope away without a trace: 6 m on cells of 1.25 m. Needles that merge are no loss, however
+/// many corners move.
+#[test]
+fn a_tolerance_longer_than_the_edges_is_refused() {
+    let soup = Soup::from(slope_on_the_map());
+    let within = |soup: &Soup, tolerance_m: f64| {
+        let joined = join_files(&[piece(soup, 0)], Vec3::zeros(), Some(tolerance_m));
+        joined.err().map(|error| error.to_string()).unwrap_or_default()
+    };
+    let message = within(&soup, 6.0);
+    for words in ["t.stl: [mesh] weld_tolerance_m: found 6, by which ", " of 12800 triangles with "]
+    {
+        assert!(message.contains(words), "{message}");
+    }
+    let written = message.split_once("write ").unwrap().1.split(' ').next().unwrap();
+    let least: f64 = written.parse().unwrap();
+    assert!(least > 0.2 && least < 0.7, "{message}");
+    assert_eq!(within(&soup, least), "");
+    // 5 % of needles, a millimetre wide
+    let mut facets = slope_on_the_map();
+    let at = facets[0][0];
+    facets.extend((0..640).map(|k| {
+        let at = at + v(0.05 * f64::from(k), 0.0, 40.0);
+        [at, at + v(0.0, 1.0, 0.0), at + v(0.0, 1.0, 1e-3)]
+    }));
+    assert_eq!(within(&Soup::from(facets), 0.002), "");
+}
