@@ -18,6 +18,9 @@ use super::proportion::NORMAL_95;
 use super::quantile::{Percentile, between};
 use std::cmp::Ordering;
 
+/// Over the values, a difference of so much is rounding (–).
+const NO_DIFFERENCE: f64 = 1e-12;
+
 /// A value of each release that has one, by rising release number.
 pub type Values = Vec<(usize, f64)>;
 
@@ -176,6 +179,15 @@ impl Difference {
         Self { interval: Some((self.value, self.value)), ..self }
     }
 
+    /// The same, where what differs by no more than the rounding of sums does not differ: other sums of the same numbers do so too.
+    #[must_use]
+    pub fn without_rounding(self) -> Self {
+        let least = NO_DIFFERENCE * self.a.abs().max(self.b.abs());
+        let told = |x: f64| if x.abs() <= least { 0.0 } else { x };
+        let interval = self.interval.map(|(low, high)| (told(low), told(high)));
+        Self { value: told(self.value), interval, ..self }
+    }
+
     /// Whether the interval leaves out zero.
     pub fn is_clear(&self) -> bool {
         self.interval.is_some_and(|(low, high)| low > 0.0 || high < 0.0)
@@ -245,6 +257,21 @@ mod tests {
         assert!(
             (low - (won - lost - half)).abs() < 1e-12 && (high - (won - lost + half)).abs() < 1e-12
         );
+    }
+
+    /// The sums of one run in another order: 1e-14 of the value is no difference, 1e-9 of it is one.
+    #[test]
+    fn rounding_is_no_difference() {
+        let one = |value: f64| Difference {
+            a: 3e5,
+            b: 3e5 + value,
+            value,
+            interval: Some((value, value)),
+        };
+        assert!(one(3e-9).is_clear());
+        let none = one(3e-9).without_rounding();
+        assert_eq!((none.value, none.interval, none.is_clear()), (0.0, Some((0.0, 0.0)), false));
+        assert_eq!(one(3e-4).without_rounding(), one(3e-4));
     }
 
     /// None of 100 in either: the rule of three's size, not zero.

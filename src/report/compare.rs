@@ -7,6 +7,7 @@
 //! Releases pair where both runs have the same seed: then release 17 of the one is release 17 of the other, and the
 //! intervals of the differences are those of pairs. Nothing else is computed here.
 
+mod bounds;
 mod figures;
 mod inputs;
 mod page;

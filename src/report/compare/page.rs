@@ -1,7 +1,7 @@
 //! `compare.html`: one page in the style of the report, without a script.
 
 use super::Comparison;
-use super::table::{ComparedStatistic, Group, in_words};
+use super::table::{ComparedStatistic, Group, LEFT_OPEN, in_words};
 use crate::report::figure::{Drawing, Heading};
 use crate::report::format::{self, escape};
 use crate::report::html::{figure_section, head, list, section};
@@ -133,7 +133,7 @@ fn table_row(row: &ComparedStatistic, words: &Words) -> String {
         "" => row.name_in(words),
         unit => format!("{} ({})", row.name_in(words), words.say(unit)),
     };
-    let [a, b, change, interval] = in_words(&row.difference, words);
+    let [a, b, change, interval] = in_words(row, words);
     let count = |k: usize| format::decimal(row.rocks[k] as f64, 0);
     let share = match row.difference.a {
         0.0 => format::NO_NUMBER.to_owned(),
@@ -143,6 +143,7 @@ fn table_row(row: &ComparedStatistic, words: &Words) -> String {
         None => "",
         Some(_) if row.difference.is_clear() => "clear",
         Some((0.0, 0.0)) => "the same",
+        Some((low, high)) if low.is_infinite() || high.is_infinite() => LEFT_OPEN,
         Some(_) => "within chance",
     };
     let said = escape(&words.say(verdict));

@@ -3,7 +3,8 @@
 use super::weighing::{self, CountedReleases};
 use crate::error::Result;
 use crate::hazard::{
-    self, Barrier, CrossingRow, Quantity, Reading, Row, Sample, StopKind, Values, WeightedCount,
+    self, Barrier, CrossingRow, Open, Quantity, Reading, Row, Sample, StopKind, Values,
+    WeightedCount,
 };
 use crate::output::Results;
 use crate::report::format;
@@ -20,6 +21,8 @@ pub(super) struct Population {
     pub(super) shares: Vec<CountedShare>,
     /// Quantities: what, and its value for each release that has one.
     pub(super) values: Vec<(ComparedQuantity, Values)>,
+    /// Releases that would have gone on, of whole ways: their own values are bounds.
+    pub(super) open: Vec<usize>,
 }
 
 /// A share of some releases of a run.
@@ -32,6 +35,8 @@ pub(super) struct CountedShare {
     pub(super) among: Arc<CountedReleases>,
     /// Whether they come to a place, so that their number a year is asked for too.
     pub(super) come: bool,
+    /// Those that may still count: they would have gone on.
+    pub(super) open: Vec<usize>,
 }
 
 impl CountedShare {
@@ -80,6 +85,19 @@ impl Population {
                 Sample::weighted(values.iter().map(|&(release, x)| (x / size, weight(release))))
             }
         }
+    }
+
+    /// The same where those of rocks that would have gone on are bounds: the truth lies on that side. A rock that has left no number is one
+    /// of which nothing is known.
+    pub(super) fn censored_sample(&self, values: &Values, side: Open) -> Sample {
+        let weight = |release: usize| {
+            self.among.standing.as_ref().map_or(1.0, |of| of.weights.of_release(release))
+        };
+        let is_open = |release: usize| self.open.binary_search(&release).is_ok();
+        let has_none = |release: &&usize| values.binary_search_by_key(*release, |of| of.0).is_err();
+        let unknown = self.open.iter().filter(has_none).map(|&at| (f64::NAN, weight(at), true));
+        let seen = values.iter().map(|&(at, x)| (x, weight(at), is_open(at)));
+        Sample::censored(seen.chain(unknown), side)
     }
 }
 
@@ -225,12 +243,14 @@ fn all(
         releases: Vec::new(),
         among: Arc::clone(whole),
         come: false,
+        open: Vec::new(),
     };
     let mut found = Population {
         name: "All releases".to_owned(),
         among: Arc::clone(among),
         shares: StopKind::ALL.map(share).into(),
         values: WHOLE.map(|quantity| (ComparedQuantity::Whole(quantity), Values::new())).into(),
+        open: Vec::new(),
     };
     for row in run.rows()? {
         let row: Row = row?;
@@ -240,6 +260,7 @@ fn all(
         let stop = StopKind::ALL.iter().position(|stop| *stop == row.stop).unwrap_or(0);
         found.shares[stop].releases.push(row.index);
         if among.contains(row.index) {
+            found.open.extend(row.stop.is_open().then_some(row.index));
             for ((_, values), quantity) in found.values.iter_mut().zip(WHOLE) {
                 // a failed rock may have left no number
                 let value = Some(quantity.of(&row)).filter(|value| value.is_finite());
@@ -273,37 +294,41 @@ fn at_lines(run: &Results, names: &[String], among: &Arc<CountedReleases>) -> Re
     let arrived = arrived(&barriers, names, &rows)?;
     let mut found = Vec::new();
     for (name, arrived) in names.iter().zip(arrived) {
-        let crossing = crossing((name, run.is_object(name)), &rows, among);
+        let mine = |rock: &usize| among.contains(*rock);
+        let may_come = run.open.at(name).filter(mine).collect();
+        let may_arrive = run.open.behind_barriers(name).filter(mine).collect();
+        let crossing = crossing((name, run.is_object(name)), &rows, (among, may_come));
         let is_barrier = barriers.iter().any(|barrier| barrier.name == *name);
         let barriers_stop = is_barrier || arrived.len() < crossing.shares[0].releases.len();
-        let arriving = arriving(name, (&barriers, &arrived), among);
+        let arriving = arriving(name, (&barriers, &arrived), (among, may_arrive));
         found.push(AtLine { crossing, arriving, barriers_stop });
     }
     Ok(found)
 }
 
+/// Released rocks, and those of them that may still come to a place.
+type AmongOpen<'a> = (&'a Arc<CountedReleases>, Vec<usize>);
+
 /// A share of the released rocks at a place.
 fn at_place(
     name: &str,
     releases: Vec<usize>,
-    (among, come): (&Arc<CountedReleases>, bool),
+    ((among, open), come): (&AmongOpen, bool),
 ) -> CountedShare {
-    CountedShare { name: name.to_owned(), releases, among: Arc::clone(among), come }
+    let (name, open) = (name.to_owned(), open.clone());
+    CountedShare { name, releases, among: Arc::clone(among), come, open }
 }
 
-fn crossing(
-    (name, is_object): (&str, bool),
-    rows: &[CrossingRow],
-    among: &Arc<CountedReleases>,
-) -> Population {
+fn crossing((name, is_object): (&str, bool), rows: &[CrossingRow], among: AmongOpen) -> Population {
     let (what, come) = if is_object { ("Object", "Hit it") } else { ("Line", "Cross it") };
     let own = || rows.iter().filter(|row| row.line == name);
     let values = |of: fn(&CrossingRow) -> f64| own().map(|row| (row.index, of(row))).collect();
     let cross = own().map(|row| row.index).collect();
     Population {
         name: format!("{what} “{name}”, barriers left aside"),
-        among: Arc::clone(among),
-        shares: vec![at_place(come, cross, (among, true))],
+        among: Arc::clone(among.0),
+        shares: vec![at_place(come, cross, (&among, true))],
+        open: Vec::new(),
         values: vec![
             (ComparedQuantity::Energy, values(CrossingRow::total_j)),
             (ComparedQuantity::Height, values(|row| row.height_m)),
@@ -315,24 +340,25 @@ fn crossing(
 fn arriving(
     name: &str,
     (barriers, arrived): (&[Barrier], &[hazard::Arrival]),
-    among: &Arc<CountedReleases>,
+    among: AmongOpen,
 ) -> Population {
     let releases = |keep: &dyn Fn(&hazard::Arrival) -> bool| {
         arrived.iter().filter(|rock| keep(rock)).map(|rock| rock.release).collect()
     };
-    let mut shares = vec![at_place("Arrive", releases(&|_| true), (among, true))];
+    let mut shares = vec![at_place("Arrive", releases(&|_| true), (&among, true))];
     if let Some(barrier) = barriers.iter().find(|barrier| barrier.name == name) {
         let passes =
             |rock: &hazard::Arrival| !rock.is_stopped(barrier.height_m, barrier.capacity_j);
-        shares.push(at_place("Pass it", releases(&passes), (among, false)));
+        shares.push(at_place("Pass it", releases(&passes), (&among, false)));
     }
     let values = |of: fn(&hazard::Arrival) -> f64| {
         arrived.iter().map(|rock| (rock.release, of(rock))).collect()
     };
     Population {
         name: format!("“{name}”, behind the barriers of each run"),
-        among: Arc::clone(among),
+        among: Arc::clone(among.0),
         shares,
+        open: Vec::new(),
         values: vec![
             (ComparedQuantity::Energy, values(|rock| rock.total_j)),
             (ComparedQuantity::Top, values(|rock| rock.top_m)),

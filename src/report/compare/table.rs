@@ -1,15 +1,20 @@
 //! Statistics of both runs and their differences, row by row.
 
+use super::bounds::{self, RunBound};
 use super::populations::{ComparedQuantity, CountedShare, Population};
 use crate::hazard::{Difference, Reading, Values};
 use crate::math;
-use crate::report::format;
+use crate::report::bound::Is;
+use crate::report::format::{self, sign};
 use crate::report::words::Words;
 use crate::scene::Language;
 use std::fmt::Write as _;
 
 /// Percentiles that are compared (per cent).
 const PERCENTS: [u8; 4] = [50, 90, 95, 99];
+
+/// What is said of a difference that rocks that would have gone on may have turned either way.
+pub(super) const LEFT_OPEN: &str = "left open";
 
 /// All statistics of one population.
 #[derive(Debug, Clone)]
@@ -28,6 +33,8 @@ pub(super) struct ComparedStatistic {
     pub(super) rocks: [usize; 2],
     /// In the unit of the row.
     pub(super) difference: Difference,
+    /// Whether the number of each run is a bound.
+    pub(super) bounds: [Is; 2],
     /// Whether it is of those that a designer asks for first.
     pub(super) is_headline: bool,
 }
@@ -45,26 +52,35 @@ impl ComparedStatistic {
 
 /// Compares all statistics of a population of two runs.
 pub(super) fn group([a, b]: &[Population; 2], paired: bool, same_run: bool) -> Group {
-    let settled = |one: Difference| if same_run { one.of_one_run() } else { one };
+    // what is no difference by more than rounding is none, and of one run beside itself nothing is left open
+    let settled = |one: Difference, bounds: [RunBound; 2]| {
+        if same_run { one.of_one_run() } else { bounds::opened(one.without_rounding(), bounds) }
+    };
     let mut rows = Vec::new();
     for (one, other) in a.shares.iter().zip(&b.shares) {
-        let row = |name: &str, unit: &'static str, difference: Difference| ComparedStatistic {
-            name: name.to_owned(),
-            unit,
-            rocks: [one.releases.len(), other.releases.len()],
-            difference: settled(difference),
-            is_headline: true,
+        let row = |name: &str, unit: &'static str, found: (Difference, [f64; 2])| {
+            let bounds = [(one, found.1[0]), (other, found.1[1])];
+            let bounds = bounds.map(|(share, most)| RunBound::of_share(share, most));
+            ComparedStatistic {
+                name: name.to_owned(),
+                unit,
+                rocks: [one.releases.len(), other.releases.len()],
+                difference: settled(found.0, bounds),
+                bounds: bounds.map(|bound| bound.is),
+                is_headline: true,
+            }
         };
-        rows.push(row(&one.name, "%", scaled(of_shares(one, other, paired), 0.01)));
+        let share = scaled(of_shares(one, other, paired), 0.01);
+        rows.push(row(&one.name, "%", (share, [100.0; 2])));
         let per_year = passages(one, other, paired);
         rows.extend(per_year.map(|rate| row("Passages", "1/year", rate)));
     }
     for ((measure, one), (_, other)) in a.values.iter().zip(&b.values) {
-        rows.extend(
-            of_measure(*measure, [(a, one), (b, other)], paired)
-                .into_iter()
-                .map(|row| ComparedStatistic { difference: settled(row.difference), ..row }),
-        );
+        let all = of_measure(*measure, [(a, one), (b, other)], paired).into_iter();
+        rows.extend(all.map(|(row, bounds)| {
+            let difference = settled(row.difference, bounds);
+            ComparedStatistic { difference, bounds: bounds.map(|bound| bound.is), ..row }
+        }));
     }
     // what neither run has seen is no news
     rows.retain(|row| row.rocks != [0, 0]);
@@ -80,9 +96,15 @@ fn of_shares(one: &CountedShare, other: &CountedShare, paired: bool) -> Differen
     Difference::of_shares(a, b, paired)
 }
 
-/// How their number a year changes (1/year).
-fn passages(one: &CountedShare, other: &CountedShare, paired: bool) -> Option<Difference> {
-    Some(Difference::of_rates(&one.in_a_year()?, &other.in_a_year()?, paired))
+/// How their number a year changes (1/year), and all events of each run in a year.
+fn passages(
+    one: &CountedShare,
+    other: &CountedShare,
+    paired: bool,
+) -> Option<(Difference, [f64; 2])> {
+    let (one, other) = (one.in_a_year()?, other.in_a_year()?);
+    let most = [&one, &other].map(|of| of.weights.total_per_year());
+    Some((Difference::of_rates(&one, &other, paired), most))
 }
 
 fn scaled(one: Difference, size: f64) -> Difference {
@@ -94,30 +116,32 @@ fn scaled(one: Difference, size: f64) -> Difference {
     }
 }
 
-/// Mean and percentiles of one quantity.
+/// Mean and percentiles of one quantity, with what is open of each.
 fn of_measure(
     measure: ComparedQuantity,
     values: [(&Population, &Values); 2],
     paired: bool,
-) -> Vec<ComparedStatistic> {
+) -> Vec<(ComparedStatistic, [RunBound; 2])> {
     let (name, unit, size) = measure.words();
-    let row = |what: String,
-               is_headline: bool,
-               read: &dyn Fn(&Population, &Values) -> Option<Reading>| {
-        let [a, b] = values.map(|(of, values)| read(of, values));
+    let row = |what: String, is_headline: bool, p: Option<f64>| {
+        let read = |(of, values): (&Population, &Values)| -> Option<Reading> {
+            p.map_or_else(|| of.mean(values), |p| of.percentile(values, p))
+        };
+        let [a, b] = values.map(read);
         let (a, b) = (a?.times(1.0 / size), b?.times(1.0 / size));
-        Some(ComparedStatistic {
+        let found = ComparedStatistic {
             name: format!("{name}, {what}"),
             unit,
             rocks: [a.rocks, b.rocks],
             difference: Difference::between(&a, &b, paired),
+            bounds: [Is::Value; 2],
             is_headline,
-        })
+        };
+        Some((found, values.map(|of| RunBound::of_statistic(of, measure, p))))
     };
-    let mean = row("mean".to_owned(), measure.is_count(), &|of, values| of.mean(values));
+    let mean = row("mean".to_owned(), measure.is_count(), None);
     let percents = PERCENTS.iter().filter(|_| !measure.is_count()).filter_map(|&percent| {
-        let p = f64::from(percent) / 100.0;
-        row(format!("P{percent}"), percent == 95, &|of, values| of.percentile(values, p))
+        row(format!("P{percent}"), percent == 95, Some(f64::from(percent) / 100.0))
     });
     mean.into_iter().chain(percents).collect()
 }
@@ -125,7 +149,7 @@ fn of_measure(
 /// All rows with full precision, in the units of the rows.
 pub(super) fn csv(groups: &[Group], paired: bool) -> String {
     let mut text =
-        "group,statistic,unit,rocks_a,rocks_b,a,b,difference,low_95,high_95,paired\n".to_owned();
+        "group,statistic,unit,rocks_a,rocks_b,a,b,difference,low_95,high_95,paired,bound_a,bound_b\n".to_owned();
     let quoted = |words: &str| format!("\"{}\"", words.replace('"', "\"\""));
     for group in groups {
         for row in &group.rows {
@@ -135,10 +159,12 @@ pub(super) fn csv(groups: &[Group], paired: bool) -> String {
             // writing to a string cannot fail
             let _ = writeln!(
                 text,
-                "{},{name},{unit},{},{},{a},{b},{value},{low},{high},{paired}",
+                "{},{name},{unit},{},{},{a},{b},{value},{low},{high},{paired},{},{}",
                 quoted(&group.name),
                 row.rocks[0],
-                row.rocks[1]
+                row.rocks[1],
+                bounds::written(row.bounds[0]),
+                bounds::written(row.bounds[1])
             );
         }
     }
@@ -158,7 +184,7 @@ pub(super) fn headline(groups: &[Group]) -> Vec<String> {
         let width = rows.iter().map(|row| row.name.chars().count()).max().unwrap_or(0);
         for row in rows {
             let english = Words::of(Language::En);
-            let [a, b, change, interval] = in_words(&row.difference, english);
+            let [a, b, change, interval] = in_words(row, english);
             let mark = if row.difference.is_clear() { "  clear" } else { "" };
             let gap = if row.unit.is_empty() { "" } else { " " };
             lines.push(format!(
@@ -170,13 +196,15 @@ pub(super) fn headline(groups: &[Group]) -> Vec<String> {
     lines
 }
 
-/// Both values, the difference with its sign, and its interval.
-pub(super) fn in_words(difference: &Difference, words: &Words) -> [String; 4] {
-    let Difference { a, b, value, interval } = *difference;
-    let number = |v: f64| format::significant(v, 4);
+/// Both values, the difference with its sign, and its interval; bounds with theirs.
+pub(super) fn in_words(row: &ComparedStatistic, words: &Words) -> [String; 4] {
+    let Difference { a, b, value, interval } = row.difference;
+    let number = |v: f64, is: Is| sign(is).to_owned() + &format::significant(v, 4);
     // a difference is written as finely as its interval allows: its last digit is at most a twentieth of it
-    let finest = interval.map_or(0.0, |(low, high)| 0.05 * (high - low));
-    let largest = interval.map_or(value.abs(), |(low, high)| low.abs().max(high.abs()));
+    let ends = interval.map(|(low, high)| [low, high]);
+    let ends = ends.map(|ends| ends.map(|end| if end.is_finite() { end } else { value }));
+    let finest = ends.map_or(0.0, |[low, high]| 0.05 * (high - low));
+    let largest = ends.map_or(value.abs(), |[low, high]| low.abs().max(high.abs()));
     let decimals = match finest {
         fine if fine > 0.0 => -math::log10(fine).floor(),
         _ if largest > 0.0 => 3.0 - math::log10(largest).floor(),
@@ -188,8 +216,12 @@ pub(super) fn in_words(difference: &Difference, words: &Words) -> [String; 4] {
         let is_zero = !text.bytes().any(|byte| (b'1'..=b'9').contains(&byte));
         if v > 0.0 && !is_zero { format!("+{text}") } else { text }
     };
-    let interval = interval.map_or(words.no_interval.to_owned(), |(low, high)| {
-        words.interval(&signed(low), &signed(high))
-    });
-    [number(a), number(b), signed(value), interval]
+    let end = |v: f64| if v.is_finite() { signed(v) } else { format::NO_NUMBER.to_owned() };
+    let interval = match interval {
+        None => words.no_interval.to_owned(),
+        Some((low, high)) if low.is_infinite() && high.is_infinite() => words.say(LEFT_OPEN),
+        Some((low, high)) => words.interval(&end(low), &end(high)),
+    };
+    let change = sign(bounds::of_difference(row.bounds)).to_owned() + &signed(value);
+    [number(a, row.bounds[0]), number(b, row.bounds[1]), change, interval]
 }

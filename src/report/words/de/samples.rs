@@ -34,4 +34,5 @@ pub(super) const SAMPLES: &[(&str, &str)] = &[
         "islands of rocks that may touch, each with its own step; heaps of more than {n} that touch go on as with rigid where none is struck hard: what a spring does within a blow is left out there",
         "Inseln von Blöcken, die sich berühren können, jede mit eigenem Schritt; Haufen von mehr als {n}, die sich berühren, gehen weiter wie mit rigid, solange keiner hart getroffen wird: was eine Feder während eines Stoßes tut, ist dort weggelassen",
     ),
+    ("left open", "bleibt offen"),
 ];

@@ -34,4 +34,5 @@ pub(super) const SAMPLES: &[(&str, &str)] = &[
         "islands of rocks that may touch, each with its own step; heaps of more than {n} that touch go on as with rigid where none is struck hard: what a spring does within a blow is left out there",
         "îlots de blocs qui peuvent se toucher, chacun avec son pas\u{a0}; les amas de plus de {n} qui se touchent continuent comme avec rigid tant qu’aucun n’est frappé fort\u{a0}: ce que fait un ressort pendant un choc y est omis",
     ),
+    ("left open", "reste ouvert"),
 ];

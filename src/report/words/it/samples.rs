@@ -34,4 +34,5 @@ pub(super) const SAMPLES: &[(&str, &str)] = &[
         "islands of rocks that may touch, each with its own step; heaps of more than {n} that touch go on as with rigid where none is struck hard: what a spring does within a blow is left out there",
         "isole di massi che possono toccarsi, ciascuna con il suo passo; i cumuli di più di {n} che si toccano continuano come con rigid finché nessuno è colpito forte: ciò che fa una molla durante un urto vi è tralasciato",
     ),
+    ("left open", "resta aperto"),
 ];
