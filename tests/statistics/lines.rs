@@ -296,3 +296,35 @@ fn a_name_in_a_file_that_breaks_lines_is_refused() {
         assert!(said.contains(&found), "{said}");
     }
 }
+
+/// An entry's own name is numbered over all lines of its file, parts of one feature too; names of the file get their part.
+#[test]
+fn lines_of_a_file_are_numbered() {
+    let dir = tempfile::tempdir().unwrap();
+    let feature = |kind: &str, name: &str, corners: &str| {
+        format!(
+            r#"{{"type":"Feature","properties":{{"name":"{name}"}},"geometry":{{"type":"{kind}","coordinates":{corners}}}}}"#
+        )
+    };
+    let features = [
+        feature("LineString", "west", "[[0,40],[10,40]]"),
+        feature("MultiLineString", "east", "[[[20,40],[30,40]],[[30,44],[40,44]]]"),
+    ];
+    let text = format!(r#"{{"type":"FeatureCollection","features":[{}]}}"#, features.join(","));
+    std::fs::write(dir.path().join("nets.geojson"), text).unwrap();
+    let terrain = format!("{}/terrain/", env!("CARGO_MANIFEST_DIR"));
+    let quick = std::fs::read_to_string("examples/quick.toml").unwrap();
+    let quick = quick.replace("../terrain/", &terrain);
+    let (physics, _) = quick.split_once("[[lines]]").unwrap();
+    for (name, expected) in [
+        ("name = \"Netz\"\n", ["Netz 1", "Netz 2", "Netz 3"]),
+        ("", ["west", "east", "east part 2"]),
+    ] {
+        let file = dir.path().join("scene.toml");
+        std::fs::write(&file, format!("{physics}\n[[lines]]\nfile = \"nets.geojson\"\n{name}"))
+            .unwrap();
+        let scene = Scene::read(&file).unwrap();
+        let found: Vec<&str> = scene.lines.iter().map(|line| line.name.as_str()).collect();
+        assert_eq!(found, expected);
+    }
+}

@@ -177,7 +177,9 @@ fn drawn(file: &Path, name: Option<&str>, name_from: Option<&str>) -> Result<Vec
         for (part, corners) in parts.iter().enumerate() {
             let line = Polyline::try_from(corners.clone())
                 .map_err(|flaw| feature.wrong(file, flaw.found, flaw.remedy))?;
-            let name = if part == 0 { own.clone() } else { format!("{own} part {}", part + 1) };
+            // an entry's own name is numbered over all lines, whatever feature they are parts of
+            let is_first = part == 0 || name.is_some();
+            let name = if is_first { own.clone() } else { format!("{own} part {}", part + 1) };
             all.push(DrawnLine { name, line, feature: feature.clone() });
         }
     }
