@@ -141,13 +141,18 @@ fn a_run_speaks_the_language_of_its_scene() {
 fn objects_without_a_year_are_warned_of_in_the_language_of_the_page() {
     let dir = site::Folder::new();
     dir.slope();
+    // and a line below the release
+    let line = "[[lines]]\nname = \"edge\"\npoints_m = [[2600010.5, 1200090.25], [2600050.5, 1200090.25]]\n";
     let road = "[[objects]]\nname = \"road\"\nwidth_m = 4.0\npoints_m = [[2600010.0, 1200030.5], [2600040.0, 1200030.5]]\n";
-    for (language, said) in
-        [("de", "ohne [frequency]"), ("fr", "sans [frequency]"), ("it", "senza [frequency]")]
-    {
-        let more = format!("{road}[report]\nlanguage = \"{language}\"\n");
+    for (language, said, stands) in [
+        ("de", "ohne [frequency]", "auf der Linie „edge“"),
+        ("fr", "sans [frequency]", "se trouvent sur la ligne «\u{a0}edge\u{a0}»"),
+        ("it", "senza [frequency]", "si trovano sulla linea “edge”"),
+    ] {
+        let more = format!("{road}{line}[report]\nlanguage = \"{language}\"\n");
         let out = dir.run(language, &site::scene("file = \"dem.tif\"", &more));
         let page = fs::read_to_string(out.join("report.html")).unwrap();
         assert!(page.contains(said) && !page.contains("without [frequency]"), "{language}");
+        assert!(page.contains(stands) && !page.contains("before they move"), "{language}");
     }
 }

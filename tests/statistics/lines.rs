@@ -297,6 +297,64 @@ fn a_name_in_a_file_that_breaks_lines_is_refused() {
     }
 }
 
+/// A rock that is released on a line does not cross it by that, whichever side rounding puts it on; one that is thrown up over it and comes
+/// back does, once. The plan says what lies so. Corners of lines below a release are no other places.
+#[test]
+fn a_line_is_not_crossed_by_standing_on_it() {
+    let lines = "[[lines]]\nname = \"on\"\npoints_m = [[1.7, 30.1], [38.3, 31.7]]\n\
+        [[lines]]\nname = \"corner\"\npoints_m = [[1.7, 30.1], [20.0, 30.9], [38.3, 31.7]]\n\
+        [[lines]]\nname = \"passed\"\npoints_m = [[1.0, 33.0], [39.0, 33.0]]\n";
+    let on_the_line = |k: u32| {
+        let share = f64::from(k) / 100.0;
+        format!("[{}, {}, 20.0]", 1.7 + share * (38.3 - 1.7), 30.1 + share * (31.7 - 30.1))
+    };
+    let points: Vec<String> = (20..80).map(on_the_line).collect();
+    let released = |velocity: &str| {
+        thrown(&format!(
+            "[release]\ncount = 60\nvelocity_m_s = {velocity}\nspin_rad_s = [0.0, 0.0, 0.0]\n\
+             points_m = [{}]\n{lines}",
+            points.join(",")
+        ))
+    };
+    for velocity in ["[0.0, 0.0, 0.0]", "[0.0, 6.0, 1.0]"] {
+        let plan = released(velocity);
+        for name in ["on", "corner"] {
+            let said =
+                format!("60 of 60 releases tried out lie on the line “{name}” before they move");
+            let said = said.replace("60 of 60", "1000 of 1000");
+            assert!(
+                plan.warnings.iter().any(|text| text.starts_with(&said)),
+                "{:?}",
+                plan.warnings
+            );
+        }
+        assert!(!plan.warnings.iter().any(|text| text.contains("“passed”")));
+        for fall in falls(&plan, 60) {
+            let early = fall.crossings.iter().filter(|one| one.motion.time_s < 1e-3);
+            assert_eq!(early.count(), 0, "rock {}: {:?}", fall.index, fall.crossings);
+            let times = |line: usize| {
+                fall.crossings
+                    .iter()
+                    .filter(|one| one.line == line)
+                    .map(|one| one.times)
+                    .sum::<u32>()
+            };
+            assert_eq!(times(0), times(1), "rock {}", fall.index);
+            if velocity != "[0.0, 0.0, 0.0]" {
+                assert_eq!(times(2), 1, "rock {}", fall.index);
+            }
+        }
+    }
+    // thrown straight up the face, a rock passes over the line on its way back
+    let back = thrown(&format!(
+        "[release]\ncount = 1\nvelocity_m_s = [0.0, -3.0, 0.0]\nspin_rad_s = [0.0, 0.0, 0.0]\n\
+         points_m = [[20.0, 15.0]]\nheight_m = 0.1\n[[lines]]\nname = \"l\"\npoints_m = [[1.0, 15.0], [39.0, 15.0]]\n"
+    ));
+    let fall = &falls(&back, 1)[0];
+    assert_eq!(fall.crossings.iter().map(|one| one.times).collect::<Vec<_>>(), [1]);
+    assert!(fall.crossings[0].motion.time_s > 0.1);
+}
+
 /// An entry's own name is numbered over all lines of its file, parts of one feature too; names of the file get their part.
 #[test]
 fn lines_of_a_file_are_numbered() {

@@ -1,5 +1,6 @@
 //! What a scene asks of the year: sources, objects, and what to know of the numbers.
 
+use super::recorders::below_releases;
 use super::{EvaluationLine, Part};
 use crate::error::{Error, Result};
 use crate::frequency::{Frequency, Stratum, radius_of_m3};
@@ -174,8 +175,9 @@ pub(super) fn over_release(
     lines: Option<&[EvaluationLine]>,
     warnings: &mut Vec<String>,
 ) {
-    let lines = lines.unwrap_or_default().iter();
-    for (object, footprint) in lines.filter_map(|line| Some((line, line.footprint?))) {
+    let lines = lines.unwrap_or_default();
+    warnings.extend(below_releases(tried, lines));
+    for (object, footprint) in lines.iter().filter_map(|line| Some((line, line.footprint?))) {
         let is_over = |release: &&Release| {
             let at = release.motion.position_m;
             object.gap_m(footprint, [at.x, at.y]).0 < release.rock.radius_m

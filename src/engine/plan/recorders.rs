@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::math;
-use crate::release;
+use crate::release::{self, Release};
 use crate::rock::Vec3;
 use crate::scene::{Corner, MapsTable, ObjectTable, Polyline, Scene};
 use crate::terrain::Terrain;
@@ -137,6 +137,28 @@ pub(super) fn beside_the_terrain(lines: &[EvaluationLine], terrain: &Terrain) ->
         })
     };
     lines.iter().filter_map(said).collect()
+}
+
+/// A release lies on a line up to this far from it (m): what rounding makes of places that are drawn on it.
+const ON_LINE_M: f64 = 1e-6;
+
+/// Says on which lines the first releases lie: they do not cross these by standing there, whichever side rounding puts them on.
+pub(super) fn below_releases(tried: &[Release], lines: &[EvaluationLine]) -> Vec<String> {
+    let on_line = Footprint::Strip { half_width_m: ON_LINE_M };
+    let said = |line: &EvaluationLine| {
+        let is_on = |release: &&Release| {
+            let at = release.motion.position_m;
+            line.gap_m(on_line, [at.x, at.y]).0 <= 0.0
+        };
+        let on = tried.iter().filter(is_on).count();
+        (on > 0).then(|| {
+            format!(
+                "{on} of {} releases tried out lie on the line “{}” before they move: they do not cross it by that, and count only where they come back over it. Draw the line or the release elsewhere",
+                tried.len(), line.name
+            )
+        })
+    };
+    lines.iter().filter(|line| line.footprint.is_none()).filter_map(said).collect()
 }
 
 impl EvaluationLine {

@@ -1,5 +1,7 @@
 //! Where a rock passes evaluation lines: exact on the parabola of a flight and on the cubic of a step.
 
+mod roots;
+
 use super::form::{Form, RockFlight, RockInstant};
 use crate::math;
 use crate::plan::{EvaluationLine, Footprint, LinePiece};
@@ -7,6 +9,7 @@ use crate::rock::{Motion, Vec3};
 use crate::scene::Corner;
 use crate::terrain::Terrain;
 use arrayvec::ArrayVec;
+use roots::roots;
 
 /// A rock's first crossing of a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -53,27 +56,53 @@ pub(super) struct Crossings<'a> {
     /// South-western and north-eastern corner of a box in plan view in which nothing can be met: most steps are short and
     /// far from all lines. None where nothing is known of it.
     clear: Option<[Corner; 2]>,
+    /// Where the rock starts, in plan view, and whether it has come away from there.
+    start_m: Corner,
+    has_left: bool,
 }
+
+/// The crossings at a moment, to go back to.
+#[derive(Debug)]
+pub(super) struct CrossingsMark {
+    found: Vec<Crossing>,
+    has_left: bool,
+}
+
+/// A rock is where it starts up to this far away (m): it does not cross a line that it stands on, on whichever side rounding puts it.
+const START_M: f64 = 1e-6;
 
 /// What is kept of the room to the next line (–): rounding must not make it too large.
 const KEPT: f64 = 0.999;
 
 impl<'a> Crossings<'a> {
-    pub(super) fn of(terrain: &'a Terrain, form: Form<'a>, lines: &'a [EvaluationLine]) -> Self {
-        Self { terrain, form, lines, found: Vec::new(), met: Vec::new(), clear: None }
+    /// None so far, of a rock that starts at `start`.
+    pub(super) fn of(
+        terrain: &'a Terrain,
+        form: Form<'a>,
+        lines: &'a [EvaluationLine],
+        start: &Vec3,
+    ) -> Self {
+        let (found, met, start_m) = (Vec::new(), Vec::new(), flat(start));
+        Self { terrain, form, lines, found, met, clear: None, start_m, has_left: false }
     }
 
     /// So far.
-    pub(super) fn found(&self) -> &[Crossing] {
-        &self.found
+    pub(super) fn mark(&self) -> CrossingsMark {
+        CrossingsMark { found: self.found.clone(), has_left: self.has_left }
     }
 
     /// Goes back to what was found before.
-    pub(super) fn go_back(&mut self, found: &[Crossing]) {
+    pub(super) fn go_back(&mut self, mark: &CrossingsMark) {
         // an object that is no longer known may be met again
-        self.clear = self.clear.filter(|_| self.found.len() == found.len());
+        self.clear = self.clear.filter(|_| self.found.len() == mark.found.len());
         self.found.clear();
-        self.found.extend_from_slice(found);
+        self.found.extend_from_slice(&mark.found);
+        self.has_left = mark.has_left;
+    }
+
+    /// Whether a place is where the rock starts, from where it has not come away so far.
+    fn is_at_start(&self, [x, y]: Corner) -> bool {
+        !self.has_left && math::hypot(x - self.start_m[0], y - self.start_m[1]) <= START_M
     }
 
     /// In the order of lines.
@@ -159,12 +188,19 @@ impl<'a> Crossings<'a> {
             if !evaluation_line.is_near(low, high) {
                 continue;
             }
-            meetings(evaluation_line, &when, |s| flat(&at(s).motion.position_m), &mut self.met);
+            let place = |s: f64| flat(&at(s).motion.position_m);
+            meetings(evaluation_line, &when, place, &mut self.met);
+            if !self.has_left && !self.met.is_empty() {
+                let mut met = std::mem::take(&mut self.met);
+                met.retain(|meeting| !self.is_at_start(place(meeting.s)));
+                self.met = met;
+            }
             if let Some(&LineMeeting { s, along_m, .. }) = self.met.first() {
                 self.note(line, (at(s), along_m), self.met.len() as u32);
             }
         }
         self.clear = self.clear_around([low, high]);
+        self.has_left = !self.is_at_start(hull[3]);
     }
 
     /// The largest box around another in which nothing can be met: an object counts with the rim of the rock, and not at
@@ -325,74 +361,4 @@ fn enter(
 /// The point in plan view.
 fn flat(point: &Vec3) -> Corner {
     [point.x, point.y]
-}
-
-/// Halvings of an interval until its ends are neighbours in `f64`.
-const HALVINGS: u32 = 60;
-
-/// Where a cubic, given by its Bézier ordinates over 0..1, changes side (above 0, or not), rising.
-///
-/// The curve stays within the hull of its ordinates, so one look at their signs tells most steps; between its extremes
-/// (a quadratic) it is monotone, and halving finds the place to the last bit.
-fn roots(ordinates: [f64; 4]) -> WayShares {
-    let [b0, b1, b2, b3] = ordinates;
-    if ordinates.iter().all(|b| *b > 0.0) || ordinates.iter().all(|b| *b <= 0.0) {
-        return WayShares::new();
-    }
-    // Bernstein form: Σ C(3, k) s^k (1 − s)^(3 − k) b_k
-    let value = |s: f64| {
-        let r = 1.0 - s;
-        r * r * r * b0 + 3.0 * s * r * (r * b1 + s * b2) + s * s * s * b3
-    };
-    // the derivative is a quadratic with the ordinates c_k; its roots, without cancellation, part
-    // the curve into monotone pieces
-    let (c0, c1, c2) = (b1 - b0, b2 - b1, b3 - b2);
-    let (a, b, c) = (c0 - 2.0 * c1 + c2, c1 - c0, c0);
-    let root = (b * b - a * c).sqrt();
-    let q = -(b + root.copysign(b));
-    let mut ends: ArrayVec<f64, 4> =
-        [q / a, c / q].into_iter().filter(|s| *s > 0.0 && *s < 1.0).collect();
-    ends.extend([0.0, 1.0]);
-    ends.sort_by(f64::total_cmp);
-    // the ends of the step are taken as they are, so that the next step sees the same side
-    let above = |s: f64| match s {
-        0.0 => b0 > 0.0,
-        1.0 => b3 > 0.0,
-        _ => value(s) > 0.0,
-    };
-    let changes = ends.windows(2).filter(|pair| above(pair[0]) != above(pair[1]));
-    let place = |pair: &[f64]| {
-        let at_first = above(pair[0]);
-        math::bisected([pair[0], pair[1]], HALVINGS, |s| above(s) == at_first)[1]
-    };
-    changes.map(place).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::roots;
-
-    /// Ordinates of (s − 1/4)(s − 1/2)(s − 3/4) and of s² (3 − 2 s) − 1/2: their zeros are known.
-    #[test]
-    fn zeros_of_cubics_are_found_to_the_last_bits() {
-        let three = roots([-0.09375, 0.135_416_666_666_666_67, -0.135_416_666_666_666_67, 0.09375]);
-        assert_eq!(three.len(), 3);
-        for (found, zero) in three.iter().zip([0.25, 0.5, 0.75]) {
-            // the ordinates are rounded; near the middle zero the curve rises by 1/16 per unit
-            assert!((found - zero).abs() < 1e-14, "{found}");
-        }
-        let one = roots([-0.5, -0.5, 0.5, 0.5]);
-        assert!(one.len() == 1 && (one[0] - 0.5).abs() < 1e-15, "{one:?}");
-        assert!(roots([1.0, 0.2, 0.3, 1.0]).is_empty());
-        // dips below and comes back: two changes
-        assert_eq!(roots([0.1, -1.0, -1.0, 0.1]).len(), 2);
-    }
-
-    /// What ends a step on the line begins the next one there: together they cross once.
-    #[test]
-    fn a_line_at_a_seam_is_crossed_once() {
-        let first = roots([-1.0, -0.7, -0.3, 0.0]);
-        let second = roots([0.0, 0.3, 0.7, 1.0]);
-        assert_eq!(first.len() + second.len(), 1);
-    }
 }

@@ -8,7 +8,7 @@ mod booking;
 
 use super::cells::{CellPassage, CellPassages};
 use super::contact_heights::{StepHeights, TriangleBelow};
-use super::crossings::{Crossing, Crossings};
+use super::crossings::{Crossings, CrossingsMark};
 use super::form::{AttitudeOnWay, Form, RockFlight, RockInstant, Turned};
 use super::heights::Heights;
 use super::impacts::{Impacts, ImpactsMark};
@@ -63,7 +63,7 @@ pub(super) struct RecorderMark {
     extremes: Extremes,
     path: usize,
     impacts: ImpactsMark,
-    crossings: Vec<Crossing>,
+    crossings: CrossingsMark,
     passages: (usize, Option<CellPassage>),
     stretches: (usize, Option<Stretch>),
     tree_impact_count: u32,
@@ -87,7 +87,7 @@ impl<'a> Recorder<'a> {
             extremes: Extremes::default(),
             path: Vec::new(),
             impacts: Impacts::kept_if(keep.impacts),
-            crossings: Crossings::of(terrain, form, recorders.lines),
+            crossings: Crossings::of(terrain, form, recorders.lines, &start.position_m),
             passages: CellPassages::of(recorders.cells),
             stretches: Stretches::of(recorders.profile_step_m, &start),
             below: TriangleBelow::default(),
@@ -113,7 +113,7 @@ impl<'a> Recorder<'a> {
             extremes: self.extremes,
             path: self.path.len(),
             impacts: self.impacts.mark(),
-            crossings: self.crossings.found().to_vec(),
+            crossings: self.crossings.mark(),
             passages: self.passages.found.mark(),
             stretches: self.stretches.found.mark(),
             tree_impact_count: self.tree_impact_count,

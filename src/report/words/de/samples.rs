@@ -34,5 +34,9 @@ pub(super) const SAMPLES: &[(&str, &str)] = &[
         "islands of rocks that may touch, each with its own step; heaps of more than {n} that touch go on as with rigid where none is struck hard: what a spring does within a blow is left out there",
         "Inseln von Blöcken, die sich berühren können, jede mit eigenem Schritt; Haufen von mehr als {n}, die sich berühren, gehen weiter wie mit rigid, solange keiner hart getroffen wird: was eine Feder während eines Stoßes tut, ist dort weggelassen",
     ),
+    (
+        "{n} of {tried} releases tried out lie on the line “{name}” before they move: they do not cross it by that, and count only where they come back over it. Draw the line or the release elsewhere",
+        "{n} von {tried} versuchten Ablösungen liegen schon vor der Bewegung auf der Linie „{name}“: Sie queren sie dadurch nicht und zählen nur, wo sie über sie zurückkommen. Linie oder Ablösung anderswo zeichnen",
+    ),
     ("left open", "bleibt offen"),
 ];

@@ -34,5 +34,9 @@ pub(super) const SAMPLES: &[(&str, &str)] = &[
         "islands of rocks that may touch, each with its own step; heaps of more than {n} that touch go on as with rigid where none is struck hard: what a spring does within a blow is left out there",
         "îlots de blocs qui peuvent se toucher, chacun avec son pas\u{a0}; les amas de plus de {n} qui se touchent continuent comme avec rigid tant qu’aucun n’est frappé fort\u{a0}: ce que fait un ressort pendant un choc y est omis",
     ),
+    (
+        "{n} of {tried} releases tried out lie on the line “{name}” before they move: they do not cross it by that, and count only where they come back over it. Draw the line or the release elsewhere",
+        "{n} des {tried} départs essayés se trouvent sur la ligne «\u{a0}{name}\u{a0}» avant de bouger\u{a0}: ils ne la franchissent pas pour autant et ne comptent que s’ils la repassent. Dessiner la ligne ou le départ ailleurs",
+    ),
     ("left open", "reste ouvert"),
 ];

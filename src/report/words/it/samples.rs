@@ -34,5 +34,9 @@ pub(super) const SAMPLES: &[(&str, &str)] = &[
         "islands of rocks that may touch, each with its own step; heaps of more than {n} that touch go on as with rigid where none is struck hard: what a spring does within a blow is left out there",
         "isole di massi che possono toccarsi, ciascuna con il suo passo; i cumuli di più di {n} che si toccano continuano come con rigid finché nessuno è colpito forte: ciò che fa una molla durante un urto vi è tralasciato",
     ),
+    (
+        "{n} of {tried} releases tried out lie on the line “{name}” before they move: they do not cross it by that, and count only where they come back over it. Draw the line or the release elsewhere",
+        "{n} dei {tried} distacchi provati si trovano sulla linea “{name}” prima di muoversi: non la attraversano per questo e contano solo dove vi ripassano. Disegnare altrove la linea o il distacco",
+    ),
     ("left open", "resta aperto"),
 ];
