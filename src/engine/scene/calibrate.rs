@@ -294,7 +294,15 @@ impl CalibrateTable {
             return Err(Complaint::about("held_out", remedy));
         }
         for (index, vary) in self.vary.iter().enumerate() {
-            vary.check().map_err(|wrong| wrong.in_entry(index).inside("vary"))?;
+            let before = &self.vary[..index];
+            let known = before.iter().any(|one| (&one.ground, one.key) == (&vary.ground, vary.key));
+            let own = if known {
+                let remedy = "remove it: an entry before varies the same value";
+                Err(Complaint::about("key", remedy).finding(format!("found {:?}", vary.key.name())))
+            } else {
+                vary.check()
+            };
+            own.map_err(|wrong| wrong.in_entry(index).inside("vary"))?;
         }
         Ok(())
     }
