@@ -4,11 +4,12 @@ use super::terminal::{bar, say};
 use super::words::{of_a_trial, threads};
 use crate::calibrate::{self, CalibrationTrial, Ends};
 use crate::ensemble::Ensemble;
-use crate::error::Result;
-use crate::file::write_atomic;
+use crate::error::{Error, Result};
+use crate::file::{self, write_atomic};
 use crate::output;
 use crate::scene::Scene;
 use clap::Args;
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -63,11 +64,35 @@ fn fit(
     let vary = scenes[0].calibrate.as_ref().map_or(&[][..], |table| &table.vary);
     // before the scenes are read again: hours of trials must not hang on a file that has been moved meanwhile
     output::write_calibration(out, &found, &trials)?;
+    let mut kept = String::new();
     for scene in scenes {
         let name = scene.file.file_stem().unwrap_or_default().to_string_lossy();
         let text = calibrate::fitted_scene(scene, vary, &found)?;
-        write_atomic(&out.join(format!("{name}_fitted.toml")), text.as_bytes())?;
+        let fitted = out.join(format!("{name}_fitted.toml"));
+        kept.extend(keep_earlier(&fitted, text.as_bytes())?);
+        write_atomic(&fitted, text.as_bytes())?;
     }
     let out = out.display();
-    Ok(format!("{found}all trials in {out}/calibration.csv, fitted scenes beside it"))
+    Ok(format!("{found}all trials in {out}/calibration.csv, fitted scenes beside it{kept}"))
+}
+
+/// Puts an earlier fitted scene with another text aside, under a name that is free: somebody may have worked on it. What is said of it;
+/// nothing where nothing would be lost.
+///
+/// # Errors
+/// A file that cannot be read or renamed.
+fn keep_earlier(fitted: &Path, text: &[u8]) -> Result<Option<String>> {
+    if !fitted.is_file() || file::read(fitted, file::LONGEST_TEXT)? == text {
+        return Ok(None);
+    }
+    let ending = |number: usize| match number {
+        1 => "previous.toml".to_owned(),
+        number => format!("previous_{number}.toml"),
+    };
+    let mut names = (1..).map(|number| fitted.with_extension(ending(number)));
+    let Some(aside) = names.find(|name| fs::symlink_metadata(name).is_err()) else {
+        return Ok(None);
+    };
+    fs::rename(fitted, &aside).map_err(Error::file("rename", fitted))?;
+    Ok(Some(format!("\nthe earlier fitted scene, which differs, is kept as {}", aside.display())))
 }

@@ -91,3 +91,29 @@ fn trials_are_kept_whatever_becomes_of_the_fitted_scene() {
         assert!(out.join(kept).is_file(), "{kept}");
     }
 }
+
+/// A fit may be run again; what somebody has made of an earlier fitted scene stays, and twice.
+#[test]
+fn an_earlier_fitted_scene_is_kept() {
+    let dir = Folder::new();
+    let scene = site(&dir);
+    let out = dir.path("fit");
+    let fit = || -> String {
+        let done = rockfall(&["calibrate", word(&scene), "--releases", "20", "--out", word(&out)]);
+        assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+        String::from_utf8(done.stdout).unwrap()
+    };
+    assert!(!fit().contains("previous"));
+    // the same again: nothing would be lost
+    assert!(!fit().contains("previous"));
+    let fitted = out.join("gis_fitted.toml");
+    let text = fs::read_to_string(&fitted).unwrap();
+    for (mine, kept) in [("# mine\n", "previous"), ("# mine too\n", "previous_2")] {
+        fs::write(&fitted, format!("{mine}{text}")).unwrap();
+        let name = format!("gis_fitted.{kept}.toml");
+        let said = fit();
+        assert!(said.contains("is kept as") && said.contains(&name), "{said}");
+        assert_eq!(fs::read_to_string(out.join(name)).unwrap(), format!("{mine}{text}"));
+        assert_eq!(fs::read_to_string(&fitted).unwrap(), text);
+    }
+}
