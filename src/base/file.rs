@@ -76,6 +76,18 @@ pub fn line_of(table: &[u8], position: Option<&csv::Position>) -> u64 {
     position.line() + empty as u64
 }
 
+/// What to do about a table that cannot be read: what it should be, behind what its bytes tell of why it is not.
+pub fn table_remedy(table: &[u8], asked: &str) -> String {
+    if std::str::from_utf8(table).is_err() {
+        return format!("save it in UTF-8: it is in another encoding, as Latin-1; {asked}");
+    }
+    let first = table.split(|&byte| byte == b'\n').next().unwrap_or_default();
+    if !first.contains(&b',') && first.iter().any(|byte| b";\t".contains(byte)) {
+        return format!("put commas between its columns, and points into its numbers; {asked}");
+    }
+    asked.to_owned()
+}
+
 /// Reads a whole file, see [`open`].
 ///
 /// # Errors

@@ -241,12 +241,15 @@ fn place(x: f64, y: f64) -> std::result::Result<Corner, String> {
 }
 
 /// Polygons from rings in any order and direction: every ring that lies in no other is an outline, one that lies in an
-/// outline is a hole of it.
+/// outline is a hole of it. Of two equal rings the second lies in the first, so that it is no outline of its own.
 fn polygons(rings: Vec<Vec<Corner>>) -> Vec<Polygon> {
     let rings: Vec<Vec<Corner>> = rings.into_iter().map(|ring| canonical(ring, true)).collect();
     let depth = |ring: usize| {
-        let around = (0..rings.len())
-            .filter(|&other| other != ring && encloses(&rings[other], &rings[ring]));
+        let is_around = |&other: &usize| {
+            let is_same = other < ring && rings[other] == rings[ring];
+            other != ring && (is_same || encloses(&rings[other], &rings[ring]))
+        };
+        let around = (0..rings.len()).filter(is_around);
         around.collect::<Vec<usize>>()
     };
     let depths: Vec<Vec<usize>> = (0..rings.len()).map(depth).collect();

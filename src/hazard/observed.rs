@@ -128,7 +128,7 @@ impl ObservedPath {
             reader.records().map(way).collect();
         let ways = ways.map_err(|(line, found)| {
             let remedy = "write numbers in the columns release_x_m, release_y_m, x_m, y_m, map coordinates within 1e8 m";
-            Error::input(path, format!("line {line}"), found, remedy)
+            Error::input(path, format!("line {line}"), found, file::table_remedy(&table, remedy))
         })?;
         if ways.len() < 2 {
             let found = format!("found {} measured ends", ways.len());

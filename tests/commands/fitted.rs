@@ -117,3 +117,22 @@ fn an_earlier_fitted_scene_is_kept() {
         assert_eq!(fs::read_to_string(&fitted).unwrap(), text);
     }
 }
+
+/// Measured ends in another form are refused with what to do about it.
+#[test]
+fn ends_in_another_form_are_refused() {
+    let dir = Folder::new();
+    let scene = site(&dir);
+    let ends = fs::read_to_string(dir.path("ends.csv")).unwrap();
+    let semicolons = ends.replace(',', ";").into_bytes();
+    let latin = [ends.as_bytes(), b"1,2,3,H\xfctte\n"].concat();
+    for (bytes, says) in
+        [(semicolons, "put commas between its columns"), (latin, "save it in UTF-8")]
+    {
+        dir.put("ends.csv", bytes);
+        let out = dir.path("f");
+        let said = rockfall(&["calibrate", word(&scene), "--releases", "20", "--out", word(&out)]);
+        let message = String::from_utf8_lossy(&said.stderr);
+        assert!(said.status.code() == Some(2) && message.contains(says), "{message}");
+    }
+}

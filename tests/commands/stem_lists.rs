@@ -136,7 +136,15 @@ fn lists_that_do_not_fit_are_refused() {
             with_trees(slope, "file = \"german.csv\""),
             ["line 1: found the header x,y,bhd_cm,height_m", "x,y,dbh_m,height_m"],
         ),
-        (with_trees(slope, "file = \"latin.csv\""), ["line 1", "under the header x,y,dbh_m"]),
+        (with_trees(slope, "file = \"latin.csv\""), ["line 1", "save it in UTF-8"]),
+        (
+            with_trees(slope, "file = \"semicolons.csv\""),
+            ["line 1", "put commas between its columns"],
+        ),
+        (
+            scene("file = \"dem.tif\"\nclasses = [2]", ""),
+            ["dem.tif: classes: found it", "LAS, LAZ"],
+        ),
         (with_trees(slope, "file = \"empty.csv\""), ["found no tree", "under the header x,y"]),
         (
             with_trees(slope, "file = \"other.geojson\""),

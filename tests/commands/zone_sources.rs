@@ -285,3 +285,29 @@ fn a_name_that_stands_twice_is_one_zone_or_refused() {
         "{said}"
     );
 }
+
+/// A hole as large as its polygon leaves nothing, and parts that overlap would count twice.
+#[test]
+fn rings_that_meet_are_refused() {
+    let dir = Folder::new();
+    dir.slope();
+    let square = |west: u32| {
+        let (x, y) = (2_600_010 + west, 1_200_080);
+        let [east, north] = [x + 8, y + 8];
+        format!("[[{x},{y}],[{east},{y}],[{east},{north}],[{x},{north}],[{x},{y}]]")
+    };
+    let drawing = |kind: &str, rings: String| {
+        format!(
+            r#"{{"type":"FeatureCollection","features":[{{"type":"Feature","properties":{{}},"geometry":{{"type":"{kind}","coordinates":[{rings}]}}}}]}}"#
+        )
+    };
+    let twice = drawing("Polygon", format!("{0},{0}", square(0)));
+    let overlap = drawing("MultiPolygon", format!("[{}],[{}]", square(0), square(4)));
+    for (drawing, says) in
+        [(twice, "found a ring twice"), (overlap, "or two parts that overlap; write holes inside")]
+    {
+        dir.put("zones.geojson", drawing);
+        let said = dir.refusal(&scene("file = \"dem.tif\"", "zones = \"zones.geojson\"|"));
+        assert!(said.contains("zones.geojson: feature 1: ") && said.contains(says), "{said}");
+    }
+}

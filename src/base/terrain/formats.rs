@@ -43,6 +43,17 @@ pub(super) enum Loaded {
     Joined(std::path::PathBuf, Option<u32>),
 }
 
+impl Loaded {
+    /// Whether its points have classes.
+    pub(super) fn is_cloud(&self) -> bool {
+        match self {
+            Self::Mesh(_) | Self::Grid(_) | Self::Unreached(_) | Self::Trees(_) => false,
+            #[cfg(feature = "cloud")]
+            Self::Cloud(_) | Self::Joined(..) => true,
+        }
+    }
+}
+
 /// An elevation model.
 #[derive(Debug)]
 pub(super) struct ElevationModel {

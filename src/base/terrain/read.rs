@@ -33,6 +33,11 @@ impl MeshSource {
             let remedy = "remove crop and resample_m: a mesh is taken as it is, and so are stems";
             return wrong("crop, resample_m", &found, remedy);
         }
+        if !options.classes.is_empty() && !loaded.is_cloud() {
+            let what = if is_mesh { "a mesh" } else { what };
+            let remedy = "remove it: classes choose among the points of a point cloud (LAS, LAZ)";
+            return wrong("classes", &format!("found it beside {what}"), remedy);
+        }
         if !is_mesh && !is_list && self.sheet.is_tree {
             let remedy = "write a mesh of stems under [[trees]], or a list of trees with x, y, dbh_m, height_m";
             return wrong("[[trees]]", "found an elevation model", remedy);

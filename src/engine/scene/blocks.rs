@@ -80,9 +80,10 @@ pub(super) fn read(
     has_height: bool,
     (density_kg_m3, size_from): (f64, Option<SizeFrom>),
 ) -> Result<Vec<BlockRow>> {
-    let wrong =
-        |line: u64, found: String| Error::input(path, format!("line {line}"), found, REMEDY);
     let table = file::read_table(path, LONGEST_TEXT)?;
+    let wrong = |line: u64, found: String| {
+        Error::input(path, format!("line {line}"), found, file::table_remedy(&table, REMEDY))
+    };
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(&table[..]);
     let headers = reader.headers().cloned().unwrap_or_default();
     let columns = BlockColumns::of(&headers, has_height).map_err(|found| wrong(1, found))?;

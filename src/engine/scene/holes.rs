@@ -9,16 +9,18 @@ use crate::math;
 /// # Errors
 /// A hole that cannot be joined: it lies outside, or crosses another ring.
 pub(super) fn bridged(outline_m: &[Corner], holes_m: &[&[Corner]]) -> Result<Vec<Corner>, Flaw> {
+    if holes_m.iter().any(|hole| sorted(hole) == sorted(outline_m)) {
+        return Err(Flaw::new("found a ring twice: as outline and as hole or part", INSIDE));
+    }
     let mut ring = turned(outline_m, true);
     let mut holes: Vec<Vec<Corner>> = holes_m.iter().map(|hole| turned(hole, false)).collect();
     // the easternmost first: nothing stands between it and the outline but the outline
     holes.sort_by(|one, other| easternmost(other)[0].total_cmp(&easternmost(one)[0]));
     for number in 0..holes.len() {
         let (at, from) = bridge(&ring, &holes[number..]).ok_or_else(|| {
-            Flaw::new(
-                "found a hole that meets its outline or another hole",
-                "write holes inside of the polygon, apart from each other",
-            )
+            let found =
+                "found a hole that meets its outline or another hole, or two parts that overlap";
+            Flaw::new(found, INSIDE)
         })?;
         let hole = &holes[number];
         let around = hole[from..].iter().chain(&hole[..=from]).copied();
@@ -28,6 +30,17 @@ pub(super) fn bridged(outline_m: &[Corner], holes_m: &[&[Corner]]) -> Result<Vec
         ring.extend(behind);
     }
     Ok(ring)
+}
+
+/// What to do about rings that meet.
+const INSIDE: &str =
+    "write holes inside of the polygon, apart from each other, and parts of it that do not overlap";
+
+/// The corners of a ring, wherever it begins and whichever way it goes.
+fn sorted(ring: &[Corner]) -> Vec<Corner> {
+    let mut corners = ring.to_vec();
+    corners.sort_by(|one, other| one[0].total_cmp(&other[0]).then(one[1].total_cmp(&other[1])));
+    corners
 }
 
 fn easternmost(ring: &[Corner]) -> Corner {

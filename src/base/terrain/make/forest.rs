@@ -109,7 +109,8 @@ pub fn read_list(path: &Path) -> Result<TreeList> {
     }
     let table = file::read_table(path, LONGEST_TEXT)?;
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(&table[..]);
-    let header = |found: String| Error::input(path, "line 1", found, REMEDY);
+    let remedy = || file::table_remedy(&table, REMEDY);
+    let header = |found: String| Error::input(path, "line 1", found, remedy());
     let headers = reader.headers().map_err(|why| header(format!("found {why}")))?.clone();
     if !headers.is_empty() && headers.iter().all(|name| name != "dbh_m") {
         let found = headers.iter().collect::<Vec<_>>().join(",");
@@ -118,7 +119,7 @@ pub fn read_list(path: &Path) -> Result<TreeList> {
     let mut trees = Vec::new();
     for row in reader.records() {
         let wrong =
-            |line: u64, found: String| Error::input(path, format!("line {line}"), found, REMEDY);
+            |line: u64, found: String| Error::input(path, format!("line {line}"), found, remedy());
         let row = row
             .map_err(|why| wrong(file::line_of(&table, why.position()), format!("found {why}")))?;
         let line = file::line_of(&table, row.position());
