@@ -110,6 +110,16 @@ pub fn percent(share: f64, decimals: usize) -> String {
     format!("{}{THIN_SPACE}%", decimal(100.0 * share, decimals))
 }
 
+/// A share of some things in per cent, with as many more decimals as keep a part from looking like all or none of them: 398 of 400 are
+/// 99.5 %, and not 100 %.
+pub fn percent_of_part(share: f64, decimals: usize) -> String {
+    let is_part = share > 0.0 && share < 1.0;
+    let with = |more: usize| percent(share, decimals + more);
+    let is_told =
+        |more: &usize| [0.0, 1.0].iter().all(|all| with(*more) != percent(*all, decimals + more));
+    with((0..=MOST_MORE).find(|more| !is_part || is_told(more)).unwrap_or(0))
+}
+
 /// The upper end of a share (0..1) in per cent, to two digits and never below it: none of 10 000 bounds a share by 0.030 %,
 /// and not by 0.0 %.
 pub fn percent_at_most(share: f64) -> String {
@@ -230,6 +240,13 @@ mod tests {
         assert_eq!(power_of_ten(12), "10¹²");
         assert_eq!(percent(0.9996, 1), "100.0\u{2009}%");
         assert_eq!([2.5, 10.0, 0.025, 1e4].map(plain), ["2.5", "10", "0.025", "10\u{2009}000"]);
+    }
+
+    #[test]
+    fn a_part_is_not_all() {
+        let said = [0.995, 1.0, 0.99996, 0.5, 0.0, 0.004].map(|share| percent_of_part(share, 0));
+        let expected = ["99.5", "100", "99.996", "50", "0", "0.4"];
+        assert_eq!(said, expected.map(|number| format!("{number}\u{2009}%")));
     }
 
     /// Only where rounding hides the interval there are more digits, and an interval without width has none to show.

@@ -117,7 +117,7 @@ pub(super) fn warnings_first(hazard: &Hazard, words: &Words) -> Vec<String> {
     let said = |(kind, what, remedy): (StopKind, &str, &str)| {
         let share = hazard.ended(kind);
         let count = |n: usize| format::decimal(n as f64, 0);
-        let percent = format::percent(share.share, usize::from(share.share < 0.1));
+        let percent = format::percent_of_part(share.share, usize::from(share.share < 0.1));
         let (n, of) = (count(share.count), count(share.of));
         let rocks = fill(&some_rocks, &[("n", &n), ("of", &of), ("share", &percent)]);
         let said =

@@ -109,7 +109,7 @@ fn hollows(report: &Report, ground: &GroundRaster) -> Option<Check> {
         &[
             ("n", &format::decimal(held.len() as f64, 0)),
             ("of", &format::decimal(at_rest.len() as f64, 0)),
-            ("share", &format::percent(share, 0)),
+            ("share", &format::percent_of_part(share, 0)),
             ("depth", &HOLLOW_M),
             ("half", &number(half_m2)),
             ("all", &number(all_m2)),

@@ -83,7 +83,8 @@ pub fn sentence(study: &SceneStudy, statistic: &StudyStatistic, wanted: Option<f
     let mesh = statistic.meshes.as_ref().map_or_else(String::new, |meshes| {
         format!(", error of the mesh {}", with_ends(&meshes.own_error, unit))
     });
-    let dominates = dominant(sampling, steps.value.abs(), statistic.mesh_error().abs());
+    let mesh_error = statistic.meshes.as_ref().map(|meshes| &meshes.own_error);
+    let dominates = dominant(sampling, &steps, mesh_error);
     let wanted = wanted.unwrap_or(0.5 * total);
     let offer = match study.cheapest(statistic, wanted) {
         None => format!(
@@ -100,21 +101,25 @@ pub fn sentence(study: &SceneStudy, statistic: &StudyStatistic, wanted: Option<f
         ),
     };
     format!(
-        "{head}: sampling error ±{} {unit}, error of the steps {}{mesh}, total {} {unit}. {dominates} dominates; {offer}.",
+        "{head}: sampling error ±{} {unit}, error of the steps {}{mesh}, total {} {unit}. {dominates}; {offer}.",
         small(sampling),
         with_ends(&steps, unit),
         small(total)
     )
 }
 
-/// Which of the three errors is the largest.
-fn dominant(sampling: f64, steps: f64, mesh: f64) -> &'static str {
-    if sampling >= steps.max(mesh) {
-        "Sampling"
-    } else if steps >= mesh {
-        "The error of the steps"
-    } else {
-        "The error of the mesh"
+/// Which of the three errors is the largest, and whether it is there at all.
+fn dominant(sampling: f64, steps: &Interval, mesh: Option<&Interval>) -> String {
+    let of_mesh = mesh.map(|error| ("the mesh", error));
+    let others = std::iter::once(("the steps", steps)).chain(of_mesh);
+    let size = |error: &Interval| error.value.abs();
+    let largest = others.reduce(|one, next| if size(next.1) > size(one.1) { next } else { one });
+    match largest.filter(|(_, error)| size(error) > sampling) {
+        None => "Sampling dominates".to_owned(),
+        Some((what, error)) if error.is_certain() => format!("The error of {what} dominates"),
+        Some((what, _)) => {
+            format!("The error of {what} may dominate, more releases would tell it from 0")
+        }
     }
 }
 
@@ -265,4 +270,25 @@ pub(super) fn csv(study: &SceneStudy) -> String {
         }
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What cannot be told from 0 is not said to dominate.
+    #[test]
+    fn only_what_is_there_dominates() {
+        let error = |value: f64, low: f64, high: f64| Interval { value, low, high };
+        let certain = error(0.018, 0.0005, 0.045);
+        let said = |sampling: f64, steps: Interval, mesh: Option<Interval>| {
+            dominant(sampling, &steps, mesh.as_ref())
+        };
+        assert_eq!(said(0.0094, certain, None), "The error of the steps dominates");
+        assert_eq!(said(0.02, certain, None), "Sampling dominates");
+        let open = error(0.006, -1e-5, 0.011);
+        let may = "The error of the steps may dominate, more releases would tell it from 0";
+        assert_eq!(said(0.0045, open, None), may);
+        assert_eq!(said(0.0045, open, Some(certain)), "The error of the mesh dominates");
+    }
 }

@@ -200,7 +200,8 @@ impl PressedSprings {
     fn carry(&self, scene: &Scene, deepest: &Deepest) -> Result<()> {
         let radius_m = deepest.rock.radius_m;
         let at_rest = deepest.rock.mass_kg() * scene.gravity_m_s2 / (STATIC_DEPTH * radius_m);
-        if self.softest >= at_rest.max(self.least(deepest, self.fastest_m_s, 1.0)) {
+        let least = at_rest.max(self.least(deepest, self.fastest_m_s, 1.0));
+        if self.softest >= least {
             return Ok(());
         }
         let usual_m_s = self.fastest_m_s.min(SELDOM_PASSED_M_S);
@@ -210,7 +211,15 @@ impl PressedSprings {
             "found {:e}, too soft for a rock of {radius_m:.3} m{of} at up to {:.0} m/s: it would sink in",
             self.softest, self.fastest_m_s
         );
-        let remedy = format!("write {:.1e} or more", 1.05 * usual);
+        // what holds usual speeds may be less than what was found: then the speed is the mistake, most likely
+        let slower = if least > usual {
+            format!(
+                ", or check height_m and velocity_m_s: rocks are seldom faster than {SELDOM_PASSED_M_S} m/s"
+            )
+        } else {
+            String::new()
+        };
+        let remedy = format!("write {:.1e} or more{slower}", 1.05 * usual.max(least));
         let place = format!("{} normal_stiffness_n_m", self.table);
         Err(Error::input(&scene.file, place, found, remedy))
     }

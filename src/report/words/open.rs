@@ -13,7 +13,7 @@ words_of! {
 /// So many of the rocks, beside a place or map where they are missing: `text` is one of the texts for it; nothing of none.
 pub(in crate::report) fn missing(text: &str, rocks: Option<&Proportion>) -> String {
     let said = |of: &Proportion| {
-        let share = format::percent(of.share, usize::from(of.share < 0.1));
+        let share = format::percent_of_part(of.share, usize::from(of.share < 0.1));
         fill(text, &[("n", &format::decimal(of.count as f64, 0)), ("share", &share)])
     };
     rocks.map_or(String::new(), said)
