@@ -2,7 +2,7 @@
 
 mod label;
 
-pub use label::{Label, bold_width, fitted, text_width};
+pub use label::{Label, bold_width, fitted, fitted_among, text_width};
 
 use super::colour::{self, INK, WHITE};
 use super::format::escape;

@@ -2,7 +2,7 @@
 
 use super::axis::Axis;
 use super::by_frequency;
-use super::canvas::{Canvas, Label, NORMAL, Pen, SMALL, fitted, paint, text_width};
+use super::canvas::{Canvas, Label, NORMAL, Pen, SMALL, fitted_among, paint, text_width};
 use super::colour::{BLUE, DARK_GREEN, GREEN, GREY, INK, SKY, VERMILLION};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
@@ -320,7 +320,9 @@ pub(super) fn retention(lines: &[ReportLine], words: &Words) -> Drawing {
     let rows = lines.len() as f64;
     let row_px = 28.0;
     let longest = 0.36 * WIDTH_PX;
-    let names: Vec<String> = lines.iter().map(|line| fitted(&line.name, SMALL, longest)).collect();
+    let all = || lines.iter().map(|line| line.name.as_str());
+    let names = all().map(|name| fitted_among(name, all(), (SMALL, longest)));
+    let names: Vec<String> = names.collect();
     let widest = names.iter().map(|name| text_width(name, SMALL)).fold(0.0, f64::max);
     let shares: Vec<Label> = lines.iter().map(|line| reach_in_words(line, words)).collect();
     let room = shares.iter().map(Label::width_px).fold(0.0, f64::max) + 10.0;

@@ -5,7 +5,9 @@ mod year;
 pub(super) use year::draw as draw_year;
 
 use super::axis::{Axis, round_step};
-use super::canvas::{Canvas, Label, NORMAL, Pen, SMALL, bold_width, fitted, paint, text_width};
+use super::canvas::{
+    Canvas, Label, NORMAL, Pen, SMALL, bold_width, fitted, fitted_among, paint, text_width,
+};
 use super::colour::{self, INK, ORANGE, SKY, VERMILLION};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
@@ -199,7 +201,8 @@ fn draw_layers(
     layers: &[ClassedMap],
 ) -> String {
     let (panels, bottom) = panels(report, maps, layers);
-    let said = |mark: &MapMark, width: f64| fitted(&mark.name, SMALL, width);
+    let all = || report.marks.iter().map(|mark| mark.name.as_str());
+    let said = |mark: &MapMark, width: f64| fitted_among(&mark.name, all(), (SMALL, width));
     let corner = |panel: &Panel| (panel.frame.left, panel.frame.top);
     let (left, first_top) = panels.first().map_or((0.0, 0.0), corner);
     // all panels have one extent and scale: names stand in all as in the first

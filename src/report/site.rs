@@ -2,7 +2,7 @@
 
 pub(super) mod names;
 
-use super::canvas::{Canvas, Pen, SMALL, fitted, text_width};
+use super::canvas::{Canvas, Pen, SMALL, fitted_among, text_width};
 use super::colour::{GREEN, INK, WHITE};
 use super::format;
 use super::model::{MapMark, Report, ReportQuantity};
@@ -122,14 +122,17 @@ fn teeth(part: &[Spot]) -> Vec<Vec<Spot>> {
     part.windows(2).flat_map(tooth).collect()
 }
 
-/// Name of a mark, with height and capacity of a barrier, in a width (px): a name may be cut, a number may not.
-pub(super) fn in_words(mark: &MapMark, width_px: f64) -> String {
+/// Name of a mark, with height and capacity of a barrier, in a width (px): a name may be cut, but so that it is told from those of `all`
+/// marks; a number may not.
+pub(super) fn in_words(mark: &MapMark, all: &[MapMark], width_px: f64) -> String {
+    let names = all.iter().map(|mark| mark.name.as_str());
     let Some(numbers) = mark.barrier.map(|(height_m, capacity_j)| size(height_m, capacity_j))
     else {
-        return fitted(&mark.name, SMALL, width_px);
+        return fitted_among(&mark.name, names, (SMALL, width_px));
     };
     let numbers = format!(": {numbers}");
-    fitted(&mark.name, SMALL, width_px - text_width(&numbers, SMALL)) + &numbers
+    let room = width_px - text_width(&numbers, SMALL);
+    fitted_among(&mark.name, names, (SMALL, room)) + &numbers
 }
 
 /// Height and capacity of a barrier, as figures and tables say them.

@@ -171,6 +171,31 @@ pub fn fitted(text: &str, size_px: f64, width_px: f64) -> String {
     }
 }
 
+/// A name cut to a width (px) so that it is told from `all` others: where several would be cut to the same beginning, the word in which they
+/// differ stands behind the cut, as the number of a line does.
+pub fn fitted_among<'a>(
+    name: &str,
+    all: impl Iterator<Item = &'a str>,
+    (size_px, width_px): (f64, f64),
+) -> String {
+    let plain = fitted(name, size_px, width_px);
+    if plain == name {
+        return plain;
+    }
+    let is_alike = |other: &&str| *other != name && fitted(other, size_px, width_px) == plain;
+    let common = |other: &str| name.chars().zip(other.chars()).take_while(|(a, b)| a == b).count();
+    let Some(same) = all.filter(is_alike).map(common).min() else { return plain };
+    let letters: Vec<char> = name.chars().collect();
+    let word = letters[..same].iter().rposition(|letter| *letter == ' ').map_or(same, |at| at + 1);
+    let behind: String = letters[word..].iter().collect();
+    let head = fitted(name, size_px, HEAD_OF_NAME * width_px);
+    let room = width_px - text_width(&head, size_px);
+    head + &fitted(&behind, size_px, room)
+}
+
+/// Part of its width that the beginning of a name takes which is cut in the middle (–).
+const HEAD_OF_NAME: f64 = 0.4;
+
 /// Width of a text in bold (px).
 pub fn bold_width(text: &str, size_px: f64) -> f64 {
     metrics::bold_width_em(text) * size_px
@@ -179,4 +204,29 @@ pub fn bold_width(text: &str, size_px: f64) -> f64 {
 /// Width of a text (px).
 pub fn text_width(text: &str, size_px: f64) -> f64 {
     metrics::width_em(text) * size_px
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Forty lines whose names begin alike keep their numbers, and one name alone is cut at its end.
+    #[test]
+    fn names_that_begin_alike_keep_what_tells_them_apart() {
+        let name = |k: u32| format!("Auswertelinie Nummer {k} oberhalb der Kantonsstrasse");
+        let names: Vec<String> = (1..=40).map(name).collect();
+        let all = || names.iter().map(String::as_str);
+        let room = (11.0, 110.0);
+        let cut: Vec<String> = all().map(|name| fitted_among(name, all(), room)).collect();
+        for (k, short) in (1..).zip(&cut) {
+            assert!(
+                short.contains(&format!("…{k}")) && text_width(short, room.0) <= room.1,
+                "{short}"
+            );
+            assert_eq!(cut.iter().filter(|other| *other == short).count(), 1, "{short}");
+        }
+        let alone = fitted_among(&names[0], std::iter::once(names[0].as_str()), room);
+        assert_eq!(alone, fitted(&names[0], room.0, room.1));
+        assert!(alone.starts_with("Auswertelinie"), "{alone}");
+    }
 }

@@ -16,7 +16,7 @@ pub(super) fn headline(rows: &[EstimateRow], words: &Words) -> String {
         let (value, interval) = in_words(&estimate, words);
         format!(
             "<tr><th scope=\"row\">{}</th><td class=\"number\">{value}</td><td class=\"number\">{interval}</td><td>{}</td></tr>\n",
-            escape(&row.name),
+            escape(&with_joints(&row.name)),
             escape(unit)
         )
     };
@@ -30,6 +30,23 @@ pub(super) fn headline(rows: &[EstimateRow], words: &Words) -> String {
         escape(words.unit),
         note(words.headline_note)
     )
+}
+
+/// Long words of the first table, with the joints at which a narrow column may part them.
+const JOINTS: [&str; 6] = [
+    "Auslauf|strecke",
+    "Pauschal|gefälle",
+    "Geschwindig|keit",
+    "Translations|energie",
+    "Gesamt|energie",
+    "Sprung|höhe",
+];
+
+/// A text with soft hyphens in such words: without them print breaks a word anywhere, and without a hyphen.
+fn with_joints(text: &str) -> String {
+    JOINTS.iter().fold(text.to_owned(), |text, word| {
+        text.replace(&word.replace('|', ""), &word.replace('|', "\u{ad}"))
+    })
 }
 
 /// Each headline statistic with its interval, in columns for a terminal.
@@ -145,6 +162,15 @@ mod tests {
         let years = Estimate { is: Is::AtMost, ..Estimate::new(f64::NAN, 51.2, f64::NAN) };
         let (value, interval) = in_words(&years, Words::of(Language::En));
         assert_eq!((value.as_str(), interval.as_str()), (format::NO_NUMBER, "at least 51.2"));
+    }
+
+    #[test]
+    fn long_words_have_joints() {
+        assert_eq!(with_joints("Pauschalgefälle, 50 %"), "Pauschal\u{ad}gefälle, 50 %");
+        assert_eq!(with_joints("Reach angle, 50 %"), "Reach angle, 50 %");
+        // the words are those of the German page
+        let words = Words::of(Language::De);
+        assert!(with_joints(words.reach_angle).contains('\u{ad}'));
     }
 
     /// What is missing is said in words that may take two lines: five columns of them pushed the largest values of 24 rocks off the page.

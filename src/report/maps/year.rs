@@ -32,7 +32,8 @@ pub(in crate::report) fn draw(report: &Report, maps: &CellMap, year: &YearCells)
     let mut level = String::new();
     if let Some(LevelCells { name, source, cells }) = &year.levels {
         layers.push(of_levels(fill(said.map_level, &[("name", &short(name))]), cells));
-        level = fill(said.maps_level, &[("name", name), ("source", source)]);
+        let name = words.say(name);
+        level = fill(said.maps_level, &[("name", &name), ("source", source)]);
     }
     // no shaded ground: it stands in all other maps, and would cost more than all else of the year
     let svg = draw_layers("maps-year", said.maps_alt, (report, maps, None), &layers);
@@ -44,11 +45,12 @@ pub(in crate::report) fn draw(report: &Report, maps: &CellMap, year: &YearCells)
 /// Most letters of a name over a map.
 const NAME: usize = 40;
 
-/// The beginning of a name that is too long for the head of a map.
+/// The beginning of a name that is too long for the head of a map: what stands before its colon, else as much as has room.
 fn short(name: &str) -> String {
-    match name.char_indices().nth(NAME) {
-        Some((end, _)) => format!("{}…", &name[..end]),
-        None => name.to_owned(),
+    let Some((end, _)) = name.char_indices().nth(NAME) else { return name.to_owned() };
+    match name.split_once(':') {
+        Some((before, _)) if before.chars().count() <= NAME => before.to_owned(),
+        _ => format!("{}…", &name[..end]),
     }
 }
 
@@ -103,5 +105,26 @@ fn of_levels(title: String, values: &[(u32, f64)]) -> ClassedMap {
             .map(|(k, level)| (level.to_string(), shade(k)))
             .collect(),
         least_px: 0.0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::short;
+    use crate::report::words::Words;
+    use crate::scene::Language;
+
+    /// The head of a map has what stands before the colon of a long name; a name without one is cut.
+    #[test]
+    fn a_long_name_is_said_in_short() {
+        let known = crate::scene::MATRICES[0].name;
+        assert_eq!(short(known), "TEK17 § 7-3");
+        assert_eq!(short("Levels: by energy"), "Levels: by energy");
+        let long = "Gefahrenstufen nach der Weisung des Kantons von 2021";
+        assert_eq!(short(long).chars().count(), 41);
+        // and each language says it whole
+        for language in [Language::De, Language::Fr, Language::It] {
+            assert_ne!(Words::of(language).say(known), known);
+        }
     }
 }

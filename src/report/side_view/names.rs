@@ -1,7 +1,7 @@
 //! Names of lines and barriers above a profile: in one row where they find room beside each other, else in rows that rise
 //! to the right, each name left of the stroke that leads up to it. So every one is named, and no stroke runs through a name.
 
-use crate::report::canvas::{Canvas, Label, Pen, SMALL, fitted, text_width};
+use crate::report::canvas::{Canvas, Label, Pen, SMALL, fitted_among, text_width};
 use crate::report::colour::{DARK_GREEN, INK};
 use crate::report::model::MapMark;
 use crate::report::panel::Panel;
@@ -84,7 +84,8 @@ impl NamesAbove {
 fn in_one_row(frame: &PaperFrame, marks: &[(f64, &str)]) -> Option<Vec<Option<Name>>> {
     let mut row: Vec<Name> = Vec::new();
     for &(x, name) in marks {
-        let words = fitted(name, SMALL, LONGEST * frame.width());
+        let all = marks.iter().map(|(_, name)| *name);
+        let words = fitted_among(name, all, (SMALL, LONGEST * frame.width()));
         let width = text_width(&words, SMALL);
         let places = [
             (x - 0.5 * width, Side::Above),
@@ -109,7 +110,7 @@ fn rising(frame: &PaperFrame, marks: &[(f64, &str)]) -> Vec<Option<Name>> {
     let mut found: Vec<Option<Name>> = Vec::new();
     for (k, &(x, name)) in marks.iter().enumerate() {
         let next = marks.get(k + 1).map_or(frame.right, |(next, _)| *next);
-        let one = right_of(x, name, next).or_else(|| left_of(x, name, frame, &found));
+        let one = right_of(x, name, next).or_else(|| left_of((x, name), marks, frame, &found));
         found.push(one);
     }
     found
@@ -125,9 +126,15 @@ fn right_of(x: f64, name: &str, next: f64) -> Option<Name> {
 }
 
 /// A name left of its stroke, clear of those found.
-fn left_of(x: f64, name: &str, frame: &PaperFrame, found: &[Option<Name>]) -> Option<Name> {
+fn left_of(
+    (x, name): (f64, &str),
+    marks: &[(f64, &str)],
+    frame: &PaperFrame,
+    found: &[Option<Name>],
+) -> Option<Name> {
     let right = x - GAP_PX;
-    let words = fitted(name, SMALL, (LONGEST * frame.width()).min(right - GAP_PX).max(0.0));
+    let width = (LONGEST * frame.width()).min(right - GAP_PX).max(0.0);
+    let words = fitted_among(name, marks.iter().map(|(_, name)| *name), (SMALL, width));
     let left = right - text_width(&words, SMALL);
     let is_free = |row: &usize| {
         found.iter().flatten().all(|one| {

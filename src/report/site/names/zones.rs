@@ -3,7 +3,7 @@
 use super::super::zone_parts;
 use super::{GAP_PX, Names, Outline, PlacedName, WIDEST, Wanted, farther, outlines};
 use crate::output::ReleaseZone;
-use crate::report::canvas::{Label, SMALL, fitted};
+use crate::report::canvas::{Label, SMALL, fitted_among};
 use crate::report::model::Report;
 use crate::report::panel::Panel;
 use crate::report::svg::path::Spot;
@@ -38,7 +38,9 @@ impl Names {
             };
             zones.iter().map(|zone| zone.name).zip(zones.iter().zip(words).map(places)).collect()
         };
-        let words = written(&mut zones.iter().map(|zone| fitted(zone.name, SMALL, widest_px)));
+        let own = || zones.iter().map(|zone| zone.name);
+        let fit = |name| fitted_among(name, own(), (SMALL, widest_px));
+        let words = written(&mut own().map(fit));
         let letter = written(&mut letters());
         let names = zones.iter().map(|zone| zone.name.to_owned());
         let lettered = letters().zip(names).collect();

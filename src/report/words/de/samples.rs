@@ -39,4 +39,8 @@ pub(super) const SAMPLES: &[(&str, &str)] = &[
         "{n} von {tried} versuchten Ablösungen liegen schon vor der Bewegung auf der Linie „{name}“: Sie queren sie dadurch nicht und zählen nur, wo sie über sie zurückkommen. Linie oder Ablösung anderswo zeichnen",
     ),
     ("left open", "bleibt offen"),
+    (
+        "TEK17 § 7-3: more often than the safety classes S3 (1), S2 (2), S1 (3) permit",
+        "TEK17 § 7-3: öfter, als die Sicherheitsklassen S3 (1), S2 (2), S1 (3) zulassen",
+    ),
 ];

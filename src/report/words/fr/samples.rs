@@ -39,4 +39,8 @@ pub(super) const SAMPLES: &[(&str, &str)] = &[
         "{n} des {tried} départs essayés se trouvent sur la ligne «\u{a0}{name}\u{a0}» avant de bouger\u{a0}: ils ne la franchissent pas pour autant et ne comptent que s’ils la repassent. Dessiner la ligne ou le départ ailleurs",
     ),
     ("left open", "reste ouvert"),
+    (
+        "TEK17 § 7-3: more often than the safety classes S3 (1), S2 (2), S1 (3) permit",
+        "TEK17 § 7-3\u{a0}: plus souvent que ne le permettent les classes de sécurité S3 (1), S2 (2), S1 (3)",
+    ),
 ];

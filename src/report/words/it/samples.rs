@@ -39,4 +39,8 @@ pub(super) const SAMPLES: &[(&str, &str)] = &[
         "{n} dei {tried} distacchi provati si trovano sulla linea “{name}” prima di muoversi: non la attraversano per questo e contano solo dove vi ripassano. Disegnare altrove la linea o il distacco",
     ),
     ("left open", "resta aperto"),
+    (
+        "TEK17 § 7-3: more often than the safety classes S3 (1), S2 (2), S1 (3) permit",
+        "TEK17 § 7-3: più spesso di quanto permettano le classi di sicurezza S3 (1), S2 (2), S1 (3)",
+    ),
 ];
