@@ -346,10 +346,10 @@ fn a_line_is_not_crossed_by_standing_on_it() {
         }
     }
     // thrown straight up the face, a rock passes over the line on its way back
-    let back = thrown(&format!(
+    let back = thrown(
         "[release]\ncount = 1\nvelocity_m_s = [0.0, -3.0, 0.0]\nspin_rad_s = [0.0, 0.0, 0.0]\n\
-         points_m = [[20.0, 15.0]]\nheight_m = 0.1\n[[lines]]\nname = \"l\"\npoints_m = [[1.0, 15.0], [39.0, 15.0]]\n"
-    ));
+         points_m = [[20.0, 15.0]]\nheight_m = 0.1\n[[lines]]\nname = \"l\"\npoints_m = [[1.0, 15.0], [39.0, 15.0]]\n",
+    );
     let fall = &falls(&back, 1)[0];
     assert_eq!(fall.crossings.iter().map(|one| one.times).collect::<Vec<_>>(), [1]);
     assert!(fall.crossings[0].motion.time_s > 0.1);

@@ -297,10 +297,10 @@ fn at_lines(run: &Results, names: &[String], among: &Arc<CountedReleases>) -> Re
         let mine = |rock: &usize| among.contains(*rock);
         let may_come = run.open.at(name).filter(mine).collect();
         let may_arrive = run.open.behind_barriers(name).filter(mine).collect();
-        let crossing = crossing((name, run.is_object(name)), &rows, (among, may_come));
+        let crossing = crossing((name, run.is_object(name)), &rows, &(among, may_come));
         let is_barrier = barriers.iter().any(|barrier| barrier.name == *name);
         let barriers_stop = is_barrier || arrived.len() < crossing.shares[0].releases.len();
-        let arriving = arriving(name, (&barriers, &arrived), (among, may_arrive));
+        let arriving = arriving(name, (&barriers, &arrived), &(among, may_arrive));
         found.push(AtLine { crossing, arriving, barriers_stop });
     }
     Ok(found)
@@ -319,7 +319,11 @@ fn at_place(
     CountedShare { name, releases, among: Arc::clone(among), come, open }
 }
 
-fn crossing((name, is_object): (&str, bool), rows: &[CrossingRow], among: AmongOpen) -> Population {
+fn crossing(
+    (name, is_object): (&str, bool),
+    rows: &[CrossingRow],
+    among: &AmongOpen,
+) -> Population {
     let (what, come) = if is_object { ("Object", "Hit it") } else { ("Line", "Cross it") };
     let own = || rows.iter().filter(|row| row.line == name);
     let values = |of: fn(&CrossingRow) -> f64| own().map(|row| (row.index, of(row))).collect();
@@ -327,7 +331,7 @@ fn crossing((name, is_object): (&str, bool), rows: &[CrossingRow], among: AmongO
     Population {
         name: format!("{what} “{name}”, barriers left aside"),
         among: Arc::clone(among.0),
-        shares: vec![at_place(come, cross, (&among, true))],
+        shares: vec![at_place(come, cross, (among, true))],
         open: Vec::new(),
         values: vec![
             (ComparedQuantity::Energy, values(CrossingRow::total_j)),
@@ -340,16 +344,16 @@ fn crossing((name, is_object): (&str, bool), rows: &[CrossingRow], among: AmongO
 fn arriving(
     name: &str,
     (barriers, arrived): (&[Barrier], &[hazard::Arrival]),
-    among: AmongOpen,
+    among: &AmongOpen,
 ) -> Population {
     let releases = |keep: &dyn Fn(&hazard::Arrival) -> bool| {
         arrived.iter().filter(|rock| keep(rock)).map(|rock| rock.release).collect()
     };
-    let mut shares = vec![at_place("Arrive", releases(&|_| true), (&among, true))];
+    let mut shares = vec![at_place("Arrive", releases(&|_| true), (among, true))];
     if let Some(barrier) = barriers.iter().find(|barrier| barrier.name == name) {
         let passes =
             |rock: &hazard::Arrival| !rock.is_stopped(barrier.height_m, barrier.capacity_j);
-        shares.push(at_place("Pass it", releases(&passes), (&among, false)));
+        shares.push(at_place("Pass it", releases(&passes), (among, false)));
     }
     let values = |of: fn(&hazard::Arrival) -> f64| {
         arrived.iter().map(|rock| (rock.release, of(rock))).collect()
