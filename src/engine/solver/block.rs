@@ -35,9 +35,9 @@ use crate::rock::{Motion, Vec3};
 use ahead::Came;
 use energy::ActingAlong;
 use nalgebra::{Matrix3, Rotation3};
-use rolling::Turning;
-use solve::{BlockContact, Mass, SWEEPS, rigid_turning, solve};
-use springs::Springs;
+use rolling::{Turning, rigid_turning};
+use solve::{BlockContact, Mass, SWEEPS, solve};
+use springs::{Clamp, Springs};
 
 /// Gaps no wider than this touch (–, relative to the radius of the sphere of equal volume).
 pub(crate) const TOUCH: f64 = 1e-8;
@@ -82,6 +82,8 @@ pub(crate) struct Footing {
     /// Springs of its contacts, in the schemes that have them, and which belongs to each of the last look.
     pub(crate) springs: Springs,
     of_touch: Vec<Option<usize>>,
+    /// Those that a blow has left pressed together.
+    pub(crate) clamp: Clamp,
     /// The facets it meets on rough ground.
     pub(crate) facets: RoughFacets,
     /// How far it has slipped.
@@ -186,7 +188,8 @@ impl Footing {
     /// Contacts that hold the block or strike it: those of the last look that touch.
     pub(crate) fn touching(&self, block: &Block) -> impl Iterator<Item = &BlockTouch> {
         let most = TOUCH * block.radius_m;
-        self.touches.found.iter().filter(move |touch| touch.gap_m <= most)
+        let touches = move |touch: &&BlockTouch| touch.gap_m <= most || self.clamp.holds(touch);
+        self.touches.found.iter().filter(touches)
     }
 
     /// One step of sustained contact of at most `most_s`, in which no corner moves further than `corner_way` of its ball.
@@ -213,7 +216,9 @@ impl Footing {
         let out_m_s = LET_OUT * (world.body.gravity.norm() * block.radius_m).sqrt();
         let came = |touch: &BlockTouch| Came::of(block, [&start, moving], touch, dt);
         // stopped within the step, what strikes would give nothing back
-        self.set_aside(|touch| !came(touch).strikes(world, block, touch));
+        let clamp = std::mem::take(&mut self.clamp);
+        self.set_aside(|touch| clamp.holds(touch) || !came(touch).strikes(world, block, touch));
+        self.clamp = clamp;
         for touch in &self.aside {
             let goal = came(touch).goal(touch, dt, out_m_s);
             let ahead_m = 0.5 * dt * slip_m_s;
@@ -236,7 +241,8 @@ impl Footing {
         let loss = self.booked(world, [(&v, &w), after], lost_j);
         let along = ActingAlong::of_impulses(&self.contacts, &self.turning);
         moving.hold_energy(block, (&free_motion, &weight), &along);
-        let pushed = self.contacts.iter().any(|contact| contact.n.dot(&contact.impulse) > 0.0);
+        let pushed = self.clamp.is_on()
+            || self.contacts.iter().any(|contact| contact.n.dot(&contact.impulse) > 0.0);
         moving.drift(block, 0.5 * dt);
         self.look(world, block, &moving.pose, AHEAD * block.ball_m);
         let slides = self.slides(block, moving);
@@ -259,6 +265,7 @@ impl Footing {
         let friction = self.slip.friction(world.ground_of(touch.triangle), law, ahead_m);
         BlockContact::new(mass, (touch.normal, touch.lever), (friction, touch.triangle), goal)
             .rolling(law.limits())
+            .clamped(self.clamp.holds(touch))
     }
 
     /// Whether a contact still holds the block: it is near, and does not let go faster than its ground captures.
@@ -268,12 +275,13 @@ impl Footing {
         (block, moving): (&Block, &Moving),
         pushed: bool,
     ) -> bool {
-        self.touches.found.iter().any(|touch| {
-            let up = touch.normal.dot(&moving.at(block, &touch.lever));
-            touch.gap_m <= HELD * block.radius_m
-                && up < capture_m_s(world.law(touch.triangle))
-                && (pushed || up <= 0.0)
-        })
+        self.clamp.is_on()
+            || self.touches.found.iter().any(|touch| {
+                let up = touch.normal.dot(&moving.at(block, &touch.lever));
+                touch.gap_m <= HELD * block.radius_m
+                    && up < capture_m_s(world.law(touch.triangle))
+                    && (pushed || up <= 0.0)
+            })
     }
 }
 

@@ -26,7 +26,7 @@ impl Roll<'_> {
         if self.has_springs() {
             self.footing.springs_j(&self.world, (self.block, &self.moving))
         } else {
-            Loss::default()
+            self.footing.clamp.stored(&self.world)
         }
     }
 

@@ -16,6 +16,7 @@ impl Footing {
         self.near.forget();
         self.touches.forget();
         self.looked = None;
+        self.clamp.open();
     }
 
     /// Sees to it that the features around a block are known, with room for some looks.
@@ -58,8 +59,9 @@ impl Footing {
 
     /// Sets aside the contacts that touch, as [`Self::set_aside`].
     pub(super) fn set_touching_aside(&mut self, block: &Block) {
-        let most = TOUCH * block.radius_m;
-        self.set_aside(|touch| touch.gap_m <= most);
+        let (most, clamp) = (TOUCH * block.radius_m, std::mem::take(&mut self.clamp));
+        self.set_aside(|touch| touch.gap_m <= most || clamp.holds(touch));
+        self.clamp = clamp;
     }
 
     /// Sets aside the contacts found that are `wanted`: where more than can act at a time, those that span most.

@@ -17,7 +17,8 @@ impl Footing {
             let u = moving.at(block, &touch.lever);
             (u - touch.normal * touch.normal.dot(&u)).norm()
         };
-        self.touching(block).map(slip).fold(0.0, f64::max)
+        let free = self.touching(block).filter(|touch| !self.clamp.holds(touch));
+        free.map(slip).fold(0.0, f64::max)
     }
 
     /// How far the fastest point of a block, at `fastest` (m/s), may go in a step (m): `corner_way` of the balls, and further where every corner

@@ -9,7 +9,8 @@
 
 mod mixing;
 
-use super::rolling::Turning;
+use super::rolling::{Turning, turning_limit};
+use super::springs::GivingWay;
 use crate::contact::MOST;
 use crate::contact::block::MOST_TOUCHES;
 use crate::ground::FrictionLimits;
@@ -32,6 +33,9 @@ const LAST_TURN: f64 = 1e-8;
 const PASSES: u32 = 100;
 /// Change of it below which they have settled (–).
 const NEAR: f64 = 1e-13;
+
+/// What presses on a clamped contact (N s): more than anything else.
+const LOCKED_N_S: f64 = 1e100;
 
 /// Mass and inertia of a body as it is turned now.
 #[derive(Debug, Clone, Copy)]
@@ -67,6 +71,8 @@ pub(crate) struct BlockContact {
     rim: SlidingAnswer,
     /// How it gives way; `None` in the rigid limit.
     springs: Option<GivingWay>,
+    /// Whether it is clamped: it neither parts nor slips.
+    is_clamped: bool,
 }
 
 /// A matrix (1/kg) and its inverse (kg).
@@ -111,15 +117,6 @@ impl Inverted {
     }
 }
 
-/// How a contact with springs and dashpots gives way over an implicit step.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct GivingWay {
-    /// Compliance along the normal and along the surface (1/kg): speed over impulse.
-    pub(crate) compliance: [f64; 2],
-    /// Speed along the normal that ends the step at the surface (m/s).
-    pub(crate) surface_m_s: f64,
-}
-
 impl Mass {
     /// Velocity of a point of the body.
     #[inline]
@@ -155,7 +152,21 @@ impl BlockContact {
         let answer = mass.answer(&lever);
         let (impulse, whole) = (Vec3::zeros(), Inverted::of(answer, mass.mass));
         let (limits, springs, rim) = (FrictionLimits::NONE, None, SlidingAnswer::of(&n, &answer));
-        Self { n, lever, friction, goal, triangle, impulse, limits, answer, whole, rim, springs }
+        let is_clamped = false;
+        Self {
+            n,
+            lever,
+            friction,
+            goal,
+            triangle,
+            impulse,
+            limits,
+            answer,
+            whole,
+            rim,
+            springs,
+            is_clamped,
+        }
     }
 
     /// The same with springs.
@@ -178,6 +189,11 @@ impl BlockContact {
         Self { limits, ..self }
     }
 
+    /// The same, clamped or not.
+    pub(crate) fn clamped(self, is_clamped: bool) -> Self {
+        Self { is_clamped, ..self }
+    }
+
     /// Whether it bears rolling friction.
     pub(super) fn has_rolling(&self) -> bool {
         self.limits.has_rolling()
@@ -195,6 +211,7 @@ impl BlockContact {
 
     /// The same for a normal impulse (N s).
     pub(super) fn turning_limit_of(&self, push: f64) -> f64 {
+        let push = if self.is_clamped { LOCKED_N_S } else { push };
         self.limits.caps(push).1
     }
 
@@ -211,6 +228,9 @@ impl BlockContact {
 
     /// Its impulse where the point would move by `u` without it.
     fn own_impulse(&self, u: &Vec3) -> Vec3 {
+        if self.is_clamped {
+            return self.whole.inverse * (self.goal - u);
+        }
         let impulse = self.answering(&(u - self.goal), (&self.whole, &self.rim));
         let Some(springs) = self.springs.filter(|_| impulse != Vec3::zeros()) else {
             return impulse;
@@ -309,17 +329,6 @@ impl BlockContact {
 /// The impulse of a solve as the next begins with it: one that went astray must not be where that begins.
 pub(super) fn first_guess(impulse: Vec3) -> Vec3 {
     if impulse.iter().all(|x| x.is_finite()) { impulse } else { Vec3::zeros() }
-}
-
-/// Largest impulse of turning under the impulses of contacts (N m s).
-pub(super) fn turning_limit(contacts: &[BlockContact]) -> f64 {
-    contacts.iter().map(BlockContact::turning_limit).sum()
-}
-
-/// Rolling friction that contacts bear in the rigid limit.
-pub(super) fn rigid_turning(contacts: &[BlockContact]) -> Turning {
-    let rolls = contacts.iter().any(BlockContact::has_rolling);
-    if rolls { Turning::RIGID } else { Turning::NONE }
 }
 
 /// Sweeps until the body moves as it will, from velocity and spin without impulses; whether it did. `sweeps` counts.

@@ -14,6 +14,7 @@
 //! and the same along the surface with `p_s`, `c_s` and the stretch `−ξ`. So all schemes share one solver of contacts
 //! ([`solve`](super::solve::solve)), and `rigid` is its limit for stiff springs.
 
+mod clamp;
 mod controlled;
 mod dda;
 mod explicit;
@@ -26,7 +27,7 @@ mod onset;
 mod stage;
 
 use super::energy::ActingAlong;
-use super::solve::{BlockContact, GivingWay, Mass};
+use super::solve::{BlockContact, Mass};
 use super::{Footing, Moving, Stepped, TOUCH};
 use crate::body::Block;
 use crate::ground::{Law, SliderForce};
@@ -38,6 +39,7 @@ use crate::solver::environment::ContactEnvironment;
 use crate::solver::loss::Loss;
 use crate::solver::step_control::{Control, StepError};
 use crate::solver::tableau::STAGES;
+pub(crate) use clamp::Clamp;
 pub(crate) use history::BlockHistory;
 use impact_energy::ImpactEnergy;
 use nalgebra::{Rotation3, Unit};
@@ -87,6 +89,15 @@ struct SpringContact {
     /// Normal force, ≥ 0, and shear force; the block feels the opposite of the latter (N).
     normal_force: f64,
     shear_force: Vec3,
+}
+
+/// How a contact with springs and dashpots gives way over an implicit step.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct GivingWay {
+    /// Compliance along the normal and along the surface (1/kg): speed over impulse.
+    pub(crate) compliance: [f64; 2],
+    /// Speed along the normal that ends the step at the surface (m/s).
+    pub(crate) surface_m_s: f64,
 }
 
 /// Springs of the contacts of one block.

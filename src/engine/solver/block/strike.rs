@@ -5,7 +5,8 @@
 //! contacts that rule can gain energy (Glocker 2013); where it would, all restitutions are lowered together until it does not.
 
 use super::energy::ActingAlong;
-use super::solve::{BlockContact, SWEEPS, rigid_turning, solve};
+use super::rolling::rigid_turning;
+use super::solve::{BlockContact, SWEEPS, solve};
 use super::{Footing, Moving, ROUNDING, ROUNDING_OF_SPEED, STILL_M_S};
 use crate::body::Block;
 use crate::contact::block::BlockTouch;
@@ -26,7 +27,11 @@ impl Footing {
         block: &Block,
         moving: &mut Moving,
     ) -> Option<Loss> {
-        let comes = self.touching(block).any(|touch| moving.approach_m_s(block, touch) > STILL_M_S);
+        let bursts = self.carry_clamp(block);
+        let comes = |touch: &BlockTouch| {
+            moving.approach_m_s(block, touch) > STILL_M_S && !self.clamp.holds(touch)
+        };
+        let comes = bursts || self.touching(block).any(comes);
         if !comes && !self.comes_to_next_facet(world, block, moving) {
             return None;
         }
@@ -41,9 +46,15 @@ impl Footing {
             moving.redirect(block, &turn.inverse());
         }
         let mut loss = None;
-        if self.is_followed_to_its_limit(world, (block, moving)) {
-            loss = self.square_blow(world, (block, moving));
+        if bursts || self.is_followed_to_its_limit(world, (block, moving)) {
+            if !self.clamp.is_on() {
+                loss = self.square_blow(world, (block, moving));
+            }
             loss = loss.or_else(|| self.blow(world, (block, moving)));
+            if loss.is_none() {
+                // what does not end gives nothing back
+                self.clamp.open();
+            }
         }
         let loss = loss.unwrap_or_else(|| self.impulses(world, (block, moving), true));
         if let Some(turn) = &facet {
@@ -61,7 +72,8 @@ impl Footing {
         (block, moving): (&Block, &Moving),
     ) -> bool {
         let law = |touch: &BlockTouch| world.law(touch.triangle);
-        self.touching(block).any(|touch| Self::is_struck(world, (block, moving), touch))
+        (self.touching(block).any(|touch| Self::is_struck(world, (block, moving), touch))
+            || self.can_clamp(world, block))
             && self.touching(block).any(|touch| law(touch).shear.is_on())
             && self
                 .touching(block)

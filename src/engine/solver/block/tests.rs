@@ -2,6 +2,7 @@ use super::*;
 
 mod blow;
 mod cases;
+mod clamp;
 mod kept;
 mod ledger;
 mod limit;

@@ -14,6 +14,8 @@
 //! A contact that lets go and comes again begins anew, at the speed with which it comes: the step is cut there, as its dashpot pushes
 //! at once.
 
+mod standstill;
+
 use super::super::energy::ActingAlong;
 use super::{Footing, Moving, RollingSpring, SpringContact};
 use crate::body::Block;
@@ -27,6 +29,7 @@ use crate::solver::impact::dormand_prince::{Attempt, Flow, Rates, Stages, put, s
 use crate::solver::impact::{LOCAL, NOTHING};
 use crate::solver::law::capture_m_s;
 use crate::solver::loss::Loss;
+use standstill::Standstill;
 
 /// Where velocity, angular momentum and the stretch of the rolling spring begin among the numbers that change; penetration and
 /// stretch of each contact follow.
@@ -56,6 +59,10 @@ struct FrozenFlow<'a, 'w> {
     /// Stiffest contact (rad/s), and local error allowed (m/s).
     omega: f64,
     allowed: f64,
+    /// Energy that the contacts have begun with (J).
+    held_j: f64,
+    /// Whether the blow has ended with contacts that hold each other.
+    is_clamped: bool,
 }
 
 impl Footing {
@@ -66,7 +73,7 @@ impl Footing {
         world: &ContactEnvironment,
         (block, moving): (&Block, &mut Moving),
     ) -> Option<Loss> {
-        self.set_touching_aside(block);
+        self.set_blow_aside(world, block);
         let touches = std::mem::take(&mut self.aside);
         let thrown = self.thrown(world, (block, moving), &touches);
         self.aside = touches;
@@ -93,15 +100,31 @@ impl Footing {
             let mut contact = SpringContact::just_touching((k, touch), &law, friction);
             contact.captured = approach_m_s < capture_m_s(&law);
             contact.waits = approach_m_s < 0.0;
+            self.clamp.load(&mut contact, touch);
             contacts.push(contact);
         }
         let omega = contacts.iter().map(|contact| contact.law.omega_rad_s()).fold(0.0, f64::max);
         let fastest = touches.iter().map(|touch| moving.at(block, &touch.lever).norm());
-        let allowed = LOCAL * BLOW * fastest.fold(0.0, f64::max);
+        let pressed = contacts
+            .iter()
+            .map(|one| omega * (one.penetration.powi(2) + one.shear.norm_squared()).sqrt());
+        let allowed = LOCAL * BLOW * fastest.chain(pressed).fold(0.0, f64::max);
         let mut rolling = RollingSpring::default();
         rolling.take_up(&contacts);
-        let mut flow =
-            FrozenFlow { world, block, mass, touches, contacts, rolling, omega, allowed };
+        rolling.stretch = if self.clamp.is_on() { self.clamp.rolled } else { Vec3::zeros() };
+        let held_j = self.clamp.held_j;
+        let mut flow = FrozenFlow {
+            world,
+            block,
+            mass,
+            touches,
+            contacts,
+            rolling,
+            omega,
+            allowed,
+            held_j,
+            is_clamped: false,
+        };
         // numbers live on the stack, and loops over them are those of a constant
         let end = match touches.len() {
             1 => flow.follow::<{ CONTACTS + OWN }, 2>(moving),
@@ -110,6 +133,13 @@ impl Footing {
             5..=MOST => flow.follow::<{ CONTACTS + OWN * MOST }, { 2 * MOST }>(moving),
             _ => flow.follow::<{ CONTACTS + OWN * MOST_TOUCHES }, { 2 * MOST_TOUCHES }>(moving),
         };
+        if end.is_some() {
+            self.clamp.open();
+        }
+        if flow.is_clamped {
+            self.clamp.close(&flow.contacts, touches);
+            self.clamp.rolled = flow.rolling.stretch;
+        }
         self.springs.contacts = flow.contacts;
         end
     }
@@ -124,6 +154,12 @@ impl FrozenFlow<'_, '_> {
         let (mut y, mut sums) = ([0.0; N], [0.0; SUMS]);
         put(&mut y, V, &moving.v);
         put(&mut y, MOMENTUM, &moving.momentum);
+        put(&mut y, ROLLED, &self.rolling.stretch);
+        for (k, contact) in self.contacts.iter().enumerate() {
+            y[CONTACTS + OWN * k] = contact.penetration;
+            put(&mut y, CONTACTS + OWN * k + 1, &contact.shear);
+        }
+        let mut still = Standstill::of(moving);
         let mut stages = Stages::<N, SUMS, P>::NONE;
         let (mut h, mut gone) = (FIRST / self.omega, 0.0);
         self.rates(0, &y, stages.first());
@@ -159,6 +195,10 @@ impl FrozenFlow<'_, '_> {
                 };
                 self.drift(&mut y, wait_s);
                 (begins, gone) = (true, gone + wait_s * self.omega);
+            }
+            if self.stays_clamped(&y, gone, &mut still) {
+                self.is_clamped = true;
+                return Some(self.end(&y, moving, &sums));
             }
             if gone > MOST_RAD {
                 return None;
@@ -273,15 +313,24 @@ impl FrozenFlow<'_, '_> {
         sums: &[f64; SUMS],
     ) -> (Moving, Loss) {
         let mut end = Moving { v: three(y, V), momentum: three(y, MOMENTUM), ..start.clone() };
-        let before_j = start.motion_j(self.block);
+        let before_j = start.motion_j(self.block) + self.held_j;
+        let holds_j = if self.is_clamped { self.clamped_j() } else { 0.0 };
         // the steps' own error
         let along = ActingAlong::default().and_springs(&self.contacts);
-        end.hold_energy(self.block, (start, &Vec3::zeros()), &along);
+        if self.held_j > 0.0 || self.is_clamped {
+            let gained_j = end.motion_j(self.block) + holds_j - before_j;
+            end.pay_all(self.block, &along, gained_j.max(0.0));
+        } else {
+            end.hold_energy(self.block, (start, &Vec3::zeros()), &along);
+        }
         let [friction, damping, rolling, trees] = sums.map(|sum| sum.max(0.0));
         let summed = Loss { friction, damping, rolling, trees };
-        let lost_j = (before_j - end.motion_j(self.block)).max(0.0);
+        let lost_j = (before_j - end.motion_j(self.block) - holds_j).max(0.0);
+        let stored_j = holds_j - self.held_j;
         let mut loss = Loss::default();
         loss.add(&summed, lost_j / summed.sum().max(f64::MIN_POSITIVE));
+        // an episode takes out of the losses what springs hold at its end
+        loss.damping += stored_j;
         (end, loss)
     }
 }
