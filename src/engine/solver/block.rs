@@ -35,8 +35,8 @@ use crate::rock::{Motion, Vec3};
 use ahead::Came;
 use energy::ActingAlong;
 use nalgebra::{Matrix3, Rotation3};
-use rolling::{Turning, rigid_turning};
-use solve::{BlockContact, Mass, SWEEPS, solve};
+use rolling::Turning;
+use solve::{BlockContact, Mass, SWEEPS, rigid_turning, solve};
 use springs::{Clamp, Springs};
 
 /// Gaps no wider than this touch (–, relative to the radius of the sphere of equal volume).

@@ -1,7 +1,7 @@
 //! A step of a block never gains energy.
 
-use super::rolling::{Turning, turning_limit};
-use super::solve::{BlockContact, Mass};
+use super::rolling::Turning;
+use super::solve::{BlockContact, Mass, turning_limit};
 use super::{Footing, Moving, TOUCH};
 use crate::body::Block;
 use crate::flight::top::momentum_of;

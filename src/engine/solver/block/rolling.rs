@@ -11,7 +11,6 @@
 //! with `ω₀` the spin without it. Where the slider gives way `s` is the larger one with which `T` is just at its limit, so that it acts
 //! against the spin, and only takes energy. In the rigid limit `s = 0` and `θ = 0`.
 
-use super::solve::BlockContact;
 use crate::ground::FrictionElement;
 use crate::rock::Vec3;
 use nalgebra::Matrix3;
@@ -93,17 +92,6 @@ impl Turning {
         self.impulse = -found.0;
         Some(found)
     }
-}
-
-/// Largest impulse of turning under the impulses of contacts (N m s).
-pub(super) fn turning_limit(contacts: &[BlockContact]) -> f64 {
-    contacts.iter().map(BlockContact::turning_limit).sum()
-}
-
-/// Rolling friction that contacts bear in the rigid limit.
-pub(super) fn rigid_turning(contacts: &[BlockContact]) -> Turning {
-    let rolls = contacts.iter().any(BlockContact::has_rolling);
-    if rolls { Turning::RIGID } else { Turning::NONE }
 }
 
 /// `T` of a body with an inverse inertia (1/(kg m²)) for a spin to take (rad/s), from the least `s` and the limit (N m s). The size of

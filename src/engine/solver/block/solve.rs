@@ -8,17 +8,17 @@
 //! and dashpot over an implicit step is the same contact with a compliance and a goal of its own ([`GivingWay`]): one solver serves both.
 
 mod mixing;
+mod sliding;
 
-use super::rolling::{Turning, turning_limit};
-use super::springs::GivingWay;
+use super::rolling::Turning;
 use crate::contact::MOST;
 use crate::contact::block::MOST_TOUCHES;
 use crate::ground::FrictionLimits;
 use crate::rock::Vec3;
-use crate::solver::contact_frame::ContactFrame;
 use crate::solver::law::within;
 use mixing::{BEFORE, Mixing};
-use nalgebra::{Matrix2, Matrix3, Vector2};
+use nalgebra::{Matrix3, Vector2};
+use sliding::SlidingAnswer;
 
 /// Sweeps over the contacts, at most.
 pub(super) const SWEEPS: u32 = 300;
@@ -82,39 +82,20 @@ struct Inverted {
     inverse: Matrix3<f64>,
 }
 
-/// What a contact that slides is solved with: a matrix (1/kg) in the frame of the normal.
-#[derive(Debug, Clone, Copy)]
-struct SlidingAnswer {
-    /// Directions along the surface.
-    first: Vec3,
-    second: Vec3,
-    /// Along the normal for a push along it, and along the surface for the same; the same along the normal for a drag.
-    own: f64,
-    lift: Vector2<f64>,
-    /// Along the surface for a drag.
-    across: Matrix2<f64>,
-}
-
-impl SlidingAnswer {
-    fn of(n: &Vec3, whole: &Matrix3<f64>) -> Self {
-        let frame = ContactFrame::of(n);
-        let (first, second) = (frame.out_along([1.0, 0.0]), frame.out_along([0.0, 1.0]));
-        let flat = |x: &Vec3| Vector2::new(first.dot(x), second.dot(x));
-        let to_n = whole * n;
-        let across = Matrix2::from_columns(&[flat(&(whole * first)), flat(&(whole * second))]);
-        Self { first, second, own: n.dot(&to_n), lift: flat(&to_n), across }
-    }
-
-    fn flat(&self, x: &Vec3) -> Vector2<f64> {
-        Vector2::new(self.first.dot(x), self.second.dot(x))
-    }
-}
-
 impl Inverted {
     fn of(matrix: Matrix3<f64>, mass_kg: f64) -> Self {
         let inverse = matrix.try_inverse().unwrap_or_else(|| Matrix3::identity() * mass_kg);
         Self { matrix, inverse }
     }
+}
+
+/// How a contact with springs and dashpots gives way over an implicit step.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct GivingWay {
+    /// Compliance along the normal and along the surface (1/kg): speed over impulse.
+    pub(crate) compliance: [f64; 2],
+    /// Speed along the normal that ends the step at the surface (m/s).
+    pub(crate) surface_m_s: f64,
 }
 
 impl Mass {
@@ -329,6 +310,17 @@ impl BlockContact {
 /// The impulse of a solve as the next begins with it: one that went astray must not be where that begins.
 pub(super) fn first_guess(impulse: Vec3) -> Vec3 {
     if impulse.iter().all(|x| x.is_finite()) { impulse } else { Vec3::zeros() }
+}
+
+/// Largest impulse of turning under the impulses of contacts (N m s).
+pub(super) fn turning_limit(contacts: &[BlockContact]) -> f64 {
+    contacts.iter().map(BlockContact::turning_limit).sum()
+}
+
+/// Rolling friction that contacts bear in the rigid limit.
+pub(super) fn rigid_turning(contacts: &[BlockContact]) -> Turning {
+    let rolls = contacts.iter().any(BlockContact::has_rolling);
+    if rolls { Turning::RIGID } else { Turning::NONE }
 }
 
 /// Sweeps until the body moves as it will, from velocity and spin without impulses; whether it did. `sweeps` counts.

@@ -27,7 +27,7 @@ mod onset;
 mod stage;
 
 use super::energy::ActingAlong;
-use super::solve::{BlockContact, Mass};
+use super::solve::{BlockContact, GivingWay, Mass};
 use super::{Footing, Moving, Stepped, TOUCH};
 use crate::body::Block;
 use crate::ground::{Law, SliderForce};
@@ -89,15 +89,6 @@ struct SpringContact {
     /// Normal force, ≥ 0, and shear force; the block feels the opposite of the latter (N).
     normal_force: f64,
     shear_force: Vec3,
-}
-
-/// How a contact with springs and dashpots gives way over an implicit step.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct GivingWay {
-    /// Compliance along the normal and along the surface (1/kg): speed over impulse.
-    pub(crate) compliance: [f64; 2],
-    /// Speed along the normal that ends the step at the surface (m/s).
-    pub(crate) surface_m_s: f64,
 }
 
 /// Springs of the contacts of one block.

@@ -5,8 +5,7 @@
 //! contacts that rule can gain energy (Glocker 2013); where it would, all restitutions are lowered together until it does not.
 
 use super::energy::ActingAlong;
-use super::rolling::rigid_turning;
-use super::solve::{BlockContact, SWEEPS, solve};
+use super::solve::{BlockContact, SWEEPS, rigid_turning, solve};
 use super::{Footing, Moving, ROUNDING, ROUNDING_OF_SPEED, STILL_M_S};
 use crate::body::Block;
 use crate::contact::block::BlockTouch;
