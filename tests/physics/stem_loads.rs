@@ -113,3 +113,35 @@ fn no_stem_takes_more_than_its_limit() {
         assert!((most_j / limit_j - 1.0).abs() < 1e-6, "{scheme} {shape}: {most_j} J");
     }
 }
+
+/// A rock that comes between two stems strikes both at once: each takes half of the blow, and none breaks at a limit of 0.6 of the rock's
+/// energy. All of it counted against the one that was pressed hardest, which broke, and the rock left to its side.
+#[test]
+fn stems_struck_at_once_share_the_blow() {
+    let (sin, cos) = 35f64.to_radians().sin_cos();
+    let wall = |side: f64| {
+        let at = |far: f64, z: f64| [10.0 - sin * far, side * (0.05 + cos * far), z];
+        panel([at(0.0, 0.5), at(8.0, 0.5), at(8.0, 9.0), at(0.0, 9.0)])
+    };
+    let walls = [wall(1.0), wall(-1.0)].concat();
+    let more = |scheme: &str| {
+        format!(
+            "[release]\ncount = 1\nvelocity_m_s = [10.0, 0.0, 0.0]\nspin_rad_s = [0.0, 0.0, 0.0]\n\
+             points_m = [[6.0, 0.0, 6.0]]\n{}",
+            solver(scheme).replace("longest_s = 2.0", "longest_s = 0.6")
+        )
+    };
+    for scheme in SCHEMES {
+        let fall = |share: f64| {
+            let limit_j = share * shot_j();
+            let trunk =
+                format!("friction_angle_deg = 30.0\nrestitution = 0.2\nbreaks_above_j = {limit_j}");
+            falls(&walls, &trunk, &more(scheme)).remove(0)
+        };
+        let (stands, limited) = (fall(10.0), fall(0.6));
+        let [whole_j, taken_j] = [&stands, &limited].map(|fall| fall.ledger.trees_j / shot_j());
+        assert!(whole_j > 0.8 && (taken_j - whole_j).abs() < 0.01, "{scheme}: {whole_j} {taken_j}");
+        let off = limited.end.velocity_m_s - stands.end.velocity_m_s;
+        assert!(off.norm() < 0.1, "{scheme}: {:?} {:?}", stands.end, limited.end);
+    }
+}

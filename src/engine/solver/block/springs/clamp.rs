@@ -18,6 +18,7 @@ use crate::rock::Vec3;
 use crate::solver::environment::ContactEnvironment;
 use crate::solver::loss::Loss;
 use crate::solver::rigid::HELD;
+use arrayvec::ArrayVec;
 use nalgebra::{Matrix3, SMatrix, SVector};
 
 /// Springs of a clamp may ask for so much more friction than there is (–) before it is followed in its own time.
@@ -44,6 +45,9 @@ struct ClampedContact {
     stiffness: [f64; 2],
     friction: f64,
 }
+
+/// Where the contacts of a clamp are, from the centre of mass (m).
+type Levers = ArrayVec<Vec3, MOST_TOUCHES>;
 
 /// Contacts that hold each other; none for a block that is not clamped.
 #[derive(Debug, Default)]
@@ -146,7 +150,7 @@ impl Clamp {
     }
 
     /// Goes with the touches found; whether all are there still.
-    fn follow(&mut self, found: &[BlockTouch], reach_m: f64, levers: &mut Vec<Vec3>) -> bool {
+    fn follow(&mut self, found: &[BlockTouch], reach_m: f64, levers: &mut Levers) -> bool {
         let before = self.contacts.len();
         self.contacts.retain_mut(|one| {
             let near = found.iter().filter(|touch| one.is_at(touch) && touch.gap_m <= reach_m);
@@ -234,7 +238,7 @@ impl Footing {
         if !self.clamp.is_on() {
             return false;
         }
-        let mut levers = Vec::new();
+        let mut levers = Levers::new();
         let reach_m = HELD * block.radius_m;
         if !self.clamp.follow(&self.touches.found, reach_m, &mut levers) {
             return true;
