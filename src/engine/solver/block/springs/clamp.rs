@@ -160,8 +160,7 @@ impl Clamp {
             let ((deep, along), n) = (one.apart(), touch.normal);
             one.stretch = carry(along, &one.n, &n) - n * deep;
             (one.n, one.triangle) = (n, touch.triangle);
-            levers.push(touch.lever);
-            true
+            levers.try_push(touch.lever).is_ok()
         });
         self.contacts.len() == before
     }
