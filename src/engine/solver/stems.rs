@@ -119,15 +119,20 @@ impl ContactState {
         })
     }
 
-    /// What share of a blow a tree at `touch` takes of all that are struck at once (–): that of the square of its approach.
-    fn share_of(&self, world: &ContactEnvironment, touch: &ContactPoint) -> f64 {
-        let approach2 = |touch: &ContactPoint| touch.normal.dot(&self.v).min(0.0).powi(2);
-        let stands = |touch: &&ContactPoint| {
-            world.terrain.is_tree(touch.triangle)
-                && !world.terrain.is_gone(touch.triangle, &self.near.gone)
-        };
-        let all: f64 = self.touches.iter().filter(stands).map(approach2).sum();
-        if all > 0.0 { approach2(touch) / all } else { 1.0 }
+    /// What share of a blow the stem at `touch` takes of all trees that are struck at once (–): that of the squares of the approaches.
+    fn share_of(&self, world: &ContactEnvironment, stems: &Stems, touch: &ContactPoint) -> f64 {
+        let (mut own, mut all) = (0.0, 0.0);
+        let stem = stems.of_triangle(touch.triangle);
+        for other in self.touches.iter() {
+            let stands = world.terrain.is_tree(other.triangle)
+                && !world.terrain.is_gone(other.triangle, &self.near.gone);
+            if stands {
+                let approach2 = other.normal.dot(&self.v).min(0.0).powi(2);
+                all += approach2;
+                own += if stems.of_triangle(other.triangle) == stem { approach2 } else { 0.0 };
+            }
+        }
+        if all > 0.0 { own / all } else { 1.0 }
     }
 
     /// What is struck at a triangle is pressed: what the blow takes there is its load, also if the rock has left at the end.
@@ -160,7 +165,7 @@ impl ContactState {
         self.look(world, &c, world.body.radius * (1.0 + TOUCH));
         let touches = self.touches.clone();
         for touch in touches.iter() {
-            let struck = (touch, self.share_of(world, touch));
+            let struck = (touch, self.share_of(world, stems, touch));
             let Some(broken) = self.broken_by(world, struck, (&self.v, &self.w)) else { continue };
             let of_stem =
                 |history: &ContactHistory| stems.of_triangle(history.triangle) == Some(broken.stem);
