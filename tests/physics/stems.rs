@@ -330,7 +330,7 @@ fn a_bad_list_is_refused_with_its_line() {
         ),
         (
             "x;y;dbh_m;height_m\n10;5;0,4;20\n",
-            "line 1: found the header x;y;dbh_m;height_m; write comma",
+            "line 1: found the header x;y;dbh_m;height_m; put commas between its columns",
         ),
         (
             "x,y,dbh_cm,height_m\n10,5,40,20\n",
