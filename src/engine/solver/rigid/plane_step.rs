@@ -170,7 +170,8 @@ impl ContactState {
         done: &mut Advance,
     ) {
         (self.c, self.v, self.w) = (end.c, end.v, end.w);
-        (done.loss, done.dt) = (end.loss.on(world, triangle), dt);
+        done.loss.add(&end.loss.on(world, triangle), 1.0);
+        done.dt = dt;
         push_out(world, self);
         remember(world, self, |_| true);
     }
