@@ -117,7 +117,9 @@ fn thrown(
         return None;
     }
     let lasts_s = match time_of_impact(terrain, &path, 5.0, &mut 0) {
-        FlightEnd::Touch(t) | FlightEnd::Leaves(t) => t,
+        FlightEnd::Touch(t) => t,
+        // and on past the last ground
+        FlightEnd::Leaves(t) => t + 1.0,
         FlightEnd::Flies => 5.0,
     };
     let top = block.map(|block| {
