@@ -145,23 +145,24 @@ const HALVINGS: u32 = 40;
 ///
 /// Asked once in the life of a rock.
 fn last_over_ground(terrain: &Terrain, flight: &Parabola, leaves: f64) -> f64 {
-    let is_over = |t: f64| {
-        let at = flight.centre(t);
-        terrain.ground_under(at.x, at.y, at.z).is_some()
-    };
+    let is_over = |at: &Vec3| terrain.ground_under(at.x, at.y, at.z).is_some();
     let look = |k: u32| leaves * f64::from(k) / f64::from(LOOKS);
     let mut last = None;
     for k in 0..=LOOKS {
-        if is_over(look(k)) {
+        let at = flight.centre(look(k));
+        if is_over(&at) {
             last = Some(k);
-        } else if terrain.is_under_slope(&flight.centre(look(k))) {
+        } else if terrain.ground_below(at.x, at.y).is_some() {
+            // under the slope
             break;
         }
     }
     match last {
         None => 0.0,
         Some(LOOKS) => leaves,
-        Some(k) => math::bisected([look(k), look(k + 1)], HALVINGS, is_over)[0],
+        Some(k) => {
+            math::bisected([look(k), look(k + 1)], HALVINGS, |t| is_over(&flight.centre(t)))[0]
+        }
     }
 }
 

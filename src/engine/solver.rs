@@ -59,8 +59,6 @@ pub const RIGID_STEP_S: f64 = 0.01;
 
 /// Most rocks that hold each other and have springs yet, where heaps go on in the rigid limit.
 pub(crate) const MOST_WITH_SPRINGS: usize = 8;
-/// What comes at a rock of a heap faster than this strikes hard (–, relative to `√(g R)` of the smaller).
-pub(crate) const STRUCK_HARD: f64 = 4.0;
 
 /// The usual [`Settings::corner_way`] (–).
 pub const CORNER_WAY: f64 = 0.3;

@@ -216,9 +216,7 @@ impl Footing {
         let out_m_s = LET_OUT * (world.body.gravity.norm() * block.radius_m).sqrt();
         let came = |touch: &BlockTouch| Came::of(block, [&start, moving], touch, dt);
         // stopped within the step, what strikes would give nothing back
-        let clamp = std::mem::take(&mut self.clamp);
-        self.set_aside(|touch| clamp.holds(touch) || !came(touch).strikes(world, block, touch));
-        self.clamp = clamp;
+        self.set_aside(|touch| !came(touch).strikes(world, block, touch));
         for touch in &self.aside {
             let goal = came(touch).goal(touch, dt, out_m_s);
             let ahead_m = 0.5 * dt * slip_m_s;

@@ -11,6 +11,9 @@ pub(crate) type Twist = (Vec3, Vec3);
 /// No motion.
 pub(super) const STILL: Twist = (Vec3::new(0.0, 0.0, 0.0), Vec3::new(0.0, 0.0, 0.0));
 
+/// What comes at a rock faster than this strikes it hard (–, relative to `√(g R)`).
+const STRUCK_HARD: f64 = 4.0;
+
 /// Whether place, velocity and spin are numbers.
 pub(super) fn are_finite(motion: [&Vec3; 3]) -> bool {
     motion.into_iter().flatten().all(|x| x.is_finite())
@@ -57,6 +60,11 @@ impl Body {
     /// Speed of a rock that has fallen by half its radius (m/s): `√(g R)`, what is slow for a rock of its size.
     pub(crate) fn fall_speed_m_s(&self) -> f64 {
         (self.gravity.norm() * self.radius).sqrt()
+    }
+
+    /// Whether what comes at it at a speed (m/s) strikes it so hard that it matters how the blow runs through all that it touches.
+    pub(crate) fn is_struck_hard(&self, approach_m_s: f64) -> bool {
+        approach_m_s > STRUCK_HARD * self.fall_speed_m_s()
     }
 
     /// Mass that a force along the surface meets at the contact point (kg): `m/(1 + m R²/I)`.

@@ -16,7 +16,7 @@ use crate::simulation::settings::RunSettings;
 use crate::solver::island::partition::Partition;
 use crate::solver::island::unload_pair;
 use crate::solver::loss::Given;
-use crate::solver::{MOST_WITH_SPRINGS, STRUCK_HARD, Settings};
+use crate::solver::{MOST_WITH_SPRINGS, Settings};
 
 /// The step of heaps where they go on in the rigid limit: not where bonds are to break, as those have springs.
 pub(super) fn step_in_heaps(step: &Settings, answer: &PairMaterial) -> Option<Settings> {
@@ -40,15 +40,14 @@ impl<'a> BodyWorld<'a> {
         if is_heap && !pairs.iter().any(is_struck_hard) { heaps } else { self.settings }
     }
 
-    /// Whether two rocks come so fast at each other that it matters how their blow runs through all that they touch: large islands of the rigid
-    /// limit follow it through the nearest alone.
+    /// Whether two rocks come so fast at each other that one is struck hard: large islands of the rigid limit follow that through the nearest alone.
     fn is_struck_hard(&self, ends: [u32; 2]) -> bool {
         let [a, b] = ends.map(|k| self.body(k));
         let [at, other] = [a, b].map(|body| body.position_at(self.settings, self.now_s));
         let [v, w] = [a, b].map(|body| body.velocity_at(self.settings, self.now_s));
         let (n, _) = between(&at, &other);
-        let [own, its] = [a, b].map(|body| body.member.body.fall_speed_m_s());
-        -n.dot(&(v - w)) > STRUCK_HARD * own.min(its)
+        let approach_m_s = -n.dot(&(v - w));
+        [a, b].iter().any(|body| body.member.body.is_struck_hard(approach_m_s))
     }
 }
 

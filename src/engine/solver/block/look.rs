@@ -59,15 +59,16 @@ impl Footing {
 
     /// Sets aside the contacts that touch, as [`Self::set_aside`].
     pub(super) fn set_touching_aside(&mut self, block: &Block) {
-        let (most, clamp) = (TOUCH * block.radius_m, std::mem::take(&mut self.clamp));
-        self.set_aside(|touch| touch.gap_m <= most || clamp.holds(touch));
-        self.clamp = clamp;
+        let most = TOUCH * block.radius_m;
+        self.set_aside(|touch| touch.gap_m <= most);
     }
 
-    /// Sets aside the contacts found that are `wanted`: where more than can act at a time, those that span most.
+    /// Sets aside the contacts found that are `wanted`, and those of a clamp: where more than can act at a time, those that span most.
     pub(super) fn set_aside(&mut self, wanted: impl Fn(&BlockTouch) -> bool) {
         self.aside.clear();
-        self.aside.extend(self.touches.found.iter().filter(|touch| wanted(touch)));
+        self.aside.extend(
+            self.touches.found.iter().filter(|touch| self.clamp.holds(touch) || wanted(touch)),
+        );
         if self.aside.len() > MOST_TOUCHES {
             keep_widest(&mut self.aside, MOST_TOUCHES);
         }

@@ -54,12 +54,13 @@ pub(super) fn step(
 
 /// What the rock meets at this instant, too slow to rebound, holds it from now on: impulses that take no time.
 pub(super) fn meet(world: &ContactEnvironment, state: &mut ContactState, done: &mut Advance) {
-    let touches = state.touches.nearer(world.body.radius * (1.0 + TOUCH));
-    if !touches.iter().any(|touch| is_coming(world, touch, &state.v)) {
+    let reach = world.body.radius * (1.0 + TOUCH);
+    let touches = || state.touches.iter().filter(|touch| touch.distance_m < reach);
+    if !touches().any(|touch| is_coming(world, touch, &state.v)) {
         return;
     }
     let held = |touch: &ContactPoint| GroundContact::new(0, touch, world.law(touch.triangle));
-    let mut contacts: ArrayVec<GroundContact, MOST> = touches.iter().map(held).collect();
+    let mut contacts: ArrayVec<GroundContact, MOST> = touches().map(held).collect();
     let before = (state.v, state.w);
     let after = settle(&mut contacts, &world.body, before, &mut state.sweeps);
     book(world, &contacts, [&before, &after], done);

@@ -117,6 +117,7 @@ impl Clamp {
     /// Opens; the energy that was in it (J).
     pub(in super::super) fn open(&mut self) -> f64 {
         self.contacts.clear();
+        self.rolled = Vec3::zeros();
         std::mem::take(&mut self.held_j)
     }
 

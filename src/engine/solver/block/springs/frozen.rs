@@ -111,7 +111,7 @@ impl Footing {
         let allowed = LOCAL * BLOW * fastest.chain(pressed).fold(0.0, f64::max);
         let mut rolling = RollingSpring::default();
         rolling.take_up(&contacts);
-        rolling.stretch = if self.clamp.is_on() { self.clamp.rolled } else { Vec3::zeros() };
+        rolling.stretch = self.clamp.rolled;
         let held_j = self.clamp.held_j;
         let mut flow = FrozenFlow {
             world,

@@ -11,7 +11,6 @@ use super::contacts::{ImpactScene, LIVELY, StepBody, hit_of};
 use crate::contact::ContactPoint;
 use crate::contact::pair::between;
 use crate::rock::Vec3;
-use crate::solver::STRUCK_HARD;
 use crate::solver::contact_state::ContactEnvironment;
 use crate::solver::impact::{
     BODIES, CONTACTS, ContactEnds, FrozenBody, FrozenCollision, FrozenContact, collide,
@@ -31,13 +30,19 @@ const BESIDE_MESH: f64 = 0.02;
 /// … which presses it there if it pushes it against the normal, by this cosine.
 const PRESSED_ON: f64 = -0.7;
 
-/// With how many rocks a blow is followed.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Reach {
-    /// All that touch each other, if they are no more than these.
-    All(usize),
-    /// The nearest of them, as many as one impact is followed with.
-    Nearest,
+/// With how many rocks and pairs that touch each other a blow is followed; where there are more, with the nearest of them or not at all.
+#[derive(Clone, Copy)]
+struct Reach {
+    rocks: usize,
+    pairs: usize,
+    or_nearest: bool,
+}
+
+impl Reach {
+    const ALL: Self = Self { rocks: BODIES, pairs: CONTACTS, or_nearest: false };
+    const ON_MESH: Self = Self { rocks: TOGETHER_IN_HEAP, ..Self::ALL };
+    /// One contact of each rock with the mesh must have room too.
+    const NEAREST: Self = Self { pairs: CONTACTS - BODIES, or_nearest: true, ..Self::ALL };
 }
 
 /// What a blow begins with.
@@ -58,17 +63,17 @@ struct TouchingRocks {
 }
 
 impl TouchingRocks {
-    /// Adds a pair that is not among them yet, and its rocks; `None` if there is no room for all of it.
-    fn add(&mut self, pair: usize, ends: [u32; 2]) -> Option<()> {
+    /// Adds a pair that is not among them yet, and its rocks; `None` if that is out of reach.
+    fn add(&mut self, pair: usize, ends: [u32; 2], reach: Reach) -> Option<()> {
         if self.pairs.contains(&pair) {
             return Some(());
         }
         let new = ends.map(|end| end as usize).into_iter().filter(|end| !self.rocks.contains(end));
         let new: ArrayVec<usize, 2> = new.collect();
-        if new.len() > self.rocks.remaining_capacity() {
+        if self.rocks.len() + new.len() > reach.rocks || self.pairs.len() >= reach.pairs {
             return None;
         }
-        self.pairs.try_push(pair).ok()?;
+        self.pairs.push(pair);
         self.rocks.extend(new);
         Some(())
     }
@@ -191,14 +196,13 @@ impl RigidIsland {
     /// With how many rocks a blow is followed; `None` if with its own ends alone.
     fn reach(&self, scene: &ImpactScene, blow: &BlowStart) -> Option<Reach> {
         if self.balls.len() <= BODIES {
-            return Some(Reach::All(BODIES));
+            return Some(Reach::ALL);
         }
-        let fall_m_s = |rock: &usize| self.balls[*rock].body.fall_speed_m_s();
-        let slowest = self.in_blow.iter().map(fall_m_s).fold(f64::INFINITY, f64::min);
-        if blow.approach_m_s > STRUCK_HARD * slowest {
-            return Some(Reach::Nearest);
+        if self.in_blow.iter().any(|&rock| self.balls[rock].body.is_struck_hard(blow.approach_m_s))
+        {
+            return Some(Reach::NEAREST);
         }
-        self.is_between(scene, blow).then_some(Reach::All(TOGETHER_IN_HEAP))
+        self.is_between(scene, blow).then_some(Reach::ON_MESH)
     }
 
     /// Whether a blow presses a rock onto the mesh, by its last look, that is much lighter than the one which strikes it.
@@ -235,17 +239,8 @@ impl RigidIsland {
                 let [a, b] = ends.map(|k| &self.balls[k as usize]);
                 let apart = a.before_end(s).0 - b.before_end(s).0;
                 let touch = a.body.radius + b.body.radius + HELD * a.body.radius.min(b.body.radius);
-                if apart.norm_squared() <= touch * touch {
-                    // one contact of each rock with the mesh must have room too
-                    if reach == Reach::Nearest && touching.pairs.len() >= CONTACTS - BODIES {
-                        return Some(touching);
-                    }
-                    let added = touching.add(pair, ends);
-                    if reach != Reach::Nearest {
-                        added?;
-                    }
-                }
-                if matches!(reach, Reach::All(most) if touching.rocks.len() > most) {
+                let is_touch = apart.norm_squared() <= touch * touch;
+                if is_touch && touching.add(pair, ends, reach).is_none() && !reach.or_nearest {
                     return None;
                 }
             }
