@@ -60,6 +60,11 @@ impl Turning {
         Self { impulse, ..self }
     }
 
+    /// The same with this compliance (1/(kg m²)), if there is any.
+    pub(super) fn giving_way(self, compliance: f64) -> Self {
+        Self { compliance: self.compliance.map(|_| compliance), ..self }
+    }
+
     /// Whether there is any.
     #[inline]
     pub(crate) fn is_on(&self) -> bool {

@@ -8,6 +8,7 @@
 //! and dashpot over an implicit step is the same contact with a compliance and a goal of its own ([`GivingWay`]): one solver serves both.
 
 mod mixing;
+mod newton;
 mod sliding;
 
 use super::rolling::Turning;
@@ -15,9 +16,10 @@ use crate::contact::MOST;
 use crate::contact::block::MOST_TOUCHES;
 use crate::ground::FrictionLimits;
 use crate::rock::Vec3;
-use crate::solver::law::within;
 use mixing::{BEFORE, Mixing};
-use nalgebra::{Matrix3, Vector2};
+use nalgebra::Matrix3;
+use newton::solve_hard;
+pub(super) use newton::solve_springs;
 use sliding::SlidingAnswer;
 
 /// Sweeps over the contacts, at most.
@@ -28,16 +30,6 @@ const SETTLED: f64 = 1e-11;
 const NEARLY_SETTLED: f64 = 1e-5;
 /// … and each goes this part of its way (–): what two contacts, or contacts and rolling friction, hand each other to and fro dies out.
 const PART_OF_WAY: f64 = 0.5;
-/// Turns of the direction of friction, at most, and the widest of them (rad).
-const TURNS: u32 = 20;
-const WIDEST_TURN: f64 = 0.8;
-/// A turn (rad) no wider than this is the last: its square is below rounding.
-const LAST_TURN: f64 = 1e-8;
-/// Passes over the impulse of one contact that slides, at most.
-const PASSES: u32 = 100;
-/// Change of it below which they have settled (–).
-const NEAR: f64 = 1e-13;
-
 /// What presses on a clamped contact (N s): more than anything else.
 const LOCKED_N_S: f64 = 1e100;
 
@@ -252,63 +244,6 @@ impl BlockContact {
         let on_rim = slides.find_map(|d| self.on_rim((up, rim.flat(u)), d, rim));
         on_rim.unwrap_or_else(|| self.sliding(u, (drag, &whole.matrix)))
     }
-
-    /// The impulse on the rim of Coulomb's cone, `p (n + μ d)` with a direction `d` along the surface against the slip that it leaves: one
-    /// equation for the angle of `d`, by Newton's method from a first guess. `None` where it does not settle on a slip that friction
-    /// opposes.
-    fn on_rim(
-        &self,
-        (up, slip): (f64, Vector2<f64>),
-        mut d: Vector2<f64>,
-        rim: &SlidingAnswer,
-    ) -> Option<Vec3> {
-        let friction = self.friction;
-        for _ in 0..TURNS {
-            let aside = Vector2::new(-d.y, d.x);
-            let own = rim.own + friction * rim.lift.dot(&d);
-            let push = -up / own;
-            let answer = rim.lift + rim.across * d * friction;
-            let left = slip + answer * push;
-            let push_turns = -push * friction * rim.lift.dot(&aside) / own;
-            let turns = aside.dot(&(answer * push_turns + rim.across * aside * (friction * push)))
-                - d.dot(&left);
-            let turn = -aside.dot(&left) / turns;
-            if own <= 0.0 || !turn.is_finite() {
-                return None;
-            }
-            d = (d + aside * turn.clamp(-WIDEST_TURN, WIDEST_TURN)).normalize();
-            // Newton's method squares what is left to turn
-            if turn.abs() <= LAST_TURN {
-                let push = -up / (rim.own + friction * rim.lift.dot(&d));
-                let opposes = d.dot(&left) <= 0.0 && push > 0.0;
-                let drag = rim.first * d.x + rim.second * d.y;
-                return opposes.then(|| (self.n + drag * friction) * push);
-            }
-        }
-        None
-    }
-
-    /// The same by passes over drag and push, slowly. Also where no rigid solution exists (Painlevé): then the last pass, which obeys the
-    /// cone and pushes.
-    fn sliding(&self, u: &Vec3, (mut drag, whole): (Vec3, &Matrix3<f64>)) -> Vec3 {
-        let n = &self.n;
-        let along = |x: &Vec3| x - n * n.dot(x);
-        let to_n = whole * n;
-        let (own, rate) = (n.dot(&to_n), 1.0 / (whole.trace() - n.dot(&to_n)));
-        let mut push = 0.0;
-        for _ in 0..PASSES {
-            let asked = -(n.dot(u) + to_n.dot(&drag)) / own;
-            push = asked.max(0.0);
-            let slip = along(&(u + whole * drag + to_n * push));
-            let next = within(drag - slip * rate, self.friction * push);
-            let change = (next - drag).norm();
-            drag = next;
-            if change <= NEAR * push {
-                break;
-            }
-        }
-        n * push + drag
-    }
 }
 
 /// The impulse of a solve as the next begins with it: one that went astray must not be where that begins.
@@ -333,8 +268,9 @@ pub(super) fn rigid_turning(contacts: &[BlockContact]) -> Turning {
 /// may contradict what another asks, by rounding or by the little that a turn within the step moves two sticking points towards each other; the
 /// sweeps then shift impulse between them without end, and the body does not feel it. Where a third contact slides meanwhile it feels a little,
 /// until one of both begins to slip; and rolling friction that holds a block which slides on several corners leaves open how they share its weight.
-/// The second half of the sweeps goes part of its way only and is content with five digits ([`NEARLY_SETTLED`]); what has not settled then is
-/// counted. Goals are known to `rounding_m_s` (m/s) only, and there are at most so many sweeps.
+/// After half of the sweeps hard contacts are solved in the six unknowns of the body ([`newton`]). Where that fails too, the others go part of their
+/// way only and are content with five digits ([`NEARLY_SETTLED`]); what has not settled then is counted. Goals are known to `rounding_m_s` (m/s)
+/// only, and there are at most so many sweeps.
 pub(crate) fn solve(
     mass: &Mass,
     asked: (&mut [BlockContact], &mut Turning),
@@ -372,6 +308,9 @@ fn sweep<const M: usize>(
             mixing.get_or_insert_with(|| Mixing::of(count, reach)).begin(contacts, turning);
         }
         let is_late = sweep >= SWEEPS / 2;
+        if sweep == SWEEPS / 2 && solve_hard(mass, (contacts, turning), (&v, &w), rounding_m_s) {
+            return true;
+        }
         let (before, mut scale) = ((v, w), f64::MIN_POSITIVE);
         for contact in contacts.iter_mut() {
             let u = Mass::at(&contact.lever, (&v, &w)) - contact.answer * contact.impulse;

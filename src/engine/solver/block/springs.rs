@@ -21,7 +21,6 @@ mod explicit;
 mod frozen;
 mod history;
 mod impact_energy;
-mod newton;
 mod rolling;
 mod onset;
 mod stage;

@@ -5,7 +5,6 @@
 //! end is exact, however the block turns.
 
 use super::super::{Footing, Moving, ROUNDING_OF_SPEED, TOUCH, orthonormal};
-use super::newton::solve_springs;
 use super::{BlockRates, SpringContact, turn_by, turning};
 use crate::body::Block;
 use crate::contact::block::{BlockTouch, Pose};
@@ -13,7 +12,7 @@ use crate::contact::history::carry;
 use crate::ground::{Law, SliderForce};
 use crate::rock::Vec3;
 use crate::solver::block::rolling::Turning;
-use crate::solver::block::solve::{BlockContact, Mass, SWEEPS, first_guess, solve};
+use crate::solver::block::solve::{BlockContact, Mass, SWEEPS, first_guess, solve, solve_springs};
 use crate::solver::environment::ContactEnvironment;
 use crate::solver::loss::Loss;
 use crate::solver::stage::{AGREED, PASSES};

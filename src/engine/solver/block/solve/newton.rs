@@ -3,10 +3,15 @@
 //! Each contact answers the velocity `u` of its point with an impulse `P(u)` in closed form, so what is sought is the one motion with
 //! `M (V − V_free) = Σ Tᵀ P(T V)`: six equations, however many contacts a face has. Newton's method on pieces: contacts open, stick or slip.
 //! Where it does not settle – a dashpot that alone would keep the block out has no closed form – contacts are swept instead.
+//!
+//! Hard contacts are swept. Where that does not settle – more of them than a rigid body can tell apart, or rolling friction that holds a block which
+//! slides on several corners – they are solved as contacts that give way by a millionth of what the body does.
 
 use super::super::rolling::Turning;
-use super::super::solve::{BlockContact, Mass};
+use super::{BlockContact, GivingWay, Mass};
+use crate::contact::block::MOST_TOUCHES;
 use crate::rock::Vec3;
+use arrayvec::ArrayVec;
 use nalgebra::{Matrix3, Matrix6, Vector6};
 
 /// Tries of the method before contacts are swept.
@@ -16,10 +21,19 @@ const HALVINGS: u32 = 4;
 /// Change of the motion, relative to the largest impulse over the mass, below which it has settled (–).
 const MOTION_SETTLED: f64 = 1e-12;
 
+/// What hard contacts and their rolling friction give way, over what the body answers in the mean (–).
+const GIVES_WAY: f64 = 1e-6;
+
 /// The impulse of a contact whose point moves by `u` (m/s), and its derivative (kg).
 type ImpulseAndSlope = (Vec3, Matrix3<f64>);
 
 impl BlockContact {
+    /// A hard contact that gives way a little.
+    fn giving_way(&self) -> Self {
+        let compliance = [GIVES_WAY * self.answer.trace() / 3.0; 2];
+        Self { springs: Some(GivingWay { compliance, surface_m_s: f64::INFINITY }), ..*self }
+    }
+
     /// Its impulse at a velocity of its point; `None` where only the sweeps can tell.
     fn answer_at(&self, u: &Vec3) -> Option<ImpulseAndSlope> {
         let springs = self.springs()?;
@@ -107,7 +121,7 @@ impl Equations<'_> {
 }
 
 /// Solves for the impulses of contacts that give way, from the motion without impulses and a first guess; whether it has settled.
-pub(super) fn solve_springs(
+pub(in super::super) fn solve_springs(
     mass: &Mass,
     (contacts, turning): (&mut [BlockContact], &mut Turning),
     (free, guess): ((Vec3, Vec3), (Vec3, Vec3)),
@@ -144,4 +158,32 @@ pub(super) fn solve_springs(
         }
     }
     false
+}
+
+/// The same for hard contacts and their rolling friction, which have motion and impulses; all of them stay as they are where it does not settle.
+pub(super) fn solve_hard(
+    mass: &Mass,
+    (contacts, turning): (&mut [BlockContact], &mut Turning),
+    (v, w): (&Vec3, &Vec3),
+    rounding_m_s: f64,
+) -> bool {
+    if contacts.iter().any(|contact| contact.springs.is_some() || contact.is_clamped) {
+        return false;
+    }
+    let mut free = (*v, w - mass.inverse * turning.impulse);
+    for contact in contacts.iter() {
+        let (dv, dw) = mass.change(contact, &contact.impulse);
+        free = (free.0 - dv, free.1 - dw);
+    }
+    let mut soft: ArrayVec<BlockContact, MOST_TOUCHES> =
+        contacts.iter().map(BlockContact::giving_way).collect();
+    let mut held = turning.giving_way(GIVES_WAY * mass.inverse.trace() / 3.0);
+    if !solve_springs(mass, (&mut soft, &mut held), (free, (*v, *w)), rounding_m_s) {
+        return false;
+    }
+    turning.impulse = held.impulse;
+    for (contact, solved) in contacts.iter_mut().zip(&soft) {
+        contact.impulse = solved.impulse;
+    }
+    true
 }
