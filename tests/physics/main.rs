@@ -42,5 +42,6 @@ mod stems;
 mod struck_through;
 mod tangential;
 mod traps;
+mod troughs;
 mod uneven_ground;
 mod world_ledger;

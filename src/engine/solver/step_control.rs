@@ -16,6 +16,7 @@ mod settle;
 use super::Settings;
 use super::body::Body;
 use super::contact_state::{ContactEnvironment, ContactState, Onset};
+use super::law::StageContact;
 use super::loss::Loss;
 use super::stage::End;
 use super::tableau::Tableau;
@@ -107,6 +108,11 @@ impl Control {
         }
     }
 }
+
+/// Local error allowed to what contacts that can hold each other press with in a step (–, relative to the weight).
+const SELF_STRESS: f64 = 0.1;
+/// Contacts that nearly hold each other count as such: coefficient of friction beside that of the ground (–).
+const BESIDE_CONE: f64 = 0.1;
 
 /// Local error allowed to a rock in lasting contact (m/s): that of the run, and a share of `√(g R)`.
 pub(crate) fn lasting_m_s(settings: &Settings, body: &Body) -> f64 {
@@ -280,20 +286,51 @@ fn attempt(
     for i in 1..tableau.stages {
         end = Some(state.stage(world, tableau, i, dt)?);
     }
-    let off2 = off2(tableau, state, (omega, world.body.radius));
+    let off2 = off2(tableau, state, &world.body, (omega, control.tolerance));
     end.map(|end| (end, dt * off2.sqrt() / control.tolerance))
 }
 
-/// Square of the local error of a rock over the length of the step (m²/s⁴): ways and stretches times the frequency of the stiffest contact
-/// (rad/s), spin times the radius (m).
-pub(crate) fn off2(tableau: &Tableau, state: &ContactState, (omega, radius): (f64, f64)) -> f64 {
+/// Square of the local error of a rock over the length of the step (m²/s⁴), of which `allowed_m_s` is allowed: ways and stretches times the frequency
+/// of the stiffest contact (rad/s), spin times the radius.
+///
+/// Under its weight a contact forgets an error: its force is what the weight asks for. Contacts that can hold each other within their cones
+/// keep it, and rolling friction answers to it until they come apart; there ways count for more, as exact as forces must be.
+pub(crate) fn off2(
+    tableau: &Tableau,
+    state: &ContactState,
+    body: &Body,
+    (omega, allowed_m_s): (f64, f64),
+) -> f64 {
     let rates = &state.rates;
     let ways2 = (0..state.histories.len())
         .map(|k| tableau.off(rates, |rate| rate.shear[k]).norm_squared())
         .fold(tableau.off(rates, |rate| rate.c).norm_squared(), f64::max);
-    (ways2 * omega * omega)
+    let (mut counts, weight) = (omega, body.gravity.norm());
+    if weight > 0.0 && can_clamp(state.stage_contacts(), body.radius) {
+        counts *= (allowed_m_s * omega / (SELF_STRESS * weight)).max(1.0);
+    }
+    (ways2 * counts * counts)
         .max(tableau.off(rates, |rate| rate.v).norm_squared())
-        .max(tableau.off(rates, |rate| rate.w).norm_squared() * radius.powi(2))
+        .max(tableau.off(rates, |rate| rate.w).norm_squared() * body.radius.powi(2))
+}
+
+/// Whether two contacts of a rock of this radius (m) can hold each other, by friction and rolling friction: whether the line between them lies within
+/// both their cones.
+fn can_clamp(contacts: &[StageContact], radius_m: f64) -> bool {
+    let cone = |one: &StageContact| {
+        let (friction, rolling_m) = one.law.limits().caps(1.0);
+        friction + rolling_m / radius_m + BESIDE_CONE
+    };
+    contacts.iter().enumerate().any(|(k, a)| {
+        let cone_a = cone(a);
+        contacts[..k].iter().any(|b| {
+            // the angle between the normals, from π on, is no larger than both cones
+            let (off, cone_b) = (a.n.dot(&b.n), cone(b));
+            let widest = (cone_a * cone_b - 1.0)
+                / ((1.0 + cone_a * cone_a) * (1.0 + cone_b * cone_b)).sqrt();
+            off <= widest
+        })
+    })
 }
 
 /// Takes over the step's end: motion, memories, losses.

@@ -281,7 +281,8 @@ impl<'a> Island<'a> {
                 worst2.max(drift.norm_squared() * (pair_history.law.omega_rad_s() * by).powi(2));
         }
         for ((member, omega), by) in self.members.iter().zip(&omegas).zip(&over_allowed) {
-            let own2 = step_control::off2(tableau, &member.state, (*omega, member.body.radius));
+            let IslandBody { state, body, .. } = &**member;
+            let own2 = step_control::off2(tableau, state, body, (*omega, 1.0 / by));
             worst2 = worst2.max(own2 * by * by);
         }
         worst2.sqrt()
