@@ -108,6 +108,12 @@ impl World {
     }
 }
 
+impl World {
+    pub fn falls(&self, terrain: &Terrain, spheres: &[Sphere], longest_s: f64) -> Vec<Trajectory> {
+        self.run(terrain, spheres, longest_s).0
+    }
+}
+
 pub fn plane() -> Terrain {
     terrain(jittered_plane(40.0, 8, 0.0))
 }

@@ -3,95 +3,15 @@
 
 use crate::common;
 
-use common::together::{plane, space};
-use common::{CASE, GROUND};
+use common::GROUND;
+use common::together::{self, Sphere, World, plane, space};
 use rockfall::contact::pair::Strength;
-use rockfall::ground::Ground;
-use rockfall::plan::RestRule;
-use rockfall::release::Release;
-use rockfall::rock::{Motion, Rock, Vec3};
-use rockfall::simulation::{
-    Keep, Observer, PairMaterial, RunSettings, Stop, Trajectory, simulate_world,
-};
-use rockfall::solver::{Scheme, Settings};
-use rockfall::terrain::Terrain;
-use std::sync::atomic::AtomicBool;
+use rockfall::rock::{Rock, Vec3};
+use rockfall::simulation::{Stop, Trajectory};
+use rockfall::solver::Scheme;
 
-/// Spheres in one world.
-#[derive(Clone)]
-struct World {
-    gravity_m_s2: f64,
-    restitution: f64,
-    friction_angle_rad: f64,
-    tolerance_m_s: f64,
-    strength: Strength,
-    scheme: Scheme,
-    rest_time_s: f64,
-}
-
-const WORLD: World = World {
-    gravity_m_s2: 0.0,
-    restitution: 0.5,
-    friction_angle_rad: std::f64::consts::FRAC_PI_6,
-    tolerance_m_s: 1e-4,
-    strength: Strength { tensile_pa: 0.0, cohesion_pa: 0.0 },
-    scheme: Scheme::Adaptive,
-    rest_time_s: 0.3,
-};
-
-/// A sphere: radius, density, centre, velocity, spin.
-type Sphere = (f64, f64, [f64; 3], [f64; 3], [f64; 3]);
-
-impl World {
-    fn run(&self, terrain: &Terrain, spheres: &[Sphere], longest_s: f64) -> Vec<Trajectory> {
-        let step = Settings {
-            scheme: self.scheme,
-            tolerance_m_s: self.tolerance_m_s,
-            step_s: 1e-5,
-            shear_memory: true,
-            impact_kernels: true,
-            rigid_heaps: true,
-            corner_way: rockfall::solver::CORNER_WAY,
-            capture_speed_m_s: CASE.capture_speed_m_s,
-        };
-        let course = RunSettings {
-            terrain,
-            gravity_m_s2: self.gravity_m_s2,
-            step: &step,
-            rest: RestRule { speed_m_s: 0.02, time_s: self.rest_time_s },
-            longest_s,
-            recorders: rockfall::plan::Recorders::default(),
-            seed: 1,
-        };
-        let releases: Vec<Release> = spheres
-            .iter()
-            .map(|&(radius_m, density_kg_m3, c, v, w)| Release {
-                rock: Rock { radius_m, density_kg_m3 },
-                motion: Motion {
-                    time_s: 0.0,
-                    position_m: Vec3::from(c) - terrain.origin_m,
-                    velocity_m_s: v.into(),
-                    spin_rad_s: w.into(),
-                },
-                grounds: vec![GROUND],
-            })
-            .collect();
-        let ground = Ground {
-            restitution: Some(self.restitution),
-            friction_angle_rad: self.friction_angle_rad,
-            ..GROUND
-        };
-        let answer = PairMaterial { ground, strength: self.strength };
-        let keep = |_| Keep { path_step_s: None, impacts: false };
-        let never = AtomicBool::new(false);
-        let falls =
-            simulate_world(&course, &releases, &answer, keep, Observer::silent(&never)).unwrap().0;
-        for fall in &falls {
-            assert!(!matches!(fall.stop, Stop::Failed(_)), "{:?}", fall.stop);
-        }
-        falls
-    }
-}
+const WORLD: World =
+    World { scheme: Scheme::Adaptive, tolerance_m_s: 1e-4, step_s: 1e-5, ..together::WORLD };
 
 pub(crate) fn free(x: f64, y: f64, v: [f64; 3]) -> Sphere {
     (0.5, 2700.0, [x, y, 20.0], v, [0.0; 3])
@@ -130,8 +50,11 @@ fn momentum_is_kept(falls: &[Trajectory]) {
 fn a_head_on_collision_has_the_restitution_asked_for() {
     for e in [0.0, 0.3, 0.5, 0.9, 1.0] {
         let world = World { restitution: e, ..WORLD };
-        let falls =
-            world.run(&space(), &[free(-1.0, 0.0, [1.0, 0.0, 0.0]), free(1.0, 0.0, [0.0; 3])], 2.0);
+        let falls = world.falls(
+            &space(),
+            &[free(-1.0, 0.0, [1.0, 0.0, 0.0]), free(1.0, 0.0, [0.0; 3])],
+            2.0,
+        );
         let speeds = [0, 1].map(|k| falls[k].end.velocity_m_s.x);
         // e below 0.01 counts as plastic
         let allowed = if e == 0.0 { 0.01 } else { 2e-3 };
@@ -147,7 +70,7 @@ fn a_head_on_collision_has_the_restitution_asked_for() {
 fn unequal_masses_share_the_momentum() {
     for (radius, density) in [(0.1, 2700.0), (0.5, 27.0), (0.5, 2.7e-3), (0.05, 2.7e-2)] {
         let light = (radius, density, [1.0, 0.0, 20.0], [0.0; 3], [0.0; 3]);
-        let falls = WORLD.run(&space(), &[free(-1.0, 0.0, [1.0, 0.0, 0.0]), light], 1.5);
+        let falls = WORLD.falls(&space(), &[free(-1.0, 0.0, [1.0, 0.0, 0.0]), light], 1.5);
         let (m1, m2) = (falls[0].rock.mass_kg(), falls[1].rock.mass_kg());
         let expected = [(m1 - 0.5 * m2) / (m1 + m2), 1.5 * m1 / (m1 + m2)];
         for (fall, expected) in falls.iter().zip(expected) {
@@ -164,7 +87,7 @@ fn unequal_masses_share_the_momentum() {
 fn an_oblique_hit_with_spin_keeps_momentum_and_angular_momentum() {
     let one = (0.5, 2700.0, [-1.0, 0.3, 20.0], [2.0, 0.1, -0.2], [3.0, -5.0, 8.0]);
     let two = (0.3, 2000.0, [1.0, 0.0, 20.0], [-1.0, 0.0, 0.1], [0.0, 4.0, -2.0]);
-    let falls = WORLD.run(&space(), &[one, two], 2.0);
+    let falls = WORLD.falls(&space(), &[one, two], 2.0);
     momentum_is_kept(&falls);
     let kick = (falls[0].end.velocity_m_s - falls[0].start.velocity_m_s) * falls[0].rock.mass_kg();
     assert!(kick.norm() > 100.0, "they did not meet");
@@ -176,7 +99,7 @@ fn an_oblique_hit_with_spin_keeps_momentum_and_angular_momentum() {
 fn without_friction_spin_stays() {
     let world = World { friction_angle_rad: 0.0, ..WORLD };
     let one = (0.5, 2700.0, [-1.0, 0.6, 20.0], [2.0, 0.0, 0.0], [3.0, -5.0, 8.0]);
-    let falls = world.run(&space(), &[one, free(1.0, 0.0, [0.0; 3])], 2.0);
+    let falls = world.falls(&space(), &[one, free(1.0, 0.0, [0.0; 3])], 2.0);
     assert_eq!(falls[0].end.spin_rad_s, falls[0].start.spin_rad_s);
     assert_eq!(falls[1].end.spin_rad_s, falls[1].start.spin_rad_s);
     momentum_is_kept(&falls);
@@ -192,7 +115,7 @@ fn a_cradle_with_gaps_hands_on_the_velocity() {
     let world = World { restitution: 1.0, ..WORLD };
     let mut spheres = vec![free(-2.0, 0.0, [1.0, 0.0, 0.0])];
     spheres.extend((0..4).map(|k| free(1.01 * f64::from(k), 0.0, [0.0; 3])));
-    let falls = world.run(&space(), &spheres, 3.0);
+    let falls = world.falls(&space(), &spheres, 3.0);
     for (k, fall) in falls.iter().enumerate() {
         let expected = if k == 4 { 1.0 } else { 0.0 };
         // five collisions at a local error of 1e-4 m/s a step
@@ -222,7 +145,7 @@ fn stack(lower: (f64, f64), upper: (f64, f64)) {
         (r1, lower.1, [0.3, 0.2, start[0]], [0.0; 3], [0.0; 3]),
         (r2, upper.1, [0.3, 0.2, start[1]], [0.0; 3], [0.0; 3]),
     ];
-    let falls = world.run(&plane(), &spheres, 5.0);
+    let falls = world.falls(&plane(), &spheres, 5.0);
     let z = [0, 1].map(|k| falls[k].end.position_m.z);
     let pens = [r1 - z[0], r1 + r2 - (z[1] - z[0])];
     for (pen, expected) in pens.iter().zip(expected) {
@@ -271,7 +194,7 @@ fn a_sphere_rests_on_three_others() {
         .collect();
     let up = (4.0 * r * r - out * out).sqrt();
     spheres.push((r, 2700.0, [0.0, 0.0, r + up], [0.0; 3], [0.0; 3]));
-    let falls = world.run(&plane(), &spheres, 5.0);
+    let falls = world.falls(&plane(), &spheres, 5.0);
     let weight = falls[0].rock.mass_kg() * G;
     for fall in &falls {
         assert_eq!(fall.stop, Stop::AtRest);
@@ -299,7 +222,7 @@ fn a_bond_in_tension_breaks_at_its_strength() {
         let strength = Strength { tensile_pa: share * pull / area, cohesion_pa: 1e12 };
         let world = World { restitution: 1.0, tolerance_m_s: 1e-5, strength, ..WORLD };
         let spheres = [free(-0.5, 0.0, [-v, 0.0, 0.0]), free(0.5, 0.0, [v, 0.0, 0.0])];
-        let falls = world.run(&space(), &spheres, 1.0);
+        let falls = world.falls(&space(), &spheres, 1.0);
         let apart = falls[1].end.position_m.x - falls[0].end.position_m.x;
         assert_eq!(apart < 1.01, holds, "{share}: {apart}");
         momentum_is_kept(&falls);
@@ -313,10 +236,26 @@ fn a_bond_in_shear_breaks_at_its_cohesion() {
         let strength = Strength { tensile_pa: 1e9, cohesion_pa };
         let world = World { tolerance_m_s: 1e-5, strength, ..WORLD };
         let spheres = [free(-0.5, 0.0, [0.0, -0.1, 0.0]), free(0.5, 0.0, [0.0, 0.1, 0.0])];
-        let falls = world.run(&space(), &spheres, 4.0);
+        let falls = world.falls(&space(), &spheres, 4.0);
         let apart = (falls[1].end.position_m - falls[0].end.position_m).norm();
         assert_eq!(apart < 1.01, holds, "{cohesion_pa}: {apart}");
         momentum_is_kept(&falls);
+    }
+}
+
+/// Bonded spheres that fly over the border of the terrain leave it as loose ones do. What was bonded did not fly, fell on below until its time
+/// was up, and that fall counted.
+#[test]
+fn bonded_spheres_leave_the_terrain_at_its_border() {
+    let strength = Strength { tensile_pa: 1e12, cohesion_pa: 1e12 };
+    let world =
+        World { scheme: Scheme::Adaptive, tolerance_m_s: 0.01, gravity_m_s2: 9.81, ..WORLD };
+    let spheres = [free(-0.5, 25.0, [0.0, 8.0, 0.0]), free(0.5, 25.0, [0.0, 8.0, 0.0])];
+    let falls = World { strength, ..world }.falls(&plane(), &spheres, 30.0);
+    for fall in &falls {
+        assert_eq!(fall.stop, Stop::LeftTerrain);
+        let end = fall.end.position_m;
+        assert!((40.0..42.0).contains(&end.y) && end.z > 0.0, "{end:?}");
     }
 }
 
@@ -324,9 +263,9 @@ fn a_bond_in_shear_breaks_at_its_cohesion() {
 #[test]
 fn a_bond_without_strength_is_a_plain_contact() {
     let spheres = [free(-0.5, 0.0, [0.3, 0.1, 0.0]), free(0.5, 0.0, [0.0; 3])];
-    let plain = WORLD.run(&space(), &spheres, 1.0);
+    let plain = WORLD.falls(&space(), &spheres, 1.0);
     let nothing = World { strength: Strength { tensile_pa: 0.0, cohesion_pa: 0.0 }, ..WORLD };
-    assert_eq!(plain, nothing.run(&space(), &spheres, 1.0));
+    assert_eq!(plain, nothing.falls(&space(), &spheres, 1.0));
 }
 
 /// The same bytes on one thread and on four.
@@ -341,7 +280,7 @@ fn threads_change_nothing() {
         .collect();
     let on = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| world.run(&plane(), &spheres, 1.0))
+        pool.install(|| world.falls(&plane(), &spheres, 1.0))
     };
     assert_eq!(on(1), on(4));
 }
@@ -353,7 +292,7 @@ fn the_fixed_step_keeps_the_restitution_between_rocks() {
     let world = World { scheme: Scheme::Dda, ..WORLD };
     // one above the other, the lower one first: its normal is the exact opposite of the vertical
     let sphere = |z: f64, up: f64| (0.5, 2700.0, [0.3, 0.2, z], [0.0, 0.0, up], [0.0; 3]);
-    let falls = world.run(&space(), &[sphere(-1.0, 1.0), sphere(0.5, 0.0)], 2.0);
+    let falls = world.falls(&space(), &[sphere(-1.0, 1.0), sphere(0.5, 0.0)], 2.0);
     let speeds = [0, 1].map(|k| falls[k].end.velocity_m_s.z);
     assert!((speeds[0] - 0.25).abs() < 5e-3 && (speeds[1] - 0.75).abs() < 5e-3, "{speeds:?}");
     momentum_is_kept(&falls);
@@ -365,7 +304,7 @@ fn a_stack_rests_on_fixed_steps() {
     let world = World { scheme: Scheme::Dda, gravity_m_s2: G, rest_time_s: 0.1, ..WORLD };
     let press = Rock { radius_m: 0.5, density_kg_m3: 2700.0 }.mass_kg() * G / 1e9;
     let sphere = |z: f64| (0.5, 2700.0, [0.3, 0.2, z], [0.0; 3], [0.0; 3]);
-    let falls = world.run(&plane(), &[sphere(0.5 - 2.0 * press), sphere(1.5 - 3.0 * press)], 1.0);
+    let falls = world.falls(&plane(), &[sphere(0.5 - 2.0 * press), sphere(1.5 - 3.0 * press)], 1.0);
     let z = [0, 1].map(|k| falls[k].end.position_m.z);
     assert!((0.5 - z[0] - 2.0 * press).abs() < 1e-2 * press, "{z:?}");
     assert!((1.0 - (z[1] - z[0]) - press).abs() < 1e-2 * press, "{z:?}");

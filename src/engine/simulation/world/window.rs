@@ -8,13 +8,13 @@
 //! Time runs event by event: all fly to the next touch (`fly_to`), contacts that are due begin (`begin_contacts`),
 //! the contact system is stepped until the next event (`steps`), and so on to the end of the window.
 
+mod held_together;
 mod rigid;
 
-use super::{BodyState, WorldBody, WorldStats};
+use super::{WorldBody, WorldStats};
 use crate::contact::pair::{PairHistory, PairImpact, meeting_s};
 use crate::simulation::Stop;
 use crate::simulation::settings::RunSettings;
-use crate::solver::island::partition::Partition;
 use crate::solver::island::{Done, Island, RigidIsland};
 use crate::solver::loss::{Given, Loss};
 use crate::solver::step_control::{ONSET, StepError};
@@ -240,6 +240,7 @@ impl<'a> IslandWindow<'a> {
         }
         self.dissolve(island);
         if self.now_s >= self.end_s {
+            self.leave_terrain();
             self.fall_asleep();
             return false;
         }
@@ -358,29 +359,6 @@ impl<'a> IslandWindow<'a> {
     fn fail(&mut self, stuck: StepError) {
         for body in &mut self.bodies {
             body.leave(Stop::Failed(stuck.to_string()));
-        }
-    }
-
-    /// Puts to sleep what has been quiet for long enough together with all that it touches.
-    fn fall_asleep(&mut self) {
-        let quiet = |body: &WorldBody| {
-            body.state == BodyState::Moving && !body.member.flying && body.calm.rests()
-        };
-        if !self.bodies.iter().any(|body| quiet(body)) {
-            return;
-        }
-        // rocks that hold each other fall asleep together or not at all: one that still moves would pull on the others
-        let mut islands = Partition::alone(self.bodies.len());
-        for pair_history in self.pair_histories.iter().filter(|pair_history| pair_history.is_held())
-        {
-            islands.join(pair_history.a, pair_history.b);
-        }
-        for list in islands.lists() {
-            if list.iter().all(|k| quiet(&self.bodies[*k as usize])) {
-                for k in list {
-                    self.bodies[k as usize].state = BodyState::Asleep;
-                }
-            }
         }
     }
 }

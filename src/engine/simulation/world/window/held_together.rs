@@ -1,0 +1,84 @@
+//! Rocks that hold each other fall asleep together, and leave the terrain together.
+
+use super::super::{BodyState, WorldBody};
+use super::IslandWindow;
+use crate::flight::{FlightEnd, Parabola, time_of_impact_past};
+use crate::rock::Vec3;
+use crate::simulation::Stop;
+use crate::solver::island::partition::Partition;
+
+impl IslandWindow<'_> {
+    /// The rocks that hold each other, by their places in the island.
+    fn held_together(&self) -> Vec<Vec<u32>> {
+        let mut islands = Partition::alone(self.bodies.len());
+        for pair_history in self.pair_histories.iter().filter(|pair_history| pair_history.is_held())
+        {
+            islands.join(pair_history.a, pair_history.b);
+        }
+        islands.lists()
+    }
+
+    /// Puts to sleep what has been quiet for long enough together with all that it touches.
+    pub(super) fn fall_asleep(&mut self) {
+        let quiet = |body: &WorldBody| {
+            body.state == BodyState::Moving && !body.member.flying && body.calm.rests()
+        };
+        if !self.bodies.iter().any(|body| quiet(body)) {
+            return;
+        }
+        // rocks that hold each other fall asleep together or not at all: one that still moves would pull on the others
+        for list in self.held_together() {
+            if list.iter().all(|k| quiet(&self.bodies[*k as usize])) {
+                for k in list {
+                    self.bodies[k as usize].state = BodyState::Asleep;
+                }
+            }
+        }
+    }
+
+    /// Takes bonded rocks out of the world that have passed the border of the terrain: each alone ends where its last flight passes the last
+    /// ground, but what is bonded does not fly.
+    pub(super) fn leave_terrain(&mut self) {
+        if self.pair_histories.iter().all(|pair_history| pair_history.bond.is_none()) {
+            return;
+        }
+        for list in self.held_together() {
+            if list.len() > 1 && self.is_past_border(&list) {
+                for k in list {
+                    self.bodies[k as usize].leave(Stop::LeftTerrain);
+                }
+            }
+        }
+    }
+
+    /// Whether rocks that hold each other have no ground below, and the ball round all of them, which flies as their centre of mass does, never
+    /// touches the mesh again.
+    fn is_past_border(&self, list: &[u32]) -> bool {
+        let terrain = self.settings.terrain;
+        let rocks = || list.iter().map(|k| &*self.bodies[*k as usize]);
+        let is_off = |rock: &WorldBody| {
+            let at = rock.member.state.c;
+            rock.state == BodyState::Moving
+                && rock.member.state.is_free()
+                && terrain.ground_below(at.x, at.y).is_none()
+        };
+        if !rocks().all(is_off) {
+            return false;
+        }
+        let mean = |of: fn(&WorldBody) -> Vec3| {
+            let mass = |rock: &WorldBody| rock.member.body.mass;
+            rocks().map(|rock| of(rock) * mass(rock)).sum::<Vec3>() / rocks().map(mass).sum::<f64>()
+        };
+        let start = mean(|rock| rock.member.state.c);
+        let farthest =
+            |rock: &WorldBody| (rock.member.state.c - start).norm() + rock.member.body.radius;
+        let ball = Parabola {
+            start,
+            velocity: mean(|rock| rock.member.state.v),
+            gravity: self.settings.gravity_m_s2,
+            radius: rocks().map(farthest).fold(0.0, f64::max),
+        };
+        let flight = time_of_impact_past(terrain, &ball, f64::INFINITY, &[], &mut 0);
+        matches!(flight, FlightEnd::Leaves(_))
+    }
+}
