@@ -74,6 +74,14 @@ pub struct Matrix {
 }
 
 impl Matrix {
+    /// All levels of the table, rising, each once.
+    pub fn known_levels(&self) -> Vec<u8> {
+        let mut levels = self.levels.concat();
+        levels.sort_unstable();
+        levels.dedup();
+        levels
+    }
+
     /// The highest level of a place, from how often a year rocks come with at least an energy (J), or with any; 0 where they come more
     /// seldom than all periods.
     ///

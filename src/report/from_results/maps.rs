@@ -72,6 +72,7 @@ pub(super) fn of_year(results: &Results) -> Result<Option<YearCells>> {
         Some(matrix) => read(Matrix::FILE)?.map(|cells| LevelCells {
             name: matrix.name.clone(),
             source: matrix.source.clone(),
+            known: matrix.known_levels(),
             cells,
         }),
         None => None,

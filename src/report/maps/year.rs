@@ -30,8 +30,9 @@ pub(in crate::report) fn draw(report: &Report, maps: &CellMap, year: &YearCells)
         exponent = said.maps_by_exponent;
     }
     let mut level = String::new();
-    if let Some(LevelCells { name, source, cells }) = &year.levels {
-        layers.push(of_levels(fill(said.map_level, &[("name", &short(name))]), cells));
+    if let Some(levels) = &year.levels {
+        let LevelCells { name, source, .. } = levels;
+        layers.push(of_levels(fill(said.map_level, &[("name", &short(name))]), levels));
         let name = words.say(name);
         level = fill(said.maps_level, &[("name", &name), ("source", source)]);
     }
@@ -90,27 +91,24 @@ fn of_slopes(title: &str, values: &[(u32, f64)]) -> ClassedMap {
     }
 }
 
-fn of_levels(title: String, values: &[(u32, f64)]) -> ClassedMap {
-    let mut levels: Vec<u8> = values.iter().map(|(_, level)| *level as u8).collect();
-    levels.sort_unstable();
-    levels.dedup();
-    let class = |level: f64| levels.iter().filter(|other| f64::from(**other) < level).count();
-    let shade = |k: usize| colour::sequential(k as f64 / (levels.len().max(2) - 1) as f64);
+/// Levels in colours that are those of the table: light for its lowest, dark for its highest, grey where no level holds.
+fn of_levels(title: String, levels: &LevelCells) -> ClassedMap {
+    let named: Vec<u8> = levels.known.iter().copied().filter(|level| *level > 0).collect();
+    let last = named.len().saturating_sub(1).max(1);
+    let shade = |k: usize| colour::sequential(k as f64 / last as f64);
+    let shades = named.iter().enumerate().map(|(k, level)| (level.to_string(), shade(k)));
+    let class = |value: f64| named.iter().filter(|level| f64::from(**level) <= value).count();
     ClassedMap {
         title,
-        cells: values.iter().map(|&(cell, level)| (cell, class(level))).collect(),
-        classes: levels
-            .iter()
-            .enumerate()
-            .map(|(k, level)| (level.to_string(), shade(k)))
-            .collect(),
+        cells: levels.cells.iter().map(|&(cell, level)| (cell, class(level))).collect(),
+        classes: std::iter::once(("0".to_owned(), PALE)).chain(shades).collect(),
         least_px: 0.0,
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::short;
+    use super::{LevelCells, of_levels, short};
     use crate::report::words::Words;
     use crate::scene::Language;
 

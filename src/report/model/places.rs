@@ -309,7 +309,9 @@ pub struct LevelCells {
     pub name: String,
     /// Where the table was read.
     pub source: String,
-    /// The level of each cell.
+    /// Levels of the table, rising, each once.
+    pub known: Vec<u8>,
+    /// The level of each cell; 0 where rocks come more seldom than the table asks for.
     pub cells: CellValues,
 }
 
