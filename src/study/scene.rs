@@ -361,6 +361,15 @@ impl StudyStatistic {
 }
 
 impl SceneStudy {
+    /// Error of the steps under the finest setting tried, signed.
+    pub(super) fn finest_steps(&self, statistic: &StudyStatistic) -> Interval {
+        let errors =
+            self.rungs.iter().map(|rung| statistic.step_error(rung.relative, rung.step.scheme));
+        errors
+            .min_by(|a, b| a.value.abs().total_cmp(&b.value.abs()))
+            .unwrap_or(statistic.ladder.own_error)
+    }
+
     /// The cheapest of the settings that gives a statistic with a total error of `wanted`, at as many releases as it
     /// needs; `None` where the errors of steps and mesh alone are larger under all of them.
     pub fn cheapest(&self, statistic: &StudyStatistic, wanted: f64) -> Option<Offer> {

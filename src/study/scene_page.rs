@@ -2,6 +2,7 @@
 
 use super::bootstrap::Interval;
 use super::scene::{Rung, SceneStudy, StudyStatistic};
+use crate::math;
 use crate::report::format::{self, significant};
 use crate::solver::{CORNER_WAY, Settings};
 use std::fmt::Write as _;
@@ -18,6 +19,12 @@ pub struct Wish {
 /// Why a percentile of the tables is not to all digits that of the sentences above them.
 const RANKED: &str = "\nA percentile in the tables is the value of one rock, the smallest that so many of them do not exceed; in the sentences \
     above, as in reports, it lies between two neighbouring rocks.\n";
+
+/// Said where neither steps nor mesh have the largest error.
+const SAMPLING: &str = "Sampling dominates";
+
+/// Narrower an interval is not asked to become: an error so far below its interval is not worth a hundred times the releases (–).
+const MOST_NARROWED: f64 = 10.0;
 
 /// Writes the page.
 pub(super) fn page(study: &SceneStudy, wish: Option<Wish>) -> String {
@@ -87,11 +94,11 @@ pub fn sentence(study: &SceneStudy, statistic: &StudyStatistic, wanted: Option<f
     let dominates = dominant(sampling, &steps, mesh_error);
     let wanted = wanted.unwrap_or(0.5 * total);
     let offer = match study.cheapest(statistic, wanted) {
-        None => format!(
-            "no setting tried brings it to {} {unit}: {} must be finer",
-            small(wanted),
-            if statistic.mesh_error().abs() >= wanted { "the mesh" } else { "the steps" }
-        ),
+        None => {
+            let finest = study.finest_steps(statistic);
+            let remedy = remedy((sampling, wanted), &finest, mesh_error, study.releases);
+            format!("no setting tried brings it to {} {unit}: {remedy}", small(wanted))
+        }
         Some(offer) => format!(
             "cheapest for a total of {} {unit}: {} with {} releases, about {} s",
             small(wanted),
@@ -115,12 +122,46 @@ fn dominant(sampling: f64, steps: &Interval, mesh: Option<&Interval>) -> String 
     let size = |error: &Interval| error.value.abs();
     let largest = others.reduce(|one, next| if size(next.1) > size(one.1) { next } else { one });
     match largest.filter(|(_, error)| size(error) > sampling) {
-        None => "Sampling dominates".to_owned(),
+        None => SAMPLING.to_owned(),
         Some((what, error)) if error.is_certain() => format!("The error of {what} dominates"),
         Some((what, _)) => {
             format!("The error of {what} may dominate, more releases would tell it from 0")
         }
     }
+}
+
+/// What to do where no setting tried reaches a wanted error: more releases as long as chance hides what steps and mesh do (the
+/// sampling error and the intervals of both fall with the root of their number), else finer steps or a finer mesh.
+fn remedy(
+    (sampling, wanted): (f64, f64),
+    steps: &Interval,
+    mesh: Option<&Interval>,
+    releases: usize,
+) -> String {
+    let size = |error: &Interval| error.value.abs();
+    let mesh_is_known = mesh.is_none_or(Interval::is_certain);
+    let of_mesh = mesh.filter(|error| mesh_is_known && size(error) >= wanted).map(|_| "the mesh");
+    let steps_are_it = steps.is_certain() && (mesh_is_known || size(steps) >= wanted);
+    let finer = of_mesh.or(steps_are_it.then_some("the steps"));
+    let larger = mesh.filter(|error| size(error) > size(steps));
+    let more = (sampling / wanted).max(told_apart(larger.unwrap_or(steps)));
+    let needed = math::rounded(releases as f64 * more * more, 2);
+    let first = format!("about {} releases are needed first", format::decimal(needed, 0));
+    let suspected = larger.map_or("the steps", |_| "the mesh");
+    match finer {
+        None => format!("{first}, to show whether {suspected} must be finer"),
+        Some(what) if more > 1.0 && dominant(sampling, steps, mesh) == SAMPLING => {
+            format!("{first}, then {what} must be finer")
+        }
+        Some(what) => format!("{what} must be finer"),
+    }
+}
+
+/// By how much the interval of an error must become narrower to leave out 0, at most to 1/[`MOST_NARROWED`] (–).
+fn told_apart(error: &Interval) -> f64 {
+    let Interval { value, low, high } = *error;
+    let towards_0 = if value > 0.0 { value - low } else { high - value };
+    (towards_0 / value.abs().max(f64::MIN_POSITIVE)).clamp(1.0, MOST_NARROWED)
 }
 
 /// An error with its interval.
@@ -290,5 +331,23 @@ mod tests {
         let may = "The error of the steps may dominate, more releases would tell it from 0";
         assert_eq!(said(0.0045, open, None), may);
         assert_eq!(said(0.0045, open, Some(certain)), "The error of the mesh dominates");
+    }
+
+    /// Chance is asked away before a mesh or steps are blamed: a finer mesh is asked for only where its error is told from 0 and is
+    /// alone too large. Half the sampling error takes four times the releases.
+    #[test]
+    fn more_releases_come_before_a_finer_mesh() {
+        let error = |value: f64, low: f64, high: f64| Interval { value, low, high };
+        let none = error(0.001, -0.01, 0.01);
+        let said = |sampling: f64, mesh: Interval| remedy((sampling, 1.0), &none, Some(&mesh), 300);
+        let first = said(2.0, error(1.2, -0.1, 2.0));
+        let whether = "releases are needed first, to show whether the mesh must be finer";
+        assert_eq!(first, format!("about 1\u{2009}200 {whether}"));
+        assert_eq!(said(0.5, error(1.2, 0.8, 1.5)), "the mesh must be finer");
+        let both = said(1.5, error(1.2, 0.8, 1.5));
+        assert!(both.ends_with("releases are needed first, then the mesh must be finer"), "{both}");
+        // sampling is small enough, but the mesh's interval has to become half as wide
+        let told = said(0.5, error(1.0, -1.0, 2.0));
+        assert!(told.starts_with("about 1") && told.contains("whether the mesh"), "{told}");
     }
 }
