@@ -13,7 +13,7 @@ pub(super) const DE: Glossary = [
     ),
     (
         "≥ und ≤",
-        "Die Zahl ist eine Schranke: Blöcke, die das Gelände verließen, sich am Ende ihrer Zeit noch bewegten oder fehlschlugen, wären weitergelaufen. Ihre Auslaufstrecke ist mindestens, ihr Pauschalgefälle höchstens der gesehene Wert; ein Perzentil, das von ihnen abhängt, ist ebenfalls eine Schranke und hat auf dieser Seite kein Intervall. Die Wahrheit liegt dort, wie auch immer die Blöcke weitergelaufen wären.",
+        "Die Zahl ist eine Schranke: Blöcke, die das Gelände verließen, sich am Ende ihrer Zeit noch bewegten oder fehlschlugen, wären weitergelaufen. Ihre Auslaufstrecke ist mindestens, ihr Pauschalgefälle höchstens der gesehene Wert; ein Perzentil, das von ihnen abhängt, ist ebenfalls eine Schranke. Die Wahrheit liegt auf dieser Seite, wie auch immer die Blöcke weitergelaufen wären, und im Intervall; sind es zu viele, hat es auf dieser Seite kein Ende.",
     ),
     (
         "Mit und ohne Schutzbauwerke",
@@ -103,7 +103,7 @@ pub(super) const FR: Glossary = [
     ),
     (
         "≥ et ≤",
-        "Le nombre est une borne\u{a0}: les blocs sortis du terrain, encore en mouvement à la fin de leur temps ou en échec, auraient continué. Leur distance est au moins, leur angle d’énergie au plus ce qui a été vu\u{a0}; un centile qui en dépend est aussi une borne, sans intervalle de ce côté. La vérité s’y trouve, quelle qu’eût été la suite.",
+        "Le nombre est une borne\u{a0}: les blocs sortis du terrain, encore en mouvement à la fin de leur temps ou en échec, auraient continué. Leur distance est au moins, leur angle d’énergie au plus ce qui a été vu\u{a0}; un centile qui en dépend est aussi une borne. La vérité se trouve de ce côté, quelle qu’eût été la suite, et dans l’intervalle\u{a0}; s’ils sont trop nombreux, il n’a pas de fin de ce côté.",
     ),
     (
         "Avec et sans ouvrages",
@@ -190,7 +190,7 @@ pub(super) const IT: Glossary = [
     ),
     (
         "≥ e ≤",
-        "Il numero è un limite: i massi usciti dal terreno, ancora in moto allo scadere del tempo o falliti, avrebbero proseguito. La loro distanza è almeno, il loro angolo al massimo quello visto; un percentile che ne dipende è anch’esso un limite e non ha intervallo da quel lato. La verità sta lì, comunque avessero proseguito.",
+        "Il numero è un limite: i massi usciti dal terreno, ancora in moto allo scadere del tempo o falliti, avrebbero proseguito. La loro distanza è almeno, il loro angolo al massimo quello visto; un percentile che ne dipende è anch’esso un limite. La verità sta da quel lato, comunque avessero proseguito, e nell’intervallo; se sono troppi, esso non ha estremo da quel lato.",
     ),
     (
         "Con e senza barriere",
@@ -280,7 +280,7 @@ pub(super) const EN: Glossary = [
     ),
     (
         "≥ and ≤",
-        "The number is a bound: rocks that left the terrain, were still moving when their time was up, or failed, would have gone on. Their runout is at least, their reach angle at most what was seen; a percentile that they decide is a bound too and has no interval on that side. The truth lies there however the rocks would have gone on.",
+        "The number is a bound: rocks that left the terrain, were still moving when their time was up, or failed, would have gone on. Their runout is at least, their reach angle at most what was seen; a percentile that they decide is a bound too. The truth lies on that side however the rocks would have gone on, and within the interval; where they are too many it has no end on that side.",
     ),
     (
         "With and without barriers",

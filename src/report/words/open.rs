@@ -21,7 +21,7 @@ pub(in crate::report) fn missing(text: &str, rocks: Option<&Proportion>) -> Stri
 
 const EN: OpenWords = OpenWords {
     some_rocks: "{n} of {of} rocks ({share})",
-    censored: "{rocks} {what}: their runout is a lower and their reach angle an upper bound, and so is every percentile that they decide (≥, ≤; no interval on that side). Shares and frequencies at lines that they may still come to are lower bounds too; the upper ends of their intervals count these rocks as arriving. {remedy}",
+    censored: "{rocks} {what}: their runout is a lower and their reach angle an upper bound, and so is every percentile that they decide (≥, ≤; its interval holds however they would have gone on, and has no end on that side where they are too many). Shares and frequencies at lines that they may still come to are lower bounds too; the upper ends of their intervals count these rocks as arriving. {remedy}",
     have_left: "left the terrain",
     remedy_left: "Give terrain that reaches farther if they matter.",
     have_no_time: "were still moving when their time was up",
@@ -37,7 +37,7 @@ const EN: OpenWords = OpenWords {
 
 const DE: OpenWords = OpenWords {
     some_rocks: "{n} von {of} Blöcken ({share})",
-    censored: "{rocks} {what}: ihre Auslaufstrecke ist eine untere und ihr Pauschalgefälle eine obere Schranke, ebenso jedes Perzentil, das von ihnen abhängt (≥, ≤; kein Intervall auf dieser Seite). Auch Anteile und Häufigkeiten an Linien, zu denen sie noch kommen können, sind untere Schranken; die oberen Enden der Intervalle zählen diese Blöcke als angekommen. {remedy}",
+    censored: "{rocks} {what}: ihre Auslaufstrecke ist eine untere und ihr Pauschalgefälle eine obere Schranke, ebenso jedes Perzentil, das von ihnen abhängt (≥, ≤; sein Intervall gilt, wie auch immer sie weitergelaufen wären, und hat auf dieser Seite kein Ende, wenn es zu viele sind). Auch Anteile und Häufigkeiten an Linien, zu denen sie noch kommen können, sind untere Schranken; die oberen Enden der Intervalle zählen diese Blöcke als angekommen. {remedy}",
     have_left: "haben das Gelände verlassen",
     remedy_left: "Weiter reichendes Gelände angeben, falls sie zählen.",
     have_no_time: "bewegten sich noch, als ihre Zeit abgelaufen war",
@@ -53,7 +53,7 @@ const DE: OpenWords = OpenWords {
 
 const FR: OpenWords = OpenWords {
     some_rocks: "{n} blocs sur {of} ({share})",
-    censored: "{rocks} {what}\u{a0}: leur distance est une borne inférieure et leur angle d’énergie une borne supérieure, comme tout centile qui en dépend (≥, ≤\u{a0}; pas d’intervalle de ce côté). Les parts et les fréquences aux lignes qu’ils peuvent encore atteindre sont aussi des bornes inférieures\u{a0}; le haut de leurs intervalles compte ces blocs comme arrivés. {remedy}",
+    censored: "{rocks} {what}\u{a0}: leur distance est une borne inférieure et leur angle d’énergie une borne supérieure, comme tout centile qui en dépend (≥, ≤\u{a0}; son intervalle vaut quelle qu’eût été leur suite, et n’a pas de fin de ce côté s’ils sont trop nombreux). Les parts et les fréquences aux lignes qu’ils peuvent encore atteindre sont aussi des bornes inférieures\u{a0}; le haut de leurs intervalles compte ces blocs comme arrivés. {remedy}",
     have_left: "sont sortis du terrain",
     remedy_left: "Donner un terrain plus étendu s’ils importent.",
     have_no_time: "bougeaient encore à la fin de leur temps",
@@ -69,7 +69,7 @@ const FR: OpenWords = OpenWords {
 
 const IT: OpenWords = OpenWords {
     some_rocks: "{n} massi su {of} ({share})",
-    censored: "{rocks} {what}: la loro distanza è un limite inferiore e il loro angolo un limite superiore, come ogni percentile che ne dipende (≥, ≤; nessun intervallo da quel lato). Anche quote e frequenze alle linee che possono ancora raggiungere sono limiti inferiori; l’estremo superiore dei loro intervalli conta questi massi come arrivati. {remedy}",
+    censored: "{rocks} {what}: la loro distanza è un limite inferiore e il loro angolo un limite superiore, come ogni percentile che ne dipende (≥, ≤; il suo intervallo vale comunque avessero proseguito, e non ha estremo da quel lato se sono troppi). Anche quote e frequenze alle linee che possono ancora raggiungere sono limiti inferiori; l’estremo superiore dei loro intervalli conta questi massi come arrivati. {remedy}",
     have_left: "sono usciti dal terreno",
     remedy_left: "Fornire un terreno più esteso se contano.",
     have_no_time: "erano ancora in moto allo scadere del tempo",
@@ -82,3 +82,30 @@ const IT: OpenWords = OpenWords {
     median: "La mediana è al più {median}°: i massi che avrebbero proseguito lasciano aperto di quanto sia inferiore.",
     no_sampling: "nessun errore di campionamento: solo un limite, {n} massi su {of} avrebbero proseguito",
 };
+
+#[cfg(test)]
+mod tests {
+    use super::super::Words;
+    use crate::scene::Language;
+
+    /// A bound has an interval where few rocks would have gone on: no text says that it has none.
+    #[test]
+    fn a_bound_may_have_an_interval() {
+        let denied = [
+            "no interval",
+            "kein Intervall",
+            "d’intervalle",
+            "sans intervalle",
+            "nessun intervallo",
+        ];
+        for language in Language::ALL {
+            let words = Words::of(language);
+            let bound = words.glossary.iter().find(|(term, _)| term.starts_with('≥'));
+            let texts = [words.open().censored, bound.map_or("", |(_, meaning)| meaning)];
+            for text in texts {
+                assert!(text.to_lowercase().contains("interval"), "{text}");
+                assert!(!denied.iter().any(|no| text.contains(no)), "{text}");
+            }
+        }
+    }
+}
