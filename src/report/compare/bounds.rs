@@ -35,6 +35,9 @@ impl RunBound {
         measure: ComparedQuantity,
         p: Option<f64>,
     ) -> Self {
+        if let Some(rocks) = p.and_then(|p| lacking(&of.sample(values, 1.0), p)) {
+            return Self { is: Is::Lacking(rocks), farther: [0.0; 2] };
+        }
         let side = match measure {
             ComparedQuantity::Whole(quantity) => Quantity::open(quantity),
             _ => None,
@@ -50,6 +53,12 @@ impl RunBound {
         let farther = if side == Open::Above { [0.0, farther] } else { [farther, 0.0] };
         Self { is: Is::on_side(is_bound, Some(side)), farther }
     }
+}
+
+/// How many rocks a percentile `p` lacks before anything bounds it, as in the report of the run; none where it has enough.
+fn lacking(sample: &Sample, p: f64) -> Option<usize> {
+    let needs = sample.percentile(p)?.needs;
+    needs.checked_sub(sample.values().len()).filter(|rocks| *rocks > 0)
 }
 
 /// A bound, and nothing says how far the truth may lie from it.

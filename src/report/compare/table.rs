@@ -6,7 +6,7 @@ use crate::hazard::{Difference, Reading, Values};
 use crate::math;
 use crate::report::bound::Is;
 use crate::report::format::{self, sign};
-use crate::report::words::Words;
+use crate::report::words::{Words, fill};
 use crate::scene::Language;
 use std::fmt::Write as _;
 
@@ -40,6 +40,18 @@ pub(super) struct ComparedStatistic {
 }
 
 impl ComparedStatistic {
+    /// Without the numbers that a run has too few rocks for, as its report has none, and without a difference from them.
+    fn without_lacking(self) -> Self {
+        let is_lacking = self.bounds.map(|is| matches!(is, Is::Lacking(_)));
+        if is_lacking == [false; 2] {
+            return self;
+        }
+        let Difference { a, b, .. } = self.difference;
+        let [a, b] = [(a, is_lacking[0]), (b, is_lacking[1])]
+            .map(|(value, is_lacking)| if is_lacking { f64::NAN } else { value });
+        Self { difference: Difference { a, b, value: f64::NAN, interval: None }, ..self }
+    }
+
     /// Its name in another language: what, and which statistic of it.
     pub(super) fn name_in(&self, words: &Words) -> String {
         match self.name.rsplit_once(", ") {
@@ -79,7 +91,8 @@ pub(super) fn group([a, b]: &[Population; 2], paired: bool, same_run: bool) -> G
         let all = of_measure(*measure, [(a, one), (b, other)], paired).into_iter();
         rows.extend(all.map(|(row, bounds)| {
             let difference = settled(row.difference, bounds);
-            ComparedStatistic { difference, bounds: bounds.map(|bound| bound.is), ..row }
+            let bounds = bounds.map(|bound| bound.is);
+            ComparedStatistic { difference, bounds, ..row }.without_lacking()
         }));
     }
     // what neither run has seen is no news
@@ -196,10 +209,19 @@ pub(super) fn headline(groups: &[Group]) -> Vec<String> {
     lines
 }
 
+/// A dash, and how many rocks a run lacks for a number.
+fn lacking(rocks: usize, words: &Words) -> String {
+    let text = format::counted(rocks, words.more_rock_one, words.more_rock_many);
+    format!("{} ({})", format::NO_NUMBER, fill(text, &[("n", &rocks)]))
+}
+
 /// Both values, the difference with its sign, and its interval; bounds with theirs.
 pub(super) fn in_words(row: &ComparedStatistic, words: &Words) -> [String; 4] {
     let Difference { a, b, value, interval } = row.difference;
-    let number = |v: f64, is: Is| sign(is).to_owned() + &format::significant(v, 4);
+    let number = |v: f64, is: Is| match is {
+        Is::Lacking(rocks) => lacking(rocks, words),
+        is => sign(is).to_owned() + &format::significant(v, 4),
+    };
     // a difference is written as finely as its interval allows: its last digit is at most a twentieth of it
     let ends = interval.map(|(low, high)| [low, high]);
     let ends = ends.map(|ends| ends.map(|end| if end.is_finite() { end } else { value }));
