@@ -23,6 +23,10 @@ use crate::math;
 use plotters::style::RGBColor;
 
 const TOP_PX: f64 = 24.0;
+/// Height of one line of a title (px).
+const TITLE_LINE_PX: f64 = 14.0;
+/// Least gap between the titles of two maps (px).
+const TITLE_GAP_PX: f64 = 6.0;
 /// Height of one line of a key (px).
 const KEY_PX: f64 = 16.0;
 /// Gap between the key of the colours and that of the numbers (px).
@@ -213,10 +217,12 @@ fn draw_layers(
     paint(name, (WIDTH_PX, bottom + room), title, |canvas| {
         marks.draw(canvas, (left, bottom + KEY_GAP_PX));
         for (k, (panel, layer)) in panels.iter().zip(layers).enumerate() {
-            let at = (panel.frame.left, panel.frame.top - 9.0);
-            let title = short_title(&layer.title, panel.frame.left);
-            canvas.text(&Label::new(title, at).bold().sized(NORMAL));
             let (x, y) = corner(panel);
+            let title = title_lines(&layer.title, x);
+            for (line, words) in title.iter().rev().enumerate() {
+                let at = (x, y - 9.0 - TITLE_LINE_PX * line as f64);
+                canvas.text(&Label::new(words.clone(), at).bold().sized(NORMAL));
+            }
             let names = names.moved((x - left, y - first_top));
             names.keep(canvas);
             canvas.clip(&format!("part{k}"), &panel.frame, || {
@@ -234,17 +240,27 @@ fn draw_layers(
                 panel.nothing(canvas, report.words().no_rock);
             }
             panel.axes(canvas);
-            key(canvas, panel, layer);
         }
     })
 }
 
-/// A title that ends where its half of the sheet does; the caption has names in full.
-fn short_title(title: &str, left_px: f64) -> String {
+/// A title within its half of the sheet, on a second line where the first has no room for its end, which holds the unit.
+fn title_lines(title: &str, left_px: f64) -> Vec<String> {
     let half = 0.5 * WIDTH_PX;
-    let room = half - left_px.rem_euclid(half);
-    let bold = bold_width(title, NORMAL) / text_width(title, NORMAL).max(1.0);
-    fitted(title, NORMAL, room / bold.max(1.0))
+    let room = half - left_px.rem_euclid(half) - TITLE_GAP_PX;
+    let has_room = |words: &str| bold_width(words, NORMAL) <= room;
+    if has_room(title) {
+        return vec![title.to_owned()];
+    }
+    let breaks = title.rmatch_indices(' ').map(|(at, _)| title.split_at(at));
+    let (first, rest) =
+        breaks.into_iter().find(|(first, _)| has_room(first)).unwrap_or((title, ""));
+    let wider = bold_width(title, NORMAL) / text_width(title, NORMAL).max(1.0);
+    [first, rest.trim_start()]
+        .into_iter()
+        .filter(|words| !words.is_empty())
+        .map(|words| fitted(words, NORMAL, room / wider.max(1.0)))
+        .collect()
 }
 
 /// Equal frames over all cells reached, two beside each other, at equal scale; and the height of the sheet.
@@ -256,6 +272,9 @@ fn panels(report: &Report, maps: &CellMap, layers: &[ClassedMap]) -> (Vec<Panel>
     for row in layers.chunks(2) {
         for beside in [0.0, 0.5 * WIDTH_PX].into_iter().take(row.len()) {
             let left = beside + first.frame.left;
+        let title = |layer: &ClassedMap| title_lines(&layer.title, first.frame.left).len();
+        let lines = row.iter().map(title).max().unwrap_or(1);
+        top += TITLE_LINE_PX * (lines - 1) as f64;
             let frame = PaperFrame { left, top, right: left + width, bottom: top + height };
             panels.push(Panel::new(frame, first.x.clone(), first.y.clone()));
         }

@@ -108,9 +108,41 @@ fn of_levels(title: String, levels: &LevelCells) -> ClassedMap {
 
 #[cfg(test)]
 mod tests {
-    use super::{LevelCells, of_levels, short};
+    use super::super::title_lines;
+    use super::{LevelCells, fill, of_levels, short};
     use crate::report::words::Words;
     use crate::scene::Language;
+
+    /// Two maps by one table have one key, whatever levels are on them: the same colour is the same level.
+    #[test]
+    fn a_level_has_the_colour_of_its_place_in_the_table() {
+        let map = |levels: &[u8]| {
+            let cells = (0..).zip(levels.iter().map(|level| f64::from(*level))).collect();
+            let known = vec![1, 2, 3];
+            of_levels(String::new(), &LevelCells { known, cells, ..LevelCells::default() })
+        };
+        let (often, seldom) = (map(&[3, 2, 3]), map(&[1, 0]));
+        assert_eq!(often.classes, seldom.classes);
+        let key: Vec<&str> = often.classes.iter().map(|(name, _)| name.as_str()).collect();
+        assert_eq!(key, ["0", "1", "2", "3"]);
+        let drawn = |map: &super::ClassedMap| -> Vec<usize> {
+            map.cells.iter().map(|(_, class)| *class).collect()
+        };
+        assert_eq!((drawn(&often), drawn(&seldom)), (vec![3, 2, 3], vec![1, 0]));
+    }
+
+    /// No map of a year loses the end of its title, which holds the unit: a long one takes two lines.
+    #[test]
+    fn a_title_keeps_its_end() {
+        for language in Language::ALL {
+            let said = Words::of(language).year();
+            let period = fill(said.map_period, &[("energy", &"1\u{2009}000")]);
+            for title in [period.as_str(), said.map_by_exponent] {
+                let lines = title_lines(title, 70.0);
+                assert_eq!(lines.join(" "), title);
+            }
+        }
+    }
 
     /// The head of a map has what stands before the colon of a long name; a name without one is cut.
     #[test]
