@@ -15,6 +15,8 @@ use std::fmt::Display;
 const PLOT_PX: f64 = 150.0;
 const TOP_PX: f64 = 44.0;
 const GAP_PX: f64 = 30.0;
+/// The smallest error over the largest that still has a place on an axis: one that is 0 by chance has none (–).
+const SMALLEST: f64 = 1e-6;
 /// The percentile that the figure shows (per cent).
 const SHOWN: u8 = 95;
 
@@ -82,22 +84,29 @@ fn panel(
     (fast, slow): (f64, f64),
     is_last: bool,
 ) -> Panel {
-    let errors = || points(study, statistic).into_iter().map(|point| point.1);
-    let least = errors().filter(|error| *error > 0.0).fold(f64::INFINITY, f64::min);
-    let most = errors().fold(least, f64::max);
+    let errors: Vec<f64> = points(study, statistic).into_iter().map(|point| point.1).collect();
+    let (least, most) = reach(&errors);
     let subject = &study.subjects[statistic.subject];
     let words = Words::of(study.language);
     let (name, unit) = (name(subject, words), subject.unit);
     let found: [(&str, &dyn Display); 3] =
         [("percent", &SHOWN), ("quantity", &name), ("unit", &unit)];
     let title = fill(words.error_axis, &found);
-    let y = Axis::log(least.max(1e-3 * most), most, title);
+    let y = Axis::log(least, most, title);
     let top = TOP_PX + row as f64 * (PLOT_PX + GAP_PX);
     let title = if is_last { words.error_time } else { "" };
     let frame = PaperFrame { left: 0.0, top, right: WIDTH_PX - 16.0, bottom: top + PLOT_PX };
     let mut panel = Panel::new(frame, Axis::log(fast, slow, title), y);
     panel.frame.left = panel.room_left();
     panel
+}
+
+/// The least and the largest error that an axis holds.
+fn reach(errors: &[f64]) -> (f64, f64) {
+    let above_0 = errors.iter().copied().filter(|error| *error > 0.0);
+    let least = above_0.fold(f64::INFINITY, f64::min);
+    let most = errors.iter().copied().fold(least, f64::max);
+    (least.max(SMALLEST * most), most)
 }
 
 /// Everything that must find room: run time (s) and error.
@@ -152,6 +161,7 @@ fn draw_statistic(
     study: &SceneStudy,
     statistic: &StudyStatistic,
 ) {
+    let has_place = |error: f64| error >= panel.y.low * (1.0 - 1e-9);
     let inside = |error: f64| error.max(panel.y.low);
     let sampled = sampling(study, statistic);
     panel.line(canvas, &sampled, Pen::full(BLUE, 1.4));
@@ -161,20 +171,25 @@ fn draw_statistic(
     let steps = steps(study, statistic);
     let meshes = meshes(study, statistic);
     for (shape, (bars, ink)) in [(&steps, VERMILLION), (&meshes, GREEN)].into_iter().enumerate() {
-        let middle: Vec<(f64, f64)> =
-            bars.iter().map(|&(t, error, _)| (t, inside(error))).collect();
-        panel.line(canvas, &middle, Pen::full(ink, 1.4));
+        // what has no place on the axis has no mark: its bar comes up from the frame
+        for middle in bars.split(|(_, error, _)| !has_place(*error)) {
+            let middle: Vec<(f64, f64)> = middle.iter().map(|&(t, error, _)| (t, error)).collect();
+            panel.line(canvas, &middle, Pen::full(ink, 1.4));
+        }
         for &(t, error, most) in bars {
             let (spot, end) = (panel.at(t, inside(error)), panel.at(t, inside(most)));
             canvas.line(&[spot, end], Pen::full(ink, 0.8));
             canvas.line(&[(end.0 - 3.0, end.1), (end.0 + 3.0, end.1)], Pen::full(ink, 0.8));
-            canvas.mark(1 + shape, spot, 2.4, ink);
+            if has_place(error) {
+                canvas.mark(1 + shape, spot, 2.4, ink);
+            }
         }
     }
-    let own_steps = panel.at(steps[study.own].0, inside(steps[study.own].1));
-    let own_mesh = meshes.last().map(|&(t, error, _)| panel.at(t, inside(error)));
-    let own_sample = sampled.last().map(|&(t, error)| panel.at(t, error));
-    for (x, y) in own_sample.into_iter().chain(own_mesh).chain([own_steps]) {
+    let (own_steps, own_mesh) = (steps.get(study.own), meshes.last());
+    let own = own_mesh.into_iter().chain(own_steps).map(|&(t, error, _)| (t, error));
+    let own = sampled.last().copied().into_iter().chain(own);
+    for (t, error) in own.filter(|(_, error)| has_place(*error)) {
+        let (x, y) = panel.at(t, error);
         let ring = PaperFrame { left: x - 5.0, right: x + 5.0, top: y - 5.0, bottom: y + 5.0 };
         canvas.outline(&ring, Pen::full(INK, 1.0));
     }
@@ -204,5 +219,17 @@ fn key(canvas: &Canvas<'_>, first: Option<&Panel>, with_meshes: bool, words: &Wo
             canvas.text(&Label::new(said, (x + 23.0, 30.0)));
             x += 23.0 + text_width(said, SMALL) + 16.0;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::reach;
+
+    /// A small error stands where it was measured, and not at the end of an axis that is too short for it; only one of next to 0 has no place.
+    #[test]
+    fn an_axis_reaches_down_to_the_smallest_error() {
+        assert_eq!(reach(&[2.0, 4e-6, 0.0, 0.5]), (4e-6, 2.0));
+        assert_eq!(reach(&[2.0, 1e-30]), (2e-6, 2.0));
     }
 }
