@@ -234,7 +234,12 @@ fn a_file_cut_off_anywhere_is_survived() {
         &height,
     )]);
     for length in 0..bytes.len() {
-        assert!(read(bytes[..length].to_vec()).is_err(), "{length}");
+        let said = read(bytes[..length].to_vec()).unwrap_err().to_string();
+        // a file of some length is not to be converted: its heights are lost
+        assert!(
+            length < 16 || said.contains("cut off: copy or download it again"),
+            "{length}: {said}"
+        );
     }
     for at in 0..bytes.len() {
         let mut wrong = bytes.clone();

@@ -13,7 +13,7 @@ use crate::error::{Error, Result};
 use crate::terrain::grid::{self, Grid};
 use lzw::PackedParts;
 use place::ImagePlacement;
-use std::io::{BufReader, Read, Seek};
+use std::io::{BufReader, ErrorKind, Read, Seek};
 use std::path::Path;
 use tiff::decoder::{Decoder, DecodingResult, Limits};
 use tiff::tags::Tag;
@@ -247,6 +247,10 @@ fn translate(file: &Path) -> String {
 }
 
 fn damaged(file: &Path, why: &TiffError) -> Error {
+    if matches!(why, TiffError::IoError(why) if why.kind() == ErrorKind::UnexpectedEof) {
+        let remedy = "the file is cut off: copy or download it again";
+        return Error::input(file, "TIFF", "found its end before all of its heights", remedy);
+    }
     let remedy = format!(
         "write it again as deflated or plain 32-bit floats: {} -ot Float32 -co COMPRESS=DEFLATE",
         translate(file)
