@@ -28,7 +28,8 @@ pub fn parse(bytes: &[u8], file: &Path) -> Result<GisLayer> {
     let mut features = Vec::new();
     for (number, json) in (1..).zip(list) {
         let wrong = |found: String| Error::input(file, format!("feature {number}"), found, WRITE);
-        if json["geometry"].is_null() {
+        // RFC 7946: what has no coordinates may be taken as null
+        if json["geometry"].is_null() || has_no_place(&json["geometry"]["coordinates"]) {
             return Err(without_shape(file, format!("feature {number}")));
         }
         let shape = shape(&json["geometry"]).map_err(wrong)?;
@@ -80,6 +81,11 @@ fn shape(geometry: &Json) -> std::result::Result<Geometry, String> {
         }
         _ => Err(format!("found a geometry of type {}", geometry["type"])),
     }
+}
+
+/// Whether coordinates are lists without any number.
+fn has_no_place(coordinates: &Json) -> bool {
+    coordinates.as_array().is_some_and(|list| list.iter().all(has_no_place))
 }
 
 fn entries(json: &Json) -> std::result::Result<&Vec<Json>, String> {

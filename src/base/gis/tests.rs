@@ -82,6 +82,8 @@ fn a_refused_drawing_names_the_feature() {
             two("{\"type\":\"Feature\",\"geometry\":null}".to_owned()),
             "feature 2: found no geometry; draw it",
         ),
+        (two(feature("Polygon", "[]")), "feature 2: found no geometry; draw it"),
+        (two(feature("MultiLineString", "[[]]")), "feature 2: found no geometry; draw it"),
         ("{\"type\":\"Topology\"}".to_owned(), "found \"Topology\""),
         ("[1,\n2".to_owned(), "line 2: found no JSON"),
     ] {
