@@ -11,6 +11,8 @@ use std::collections::BTreeMap;
 const CLIFF_COSINE: f64 = std::f64::consts::FRAC_1_SQRT_2;
 /// Where less than this share of the area is so steep, the steepest part of this share is taken (–).
 const STEEPEST_SHARE: f64 = 0.02;
+/// A face that is no cliff has at least this share of the area (–).
+const LEAST_SHARE: f64 = 0.5 * STEEPEST_SHARE;
 /// Cosines that differ by less are those of one slope (–).
 const COSINE_ROUNDING: f64 = 1e-9;
 /// Cells along the longer side of the terrain.
@@ -55,14 +57,38 @@ struct SteepCell {
 }
 
 /// The steep face with the most area times height above the lowest ground; none of a level terrain.
+///
+/// Where no face is larger than a cell, or where none is a cliff and all are small, as the steepest triangles of a rough slope lie apart,
+/// more of it counts as steep.
 pub fn main_cliff(terrain: &Terrain) -> Option<Cliff> {
     let faces = faces(terrain);
-    let cosine = steep_from(&faces)?;
+    let all_m2 = faces.iter().map(|face| face.area_m2).sum::<f64>();
     let (low, high) = terrain.index.bounds();
-    let mean_m2 = faces.iter().map(|face| face.area_m2).sum::<f64>() / faces.len() as f64;
     // a cell holds some triangles even of a coarse mesh
+    let mean_m2 = all_m2 / faces.len() as f64;
     let cell_m = ((high - low).xy().max() / CELLS).max(2.0 * (2.0 * mean_m2).sqrt());
-    let cells = gathered(&faces, cosine, cell_m);
+    let is_large = |cliff: &Cliff| {
+        let least_m2 = if cliff.cosine > CLIFF_COSINE { LEAST_SHARE * all_m2 } else { 0.0 };
+        cliff.area_m2 >= least_m2.max(cell_m * cell_m)
+    };
+    let shares = std::iter::successors(Some(STEEPEST_SHARE), |share| Some(2.0 * share));
+    let shares = shares.take_while(|share| *share < 2.0);
+    let found = shares.filter_map(|share| steepest(terrain, (&faces, cell_m), share));
+    let mut largest: Option<Cliff> = None;
+    for cliff in found {
+        if is_large(&cliff) {
+            return Some(cliff);
+        }
+        largest = largest.filter(|known| known.area_m2 >= cliff.area_m2).or(Some(cliff));
+    }
+    largest
+}
+
+/// The steep face worth most where at least such a share of the area counts as steep.
+fn steepest(terrain: &Terrain, (faces, cell_m): (&[SlopeFace], f64), share: f64) -> Option<Cliff> {
+    let cosine = steep_from(faces, share)?;
+    let (low, _) = terrain.index.bounds();
+    let cells = gathered(faces, cosine, cell_m);
     let worth = |face: &Vec<&SteepCell>| -> f64 {
         face.iter().map(|cell| cell.centre.z - cell.steep_m2 * low.z).sum()
     };
@@ -99,12 +125,12 @@ fn faces(terrain: &Terrain) -> Vec<SlopeFace> {
         .collect()
 }
 
-/// Cosine of the slope from which on ground counts as steep; none where all of it is level.
-fn steep_from(faces: &[SlopeFace]) -> Option<f64> {
+/// Cosine of the slope from which on ground counts as steep, a share of the area or more; none where all of it is level.
+fn steep_from(faces: &[SlopeFace], share: f64) -> Option<f64> {
     let mut by_slope: Vec<(f64, f64)> =
         faces.iter().map(|face| (face.normal.z, face.area_m2)).collect();
     by_slope.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let wanted = STEEPEST_SHARE * by_slope.iter().map(|(_, area)| area).sum::<f64>();
+    let wanted = share.min(1.0) * by_slope.iter().map(|(_, area)| area).sum::<f64>();
     let mut sum = 0.0;
     let at_share = by_slope.iter().find(|(_, area)| {
         sum += area;
@@ -197,6 +223,7 @@ fn along_strike(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math;
     use crate::terrain::Sheet;
     use crate::terrain::stl::Soup;
     use crate::terrain::weld::{Piece, Up, weld};
@@ -250,5 +277,21 @@ mod tests {
         // an even slope is steep all over, whatever rounding makes of its triangles
         let even = main_cliff(&terrain(|x, y| -0.3 * x - 0.27 * y)).unwrap();
         assert!(even.area_m2 > 1500.0, "{even:?}");
+    }
+
+    /// On a rough slope the steepest triangles lie apart: none of them alone is a face, and more of the slope counts as steep.
+    #[test]
+    fn a_rough_slope_has_a_face_too() {
+        let rough =
+            |x: f64, y: f64| 0.05 * (math::sin(x * 12.9898 + y * 78.233) * 43_758.545).fract();
+        for slope in [0.3, 0.85, 1.0] {
+            let cliff = main_cliff(&terrain(|x, y| -slope * y + rough(x, y))).unwrap();
+            assert!(cliff.area_m2 > 16.0, "{slope}: {} m²", cliff.area_m2);
+            assert!(
+                cliff.heights_m[1] > cliff.heights_m[0] + 1.0,
+                "{slope}: {:?}",
+                cliff.heights_m
+            );
+        }
     }
 }
