@@ -7,7 +7,7 @@ use super::figure::{Drawing, WIDTH_PX};
 use super::format;
 use super::model::{ProfileStretch, ProfileView, Report, ReportStretch};
 use super::panel::{FOOT_PX, Panel, align};
-use super::side_view::{more_above_px, name_marks};
+use super::side_view::{more_above_px, name_marks, unnamed, without_room};
 use super::svg::path::PaperFrame;
 use super::words::{Words, fill};
 
@@ -50,6 +50,7 @@ pub(super) fn draw(report: &Report, view: &ProfileView) -> Drawing {
             ("needs", &NEEDS),
         ],
     );
+    let caption = caption + &unnamed(&without_room(&panels[0], &view.marks), words);
     Drawing { svg, caption }
 }
 

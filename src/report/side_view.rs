@@ -11,10 +11,10 @@ use super::format;
 use super::model::{MapMark, Path, Report};
 use super::panel::{FOOT_PX, Panel, with_room};
 use super::svg::path::{PaperFrame, Spot};
-use super::words::fill;
+use super::words::{Words, fill};
 use crate::math;
 use along::FallLine;
-pub(super) use names::{more_above_px, name_marks};
+pub(super) use names::{more_above_px, name_marks, without_room};
 use plotters::style::RGBColor;
 
 /// Room above the profile for the names of lines and barriers (px).
@@ -39,7 +39,15 @@ pub(super) fn draw(report: &Report) -> Drawing {
         view.profile(canvas, report, &line);
         name_marks(canvas, std::slice::from_ref(&view.ground), &view.marks);
     });
-    Drawing { svg, caption: caption(report, &line) }
+    let unnamed = unnamed(&without_room(&view.ground, &view.marks), report.words());
+    Drawing { svg, caption: caption(report, &line) + &unnamed }
+}
+
+/// Which lines stand in a profile without their names; nothing where all have theirs.
+pub(super) fn unnamed(names: &[&str], words: &Words) -> String {
+    let names: Vec<String> = names.iter().map(|name| words.quoted(name)).collect();
+    let said = fill(words.along().unnamed, &[("names", &names.join(", "))]);
+    if names.is_empty() { String::new() } else { said }
 }
 
 fn caption(report: &Report, line: &FallLine) -> String {

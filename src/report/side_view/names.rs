@@ -179,6 +179,20 @@ fn above(panel: &Panel, marks: &[(f64, MapMark)]) -> NamesAbove {
     NamesAbove::of(&panel.frame, &named)
 }
 
+/// The names of the marks in a panel that find no room above it, by rising distance.
+pub(in crate::report) fn without_room<'a>(
+    panel: &Panel,
+    marks: &'a [(f64, MapMark)],
+) -> Vec<&'a str> {
+    let is_inside =
+        |at: f64| (panel.frame.left..=panel.frame.right).contains(&panel.at(at, panel.y.low).0);
+    let named = above(panel, marks).0.into_iter().zip(marks);
+    named
+        .filter(|(name, (at, _))| name.is_none() && is_inside(*at))
+        .map(|(_, (_, mark))| mark.name.as_str())
+        .collect()
+}
+
 /// Room that the names above a panel need beside that of one row (px).
 pub(in crate::report) fn more_above_px(panel: &Panel, marks: &[(f64, MapMark)]) -> f64 {
     above(panel, marks).more_px()
@@ -232,5 +246,21 @@ mod tests {
         let found = names(&[(200.0, "net, west"), (200.0, "net, east")]);
         assert_eq!(found.len(), 2);
         assert_ne!((found[0].row, found[0].left), (found[1].row, found[1].left));
+    }
+
+    /// Twenty lines at one place do not find room for all their names: those without are told by name.
+    #[test]
+    fn names_without_room_are_known() {
+        let axis = |high: f64| crate::report::axis::Axis::linear(0.0, high, "");
+        let panel = Panel::new(FRAME, axis(610.0), axis(1.0));
+        let mark =
+            |k: u32| MapMark { name: format!("line {k}"), corners_m: Vec::new(), barrier: None };
+        let marks: Vec<(f64, MapMark)> =
+            (0..20).map(|k| (400.0 + 3.0 * f64::from(k), mark(k))).collect();
+        let named = above(&panel, &marks).0.iter().flatten().count();
+        let without = without_room(&panel, &marks);
+        assert!(!without.is_empty() && named + without.len() == 20, "{without:?}");
+        // beside the frame there is nothing to name
+        assert!(without_room(&panel, &[(900.0, mark(0))]).is_empty());
     }
 }
