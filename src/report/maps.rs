@@ -237,7 +237,9 @@ fn draw_layers(
                 names.write(canvas);
             });
             if layer.cells.is_empty() {
-                panel.nothing(canvas, report.words().no_rock);
+                site::beside_marks(canvas, panel, report, report.words().no_rock);
+            } else {
+                key(canvas, panel, layer);
             }
             panel.axes(canvas);
         }
@@ -270,11 +272,11 @@ fn panels(report: &Report, maps: &CellMap, layers: &[ClassedMap]) -> (Vec<Panel>
     let mut panels = Vec::new();
     let mut top = TOP_PX;
     for row in layers.chunks(2) {
-        for beside in [0.0, 0.5 * WIDTH_PX].into_iter().take(row.len()) {
-            let left = beside + first.frame.left;
         let title = |layer: &ClassedMap| title_lines(&layer.title, first.frame.left).len();
         let lines = row.iter().map(title).max().unwrap_or(1);
         top += TITLE_LINE_PX * (lines - 1) as f64;
+        for beside in [0.0, 0.5 * WIDTH_PX].into_iter().take(row.len()) {
+            let left = beside + first.frame.left;
             let frame = PaperFrame { left, top, right: left + width, bottom: top + height };
             panels.push(Panel::new(frame, first.x.clone(), first.y.clone()));
         }

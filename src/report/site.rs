@@ -2,12 +2,12 @@
 
 pub(super) mod names;
 
-use super::canvas::{Canvas, Pen, SMALL, fitted_among, text_width};
-use super::colour::{GREEN, INK, WHITE};
+use super::canvas::{Canvas, Label, Pen, SMALL, fitted_among, text_width};
+use super::colour::{GREEN, GREY, INK, WHITE};
 use super::format;
 use super::model::{MapMark, Report, ReportQuantity};
 use super::panel::Panel;
-use super::svg::path::{Spot, clipped};
+use super::svg::path::{PaperFrame, Spot, clipped};
 use crate::math;
 use crate::output::ReleaseZone;
 
@@ -98,6 +98,37 @@ pub(super) fn marks(canvas: &Canvas<'_>, panel: &Panel, report: &Report) {
     }
 }
 
+/// Grey words in a frame that has nothing to show, where no name stands and neither line nor barrier runs, as near the middle as can be.
+pub(super) fn beside_marks(canvas: &Canvas<'_>, panel: &Panel, report: &Report, words: &str) {
+    let lines: Vec<Vec<Spot>> =
+        report.marks.iter().flat_map(|mark| on_paper(panel, mark)).collect();
+    let label = |at: Spot| Label::new(words, at).centred().coloured(GREY);
+    let is_free = |at: &Spot| {
+        let room = label(*at).frame();
+        panel.frame.contains(&room) && canvas.is_free(&room) && is_clear(&room, &lines)
+    };
+    let places = places(&panel.frame);
+    let at = places.iter().copied().find(is_free).unwrap_or(places[0]);
+    canvas.text_on_rim(&label(at));
+}
+
+/// Shares of a frame's size from its middle, by which words are moved out of the way.
+const ASIDE: [f64; 7] = [0.0, 0.15, -0.15, 0.25, -0.25, 0.35, -0.35];
+
+/// Places in a frame, first its middle, then across it and up and down.
+fn places(frame: &PaperFrame) -> Vec<Spot> {
+    let middle = (0.5 * (frame.left + frame.right), 0.5 * (frame.top + frame.bottom));
+    let at =
+        |up: f64, across: f64| (middle.0 + across * frame.width(), middle.1 + up * frame.height());
+    ASIDE.iter().flat_map(|&up| ASIDE.map(|across| at(up, across))).collect()
+}
+
+/// Whether none of some lines runs through a room or close by.
+fn is_clear(room: &PaperFrame, lines: &[Vec<Spot>]) -> bool {
+    let near = room.grown(TOOTH_PX.1 + 2.0);
+    lines.iter().all(|line| clipped(line, &near).is_empty())
+}
+
 /// The parts of a mark inside the frame.
 fn on_paper(panel: &Panel, mark: &MapMark) -> Vec<Vec<Spot>> {
     let spots: Vec<Spot> = mark.corners_m.iter().map(|&[x, y]| panel.at(x, y)).collect();
@@ -160,5 +191,27 @@ pub(super) fn zone_symbol(canvas: &Canvas<'_>, at: Spot, zone: &ReleaseZone) {
             canvas.disc(at, 1.6, WHITE);
         }
         _ => canvas.line(&[(at.0 - 7.0, at.1), (at.0 + 7.0, at.1)], ZONE),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Words of 40 px find a place beside a line through the middle of a frame, and not on it.
+    #[test]
+    fn words_keep_off_a_line_through_the_middle() {
+        let frame = PaperFrame { left: 100.0, top: 20.0, right: 340.0, bottom: 170.0 };
+        let line = vec![vec![(220.0, 20.0), (220.0, 170.0)]];
+        let room = |(x, y): Spot| PaperFrame {
+            left: x - 20.0,
+            top: y - 6.0,
+            right: x + 20.0,
+            bottom: y + 6.0,
+        };
+        let found: Vec<Spot> =
+            places(&frame).into_iter().filter(|at| is_clear(&room(*at), &line)).collect();
+        assert_eq!(found.first(), Some(&(256.0, 95.0)));
+        assert!(!is_clear(&room((225.0, 95.0)), &line) && is_clear(&room((225.0, 95.0)), &[]));
     }
 }
