@@ -103,12 +103,19 @@ fn draw_curve(
     (fill, opacity): (plotters::style::RGBColor, f64),
     pen: Pen,
 ) {
-    let shown = || curve.iter().filter(|point| point.x > 0.0);
+    let shown = from_the_left(curve, panel.x.low * size);
     let band: Vec<(f64, f64, f64)> =
-        shown().map(|point| (point.x / size, point.y.low, point.y.high)).collect();
+        shown.iter().map(|point| (point.x / size, point.y.low, point.y.high)).collect();
     panel.band(canvas, &band, fill, opacity);
-    let line: Vec<(f64, f64)> = shown().map(|point| (point.x / size, point.y.value)).collect();
+    let line: Vec<(f64, f64)> = shown.iter().map(|point| (point.x / size, point.y.value)).collect();
     panel.line(canvas, &line, pen);
+}
+
+/// The curve from an energy on (J): below the least energy of all rocks its frequency is that of all, also where they are one.
+fn from_the_left(curve: &[BandPoint], left_j: f64) -> Vec<BandPoint> {
+    let shown = || curve.iter().filter(|point| point.x > 0.0).copied();
+    let first = shown().next().filter(|first| first.x > left_j);
+    first.map(|first| BandPoint { x: left_j, ..first }).into_iter().chain(shown()).collect()
 }
 
 fn key(canvas: &Canvas<'_>, panel: &Panel, view: &AnnualView, words: &Words) {
@@ -121,5 +128,20 @@ fn key(canvas: &Canvas<'_>, panel: &Panel, view: &AnnualView, words: &Words) {
         canvas.line(&[(x, y), (x + 22.0, y)], pen);
         canvas.text(&Label::new(name, (x + 27.0, y)).coloured(INK));
         x += 27.0 + text_width(name, SMALL) + 20.0;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::from_the_left;
+    use crate::report::model::{BandPoint, Estimate};
+
+    /// One rock is a line from the left end of the axis up to its energy, and not a point that nobody sees.
+    #[test]
+    fn one_rock_has_a_curve() {
+        let at = |x: f64| BandPoint { x, y: Estimate::new(0.5, 0.0, 0.5) };
+        assert_eq!(from_the_left(&[at(339.0)], 100.0), [at(100.0), at(339.0)]);
+        assert_eq!(from_the_left(&[at(50.0), at(339.0)], 100.0), [at(50.0), at(339.0)]);
+        assert!(from_the_left(&[], 100.0).is_empty());
     }
 }

@@ -189,7 +189,17 @@ fn exceedance(
     };
     let point = |rank: usize| BandPoint { x: sorted[rank].1, y: share(&sorted[rank + 1..]) };
     let first = sorted.first().map(|_| BandPoint { x: 0.0, y: share(&sorted) });
-    first.into_iter().chain(ranks.map(point)).collect()
+    steps(first.into_iter().chain(ranks.map(point)))
+}
+
+/// A curve that keeps each share up to the value at which it falls.
+fn steps(points: impl Iterator<Item = BandPoint>) -> Vec<BandPoint> {
+    let mut curve: Vec<BandPoint> = Vec::new();
+    for point in points {
+        let before = curve.last().map(|last| BandPoint { x: point.x, y: last.y });
+        curve.extend(before.into_iter().chain([point]));
+    }
+    curve
 }
 
 /// A share with its interval.
@@ -264,4 +274,21 @@ pub(super) fn tables(results: &Results, words: &Words) -> Vec<EstimateTable> {
         (reach.count > 0).then_some(EstimateTable { about: About::Lines, place, ..statistics })
     };
     shown(results).filter_map(table).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Five rocks of one energy: all of them exceed whatever is less, none has more.
+    #[test]
+    fn a_curve_falls_where_the_rocks_are() {
+        let weights = Weights::equal(5);
+        let curve = exceedance((0..5).map(|release| (release, 480.0)), (&weights, &[]));
+        let at = |x: f64| curve.iter().filter(move |point| point.x <= x);
+        assert!(at(479.0).all(|point| (point.y.value - 1.0).abs() < 1e-12));
+        let first = curve.iter().find(|point| point.x > 0.0);
+        assert!(first.is_some_and(|first| (first.y.value - 1.0).abs() < 1e-12), "{curve:?}");
+        assert!(curve.last().is_some_and(|last| last.y.value.abs() < 1e-12));
+    }
 }
