@@ -66,7 +66,7 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ("left out: {why}", "weggelassen: {why}"),
     ("leapt over: {why}", "übersprungen: {why}"),
     ("the scene has none", "die Szene hat keine"),
-    ("no ground has any", "kein Boden hat welche"),
+    ("no ground has any", "bei keinem Boden angegeben"),
     ("releases are independent", "die Ablösungen sind unabhängig"),
     ("every file has one ground", "jede Datei hat einen Boden"),
     (
@@ -123,6 +123,7 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ("shared by their lengths", "verteilt nach ihren Längen"),
     ("shared by their areas", "verteilt nach ihren Flächen"),
     ("{a} m smallest, {b} m median, {c} m largest", "{a} m kleinster, {b} m Median, {c} m größter"),
+    ("{n} triangles in 1 files", "{n} Dreiecke in 1 Datei"),
     ("{n} triangles in {files} files", "{n} Dreiecke in {files} Dateien"),
     (
         "{file}, {n} bytes; names no system of coordinates: taken as the scene's",

@@ -120,6 +120,7 @@ pub(super) const PLAN: &[(&str, &str)] = &[
         "{a} m smallest, {b} m median, {c} m largest",
         "{a} m le plus petit, {b} m médian, {c} m le plus grand",
     ),
+    ("{n} triangles in 1 files", "{n} triangles dans 1 fichier"),
     ("{n} triangles in {files} files", "{n} triangles dans {files} fichiers"),
     (
         "{file}, {n} bytes; names no system of coordinates: taken as the scene's",

@@ -120,6 +120,7 @@ pub(super) const PLAN: &[(&str, &str)] = &[
         "{a} m smallest, {b} m median, {c} m largest",
         "{a} m il più piccolo, {b} m mediano, {c} m il più grande",
     ),
+    ("{n} triangles in 1 files", "{n} triangoli in 1 file"),
     ("{n} triangles in {files} files", "{n} triangoli in {files} file"),
     (
         "{file}, {n} bytes; names no system of coordinates: taken as the scene's",
