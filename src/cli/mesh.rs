@@ -122,7 +122,7 @@ fn stems((list, slope): (&Path, &Path), out: &Path, origin_m: Option<&[f64]>) ->
         *corner -= map_origin_m;
     }
     write_binary(out, &facets)?;
-    Ok(format!("{} stems, {} triangles written to {}", trees.count(), facets.len(), out.display()))
+    Ok(format!("{}, {} triangles written to {}", trees.stems(), facets.len(), out.display()))
 }
 
 /// A mesh file as it stands.

@@ -42,9 +42,10 @@ pub struct TreeList {
 }
 
 impl TreeList {
-    /// How many trees it holds.
-    pub fn count(&self) -> usize {
-        self.trees.len()
+    /// How many trees it holds, in words.
+    pub fn stems(&self) -> String {
+        let count = self.trees.len();
+        format!("{count} {}", if count == 1 { "stem" } else { "stems" })
     }
 }
 
