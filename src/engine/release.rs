@@ -154,7 +154,7 @@ impl Releases {
         Some(source.map_or(drawn, |frequency| frequency.stratum(index).source))
     }
 
-    /// Looks for ground below an entry of the place, or beside a centre that is given with its height.
+    /// Looks for ground below a point, or beside a centre given with its height. Corners of lines and areas may lie over a hole.
     fn check_corner(
         &self,
         terrain: &Terrain,
@@ -162,13 +162,15 @@ impl Releases {
         at_m: Corner,
         who: &str,
     ) -> Result<()> {
-        let Where::Points(points) = place else {
-            return self.ground_m(terrain, at_m, who).map(|_| ());
-        };
-        let Some(z) = points[entry].height_m else {
-            return self.ground_m(terrain, at_m, who).map(|_| ());
-        };
         let [x, y] = local(terrain, at_m);
+        let (low, high) = terrain.index.bounds();
+        let is_inside = (low.x..=high.x).contains(&x) && (low.y..=high.y).contains(&y);
+        let height_m = match place {
+            Where::Points(points) => points[entry].height_m,
+            _ if is_inside => return Ok(()),
+            _ => None,
+        };
+        let Some(z) = height_m else { return self.ground_m(terrain, at_m, who).map(|_| ()) };
         let radius_m = self.around_m(entry, &self.unplaced(entry).rock);
         self.check_held(terrain, (Vec3::new(x, y, z - terrain.origin_m.z), radius_m), at_m, who)
     }

@@ -237,8 +237,7 @@ fn no_block_is_lost_on_the_natural_slope() {
     }
 }
 
-/// What a block takes does not depend on the blocks that a worker has followed before: steps that did not settle least of all. Those are few,
-/// also where rolling friction and several corners hold the block at once.
+/// What a block takes does not depend on the blocks that a worker has followed before: steps that did not settle least of all, which are few.
 #[test]
 fn the_effort_of_a_block_is_its_own() {
     let (slope, prism) = (slope(10_000), prism_surface(6, 0.3));
@@ -385,8 +384,8 @@ fn a_plane_without_friction_holds_no_block_back() {
     for (name, kind, shape) in &shapes()[..4] {
         for restitution in [0.0, 0.35] {
             let ground = Ground { friction_angle_rad: 0.0, restitution: Some(restitution), ..HARD };
-            let series =
-                Series { scheme: Scheme::Rigid, kind: *kind, shape: shape.as_ref(), ground };
+            let shape = shape.as_ref();
+            let series = Series { scheme: Scheme::Rigid, kind: *kind, shape, ground };
             let kept = (0..60).map(|index| {
                 let end = fall(&plane, &series, index, (&mut scratch, 5.0)).end;
                 end.velocity_m_s.dot(&down) / (G * 0.7 / (1.49f64).sqrt() * end.time_s)

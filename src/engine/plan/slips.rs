@@ -12,7 +12,7 @@ const LEAST_NET_J: f64 = 10e3;
 /// Energy below which a number is rather in kJ (J): thin stems break at some kJ, and weak intensities end at 30 kJ.
 const LEAST_J: f64 = 1e3;
 /// Radius of the largest single rocks (m): above, a number is rather in cm or mm.
-const LARGEST_M: f64 = 20.0;
+pub(super) const LARGEST_M: f64 = 20.0;
 /// Codes that EPSG gives to coordinate systems.
 const EPSG: std::ops::RangeInclusive<u32> = 1024..=32_767;
 /// Runs of codes that EPSG gives to geographic systems, whose coordinates are degrees, and the most used single ones.

@@ -1,6 +1,7 @@
 //! Whether the contact springs carry the rocks, and what a fixed step does to them.
 
 use super::Settings;
+use super::slips::LARGEST_M;
 use crate::error::{Error, Result};
 use crate::ground::{Capture, Damping, Ground, Law};
 use crate::random::Distribution;
@@ -219,7 +220,12 @@ impl PressedSprings {
         } else {
             String::new()
         };
-        let remedy = format!("write {:.1e} or more{slower}", 1.05 * usual.max(least));
+        let unit = if radius_m > LARGEST_M {
+            "check radius_m first, which is larger than any single rock: is it in cm or mm? Else "
+        } else {
+            ""
+        };
+        let remedy = format!("{unit}write {:.1e} or more{slower}", 1.05 * usual.max(least));
         let place = format!("{} normal_stiffness_n_m", self.table);
         Err(Error::input(&scene.file, place, found, remedy))
     }

@@ -110,8 +110,9 @@ impl<'a> Lookup<'a> {
 
     /// The message for what the TOML reader found.
     pub(super) fn refuse_reading(&self, error: &toml::de::Error) -> Error {
+        // what is missing at the top has no place: neither is it in the first key
         let span = error.span().unwrap_or(0..0);
-        let mut trail = self.trail_at(&span);
+        let mut trail = if span.is_empty() { Vec::new() } else { self.trail_at(&span) };
         let mut said = wording::of(error.message());
         if let Some(brackets) = self.wrong_brackets(&trail, &said.found) {
             said = brackets;

@@ -317,10 +317,7 @@ pub(crate) fn off2(
 /// Whether two contacts of a rock of this radius (m) can hold each other, by friction and rolling friction: whether the line between them lies within
 /// both their cones.
 fn can_clamp(contacts: &[StageContact], radius_m: f64) -> bool {
-    let cone = |one: &StageContact| {
-        let (friction, rolling_m) = one.law.limits().caps(1.0);
-        friction + rolling_m / radius_m + BESIDE_CONE
-    };
+    let cone = |one: &StageContact| one.law.widest_cone(radius_m) + BESIDE_CONE;
     contacts.iter().enumerate().any(|(k, a)| {
         let cone_a = cone(a);
         contacts[..k].iter().any(|b| {
