@@ -232,12 +232,6 @@ impl Law {
         self.shear.limit
     }
 
-    /// Tangent of the angle between the normal and the steepest force that it bears on a rock of this radius (m), by friction and rolling friction (–).
-    #[inline]
-    pub(crate) fn widest_cone(&self, radius_m: f64) -> f64 {
-        self.shear.limit + self.rolling.limit / radius_m
-    }
-
     /// Gives the ground another coefficient of friction (–); whether it is another.
     pub(crate) fn rub_with(&mut self, coefficient: f64) -> bool {
         std::mem::replace(&mut self.shear.limit, coefficient).to_bits() != coefficient.to_bits()

@@ -109,10 +109,10 @@ impl Control {
     }
 }
 
-/// Local error allowed to what contacts that can hold each other press with in a step (–, relative to the weight).
-const SELF_STRESS: f64 = 0.1;
-/// Contacts that nearly hold each other count as such: coefficient of friction beside that of the ground (–).
-const BESIDE_CONE: f64 = 0.1;
+/// Local error allowed in a step to what contacts between unlike faces press with (–, relative to the weight).
+const WEDGED: f64 = 3e-3;
+/// Cosine of the angle between normals of faces that are unlike.
+const UNLIKE: f64 = 0.97;
 
 /// Local error allowed to a rock in lasting contact (m/s): that of the run, and a share of `√(g R)`.
 pub(crate) fn lasting_m_s(settings: &Settings, body: &Body) -> f64 {
@@ -293,8 +293,9 @@ fn attempt(
 /// Square of the local error of a rock over the length of the step (m²/s⁴), of which `allowed_m_s` is allowed: ways and stretches times the frequency
 /// of the stiffest contact (rad/s), spin times the radius.
 ///
-/// Under its weight a contact forgets an error: its force is what the weight asks for. Contacts that can hold each other within their cones
-/// keep it, and rolling friction answers to it until they come apart; there ways count for more, as exact as forces must be.
+/// On one plane a contact forgets an error: its force is what the weight asks for. Between unlike faces, as in a gully, friction across the rock's
+/// way holds one against the other with any force within both cones, and keeps an error as long as they stay shut. Rolling friction answers to
+/// these forces; there ways count for more, as exact as forces must be.
 pub(crate) fn off2(
     tableau: &Tableau,
     state: &ContactState,
@@ -306,28 +307,21 @@ pub(crate) fn off2(
         .map(|k| tableau.off(rates, |rate| rate.shear[k]).norm_squared())
         .fold(tableau.off(rates, |rate| rate.c).norm_squared(), f64::max);
     let (mut counts, weight) = (omega, body.gravity.norm());
-    if weight > 0.0 && can_clamp(state.stage_contacts(), body.radius) {
-        counts *= (allowed_m_s * omega / (SELF_STRESS * weight)).max(1.0);
+    if weight > 0.0 && rolls_wedged(state.stage_contacts()) {
+        counts *= (allowed_m_s * omega / (WEDGED * weight)).max(1.0);
     }
     (ways2 * counts * counts)
         .max(tableau.off(rates, |rate| rate.v).norm_squared())
         .max(tableau.off(rates, |rate| rate.w).norm_squared() * body.radius.powi(2))
 }
 
-/// Whether two contacts of a rock of this radius (m) can hold each other, by friction and rolling friction: whether the line between them lies within
-/// both their cones.
-fn can_clamp(contacts: &[StageContact], radius_m: f64) -> bool {
-    let cone = |one: &StageContact| one.law.widest_cone(radius_m) + BESIDE_CONE;
-    contacts.iter().enumerate().any(|(k, a)| {
-        let cone_a = cone(a);
-        contacts[..k].iter().any(|b| {
-            // the angle between the normals, from π on, is no larger than both cones
-            let (off, cone_b) = (a.n.dot(&b.n), cone(b));
-            let widest = (cone_a * cone_b - 1.0)
-                / ((1.0 + cone_a * cone_a) * (1.0 + cone_b * cone_b)).sqrt();
-            off <= widest
-        })
-    })
+/// Whether a rock that rolling friction holds back touches faces that are unlike.
+fn rolls_wedged(contacts: &[StageContact]) -> bool {
+    contacts.iter().any(|one| one.law.rolling.is_on())
+        && contacts
+            .iter()
+            .enumerate()
+            .any(|(k, one)| contacts[..k].iter().any(|other| one.n.dot(&other.n) < UNLIKE))
 }
 
 /// Takes over the step's end: motion, memories, losses.
