@@ -361,3 +361,27 @@ fn what_does_not_fit_together_is_refused() {
         assert!(parts.iter().all(|part| said.contains(part)), "{parts:?}\n{said}");
     }
 }
+
+/// Corners of a line of release over a hole: places without ground are drawn again, and all rocks start beside it.
+#[test]
+fn a_line_of_release_may_cross_a_hole() {
+    let dir = Folder::new();
+    let height = |row: i32, column: i32| {
+        let is_hole = (40..60).contains(&column) && row < 30;
+        if is_hole { "-9999".to_owned() } else { format!("{}", 700.0 - 0.8 * f64::from(row)) }
+    };
+    let rows = (0..100).map(|row| (0..100).map(|k| height(row, k)).collect::<Vec<_>>().join(" "));
+    let head = "ncols 100\nnrows 100\nxllcorner 2600000\nyllcorner 1200000\ncellsize 1\nNODATA_value -9999\n";
+    dir.put("hole.asc", head.to_owned() + &rows.collect::<Vec<_>>().join("\n"));
+    // both ends of the line lie over the hole
+    let text = scene("file = \"hole.asc\"", "").replace(
+        "[[2600010.5, 1200090.25], [2600050.5, 1200090.25]]",
+        "[[2600050.5, 1200085.0], [2600020.5, 1200085.0], [2600050.6, 1200085.0]]",
+    );
+    let rows = table(&dir.run("hole", &text));
+    let at = rows.lines().next().unwrap().split(',').position(|name| name == "start_x_m").unwrap();
+    let start = |row: &str| row.split(',').nth(at).unwrap().parse::<f64>().unwrap();
+    let starts: Vec<f64> = rows.lines().skip(1).map(start).collect();
+    assert_eq!(starts.len(), 40);
+    assert!(starts.iter().all(|x| (2_600_020.0..2_600_041.0).contains(x)), "{starts:?}");
+}
