@@ -47,6 +47,11 @@ pub enum Open {
 }
 
 impl Percentile {
+    /// How many of so many rocks are missing before anything bounds it; none where there are enough.
+    pub fn lacks(&self, rocks: usize) -> Option<usize> {
+        self.needs.checked_sub(rocks).filter(|missing| *missing > 0)
+    }
+
     /// Percentile `p` (0 < p < 1) of values in ascending order; none of nothing.
     pub fn of(sorted: &[f64], p: f64) -> Option<Self> {
         let ranks = Ranks::of(sorted.len(), p);

@@ -110,7 +110,7 @@ fn interval(low: &str, high: &str) -> String {
 
 /// The 95th percentile, where there are rocks enough to bound it.
 fn known_p95(statistic: &Statistic) -> Option<&Percentile> {
-    statistic.percentiles.get("p95").filter(|p95| statistic.rocks >= p95.needs)
+    statistic.percentiles.get("p95").filter(|p95| p95.lacks(statistic.rocks).is_none())
 }
 
 fn energy(p95: &Percentile) -> String {

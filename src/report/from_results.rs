@@ -160,8 +160,8 @@ fn estimate(value: f64, low: Option<f64>, high: Option<f64>) -> Estimate {
 
 /// A percentile of so many rocks, whose true values may be open on one side; too few rocks give none.
 fn of_percentile(found: &Percentile, (rocks, open): (usize, Option<Open>)) -> Estimate {
-    if rocks < found.needs {
-        return Estimate::lacking(found.needs - rocks);
+    if let Some(missing) = found.lacks(rocks) {
+        return Estimate::lacking(missing);
     }
     let is = Is::on_side(found.censored, open);
     Estimate { is, ..estimate(found.value, found.low_95, found.high_95) }

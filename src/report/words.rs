@@ -153,6 +153,12 @@ impl Words {
         fill(self.quoted, &[("x", &name)])
     }
 
+    /// How many rocks are missing.
+    pub(super) fn more_rocks(&self, rocks: usize) -> String {
+        let text = format::counted(rocks, self.more_rock_one, self.more_rock_many);
+        fill(text, &[("n", &rocks)])
+    }
+
     /// Two written bounds as an interval; one that is no number leaves it open.
     pub(super) fn interval(&self, low: &str, high: &str) -> String {
         match (low == format::NO_NUMBER, high == format::NO_NUMBER) {

@@ -2,7 +2,7 @@
 
 use super::populations::{ComparedQuantity, CountedShare, Population};
 use crate::frequency::Weights;
-use crate::hazard::{self, Difference, Open, Quantity, Sample, Values};
+use crate::hazard::{self, Difference, Open, Percentile, Quantity, Values};
 use crate::report::bound::Is;
 
 /// What rocks that would have gone on do to a number of a run.
@@ -35,7 +35,11 @@ impl RunBound {
         measure: ComparedQuantity,
         p: Option<f64>,
     ) -> Self {
-        if let Some(rocks) = p.and_then(|p| lacking(&of.sample(values, 1.0), p)) {
+        let seen = p.and_then(|p| {
+            let sample = of.sample(values, 1.0);
+            Some((sample.percentile(p)?, sample.values().len()))
+        });
+        if let Some(rocks) = seen.as_ref().and_then(|(seen, rocks)| seen.lacks(*rocks)) {
             return Self { is: Is::Lacking(rocks), farther: [0.0; 2] };
         }
         let side = match measure {
@@ -46,19 +50,13 @@ impl RunBound {
         let censored = of.censored_sample(values, side);
         let (is_bound, farther) = match p {
             None => censored.mean().map_or(UNKNOWN, |mean| known_if(!mean.censored)),
-            Some(p) => of_percentile([&of.sample(values, 1.0), &censored], p, side),
+            Some(p) => of_percentile([seen.map(|(seen, _)| seen), censored.percentile(p)], side),
         };
         let (.., size) = measure.words();
         let farther = farther / size;
         let farther = if side == Open::Above { [0.0, farther] } else { [farther, 0.0] };
         Self { is: Is::on_side(is_bound, Some(side)), farther }
     }
-}
-
-/// How many rocks a percentile `p` lacks before anything bounds it, as in the report of the run; none where it has enough.
-fn lacking(sample: &Sample, p: f64) -> Option<usize> {
-    let needs = sample.percentile(p)?.needs;
-    needs.checked_sub(sample.values().len()).filter(|rocks| *rocks > 0)
 }
 
 /// A bound, and nothing says how far the truth may lie from it.
@@ -70,10 +68,8 @@ fn known_if(is_known: bool) -> (bool, f64) {
 
 /// Whether a percentile is a bound, and how much farther the end of its interval lies on that side were all rocks that would have gone on to
 /// go as far as can be.
-fn of_percentile([seen, censored]: [&Sample; 2], p: f64, side: Open) -> (bool, f64) {
-    let (Some(seen), Some(found)) = (seen.percentile(p), censored.percentile(p)) else {
-        return UNKNOWN;
-    };
+fn of_percentile(both: [Option<Percentile>; 2], side: Open) -> (bool, f64) {
+    let [Some(seen), Some(found)] = both else { return UNKNOWN };
     let ends = match side {
         Open::Above => seen.high_95.zip(found.high_95),
         Open::Below => seen.low_95.zip(found.low_95),

@@ -6,7 +6,7 @@ use crate::hazard::{Difference, Reading, Values};
 use crate::math;
 use crate::report::bound::Is;
 use crate::report::format::{self, sign};
-use crate::report::words::{Words, fill};
+use crate::report::words::Words;
 use crate::scene::Language;
 use std::fmt::Write as _;
 
@@ -209,17 +209,11 @@ pub(super) fn headline(groups: &[Group]) -> Vec<String> {
     lines
 }
 
-/// A dash, and how many rocks a run lacks for a number.
-fn lacking(rocks: usize, words: &Words) -> String {
-    let text = format::counted(rocks, words.more_rock_one, words.more_rock_many);
-    format!("{} ({})", format::NO_NUMBER, fill(text, &[("n", &rocks)]))
-}
-
 /// Both values, the difference with its sign, and its interval; bounds with theirs.
 pub(super) fn in_words(row: &ComparedStatistic, words: &Words) -> [String; 4] {
     let Difference { a, b, value, interval } = row.difference;
     let number = |v: f64, is: Is| match is {
-        Is::Lacking(rocks) => lacking(rocks, words),
+        Is::Lacking(rocks) => format!("{} ({})", format::NO_NUMBER, words.more_rocks(rocks)),
         is => sign(is).to_owned() + &format::significant(v, 4),
     };
     // a difference is written as finely as its interval allows: its last digit is at most a twentieth of it

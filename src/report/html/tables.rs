@@ -88,8 +88,7 @@ fn in_short_unit(row: &EstimateRow) -> (Estimate, &str) {
 /// rocks cannot give says how many are missing.
 fn in_words(estimate: &Estimate, words: &Words) -> (String, String) {
     if let Is::Lacking(rocks) = estimate.is {
-        let text = format::counted(rocks, words.more_rock_one, words.more_rock_many);
-        return (format::NO_NUMBER.to_owned(), fill(text, &[("n", &rocks)]));
+        return (format::NO_NUMBER.to_owned(), words.more_rocks(rocks));
     }
     // what has no value, as the return period of what never came, is no bound either
     let sign = if estimate.value.is_nan() { "" } else { format::sign(estimate.is) };

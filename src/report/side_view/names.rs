@@ -44,15 +44,14 @@ struct NamesAbove(Vec<Option<Name>>);
 impl NamesAbove {
     /// Finds room for the names of marks at these places of the sheet (px), which rise.
     fn of(frame: &PaperFrame, marks: &[(f64, &str)]) -> Self {
-        let is_inside = |x: f64| (frame.left..=frame.right).contains(&x);
         let inside: Vec<(f64, &str)> =
-            marks.iter().copied().filter(|(x, _)| is_inside(*x)).collect();
+            marks.iter().copied().filter(|(x, _)| is_inside(frame, *x)).collect();
         let named = in_one_row(frame, &inside).unwrap_or_else(|| rising(frame, &inside));
         let mut named = named.into_iter();
         Self(
             marks
                 .iter()
-                .map(|(x, _)| if is_inside(*x) { named.next().flatten() } else { None })
+                .map(|(x, _)| if is_inside(frame, *x) { named.next().flatten() } else { None })
                 .collect(),
         )
     }
@@ -171,11 +170,20 @@ pub(in crate::report) fn name_marks(
     }
 }
 
+/// Where a distance along a panel is on the sheet (px).
+fn place(panel: &Panel, at: f64) -> f64 {
+    panel.at(at, panel.y.low).0
+}
+
+/// Whether a place of the sheet (px) is above a frame and not beside it.
+fn is_inside(frame: &PaperFrame, x: f64) -> bool {
+    (frame.left..=frame.right).contains(&x)
+}
+
 /// The names of marks above a panel, by rising distance along it.
 fn above(panel: &Panel, marks: &[(f64, MapMark)]) -> NamesAbove {
-    let place = |at: f64| panel.at(at, panel.y.low).0;
     let named: Vec<(f64, &str)> =
-        marks.iter().map(|(at, mark)| (place(*at), mark.name.as_str())).collect();
+        marks.iter().map(|(at, mark)| (place(panel, *at), mark.name.as_str())).collect();
     NamesAbove::of(&panel.frame, &named)
 }
 
@@ -184,11 +192,9 @@ pub(in crate::report) fn without_room<'a>(
     panel: &Panel,
     marks: &'a [(f64, MapMark)],
 ) -> Vec<&'a str> {
-    let is_inside =
-        |at: f64| (panel.frame.left..=panel.frame.right).contains(&panel.at(at, panel.y.low).0);
     let named = above(panel, marks).0.into_iter().zip(marks);
     named
-        .filter(|(name, (at, _))| name.is_none() && is_inside(*at))
+        .filter(|(name, (at, _))| name.is_none() && is_inside(&panel.frame, place(panel, *at)))
         .map(|(_, (_, mark))| mark.name.as_str())
         .collect()
 }

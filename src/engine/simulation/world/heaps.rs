@@ -53,11 +53,7 @@ impl<'a> BodyWorld<'a> {
 
 /// How many rocks of an island of `count` hold each other, directly or through others, at most.
 fn largest_touching(count: usize, pairs: &[PairHistory]) -> usize {
-    let mut touching = Partition::alone(count);
-    for pair in pairs.iter().filter(|pair| pair.is_held()) {
-        touching.join(pair.a, pair.b);
-    }
-    touching.sizes().into_iter().max().unwrap_or(0) as usize
+    Partition::held(count, pairs).sizes().into_iter().max().unwrap_or(0) as usize
 }
 
 impl IslandWindow<'_> {

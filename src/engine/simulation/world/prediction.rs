@@ -192,7 +192,7 @@ pub(super) fn meetings_of_islands(
             place.radius * (1.0 + REACH_ROUNDING) + (place.velocity.norm() + deviated) * dt
         };
         pairs = near(&places.iter().zip(&allowed).map(reach).collect::<Vec<_>>());
-        islands = joined(&pairs, places.len());
+        islands = Partition::joined(places.len(), pairs.iter().copied());
         // the fastest of every island, then handed back to all of its rocks
         let mut most = vec![0.0f64; places.len()];
         for (place, k) in places.iter().zip(0..) {
@@ -238,14 +238,6 @@ pub(super) fn meetings_in_passing(
     };
     let gaps: Vec<f64> = pairs.iter().map(gap).collect();
     meetings_by_gaps(places, dt, (&pairs, &gaps), (LONG_HANDED_ON, 1.0))
-}
-
-fn joined(pairs: &[(u32, u32)], count: usize) -> Partition {
-    let mut islands = Partition::alone(count);
-    for &(a, b) in pairs {
-        islands.join(a, b);
-    }
-    islands
 }
 
 /// The same among rocks that `pair_histories` join.
@@ -332,7 +324,7 @@ fn meetings_by_gaps(
     }
     let pairs: Vec<_> =
         known.filter(|&(pair, gap)| meets(&allowed, pair, gap)).map(|(pair, _)| pair).collect();
-    let islands = joined(&pairs, places.len());
+    let islands = Partition::joined(places.len(), pairs.iter().copied());
     Meetings { pairs, islands, allowed }
 }
 

@@ -259,8 +259,8 @@ impl<'a> Island<'a> {
     /// Largest error of the embedded method over what is allowed to the rock (1/s).
     fn error(&self, control: &Control) -> f64 {
         let tableau = control.tableau;
-        let over_allowed: Vec<f64> =
-            self.members.iter().map(|member| 1.0 / member.allowed_m_s(control.impact)).collect();
+        let allowed_m_s: Vec<f64> =
+            self.members.iter().map(|member| member.allowed_m_s(control.impact)).collect();
         let mut worst2 = 0.0f64;
         let mut omegas: Vec<f64> =
             self.members.iter().map(|member| member.omega(self.terrain)).collect();
@@ -275,14 +275,14 @@ impl<'a> Island<'a> {
             }
             // error of the shear stretch (m/s as a rate), times ω to compare with an acceleration
             let drift = tableau.off(rates, |rate| *rate);
-            let by =
-                over_allowed[pair_history.a as usize].max(over_allowed[pair_history.b as usize]);
+            let [a, b] = [pair_history.a, pair_history.b].map(|k| allowed_m_s[k as usize]);
+            let by = 1.0 / a.min(b);
             worst2 =
                 worst2.max(drift.norm_squared() * (pair_history.law.omega_rad_s() * by).powi(2));
         }
-        for ((member, omega), by) in self.members.iter().zip(&omegas).zip(&over_allowed) {
-            let IslandBody { state, body, .. } = &**member;
-            let own2 = step_control::off2(tableau, state, body, (*omega, 1.0 / by));
+        for ((member, omega), allowed_m_s) in self.members.iter().zip(&omegas).zip(&allowed_m_s) {
+            let (IslandBody { state, body, .. }, by) = (&**member, 1.0 / allowed_m_s);
+            let own2 = step_control::off2(tableau, state, body, (*omega, *allowed_m_s));
             worst2 = worst2.max(own2 * by * by);
         }
         worst2.sqrt()

@@ -1,5 +1,7 @@
 //! Islands: rocks that may touch each other, directly or through others.
 
+use crate::contact::pair::PairHistory;
+
 /// A forest of sets; the smallest number of a set stands for it.
 #[derive(Debug, Clone)]
 pub struct Partition(Vec<u32>);
@@ -8,6 +10,19 @@ impl Partition {
     /// `count` rocks, each alone.
     pub fn alone(count: usize) -> Self {
         Self((0..count as u32).collect())
+    }
+
+    /// `count` rocks, joined where they hold each other.
+    pub fn held(count: usize, pair_histories: &[PairHistory]) -> Self {
+        let held = pair_histories.iter().filter(|pair_history| pair_history.is_held());
+        Self::joined(count, held.map(|pair_history| (pair_history.a, pair_history.b)))
+    }
+
+    /// `count` rocks, joined by pairs.
+    pub fn joined(count: usize, pairs: impl Iterator<Item = (u32, u32)>) -> Self {
+        let mut islands = Self::alone(count);
+        pairs.for_each(|(a, b)| islands.join(a, b));
+        islands
     }
 
     /// The rock that stands for the island of `k`.

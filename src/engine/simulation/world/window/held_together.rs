@@ -10,12 +10,7 @@ use crate::solver::island::partition::Partition;
 impl IslandWindow<'_> {
     /// The rocks that hold each other, by their places in the island.
     fn held_together(&self) -> Vec<Vec<u32>> {
-        let mut islands = Partition::alone(self.bodies.len());
-        for pair_history in self.pair_histories.iter().filter(|pair_history| pair_history.is_held())
-        {
-            islands.join(pair_history.a, pair_history.b);
-        }
-        islands.lists()
+        Partition::held(self.bodies.len(), &self.pair_histories).lists()
     }
 
     /// Puts to sleep what has been quiet for long enough together with all that it touches.
