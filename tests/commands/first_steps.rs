@@ -133,7 +133,8 @@ fn strips_and_walls_are_sketched_too() {
     let wall: Vec<Vec<f64>> = (0..60).map(|k| vec![wall_m(k); 40]).collect();
     let steep: Vec<Vec<f64>> = (0..30).map(|k| vec![400.0 - 11.5 * f64::from(k); 30]).collect();
     let across = vec![vec![100.0, 60.0]; 40];
-    let cases = [(5.0, strip, "line_m"), (5.0, across, "points_m"), (1.0, wall, "points_m")];
+    let cases =
+        [(5.0, strip, "line_m"), (5.0, across.clone(), "points_m"), (1.0, wall, "points_m")];
     for (cell_m, rows, place) in cases.into_iter().chain([(1.0, steep, "points_m")]) {
         let (model, file) = (dir.path().join("made.asc"), dir.path().join("made.toml"));
         fs::write(&model, grid(cell_m, &rows)).unwrap();
@@ -141,6 +142,10 @@ fn strips_and_walls_are_sketched_too() {
         assert_eq!(code, Some(0), "{place}: {stderr}");
         let scene = filled_in(&fs::read_to_string(&file).unwrap());
         assert!(scene.contains(&format!("\n{place} = [[")), "{scene}");
+        // cells of 5 m that fall to the east from column to column: rocks come over a line from south to north
+        if rows == across {
+            assert!(scene.contains("# points_m = [[5.0, 51.2], [5.0, 148.8]]"), "{scene}");
+        }
         fs::write(&file, scene).unwrap();
         let (code, plan, stderr) = said(&["plan", word(&file)]);
         assert_eq!(code, Some(0), "{stderr}");

@@ -244,6 +244,9 @@ fn slips_are_said_in_every_language() {
     let spruce = "restitution = 0.2\nbreaks_above_j = 50.0\n";
     let slip = "friction_angle_deg = 32.0\nslip_friction = { max = 0.2, kappa_per_m = 0.7, beta_per_s = 20.0 }\n";
     let weak = "\n[[barriers]]\nname = \"net\"\npoints_m = [[2.0, 40.0], [38.0, 40.0]]\nheight_m = 3.0\ncapacity_j = 100.0\n";
+    let sizes = "radius_m = { lognormal = { median = 0.3, sigma = 0.3, min = 0.1, max = 0.8 } }\n";
+    let litres =
+        "\n[frequency]\nper_year_at_1m3 = 0.01\nexponent = 0.7\nvolume_m3 = [10.0, 50000.0]\n";
     let half = "\n[[lines]]\nname = \"path\"\npoints_m = [[20.0, 45.0], [60.0, 45.0]]\n";
     for (written, slipped, hint) in [
         ("density_kg_m3 = 2700.0", "density_kg_m3 = 2.7", "t/m³"),
@@ -255,6 +258,7 @@ fn slips_are_said_in_every_language() {
         ("seed = 1\n", "seed = 1\nepsg = 4326\n", "geographic"),
         ("seed = 1\n", "seed = 1\nepsg = 3857\n", "Web Mercator"),
         ("max = 0.8 }", "max = 80.0 }", "in cm or mm"),
+        (sizes, litres, "in litres"),
         ("\n[maps]", &format!("{weak}\n[maps]"), "capacity_j"),
         ("restitution = 0.35\n", "restitution = 0.35\nbreaks_above_j = 5e4\n", "but no tree"),
         ("\n[maps]", &format!("{half}\n[maps]"), "“path”: 20 of its 40 m have no ground below"),

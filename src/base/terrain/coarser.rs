@@ -7,12 +7,10 @@
 
 use super::Terrain;
 use super::edges::{Edges, ends};
-use super::weld::split::Splits;
-use super::weld::{Tally, Welded};
+use super::weld::Welded;
 use crate::rock::Vec3;
 use std::cmp::Reverse;
 use std::collections::{BTreeSet, BinaryHeap};
-use std::sync::OnceLock;
 
 /// Distance along the mesh between chosen vertices over the edge length wanted (–): the distance from vertex to vertex along
 /// edges is on average this much longer than the straight one, and neighbours are chosen a little further apart than they
@@ -59,18 +57,7 @@ fn empty(terrain: &Terrain) -> Welded {
     Welded {
         origin_m: terrain.origin_m,
         map_origin_m: terrain.origin_m,
-        tolerance_m: 0.0,
-        vertices_m: Vec::new(),
-        triangles: Vec::new(),
-        sheet_of: Vec::new(),
-        facet_of: Vec::new(),
-        edges: Edges::default(),
-        zero_area: Tally::default(),
-        duplicates: Tally::default(),
-        covered: Tally::default(),
-        moved_corners: 0,
-        splits: Splits::default(),
-        parts: OnceLock::new(),
+        ..Welded::default()
     }
 }
 

@@ -91,7 +91,7 @@ impl Tally {
 }
 
 /// The welded mesh. Every vertex is used, every triangle has an area and occurs once; those of one facet may be several.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Welded {
     /// Map position of the local (0, 0, 0): `map = local + origin` (m). Whole metres plus the scene's origin.
     pub origin_m: Vec3,
@@ -182,17 +182,8 @@ fn join_all(
         origin_m: map_origin_m + frame.centre_m,
         map_origin_m,
         tolerance_m,
-        vertices_m: Vec::new(),
-        triangles: Vec::new(),
         sheet_of: Vec::with_capacity(frame.facets),
-        facet_of: Vec::new(),
-        edges: Edges::default(),
-        zero_area: Tally::default(),
-        duplicates: Tally::default(),
-        covered: Tally::default(),
-        moved_corners: 0,
-        splits: Splits::default(),
-        parts: OnceLock::new(),
+        ..Welded::default()
     };
     let lost = welded.take(pieces, &frame);
     if own_m.is_none() {

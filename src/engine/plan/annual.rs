@@ -235,11 +235,15 @@ pub(super) fn lines(year: &YearPlan, count: usize) -> Vec<String> {
         .map(|source| format!("{}: {}", source.name, source.law.in_words()))
         .collect();
     let weights = frequency.weights(count);
+    let classes = match frequency.strata().len() {
+        1 => "1 class of size and source".to_owned(),
+        strata => {
+            format!("{strata} classes of size and source, {} rocks or more each", count / strata)
+        }
+    };
     lines.push(format!(
-        "{:.4} events a year; {} classes of size and source, {} rocks or more each: {count} rocks are as precise as {:.0} of equal weight",
+        "{:.4} events a year; {classes}: {count} rocks are as precise as {:.0} of equal weight",
         frequency.per_year(),
-        frequency.strata().len(),
-        count / frequency.strata().len(),
         weights.effective_rocks()
     ));
     lines.extend(

@@ -37,7 +37,7 @@ pub(super) fn of(scene: &Scene) -> Vec<(String, String)> {
 
 /// Sizes as the rocks or the sources have them.
 fn sizes(scene: &Scene) -> String {
-    if scene.sources().is_some_and(|one| one.draws_volumes()) {
+    if scene.draws_volumes() {
         return "by the volumes of the sources, see below".to_owned();
     }
     words(scene.rocks.radius_m(), " m")

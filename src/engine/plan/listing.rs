@@ -93,7 +93,7 @@ impl Plan {
         list.lines("lifted", lifted.iter().cloned());
         list.line(
             "terrain",
-            format!("{} triangles in {} files", terrain.triangles.len(), files(terrain)),
+            format!("{} triangles in {}", terrain.triangles.len(), files(terrain)),
         );
         list.lines("input file", input_files.iter().map(input_file));
         list.part("ground zones", ground_zones, zones_of_ground);
@@ -324,12 +324,12 @@ fn place(place: &Where, zones_are_sources: bool) -> String {
 }
 
 /// Files of the terrain; one with several grounds has several sheets.
-fn files(terrain: &Terrain) -> usize {
+fn files(terrain: &Terrain) -> String {
     let mut paths: Vec<_> =
         terrain.sheets.iter().map(|sheet| (&sheet.path, sheet.is_tree)).collect();
     paths.sort();
     paths.dedup();
-    paths.len()
+    if paths.len() == 1 { "1 file".to_owned() } else { format!("{} files", paths.len()) }
 }
 
 fn input_file(InputFile { path, bytes, assumed }: &InputFile) -> String {

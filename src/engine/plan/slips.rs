@@ -1,5 +1,6 @@
 //! Numbers that look like another unit: allowed, but most likely a slip.
 
+use crate::frequency::volume_m3;
 use crate::math;
 use crate::scene::{GroundTable, Scene};
 
@@ -25,12 +26,7 @@ const WEB_MERCATOR: u32 = 3857;
 pub(super) fn of(scene: &Scene, mesh_epsg: Option<u32>) -> Vec<String> {
     let mut found = Vec::new();
     found.extend(density(scene.rocks.density_kg_m3));
-    let largest_m = scene.rocks.radius_m().reckoned()[2];
-    if largest_m > LARGEST_M {
-        found.push(format!(
-            "[rocks] radius_m reaches {largest_m:.4}: larger than any single rock; is it in cm or mm? write metres"
-        ));
-    }
+    found.extend(size(scene));
     for (name, ground) in &scene.grounds {
         let (low, high) = ground.friction_angle_deg.support();
         if low > 0.0 && high <= RADIANS {
@@ -54,6 +50,22 @@ pub(super) fn of(scene: &Scene, mesh_epsg: Option<u32>) -> Vec<String> {
     found.extend(scene.grounds.iter().filter_map(|(name, ground)| stems(name, ground)));
     found.extend(scene.epsg.or(mesh_epsg).and_then(epsg));
     found
+}
+
+/// Rocks larger than any, by the key that says how large they are.
+fn size(scene: &Scene) -> Option<String> {
+    let radius_m = scene.rocks.radius_m().reckoned()[2];
+    let reaches = if scene.draws_volumes() {
+        format!("volume_m3 reaches {:.0} m³, a radius of {radius_m:.4} m", volume_m3(radius_m))
+    } else {
+        format!("[rocks] radius_m reaches {radius_m:.4}")
+    };
+    let unit = if scene.draws_volumes() {
+        "in litres? write cubic metres"
+    } else {
+        "in cm or mm? write metres"
+    };
+    (radius_m > LARGEST_M).then(|| format!("{reaches}: larger than any single rock; is it {unit}"))
 }
 
 /// A limit of energy that is rather in kJ.

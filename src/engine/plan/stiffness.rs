@@ -220,10 +220,14 @@ impl PressedSprings {
         } else {
             String::new()
         };
-        let unit = if radius_m > LARGEST_M {
-            "check radius_m first, which is larger than any single rock: is it in cm or mm? Else "
-        } else {
-            ""
+        let unit = match (radius_m > LARGEST_M, scene.draws_volumes()) {
+            (false, _) => "",
+            (true, false) => {
+                "check radius_m first, which is larger than any single rock: is it in cm or mm? Else "
+            }
+            (true, true) => {
+                "check volume_m3 first, larger than any single rock: is it in litres? Else "
+            }
         };
         let remedy = format!("{unit}write {:.1e} or more{slower}", 1.05 * usual.max(least));
         let place = format!("{} normal_stiffness_n_m", self.table);

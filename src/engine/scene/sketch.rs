@@ -38,7 +38,7 @@ pub fn sketch(terrain_file: &Path, scene_file: &Path) -> Result<String> {
         terrain.epsg.map_or_else(|| system(is_stl).to_owned(), |code| format!("epsg = {code}\n")),
         quoted(&path.to_string_lossy()),
         release(&cliff, &terrain),
-        REST.replace("LINE", &across(&health)),
+        REST.replace("LINE", &across(&health, &cliff)),
     ))
 }
 
@@ -47,13 +47,21 @@ fn system(is_stl: bool) -> &'static str {
     if is_stl { ORIGIN } else { EPSG }
 }
 
-/// A line over the middle of the terrain, from a quarter of its width to three: an example where rocks may come.
-fn across(health: &Health) -> String {
-    let [low, high] = [health.low_m, health.high_m];
-    let [west, east] = [low[0], high[0]];
-    let at = |share: f64| west + share * (east - west);
-    let y = 0.5 * (low[1] + high[1]);
-    format!("[[{:.1}, {y:.1}], [{:.1}, {y:.1}]]", at(0.25), at(0.75))
+/// A line over the middle of the terrain and across the fall of the face, from a quarter of its way to three: an example where rocks
+/// may come.
+fn across(health: &Health, cliff: &Cliff) -> String {
+    let middle = [0, 1].map(|axis| 0.5 * (health.low_m[axis] + health.high_m[axis]));
+    let half = [0, 1].map(|axis| 0.5 * (health.high_m[axis] - health.low_m[axis]));
+    // a face that falls towards the south has its strike towards the east
+    let strike = [-cliff.normal.y, cliff.normal.x];
+    // how far the terrain reaches that way, to either side
+    let reach = [0, 1]
+        .map(|axis| half[axis] / strike[axis].abs())
+        .into_iter()
+        .fold(f64::INFINITY, f64::min);
+    let at = |share: f64| [0, 1].map(|axis| middle[axis] + share * reach * strike[axis]);
+    let [[x0, y0], [x1, y1]] = [at(-0.5), at(0.5)];
+    format!("[[{x0:.1}, {y0:.1}], [{x1:.1}, {y1:.1}]]")
 }
 
 const HEAD: &str = "\

@@ -140,12 +140,16 @@ impl Scene {
         self.frequency.as_ref().and_then(|table| table.compile(self.release.zone_list.as_ref()))
     }
 
+    /// Whether sources say with volumes how large rocks are, and `[rocks] radius_m` does not.
+    pub fn draws_volumes(&self) -> bool {
+        self.sources().as_ref().is_some_and(Frequency::draws_volumes)
+    }
+
     /// Checks `[frequency]`, and the sizes of rocks as far as they are known before any zones are read.
     pub(super) fn check_frequency(&self) -> Checked {
         let Some(table) = &self.frequency else { return self.check_sizes() };
         table.check(self.release.zones.is_some()).map_err(|wrong| wrong.inside("frequency"))?;
-        let draws = self.sources().as_ref().is_some_and(Frequency::draws_volumes);
-        if self.release.table.is_some() && draws {
+        if self.release.table.is_some() && self.draws_volumes() {
             let remedy =
                 "remove it, or write per_year = … in [frequency]: a table has blocks of its own";
             let about = Complaint::about("table", remedy);

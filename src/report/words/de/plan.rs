@@ -123,7 +123,7 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ("shared by their lengths", "verteilt nach ihren Längen"),
     ("shared by their areas", "verteilt nach ihren Flächen"),
     ("{a} m smallest, {b} m median, {c} m largest", "{a} m kleinster, {b} m Median, {c} m größter"),
-    ("{n} triangles in 1 files", "{n} Dreiecke in 1 Datei"),
+    ("{n} triangles in 1 file", "{n} Dreiecke in 1 Datei"),
     ("{n} triangles in {files} files", "{n} Dreiecke in {files} Dateien"),
     (
         "{file}, {n} bytes; names no system of coordinates: taken as the scene's",
@@ -355,6 +355,10 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ),
     ("{a} events a year of the scene's rocks", "{a} Ereignisse pro Jahr mit den Blöcken der Szene"),
     (
+        "{a} events a year; 1 class of size and source: {d} rocks are as precise as {e} of equal weight",
+        "{a} Ereignisse pro Jahr; 1 Klasse von Größe und Quelle: {d} Blöcke sind so aussagekräftig wie {e} gleichen Gewichts",
+    ),
+    (
         "{a} events a year; {b} classes of size and source, {c} rocks or more each: {d} rocks are as precise as {e} of equal weight",
         "{a} Ereignisse pro Jahr; {b} Klassen von Größe und Quelle, je {c} Blöcke oder mehr: {d} Blöcke sind so aussagekräftig wie {e} gleichen Gewichts",
     ),
@@ -386,9 +390,5 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     (
         "the same number of rocks is computed for every source, however often it releases them in a year. Percentiles, shares and maps are weighted back and hold for the sources as they are; counts of rocks and dots in figures show rocks as computed",
         "von jeder Quelle werden gleich viele Blöcke gerechnet, wie oft auch immer sie im Jahr welche ablöst. Perzentile, Anteile und Karten sind zurückgewichtet und gelten für die Quellen, wie sie sind; Anzahlen und Punkte in Abbildungen zeigen Blöcke wie gerechnet",
-    ),
-    (
-        "{file}: {n} of {all} cells are exactly 0 m high and all others above {low} m: cells without data? then declare 0 as no data (gdal_translate -a_nodata 0)",
-        "{file}: {n} von {all} Zellen sind genau 0 m hoch und alle anderen über {low} m: Zellen ohne Daten? dann 0 als „keine Daten“ erklären (gdal_translate -a_nodata 0)",
     ),
 ];

@@ -11,6 +11,10 @@ pub(super) const SLIPS: &[(&str, &str)] = &[
         "[rocks] radius_m reicht bis {r}: größer als jeder einzelne Block; in cm oder mm? Meter schreiben",
     ),
     (
+        "volume_m3 reaches {v} m³, a radius of {r} m: larger than any single rock; is it in litres? write cubic metres",
+        "volume_m3 reicht bis {v} m³, einem Radius von {r} m: größer als jeder einzelne Block; in Litern? Kubikmeter schreiben",
+    ),
+    (
         "[grounds.{name}] friction_angle_deg = {a} is next to no friction; is it in radians? that would be {b}",
         "[grounds.{name}] friction_angle_deg = {a} ist so gut wie keine Reibung; im Bogenmaß? das wäre {b}",
     ),
@@ -45,5 +49,9 @@ pub(super) const SLIPS: &[(&str, &str)] = &[
     (
         "epsg = {a} is a geographic system in degrees; coordinates are metres here: name the projected system of the meshes, as 2056 (LV95)",
         "epsg = {a} ist ein geographisches System in Grad; Koordinaten sind hier Meter: das projizierte System der Netze nennen, etwa 2056 (LV95)",
+    ),
+    (
+        "{file}: {n} of {all} cells are exactly 0 m high and all others above {low} m: cells without data? then declare 0 as no data (gdal_translate -a_nodata 0)",
+        "{file}: {n} von {all} Zellen sind genau 0 m hoch und alle anderen über {low} m: Zellen ohne Daten? dann 0 als „keine Daten“ erklären (gdal_translate -a_nodata 0)",
     ),
 ];

@@ -120,7 +120,7 @@ pub(super) const PLAN: &[(&str, &str)] = &[
         "{a} m smallest, {b} m median, {c} m largest",
         "{a} m le plus petit, {b} m médian, {c} m le plus grand",
     ),
-    ("{n} triangles in 1 files", "{n} triangles dans 1 fichier"),
+    ("{n} triangles in 1 file", "{n} triangles dans 1 fichier"),
     ("{n} triangles in {files} files", "{n} triangles dans {files} fichiers"),
     (
         "{file}, {n} bytes; names no system of coordinates: taken as the scene's",
@@ -358,6 +358,10 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ),
     ("{a} events a year of the scene's rocks", "{a} événements par an des blocs de la scène"),
     (
+        "{a} events a year; 1 class of size and source: {d} rocks are as precise as {e} of equal weight",
+        "{a} événements par an\u{a0}; 1 classe de taille et de source\u{a0}: {d} blocs sont aussi précis que {e} de même poids",
+    ),
+    (
         "{a} events a year; {b} classes of size and source, {c} rocks or more each: {d} rocks are as precise as {e} of equal weight",
         "{a} événements par an\u{a0}; {b} classes de taille et de source, de {c} blocs ou plus\u{a0}: {d} blocs sont aussi précis que {e} de même poids",
     ),
@@ -392,9 +396,5 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     (
         "the same number of rocks is computed for every source, however often it releases them in a year. Percentiles, shares and maps are weighted back and hold for the sources as they are; counts of rocks and dots in figures show rocks as computed",
         "autant de blocs sont calculés pour chaque source, quel que soit le nombre qu’elle en libère par an. Centiles, parts et cartes sont repondérés et valent pour les sources telles quelles\u{a0}; nombres de blocs et points des figures montrent les blocs calculés",
-    ),
-    (
-        "{file}: {n} of {all} cells are exactly 0 m high and all others above {low} m: cells without data? then declare 0 as no data (gdal_translate -a_nodata 0)",
-        "{file}\u{a0}: {n} cellules sur {all} sont à 0 m exactement et toutes les autres au-dessus de {low} m\u{a0}: des cellules sans données\u{a0}? alors déclarer 0 comme absence de données (gdal_translate -a_nodata 0)",
     ),
 ];

@@ -11,6 +11,10 @@ pub(super) const SLIPS: &[(&str, &str)] = &[
         "[rocks] radius_m va jusqu’à {r} : plus grand que tout bloc isolé ; en cm ou mm ? écrire des mètres",
     ),
     (
+        "volume_m3 reaches {v} m³, a radius of {r} m: larger than any single rock; is it in litres? write cubic metres",
+        "volume_m3 va jusqu’à {v} m³, un rayon de {r} m\u{a0}: plus grand que tout bloc isolé\u{a0}; en litres\u{a0}? écrire des mètres cubes",
+    ),
+    (
         "[grounds.{name}] friction_angle_deg = {a} is next to no friction; is it in radians? that would be {b}",
         "[grounds.{name}] friction_angle_deg = {a} n’est presque aucun frottement ; en radians ? ce serait {b}",
     ),
@@ -45,5 +49,9 @@ pub(super) const SLIPS: &[(&str, &str)] = &[
     (
         "epsg = {a} is a geographic system in degrees; coordinates are metres here: name the projected system of the meshes, as 2056 (LV95)",
         "epsg = {a} est un système géographique en degrés ; ici les coordonnées sont des mètres : nommer le système projeté des maillages, comme 2056 (LV95)",
+    ),
+    (
+        "{file}: {n} of {all} cells are exactly 0 m high and all others above {low} m: cells without data? then declare 0 as no data (gdal_translate -a_nodata 0)",
+        "{file}\u{a0}: {n} cellules sur {all} sont à 0 m exactement et toutes les autres au-dessus de {low} m\u{a0}: des cellules sans données\u{a0}? alors déclarer 0 comme absence de données (gdal_translate -a_nodata 0)",
     ),
 ];

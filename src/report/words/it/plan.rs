@@ -120,7 +120,7 @@ pub(super) const PLAN: &[(&str, &str)] = &[
         "{a} m smallest, {b} m median, {c} m largest",
         "{a} m il più piccolo, {b} m mediano, {c} m il più grande",
     ),
-    ("{n} triangles in 1 files", "{n} triangoli in 1 file"),
+    ("{n} triangles in 1 file", "{n} triangoli in 1 file"),
     ("{n} triangles in {files} files", "{n} triangoli in {files} file"),
     (
         "{file}, {n} bytes; names no system of coordinates: taken as the scene's",
@@ -352,6 +352,10 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ),
     ("{a} events a year of the scene's rocks", "{a} eventi all’anno dei massi della scena"),
     (
+        "{a} events a year; 1 class of size and source: {d} rocks are as precise as {e} of equal weight",
+        "{a} eventi all’anno; 1 classe di dimensione e sorgente: {d} massi sono precisi quanto {e} di ugual peso",
+    ),
+    (
         "{a} events a year; {b} classes of size and source, {c} rocks or more each: {d} rocks are as precise as {e} of equal weight",
         "{a} eventi all’anno; {b} classi di dimensione e sorgente, di {c} massi o più: {d} massi sono precisi quanto {e} di ugual peso",
     ),
@@ -380,9 +384,5 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     (
         "the same number of rocks is computed for every source, however often it releases them in a year. Percentiles, shares and maps are weighted back and hold for the sources as they are; counts of rocks and dots in figures show rocks as computed",
         "per ogni sorgente si calcola lo stesso numero di massi, comunque spesso ne distacchi in un anno. Percentili, quote e mappe sono ripesati e valgono per le sorgenti come sono; conteggi e punti nelle figure mostrano i massi come calcolati",
-    ),
-    (
-        "{file}: {n} of {all} cells are exactly 0 m high and all others above {low} m: cells without data? then declare 0 as no data (gdal_translate -a_nodata 0)",
-        "{file}: {n} celle su {all} sono esattamente a 0 m e tutte le altre sopra {low} m: celle senza dati? allora dichiarare 0 come dato mancante (gdal_translate -a_nodata 0)",
     ),
 ];

@@ -11,6 +11,10 @@ pub(super) const SLIPS: &[(&str, &str)] = &[
         "[rocks] radius_m arriva a {r}: più grande di qualsiasi blocco singolo; in cm o mm? scrivere metri",
     ),
     (
+        "volume_m3 reaches {v} m³, a radius of {r} m: larger than any single rock; is it in litres? write cubic metres",
+        "volume_m3 arriva a {v} m³, un raggio di {r} m: più grande di ogni singolo masso; in litri? scrivere metri cubi",
+    ),
+    (
         "[grounds.{name}] friction_angle_deg = {a} is next to no friction; is it in radians? that would be {b}",
         "[grounds.{name}] friction_angle_deg = {a} è quasi nessun attrito; in radianti? sarebbe {b}",
     ),
@@ -45,5 +49,9 @@ pub(super) const SLIPS: &[(&str, &str)] = &[
     (
         "epsg = {a} is a geographic system in degrees; coordinates are metres here: name the projected system of the meshes, as 2056 (LV95)",
         "epsg = {a} è un sistema geografico in gradi; qui le coordinate sono metri: indicare il sistema proiettato delle maglie, come 2056 (LV95)",
+    ),
+    (
+        "{file}: {n} of {all} cells are exactly 0 m high and all others above {low} m: cells without data? then declare 0 as no data (gdal_translate -a_nodata 0)",
+        "{file}: {n} celle su {all} sono esattamente a 0 m e tutte le altre sopra {low} m: celle senza dati? allora dichiarare 0 come dato mancante (gdal_translate -a_nodata 0)",
     ),
 ];
