@@ -54,11 +54,7 @@ pub fn slope_edge_m(terrain: &Terrain) -> f64 {
 }
 
 fn empty(terrain: &Terrain) -> Welded {
-    Welded {
-        origin_m: terrain.origin_m,
-        map_origin_m: terrain.origin_m,
-        ..Welded::default()
-    }
+    Welded { origin_m: terrain.origin_m, map_origin_m: terrain.origin_m, ..Welded::default() }
 }
 
 /// Where each vertex goes: to the chosen one nearest along the mesh.

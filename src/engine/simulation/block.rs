@@ -7,10 +7,10 @@
 
 mod impacts;
 
+use super::driver::{Falling, follow};
 use super::form::{Form, RockInstant, Turned};
 use super::impacts::MeshEnergy;
 use super::recorder::{Keep, Recorder};
-use super::rest::RestCriterion;
 use super::settings::RunSettings;
 use super::{ShapeOf, Stop, Trajectory};
 use crate::body::Block;
@@ -26,9 +26,10 @@ use crate::rock::{Motion, Vec3};
 use crate::solver::block::{Footing, Moving, Stepped};
 use crate::solver::body::Body;
 use crate::solver::environment::ContactEnvironment;
+use crate::solver::loss::Loss;
 use crate::solver::roughness::RoughFacets;
 use crate::solver::scar::{Scars, taken_j};
-use crate::solver::step_control::StepError;
+use crate::solver::step_control::{Advance, StepError};
 use crate::solver::struck::Struck;
 
 /// One block on its way.
@@ -48,6 +49,8 @@ struct Roll<'a> {
     moving: Moving,
     /// What is written down of its way.
     recorder: Recorder<'a>,
+    /// Whether nothing held it at the end of its last step.
+    is_free: bool,
 }
 
 /// Follows one block from its release to its stop; `laws` are those of the grounds for it.
@@ -70,12 +73,8 @@ pub(super) fn follow_block(
     let turned = turned(block, &moving);
     let start = (release.motion, Some(turned));
     let recorder = Recorder::new(settings.terrain, form, start, (keep, settings.recorders));
-    let mut roll = Roll { settings, world, block, footing, scars, moving, recorder };
-    let stop = loop {
-        if let Some(stop) = roll.fly().or_else(|| roll.touch()) {
-            break stop;
-        }
-    };
+    let mut roll = Roll { settings, world, block, footing, scars, moving, recorder, is_free: true };
+    let stop = follow(&mut roll, false);
     roll.end((release, drawn), stop)
 }
 
@@ -85,12 +84,31 @@ fn turned(block: &Block, moving: &Moving) -> Turned {
     Turned { attitude: moving.pose.attitude, rotational_j }
 }
 
-impl Roll<'_> {
-    /// Leaps to the next touch.
+impl<'a> Falling<'a> for Roll<'a> {
+    /// Springs are kept with the contacts.
+    type Stepping = ();
+
+    fn settings(&self) -> &'a RunSettings<'a> {
+        self.settings
+    }
+
+    fn recorder(&mut self) -> &mut Recorder<'a> {
+        &mut self.recorder
+    }
+
+    /// The ball around the block: what it does not touch, the block does not touch; and a corner must not move either where it rests.
+    fn ball(&self) -> (Vec3, f64) {
+        (self.moving.pose.centre, self.block.bound_m)
+    }
+
+    fn total_j(&self) -> f64 {
+        let weight: Vec3 = self.world.body.gravity * self.block.mass_kg;
+        self.moving.motion_j(self.block) - weight.dot(&self.moving.pose.centre)
+    }
+
     fn fly(&mut self) -> Option<Stop> {
         let time_s = self.recorder.now.time_s;
         let block = self.block;
-        // the ball around the block: what it does not touch, the block does not touch
         let path = Parabola::of(&self.recorder.now, self.settings.gravity_m_s2, block.bound_m);
         let top = Top::new(block.inertia_kg_m2, self.moving.pose.attitude, self.moving.momentum);
         let left = self.settings.longest_s - time_s;
@@ -107,78 +125,10 @@ impl Roll<'_> {
         stop
     }
 
-    /// Goes on in contact until the block is free again or stops.
-    fn touch(&mut self) -> Option<Stop> {
-        let (before_j, lost_before_j) = (self.total_j(), self.recorder.lost_j());
-        let held = self.begin_contact();
-        let stop = self.steps();
-        let rise_j = self.total_j() - before_j;
-        let lost_j = self.recorder.lost_j() - lost_before_j;
-        self.recorder.ledger.remainder_j -= rise_j + lost_j;
-        let stored = self.stored();
-        self.recorder.end_episode(rise_j, &stored, &held);
-        self.end_contact();
-        stop
+    fn begin(&mut self) -> ((), Loss) {
+        ((), self.begin_contact())
     }
 
-    /// Steps through one episode of contact: impacts that begin, then one step, until the block flies (`None`) or ends.
-    fn steps(&mut self) -> Option<Stop> {
-        let block = self.block;
-        let mut calm = RestCriterion::from(self.moving.pose.centre);
-        loop {
-            if self.meet() {
-                return None;
-            }
-            let began = self.recorder.now;
-            let now_s = began.time_s;
-            let left = self.settings.longest_s - now_s;
-            let calm_s = calm.longest_s(&began, block.bound_m, &self.settings.rest);
-            let kept = self.scars.plough_ahead();
-            self.slow(kept);
-            let most_s = left.min(calm_s).min(self.scars.longest_s(self.moving.v.norm()));
-            let from = self.moving.pose.centre;
-            self.footing.press_stem(&self.world);
-            let mut done = match self.step(most_s) {
-                Ok(done) => done,
-                Err(stuck) => return Some(Stop::Failed(stuck.to_string())),
-            };
-            self.footing.bend_stem(&self.world, (block, &mut self.moving), &mut done.loss);
-            self.recorder.effort.steps += 1;
-            self.recorder.effort.unsettled += u64::from(done.unsettled);
-            self.recorder.pay(&done.loss);
-            self.plough(&from, done.is_free);
-            let to = Motion {
-                time_s: now_s + done.dt,
-                position_m: self.moving.pose.centre,
-                velocity_m_s: self.moving.v,
-                spin_rad_s: self.moving.spin(block),
-            };
-            // an attitude that is no longer a rotation shows as NaN here, before it can reach a table
-            let finite = to.position_m.iter().chain(to.spin_rad_s.iter()).all(|x| x.is_finite());
-            if !finite {
-                return Some(Stop::Failed("motion is no longer finite".to_owned()));
-            }
-            let turned = Some(turned(block, &self.moving));
-            self.recorder.step(RockInstant { motion: to, turned }, done.slides);
-            self.leave_impacts();
-            let ends = self.settings.end_of_step(now_s, done.dt, &self.recorder.effort);
-            if done.is_free || ends.is_some() {
-                return ends;
-            }
-            // the largest radius: a corner must not move either
-            calm.note(done.dt, [&began, &to], block.bound_m, &self.settings.rest);
-            if calm.rests() {
-                return Some(Stop::AtRest);
-            }
-        }
-    }
-
-    /// Whether contacts have springs.
-    fn has_springs(&self) -> bool {
-        self.settings.step.scheme.has_springs()
-    }
-
-    /// What the block strikes before a step; whether it has been thrown off.
     fn meet(&mut self) -> bool {
         if self.has_springs() {
             self.begin_impacts();
@@ -190,18 +140,68 @@ impl Roll<'_> {
         self.strike()
     }
 
-    /// One step of at most `most_s`.
-    fn step(&mut self, most_s: f64) -> Result<Stepped, StepError> {
+    fn longest_s(&mut self) -> f64 {
+        let kept = self.scars.plough_ahead();
+        self.slow(kept);
+        self.scars.longest_s(self.moving.v.norm())
+    }
+
+    fn step(&mut self, (): &mut (), most_s: f64) -> Result<(Advance, bool), StepError> {
+        let from = self.moving.pose.centre;
+        self.footing.press_stem(&self.world);
+        let (mut done, rejected) = self.advance(most_s)?;
+        self.footing.bend_stem(&self.world, (self.block, &mut self.moving), &mut done.loss);
+        self.plough(&from, done.is_free);
+        self.is_free = done.is_free;
+        // an attitude that is no longer a rotation shows as NaN here, before it can reach a table
+        let spin_rad_s = self.moving.spin(self.block);
+        if !self.moving.pose.centre.iter().chain(spin_rad_s.iter()).all(|x| x.is_finite()) {
+            return Err(StepError::NotFinite);
+        }
+        let Stepped { dt, loss, slides, unsettled, .. } = done;
+        Ok((Advance { dt, loss, steps: 1, rejected, unsettled }, slides))
+    }
+
+    fn instant(&self, time_s: f64) -> RockInstant {
+        let motion = Motion {
+            time_s,
+            position_m: self.moving.pose.centre,
+            velocity_m_s: self.moving.v,
+            spin_rad_s: self.moving.spin(self.block),
+        };
+        RockInstant { motion, turned: Some(turned(self.block, &self.moving)) }
+    }
+
+    fn note(&mut self, to: RockInstant, slides: bool) -> bool {
+        self.recorder.step(to, slides);
+        self.leave_impacts();
+        self.is_free
+    }
+
+    fn stored(&mut self) -> Loss {
+        self.held()
+    }
+
+    fn leave(&mut self) {
+        self.end_contact();
+    }
+}
+
+impl Roll<'_> {
+    /// Whether contacts have springs.
+    fn has_springs(&self) -> bool {
+        self.settings.step.scheme.has_springs()
+    }
+
+    /// One step of at most `most_s` (s), and how many were thrown away.
+    fn advance(&mut self, most_s: f64) -> Result<(Stepped, u64), StepError> {
         let (settings, block) = (self.settings.step, self.block);
         if !self.has_springs() {
-            let most_s = settings.step_s.min(most_s);
-            let most = (most_s, settings.corner_way);
-            return Ok(self.footing.step(&self.world, block, &mut self.moving, most));
+            let most = (settings.step_s.min(most_s), settings.corner_way);
+            return Ok((self.footing.step(&self.world, block, &mut self.moving, most), 0));
         }
         let on = (block, &mut self.moving);
-        let (done, rejected) = self.footing.step_on_springs(&self.world, settings, on, most_s)?;
-        self.recorder.effort.rejected += rejected;
-        Ok(done)
+        self.footing.step_on_springs(&self.world, settings, on, most_s)
     }
 
     /// Resolves the impact of the contacts that touch, if there is one; whether it has thrown the block off.
@@ -282,12 +282,6 @@ impl Roll<'_> {
         self.recorder.ledger.soil_j += taken_j(&self.world.body, &self.moving.v, kept);
         self.moving.v *= kept;
         self.footing.springs.refresh();
-    }
-
-    /// Mechanical energy (J), weight included.
-    fn total_j(&self) -> f64 {
-        let weight: Vec3 = self.world.body.gravity * self.block.mass_kg;
-        self.moving.motion_j(self.block) - weight.dot(&self.moving.pose.centre)
     }
 
     /// The journey, complete, with the shape as it was drawn.

@@ -6,28 +6,25 @@
 //! balance: motion before and after, losses booked by cause, and the remainder, which is the error of the numerics.
 
 use super::block::follow_block;
-use super::fall::{Fall, Soil};
-use super::form::Form;
+use super::fall::follow_sphere;
+use super::form::RockInstant;
 use super::recorder::{Keep, Recorder};
 use super::rest::RestCriterion;
 use super::settings::RunSettings;
 use super::{Stop, Trajectory};
 use crate::error::Result;
-use crate::flight::{Parabola, time_of_impact_past};
 use crate::ground::{Damping, Law};
 use crate::plan::{PATH_STEP_S, Part, Plan};
 use crate::random::{Purpose, RandomStream, stream};
 use crate::release::{DrawnShape, Release};
-use crate::rock::Motion;
+use crate::rock::Vec3;
 use crate::solver::block::Footing;
-use crate::solver::body::Body;
 use crate::solver::contact_state::ContactState;
 use crate::solver::loss::Loss;
-use crate::solver::roughness::RoughFacets;
 use crate::solver::scar::Scars;
 use crate::solver::slip::Slip;
-use crate::solver::{self, Stepper};
-use crate::stopwatch::{Stopwatches, TimedPiece};
+use crate::solver::step_control::{Advance, StepError};
+use crate::stopwatch::Stopwatches;
 use std::ops::Range;
 
 /// Work space of one thread; nothing of one rock is left for the next.
@@ -90,37 +87,11 @@ pub fn simulate(
     scratch: &mut Scratch,
 ) -> Trajectory {
     scratch.make_laws(release, settings);
-    scratch.state.near.forget();
-    (scratch.state.near.tested, scratch.state.sweeps) = (0, 0);
-    let state = &mut scratch.state;
-    state.stem_load.raise(settings.terrain, &random, &mut state.near.gone);
-    scratch.state.facets = RoughFacets::of(random, &scratch.laws);
-    scratch.slip.begin(&release.grounds);
-    let mut fall = Fall {
-        settings,
-        body: Body::new(&release.rock, settings.gravity_m_s2),
-        laws: &mut scratch.laws,
-        soil: Soil::new(&mut scratch.scars, &mut scratch.slip),
-        state: &mut scratch.state,
-        recorder: Recorder::new(
-            settings.terrain,
-            Form { rock: release.rock, block: None },
-            (release.motion, None),
-            (keep, settings.recorders),
-        ),
-    };
-    // A rock that starts pressed into something must not fly out of its grip: a leap sees no touch where none begins.
-    let mut stop = if fall.is_pressed() { fall.touch() } else { None };
-    let stop = loop {
-        stop = stop.or_else(|| fall.fly()).or_else(|| fall.touch());
-        if let Some(stop) = stop {
-            break stop;
-        }
-    };
-    fall.end(release, stop)
+    let Scratch { state, scars, slip, laws, .. } = scratch;
+    follow_sphere(settings, release, keep, (laws, random), (state, scars, slip))
 }
 
-/// The same for a block, with scheme `rigid`.
+/// The same for a block.
 pub fn simulate_block(
     settings: &RunSettings,
     (release, drawn): (&Release, &DrawnShape),
@@ -175,157 +146,126 @@ pub(super) fn kept(plan: &Plan, index: usize, paths: Option<&Range<usize>>) -> K
     Keep { path_step_s, impacts: plan.impacts.is_kept() }
 }
 
-impl Fall<'_> {
-    /// Whether the rock is in contact with something it is pressed into.
-    fn is_pressed(&mut self) -> bool {
-        let now = self.recorder.now;
-        let world = self.settings.around(self.body, self.laws);
-        self.state.begin(&world, now.position_m, now.velocity_m_s, now.spin_rad_s);
-        self.state.touches.iter().any(|touch| touch.distance_m < self.body.radius)
-    }
+/// A rock on its way, sphere or block, as the driver asks for it.
+pub(super) trait Falling<'a> {
+    /// What the scheme knows from step to step of one episode of contact.
+    type Stepping;
 
-    /// Leaps to the next touch.
-    /// Cost: one search through the index, however long the flight.
-    fn fly(&mut self) -> Option<Stop> {
-        let now = self.recorder.now;
-        let flight = Parabola::of(&now, self.settings.gravity_m_s2, self.body.radius);
-        let left = self.settings.longest_s - now.time_s;
-        let begun = self.state.stopwatches.now();
-        // stems that this rock has broken are no longer in its way
-        let end = time_of_impact_past(
-            self.settings.terrain,
-            &flight,
-            left,
-            &self.state.near.gone,
-            &mut self.recorder.effort.triangles,
-        );
-        // a flight counts as one leap, however long
-        self.recorder.effort.leaps += 1;
-        let (dt, stop) = self.settings.end_of_flight(&end, now.time_s, &self.recorder.effort);
-        self.state.stopwatches.stop(TimedPiece::Leap, begun);
-        let begun = self.state.stopwatches.now();
-        self.recorder.fly(&flight, None, dt);
-        self.soil.fly(dt);
-        self.state.stopwatches.stop(TimedPiece::NotesInFlight, begun);
-        stop
-    }
+    fn settings(&self) -> &'a RunSettings<'a>;
 
-    /// Goes on in contact until the rock is free again or stops.
+    fn recorder(&mut self) -> &mut Recorder<'a>;
+
+    /// Its centre (m), and the radius of the ball around it, whose rim must be slow too where it rests (m).
+    fn ball(&self) -> (Vec3, f64);
+
+    /// Mechanical energy (J), weight included: `m v²/2 + ω·L/2 − m g·c`; springs are not in it.
+    fn total_j(&self) -> f64;
+
+    /// Leaps to the next touch; `None` = it touches.
+    fn fly(&mut self) -> Option<Stop>;
+
+    /// Begins an episode of contact; with what springs hold already (J).
+    fn begin(&mut self) -> (Self::Stepping, Loss);
+
+    /// What it strikes before a step; whether that has thrown it off.
+    fn meet(&mut self) -> bool;
+
+    /// The longest step (s) before roughness, soil, slip or stems change the law.
+    fn longest_s(&mut self) -> f64;
+
+    /// One step of at most `most_s` (s), and what it does to soil and stems; whether a contact slides.
     ///
-    /// Contact begins with a fresh look: memories of the episode before are gone, as a flight of
-    /// any length relaxes the springs.
-    fn touch(&mut self) -> Option<Stop> {
-        let Motion { position_m: c, velocity_m_s: v, spin_rad_s: w, .. } = self.recorder.now;
-        let world = self.settings.around(self.body, self.laws);
-        self.state.begin(&world, c, v, w);
-        self.in_contact().announce();
-        // soil takes speed out of the blow before any spring answers
-        let kept = self.answer_blow();
-        self.recorder.now.velocity_m_s *= kept;
-        // from here on the balance is kept
-        let before_j = self.total_j();
-        let lost_before_j = self.recorder.lost_j();
-        let world = self.settings.around(self.body, self.laws);
-        // A rock released pressed in, or one that never left, begins with energy in its springs: it
-        // counts as brought along.
-        let held = if self.is_rigid() { Loss::default() } else { self.state.stored_j(&world) };
-        let mut stepper = Stepper::new(self.settings.step, &world, self.state);
-        let stop = self.steps(&mut stepper);
-        // ΔE of motion and weight; with losses ≥ 0 and springs at rest at both ends it is −(losses)
-        // up to the numerics' own error, the remainder
-        let rise_j = self.total_j() - before_j;
-        self.recorder.ledger.remainder_j -= rise_j + self.recorder.lost_j() - lost_before_j;
-        let stored = self.held();
-        self.recorder.end_episode(rise_j, &stored, &held);
-        self.recorder.end_all_impacts();
-        self.in_contact().leave_facet();
-        stop
-    }
+    /// # Errors
+    /// [`StepError`] if no step, however short, settles.
+    fn step(
+        &mut self,
+        stepping: &mut Self::Stepping,
+        most_s: f64,
+    ) -> std::result::Result<(Advance, bool), StepError>;
 
-    /// Energy in the contact springs at the end of an episode; only a fixed step leaves some in those of a free rock.
-    fn held(&mut self) -> Loss {
-        let left = self.state.is_free() && !self.settings.step.scheme.has_fixed_step();
-        if left || self.is_rigid() {
-            return Loss::default();
-        }
-        self.state.springs_j(&self.settings.around(self.body, self.laws))
-    }
+    /// Where and how it is at a time (s).
+    fn instant(&self, time_s: f64) -> RockInstant;
 
-    /// Steps through one episode of contact, until the rock flies (`None`) or ends.
-    ///
-    /// Each step: what the ground changes first, the step of the scheme, what it has struck, then the record. The
-    /// order matters: impacts are noted with the speed before their losses are paid.
-    fn steps(&mut self, stepper: &mut Stepper) -> Option<Stop> {
-        let mut calm = RestCriterion::from(self.state.c);
-        loop {
-            let from = self.recorder.now;
-            let now_s = from.time_s;
-            let left = self.settings.longest_s - now_s;
-            let calm_s = calm.longest_s(&from, self.body.radius, &self.settings.rest);
-            // the shortest of the time left, of what tells rest, and of the way after which roughness, soil or slip change
-            // the law
-            let most = left.min(calm_s).min(self.before_step());
-            let before = self.state.c;
-            let world = self.settings.around(self.body, self.laws);
-            let mut done = match solver::advance(stepper, &world, self.state, most) {
-                Ok(done) => done,
-                Err(stuck) => return Some(Stop::Failed(stuck.to_string())),
-            };
-            self.in_contact().announce();
-            self.soil_after_step(&before, done.dt);
-            self.answer_blow();
-            let effort = &mut self.recorder.effort;
-            effort.steps += done.steps;
-            effort.rejected += done.rejected;
-            effort.unsettled += u64::from(done.unsettled);
-            let world = self.settings.around(self.body, self.laws);
-            // a stem has given way: stiffness and contacts changed, so the stepper forgets its factors and its step
-            if self.state.bend(&world, &mut done.loss) {
-                *stepper = Stepper::new(self.settings.step, &world, self.state);
-            }
-            self.recorder.pay(&done.loss);
-            let to = Motion {
-                time_s: now_s + done.dt,
-                position_m: self.state.c,
-                velocity_m_s: self.state.v,
-                spin_rad_s: self.state.w,
-            };
-            // one slipping contact makes the whole step "sliding" on the path
-            let slides = self.state.histories.iter().any(|history| history.slides);
-            let begun = self.state.stopwatches.now();
-            self.recorder.step(to, slides);
-            self.in_contact().end_impacts();
-            self.state.stopwatches.stop(TimedPiece::NotesInContact, begun);
-            let ends = self.settings.end_of_step(now_s, done.dt, &self.recorder.effort);
-            if self.state.is_free() {
-                return ends;
-            }
-            // rest: slow for long enough, and neither faster nor farther at the end than at the start
-            calm.note(done.dt, [&from, &to], self.body.radius, &self.settings.rest);
-            if calm.rests() {
-                return Some(Stop::AtRest);
-            }
-            if ends.is_some() {
-                return ends;
-            }
+    /// Notes a step to `to` and the impacts that end with it; whether nothing holds the rock any more.
+    fn note(&mut self, to: RockInstant, slides: bool) -> bool;
+
+    /// What springs hold at the end of an episode (J).
+    fn stored(&mut self) -> Loss;
+
+    /// Ends an episode of contact.
+    fn leave(&mut self);
+}
+
+/// Follows a rock to its stop. One that is `pressed` must not fly out of its grip: a leap sees no touch where none begins.
+pub(super) fn follow<'a>(fall: &mut impl Falling<'a>, pressed: bool) -> Stop {
+    let mut stop = if pressed { touch(fall) } else { None };
+    loop {
+        stop = stop.or_else(|| fall.fly()).or_else(|| touch(fall));
+        if let Some(stop) = stop {
+            return stop;
         }
     }
+}
 
-    /// Mechanical energy of the rock in contact (J), weight included.
-    /// `m v²/2 + I ω²/2 − m g·c`; springs are not in it.
-    fn total_j(&mut self) -> f64 {
-        self.state.motion_j(&self.body) - self.body.mass * self.body.gravity.dot(&self.state.c)
-    }
+/// Goes on in contact until the rock is free again or stops, and closes the balance of the episode.
+///
+/// Contact begins with a fresh look: memories of the episode before are gone, as a flight of
+/// any length relaxes the springs.
+fn touch<'a>(fall: &mut impl Falling<'a>) -> Option<Stop> {
+    // a rock released pressed in, or one that never left, begins with energy in its springs: it counts as brought along
+    let (mut stepping, held) = fall.begin();
+    let (before_j, lost_before_j) = (fall.total_j(), fall.recorder().lost_j());
+    let stop = steps(fall, &mut stepping);
+    // ΔE of motion and weight; with losses ≥ 0 and springs at rest at both ends it is −(losses)
+    // up to the numerics' own error, the remainder
+    let rise_j = fall.total_j() - before_j;
+    let recorder = fall.recorder();
+    recorder.ledger.remainder_j -= rise_j + (recorder.lost_j() - lost_before_j);
+    let stored = fall.stored();
+    fall.recorder().end_episode(rise_j, &stored, &held);
+    fall.leave();
+    stop
+}
 
-    /// The journey, complete.
-    fn end(mut self, release: &Release, stop: Stop) -> Trajectory {
-        self.recorder.effort.sweeps += self.state.sweeps;
-        self.recorder.effort.triangles += self.state.near.tested;
-        let weight_n = self.body.mass * self.settings.gravity_m_s2;
-        self.recorder.into_trajectory(
-            release,
-            stop,
-            (weight_n, release.motion.kinetic_j(&release.rock)),
-        )
+/// Steps through one episode of contact, until the rock flies (`None`) or ends.
+///
+/// Each step: what the ground changes first, the step of the scheme, what it has struck, then the record. The
+/// order matters: impacts are noted with the speed before their losses are paid.
+fn steps<'a, F: Falling<'a>>(fall: &mut F, stepping: &mut F::Stepping) -> Option<Stop> {
+    let settings = fall.settings();
+    let (centre, radius_m) = fall.ball();
+    let mut calm = RestCriterion::from(centre);
+    loop {
+        if fall.meet() {
+            return None;
+        }
+        let from = fall.recorder().now;
+        let left = settings.longest_s - from.time_s;
+        let calm_s = calm.longest_s(&from, radius_m, &settings.rest);
+        // the shortest of the time left, of what tells rest, and of what changes the law
+        let most_s = left.min(calm_s).min(fall.longest_s());
+        let (done, slides) = match fall.step(stepping, most_s) {
+            Ok(done) => done,
+            Err(stuck) => return Some(Stop::Failed(stuck.to_string())),
+        };
+        let recorder = fall.recorder();
+        recorder.effort.steps += done.steps;
+        recorder.effort.rejected += done.rejected;
+        recorder.effort.unsettled += u64::from(done.unsettled);
+        recorder.pay(&done.loss);
+        let to = fall.instant(from.time_s + done.dt);
+        let is_free = fall.note(to, slides);
+        let ends = settings.end_of_step(from.time_s, done.dt, &fall.recorder().effort);
+        if is_free {
+            return ends;
+        }
+        // rest: slow for long enough, and neither faster nor farther at the end than at the start
+        calm.note(done.dt, [&from, &to.motion], radius_m, &settings.rest);
+        if calm.rests() {
+            return Some(Stop::AtRest);
+        }
+        if ends.is_some() {
+            return ends;
+        }
     }
 }

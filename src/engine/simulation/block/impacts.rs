@@ -18,11 +18,11 @@ impl Roll<'_> {
             let on = (self.block, &self.moving);
             self.footing.begin_springs(&self.world, self.settings.step, on);
         }
-        self.stored()
+        self.held()
     }
 
     /// What springs hold (J).
-    pub(super) fn stored(&mut self) -> Loss {
+    pub(super) fn held(&mut self) -> Loss {
         if self.has_springs() {
             self.footing.springs_j(&self.world, (self.block, &self.moving))
         } else {
