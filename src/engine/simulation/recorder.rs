@@ -214,8 +214,11 @@ impl<'a> Recorder<'a> {
         }
     }
 
-    /// Notes how a step in contact goes, by how the rock is turned where it begins and ends.
-    fn note_step(&mut self, ends @ [from, to]: [&RockInstant; 2]) {
+    /// Notes how a step goes, by how the rock moves and is turned where it begins and ends. In a world a flying rock is carried along by
+    /// the steps of its island, and so is one that hangs on others or lies on them: between the ends it may be higher than at both.
+    ///
+    /// Energies are those of the ends' velocities: a blow in a step that is hardly any moves a rock by more than its velocity says.
+    fn note_step(&mut self, ends @ [from, to]: [&RockInstant; 2], is_off_ground: bool) {
         let (terrain, form) = (self.terrain, self.form);
         let lasts_s = to.motion.time_s - from.motion.time_s;
         let path = Parabola::between(&from.motion, &to.motion, form.rim_m());
@@ -225,7 +228,11 @@ impl<'a> Recorder<'a> {
         let heights = Heights { terrain, form: &form, flight: &flight };
         let heights = Some(heights).filter(|_| lasts_s > 0.0);
         let are_counted = self.passages.are_on() || self.stretches.are_on();
-        let most_m = if are_counted { self.below.most_m((terrain, &form), ends) } else { 0.0 };
+        let most_m = match (are_counted, is_off_ground) {
+            (false, _) => 0.0,
+            (true, true) => f64::INFINITY,
+            (true, false) => self.below.most_m((terrain, &form), ends),
+        };
         let at_step = StepHeights { heights, most_m };
         self.passages.step((terrain, &form), ends, &at_step);
         self.stretches.step(ends.map(|end| &end.motion), &at_step);
@@ -258,14 +265,7 @@ impl<'a> Recorder<'a> {
             at.motion.time_s = self.next_point_s;
             self.point(&at, state);
         }
-        if is_off_ground && lasts_s > 0.0 {
-            // in a world a flying rock is carried along by the steps of its island, and so is one that hangs on others or lies on them
-            let path = Parabola::between(&from.motion, &to.motion, self.form.rim_m());
-            let start = from.motion;
-            self.note_heights(&RockFlight { start, path: &path, turning: None, lasts_s });
-        } else {
-            self.note_step([&from, &to]);
-        }
+        self.note_step([&from, &to], is_off_ground);
         self.note_speed();
     }
 

@@ -36,6 +36,7 @@ use ahead::Came;
 use energy::ActingAlong;
 use nalgebra::{Matrix3, Rotation3};
 use rolling::Turning;
+use slip::slip_m_s;
 use solve::{BlockContact, Mass, SWEEPS, rigid_turning, solve};
 use springs::{Clamp, Springs};
 
@@ -43,6 +44,8 @@ use springs::{Clamp, Springs};
 pub(crate) const TOUCH: f64 = 1e-8;
 /// Contacts this far ahead take part in a step (–, relative to the balls' radius).
 const AHEAD: f64 = 1.0;
+/// A contact slides that is faster along the surface than this (–, relative to 1 m/s and the block's speed).
+const SLIDES: f64 = 1e-6;
 /// A block turns no further in one step (rad) than this share of the longest way of a corner over the balls' radius.
 const TURN: f64 = 0.1;
 /// What was pressed in is let out no faster than this (–, relative to the speed `√(g R)` of a fall by half the radius).
@@ -212,14 +215,13 @@ impl Footing {
         let (mass, weight) = (moving.mass(block), world.body.gravity * dt);
         let (v, w) = (moving.v, moving.spin(block));
         self.contacts.clear();
-        let slip_m_s = self.slip_m_s(block, &start);
         let out_m_s = LET_OUT * (world.body.gravity.norm() * block.radius_m).sqrt();
         let came = |touch: &BlockTouch| Came::of(block, [&start, moving], touch, dt);
         // stopped within the step, what strikes would give nothing back
         self.set_aside(|touch| !came(touch).strikes(world, block, touch));
         for touch in &self.aside {
             let goal = came(touch).goal(touch, dt, out_m_s);
-            let ahead_m = 0.5 * dt * slip_m_s;
+            let ahead_m = 0.5 * dt * slip_m_s(block, &start, (&touch.normal, &touch.lever));
             self.contacts.push(self.contact(world, (&mass, touch), ahead_m, goal));
         }
         // a goal is a gap, which is known as well as places are, over the time of the step
@@ -239,14 +241,14 @@ impl Footing {
         let loss = self.booked(world, [(&v, &w), after], lost_j);
         let along = ActingAlong::of_impulses(&self.contacts, &self.turning);
         moving.hold_energy(block, (&free_motion, &weight), &along);
-        let pushed = self.clamp.is_on()
-            || self.contacts.iter().any(|contact| contact.n.dot(&contact.impulse) > 0.0);
+        let pushed = self.clamp.is_on() || self.contacts.iter().any(BlockContact::pushes);
+        let [slip_before, slip_after] = [&start, moving].map(|at| self.pushed_slip_m_s(block, at));
+        let on = self.contacts.iter().find(|contact| contact.pushes());
+        let on = on.map(|contact| world.ground_of(contact.triangle));
+        self.slip.grow(0.5 * dt * (slip_before + slip_after), on);
+        let slides = slip_after > SLIDES * (1.0 + moving.v.norm());
         moving.drift(block, 0.5 * dt);
         self.look(world, block, &moving.pose, AHEAD * block.ball_m);
-        let slides = self.slides(block, moving);
-        let slipped_m = 0.5 * dt * (slip_m_s + self.slip_m_s(block, moving));
-        let on = self.touching(block).next().map(|touch| world.ground_of(touch.triangle));
-        self.slip.grow(slipped_m, on);
         let is_free = !self.holds(world, (block, moving), pushed);
         Stepped { dt, loss, slides, is_free, unsettled: self.unsettled }
     }

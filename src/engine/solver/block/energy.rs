@@ -60,7 +60,7 @@ impl ActingAlong {
     /// What impulses of contacts act along in the rigid limit.
     pub(super) fn of_impulses(contacts: &[BlockContact], turning: &Turning) -> Self {
         let mut all = Self { everything: turning.is_on(), ..Self::default() };
-        for contact in contacts.iter().filter(|contact| contact.n.dot(&contact.impulse) > 0.0) {
+        for contact in contacts.iter().filter(|contact| contact.pushes()) {
             all.take_in(&contact.n, contact.rubs());
         }
         all

@@ -1,22 +1,27 @@
 //! How fast a block slips, and how far a step may take it.
 
+use super::solve::BlockContact;
 use super::{AHEAD, Footing, HELD, Moving};
 use crate::body::Block;
 use crate::contact::FeatureKind;
 use crate::contact::block::BlockTouch;
+use crate::rock::Vec3;
 
 /// Corners that all skid over one triangle each may go this much further in a step (–): while they do, nothing of the contact changes.
 const SKIDS: f64 = 3.0;
 /// They skid where each of them is at least so fast (–, relative to what any point of the block can be): the block hardly turns.
 const SKIDS_AT: f64 = 0.7;
 
+/// How fast a point of a block moves along a surface (m/s).
+pub(super) fn slip_m_s(block: &Block, moving: &Moving, (n, lever): (&Vec3, &Vec3)) -> f64 {
+    let u = moving.at(block, lever);
+    (u - n * n.dot(&u)).norm()
+}
+
 impl Footing {
     /// Fastest slip of the contacts that touch (m/s).
     pub(super) fn slip_m_s(&self, block: &Block, moving: &Moving) -> f64 {
-        let slip = |touch: &BlockTouch| {
-            let u = moving.at(block, &touch.lever);
-            (u - touch.normal * touch.normal.dot(&u)).norm()
-        };
+        let slip = |touch: &BlockTouch| slip_m_s(block, moving, (&touch.normal, &touch.lever));
         let free = self.touching(block).filter(|touch| !self.clamp.holds(touch));
         free.map(slip).fold(0.0, f64::max)
     }
@@ -44,8 +49,11 @@ impl Footing {
         way_m.clamp(short_m, long_m.max(short_m))
     }
 
-    /// Whether a contact that touches slides.
-    pub(super) fn slides(&self, block: &Block, moving: &Moving) -> bool {
-        self.slip_m_s(block, moving) > 1e-6 * (1.0 + moving.v.norm())
+    /// Fastest slip (m/s) of the contacts that have pushed in a step of the rigid limit, with the motion at one of its ends. Which of them
+    /// touch at the end says little: what pushes may leave a hair's breadth.
+    pub(super) fn pushed_slip_m_s(&self, block: &Block, moving: &Moving) -> f64 {
+        let pushed = self.contacts.iter().filter(|contact| contact.pushes() && !contact.is_clamped);
+        let slip = |contact: &BlockContact| slip_m_s(block, moving, (&contact.n, &contact.lever));
+        pushed.map(slip).fold(0.0, f64::max)
     }
 }

@@ -68,7 +68,7 @@ pub(crate) struct BlockContact {
     /// How it gives way; `None` in the rigid limit.
     springs: Option<GivingWay>,
     /// Whether it is clamped: it neither parts nor slips.
-    is_clamped: bool,
+    pub(super) is_clamped: bool,
 }
 
 /// A matrix (1/kg) and its inverse (kg).
@@ -169,6 +169,11 @@ impl BlockContact {
     /// The same, clamped or not.
     pub(crate) fn clamped(self, is_clamped: bool) -> Self {
         Self { is_clamped, ..self }
+    }
+
+    /// Whether it pushes the block.
+    pub(super) fn pushes(&self) -> bool {
+        self.n.dot(&self.impulse) > 0.0
     }
 
     /// Whether it bears rolling friction.
