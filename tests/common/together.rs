@@ -3,7 +3,7 @@
 use super::{CASE, GROUND, terrain};
 use rockfall::contact::pair::Strength;
 use rockfall::ground::Ground;
-use rockfall::plan::{Recorders, RestRule};
+use rockfall::plan::{MapGrid, Recorders, RestRule};
 use rockfall::release::Release;
 use rockfall::rock::{Motion, Rock, Vec3};
 use rockfall::simulation::{
@@ -52,6 +52,10 @@ pub const WORLD: World = World {
 /// A sphere: radius, density, centre, velocity, spin.
 pub type Sphere = (f64, f64, [f64; 3], [f64; 3], [f64; 3]);
 
+/// A map of all that the rocks may reach: no cell holds more energy than the rock ever had.
+const CELLS: MapGrid =
+    MapGrid { west_m: -50.0, south_m: -50.0, cell_m: 0.25, columns: 400, rows: 400 };
+
 impl World {
     pub fn run(
         &self,
@@ -75,7 +79,7 @@ impl World {
             step: &step,
             rest: RestRule { speed_m_s: 0.02, time_s: self.rest_time_s },
             longest_s,
-            recorders: Recorders::default(),
+            recorders: Recorders { cells: Some(&CELLS), ..Recorders::default() },
             seed: 1,
         };
         let release = |&(radius_m, density_kg_m3, c, v, w): &Sphere| Release {
@@ -103,6 +107,10 @@ impl World {
             simulate_world(&course, &releases, &answer, keep, Observer::silent(&never)).unwrap();
         for fall in &falls {
             assert!(!matches!(fall.stop, Stop::Failed(_)), "{:?}", fall.stop);
+            let most_j = (1.0 + 1e-9) * fall.extremes.total_j;
+            for cell in &fall.passages {
+                assert!(cell.total_j <= most_j, "{} J of {most_j} J in a cell", cell.total_j);
+            }
         }
         (falls, census)
     }

@@ -306,3 +306,40 @@ fn a_block_is_slowed_as_the_ball_of_its_volume() {
         assert!(run.ledger.soil_j > 0.0 && run.end.spin_rad_s.norm() < 1e-6, "{scheme:?}");
     }
 }
+
+/// A box that comes down on an edge and skids on it over level ground, under friction that grows with slip, goes as far in the rigid limit, at
+/// any step, as with springs.
+#[test]
+fn friction_of_a_block_grows_with_slip_on_its_edge() {
+    let form = BlockForm::Box([1.0, 0.8, 0.6]);
+    let attitude = nalgebra::Rotation3::from_euler_angles(0.0, 0.4, 0.0);
+    let slip = SlipFriction { most: 0.6, kappa_per_m: 2.0, beta_per_s: 1e-6 };
+    let ground = Ground {
+        normal_stiffness_n_m: 1e10,
+        shear_stiffness_n_m: 2.5e9,
+        friction_angle_rad: 10.0_f64.to_radians(),
+        slip_friction: Some(slip),
+        restitution: Some(0.0),
+        ..SETUP.ground
+    };
+    let setup = Setup {
+        rock: form.rock(),
+        block: Some(MadeBlock { form, ball_m: 0.08, attitude }),
+        ground,
+        centre_m: Vec3::z() * 0.46,
+        velocity_m_s: Vec3::y() * 6.0,
+        longest_s: 2.0,
+        ..SETUP
+    };
+    let way_m = |scheme: Scheme, fineness: f64| {
+        let step = settings(scheme, fineness, None);
+        let run = setup.follow(&plane(0.0), &step, &mut Scratch::default());
+        (run.end.position_m - setup.centre_m).norm()
+    };
+    let springs = way_m(Scheme::Reference, 1e-6);
+    for step_s in [0.01, 0.001] {
+        let rigid = way_m(Scheme::Rigid, step_s);
+        println!("springs {springs} m, rigid at {step_s} s {rigid} m");
+        assert!((rigid / springs - 1.0).abs() < 0.02, "{rigid} for {springs} m");
+    }
+}
