@@ -87,6 +87,14 @@ pub struct Settings {
 }
 
 impl Settings {
+    /// Error of a speed (m/s): slower rebounds than half of it mean nothing. Blocks in the rigid limit miss contacts for a step, and what falls
+    /// meanwhile comes back as a blow, which must not rebound from there on and on: twice what gravity gives in the longest step.
+    pub fn speed_error_m_s(&self, gravity_m_s2: f64, are_blocks: bool) -> f64 {
+        let misses_contacts = are_blocks && !self.scheme.has_springs();
+        let missed_m_s = if misses_contacts { gravity_m_s2 * self.step_s } else { 0.0 };
+        self.tolerance_m_s.max(2.0 * missed_m_s)
+    }
+
     /// The same in the limit of stiff springs, with its usual longest step.
     #[must_use]
     pub const fn in_rigid_limit(self) -> Self {

@@ -112,7 +112,7 @@ pub(super) fn too_short(step: &Settings, longest_s: f64, warnings: &mut Vec<Stri
 pub(super) fn capture_m_s(scene: &Scene, step: &Settings) -> Vec<f64> {
     let capture = Capture {
         own_m_s: step.capture_speed_m_s,
-        tolerance_m_s: step.tolerance_m_s,
+        tolerance_m_s: step.speed_error_m_s(scene.gravity_m_s2, !scene.rocks.shapes.is_empty()),
         gravity_m_s2: scene.gravity_m_s2,
     };
     let median = |value: &Distribution| value.quantile(0.5);

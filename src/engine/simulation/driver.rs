@@ -60,8 +60,8 @@ impl Scratch {
 
     /// Fills in the laws of all grounds for one rock. The damping ratio of a restitution takes a root search, so it is
     /// kept as long as the restitution of a ground stays the same.
-    fn make_laws(&mut self, release: &Release, settings: &RunSettings) {
-        let capture = settings.capture();
+    fn make_laws(&mut self, release: &Release, settings: &RunSettings, is_block: bool) {
+        let capture = settings.capture(is_block);
         self.damping.truncate(release.grounds.len());
         self.laws.clear();
         for (k, ground) in release.grounds.iter().enumerate() {
@@ -86,7 +86,7 @@ pub fn simulate(
     random: RandomStream,
     scratch: &mut Scratch,
 ) -> Trajectory {
-    scratch.make_laws(release, settings);
+    scratch.make_laws(release, settings, false);
     let Scratch { state, scars, slip, laws, .. } = scratch;
     follow_sphere(settings, release, keep, (laws, random), (state, scars, slip))
 }
@@ -99,7 +99,7 @@ pub fn simulate_block(
     random: RandomStream,
     scratch: &mut Scratch,
 ) -> Trajectory {
-    scratch.make_laws(release, settings);
+    scratch.make_laws(release, settings, true);
     let Scratch { laws, footing, scars, .. } = scratch;
     follow_block(settings, (release, drawn), keep, (laws, random), (footing, scars))
 }

@@ -48,10 +48,10 @@ impl<'a> RunSettings<'a> {
     ///
     /// The scene's own capture speed, or what it is made of where the scene names none: tolerance
     /// and gravity.
-    pub(super) fn capture(&self) -> Capture {
+    pub(super) fn capture(&self, are_blocks: bool) -> Capture {
         Capture {
             own_m_s: self.step.capture_speed_m_s,
-            tolerance_m_s: self.step.tolerance_m_s,
+            tolerance_m_s: self.step.speed_error_m_s(self.gravity_m_s2, are_blocks),
             gravity_m_s2: self.gravity_m_s2,
         }
     }
