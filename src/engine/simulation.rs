@@ -13,6 +13,7 @@ mod passages;
 mod recorder;
 mod rock_in_contact;
 mod settings;
+mod single;
 mod soil;
 mod world;
 mod cells;
@@ -27,9 +28,9 @@ use serde::{Deserialize, Serialize};
 
 pub use cells::CellPassage;
 pub use crossings::Crossing;
-pub use driver::{Scratch, simulate, simulate_block, simulate_release};
 pub use recorder::Keep;
 pub use settings::RunSettings;
+pub use single::{Scratch, simulate, simulate_block, simulate_release};
 pub use stretches::Stretch;
 pub use world::{Observer, PairMaterial, WorldStats, simulate_releases_together, simulate_world};
 

@@ -19,11 +19,11 @@ mod prediction;
 mod heaps;
 mod cached_pairs;
 
-use super::driver::kept;
 use super::form::Form;
 use super::recorder::{Keep, Recorder};
 use super::rest::RestCriterion;
 use super::settings::RunSettings;
+use super::single::kept;
 use super::{Stop, Trajectory};
 use crate::contact::pair::{Bond, PairHistory, Strength, between};
 use crate::error::{Error, Result};
