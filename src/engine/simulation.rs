@@ -107,7 +107,7 @@ pub struct Ledger {
     /// Handed on to other rocks, negative if received; 0 for a rock alone, and in sum over a world.
     #[serde(default)]
     pub passed_on_j: f64,
-    /// What the springs of its contacts with the mesh hold at the end more than at release: not lost, but no motion either.
+    /// What the springs of its contacts hold at the end more than at release, half of those with other rocks: not lost, but no motion either.
     #[serde(default)]
     pub springs_j: f64,
     /// What the numerics lost (positive) or gained (negative).

@@ -134,6 +134,28 @@ fn a_bonded_block_gains_nothing() {
     }
 }
 
+/// Two bonded rocks that swing against each other without loss: whenever the run ends, what is no motion is in the springs between them.
+#[test]
+fn what_a_bond_holds_at_the_end_is_not_lost() {
+    let strength = Strength { tensile_pa: 1e12, cohesion_pa: 1e12 };
+    let (scheme, tolerance_m_s) = (Scheme::Reference, 1e-8);
+    let world = World { scheme, tolerance_m_s, strength, restitution: 1.0, ..WORLD };
+    let rock = |x: f64| (0.1, 2700.0, [x, 0.0, 5.0], [x, 0.0, 0.0], [0.0; 3]);
+    let mut most_held = 0.0f64;
+    for k in 0..8 {
+        let (falls, _) = world.run(&plane(), &[rock(-0.1), rock(0.1)], 0.01 + 1e-4 * f64::from(k));
+        for fall in &falls {
+            let begun_j = fall.start.translational_j(&fall.rock);
+            let gone = (begun_j - kinetic_j(fall)) / begun_j;
+            let [held, lost] = [fall.ledger.springs_j, fall.ledger.others_j].map(|j| j / begun_j);
+            println!("gone {gone} held {held} lost {lost}");
+            assert!(lost.abs() < 1e-3 && (held - gone).abs() < 1e-3, "{:?}", fall.ledger);
+            most_held = most_held.max(held);
+        }
+    }
+    assert!(most_held > 0.5, "at most {most_held} is ever in the springs");
+}
+
 /// A pit: a floor of faces of 1 m that all lean another way, and upright walls about it.
 fn pit() -> Terrain {
     let half = 8;

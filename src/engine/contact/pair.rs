@@ -218,6 +218,16 @@ impl PairHistory {
         (self.normal_force, self.shear_force, self.shear) = (0.0, Vec3::zeros(), Vec3::zeros());
     }
 
+    /// What its springs hold (J) where the centres of its rocks, which touch from `reach_m` (m) on, are `distance_m` (m) apart. A bond is
+    /// drawn too.
+    pub fn stored_j(&self, distance_m: f64, reach_m: f64) -> f64 {
+        let penetration_m = match &self.bond {
+            Some(bond) => bond.length_m - distance_m,
+            None => (reach_m - distance_m).max(0.0),
+        };
+        self.law.stored_j(penetration_m, self.shear.norm_squared(), 0.0)
+    }
+
     /// Whether it must be remembered.
     /// A bonded pair is held even when its rocks are a little apart: a stretched bond pulls.
     pub fn is_held(&self) -> bool {

@@ -244,11 +244,32 @@ impl BodyWorld<'_> {
 
     /// The journeys, complete.
     pub(super) fn end(self, releases: &[Release]) -> Vec<Trajectory> {
-        let Self { settings, bodies, now_s, .. } = self;
+        let held_j = self.held_by_pairs_j();
+        let Self { settings, mut bodies, now_s, .. } = self;
+        for (body, held_j) in bodies.iter_mut().flatten().zip(held_j) {
+            body.recorder.hold_for_others(held_j);
+        }
         let bodies = bodies.into_iter().flatten().enumerate();
         bodies
             .zip(releases)
             .map(|((k, body), release)| body.end(settings, k, release, now_s))
             .collect()
+    }
+
+    /// What springs between rocks hold (J), half of it each rock's. Heaps in the rigid limit have given all of it to the motion.
+    fn held_by_pairs_j(&self) -> Vec<f64> {
+        let mut held_j = vec![0.0; self.bodies.len()];
+        if self.is_rigid() || self.heaps.is_some() {
+            return held_j;
+        }
+        for pair in self.pair_histories.iter().filter(|pair| pair.is_held()) {
+            let [one, two] = [pair.a, pair.b].map(|k| &self.body(k).member);
+            let (_, distance) = between(&one.state.c, &two.state.c);
+            let stored_j = pair.stored_j(distance, one.body.radius + two.body.radius);
+            for k in [pair.a, pair.b] {
+                held_j[k as usize] += 0.5 * stored_j;
+            }
+        }
+        held_j
     }
 }

@@ -66,6 +66,12 @@ impl Recorder<'_> {
         self.ledger.springs_j -= back.sum();
     }
 
+    /// Writes down what springs between the rock and others hold at the end (J): booked as lost to others, and not lost.
+    pub(in crate::simulation) fn hold_for_others(&mut self, held_j: f64) {
+        self.ledger.others_j -= held_j;
+        self.ledger.springs_j += held_j;
+    }
+
     /// Ends an episode in which motion and weight have gained `rise_j` (J), with [`Self::hold`]. What springs hold is not lost, and no gain is
     /// due to what they have brought: what rises beyond that is an error of the numerics.
     pub(in crate::simulation) fn end_episode(

@@ -163,15 +163,7 @@ impl<'a> Island<'a> {
         {
             let [a, b] = [pair_history.a, pair_history.b].map(|k| &self.members[k as usize]);
             let (_, distance) = between(&a.state.c, &b.state.c);
-            let reach =
-                pair_history.bond.map_or(a.body.radius + b.body.radius, |bond| bond.length_m);
-            let penetration = if pair_history.bond.is_some() {
-                reach - distance
-            } else {
-                (reach - distance).max(0.0)
-            };
-            before +=
-                pair_history.law.stored_j(penetration, pair_history.shear.norm_squared(), 0.0);
+            before += pair_history.stored_j(distance, a.body.radius + b.body.radius);
         }
         for pair in &self.pairs {
             let ends = pair.ends.map(|k| (self.members[k].end.v, self.members[k].end.w));
