@@ -1,21 +1,22 @@
 //! Differences between the statistics of two runs, with their intervals.
 //!
 //! Two runs of one seed release the same rocks from the same places: what chance does to one it does to the other, and
-//! the difference is known better than either. Every statistic is taken with the pull of each release on it (its influence
+//! the difference is known better than either. A mean is taken with the pull of each release on it (its influence
 //! over the number of rocks); the variance of a difference is the sum of the squared differences of the pulls where releases
 //! pair, and the sum of both sums of squares where they do not.
 //!
-//! The pull on a percentile needs the density there. It comes from the order statistics about the percentile, as in
-//! Price and Bonett (2002, J. Stat. Comput. Simul. 72, 119–124), with the covariance of paired releases. Shares are
+//! A percentile has no such pulls where few releases differ between the runs or values cluster: see [`percentile`]. Shares are
 //! adjusted as in Bonett and Price (2012, J. Educ. Behav. Stat. 37, 479–488) for pairs and in Agresti and Caffo
 //! (2000, Am. Stat. 54, 280–288) without: their intervals stay sound where hardly any rock counts.
 
+mod percentile;
 mod weighted;
 
 pub use weighted::WeightedCount;
 
 use super::proportion::NORMAL_95;
-use super::quantile::{Percentile, between};
+use super::sample::Sample;
+use percentile::Places;
 use std::cmp::Ordering;
 
 /// Over the values, a difference of so much is rounding (–).
@@ -31,8 +32,17 @@ pub struct Reading {
     pub value: f64,
     /// Rocks that it is of.
     pub rocks: usize,
-    /// How much each release moved it; none where there are too few rocks to say.
-    pulls: Option<Values>,
+    /// What chance may do to it; none where there are too few rocks to say.
+    chance: Option<Chance>,
+}
+
+/// What chance may do to a statistic of a run.
+#[derive(Debug, Clone, PartialEq)]
+enum Chance {
+    /// To a mean: how much each release moved it.
+    Pulls(Values),
+    /// To a percentile: where it may lie.
+    Places(Places),
 }
 
 /// What changes from one run to another.
@@ -56,27 +66,32 @@ impl Reading {
         let value = values.iter().map(|(_, x)| x).sum::<f64>() / n;
         let scale = (n / (n - 1.0)).sqrt() / n;
         let pull = |(release, x): &(usize, f64)| (*release, (x - value) * scale);
-        let pulls = (values.len() > 1).then(|| values.iter().map(pull).collect());
-        (!values.is_empty()).then_some(Self { value, rocks: values.len(), pulls })
+        let chance = (values.len() > 1).then(|| Chance::Pulls(values.iter().map(pull).collect()));
+        (!values.is_empty()).then_some(Self { value, rocks: values.len(), chance })
     }
 
     /// Percentile `p` (0 < p < 1) of the finite ones; none of nothing.
     pub fn percentile(values: &[(usize, f64)], p: f64) -> Option<Self> {
-        let values = finite(values);
-        let mut sorted: Vec<f64> = values.iter().map(|(_, x)| *x).collect();
-        sorted.sort_unstable_by(f64::total_cmp);
-        let value = Percentile::of(&sorted, p)?.value;
-        let weighed: Vec<_> = values.iter().map(|&(release, x)| (release, x, 1.0)).collect();
-        let pulls = deviation(&sorted, p)
-            .map(|deviation| pulls_of_percentile(&weighed, (value, p), deviation));
-        Some(Self { value, rocks: values.len(), pulls })
+        let weighed = finite(values).into_iter().map(|(release, x)| (release, x, 1.0));
+        Self::of_percentile(weighed.collect(), p)
+    }
+
+    /// The same of release, value and weight.
+    fn of_percentile(weighed: Vec<(usize, f64, f64)>, p: f64) -> Option<Self> {
+        let value = sample(&weighed).percentile(p)?.value;
+        let rocks = weighed.len();
+        Some(Self { value, rocks, chance: Places::of(weighed, p).map(Chance::Places) })
     }
 
     /// The same times a number: a unit, a factor.
     #[must_use]
     pub fn times(mut self, factor: f64) -> Self {
         self.value *= factor;
-        self.pulls.iter_mut().flatten().for_each(|(_, pull)| *pull *= factor);
+        match &mut self.chance {
+            Some(Chance::Pulls(pulls)) => pulls.iter_mut().for_each(|(_, pull)| *pull *= factor),
+            Some(Chance::Places(places)) => places.scale(factor),
+            None => {}
+        }
         self
     }
 }
@@ -85,65 +100,35 @@ fn finite(values: &[(usize, f64)]) -> Values {
     values.iter().copied().filter(|(_, x)| x.is_finite()).collect()
 }
 
-/// How much each release (release, value, weight) moves percentile `p` of a known standard deviation: by the part of its weight above the percentile
-/// less what should lie there. Of values that equal it as much lies above as makes the part of all exact, or those that tie would
-/// move nothing.
-fn pulls_of_percentile(
-    weighed: &[(usize, f64, f64)],
-    (value, p): (f64, f64),
-    deviation: f64,
-) -> Values {
-    let weight_if = |is: &dyn Fn(f64) -> bool| -> f64 {
-        weighed.iter().filter(|(_, x, _)| is(*x)).map(|(.., weight)| weight).sum()
-    };
-    let (all, above) = (weight_if(&|_| true), weight_if(&|x| x > value));
-    let equal = weight_if(&|x| x.total_cmp(&value).is_eq());
-    let of_equal = if equal > 0.0 { ((1.0 - p) * all - above) / equal } else { 0.0 };
-    let part = |x: f64| match x.total_cmp(&value) {
-        Ordering::Greater => 1.0,
-        Ordering::Equal => of_equal.clamp(0.0, 1.0),
-        Ordering::Less => 0.0,
-    };
-    let whole = weighed.iter().map(|&(_, x, weight)| weight * part(x)).sum::<f64>() / all;
-    let pull = |&(release, x, weight): &(usize, f64, f64)| (release, weight * (part(x) - whole));
-    let mut pulls: Values = weighed.iter().map(pull).collect();
-    let squares: f64 = pulls.iter().map(|(_, pull)| pull * pull).sum();
-    let scale = if squares > 0.0 { deviation / squares.sqrt() } else { 0.0 };
-    for (_, pull) in &mut pulls {
-        *pull *= scale;
+/// Of release, value and weight.
+fn sample(weighed: &[(usize, f64, f64)]) -> Sample {
+    Sample::weighted(weighed.iter().map(|&(_, x, weight)| (x, weight)))
+}
+
+impl Chance {
+    /// Ends of the 95 % interval of the difference `value` from one statistic to another of its kind.
+    fn apart(&self, other: &Self, (value, paired): (f64, bool)) -> Option<(f64, f64)> {
+        match (self, other) {
+            (Self::Pulls(one), Self::Pulls(other)) => {
+                let half = NORMAL_95 * variance(one, other, paired).sqrt();
+                Some((value - half, value + half))
+            }
+            (Self::Places(one), Self::Places(other)) => {
+                let (low, high) = one.apart(other, paired);
+                // interpolated, the difference itself is between values
+                Some((low.min(value), high.max(value)))
+            }
+            _ => None,
+        }
     }
-    pulls
-}
-
-/// Standard deviation of a percentile, from the order statistics as far from it as the number of rocks below it varies; none
-/// where there are too few.
-///
-/// Whole ranks would bound it with more than 95 %, by up to a fifth too far: it is read between them.
-fn deviation(sorted: &[f64], p: f64) -> Option<f64> {
-    let n = sorted.len() as f64;
-    let (place, reach) = ((n - 1.0) * p, NORMAL_95 * (n * p * (1.0 - p)).sqrt());
-    let (low, high) = (place - reach, place + reach);
-    let is_inside = low >= 0.0 && high <= n - 1.0;
-    let at = |place: f64| between(sorted, place);
-    is_inside.then(|| deviation_between(at(place), [at(low), at(high)]))
-}
-
-/// Standard deviation of a percentile with the ends of its 95 % interval: a fourth of it, about. Of few distinct values an end may be the
-/// percentile itself; then the other end says how far off it may be, by a whole step and not by half of it.
-fn deviation_between(value: f64, [low, high]: [f64; 2]) -> f64 {
-    let (below, above) = (value - low, high - value);
-    let half = if below > 0.0 && above > 0.0 { 0.5 * (high - low) } else { below.max(above) };
-    half / NORMAL_95
 }
 
 impl Difference {
     /// From one statistic to the other; `paired` where the same release numbers are the same rocks.
     pub fn between(a: &Reading, b: &Reading, paired: bool) -> Self {
         let value = b.value - a.value;
-        let interval = a.pulls.as_ref().zip(b.pulls.as_ref()).map(|(one, other)| {
-            let half = NORMAL_95 * variance(one, other, paired).sqrt();
-            (value - half, value + half)
-        });
+        let both = a.chance.as_ref().zip(b.chance.as_ref());
+        let interval = both.and_then(|(one, other)| one.apart(other, (value, paired)));
         Self { a: a.value, b: b.value, value, interval }
     }
 

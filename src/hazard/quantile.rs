@@ -4,6 +4,7 @@
 //! of the values. So the `l`-th and `u`-th smallest value enclose `q_p` with probability `P(l ≤ B < u)`
 //! (Conover, Practical Nonparametric Statistics, section 3.2). The probabilities are summed, not approximated.
 
+use super::beta;
 use super::proportion::{ONE_TAIL, between_tails};
 use crate::math;
 use serde::{Deserialize, Serialize};
@@ -117,6 +118,20 @@ pub(super) struct Bounds {
     pub(super) needs: usize,
 }
 
+/// How far a percentile is from a value, by the share of all weight below it; half of the value's own counts as below.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Departure {
+    /// Share below (–).
+    pub(super) share: f64,
+    /// Standard deviation of it (–); half a rock is added, as what was not seen may be there.
+    pub(super) spread: f64,
+    /// Where the percentile lies below the value with the chance that it does, a standard normal variable would be below this (–).
+    pub(super) normal: f64,
+}
+
+/// What is added to the variance of a share (in the square of what one rock weighs).
+const HALF_A_ROCK: f64 = 0.5;
+
 impl WeightBelow {
     /// Of groups of so many rocks of one weight each (weight, rocks); what has the same place has one group, or one after the other.
     pub(super) fn of(groups: impl Iterator<Item = (f64, usize)>) -> Self {
@@ -134,6 +149,29 @@ impl WeightBelow {
     /// Sums of weights and of their squares over all.
     fn whole(&self) -> [f64; 2] {
         self.sums.last().copied().unwrap_or_default()
+    }
+
+    /// Share of all weight that sums are of, and its variance.
+    fn share(&self, [below, its]: [f64; 2]) -> (f64, f64) {
+        let [whole, squares] = self.whole();
+        let share = (below / whole).min(1.0);
+        let variance = its * (1.0 - share).powi(2) + (squares - its) * share * share;
+        (share, variance.max(0.0) / (whole * whole))
+    }
+
+    /// How far percentile `p` is from a place.
+    ///
+    /// Of equal weights the share below the `i`-th of `n` values is a beta variable of `i` and `n + 1 − i` (David and Nagaraja 2003, Order
+    /// Statistics, section 2.1). With weights so many rocks count as the share's variance is that of (Korn and Graubard 1998).
+    pub(super) fn departure(&self, place: usize, p: f64) -> Departure {
+        let [whole, squares] = self.whole();
+        let middle = [0, 1].map(|k| 0.5 * (self.sums[place][k] + self.sums[place + 1][k]));
+        let (one, (share, variance)) = (squares / (whole * whole), self.share(middle));
+        let (variance, half) = (variance + HALF_A_ROCK * one * one, HALF_A_ROCK * one);
+        let weight = variance / (share * (1.0 - share) + half);
+        let normal =
+            beta::normal_score(p, [share + half, 1.0 - share + half].map(|of| of / weight));
+        Departure { share, spread: variance.sqrt(), normal }
     }
 
     /// The first place up to which at least the share `p` of all weight lies.
@@ -154,10 +192,9 @@ impl WeightBelow {
     pub(super) fn bounds(&self, p: f64) -> Bounds {
         let [whole, squares] = self.whole();
         let (last, one) = (self.sums.len() - 1, squares / (whole * whole));
-        let ends = |[below, its]: [f64; 2], tail: f64| {
-            let share = (below / whole).min(1.0);
-            let variance = its * (1.0 - share).powi(2) + (squares - its) * share * share;
-            between_tails(share, (variance.max(0.0) / (whole * whole), one), tail)
+        let ends = |sums: [f64; 2], tail: f64| {
+            let (share, variance) = self.share(sums);
+            between_tails(share, (variance, one), tail)
         };
         let upper = |tail: f64| {
             let place = self.sums[1..].partition_point(|up_to| ends(*up_to, tail)[0] <= p);
@@ -182,15 +219,10 @@ pub(super) fn worth(weights: &[f64]) -> f64 {
 
 /// The value at `(n − 1) p` of the sorted values, counted from 0, linear in between.
 fn interpolated(sorted: &[f64], p: f64) -> Option<f64> {
-    Some(between(sorted, sorted.len().checked_sub(1)? as f64 * p))
-}
-
-/// The value at a place among sorted ones, counted from 0, linear in between.
-pub(super) fn between(sorted: &[f64], place: f64) -> f64 {
-    let below = sorted[place.floor() as usize];
-    let above = sorted[place.ceil() as usize];
+    let place = sorted.len().checked_sub(1)? as f64 * p;
+    let (below, above) = (sorted[place.floor() as usize], sorted[place.ceil() as usize]);
     // between two open ends nothing can be interpolated
-    if above > below { below + place.fract() * (above - below) } else { below }
+    Some(if above > below { below + place.fract() * (above - below) } else { below })
 }
 
 impl Percentile {

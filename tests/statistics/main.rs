@@ -10,6 +10,7 @@ mod tiff;
 mod yearly;
 
 mod coverage;
+mod differences;
 mod ensemble;
 mod frequency;
 mod geotiff;

@@ -1,14 +1,13 @@
 //! Differences between runs whose rocks weigh what they stand for.
 //!
-//! Values are those of [`Sample::weighted`] and of shares of events, and pulls are what their intervals are made of: of a
-//! mean `w (x − mean)/Σw` (delta method), of a percentile `w (1{x > q} − (1 − p))/Σw` with the spread of its interval, of a share
+//! Values are those of [`Sample::weighted`](super::super::Sample::weighted) and of shares of events, and pulls are what the intervals of means and shares are made of: of a
+//! mean `w (x − mean)/Σw` (delta method), of a share
 //! `w (1 − k_j/n_j)` of a rock of stratum `j` that counts and `−w k_j/n_j` of one that does not. So each
 //! statistic is that of its own run, and with equal weights the intervals are those of [`super`].
 
 use super::super::proportion::NORMAL_95;
 use super::super::rate::share_of;
-use super::super::sample::Sample;
-use super::{Difference, Reading, Values, deviation_between, pulls_of_percentile, variance};
+use super::{Chance, Difference, Reading, Values, sample, variance};
 use crate::frequency::Weights;
 
 /// Releases that count, among which, and what they stand for.
@@ -30,19 +29,13 @@ impl Reading {
         let all: f64 = weighed.iter().map(|(.., weight)| weight).sum();
         let pull =
             |&(release, x, weight): &(usize, f64, f64)| (release, weight * (x - value) / all);
-        let pulls = (weighed.len() > 1).then(|| weighed.iter().map(pull).collect());
-        Some(Self { value, rocks: weighed.len(), pulls })
+        let chance = (weighed.len() > 1).then(|| Chance::Pulls(weighed.iter().map(pull).collect()));
+        Some(Self { value, rocks: weighed.len(), chance })
     }
 
     /// The weighted percentile `p` (0 < p < 1) of the finite ones; none of nothing.
     pub fn weighted_percentile(values: &[(usize, f64)], weights: &Weights, p: f64) -> Option<Self> {
-        let weighed = weighed(values, weights);
-        let found = sample(&weighed).percentile(p)?;
-        let pulls = found.low_95.zip(found.high_95).map(|(low, high)| {
-            let deviation = deviation_between(found.value, [low, high]);
-            pulls_of_percentile(&weighed, (found.value, p), deviation)
-        });
-        Some(Self { value: found.value, rocks: weighed.len(), pulls })
+        Self::of_percentile(weighed(values, weights), p)
     }
 }
 
@@ -50,10 +43,6 @@ impl Reading {
 fn weighed(values: &[(usize, f64)], weights: &Weights) -> Vec<(usize, f64, f64)> {
     let finite = values.iter().filter(|(_, x)| x.is_finite());
     finite.map(|&(release, x)| (release, x, weights.of_release(release))).collect()
-}
-
-fn sample(weighed: &[(usize, f64, f64)]) -> Sample {
-    Sample::weighted(weighed.iter().map(|&(_, x, weight)| (x, weight)))
 }
 
 impl WeightedCount<'_> {
