@@ -9,15 +9,16 @@ use crate::report::words::Words;
 use std::fmt::Write as _;
 
 /// How the intervals came about.
-const METHOD: &str = "Percentiles differ by their order statistics: the spread of each comes from the ranks that bound it (Price and \
-    Bonett 2002), and where releases pair, what moves both runs alike is taken out. Means by the differences of pairs, shares \
+const METHOD: &str = "Percentiles differ by as much as two values that may both be the percentiles of their runs: by the shares of rocks below them \
+    (test inversion, Francisco and Fuller 1991), and where releases pair, by how many lie below one of the two only. Where all pairs are alike, the \
+    difference is 0. Means by the differences of pairs, shares \
     by adjusted counts (Bonett and Price 2012 for pairs, Agresti and Caffo 2000 without). An interval covers chance in the \
     sample only, not how well ground values and terrain are known. Of twenty statistics that do not differ, one is \
     expected to be called clear.";
 
 /// The same where rocks weigh what they stand for.
-const WEIGHTED: &str = "Where rocks weigh what they stand for, each statistic is that of its own run, and the difference is known by what each \
-    release moves it by: means by the delta method, percentiles by Woodruff's intervals (1952), shares and passages class by class \
+const WEIGHTED: &str = "Where rocks weigh what they stand for, each statistic is that of its own run: percentiles by shares of their weight. Means are known by what each \
+    release moves them by (delta method), shares and passages class by class \
     of size and source, as if one more rock of the heaviest class counted in each run (Fay and Feuer 1997).";
 
 /// The page with the figures inlined.
