@@ -28,8 +28,8 @@ mod totals;
 
 pub use annual::{
     Above, Annual, AnnualBarrier, AnnualFigures, AnnualPlace, AnnualRequest, ExceedancePoint,
-    Matrix, Object, ReturnEnergy, Risk, RiskKind, Saved, Vehicles, YearMap, YearSums, annual,
-    year_maps,
+    Matrix, Object, ReturnEnergy, Risk, RiskKind, Saved, UnseenPoint, Vehicles, YearMap, YearSums,
+    annual, year_maps,
 };
 pub use arrival::Arrival;
 pub use barriers::{

@@ -14,7 +14,7 @@ mod strata;
 
 pub use barriers::AnnualBarrier;
 pub use cells::{YearMap, year_maps};
-pub use curve::{ExceedancePoint, ReturnEnergy};
+pub use curve::{ExceedancePoint, ReturnEnergy, UnseenPoint};
 pub use places::{Above, Annual, AnnualFigures, AnnualPlace, Saved, YearSums, annual};
 pub use risk::{Object, Risk, RiskKind, Vehicles};
 

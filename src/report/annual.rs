@@ -17,6 +17,8 @@ const HEIGHT_PX: f64 = 300.0;
 const RIGHT_PX: f64 = 84.0;
 /// Energies far below the largest tell nothing of a design: so many decades are drawn.
 const DECADES: f64 = 4.0;
+/// Energies that no rock had are drawn up to so many times the largest.
+const UNSEEN: f64 = 10.0;
 const WITHOUT: Pen = Pen::full(BLUE, 1.7);
 const WITH: Pen = Pen::full(ORANGE, 1.7).dashed();
 
@@ -34,8 +36,7 @@ pub(super) fn nobody(words: &Words, view: &AnnualView) -> Option<String> {
 
 /// Draws the curves of one place.
 pub(super) fn draw(words: &Words, view: &AnnualView, number: usize) -> Drawing {
-    let energies = view.curves().flatten().map(|point| point.x);
-    let largest_j = energies.fold(0.0, f64::max);
+    let largest_j = largest_j(view);
     let (unit, size) = energy_unit(largest_j);
     let panel = panel(words, view, largest_j, (unit, size));
     let bottom = TOP_PX + HEIGHT_PX + FOOT_PX;
@@ -54,6 +55,15 @@ pub(super) fn draw(words: &Words, view: &AnnualView, number: usize) -> Drawing {
         key(canvas, &panel, view, words);
     });
     Drawing { svg, caption: caption(view, words) }
+}
+
+/// The right end of the axis (J): the largest energy that rocks can have, as far as those seen still have a width beside it.
+fn largest_j(view: &AnnualView) -> f64 {
+    let largest = |points: &mut dyn Iterator<Item = &BandPoint>| {
+        points.map(|point| point.x).fold(0.0, f64::max)
+    };
+    let seen = largest(&mut view.curves().flatten().filter(|point| point.y.value > 0.0));
+    largest(&mut view.curves().flatten()).min(UNSEEN * seen)
 }
 
 fn caption(view: &AnnualView, words: &Words) -> String {
@@ -103,19 +113,22 @@ fn draw_curve(
     (fill, opacity): (plotters::style::RGBColor, f64),
     pen: Pen,
 ) {
-    let shown = from_the_left(curve, panel.x.low * size);
+    let shown = within(curve, [panel.x.low, panel.x.high].map(|end| end * size));
     let band: Vec<(f64, f64, f64)> =
         shown.iter().map(|point| (point.x / size, point.y.low, point.y.high)).collect();
     panel.band(canvas, &band, fill, opacity);
-    let line: Vec<(f64, f64)> = shown.iter().map(|point| (point.x / size, point.y.value)).collect();
+    // where no rock came a logarithmic axis has no place: the line ends at the last rock
+    let seen = shown.iter().filter(|point| point.y.value > 0.0);
+    let line: Vec<(f64, f64)> = seen.map(|point| (point.x / size, point.y.value)).collect();
     panel.line(canvas, &line, pen);
 }
 
-/// The curve from an energy on (J): below the least energy of all rocks its frequency is that of all, also where they are one.
-fn from_the_left(curve: &[BandPoint], left_j: f64) -> Vec<BandPoint> {
-    let shown = || curve.iter().filter(|point| point.x > 0.0).copied();
-    let first = shown().next().filter(|first| first.x > left_j);
-    first.map(|first| BandPoint { x: left_j, ..first }).into_iter().chain(shown()).collect()
+/// The part of a curve of steps between two energies (J): what goes on beyond them ends there.
+fn within(curve: &[BandPoint], [left_j, right_j]: [f64; 2]) -> Vec<BandPoint> {
+    let from = curve.iter().rposition(|point| point.x <= left_j).unwrap_or(0);
+    let to = curve.iter().position(|point| point.x >= right_j).map_or(curve.len(), |at| at + 1);
+    let shown = curve.get(from..to).unwrap_or_default().iter();
+    shown.map(|point| BandPoint { x: point.x.clamp(left_j, right_j), ..*point }).collect()
 }
 
 fn key(canvas: &Canvas<'_>, panel: &Panel, view: &AnnualView, words: &Words) {
@@ -133,15 +146,19 @@ fn key(canvas: &Canvas<'_>, panel: &Panel, view: &AnnualView, words: &Words) {
 
 #[cfg(test)]
 mod tests {
-    use super::from_the_left;
+    use super::within;
     use crate::report::model::{BandPoint, Estimate};
 
-    /// One rock is a line from the left end of the axis up to its energy, and not a point that nobody sees.
+    /// One rock is a line from the left end of the axis up to its energy, and not a point that nobody sees; what lies beyond
+    /// an end is cut there.
     #[test]
     fn one_rock_has_a_curve() {
         let at = |x: f64| BandPoint { x, y: Estimate::new(0.5, 0.0, 0.5) };
-        assert_eq!(from_the_left(&[at(339.0)], 100.0), [at(100.0), at(339.0)]);
-        assert_eq!(from_the_left(&[at(50.0), at(339.0)], 100.0), [at(50.0), at(339.0)]);
-        assert!(from_the_left(&[], 100.0).is_empty());
+        let [all, seen] = [[at(0.0), at(339.0)], [at(100.0), at(339.0)]];
+        assert_eq!(within(&all, [100.0, 339.0]), seen);
+        assert_eq!(within(&all, [100.0, 200.0]), [at(100.0), at(200.0)]);
+        let steps = [at(0.0), at(50.0), at(50.0), at(339.0), at(339.0)];
+        assert_eq!(within(&steps, [100.0, 339.0]), seen);
+        assert!(within(&[], [100.0, 339.0]).is_empty());
     }
 }

@@ -22,6 +22,15 @@ pub struct ExceedancePoint {
     pub by_exponent: f64,
 }
 
+/// How often more may come than any rock had: the upper end of λ between the energy before, or the largest seen, and this one.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct UnseenPoint {
+    /// Energy (J) up to which it holds.
+    pub energy_j: f64,
+    /// Upper end of the 95 % interval (1/year).
+    pub high_95: f64,
+}
+
 /// The energy that is passed once in so many years.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ReturnEnergy {
@@ -80,6 +89,19 @@ impl Ceilings {
 
     fn at(&self, class: u16) -> &Limits {
         &self.limits[usize::from(class).min(self.limits.len() - 1)]
+    }
+
+    /// Upper ends above the largest energy seen, by rising energy up to the largest that sizes and terrain allow.
+    pub(super) fn unseen_above(&self, seen: &[Step]) -> Vec<UnseenPoint> {
+        let from = seen.first().map_or(0, |step| usize::from(step.class) + 1);
+        let possible = self.unseen.partition_point(|high| *high > 0.0);
+        let above = self.unseen.get(from..possible).unwrap_or_default();
+        let mut class = from;
+        let of_run = |equal: &[f64]| {
+            class += equal.len();
+            UnseenPoint { energy_j: lower_end_of(class as u16), high_95: equal[0] }
+        };
+        above.chunk_by(|one, next| one.total_cmp(next).is_eq()).map(of_run).collect()
     }
 
     /// The largest energy (J) at which λ may still reach `wanted` (1/year): above all that was seen as far as rocks can have

@@ -8,7 +8,9 @@ use super::super::proportion::Proportion;
 use super::super::rate::{ANY_ENERGY, EventRate, Limits, OpenSums, Running, Sums, proportion};
 use super::AnnualRequest;
 use super::barriers::{AnnualBarrier, Met};
-use super::curve::{Ceilings, ExceedancePoint, ReturnEnergy, curve, resolved, return_energy};
+use super::curve::{
+    Ceilings, ExceedancePoint, ReturnEnergy, UnseenPoint, curve, resolved, return_energy,
+};
 use super::energies::EnergyCounts;
 use super::risk::{Object, Risk};
 use super::strata::{All, StratumSums, stratum_of};
@@ -64,6 +66,9 @@ pub struct AnnualFigures {
     pub risks: Vec<Risk>,
     /// λ(E ≥ e), by falling energy.
     pub curve: Vec<ExceedancePoint>,
+    /// How often more energy may come than any rock had; none in files that do not tell it.
+    #[serde(default)]
+    pub unseen: Vec<UnseenPoint>,
 }
 
 /// Passages with at least an energy.
@@ -164,7 +169,8 @@ impl PassageTally {
         let least = self.classes.keys().next().map_or(0, |(class, _)| *class);
         let seen = smooth.iter().filter(|step| step.class >= least);
         let curve = seen.map(|step| step.point).collect();
-        AnnualFigures { passages, above: self.above(all), returns, risks, curve }
+        let unseen = ceilings.unseen_above(&smooth);
+        AnnualFigures { passages, above: self.above(all), returns, risks, curve, unseen }
     }
 
     /// Risks of an object by the rocks that hit it.

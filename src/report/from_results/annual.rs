@@ -4,6 +4,7 @@ use super::super::format;
 use super::super::model::{About, AnnualView, BandPoint, Estimate, EstimateTable, Is};
 use super::super::words::{Words, fill};
 use super::estimate;
+use super::lines::steps;
 use crate::hazard::{
     Annual, AnnualBarrier, AnnualFigures, AnnualPlace, EventRate, ExceedancePoint, ReturnEnergy,
     Risk, RiskKind, Saved,
@@ -30,13 +31,20 @@ pub(super) fn views(results: &Results) -> Vec<AnnualView> {
     annual.places.iter().map(view).collect()
 }
 
-/// A curve by rising energy.
+/// A curve by rising energy: λ(E ≥ e) is that of the next rock above e, and of none above the largest.
 fn band(figures: &AnnualFigures) -> Vec<BandPoint> {
-    let point = |at: &ExceedancePoint| BandPoint {
-        x: at.energy_j,
-        y: estimate(at.per_year, Some(at.low_95), Some(at.high_95)),
-    };
-    figures.curve.iter().rev().map(point).collect()
+    let seen = figures.curve.iter().rev().map(|at: &ExceedancePoint| {
+        (at.energy_j, estimate(at.per_year, Some(at.low_95), Some(at.high_95)))
+    });
+    let unseen = figures.unseen.iter().map(|at| (at.energy_j, Estimate::new(0.0, 0.0, at.high_95)));
+    let mut from_j = 0.0;
+    let falls = seen.chain(unseen).map(|(to_j, y)| {
+        let x = std::mem::replace(&mut from_j, to_j);
+        BandPoint { x, y }
+    });
+    let mut curve = steps(falls);
+    curve.extend(curve.last().map(|last| BandPoint { x: from_j, y: last.y }));
+    curve
 }
 
 /// The first table of the page: how often a year rocks come to each object and line with the largest energy asked for,

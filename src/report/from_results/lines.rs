@@ -192,8 +192,8 @@ fn exceedance(
     steps(first.into_iter().chain(ranks.map(point)))
 }
 
-/// A curve that keeps each share up to the value at which it falls.
-fn steps(points: impl Iterator<Item = BandPoint>) -> Vec<BandPoint> {
+/// A curve that keeps each value of `y` up to the `x` at which it falls.
+pub(super) fn steps(points: impl Iterator<Item = BandPoint>) -> Vec<BandPoint> {
     let mut curve: Vec<BandPoint> = Vec::new();
     for point in points {
         let before = curve.last().map(|last| BandPoint { x: point.x, y: last.y });

@@ -350,7 +350,7 @@ pub(super) static WORDS: Words = Words {
     hits_of: "Treffer von {name}",
     passages_of: "Durchgänge bei {name}",
     year_barriers: " Voll: als gäbe es kein Schutzbauwerk; gestrichelt: was die Schutzbauwerke durchlassen.",
-    year_caption: "Pro Jahr, nicht bedingt auf die Ablösung: Häufigkeit der {what} mit mindestens der Gesamtenergie e, λ(E ≥ e), mit punktweisem 95-%-Band. Grau: Häufigkeiten der Wiederkehrperioden.{barriers} Über der größten Energie aller Blöcke ist die Kurve unbekannt; ihr Band sagt, wie wenig.",
+    year_caption: "Pro Jahr, nicht bedingt auf die Ablösung: Häufigkeit der {what} mit mindestens der Gesamtenergie e, λ(E ≥ e), mit punktweisem 95-%-Band. Grau: Häufigkeiten der Wiederkehrperioden.{barriers} Über der größten Energie aller Blöcke ist die Kurve unbekannt: ihr Band reicht so weit, wie Größen und Gelände es erlauben.",
     object: "Objekt {name}",
     line: "Linie {name}",
     hits: "Treffer",

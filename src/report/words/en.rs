@@ -344,7 +344,7 @@ pub(super) static WORDS: Words = Words {
     hits_of: "hits of {name}",
     passages_of: "passages of {name}",
     year_barriers: " Full: as if there were no barrier; dashed: what the barriers let through.",
-    year_caption: "A year, not conditional on release: frequency of {what} with at least the total energy e, λ(E ≥ e), with pointwise 95 % band. Grey: frequencies of the return periods.{barriers} Above the largest energy of any rock the curve is not known; its band says how little.",
+    year_caption: "A year, not conditional on release: frequency of {what} with at least the total energy e, λ(E ≥ e), with pointwise 95 % band. Grey: frequencies of the return periods.{barriers} Above the largest energy of any rock the curve is not known: its band goes on as far as sizes and terrain allow.",
     object: "object {name}",
     line: "line {name}",
     hits: "Hits",

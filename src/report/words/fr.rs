@@ -350,7 +350,7 @@ pub(super) static WORDS: Words = Words {
     hits_of: "impacts sur {name}",
     passages_of: "passages à {name}",
     year_barriers: " Plein\u{a0}: comme sans ouvrage\u{a0}; tirets\u{a0}: ce que les ouvrages laissent passer.",
-    year_caption: "Par an, non conditionnel au départ\u{a0}: fréquence des {what} avec au moins l’énergie totale e, λ(E ≥ e), avec bande ponctuelle à 95 %. Gris\u{a0}: fréquences des périodes de retour.{barriers} Au-delà de la plus grande énergie de tous les blocs la courbe est inconnue\u{a0}; sa bande dit combien peu.",
+    year_caption: "Par an, non conditionnel au départ\u{a0}: fréquence des {what} avec au moins l’énergie totale e, λ(E ≥ e), avec bande ponctuelle à 95 %. Gris\u{a0}: fréquences des périodes de retour.{barriers} Au-delà de la plus grande énergie de tous les blocs la courbe est inconnue\u{a0}: sa bande va jusqu’où tailles et terrain le permettent.",
     object: "objet {name}",
     line: "ligne {name}",
     hits: "Impacts",

@@ -350,7 +350,7 @@ pub(super) static WORDS: Words = Words {
     hits_of: "colpi su {name}",
     passages_of: "passaggi a {name}",
     year_barriers: " Piena: come senza barriere; tratteggio: ciò che le barriere lasciano passare.",
-    year_caption: "All’anno, non condizionata al distacco: frequenza di {what} con almeno l’energia totale e, λ(E ≥ e), con banda puntuale al 95 %. Grigio: frequenze dei tempi di ritorno.{barriers} Oltre la massima energia di ogni masso la curva non è nota; la sua banda dice quanto poco.",
+    year_caption: "All’anno, non condizionata al distacco: frequenza di {what} con almeno l’energia totale e, λ(E ≥ e), con banda puntuale al 95 %. Grigio: frequenze dei tempi di ritorno.{barriers} Oltre la massima energia di ogni masso la curva non è nota: la sua banda arriva fin dove dimensioni e terreno lo permettono.",
     object: "oggetto {name}",
     line: "linea {name}",
     hits: "Colpi",
