@@ -22,7 +22,7 @@ pub use worth::{SiteMeasure, Told};
 use crate::ensemble::Ensemble;
 use crate::error::{Error, Flaw, Result};
 use crate::frequency::Frequency;
-use crate::hazard::Agreement;
+use crate::hazard::{Agreement, ks_limit};
 use crate::math;
 use crate::random::Distribution;
 use crate::release::check_shapes;
@@ -296,13 +296,22 @@ impl fmt::Display for Calibration {
         }
         self.write_trial(to, "fit on all", &self.whole)?;
         let (ends, effective) = self.ends;
-        writeln!(to, "{ends} measured ends, worth {effective:.0} independent ones")?;
+        let limit = self.independent_ks_limit();
+        writeln!(
+            to,
+            "{ends} measured ends, worth {effective:.0} independent ones: for so many the KS limit on all ends is {limit:.2}; fitted to the same ends, their KS is no test"
+        )?;
         self.told.iter().try_for_each(|told| writeln!(to, "{told}"))?;
         self.measures.iter().try_for_each(|measure| writeln!(to, "{measure}"))
     }
 }
 
 impl Calibration {
+    /// The KS limit of the fit on all ends for as many ends as they are worth: throws of one block are alike.
+    pub fn independent_ks_limit(&self) -> f64 {
+        ks_limit(self.ends.1, self.whole.all.computed as f64)
+    }
+
     fn write_trial(
         &self,
         to: &mut fmt::Formatter<'_>,

@@ -239,7 +239,7 @@ impl Agreement {
 pub const KOLMOGOROV_95: f64 = 1.36;
 
 /// Difference of two distributions of so many values each that equal ones exceed in 5 % of all samples (–).
-fn ks_limit(n: f64, m: f64) -> f64 {
+pub fn ks_limit(n: f64, m: f64) -> f64 {
     KOLMOGOROV_95 * ((n + m) / (n * m)).sqrt()
 }
 

@@ -153,7 +153,11 @@ fn told(found: &Calibration, words: &Words) -> EstimateTable {
         title: words.told_title.to_owned(),
         note: fill(
             words.told_note,
-            &[("ends", &found.ends.0), ("worth", &format::decimal(found.ends.1, 0))],
+            &[
+                ("ends", &found.ends.0),
+                ("worth", &format::decimal(found.ends.1, 0)),
+                ("limit", &format::decimal(found.independent_ks_limit(), 2)),
+            ],
         ),
         columns: vec![words.fitted.to_owned()],
         rows: found.told.iter().map(row).collect(),

@@ -323,7 +323,7 @@ pub(super) static WORDS: Words = Words {
     fitted_all: "Calé sur tous",
     hardly_told: "{name} (mal déterminé\u{a0}: d’autres valeurs conviennent aussi)",
     told_title: "Ce que disent les arrêts mesurés",
-    told_note: "Valeurs calées sur les {ends} arrêts mesurés, avec intervalles à 95 % par rééchantillonnage\u{a0}; les lancers d’un même bloc se ressemblent et en valent {worth} indépendants.",
+    told_note: "Valeurs calées sur les {ends} arrêts mesurés, avec intervalles à 95 % par rééchantillonnage\u{a0}; les lancers d’un même bloc se ressemblent et en valent {worth} indépendants. Pour autant d’arrêts, la limite KS du calage sur tous est {limit}\u{a0}; ce n’est pas un test, les valeurs étant calées sur les mêmes arrêts.",
     fitted: "calé",
     ends_title: "Arrêts du calage",
     ends_note: "Calculé moins mesuré avec intervalle à 95 %, par rééchantillonnage des arrêts mesurés\u{a0}; des écarts types d’après l’aplatissement des arrêts (Bonett 2006).",

@@ -88,7 +88,7 @@ pub(super) const DE: Glossary = [
     ),
     (
         "KS-Abstand (Kolmogorow und Smirnow)",
-        "Größter Unterschied zweier Verteilungsfunktionen (0 bis 1). Die 5-%-Grenze überschreiten zwei Stichproben dieser Größe aus ein und derselben Verteilung einmal in zwanzig Fällen.",
+        "Größter Unterschied zweier Verteilungsfunktionen (0 bis 1). Die 5-%-Grenze überschreiten zwei Stichproben dieser Größe aus ein und derselben Verteilung einmal in zwanzig Fällen, jedes Ende für sich gezählt: wo sich Würfe eines Blocks ähneln, ist sie größer.",
     ),
 ];
 
@@ -135,7 +135,7 @@ pub(super) const FR: Glossary = [
     ),
     (
         "Rétention",
-        "Part des départs qui n’atteint pas une ligne\u{a0}: ce qui manque entre deux lignes s’y est arrêté.",
+        "Part des départs qui n’atteint pas une ligne\u{a0}: ce qui manque entre deux lignes s’y est arrêté ou a quitté le terrain.",
     ),
     (
         "Hauteur normale au versant",
@@ -175,7 +175,7 @@ pub(super) const FR: Glossary = [
     ),
     (
         "Distance KS (Kolmogorov et Smirnov)",
-        "La plus grande différence entre deux fonctions de répartition (0 à 1). Sa limite à 5 % est celle que deux échantillons de ces tailles d’une même loi dépassent une fois sur vingt.",
+        "La plus grande différence entre deux fonctions de répartition (0 à 1). Sa limite à 5 % est celle que deux échantillons de ces tailles d’une même loi dépassent une fois sur vingt, chaque arrêt compté pour un\u{a0}: si les lancers d’un même bloc se ressemblent, elle est plus grande.",
     ),
 ];
 
@@ -225,7 +225,7 @@ pub(super) const IT: Glossary = [
     ),
     (
         "Ritenzione",
-        "Quota dei distacchi che non raggiunge una linea: ciò che manca fra due linee si è fermato lì.",
+        "Quota dei distacchi che non raggiunge una linea: ciò che manca fra due linee si è fermato lì o ha lasciato il terreno.",
     ),
     (
         "Altezza normale al versante",
@@ -265,7 +265,7 @@ pub(super) const IT: Glossary = [
     ),
     (
         "Distanza KS (Kolmogorov e Smirnov)",
-        "La massima differenza fra due funzioni di ripartizione (da 0 a 1). Il suo limite al 5 % è quello che due campioni di tali dimensioni dalla stessa distribuzione superano una volta su venti.",
+        "La massima differenza fra due funzioni di ripartizione (da 0 a 1). Il suo limite al 5 % è quello che due campioni di tali dimensioni dalla stessa distribuzione superano una volta su venti, ogni arresto contato per sé: dove i lanci di uno stesso blocco si somigliano è maggiore.",
     ),
 ];
 
@@ -315,7 +315,7 @@ pub(super) const EN: Glossary = [
     ),
     (
         "Retention",
-        "The share of releases that does not reach a line: what is missing between two lines has stopped there.",
+        "The share of releases that does not reach a line: what is missing between two lines has stopped there or left the terrain.",
     ),
     (
         "Height normal to the slope",
@@ -355,6 +355,6 @@ pub(super) const EN: Glossary = [
     ),
     (
         "KS distance (Kolmogorov and Smirnov)",
-        "The largest difference between two cumulative distributions (0 to 1). Its 5 % limit is what two samples of these sizes from one and the same distribution exceed once in twenty times.",
+        "The largest difference between two cumulative distributions (0 to 1). Its 5 % limit is what two samples of these sizes from one and the same distribution exceed once in twenty times, each end counted by itself: where throws of one block are alike it is larger.",
     ),
 ];
