@@ -148,16 +148,47 @@ pub(super) fn told_apart(all: [f64; 3], write: impl Fn(f64, usize) -> String) ->
 /// A number and the ends of its interval, where they are known, with as many digits as the interval leaves meaningful.
 pub(super) fn with_interval(all: [f64; 3]) -> [String; 3] {
     let [value, low, high] = all;
-    let width = high - low;
-    let digits = if width.is_finite() && width > 0.0 && value != 0.0 {
-        // the last digit is at most a fifth of the interval
-        let leading = math::log10(value.abs()).floor() - math::log10(0.2 * width).floor();
-        (leading as i32 + 1).clamp(3, 5) as usize
-    } else {
-        // alone: a maximum is read as it is, a small derivative or a bound only for its size
-        if value.abs() >= 0.1 { 4 } else { 3 }
+    let width = match (low.is_finite(), high.is_finite()) {
+        (true, false) => (value - low).abs(),
+        (false, true) => (high - value).abs(),
+        _ => high - low,
     };
-    told_apart(all, |number, more| like(value, digits + more)(number))
+    if !(width.is_finite() && width > 0.0 && value.is_finite()) {
+        // alone: a maximum is read as it is, a small derivative or a bound only for its size
+        let digits = if value.abs() >= 0.1 { 4 } else { 3 };
+        return told_apart(all, |number, more| like(value, digits + more)(number));
+    }
+    let place = last_place(value, width);
+    told_apart(all, |number, more| to_place(number, place - more as i32))
+}
+
+/// The place of the last digit (power of ten) that an interval of that width leaves to a value: it is at most a fifth of the interval,
+/// but three digits stay as long as the interval has two of its own there; five at most.
+fn last_place(value: f64, width: f64) -> i32 {
+    let of_width = exponent_of(width);
+    let fifth = exponent_of(0.2 * width);
+    if value == 0.0 {
+        return fifth;
+    }
+    let leading = exponent_of(value);
+    fifth.min((leading - 2).max(of_width - 1)).max(leading - 4)
+}
+
+/// Power of ten of the first digit; 0 of 0.
+fn exponent_of(value: f64) -> i32 {
+    if value == 0.0 { 0 } else { math::log10(value.abs()).floor() as i32 }
+}
+
+/// A number to a place; one that has not two digits there, as beside an interval far wider than it is, has two of its own.
+fn to_place(number: f64, place: i32) -> String {
+    let digits = exponent_of(number) - place + 1;
+    if number == 0.0 {
+        return "0".to_owned();
+    }
+    if number.is_finite() && digits < 2 {
+        return significant(math::rounded(number, 2), 2);
+    }
+    like(number, digits.max(1) as usize)(number)
 }
 
 /// Whether a number without interval is a count, or one as it was written.
@@ -187,9 +218,13 @@ fn like(value: f64, digits: usize) -> impl Fn(f64) -> String {
     }
 }
 
-/// A share (0..1) and the ends of its interval in per cent, [told apart](told_apart).
+/// A share (0..1) and the ends of its interval in per cent, by the rule of [all numbers](with_interval); so many decimals without one.
 pub(super) fn percents(all: [f64; 3], decimals: impl Fn(f64) -> usize) -> [String; 3] {
-    told_apart(all, |share, more| percent(share, decimals(share) + more))
+    let [_, low, high] = all;
+    if !(low < high) {
+        return all.map(|share| percent(share, decimals(share)));
+    }
+    with_interval(all.map(|share| 100.0 * share)).map(|number| format!("{number}{THIN_SPACE}%"))
 }
 
 /// Text that may stand inside an element or a quoted attribute of SVG and HTML.
@@ -255,11 +290,26 @@ mod tests {
         let said = |all: [f64; 3]| percents(all, |share| usize::from(share < 0.1)).join(" ");
         let written = |said: &str| said.replace('%', "\u{2009}%");
         assert_eq!(said([0.9400, 0.9396, 0.9404]), written("94.00% 93.96% 94.04%"));
-        assert_eq!(said([0.94, 0.93, 0.95]), written("94% 93% 95%"));
-        assert_eq!(said([0.0, 0.0, 0.0003]), written("0.00% 0.00% 0.03%"));
+        assert_eq!(said([0.94, 0.93, 0.95]), written("94.0% 93.0% 95.0%"));
+        assert_eq!(said([0.0, 0.0, 0.0003]), written("0% 0% 0.030%"));
+        assert_eq!(said([0.000_443, 0.000_04, 0.010_056]), written("0.044% 0.0040% 1.0%"));
         assert_eq!(said([0.0, 0.0, 0.0]), written("0.0% 0.0% 0.0%"));
         assert_eq!(said([1.0, 1.0, 1.0]), written("100% 100% 100%"));
         assert_eq!(said([0.5, f64::NAN, f64::NAN]), written("50% – –"));
+    }
+
+    /// No number has more digits than its interval leaves it; one far smaller than its interval has two.
+    #[test]
+    fn an_interval_says_how_many_digits_are_told() {
+        let said = |all: [f64; 3]| with_interval(all).join(" ").replace('\u{2009}', " ");
+        assert_eq!(said([73.32, 70.41, 75.68]), "73.3 70.4 75.7");
+        assert_eq!(said([108.2, 104.9, 113.6]), "108 105 114");
+        assert_eq!(said([4.2, 3.53, 7.34]), "4.2 3.5 7.3");
+        assert_eq!(said([104.0, 43.0, 330.0]), "100 43 330");
+        assert_eq!(said([0.000_98, 0.000_002_2, 0.975_166]), "0.00098 2.2×10⁻⁶ 0.98");
+        assert_eq!(said([41_500.0, 41.8, 28_972_000.0]), "42 000 42 29 000 000");
+        assert_eq!(said([0.005, 0.0, 2.3641]), "0.0050 0 2.4");
+        assert_eq!(said([518.6, 423.6, f64::NAN]), "519 424 –");
     }
 
     /// A bound that is rounded down is none: none of 2000 leaves up to 0.15 %, which in binary is a little less.

@@ -12,7 +12,7 @@ pub use tables::plain_headline;
 
 use super::figure::{Drawing, Heading};
 use super::format;
-use super::model::{Check, Report};
+use super::model::{Check, Report, Verdict};
 use super::words::{Words, fill};
 use crate::simulation::Stop;
 use std::cell::Cell;
@@ -173,10 +173,10 @@ fn checks(checks: &[Check], words: &Words) -> String {
         format!(
             "<tr><th scope=\"row\">{}</th><td>{}</td><td>{}</td></tr>\n",
             escape(&check.name),
-            if check.passes {
-                escape(words.plausible)
-            } else {
-                format!("<b>{}</b>", escape(words.look_here))
+            match check.verdict {
+                Verdict::Plausible => escape(words.plausible),
+                Verdict::AtLimit => escape(words.at_limit),
+                Verdict::Off => format!("<b>{}</b>", escape(words.look_here)),
             },
             escape(&check.found)
         )

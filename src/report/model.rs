@@ -231,8 +231,19 @@ pub struct Check {
     pub name: String,
     /// What was found, and what is known from the field.
     pub found: String,
-    /// Whether it passes; a check that does not is a warning.
-    pub passes: bool,
+    /// What to think of it; what fails is a warning.
+    pub verdict: Verdict,
+}
+
+/// What to think of a number beside those from the field.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    /// It is like those.
+    Plausible,
+    /// Its interval holds the limit: chance decides on which side it lies.
+    AtLimit,
+    /// It is not.
+    Off,
 }
 
 /// One point of a curve with a confidence band.
@@ -378,6 +389,6 @@ impl ReportQuantity {
 }
 
 /// J or kJ, in which barriers and classes of intensity are named too: one number has one unit wherever it stands.
-pub(super) fn energy_unit(largest_j: f64) -> (&'static str, f64) {
+pub(crate) fn energy_unit(largest_j: f64) -> (&'static str, f64) {
     if largest_j >= 2e3 { ("kJ", 1e3) } else { ("J", 1.0) }
 }

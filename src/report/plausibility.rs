@@ -1,6 +1,6 @@
 //! Whether the whole looks like rockfall: what was looked at, what was found, what is known from the field.
 
-use super::model::{Check, Estimate, Is, ReleaseEnd, Report};
+use super::model::{Check, Estimate, Is, ReleaseEnd, Report, Verdict};
 use super::raster::GroundRaster;
 use super::reach_angle;
 use super::words::fill;
@@ -41,17 +41,20 @@ pub(super) fn checks(report: &Report, results: &Results) -> Vec<Check> {
 }
 
 fn check(name: &str, found: String, passes: bool) -> Check {
-    Check { name: name.to_owned(), found, passes }
+    let verdict = if passes { Verdict::Plausible } else { Verdict::Off };
+    Check { name: name.to_owned(), found, verdict }
 }
 
 fn reach(report: &Report) -> Option<Check> {
-    let Estimate { value: median, is, .. } = reach_angle::median(report)?;
+    let at = reach_angle::median(report)?;
+    let Estimate { value: median, is, .. } = at;
     // an upper bound above the bands proves nothing wrong
-    let passes = reach_angle::is_observed(median) || (is == Is::AtMost && median > 40.0);
+    let is_free = is == Is::AtMost && median > 40.0;
+    let verdict = if is_free { Verdict::Plausible } else { reach_angle::observed(&at) };
     let words = report.words();
     let median = format!("{}{}", format::sign(is), format::significant(median, 3));
     let found = fill(words.check_reach_found, &[("median", &median)]);
-    Some(check(words.check_reach, found, passes))
+    Some(Check { name: words.check_reach.to_owned(), found, verdict })
 }
 
 fn speed(report: &Report) -> Option<Check> {

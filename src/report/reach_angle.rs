@@ -6,7 +6,7 @@ use super::colour::{INK, ORANGE, VERMILLION};
 use super::distributions::DistributionPanel;
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
-use super::model::{Estimate, Is, Report, ReportQuantity};
+use super::model::{Estimate, Is, Report, ReportQuantity, Verdict};
 use super::panel::{FOOT_PX, Panel};
 use super::svg::path::PaperFrame;
 use super::words::{Words, fill};
@@ -25,9 +25,16 @@ pub(super) fn median(report: &Report) -> Option<Estimate> {
     found.at.value.is_finite().then_some(found.at)
 }
 
-/// Whether a median lies where those of some observed events lie.
-pub(super) fn is_observed(degrees: f64) -> bool {
-    OBSERVED.iter().any(|(low, high)| (*low..=*high).contains(&degrees))
+/// Whether a median lies where those of some observed events lie, as far as its interval tells; an end that is not known tells nothing.
+pub(super) fn observed(median: &Estimate) -> Verdict {
+    let is_in = |degrees: f64| OBSERVED.iter().any(|(low, high)| (*low..=*high).contains(&degrees));
+    let is_here = is_in(median.value);
+    let mut ends = [median.low, median.high].into_iter().filter(|end| end.is_finite());
+    match (is_here, ends.all(|end| is_in(end) == is_here)) {
+        (_, false) => Verdict::AtLimit,
+        (true, true) => Verdict::Plausible,
+        (false, true) => Verdict::Off,
+    }
 }
 
 /// Draws the histogram over the bands.
@@ -60,7 +67,11 @@ fn verdict(median: &Estimate, words: &Words) -> String {
         let at = format::significant(median.value, 3);
         return fill(words.open().median, &[("median", &at)]);
     }
-    let text = if is_observed(median.value) { words.median_inside } else { words.median_outside };
+    let text = match observed(median) {
+        Verdict::Plausible => words.median_inside,
+        Verdict::AtLimit => words.median_at_limit,
+        Verdict::Off => words.median_outside,
+    };
     let at = format!("{}{}", format::sign(median.is), format::significant(median.value, 3));
     fill(text, &[("median", &at)])
 }
@@ -93,6 +104,17 @@ fn key(canvas: &Canvas<'_>, panel: &Panel, words: &Words) {
 mod tests {
     use super::*;
     use crate::scene::Language;
+
+    /// Which side of a limit the median lies on is told only where its whole interval lies there.
+    #[test]
+    fn the_interval_decides_what_is_plausible() {
+        let said = |value, low, high| observed(&Estimate::new(value, low, high));
+        assert_eq!(said(39.9, 39.2, 40.7), Verdict::AtLimit);
+        assert_eq!(said(40.1, 39.8, 40.7), Verdict::AtLimit);
+        assert_eq!(said(39.0, 38.2, 39.7), Verdict::Plausible);
+        assert_eq!(said(42.0, 41.2, 42.7), Verdict::Off);
+        assert_eq!(said(42.0, f64::NAN, f64::NAN), Verdict::Off);
+    }
 
     /// Three rocks of four have left: nobody knows how flat their way would have become.
     #[test]

@@ -4,6 +4,7 @@ use super::scene_page::setting;
 use crate::ensemble::Ensemble;
 use crate::error::Result;
 use crate::plan::{Part, Plan};
+use crate::report::format;
 use crate::simulation::{self, Effort, Scratch, Stop, Trajectory};
 use crate::terrain::Terrain;
 use std::fmt::Write as _;
@@ -208,7 +209,7 @@ pub(super) fn page(found: &Conservation) -> String {
     let mut page = format!("# Conservation: {}\n\n", found.title);
     let _ = writeln!(
         page,
-        "{} of {} releases with scheme {}, paths, lines and maps left out: {:.0} s on {} threads, {} contact steps and {} flights a rock. \
+        "{} of {} releases with scheme {}, paths, lines and maps left out: {:.0} s on {} {}, {} contact steps and {} flights a rock. \
          {} left the terrain, {} ran out of time, all others came to rest. A bound that is not kept makes the exit status of \
          `rockfall study stability SCENE` 1; `rockfall run SCENE --only I` shows release I again.\n",
         found.done,
@@ -216,6 +217,7 @@ pub(super) fn page(found: &Conservation) -> String {
         found.setting,
         found.seconds,
         found.threads,
+        format::counted(found.threads, "thread", "threads"),
         each(found.effort.steps),
         each(found.effort.leaps),
         found.left.rocks,

@@ -4,6 +4,7 @@ use super::bootstrap::Interval;
 use super::scene::{Rung, SceneStudy, StudyStatistic};
 use crate::math;
 use crate::report::format::{self, significant};
+use crate::report::model::energy_unit;
 use crate::solver::{CORNER_WAY, Settings};
 use std::fmt::Write as _;
 
@@ -31,13 +32,14 @@ pub(super) fn page(study: &SceneStudy, wish: Option<Wish>) -> String {
     let mut page = format!("# Error against run time: {}\n\n", study.title);
     let _ = writeln!(
         page,
-        "{} releases under each of {} settings, {} threads. Paths of rocks are chaotic: the same release ends metres apart under any two \
+        "{} releases under each of {} settings, {} {}. Paths of rocks are chaotic: the same release ends metres apart under any two \
          settings, so single paths do not converge, but their statistics do. **Sampling error**: half the 95 % interval of the percentile \
          (order statistics, whatever the distribution). **Error of the steps**: the percentile minus where it goes when the steps are refined, \
          from a fit over all settings with the same releases; its interval from drawing the rocks again 400 times.\n",
         format::decimal(study.releases as f64, 0),
         study.rungs.len(),
-        study.threads
+        study.threads,
+        format::counted(study.threads, "thread", "threads")
     );
     if let Some(effective) = study.effective_releases {
         let _ = writeln!(
@@ -69,9 +71,11 @@ fn sentences(page: &mut String, study: &SceneStudy, wish: Option<Wish>) {
 /// What dominates, and the cheapest way to a wanted error (half the present one where none is given).
 pub fn sentence(study: &SceneStudy, statistic: &StudyStatistic, wanted: Option<f64>) -> String {
     let subject = &study.subjects[statistic.subject];
-    let (name, unit) = (&subject.name, subject.unit);
-    let head =
-        format!("**P{} {name} {} {unit}**", statistic.percent, significant(statistic.own.value, 4));
+    let name = &subject.name;
+    let (unit, size) = written_unit(subject.unit, statistic.own.value);
+    let small = |value: f64| few_digits(value / size, 2);
+    let value = few_digits(statistic.own.value / size, 3);
+    let head = format!("**P{} {name} {value} {unit}**", statistic.percent);
     let (Some(sampling), Some(total)) = (statistic.sampling_error(), statistic.total_error())
     else {
         if statistic.is_only_bound(study.releases) {
@@ -86,9 +90,8 @@ pub fn sentence(study: &SceneStudy, statistic: &StudyStatistic, wanted: Option<f
         );
     };
     let steps = statistic.ladder.own_error;
-    let small = |value: f64| significant(value, 2);
     let mesh = statistic.meshes.as_ref().map_or_else(String::new, |meshes| {
-        format!(", error of the mesh {}", with_ends(&meshes.own_error, unit))
+        format!(", error of the mesh {}", with_ends(&meshes.own_error, (unit, size)))
     });
     let mesh_error = statistic.meshes.as_ref().map(|meshes| &meshes.own_error);
     let dominates = dominant(sampling, &steps, mesh_error);
@@ -104,13 +107,13 @@ pub fn sentence(study: &SceneStudy, statistic: &StudyStatistic, wanted: Option<f
             small(wanted),
             setting(&study.rungs[offer.rung].step),
             format::decimal(offer.releases as f64, 0),
-            small(offer.seconds)
+            significant(offer.seconds, 2)
         ),
     };
     format!(
         "{head}: sampling error ±{} {unit}, error of the steps {}{mesh}, total {} {unit}. {dominates}; {offer}.",
         small(sampling),
-        with_ends(&steps, unit),
+        with_ends(&steps, (unit, size)),
         small(total)
     )
 }
@@ -164,9 +167,19 @@ fn told_apart(error: &Interval) -> f64 {
     (towards_0 / value.abs().max(f64::MIN_POSITIVE)).clamp(1.0, MOST_NARROWED)
 }
 
+/// The unit that a value is written in, and its size: an energy of many digits tells none of the last.
+fn written_unit(unit: &'static str, value: f64) -> (&'static str, f64) {
+    if unit == "J" { energy_unit(value) } else { (unit, 1.0) }
+}
+
+/// A number of so many digits, the whole ones too.
+fn few_digits(value: f64, digits: usize) -> String {
+    significant(math::rounded(value, digits), digits)
+}
+
 /// An error with its interval.
-fn with_ends(error: &Interval, unit: &str) -> String {
-    let small = |value: f64| significant(value, 2);
+fn with_ends(error: &Interval, (unit, size): (&str, f64)) -> String {
+    let small = |value: f64| few_digits(value / size, 2);
     let certainty = if error.is_certain() { "" } else { ", not distinguishable from 0" };
     let Interval { value, low, high } = error;
     format!("{} {unit} ({} to {}{certainty})", small(*value), small(*low), small(*high))
@@ -248,7 +261,7 @@ fn mesh_table(page: &mut String, study: &SceneStudy) {
         for value in &meshes.values {
             let _ = write!(page, " {} |", significant(*value, 5));
         }
-        let _ = writeln!(page, " {} |", with_ends(&meshes.own_error, unit));
+        let _ = writeln!(page, " {} |", with_ends(&meshes.own_error, (unit, 1.0)));
     }
 }
 

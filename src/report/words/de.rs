@@ -64,6 +64,7 @@ pub(super) static WORDS: Words = Words {
     error_steps: "Schritte: Schätzung und 95-%-Schranke",
     error_mesh: "Netz: ebenso",
     plausible: "plausibel",
+    at_limit: "an der Grenze",
     look_here: "hier hinsehen",
     plausibility: "Plausibilität",
     mesh_health: "Zustand der Dreiecksnetze",
@@ -171,6 +172,7 @@ pub(super) static WORDS: Words = Words {
     high_talus: "hohe Schutthalde",
     band: "{name}: {low} bis {high}°",
     median_inside: "Der Median von {median}° liegt, wo solche Mediane beobachtet werden.",
+    median_at_limit: "Der Median von {median}° liegt an der Grenze beobachteter Mediane: sein Intervall enthält sie.",
     median_outside: "Der Median von {median}° liegt außerhalb beider: Reibung, Rollreibung, Abbruchregel und Gelände prüfen.",
     reach_caption: "Pauschalgefälle, atan(Höhenverlust / Auslaufstrecke), von der Ablösung bis zum Ende. Schattiert: wo die Mediane beobachteter Ereignisse liegen. Blöcke, die das Gelände verließen, wären weitergelaufen: ihr Wert ist eine obere Schranke. {verdict}",
     // Distributions and single rocks

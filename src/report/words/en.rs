@@ -58,6 +58,7 @@ pub(super) static WORDS: Words = Words {
     error_steps: "steps: estimate and 95 % bound",
     error_mesh: "mesh: the same",
     plausible: "plausible",
+    at_limit: "at the limit",
     look_here: "look here",
     plausibility: "Plausibility",
     mesh_health: "Health of the meshes",
@@ -165,6 +166,7 @@ pub(super) static WORDS: Words = Words {
     high_talus: "high talus slope",
     band: "{name}: {low} to {high}°",
     median_inside: "The median of {median}° lies where such medians are observed.",
+    median_at_limit: "The median of {median}° lies at the limit of where such medians are observed: its interval holds the limit.",
     median_outside: "The median of {median}° lies outside both: look at friction, rolling friction, the stop rule and the terrain.",
     reach_caption: "Reach angle (Fahrböschung), atan(drop / runout), from release to end. Shaded: where the medians of observed events lie. Rocks that left the terrain would have gone on: theirs is an upper bound. {verdict}",
     // Distributions and single rocks

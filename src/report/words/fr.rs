@@ -64,6 +64,7 @@ pub(super) static WORDS: Words = Words {
     error_steps: "pas\u{a0}: estimation et borne à 95 %",
     error_mesh: "maillage\u{a0}: de même",
     plausible: "plausible",
+    at_limit: "à la limite",
     look_here: "à examiner",
     plausibility: "Plausibilité",
     mesh_health: "État des maillages",
@@ -171,6 +172,7 @@ pub(super) static WORDS: Words = Words {
     high_talus: "haut talus d’éboulis",
     band: "{name}\u{a0}: {low} à {high}°",
     median_inside: "La médiane de {median}° se trouve là où de telles médianes sont observées.",
+    median_at_limit: "La médiane de {median}° est à la limite des médianes observées\u{a0}: son intervalle la contient.",
     median_outside: "La médiane de {median}° est hors des deux\u{a0}: revoir frottement, frottement de roulement, règle d’arrêt et terrain.",
     reach_caption: "Angle d’énergie (Fahrböschung), atan(dénivelée / distance), du départ à l’arrêt. Ombré\u{a0}: où se trouvent les médianes d’événements observés. Les blocs sortis du terrain auraient continué\u{a0}: leur angle est une borne supérieure. {verdict}",
     // Distributions and single rocks

@@ -64,6 +64,7 @@ pub(super) static WORDS: Words = Words {
     error_steps: "passi: stima e limite al 95 %",
     error_mesh: "maglia: lo stesso",
     plausible: "plausibile",
+    at_limit: "al limite",
     look_here: "da esaminare",
     plausibility: "Plausibilità",
     mesh_health: "Stato delle maglie",
@@ -171,6 +172,7 @@ pub(super) static WORDS: Words = Words {
     high_talus: "alto versante detritico",
     band: "{name}: da {low} a {high}°",
     median_inside: "La mediana di {median}° sta dove tali mediane sono osservate.",
+    median_at_limit: "La mediana di {median}° è al limite delle mediane osservate: il suo intervallo lo contiene.",
     median_outside: "La mediana di {median}° è fuori da entrambe: rivedere attrito, attrito volvente, regola di arresto e terreno.",
     reach_caption: "Angolo di propagazione (Fahrböschung), atan(dislivello / distanza), dal distacco all’arresto. Ombreggiato: dove stanno le mediane di eventi osservati. I massi usciti dal terreno avrebbero proseguito: il loro è un limite superiore. {verdict}",
     // Distributions and single rocks

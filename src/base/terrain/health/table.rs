@@ -141,7 +141,11 @@ impl Health {
 
     /// Name, tally and treatment of everything that can be wrong.
     fn rows(&self) -> [(&'static str, &Tally, String); 8] {
-        let loops = format!("kept, can be hit; {} open border(s)", grouped(self.border_loops));
+        let loops = format!(
+            "kept, can be hit; {} open {}",
+            grouped(self.border_loops),
+            if self.border_loops == 1 { "border" } else { "borders" }
+        );
         [
             ("without area", &self.zero_area, "left out".into()),
             ("duplicates", &self.duplicates, "left out, the first is kept".into()),
