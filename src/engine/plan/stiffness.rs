@@ -110,13 +110,14 @@ pub(super) fn too_short(step: &Settings, longest_s: f64, warnings: &mut Vec<Stri
 
 /// Speed below which the median rock does not rebound from each ground (m/s).
 pub(super) fn capture_m_s(scene: &Scene, step: &Settings) -> Vec<f64> {
-    let capture = Capture {
-        own_m_s: step.capture_speed_m_s,
-        tolerance_m_s: step.speed_error_m_s(scene.gravity_m_s2, !scene.rocks.shapes.is_empty()),
-        gravity_m_s2: scene.gravity_m_s2,
-    };
     let median = |value: &Distribution| value.quantile(0.5);
     let rock = rock(scene, median(scene.rocks.radius_m()));
+    let block_radius_m = (!scene.rocks.shapes.is_empty()).then_some(rock.radius_m);
+    let capture = Capture {
+        own_m_s: step.capture_speed_m_s,
+        tolerance_m_s: step.speed_error_m_s(scene.gravity_m_s2, block_radius_m),
+        gravity_m_s2: scene.gravity_m_s2,
+    };
     let of = |table: &GroundTable| {
         let normal_stiffness_n_m = median(&table.normal_stiffness_n_m);
         let springs = [normal_stiffness_n_m, table.shear_n_m(normal_stiffness_n_m, median)];

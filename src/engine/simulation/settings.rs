@@ -48,10 +48,10 @@ impl<'a> RunSettings<'a> {
     ///
     /// The scene's own capture speed, or what it is made of where the scene names none: tolerance
     /// and gravity.
-    pub(super) fn capture(&self, are_blocks: bool) -> Capture {
+    pub(super) fn capture(&self, block_radius_m: Option<f64>) -> Capture {
         Capture {
             own_m_s: self.step.capture_speed_m_s,
-            tolerance_m_s: self.step.speed_error_m_s(self.gravity_m_s2, are_blocks),
+            tolerance_m_s: self.step.speed_error_m_s(self.gravity_m_s2, block_radius_m),
             gravity_m_s2: self.gravity_m_s2,
         }
     }

@@ -51,7 +51,7 @@ impl Scratch {
     /// Fills in the laws of all grounds for one rock. The damping ratio of a restitution takes a root search, so it is
     /// kept as long as the restitution of a ground stays the same.
     fn make_laws(&mut self, release: &Release, settings: &RunSettings, is_block: bool) {
-        let capture = settings.capture(is_block);
+        let capture = settings.capture(is_block.then_some(release.rock.radius_m));
         self.damping.truncate(release.grounds.len());
         self.laws.clear();
         for (k, ground) in release.grounds.iter().enumerate() {

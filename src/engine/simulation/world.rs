@@ -189,7 +189,7 @@ fn body<'a>(
     damping: &mut impl FnMut(Option<f64>) -> Damping,
 ) -> WorldBody<'a> {
     let laws = release.grounds.iter().map(|ground| {
-        Law::new(ground, &damping(ground.restitution), &release.rock, &settings.capture(false))
+        Law::new(ground, &damping(ground.restitution), &release.rock, &settings.capture(None))
     });
     let motion = release.motion;
     let body = Body::new(&release.rock, settings.gravity_m_s2);

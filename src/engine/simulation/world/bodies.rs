@@ -76,7 +76,7 @@ impl<'a> BodyWorld<'a> {
             settings,
             heaps,
             answer: (answer.ground, Damping::of(answer.ground.restitution)),
-            capture: settings.capture(false),
+            capture: settings.capture(None),
             bodies,
             pair_histories: Vec::new(),
             wide: CachedPairs::default(),
