@@ -11,8 +11,8 @@ mod shapes;
 
 use super::by_frequency;
 use super::model::{
-    BandPoint, Check, Estimate, EstimateRow, EstimateTable, Is, Path, Quantile, ReleaseEnd, Report,
-    ReportPathPoint, ReportQuantity, StopShare, Text, Verdict,
+    BandPoint, Check, Estimate, EstimateRow, EstimateTable, Is, Path, Plausibility, Quantile,
+    ReleaseEnd, Report, ReportPathPoint, ReportQuantity, StopShare, Text,
 };
 use super::raster::GroundRaster;
 use super::words::{Words, fill};
@@ -95,7 +95,7 @@ pub fn gather(results: &Results, ground: Option<GroundRaster>) -> Result<Report>
     report.checks = plausibility::checks(&report, results);
     let said =
         |check: &Check| fill(words.check_failed, &[("name", &check.name), ("found", &check.found)]);
-    let failed = report.checks.iter().filter(|check| check.verdict == Verdict::Off);
+    let failed = report.checks.iter().filter(|check| check.verdict == Plausibility::Off);
     let failed: Vec<String> = failed.map(said).collect();
     let off = report.observed.as_ref().and_then(|found| measured::off(found, words));
     let first = off.into_iter().chain(warnings_first(hazard, words)).collect();

@@ -12,7 +12,7 @@ pub use tables::plain_headline;
 
 use super::figure::{Drawing, Heading};
 use super::format;
-use super::model::{Check, Report, Verdict};
+use super::model::{Check, Plausibility, Report};
 use super::words::{Words, fill};
 use crate::simulation::Stop;
 use std::cell::Cell;
@@ -174,9 +174,9 @@ fn checks(checks: &[Check], words: &Words) -> String {
             "<tr><th scope=\"row\">{}</th><td>{}</td><td>{}</td></tr>\n",
             escape(&check.name),
             match check.verdict {
-                Verdict::Plausible => escape(words.plausible),
-                Verdict::AtLimit => escape(words.at_limit),
-                Verdict::Off => format!("<b>{}</b>", escape(words.look_here)),
+                Plausibility::Plausible => escape(words.plausible),
+                Plausibility::AtLimit => escape(words.at_limit),
+                Plausibility::Off => format!("<b>{}</b>", escape(words.look_here)),
             },
             escape(&check.found)
         )

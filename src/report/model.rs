@@ -232,12 +232,12 @@ pub struct Check {
     /// What was found, and what is known from the field.
     pub found: String,
     /// What to think of it; what fails is a warning.
-    pub verdict: Verdict,
+    pub verdict: Plausibility,
 }
 
 /// What to think of a number beside those from the field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Verdict {
+pub enum Plausibility {
     /// It is like those.
     Plausible,
     /// Its interval holds the limit: chance decides on which side it lies.

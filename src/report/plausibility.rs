@@ -1,6 +1,6 @@
 //! Whether the whole looks like rockfall: what was looked at, what was found, what is known from the field.
 
-use super::model::{Check, Estimate, Is, ReleaseEnd, Report, Verdict};
+use super::model::{Check, Estimate, Is, Plausibility, ReleaseEnd, Report};
 use super::raster::GroundRaster;
 use super::reach_angle;
 use super::words::fill;
@@ -41,7 +41,7 @@ pub(super) fn checks(report: &Report, results: &Results) -> Vec<Check> {
 }
 
 fn check(name: &str, found: String, passes: bool) -> Check {
-    let verdict = if passes { Verdict::Plausible } else { Verdict::Off };
+    let verdict = if passes { Plausibility::Plausible } else { Plausibility::Off };
     Check { name: name.to_owned(), found, verdict }
 }
 
@@ -50,7 +50,7 @@ fn reach(report: &Report) -> Option<Check> {
     let Estimate { value: median, is, .. } = at;
     // an upper bound above the bands proves nothing wrong
     let is_free = is == Is::AtMost && median > 40.0;
-    let verdict = if is_free { Verdict::Plausible } else { reach_angle::observed(&at) };
+    let verdict = if is_free { Plausibility::Plausible } else { reach_angle::observed(&at) };
     let words = report.words();
     let median = format!("{}{}", format::sign(is), format::significant(median, 3));
     let found = fill(words.check_reach_found, &[("median", &median)]);

@@ -6,7 +6,7 @@ use super::colour::{INK, ORANGE, VERMILLION};
 use super::distributions::DistributionPanel;
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
-use super::model::{Estimate, Is, Report, ReportQuantity, Verdict};
+use super::model::{Estimate, Is, Plausibility, Report, ReportQuantity};
 use super::panel::{FOOT_PX, Panel};
 use super::svg::path::PaperFrame;
 use super::words::{Words, fill};
@@ -26,14 +26,14 @@ pub(super) fn median(report: &Report) -> Option<Estimate> {
 }
 
 /// Whether a median lies where those of some observed events lie, as far as its interval tells; an end that is not known tells nothing.
-pub(super) fn observed(median: &Estimate) -> Verdict {
+pub(super) fn observed(median: &Estimate) -> Plausibility {
     let is_in = |degrees: f64| OBSERVED.iter().any(|(low, high)| (*low..=*high).contains(&degrees));
     let is_here = is_in(median.value);
     let mut ends = [median.low, median.high].into_iter().filter(|end| end.is_finite());
     match (is_here, ends.all(|end| is_in(end) == is_here)) {
-        (_, false) => Verdict::AtLimit,
-        (true, true) => Verdict::Plausible,
-        (false, true) => Verdict::Off,
+        (_, false) => Plausibility::AtLimit,
+        (true, true) => Plausibility::Plausible,
+        (false, true) => Plausibility::Off,
     }
 }
 
@@ -68,9 +68,9 @@ fn verdict(median: &Estimate, words: &Words) -> String {
         return fill(words.open().median, &[("median", &at)]);
     }
     let text = match observed(median) {
-        Verdict::Plausible => words.median_inside,
-        Verdict::AtLimit => words.median_at_limit,
-        Verdict::Off => words.median_outside,
+        Plausibility::Plausible => words.median_inside,
+        Plausibility::AtLimit => words.median_at_limit,
+        Plausibility::Off => words.median_outside,
     };
     let at = format!("{}{}", format::sign(median.is), format::significant(median.value, 3));
     fill(text, &[("median", &at)])
@@ -109,11 +109,11 @@ mod tests {
     #[test]
     fn the_interval_decides_what_is_plausible() {
         let said = |value, low, high| observed(&Estimate::new(value, low, high));
-        assert_eq!(said(39.9, 39.2, 40.7), Verdict::AtLimit);
-        assert_eq!(said(40.1, 39.8, 40.7), Verdict::AtLimit);
-        assert_eq!(said(39.0, 38.2, 39.7), Verdict::Plausible);
-        assert_eq!(said(42.0, 41.2, 42.7), Verdict::Off);
-        assert_eq!(said(42.0, f64::NAN, f64::NAN), Verdict::Off);
+        assert_eq!(said(39.9, 39.2, 40.7), Plausibility::AtLimit);
+        assert_eq!(said(40.1, 39.8, 40.7), Plausibility::AtLimit);
+        assert_eq!(said(39.0, 38.2, 39.7), Plausibility::Plausible);
+        assert_eq!(said(42.0, 41.2, 42.7), Plausibility::Off);
+        assert_eq!(said(42.0, f64::NAN, f64::NAN), Plausibility::Off);
     }
 
     /// Three rocks of four have left: nobody knows how flat their way would have become.

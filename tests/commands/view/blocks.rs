@@ -183,7 +183,7 @@ fn blocks_on_the_page_are_turned_as_the_table_says() {
     let scene = scene.replace("path_step_s = 0.05", "path_step_s = 0.2");
     let path = dir.path().join("scene.toml");
     std::fs::write(&path, scene).unwrap();
-    let out = run(dir.path(), path.to_str().unwrap(), COUNT);
+    let out = run(dir.path(), path.to_str().unwrap(), 2 * COUNT);
     let text = std::fs::read_to_string(out.join(PAGE)).unwrap();
     let section = Section::read(page::section(&text, "paths").unwrap()).unwrap();
     let turns = section.numbers("turn");
