@@ -33,8 +33,8 @@
 
 #[doc(hidden)]
 pub use rockfall_engine::{
-    body, contact, error, file, flight, frequency, gis, ground, math, parallel, plan, random,
-    release, rock, scene, simulation, solver, stopwatch, terrain,
+    body, contact, count, error, file, flight, frequency, gis, ground, math, parallel, plan,
+    random, release, rock, scene, simulation, solver, stopwatch, terrain,
 };
 #[doc(hidden)]
 pub mod ensemble;

@@ -5,6 +5,7 @@
 
 // words
 pub mod error;
+pub mod count;
 pub mod math;
 pub mod file;
 pub mod stopwatch;

@@ -1,6 +1,7 @@
 //! Numbers and text as a reader expects them: thin-space thousands, a true minus, raised powers.
 
 use super::bound::Is;
+pub use crate::count::counted;
 use crate::math;
 
 /// Stands between groups of three digits.
@@ -97,11 +98,6 @@ pub fn sign(is: Is) -> &'static str {
     }
 }
 
-/// One or many of something, by the number of them.
-pub fn counted<'a>(count: usize, one: &'a str, many: &'a str) -> &'a str {
-    if count == 1 { one } else { many }
-}
-
 /// A share (0..1) in per cent with a fixed number of decimals.
 pub fn percent(share: f64, decimals: usize) -> String {
     if !share.is_finite() {
@@ -117,7 +113,7 @@ pub fn percent_of_part(share: f64, decimals: usize) -> String {
     let with = |more: usize| percent(share, decimals + more);
     let is_told =
         |more: &usize| [0.0, 1.0].iter().all(|all| with(*more) != percent(*all, decimals + more));
-    with((0..=MOST_MORE).find(|more| !is_part || is_told(more)).unwrap_or(0))
+    with((0..=usize::from(MOST_MORE)).find(|more| !is_part || is_told(more)).unwrap_or(0))
 }
 
 /// The upper end of a share (0..1) in per cent, to two digits and never below it: none of 10 000 bounds a share by 0.030 %,
@@ -133,12 +129,12 @@ pub fn percent_at_most(share: f64) -> String {
 }
 
 /// Digits that a number may get beyond its own before its interval is seen: a share of 10⁻⁸ still is.
-const MOST_MORE: usize = 6;
+const MOST_MORE: u8 = 6;
 
 /// A number and the ends of its interval, as `write` writes each with so many digits more: none, but where rounding makes all three
 /// the same and the ends differ, as many as tell them apart.
-pub(super) fn told_apart(all: [f64; 3], write: impl Fn(f64, usize) -> String) -> [String; 3] {
-    let with = |more: usize| all.map(|number| write(number, more));
+fn told_apart(all: [f64; 3], write: impl Fn(f64, u8) -> String) -> [String; 3] {
+    let with = |more: u8| all.map(|number| write(number, more));
     let [_, low, high] = all;
     let most = if low < high { MOST_MORE } else { 0 };
     let is_seen = |[value, low, high]: &[String; 3]| value != low || low != high;
@@ -156,10 +152,10 @@ pub(super) fn with_interval(all: [f64; 3]) -> [String; 3] {
     if !(width.is_finite() && width > 0.0 && value.is_finite()) {
         // alone: a maximum is read as it is, a small derivative or a bound only for its size
         let digits = if value.abs() >= 0.1 { 4 } else { 3 };
-        return told_apart(all, |number, more| like(value, digits + more)(number));
+        return told_apart(all, |number, more| like(value, digits + usize::from(more))(number));
     }
     let place = last_place(value, width);
-    told_apart(all, |number, more| to_place(number, place - more as i32))
+    told_apart(all, |number, more| to_place(number, place - i32::from(more)))
 }
 
 /// The place of the last digit (power of ten) that an interval of that width leaves to a value: it is at most a fifth of the interval,
@@ -174,21 +170,27 @@ fn last_place(value: f64, width: f64) -> i32 {
     fifth.min((leading - 2).max(of_width - 1)).max(leading - 4)
 }
 
-/// Power of ten of the first digit; 0 of 0.
+/// Power of ten of the first digit; 0 of 0, the largest of what is no number.
 fn exponent_of(value: f64) -> i32 {
+    if !value.is_finite() {
+        return i32::MAX;
+    }
     if value == 0.0 { 0 } else { math::log10(value.abs()).floor() as i32 }
 }
 
 /// A number to a place; one that has not two digits there, as beside an interval far wider than it is, has two of its own.
 fn to_place(number: f64, place: i32) -> String {
-    let digits = exponent_of(number) - place + 1;
     if number == 0.0 {
         return "0".to_owned();
     }
-    if number.is_finite() && digits < 2 {
-        return significant(math::rounded(number, 2), 2);
+    // an end that is no number has no place
+    if !number.is_finite() {
+        return significant(number, 2);
     }
-    like(number, digits.max(1) as usize)(number)
+    match usize::try_from(exponent_of(number) - place + 1) {
+        Ok(digits) if digits >= 2 => like(number, digits)(number),
+        _ => significant(math::rounded(number, 2), 2),
+    }
 }
 
 /// Whether a number without interval is a count, or one as it was written.
@@ -207,10 +209,10 @@ pub(super) fn alone(value: f64) -> String {
 
 /// Writes numbers to the last place that a value of so many digits has: its interval ends where it ends.
 fn like(value: f64, digits: usize) -> impl Fn(f64) -> String {
-    let exponent = if value == 0.0 { 0.0 } else { math::log10(value.abs()).floor() };
-    let last = exponent - digits as f64 + 1.0;
+    let exponent = exponent_of(value);
+    let last = f64::from(exponent) - digits as f64 + 1.0;
     move |v| {
-        if !(-4.0..9.0).contains(&exponent) {
+        if !(-4..9).contains(&exponent) {
             return significant(math::rounded(v, digits), digits);
         }
         let place = math::pow(10.0, last.max(0.0));
@@ -221,10 +223,11 @@ fn like(value: f64, digits: usize) -> impl Fn(f64) -> String {
 /// A share (0..1) and the ends of its interval in per cent, by the rule of [all numbers](with_interval); so many decimals without one.
 pub(super) fn percents(all: [f64; 3], decimals: impl Fn(f64) -> usize) -> [String; 3] {
     let [_, low, high] = all;
-    if !(low < high) {
-        return all.map(|share| percent(share, decimals(share)));
+    if low < high {
+        let numbers = with_interval(all.map(|share| 100.0 * share));
+        return numbers.map(|number| format!("{number}{THIN_SPACE}%"));
     }
-    with_interval(all.map(|share| 100.0 * share)).map(|number| format!("{number}{THIN_SPACE}%"))
+    all.map(|share| percent(share, decimals(share)))
 }
 
 /// Text that may stand inside an element or a quoted attribute of SVG and HTML.

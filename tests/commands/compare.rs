@@ -14,8 +14,10 @@ use std::path::{Path, PathBuf};
 const ROCKS: usize = 400;
 /// Made pairs of runs: the coverage found has a standard deviation of 0.4 %.
 const PAIRS: usize = 3000;
-/// Largest coverage: ranks are whole, and the widest place that a percentile may lie at counts.
-const MOST: f64 = 0.985;
+/// Largest coverage …
+const MOST: f64 = 0.97;
+/// … and that of paired percentiles: ranks are whole, and the widest place that a percentile may lie at counts.
+const MOST_OF_PAIRS: f64 = 0.985;
 
 /// Pairs of standard normal numbers with a correlation of 0.8, and a third one beside them.
 fn draws(seed: usize) -> Vec<[f64; 3]> {
@@ -54,7 +56,7 @@ fn energies(draws: &[[f64; 3]]) -> [Values; 2] {
     [values(draws, |z| exp(0.6 * z[0])), values(draws, |z| 1.3 * exp(0.54 * z[1]))]
 }
 
-/// The 95 % intervals hold the true difference in 93 to 98.5 of 100 made pairs, paired or not.
+/// The 95 % intervals hold the true difference in 93 to 97 of 100 made pairs, paired or not; of paired percentiles in up to 98.5.
 #[test]
 fn intervals_hold_the_truth_as_often_as_they_promise() {
     let quantile = |z: f64| 1.3 * exp(0.54 * z) - exp(0.6 * z);
@@ -78,7 +80,8 @@ fn intervals_hold_the_truth_as_often_as_they_promise() {
                 Difference::between(&read(&a), &read(&b), paired)
             });
             println!("{name}, paired {paired}: {found}");
-            assert!((0.93..=MOST).contains(&found), "{name}, paired {paired}: {found}");
+            let most = if paired && name != "mean" { MOST_OF_PAIRS } else { MOST };
+            assert!((0.93..=most).contains(&found), "{name}, paired {paired}: {found}");
         }
     }
 }
@@ -100,7 +103,7 @@ fn shares_and_rocks_at_a_line_keep_their_promise_too() {
                 Difference::of_shares((&a, ROCKS), (&b, ROCKS), paired)
             });
             println!("share {limit_a}, paired {paired}: {found}");
-            assert!((0.93..=0.97).contains(&found), "share {limit_a}, paired {paired}: {found}");
+            assert!((0.93..=MOST).contains(&found), "share {limit_a}, paired {paired}: {found}");
         }
     }
     // a rock crosses where its third number is large; then its energy is exp of the first
@@ -113,7 +116,7 @@ fn shares_and_rocks_at_a_line_keep_their_promise_too() {
         Difference::between(&read(&a), &read(&b), true)
     });
     println!("median at a line: {found}");
-    assert!((0.93..=MOST).contains(&found), "median at a line: {found}");
+    assert!((0.93..=MOST_OF_PAIRS).contains(&found), "median at a line: {found}");
 }
 
 /// Pairing pays: with a correlation of 0.8 the interval of the mean is less than two thirds as wide.

@@ -1,6 +1,7 @@
 //! The plan in words: one line for everything that is computed and everything that is left out.
 
 use super::{EvaluationLine, Part, Paths, Plan, RestRule, annual, settings};
+use crate::count::counted;
 use crate::ground::Ground;
 use crate::release::{Releases, Where};
 use crate::scene::{BarrierTable, InputFile, ObjectTable, Zone, ZonePlace, Zones};
@@ -329,7 +330,7 @@ fn files(terrain: &Terrain) -> String {
         terrain.sheets.iter().map(|sheet| (&sheet.path, sheet.is_tree)).collect();
     paths.sort();
     paths.dedup();
-    if paths.len() == 1 { "1 file".to_owned() } else { format!("{} files", paths.len()) }
+    format!("{} {}", paths.len(), counted(paths.len(), "file", "files"))
 }
 
 fn input_file(InputFile { path, bytes, assumed }: &InputFile) -> String {

@@ -1,6 +1,7 @@
 //! The health of a mesh as a table for people.
 
 use super::{FileHealth, Gap, Health, Overlap};
+use crate::count::counted;
 use crate::terrain::stl::{Format, Spacing};
 use crate::terrain::weld::Tally;
 use std::fmt;
@@ -144,7 +145,7 @@ impl Health {
         let loops = format!(
             "kept, can be hit; {} open {}",
             grouped(self.border_loops),
-            if self.border_loops == 1 { "border" } else { "borders" }
+            counted(self.border_loops, "border", "borders")
         );
         [
             ("without area", &self.zero_area, "left out".into()),

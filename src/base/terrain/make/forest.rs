@@ -2,6 +2,7 @@
 
 use super::stems::FOOT_M;
 use super::stems::{Stem, prism, ring};
+use crate::count::counted;
 use crate::error::{Error, Result};
 use crate::file::{self, LONGEST_TEXT};
 use crate::gis::{self, Geometry};
@@ -45,7 +46,7 @@ impl TreeList {
     /// How many trees it holds, in words.
     pub fn stems(&self) -> String {
         let count = self.trees.len();
-        format!("{count} {}", if count == 1 { "stem" } else { "stems" })
+        format!("{count} {}", counted(count, "stem", "stems"))
     }
 }
 
