@@ -13,6 +13,7 @@ pub(crate) use law::{
     FixedStepNormal, FrictionElement, FrictionLimits, INSIDE, LinearFriction, NormalElement,
     NormalLine, SliderForce, within,
 };
+pub(crate) use soil::over_unit;
 pub use soil::{Scar, SlipFriction, cut_area_m2, swept_m3};
 
 /// Ground values in force for one release (a scene may give distributions; these are drawn).

@@ -5,6 +5,7 @@ use crate::common::{falls, plan_in, uneven_cells};
 use rockfall::rock::Vec3;
 use rockfall::simulation::Trajectory;
 use rockfall::terrain::stl::{Facet, write_binary};
+use std::f64::consts::PI;
 
 /// Cells of a mesh around the origin, uneven by `uneven_m`, in turn of the one and the other file.
 fn checkered(cell_m: f64, uneven_m: f64) -> [Vec<Facet>; 2] {
@@ -234,5 +235,34 @@ fn a_ramp_behind_a_border_throws_off_what_rolls_on_it() {
             (apart_m_s[0] - apart_m_s[1]).abs() < 0.02 * apart_m_s[1],
             "{scheme}: {apart_m_s:?}"
         );
+    }
+}
+
+/// A box that slides flat on its face comes from ground without friction to rough ground, and stops where that has its energy; the other way round nothing
+/// holds it once all of it is past. A contact with springs kept the ground on which it began: the box slid on without friction, or stopped where there was none.
+#[test]
+fn a_block_rubs_on_the_ground_it_touches() {
+    for scheme in ["rigid", "adaptive", "reference", "dda"] {
+        let step = if scheme == "dda" { "step_s = 1e-4\n" } else { "" };
+        let slides = |frictions: [f64; 2], longest_s: f64| {
+            let more = format!(
+                "[[rocks.shapes]]\nkind = \"box\"\naxes = [1.0, 0.8, 0.3]\ncorner_radius = 0.1\n[release]\ncount = 1\n\
+                 orientation = [1.0, 0.0, 0.0, 0.0]\nheight_m = 0.001\nvelocity_m_s = [4.0, 0.0, 0.0]\n\
+                 spin_rad_s = [0.0, 0.0, 0.0]\npoints_m = [[-4.0, 0.3]]\n\
+                 [solver]\nscheme = \"{scheme}\"\n{step}longest_s = {longest_s:?}\n"
+            );
+            let all = on_two_frictions(&halves(), ["1e9", "1e9"], (0.0, frictions), &more);
+            (all[0].end.position_m.x, all[0].end.velocity_m_s.x)
+        };
+        let (stops_m, _) = slides([0.0, 30.0], 4.0);
+        // corners before and behind the centre by `a`, below it by `h`: while those behind are on smooth ground, friction before lifts
+        // them, and those before bear 1/(2 − μ h/a) of the weight
+        let (side_m, friction) = (0.5 * (PI / 6.0 / 0.24).cbrt(), 30.0_f64.to_radians().tan());
+        let (a_m, h_m) = (side_m - 0.05, 0.3 * side_m);
+        let before = 1.0 / (2.0 - friction * h_m / a_m);
+        let way_m = 8.0 / (9.81 * friction) + a_m * (1.0 - 2.0 * before);
+        assert!((stops_m / way_m - 1.0).abs() < 6e-3, "{scheme}: {stops_m} for {way_m}");
+        let [(_, early), (_, late)] = [1.8, 2.0].map(|s| slides([5.0, 0.0], s));
+        assert!(late > 1.0 && (late - early).abs() < 1e-3, "{scheme}: {early} {late}");
     }
 }

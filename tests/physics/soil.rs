@@ -159,6 +159,35 @@ fn a_wall_beside_a_scar_is_not_its_floor() {
     }
 }
 
+/// A rock that ploughs comes from soil to hard ground, which takes nothing, and to soil of twice the drag, which takes twice as much on each
+/// metre. The scar went on over any ground until the rock lifted off.
+#[test]
+fn a_scar_ends_with_its_soil() {
+    let half = |x: [f64; 2]| {
+        let at = |x: f64, y: f64| Vec3::new(x, y, 0.0);
+        let [a, b, c, d] = [at(x[0], -9.0), at(x[1], -9.0), at(x[1], 9.0), at(x[0], 9.0)];
+        vec![[a, b, c], [a, c, d]]
+    };
+    let mut ends = terrain_of_files(vec![half([-9.0, 1.0]), half([1.0, 99.0])], Some(1e-9));
+    ends.sheets[1].ground = 1;
+    let stronger = Scar { drag: 2.0 * MEADOW.drag, ..MEADOW };
+    for (row, beyond, times) in
+        ROWS.into_iter().flat_map(|row| [(row, None, 0.0), (row, Some(stronger), 2.0)])
+    {
+        let case = slick(&row, 0.0, Some(MEADOW));
+        let case = Case { other: Some(Ground { scar: beyond, ..case.ground }), ..case };
+        let (r, m) = (case.rock.radius_m, case.rock.mass_kg());
+        let depth = MEADOW.depth_m(m, 5.0);
+        let k = MEADOW.drag_per_m3(m);
+        let begins = 10.0 * (-k * swept_m3(r, depth, 0.2_f64.sqrt())).exp();
+        let ka = k * cut_area_m2(r, depth, 0.0);
+        let run = case.run(&ends, [[0.0, 0.0, r], [10.0, 0.0, -5.0], [0.0; 3]], 1.0);
+        let beyond_m = times * (run.end.position_m.x - 1.0);
+        let speed = begins * (-ka * (1.0 + beyond_m)).exp();
+        hold(&row, "speed beyond the soil", [run.end.velocity_m_s.x, speed, speed], 6e-3);
+    }
+}
+
 /// Whether a rock hardly rebounds or not at all makes no jump: it stays in its scar either way.
 #[test]
 fn hardly_any_rebound_is_like_none() {

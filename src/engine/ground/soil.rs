@@ -109,7 +109,7 @@ const GAUSS: [[f64; 2]; 8] = [
 ];
 
 /// Integral from 0 to 1.
-fn over_unit(f: impl Fn(f64) -> f64) -> f64 {
+pub(crate) fn over_unit(f: impl Fn(f64) -> f64) -> f64 {
     let pair = |[x, weight]: [f64; 2]| 0.5 * weight * (f(0.5 - 0.5 * x) + f(0.5 + 0.5 * x));
     GAUSS.map(pair).iter().sum()
 }

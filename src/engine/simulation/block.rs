@@ -119,7 +119,8 @@ impl<'a> Falling<'a> for Roll<'a> {
         let (dt, stop) = self.settings.end_of_flight(&landing, time_s, &self.recorder.effort);
         self.recorder.fly(&path, Some(&tumble.top), dt);
         self.footing.slip.fly(dt);
-        self.scars.fly(dt);
+        let kept = self.scars.fly(&self.world.body, &self.recorder.now.velocity_m_s, dt);
+        self.recorder.slow_in_soil(kept);
         self.moving.pose = tumble.pose(dt);
         self.moving.v = self.recorder.now.velocity_m_s;
         stop
@@ -267,10 +268,10 @@ impl Roll<'_> {
     fn plough(&mut self, from: &Vec3, is_free: bool) {
         let contacts =
             self.footing.touching(self.block).map(|touch| (touch.triangle, touch.normal));
-        let normal = self.scars.floor(&self.world, contacts);
+        let floor = self.scars.floor(&self.world, contacts);
         let way_m = (self.moving.pose.centre - from).norm();
         let ends = is_free.then_some(self.moving.v);
-        let kept = self.scars.plough(&self.world.body, (way_m, normal), ends);
+        let kept = self.scars.plough(&self.world.body, (way_m, floor), ends);
         self.slow(kept);
     }
 

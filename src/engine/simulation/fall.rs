@@ -136,7 +136,8 @@ impl<'a> Falling<'a> for Fall<'a> {
         self.state.stopwatches.stop(TimedPiece::Leap, begun);
         let begun = self.state.stopwatches.now();
         self.recorder.fly(&flight, None, dt);
-        self.soil.fly(dt);
+        let kept = self.soil.fly(&self.body, &self.recorder.now.velocity_m_s, dt);
+        self.recorder.slow_in_soil(kept);
         self.state.stopwatches.stop(TimedPiece::NotesInFlight, begun);
         stop
     }
@@ -233,10 +234,10 @@ impl<'a> Soil<'a> {
         Self { scars, slip, slips: None, last_step_s: 0.0 }
     }
 
-    /// Flies for so long (s).
-    pub(super) fn fly(&mut self, flight_s: f64) {
-        self.scars.fly(flight_s);
+    /// Flies for so long (s) and ends at a velocity; what the rock keeps of that (–).
+    pub(super) fn fly(&mut self, body: &Body, v: &Vec3, flight_s: f64) -> f64 {
         self.slip.fly(flight_s);
         self.last_step_s = 0.0;
+        self.scars.fly(body, v, flight_s)
     }
 }

@@ -61,10 +61,10 @@ impl Fall<'_> {
         if self.soil.scars.are_any() {
             let world = self.settings.around(self.body, self.laws);
             let contacts = self.state.histories.iter().map(|history| (history.triangle, history.n));
-            let normal = self.soil.scars.floor(&world, contacts);
+            let floor = self.soil.scars.floor(&world, contacts);
             let way_m = (self.state.c - before).norm();
             let ends = self.state.is_free().then_some(self.state.v);
-            let kept = self.soil.scars.plough(&self.body, (way_m, normal), ends);
+            let kept = self.soil.scars.plough(&self.body, (way_m, floor), ends);
             self.slow(kept);
         }
         if let Some(Slips { speed_m_s, n, ground }) = self.soil.slips.take() {

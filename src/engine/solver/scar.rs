@@ -8,7 +8,10 @@
 //! - at the touch: the way in, straight along the velocity from the surface to the depth `d`;
 //! - while contact lasts: the way along the plane, at the depth `d`, half of that of each step before it and the rest after it;
 //! - when contact ends: the way out, straight again, and the scar is left; or, where the speed along the normal is too small to rise
-//!   through the soil against gravity, the hop back to the plane, and the scar goes on.
+//!   through the soil against gravity, nothing yet: the scar goes on;
+//! - at the end of a flight in a scar: the way flown, as deep below the surface as gravity lets a hop of so long rise over its chord.
+//!
+//! The scar is in the soil on which the rock stands: on another soil it is as deep as the same impact digs there, and on hard ground it ends.
 //!
 //! Left out of the way in and out: gravity, the time it takes, and where it leads (`d/cos θ` along the surface, some tenths of a metre). Nothing
 //! is moved up or down, so nothing can gain energy: every change takes a share of the speed of the centre. Spin stays. A block cuts the soil as
@@ -19,16 +22,22 @@
 
 use super::body::Body;
 use super::environment::ContactEnvironment;
-use crate::ground::{Ground, Scar, cut_area_m2, swept_m3};
+use crate::ground::{Ground, Scar, cut_area_m2, over_unit, swept_m3};
 use crate::math;
 use crate::rock::Vec3;
 
 /// Share of the speed that one step along the plane may lose to drag, about (–).
 const LOSS_OF_STEP: f64 = 0.02;
+/// Least cosine (–) between a scar's normal and that of what is still its floor and no wall beside it: 60°.
+const STILL_A_FLOOR: f64 = 0.5;
 
 /// The scar that a rock is in.
 #[derive(Debug, Clone, Copy)]
 struct Furrow {
+    /// Approach (m/s) of the impact that has dug it.
+    approach_m_s: f64,
+    /// The ground that it is in.
+    ground: u16,
     depth_m: f64,
     /// `C ρ_s/(2 m)` (1/m³).
     ///
@@ -39,8 +48,24 @@ struct Furrow {
     per_m: f64,
     /// Normal of the plane.
     normal: Vec3,
-    /// A flight that is longer (s) has left it.
-    longest_s: f64,
+    /// Way (m) along the plane that has been dragged and was not ploughed after all: it counts for the way flown next.
+    paid_m: f64,
+}
+
+impl Furrow {
+    /// What pulls a rock back to the plane (m/s²).
+    fn pull(&self, body: &Body) -> f64 {
+        -self.normal.dot(&body.gravity)
+    }
+}
+
+/// What a rock in contact stands on.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Floor {
+    /// On a ground that bears it as a plane with this normal does, with soil or without.
+    On(u16, Vec3),
+    /// On nothing that tells: it flies, or leans on a stem or a wall.
+    Unknown,
 }
 
 /// The scars of one rock.
@@ -110,45 +135,85 @@ impl Scars {
         self.is_any
     }
 
-    /// The normal of the first of these contacts, by triangle and normal, with a ground that has soil which drags.
+    /// What of these contacts, by triangle and normal, the rock stands on in its scar: the first with soil that drags, else the first
+    /// that goes on as the plane of the scar does.
     ///
-    /// A scar lies in the plane of such a contact, whatever else the rock meets in it: a stem that it leans on is no
-    /// floor that it could climb away from.
+    /// A stem that it leans on, or a wall beside the soil, is no floor: the rock has not climbed out of the soil by it.
     pub(crate) fn floor(
         &self,
         world: &ContactEnvironment,
-        mut contacts: impl Iterator<Item = (u32, Vec3)>,
-    ) -> Option<Vec3> {
-        let is_soft =
-            |ground: u16| self.layers.get(usize::from(ground)).is_some_and(Option::is_some);
-        contacts.find(|(triangle, _)| is_soft(world.ground_of(*triangle))).map(|(_, n)| n)
+        contacts: impl Iterator<Item = (u32, Vec3)>,
+    ) -> Floor {
+        let mut floor = Floor::Unknown;
+        for (triangle, n) in contacts {
+            let ground = world.ground_of(triangle);
+            if self.layer(ground).is_some() {
+                return Floor::On(ground, n);
+            }
+            let is_first = matches!(floor, Floor::Unknown);
+            if is_first && !world.terrain.is_tree(triangle) && self.goes_on_along(&n) {
+                floor = Floor::On(ground, n);
+            }
+        }
+        floor
+    }
+
+    /// Whether a plane with this normal continues that of the scar.
+    fn goes_on_along(&self, normal: &Vec3) -> bool {
+        self.now.is_some_and(|now| now.normal.dot(normal) > STILL_A_FLOOR)
+    }
+
+    /// The soil of a ground, if it has any that drags.
+    fn layer(&self, ground: u16) -> Option<Scar> {
+        self.layers.get(usize::from(ground)).copied().flatten()
+    }
+
+    /// The scar of an impact on a ground with an approach (m/s); none on hard ground.
+    fn dug(&self, body: &Body, (ground, normal): (u16, Vec3), approach_m_s: f64) -> Option<Furrow> {
+        let scar = self.layer(ground)?;
+        // d = 0.1 M^(1/3) M_E^(−0.4) v_n^0.8 (Lu et al. 2019, Eq. 11), in the units that the
+        // formula is bound to
+        let depth_m = scar.depth_m(body.mass, approach_m_s);
+        let drag_per_m3 = scar.drag_per_m3(body.mass);
+        let per_m = drag_per_m3 * cut_area_m2(body.radius, depth_m, 0.0);
+        Some(Furrow { approach_m_s, ground, depth_m, drag_per_m3, per_m, normal, paid_m: 0.0 })
+    }
+
+    /// The scar goes on where the rock now stands, or ends.
+    fn stand(&mut self, body: &Body, (ground, normal): (u16, Vec3)) {
+        let Some(now) = self.now else { return };
+        self.now = if ground == now.ground {
+            Some(Furrow { normal, ..now })
+        } else {
+            self.dug(body, (ground, normal), now.approach_m_s)
+        };
     }
 
     /// An impact on a ground, on a plane with this normal, with an approach (m/s) of a rock at a speed (m/s): what it keeps of its
-    /// speed on the way in (–).
+    /// speed on the way in (–), from the depth that it is in already.
     pub(crate) fn enter(
         &mut self,
         body: &Body,
-        (ground, normal): (u16, Vec3),
+        on: (u16, Vec3),
         (approach_m_s, speed_m_s): (f64, f64),
     ) -> f64 {
-        let Some(scar) = self.layers.get(usize::from(ground)).copied().flatten() else {
+        let Some(dug) = self.dug(body, on, approach_m_s.max(0.0)) else {
+            if self.goes_on_along(&on.1) {
+                self.now = None;
+            }
             return 1.0;
         };
-        // d = 0.1 M^(1/3) M_E^(−0.4) v_n^0.8 (Lu et al. 2019, Eq. 11), in the units that the
-        // formula is bound to
-        let depth_m = scar.depth_m(body.mass, approach_m_s.max(0.0));
-        if depth_m <= self.now.map_or(0.0, |now| now.depth_m) {
-            self.now = self.now.map(|now| Furrow { normal, ..now });
+        self.stand(body, on);
+        let depth_m = self.now.map_or(0.0, |now| now.depth_m);
+        if dug.depth_m <= depth_m {
             return 1.0;
         }
-        let drag_per_m3 = scar.drag_per_m3(body.mass);
-        let per_m = drag_per_m3 * cut_area_m2(body.radius, depth_m, 0.0);
-        self.now = Some(Furrow { depth_m, drag_per_m3, per_m, normal, longest_s: 0.0 });
+        self.now = Some(dug);
         // speed over the way in: ∫ A ds is the volume that the ball sweeps down to d, along the
         // velocity
         let cosine = (approach_m_s / speed_m_s).min(1.0);
-        math::exp(-drag_per_m3 * swept_m3(body.radius, depth_m, cosine))
+        let swept = |to_m| swept_m3(body.radius, to_m, cosine);
+        math::exp(-dug.drag_per_m3 * (swept(dug.depth_m) - swept(depth_m)))
     }
 
     /// What the rock keeps of its speed before a step along the plane (–): drag on the first half of it.
@@ -157,51 +222,69 @@ impl Scars {
         math::exp(-now.per_m * self.pace.begin_step())
     }
 
-    /// What the rock keeps of its speed after a step with a way (m) along the plane (–), in a contact with soil with this normal if any is known; and of the
+    /// What the rock keeps of its speed after a step with a way (m) along the plane (–), where it stands now; and of the
     /// velocity before with which the contact `ends`, if it does. What [`Self::plough_ahead`] took is
     /// taken off.
     pub(crate) fn plough(
         &mut self,
         body: &Body,
-        (way_m, normal): (f64, Option<Vec3>),
+        (way_m, floor): (f64, Floor),
         ends: Option<Vec3>,
     ) -> f64 {
-        let Some(now) = &mut self.now else { return 1.0 };
-        now.normal = normal.unwrap_or(now.normal);
+        if let Floor::On(ground, normal) = floor {
+            self.stand(body, (ground, normal));
+        }
+        let Some(now) = &self.now else {
+            self.pace = Pace::default();
+            return 1.0;
+        };
         let share = ends.map_or(1.0, |_| self.pace.share_of_last(self.has_springs));
         let kept = math::exp(-now.per_m * self.pace.end_step(way_m, share));
         ends.map_or(kept, |v| kept * self.leave(body, &(v * kept)))
     }
 
-    /// The rock's contact ends at a velocity: what it keeps of it (–).
+    /// The rock's contact ends at a velocity: what it keeps of it on its way out (–). One that is too slow along the normal to climb
+    /// `d` against gravity stays in its scar.
     pub(crate) fn leave(&mut self, body: &Body, v: &Vec3) -> f64 {
         let paid_m = std::mem::take(&mut self.pace).paid_m;
         let Some(now) = &mut self.now else { return 1.0 };
-        // drag that a way which was not ploughed after all has taken counts for the way out
-        let kept = |drag: f64, now: &Furrow| math::exp((now.per_m * paid_m - drag).min(0.0));
+        now.paid_m = paid_m;
         let (speed, up) = (v.norm(), now.normal.dot(v));
-        let pull = -now.normal.dot(&body.gravity);
-        let falls_s = if pull > 0.0 { (2.0 * now.depth_m / pull).sqrt() } else { f64::INFINITY };
-        now.longest_s = falls_s;
         if up <= 0.0 {
             return 1.0;
         }
         let swept = swept_m3(body.radius, now.depth_m, (up / speed).min(1.0));
-        let kept_out = kept(now.drag_per_m3 * swept, now);
-        if (up * kept_out).powi(2) >= 2.0 * pull * now.depth_m {
-            self.now = None;
-            return kept_out;
+        let kept = math::exp((now.per_m * paid_m - now.drag_per_m3 * swept).min(0.0));
+        if (up * kept).powi(2) < 2.0 * now.pull(body) * now.depth_m {
+            return 1.0;
         }
-        // too slow along the normal to climb d against gravity: it comes down in the same scar, and
-        // the drag along the plane goes on
-        let hop_s = 2.0 * up / pull;
-        now.longest_s += hop_s;
-        kept(now.per_m * speed * hop_s, now)
+        self.now = None;
+        kept
     }
 
-    /// A flight of so long (s): out of the scar, if it takes longer than a hop in it.
-    pub(crate) fn fly(&mut self, flight_s: f64) {
-        self.now.take_if(|now| flight_s > now.longest_s);
+    /// A flight of so long (s) that ends at a velocity: what the rock keeps of it (–), of the soil that it has flown through. Out of
+    /// the scar, if it has risen over the soil meanwhile.
+    ///
+    /// Over the chord of a flight of `T` it is `g_n t (T − t)/2` high, whatever its speed and wherever it lands.
+    pub(crate) fn fly(&mut self, body: &Body, v: &Vec3, flight_s: f64) -> f64 {
+        let Some(now) = self.now else { return 1.0 };
+        let pull = now.pull(body);
+        let rises_out = flight_s * flight_s - 8.0 * now.depth_m / pull;
+        let is_out = pull <= 0.0 || rises_out > 0.0;
+        // in soil until it is out; the way in again is that of the next impact
+        let until_s = if is_out { 0.5 * (flight_s - rises_out.max(0.0).sqrt()) } else { flight_s };
+        let along = v - body.gravity * (0.5 * flight_s);
+        let cut = |x: f64| {
+            let t = x * until_s;
+            let risen_m = 0.5 * pull * t * (flight_s - t);
+            cut_area_m2(body.radius, now.depth_m - risen_m, 0.0)
+        };
+        let swept = along.norm() * until_s * over_unit(cut);
+        if is_out {
+            self.now = None;
+        }
+        // the end of the contact may be followed by another without a flight
+        math::exp((now.per_m * now.paid_m - now.drag_per_m3 * swept).min(0.0))
     }
 
     /// Longest step along the plane (s) at a speed (m/s): drag acts between steps.
@@ -244,18 +327,59 @@ mod tests {
             let per_m = 2.5 * 1700.0 * area / (2.0 * mass);
             let known = math::exp(-per_m * (deep - shallow) / cosine);
             assert!((after / before / known - 1.0).abs() < 1e-12, "{cosine}");
-            let whole = scars.plough(&body, (0.7, Some(up)), None);
+            let whole = scars.plough(&body, (0.7, Floor::On(0, up)), None);
             assert!((whole / math::exp(-per_m * 0.7) - 1.0).abs() < 1e-12, "{whole}");
             // and shared out over the steps before and after as they come
             let mut ahead = 1.0;
-            let parts: f64 = (0..7).map(|_| scars.plough(&body, (0.1, None), None)).product();
+            let parts: f64 =
+                (0..7).map(|_| scars.plough(&body, (0.1, Floor::Unknown), None)).product();
             scars.pace = Pace::default();
             for way_m in [0.1, 0.2, 0.02, 0.08, 0.1, 0.2] {
                 ahead *= scars.plough_ahead();
-                ahead *= scars.plough(&body, (way_m, None), None);
+                ahead *= scars.plough(&body, (way_m, Floor::Unknown), None);
             }
             assert!((ahead / whole - 1.0).abs() < 1e-12, "{ahead} {whole}");
             assert!((parts / whole - 1.0).abs() < 1e-12, "{parts} {whole}");
         }
+    }
+
+    /// A hop within the soil takes what drag takes on the way flown, step by step, as deep as the ball then is; so little is left out where
+    /// gravity alone bends the way. One that rises out is dragged until it is out, and a flight of no time takes nothing.
+    #[test]
+    fn a_hop_in_a_scar_is_dragged_as_deep_as_it_is() {
+        let (radius, g) = (0.4, 9.81);
+        let mass = 2700.0 * 4.0 / 3.0 * PI * radius * radius * radius;
+        let (inertia, gravity) = (0.4 * mass * radius * radius, Vec3::new(0.0, 0.0, -g));
+        let body = Body { mass, inertia, radius, gravity };
+        let scar = Scar { strength_kn_m2: 8000.0, drag: 2.5, soil_density_kg_m3: 1700.0 };
+        let layers = vec![Some(scar)];
+        let mut scars = Scars { layers, is_any: true, ..Scars::default() };
+        scars.enter(&body, (0, Vec3::z()), (3.0, 14.0));
+        let (dug, k) = (scars.now, scar.drag_per_m3(mass));
+        let depth = scar.depth_m(mass, 3.0);
+        for share in [0.02, 0.5, 0.9] {
+            let up = share * (2.0 * g * depth).sqrt();
+            scars.now = dug;
+            assert!(scars.leave(&body, &Vec3::new(14.0, 0.0, up)) == 1.0);
+            let (mut at, mut v, dt) = (0.0, Vec3::new(14.0, 0.0, up), 1e-6);
+            while at >= 0.0 {
+                let cut = cut_area_m2(radius, depth - at, 0.0);
+                v += (gravity - v * (k * cut * v.norm())) * dt;
+                at += v.z * dt;
+            }
+            let hop_s = 2.0 * up / g;
+            let kept = scars.fly(&body, &Vec3::new(14.0, 0.0, -up), hop_s);
+            assert!(scars.now.is_some(), "{share}");
+            let taken = [1.0 - kept, 1.0 - v.norm() / 14.0_f64.hypot(up)];
+            assert!((taken[0] / taken[1] - 1.0).abs() < 0.1, "{share}: {taken:?}");
+        }
+        scars.now = dug;
+        assert!(scars.fly(&body, &Vec3::new(14.0, 0.0, 0.0), 0.0) == 1.0 && scars.now.is_some());
+        // over ground that falls away: from the plane it is out after d = g t (T − t)/2
+        let kept = scars.fly(&body, &Vec3::new(14.0, 0.0, -9.81), 1.0);
+        assert!(scars.now.is_none() && kept < 1.0);
+        let out_s = 0.5 * (1.0 - (1.0 - 8.0 * depth / g).sqrt());
+        let most = k * cut_area_m2(radius, depth, 0.0) * 14.9 * out_s;
+        assert!(-math::ln(kept) < 0.5 * most && -math::ln(kept) > 0.25 * most, "{kept}");
     }
 }

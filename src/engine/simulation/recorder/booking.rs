@@ -50,6 +50,14 @@ impl Recorder<'_> {
         }
     }
 
+    /// The rock keeps a share of its speed (–) at the end of a flight; soil has the rest.
+    pub(in crate::simulation) fn slow_in_soil(&mut self, kept: f64) {
+        let v = self.now.velocity_m_s;
+        self.ledger.soil_j +=
+            0.5 * self.form.rock.mass_kg() * v.norm_squared() * (1.0 - kept * kept);
+        self.now.velocity_m_s = v * kept;
+    }
+
     /// Writes losses into the ledger, what springs take up counted in.
     pub(in crate::simulation) fn pay(&mut self, loss: &Loss) {
         self.ledger.friction_j += loss.friction;

@@ -97,6 +97,25 @@ impl Footing {
         law.for_masses([along * share_of(mass, touch, all), across], mass.mass)
     }
 
+    /// Gives contacts that have come to another ground its friction; springs and dashpots stay those on which they were pressed, as
+    /// those of spheres do in an impact (`solver::ground_change`).
+    fn rub_on_grounds(&mut self, world: &ContactEnvironment, (block, moving): (&Block, &Moving)) {
+        if world.laws.len() == 1 {
+            return;
+        }
+        for (touch, k) in self.touches.found.iter().zip(&self.of_touch) {
+            let Some(k) = *k else { continue };
+            let before = self.springs.histories[k];
+            if world.ground_of(before.triangle) != world.ground_of(touch.triangle) {
+                let began = (before.approach_m_s, self.touching(block));
+                let touched = Self::law_of_touch(world, &moving.mass(block), touch, began);
+                let memory = &mut self.springs.histories[k];
+                memory.law = memory.law.with_friction_of(&touched);
+                memory.triangle = touch.triangle;
+            }
+        }
+    }
+
     /// The memory of every contact of the last look, in their order; new ones begin.
     pub(super) fn remember(
         &mut self,
@@ -128,6 +147,7 @@ impl Footing {
             k += 1;
         }
         self.of_touch = of_touch;
+        self.rub_on_grounds(world, (block, moving));
     }
 
     /// The memory of a contact that has come from a feature nearby, which no other has, or one that is past the ends of its features.
