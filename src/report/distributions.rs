@@ -43,21 +43,25 @@ pub(super) fn draw(report: &Report) -> Drawing {
     let words = report.words();
     let rows = SHOWN.len().div_ceil(COLUMNS);
     let height = rows as f64 * ROW_PX;
+    let panel = |(i, quantity): (usize, &ReportQuantity)| {
+        let column = WIDTH_PX / COLUMNS as f64;
+        let (left, top) = ((i % COLUMNS) as f64 * column, (i / COLUMNS) as f64 * ROW_PX);
+        let frame = PaperFrame {
+            left: left + 52.0,
+            right: left + column - 14.0,
+            top: top + HEAD_PX,
+            bottom: top + HEAD_PX + PLOT_PX,
+        };
+        DistributionPanel::of(report, *quantity, frame)
+    };
+    let panels: Vec<DistributionPanel<'_>> = SHOWN.iter().enumerate().map(panel).collect();
     let svg = paint("distributions", (WIDTH_PX, height), words.distributions_title, |canvas| {
-        for (i, &quantity) in SHOWN.iter().enumerate() {
-            let column = WIDTH_PX / COLUMNS as f64;
-            let (left, top) = ((i % COLUMNS) as f64 * column, (i / COLUMNS) as f64 * ROW_PX);
-            let frame = PaperFrame {
-                left: left + 52.0,
-                right: left + column - 14.0,
-                top: top + HEAD_PX,
-                bottom: top + HEAD_PX + PLOT_PX,
-            };
-            DistributionPanel::of(report, quantity, frame).draw(canvas, 24.0);
-        }
+        panels.iter().for_each(|panel| panel.draw(canvas, 24.0));
     });
     let note = report.is_weighted.then_some(by_frequency::CURVES);
-    let caption = words.distributions_caption.to_owned();
+    let is_beyond = panels.iter().any(|panel| panel.bins.beyond > 0);
+    let beyond = if is_beyond { words.drawn().beyond } else { "" };
+    let caption = format!("{}{beyond}", words.distributions_caption);
     Drawing { svg, caption: by_frequency::noted(caption, note, words) }
 }
 

@@ -50,7 +50,8 @@ pub(super) fn draw(report: &Report, view: &ProfileView) -> Drawing {
             ("needs", &NEEDS),
         ],
     );
-    let caption = caption + &unnamed(&without_room(&panels[0], &view.marks), words);
+    let marks = if view.marks.is_empty() { "" } else { words.drawn().profile_marks };
+    let caption = caption + marks + &unnamed(&without_room(&panels[0], &view.marks), words);
     Drawing { svg, caption }
 }
 

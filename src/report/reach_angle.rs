@@ -8,6 +8,7 @@ use super::figure::{Drawing, WIDTH_PX};
 use super::format;
 use super::model::{Estimate, Is, Plausibility, Report, ReportQuantity};
 use super::panel::{FOOT_PX, Panel};
+use super::runout;
 use super::svg::path::PaperFrame;
 use super::words::{Words, fill};
 
@@ -54,7 +55,13 @@ pub(super) fn draw(report: &Report) -> Drawing {
         key(canvas, &angles.panel, words);
     });
     let verdict = median(report).map_or(String::new(), |at| verdict(&at, words));
-    let caption = fill(words.reach_caption, &[("verdict", &verdict)]);
+    let open = match runout::open_rocks(report) {
+        0 => String::new(),
+        n => fill(words.drawn().reach_open, &[("n", &format::decimal(n as f64, 0))]),
+    };
+    // the verdict is of the medians, the bound of the rocks
+    let verdict = format!("{} {verdict}", open.trim_start());
+    let caption = fill(words.reach_caption, &[("verdict", &verdict.trim_start())]);
     Drawing { svg, caption: caption.trim_end().to_owned() }
 }
 

@@ -16,6 +16,7 @@ use crate::math;
 use along::FallLine;
 pub(super) use names::{more_above_px, name_marks, without_room};
 use plotters::style::RGBColor;
+use std::collections::BTreeSet;
 
 /// Room above the profile for the names of lines and barriers (px).
 const TOP_PX: f64 = 24.0;
@@ -24,6 +25,8 @@ const PROFILE_PX: (f64, f64) = (130.0, 350.0);
 const RIGHT_PX: f64 = WIDTH_PX - 16.0;
 /// A path shorter than this (px) is no line that is seen.
 const STILL_PX: f64 = 1.0;
+/// Paths that lead this far from the fall line (degrees) are told: from there on a view shortens them by more than an eighth.
+const ASIDE_DEG: f64 = 30.0;
 const GROUND_FILL: RGBColor = RGBColor(205, 198, 188);
 const GROUND_LINE: RGBColor = RGBColor(94, 78, 62);
 
@@ -53,7 +56,7 @@ pub(super) fn unnamed(names: &[&str], words: &Words) -> String {
 fn caption(report: &Report, line: &FallLine) -> String {
     let words = report.words();
     let count = |n: usize| format::decimal(n as f64, 0);
-    fill(
+    let said = fill(
         words.side_caption,
         &[
             ("paths", &count(report.paths.len())),
@@ -61,7 +64,22 @@ fn caption(report: &Report, line: &FallLine) -> String {
             ("compass", &line.compass(words)),
             ("bearing", &line.bearing_words(words)),
         ],
-    )
+    );
+    said + &directions(report, line)
+}
+
+/// What one view hides: paths that lead elsewhere, and which source each comes from.
+fn directions(report: &Report, line: &FallLine) -> String {
+    let words = report.words().drawn();
+    let number = |text: &str, n: usize| match n {
+        0 => String::new(),
+        n => fill(text, &[("n", &format::decimal(n as f64, 0)), ("degrees", &ASIDE_DEG)]),
+    };
+    let aside = number(words.aside, line.leading_aside(&report.paths, ASIDE_DEG));
+    let named = report.zones.iter().map(|zone| zone.name.as_str());
+    let sources: BTreeSet<&str> = named.filter(|name| !name.is_empty()).collect();
+    let sources = if sources.len() > 1 { sources.len() } else { 0 };
+    aside + &number(words.sources, sources)
 }
 
 /// The panel and what it shows, with the lines and barriers in it by rising distance (m).

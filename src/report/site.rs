@@ -14,11 +14,40 @@ use crate::output::ReleaseZone;
 /// Pens of the marks; all lie on a white rim, to be seen over anything.
 const LINE: Pen = Pen::full(INK, 1.5);
 const BARRIER: Pen = Pen::full(GREEN, 2.6);
+/// An object has two sides, with this between: it is told from a line without colour.
+const OBJECT: [Pen; 2] = [Pen::full(INK, 3.6), Pen::full(WHITE, 1.4)];
 const ZONE: Pen = Pen::full(INK, 1.2).dashed();
 /// Distance and length of the teeth of a barrier (px).
 const TOOTH_PX: (f64, f64) = (9.0, 4.0);
 /// More release points than this are told by their key alone.
 const MOST_POINTS: usize = 200;
+
+/// What a mark stands for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum MarkKind {
+    Line,
+    Object,
+    Barrier,
+}
+
+impl MarkKind {
+    pub(super) fn of(mark: &MapMark) -> Self {
+        match (&mark.barrier, mark.is_object) {
+            (Some(_), _) => Self::Barrier,
+            (None, true) => Self::Object,
+            (None, false) => Self::Line,
+        }
+    }
+
+    /// Its pens, one upon the other.
+    fn pens(self) -> &'static [Pen] {
+        match self {
+            Self::Line => &[LINE],
+            Self::Object => &OBJECT,
+            Self::Barrier => &[BARRIER],
+        }
+    }
+}
 
 /// Draws the zones of release.
 pub(super) fn zones(canvas: &Canvas<'_>, panel: &Panel, report: &Report) {
@@ -88,9 +117,9 @@ fn zone(canvas: &Canvas<'_>, panel: &Panel, zone: &ReleaseZone) {
 pub(super) fn marks(canvas: &Canvas<'_>, panel: &Panel, report: &Report) {
     for mark in &report.marks {
         for part in on_paper(panel, mark) {
-            let pen = if mark.barrier.is_some() { BARRIER } else { LINE };
-            canvas.line(&part, Pen { opacity: 0.8, ..Pen::full(WHITE, pen.width_px + 2.2) });
-            canvas.line(&part, pen);
+            let pens = MarkKind::of(mark).pens();
+            canvas.line(&part, Pen { opacity: 0.8, ..Pen::full(WHITE, pens[0].width_px + 2.2) });
+            pens.iter().for_each(|pen| canvas.line(&part, *pen));
             if mark.barrier.is_some() {
                 canvas.lines(&teeth(&part), Pen::full(GREEN, 1.2));
             }
@@ -174,10 +203,10 @@ pub(super) fn size(height_m: f64, capacity_j: f64) -> String {
 }
 
 /// A short piece of each kind of mark, for a key.
-pub(super) fn symbol(canvas: &Canvas<'_>, at: Spot, is_barrier: bool) {
+pub(super) fn symbol(canvas: &Canvas<'_>, at: Spot, kind: MarkKind) {
     let part = [(at.0 - 7.0, at.1), (at.0 + 7.0, at.1)];
-    canvas.line(&part, if is_barrier { BARRIER } else { LINE });
-    if is_barrier {
+    kind.pens().iter().for_each(|pen| canvas.line(&part, *pen));
+    if kind == MarkKind::Barrier {
         let tooth = |x: f64| vec![(x, at.1 - TOOTH_PX.1), (x, at.1 + TOOTH_PX.1)];
         canvas.lines(&[tooth(at.0 - 3.5), tooth(at.0 + 3.5)], Pen::full(GREEN, 1.2));
     }

@@ -11,6 +11,7 @@ mod fr;
 mod glossary;
 mod it;
 mod along;
+mod drawn;
 pub(super) mod open;
 mod said;
 mod shapes;
@@ -19,6 +20,7 @@ mod year;
 use super::format;
 use crate::scene::Language;
 use along::AlongWords;
+use drawn::DrawnWords;
 use open::OpenWords;
 use shapes::ShapeWords;
 use std::fmt::{Display, Write as _};
@@ -50,6 +52,7 @@ macro_rules! words {
                 texts.extend(self.shapes().texts());
                 texts.extend(self.open().texts());
                 texts.extend(self.along().texts());
+                texts.extend(self.drawn().texts());
                 texts
             }
         }
@@ -136,6 +139,11 @@ impl Words {
     /// What is said of a few rocks along their ways.
     pub(super) fn along(&self) -> &'static AlongWords {
         AlongWords::of(self.language())
+    }
+
+    /// What is said in keys and captions only where it applies.
+    pub(super) fn drawn(&self) -> &'static DrawnWords {
+        DrawnWords::of(self.language())
     }
 
     /// What is said of rocks with shapes.
@@ -271,6 +279,23 @@ mod tests {
                     three[1] == b',' && three[0].is_ascii_digit() && three[2].is_ascii_digit()
                 };
                 assert!(!text.as_bytes().windows(3).any(is_comma), "{language:?}: {text}");
+            }
+        }
+    }
+
+    /// French has a space that does not break before its double marks and inside its quotation marks.
+    #[test]
+    fn french_marks_keep_their_space() {
+        let words = Words::of(Language::Fr);
+        let said = words.said.iter().copied().flatten().map(|(_, said)| *said);
+        let texts = words.texts().into_iter().map(|(_, text)| text).chain(words.method);
+        let terms = words.glossary.iter().map(|(_, meaning)| *meaning);
+        for text in texts.chain(said).chain(terms).chain(words.view.iter().map(|(_, said)| *said)) {
+            for wrong in [" :", " ;", " ?", " !", "« ", " »"] {
+                assert!(!text.contains(wrong), "{text}");
+            }
+            for (at, _) in text.match_indices([';', '?']) {
+                assert!(text[..at].ends_with('\u{a0}'), "{text}");
             }
         }
     }

@@ -149,9 +149,14 @@ fn timed(mut run: impl FnMut() -> Trajectory) -> (Trajectory, f64) {
     (journey, times[times.len() / 2])
 }
 
+/// Least ratio of the most to the fewest steps over which an order is told (–).
+const SPAN: f64 = 8.0;
+/// Least share of the scatter of log errors that steps explain (–).
+const FOLLOWS: f64 = 0.8;
+
 impl Curve {
     /// Order of convergence: the slope of log error over log contact steps, least squares over the rungs where an order
-    /// can show; `None` where fewer than three do.
+    /// can show; `None` where fewer than three do, where steps hardly differ, or where errors do not follow them.
     pub fn order(&self) -> Option<f64> {
         let shows = |point: &&LadderPoint| (ROUNDING..LARGE).contains(&point.error);
         let logs: Vec<(f64, f64)> = self
@@ -166,13 +171,23 @@ impl Curve {
         let n = logs.len() as f64;
         let mean = |of: fn(&(f64, f64)) -> f64| logs.iter().map(of).sum::<f64>() / n;
         let (x, y) = (mean(|log| log.0), mean(|log| log.1));
-        let (mut xx, mut xy) = (0.0, 0.0);
+        let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
         for log in &logs {
             xx += (log.0 - x).powi(2);
             xy += (log.0 - x) * (log.1 - y);
+            yy += (log.1 - y).powi(2);
         }
-        // the same number of steps on every rung shows no order
-        (xx > 0.05 * n).then_some(-xy / xx)
+        let ends = logs.iter().fold((f64::INFINITY, 0.0_f64), |(least, most), log| {
+            (least.min(log.0), most.max(log.0))
+        });
+        // over few steps more errors jump to rounding; those that do not fall have another cause than the steps
+        let is_seen = ends.1 - ends.0 >= math::ln(SPAN) && xy < 0.0 && xy * xy >= FOLLOWS * xx * yy;
+        is_seen.then_some(-xy / xx)
+    }
+
+    /// Whether the finest rungs are at rounding, so that no order shows above it.
+    pub fn ends_at_rounding(&self) -> bool {
+        self.points.iter().any(|point| point.error < ROUNDING)
     }
 
     /// Whether every rung is exact to rounding.

@@ -96,6 +96,7 @@ pub(super) fn order_in_words(curve: &Curve) -> String {
     match curve.order() {
         Some(order) => format!("order {} (theory {theory})", format::decimal(order, 1)),
         None if curve.is_exact() => "exact to rounding".to_owned(),
+        None if curve.ends_at_rounding() => format!("at rounding (theory {theory})"),
         None => format!("no order to see (theory {theory})"),
     }
 }

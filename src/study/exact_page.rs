@@ -63,7 +63,7 @@ fn orders(page: &mut String, studies: &[CaseStudy]) {
         }
         *page += "\n";
     }
-    *page += "\n\"No order to see\": fewer than three errors between rounding and 0.1, or as many steps on every rung, because the error control finds nothing to refine.\n\n";
+    *page += "\n\"No order to see\": fewer than three errors between rounding and 0.1, less than eight times the steps from the coarsest of them to the finest, because the error control finds little to refine, or errors that do not follow the steps. \"At rounding\": the same where errors come below 1e-8, so that what is left above it tells no order.\n\n";
 }
 
 /// The smallest error on the ladder.

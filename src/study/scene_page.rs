@@ -78,16 +78,7 @@ pub fn sentence(study: &SceneStudy, statistic: &StudyStatistic, wanted: Option<f
     let head = format!("**P{} {name} {value} {unit}**", statistic.percent);
     let (Some(sampling), Some(total)) = (statistic.sampling_error(), statistic.total_error())
     else {
-        if statistic.is_only_bound(study.releases) {
-            return format!(
-                "{head}: only a bound. {} of {} rocks left the terrain, ran out of time or failed, and no number of releases makes it narrower; give terrain that reaches farther, or a longer [solver] longest_s.",
-                statistic.open, study.releases
-            );
-        }
-        return format!(
-            "{head}: too few rocks for an interval; {} or more are needed.",
-            statistic.own.needs_for_interval(f64::from(statistic.percent) / 100.0)
-        );
+        return format!("{head}: {}", without_errors(study, statistic));
     };
     let steps = statistic.ladder.own_error;
     let mesh = statistic.meshes.as_ref().map_or_else(String::new, |meshes| {
@@ -96,25 +87,46 @@ pub fn sentence(study: &SceneStudy, statistic: &StudyStatistic, wanted: Option<f
     let mesh_error = statistic.meshes.as_ref().map(|meshes| &meshes.own_error);
     let dominates = dominant(sampling, &steps, mesh_error);
     let wanted = wanted.unwrap_or(0.5 * total);
-    let offer = match study.cheapest(statistic, wanted) {
-        None => {
-            let finest = study.finest_steps(statistic);
-            let remedy = remedy((sampling, wanted), &finest, mesh_error, study.releases);
-            format!("no setting tried brings it to {} {unit}: {remedy}", small(wanted))
-        }
-        Some(offer) => format!(
-            "cheapest for a total of {} {unit}: {} with {} releases, about {} s",
-            small(wanted),
-            setting(&study.rungs[offer.rung].step),
-            format::decimal(offer.releases as f64, 0),
-            significant(offer.seconds, 2)
-        ),
-    };
+    let offer = offered(study, statistic, (sampling, wanted), &small(wanted));
     format!(
         "{head}: sampling error ±{} {unit}, error of the steps {}{mesh}, total {} {unit}. {dominates}; {offer}.",
         small(sampling),
         with_ends(&steps, (unit, size)),
         small(total)
+    )
+}
+
+/// Why a statistic has no errors.
+fn without_errors(study: &SceneStudy, statistic: &StudyStatistic) -> String {
+    if statistic.is_only_bound(study.releases) {
+        return format!(
+            "only a bound. {} of {} rocks left the terrain, ran out of time or failed, and no number of releases makes it narrower; give terrain that reaches farther, or a longer [solver] longest_s.",
+            statistic.open, study.releases
+        );
+    }
+    let needed = statistic.own.needs_for_interval(f64::from(statistic.percent) / 100.0);
+    format!("too few rocks for an interval; {needed} or more are needed.")
+}
+
+/// The cheapest way to a wanted error, `said` as written, or what would bring it there.
+fn offered(
+    study: &SceneStudy,
+    statistic: &StudyStatistic,
+    (sampling, wanted): (f64, f64),
+    said: &str,
+) -> String {
+    let unit = written_unit(study.subjects[statistic.subject].unit, statistic.own.value).0;
+    let Some(offer) = study.cheapest(statistic, wanted) else {
+        let finest = study.finest_steps(statistic);
+        let mesh_error = statistic.meshes.as_ref().map(|meshes| &meshes.own_error);
+        let remedy = remedy((sampling, wanted), &finest, mesh_error, study.releases);
+        return format!("no setting tried brings it to {said} {unit}: {remedy}");
+    };
+    format!(
+        "cheapest for a total of {said} {unit}: {} with {} releases, about {} s",
+        setting(&study.rungs[offer.rung].step),
+        format::decimal(offer.releases as f64, 0),
+        significant(offer.seconds, 2)
     )
 }
 

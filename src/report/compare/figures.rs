@@ -12,6 +12,7 @@ use crate::report::format;
 use crate::report::panel::{FOOT_PX, Panel};
 use crate::report::svg::path::PaperFrame;
 use crate::report::words::{Words, fill};
+use plotters::style::RGBColor;
 
 const A_PEN: Pen = Pen::full(BLUE, 1.6);
 const B_PEN: Pen = Pen::full(VERMILLION, 1.6).dashed();
@@ -29,8 +30,11 @@ const WEIGHTED_CAPTION: &str = "Share of the rocks by frequency that exceed a va
 const HEAD_PX: f64 = 30.0;
 /// Room for the key above the panels (px).
 const KEY_PX: f64 = 20.0;
-/// Changes beyond this are drawn at the edge (–).
+/// Changes beyond this never widen the axis, and no axis is narrower than that (–).
 const MOST_CHANGE: f64 = 2.0;
+const LEAST_CHANGE: f64 = 0.05;
+/// The axis shows so many times the change of the median row (–).
+const OVER_MEDIAN: f64 = 4.0;
 /// Share of the rocks that an axis of values leaves out at its upper end (–).
 const BEYOND: f64 = 0.005;
 
@@ -69,11 +73,43 @@ fn rows(groups: &[Group], words: &Words) -> Vec<(String, [f64; 3])> {
                 format!("{name}: {}", row.name_in(words))
             }
         };
-        (a.abs() > 0.0).then(|| (named, [row.difference.value, low, high].map(|x| x / a.abs())))
+        let change = [row.difference.value, low, high].map(|x| x / a.abs());
+        (a.abs() > 0.0).then(|| (named, possible(change, a)))
     };
     let rows = groups.iter().flat_map(|group| group.rows.iter().map(move |row| (group, row)));
     let first = rows.filter(|(_, row)| row.is_headline);
     first.filter_map(|(group, row)| relative(group, row)).collect()
+}
+
+/// A change and its interval as far as they can be: what is positive in both runs falls by no more than all of it, whatever the
+/// approximation of the interval says.
+fn possible([change, low, high]: [f64; 3], a: f64) -> [f64; 3] {
+    let least = if a > 0.0 && change >= -1.0 { -1.0 } else { f64::NEG_INFINITY };
+    [change, low.max(least), high]
+}
+
+/// Largest change that the axis shows (–): some times the median row, so that a few that change by far do not squeeze the others.
+fn reach_of(rows: &[(String, [f64; 3])]) -> f64 {
+    let most = |values: &[f64; 3]| {
+        values.iter().filter(|x| x.is_finite()).fold(0.0_f64, |most, x| most.max(x.abs()))
+    };
+    let mut all: Vec<f64> = rows.iter().map(|(_, values)| most(values)).collect();
+    all.sort_by(f64::total_cmp);
+    let largest = all.last().copied().unwrap_or_default();
+    let median = all.get(all.len() / 2).copied().unwrap_or_default();
+    largest.min(OVER_MEDIAN * median).clamp(LEAST_CHANGE, MOST_CHANGE)
+}
+
+/// An arrow at the edge of the frame where a row goes on beyond it.
+fn goes_on(canvas: &Canvas<'_>, panel: &Panel, (values, y): (&[f64; 3], f64), colour: RGBColor) {
+    let frame = &panel.frame;
+    let ends = [(panel.x.low, frame.left, 1.0), (panel.x.high, frame.right, -1.0)];
+    for (limit, edge, inwards) in ends {
+        if values.iter().any(|x| -inwards * (100.0 * x - limit) > 0.0) {
+            let back = edge + 6.0 * inwards;
+            canvas.polygon(&[(edge, y), (back, y - 4.0), (back, y + 4.0)], colour, 1.0);
+        }
+    }
 }
 
 fn changes(groups: &[Group], words: &Words) -> Drawing {
@@ -82,8 +118,7 @@ fn changes(groups: &[Group], words: &Words) -> Drawing {
     let left = widest.min(0.55 * WIDTH_PX) + 16.0;
     let bottom = 8.0 + ROW_PX * rows.len().max(2) as f64;
     let frame = PaperFrame { left, top: 8.0, right: WIDTH_PX - 14.0, bottom };
-    let reach = rows.iter().flat_map(|(_, values)| values).filter(|x| x.is_finite());
-    let reach = reach.fold(0.05_f64, |most, x| most.max(x.abs())).min(MOST_CHANGE);
+    let reach = reach_of(&rows);
     let x = Axis::linear(-105.0 * reach, 105.0 * reach, words.say("Change from A to B (% of A)"));
     let panel = Panel::new(frame, x, Axis::linear(0.0, 1.0, ""));
     let svg = paint("compare", (WIDTH_PX, bottom + FOOT_PX), &words.say(CHANGES), |canvas| {
@@ -92,12 +127,16 @@ fn changes(groups: &[Group], words: &Words) -> Drawing {
         for (k, (name, values)) in rows.iter().enumerate() {
             let y = frame.top + ROW_PX * (k as f64 + 0.5);
             canvas.line(&[(frame.left, y), (frame.right, y)], Pen::full(PALE, 0.5).dotted());
-            let [at, low, high] = values.map(|x| panel.at(100.0 * x.clamp(-reach, reach), 0.0).0);
+            let edge = 1.05 * reach;
+            let [at, low, high] = values.map(|x| panel.at(100.0 * x.clamp(-edge, edge), 0.0).0);
             let is_clear = values[1] > 0.0 || values[2] < 0.0;
             let colour = if is_clear { VERMILLION } else { INK };
             canvas.line(&[(low, y), (high, y)], Pen::full(colour, 1.6));
             // told apart without colour: a diamond where the interval leaves out zero
-            canvas.mark(if is_clear { 2 } else { 0 }, (at, y), 3.0, colour);
+            if values[0].abs() <= edge {
+                canvas.mark(if is_clear { 2 } else { 0 }, (at, y), 3.0, colour);
+            }
+            goes_on(canvas, &panel, (values, y), colour);
             canvas.text(&Label::new(name.clone(), (frame.left - 8.0, y)).right());
         }
         canvas.outline(&frame, Pen::full(INK, 0.8));
@@ -106,14 +145,16 @@ fn changes(groups: &[Group], words: &Words) -> Drawing {
             panel.nothing(canvas, &words.say("nothing to compare"));
         }
     });
-    let beyond = rows.iter().flat_map(|(_, values)| values).any(|x| x.abs() > MOST_CHANGE);
+    let beyond = rows.iter().flat_map(|(_, values)| values).any(|x| x.abs() > 1.05 * reach);
     let mut caption = words.say(CHANGES_CAPTION);
     if groups.iter().any(|group| group.name.starts_with('“')) {
         caption = format!("{caption} {}", words.say(BEHIND_CAPTION));
     }
     if beyond {
-        caption =
-            format!("{caption} {}", words.say("What lies beyond the frame is drawn at its edge."));
+        caption = format!(
+            "{caption} {}",
+            words.say("An arrow stands where a row goes on beyond the frame.")
+        );
     }
     Drawing { svg, caption }
 }
@@ -193,5 +234,29 @@ fn one_panel(
     panel.axes(canvas);
     if rocks == 0 {
         panel.nothing(canvas, &words.say("no rock"));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Nothing that is positive falls by more than all of it: an interval was drawn to −124 %.
+    #[test]
+    fn nothing_falls_by_more_than_all_of_it() {
+        assert_eq!(possible([-1.0, -1.24, -0.76], 3.0), [-1.0, -1.0, -0.76]);
+        assert_eq!(possible([-0.2, -0.3, -0.1], 3.0), [-0.2, -0.3, -0.1]);
+        // below zero there is no such end
+        assert_eq!(possible([-1.0, -1.24, -0.76], -3.0), [-1.0, -1.24, -0.76]);
+    }
+
+    /// One row of 200 % leaves the others legible.
+    #[test]
+    fn a_row_that_changes_by_far_does_not_squeeze_the_others() {
+        let row = |x: f64| (String::new(), [x, 0.9 * x, 1.1 * x]);
+        let rows = [0.05, 0.05, 0.05, 2.0].map(row);
+        assert!((reach_of(&rows) - OVER_MEDIAN * 1.1 * 0.05).abs() < 1e-12);
+        assert_eq!(reach_of(&[]), LEAST_CHANGE);
+        assert_eq!(reach_of(&[row(0.2)]), 1.1 * 0.2);
     }
 }

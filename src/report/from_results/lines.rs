@@ -51,6 +51,7 @@ pub(super) fn marks(results: &Results) -> Vec<MapMark> {
         name: line.info.name.clone(),
         corners_m: line.info.corners_m.clone(),
         barrier: barrier_on(results, &line.info.name).map(|b| (b.height_m, b.capacity_j)),
+        is_object: results.is_object(&line.info.name),
     };
     shown(results).map(mark).collect()
 }

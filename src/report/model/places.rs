@@ -206,6 +206,8 @@ pub struct MapMark {
     pub corners_m: Vec<[f64; 2]>,
     /// Height (m) and capacity (J) of a barrier; none of a line.
     pub barrier: Option<(f64, f64)>,
+    /// Whether it is an object, which rocks hit; else they cross it.
+    pub is_object: bool,
 }
 
 /// A place of release on the map.

@@ -8,7 +8,7 @@ use crate::report::colour::{GREEN, INK, WHITE};
 use crate::report::format;
 use crate::report::model::Report;
 use crate::report::panel::{FOOT_PX, Panel};
-use crate::report::site;
+use crate::report::site::{self, MarkKind};
 use crate::report::svg::path::PaperFrame;
 use crate::report::words::{Words, fill};
 
@@ -77,6 +77,12 @@ fn scale_bar(canvas: &Canvas<'_>, panel: &Panel) {
     canvas.text(&Label::new(label, (left - 6.0, y)).right());
 }
 
+/// From how many rocks on each shade of deposits stands.
+fn classes(words: &Words) -> String {
+    let from: Vec<String> = super::DEPOSITS.iter().map(|(from, _)| from.to_string()).collect();
+    fill(words.drawn().per_square, &[("classes", &from.join(", "))])
+}
+
 /// The marks on the map and what they mean.
 pub(super) struct MapLegend {
     entries: Vec<(Symbol, String)>,
@@ -86,8 +92,7 @@ enum Symbol {
     Mark(EndMark),
     Density,
     Zone(ReleaseZone),
-    Line,
-    Barrier,
+    Place(MarkKind),
     Tree,
 }
 
@@ -113,16 +118,19 @@ impl MapLegend {
             let count =
                 report.releases.iter().filter(|f| EndMark::of(&f.stop) == Some(mark)).count();
             if count > 0 {
-                let text = format!("{name} ({})", format::decimal(count as f64, 0));
                 let is_density = mark == EndMark::AtRest && count > super::MANY;
+                let scale = if is_density { classes(words) } else { String::new() };
+                let text = format!("{name} ({}){scale}", format::decimal(count as f64, 0));
                 entries.push((if is_density { Symbol::Density } else { Symbol::Mark(mark) }, text));
             }
         }
-        for (symbol, name, is_barrier) in
-            [(Symbol::Line, words.key_line, false), (Symbol::Barrier, words.key_barrier, true)]
-        {
-            if report.marks.iter().any(|mark| mark.barrier.is_some() == is_barrier) {
-                entries.push((symbol, name.to_owned()));
+        for (kind, name) in [
+            (MarkKind::Line, words.key_line),
+            (MarkKind::Object, words.drawn().key_object),
+            (MarkKind::Barrier, words.key_barrier),
+        ] {
+            if report.marks.iter().any(|mark| MarkKind::of(mark) == kind) {
+                entries.push((Symbol::Place(kind), name.to_owned()));
             }
         }
         if report.ground.as_ref().is_some_and(|g| g.trees.contains(&true)) {
@@ -159,8 +167,7 @@ impl MapLegend {
                 Symbol::Density => super::density_symbol(canvas, at),
                 Symbol::Mark(mark) => mark.draw(canvas, &[at], 3.0),
                 Symbol::Zone(zone) => site::zone_symbol(canvas, at, zone),
-                Symbol::Line => site::symbol(canvas, at, false),
-                Symbol::Barrier => site::symbol(canvas, at, true),
+                Symbol::Place(kind) => site::symbol(canvas, at, *kind),
                 Symbol::Tree => canvas.disc(at, 3.0, GREEN),
             }
             canvas.text(&Label::new(text.clone(), (at.0 + 12.0, at.1)));

@@ -1,7 +1,7 @@
 //! The mean fall line, and what happens along it.
 
 use crate::math;
-use crate::report::model::Report;
+use crate::report::model::{Path, Report};
 use crate::report::raster::GroundRaster;
 use crate::report::words::{Words, fill};
 
@@ -70,6 +70,21 @@ impl FallLine {
         } else {
             words.no_bearing.to_owned()
         }
+    }
+
+    /// How many paths lead more than an angle (degrees) away from the line. One that hardly leads anywhere has no direction.
+    pub(super) fn leading_aside(&self, paths: &[Path], degrees: f64) -> usize {
+        let way = |path: &Path| -> Option<(f64, f64)> {
+            let (first, last) = (path.points.first()?.place_m, path.points.last()?.place_m);
+            let along = self.along(last) - self.along(first);
+            let aside = self.aside(last) - self.aside(first);
+            (along.is_finite() && aside.is_finite()).then_some((along, aside))
+        };
+        let ways: Vec<(f64, f64)> = paths.iter().filter_map(way).collect();
+        let length = |(along, aside): &(f64, f64)| math::hypot(*along, *aside);
+        let least = LEADS * ways.iter().map(length).fold(0.0, f64::max);
+        let angle = |(along, aside): &(f64, f64)| math::atan2(aside.abs(), *along).to_degrees();
+        ways.iter().filter(|way| length(way) > least && angle(way) > degrees).count()
     }
 
     /// Range along the line and range of heights to show, with a margin.
@@ -142,6 +157,9 @@ impl FallLine {
         })
     }
 }
+
+/// A path has a direction where it leads so far, over the farthest one (–).
+const LEADS: f64 = 0.1;
 
 #[derive(Default)]
 struct Ranges {

@@ -259,8 +259,12 @@ mod tests {
     fn names_without_room_are_known() {
         let axis = |high: f64| crate::report::axis::Axis::linear(0.0, high, "");
         let panel = Panel::new(FRAME, axis(610.0), axis(1.0));
-        let mark =
-            |k: u32| MapMark { name: format!("line {k}"), corners_m: Vec::new(), barrier: None };
+        let mark = |k: u32| MapMark {
+            name: format!("line {k}"),
+            corners_m: Vec::new(),
+            barrier: None,
+            is_object: false,
+        };
         let marks: Vec<(f64, MapMark)> =
             (0..20).map(|k| (400.0 + 3.0 * f64::from(k), mark(k))).collect();
         let named = above(&panel, &marks).0.iter().flatten().count();

@@ -2,7 +2,7 @@
 
 mod zones;
 
-use super::on_paper;
+use super::{TOOTH_PX, on_paper};
 use crate::math;
 use crate::report::canvas::{Canvas, Label, Pen, SMALL, bold_width, fitted, text_width};
 use crate::report::colour::{DARK_GREEN, INK, WHITE};
@@ -56,8 +56,9 @@ struct Outline<'a> {
 /// A name, and places for it, the nearest first.
 type Wanted<'a> = (&'a str, Vec<PlacedName>);
 
-/// What is wrong with a place, the worst first: lines of others through the name, beside it, and through its stroke.
-type Faults = [usize; 3];
+/// What is wrong with a place, the worst first: lines of others through the name, beside it, its own through it, and others through its
+/// stroke.
+type Faults = [usize; 4];
 
 impl Names {
     /// Finds room for what is `said` of each mark; numbers where words would be read as those of other lines or have no room.
@@ -170,10 +171,13 @@ impl PlacedName {
         let room = self.label.frame();
         let others = || outlines.iter().filter(|other| other.name != own);
         let through = |room: &PaperFrame| others().filter(|other| other.crosses(room)).count();
+        // a line that bends or slants runs through words beside its end
+        let is_struck = |line: &Outline<'_>| line.name == own && line.crosses(&room);
+        let struck = outlines.iter().filter(|line| is_struck(line)).count();
         let Some(stroke) = self.stroke else {
-            return [through(&room), through(&room.grown(READ_PX[0])), 0];
+            return [through(&room), through(&room.grown(READ_PX[0])), struck, 0];
         };
-        [through(&room), through(&room.grown(READ_PX[1])), through(&around(stroke))]
+        [through(&room), through(&room.grown(READ_PX[1])), struck, through(&around(stroke))]
     }
 }
 
@@ -195,7 +199,9 @@ fn candidates(panel: &Panel, mark: &MapMark, parts: &[Vec<Spot>], words: &str) -
     let corners = || mark.corners_m.iter().map(|&[x, y]| panel.at(x, y));
     let is_whole = corners().all(|corner| panel.frame.holds(corner));
     let named = parts.iter().filter(|part| is_whole || length(part) > LEAST_NAMED_PX);
-    let near = named.clone().flat_map(|part| beside(part, words));
+    // teeth of a barrier do not reach into its name
+    let gap_px = GAP_PX + if mark.barrier.is_some() { TOOTH_PX.1 } else { 0.0 };
+    let near = named.clone().flat_map(|part| beside(part, words, gap_px));
     let near = near.map(|label| PlacedName { label, stroke: None });
     let colour = if mark.barrier.is_some() { DARK_GREEN } else { INK };
     let styled =
@@ -227,13 +233,13 @@ fn length(part: &[Spot]) -> f64 {
 }
 
 /// Places for a name: above and below both ends and the middle, and beyond both ends.
-fn beside(part: &[Spot], words: &str) -> Vec<Label> {
+fn beside(part: &[Spot], words: &str, gap_px: f64) -> Vec<Label> {
     let (Some(&first), Some(&last)) = (part.first(), part.last()) else { return Vec::new() };
     let (left, right) = if first.0 <= last.0 { (first, last) } else { (last, first) };
     let middle = part[part.len() / 2];
     let at = |(x, y): Spot, by: f64| Label::new(words, (x, y + by));
     let beyond = [at((right.0 + 6.0, right.1), 0.0), at((left.0 - 6.0, left.1), 0.0).right()];
-    [-GAP_PX, GAP_PX]
+    [-gap_px, gap_px]
         .into_iter()
         .flat_map(|by| {
             [

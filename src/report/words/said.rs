@@ -1,7 +1,7 @@
 //! What the program has recorded in English, said in another language by patterns: a text with places stands for all texts
 //! with something in them. What no pattern knows stays as it is.
 
-use super::{Words, fill};
+use super::{Words, fill, format};
 use std::fmt::Display;
 
 impl Words {
@@ -21,10 +21,13 @@ impl Words {
             return Some((*said).to_owned());
         }
         let with_places = self.recorded().filter(|(known, _)| known.contains('{'));
-        let mut found = with_places.filter_map(|(known, said)| Some((places(known, text)?, said)));
-        let (places, said) = found.next()?;
-        let values: Vec<(&str, String)> =
-            places.into_iter().map(|(name, value)| (name, self.say_inside(value))).collect();
+        let mut found =
+            with_places.filter_map(|(known, said)| Some((known, places(known, text)?, said)));
+        let (known, places, said) = found.next()?;
+        let values: Vec<(&str, String)> = places
+            .into_iter()
+            .map(|(name, value)| (name, self.in_place(known, name, value)))
+            .collect();
         let values: Vec<(&str, &dyn Display)> =
             values.iter().map(|(name, value)| (*name, value as &dyn Display)).collect();
         Some(fill(said, &values))
@@ -35,6 +38,14 @@ impl Words {
         if text.contains(' ') { self.say_inside(text) } else { self.say(text) }
     }
 
+    /// What stands in a place of a pattern: a kind of something, a number as in print, or a text.
+    fn in_place(&self, pattern: &str, name: &str, value: &str) -> String {
+        if name.starts_with("kind") {
+            return self.part(value);
+        }
+        if is_number_place(pattern, name) { in_print(value) } else { self.say_inside(value) }
+    }
+
     /// What stands in a place: a text of its own, or several. Single words are names and numbers.
     fn say_inside(&self, text: &str) -> String {
         if !text.contains(' ') {
@@ -42,7 +53,15 @@ impl Words {
         }
         // components of a vector stand apart whatever is in them
         if text.contains(" | ") {
-            return text.split(" | ").map(|part| self.say(part)).collect::<Vec<_>>().join(" | ");
+            let parts = || text.split(" | ");
+            let is_vector =
+                parts().all(|part| is_number(part.split(' ').next().unwrap_or_default()));
+            let say = |part| match self.knows(part) {
+                Some(said) => said,
+                None if is_vector => part.split(' ').map(in_print).collect::<Vec<_>>().join(" "),
+                None => part.to_owned(),
+            };
+            return parts().map(say).collect::<Vec<_>>().join(" | ");
         }
         if let Some(said) = self.knows(text) {
             return said;
@@ -50,7 +69,9 @@ impl Words {
         for gap in ["; ", ", "] {
             let parts: Vec<&str> = text.split(gap).collect();
             if parts.len() > 1 && parts.iter().any(|part| self.knows(part).is_some()) {
-                return parts.iter().map(|part| self.say(part)).collect::<Vec<_>>().join(gap);
+                let gap =
+                    if self.code == "fr" { gap.replace(';', "\u{a0};") } else { gap.to_owned() };
+                return parts.iter().map(|part| self.say(part)).collect::<Vec<_>>().join(&gap);
             }
         }
         text.to_owned()
@@ -91,6 +112,35 @@ impl Words {
             },
         )
     }
+}
+
+/// Whether a place holds what the program has counted or measured. Names and files of the user stand in places with longer names or in
+/// quotation marks, what is to be copied behind `=` or in backticks: no digit of theirs is touched.
+fn is_number_place(pattern: &str, name: &str) -> bool {
+    let place = format!("{{{name}}}");
+    let before = pattern.split(&place).next().unwrap_or_default();
+    let is_copied =
+        before.ends_with("= ") || before.ends_with('“') || before.matches('`').count() % 2 == 1;
+    (name.len() == 1 && name != "f" || name == "count") && !is_copied
+}
+
+fn is_number(text: &str) -> bool {
+    let digits = text.strip_prefix('-').unwrap_or(text);
+    digits.starts_with(|c: char| c.is_ascii_digit())
+        && digits.ends_with(|c: char| c.is_ascii_digit())
+        && digits.chars().all(|c| c.is_ascii_digit() || c == '.')
+        && digits.matches('.').count() < 2
+}
+
+/// A number with its digits as recorded, but thousands set apart and a minus sign; any other text as it is.
+fn in_print(text: &str) -> String {
+    if !is_number(text) {
+        return text.to_owned();
+    }
+    let decimals = text.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+    // more digits than a number has are no count
+    let value = text.parse().ok().filter(|_| text.len() < 15);
+    value.map_or_else(|| text.to_owned(), |value: f64| format::decimal(value, decimals))
 }
 
 /// What stands in the places of a pattern, if the text follows it: each takes the least that lets the rest follow.
@@ -139,7 +189,7 @@ mod tests {
         let said = words.say_all("1: computed (2.0 m); crossings exact between stored points");
         assert!(said.starts_with("1: computed (2.0 m)"), "{said}");
         let said = words.say_all("0 | 0.5 (0.1 to 0.9 in nine of ten, uniform) m/s");
-        assert_eq!(said, "0 | 0.5 (0.1 bis 0.9 in neun von zehn, uniform) m/s");
+        assert_eq!(said, "0 | 0.5 (0.1 bis 0.9 in neun von zehn, gleichverteilt) m/s");
         let rows = "2 of 3 rows of a.csv have a mass_kg that is not that of their radius_m, line 3 the most: 78 kg, but 0.2 m at 2700 kg/m³ weigh 90.5 kg; radius_m is used";
         let said = words.say(&format!(
             "{rows}, write [release] size_from = \"mass_kg\" to use the mass, \"radius_m\" to keep the radius"
@@ -155,6 +205,30 @@ mod tests {
         let english = Words::of(Language::En);
         assert_eq!(english.say("left out: x"), "left out: x");
         assert_eq!(english.part("flat edges"), "flat edges");
+    }
+
+    /// Numbers stand as in print, and no digit of what a user wrote is touched.
+    #[test]
+    fn names_of_digits_stay_as_they_were_written() {
+        let words = Words::of(Language::Fr);
+        let said = |text: &str| words.say_all(text);
+        assert_eq!(said("5136 triangles in 2 files"), "5\u{2009}136 triangles dans 2 fichiers");
+        assert_eq!(said("2017, 240084 bytes"), "2017, 240\u{2009}084 octets");
+        assert_eq!(said("Ground “2017”"), "Sol «\u{a0}2017\u{a0}»");
+        assert_eq!(
+            said("0 (-0.27 to 0.27 in nine of ten, uniform) | -1 | 0 m/s"),
+            "0 (\u{2212}0.27 à 0.27 neuf fois sur dix, loi uniforme) | \u{2212}1 | 0 m/s"
+        );
+        assert_eq!(
+            said("2017: on slopes of up to 14.0°"),
+            "2017\u{a0}: sur les pentes jusqu’à 14.0°"
+        );
+        assert!(
+            said("1200 of 4000 rocks failed: they count as far as they came; `--only 1234` shows one again")
+                .contains("`--only 1234`")
+        );
+        // a name that is a sign or a range is none of a number
+        assert_eq!(said("-2017 (26.0 m)"), "-2017 (26.0 m)");
     }
 
     /// Every language knows the same, with the same places.

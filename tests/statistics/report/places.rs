@@ -87,6 +87,7 @@ fn marks() -> Vec<MapMark> {
         name: name.to_owned(),
         corners_m: vec![[EAST_M - 400.0, NORTH_M + y], [EAST_M + 500.0, NORTH_M + y + 3.0]],
         barrier,
+        is_object: false,
     };
     vec![
         mark("cantonal road between the upper and the lower village, western verge", 30.0, None),
@@ -205,6 +206,7 @@ fn names_that_would_be_read_as_those_of_other_lines_are_numbers() {
                 .map(|x| [EAST_M + x, NORTH_M + 5.0 + apart_m * k as f64])
                 .into(),
             barrier: None,
+            is_object: false,
         };
         (0..9).map(line).collect()
     };

@@ -88,10 +88,10 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
     ),
     ("half of the restitution is left at {a}", "die Hälfte des Rückpralls bleibt bei {a}"),
     (
-        "{a} ({b} to {c} in nine of ten, {d}) {unit}",
-        "{a} ({b} bis {c} in neun von zehn, {d}) {unit}",
+        "{a} ({b} to {c} in nine of ten, {kind}) {unit}",
+        "{a} ({b} bis {c} in neun von zehn, {kind}) {unit}",
     ),
-    ("{a} ({b} to {c} in nine of ten, {d})", "{a} ({b} bis {c} in neun von zehn, {d})"),
+    ("{a} ({b} to {c} in nine of ten, {kind})", "{a} ({b} bis {c} in neun von zehn, {kind})"),
     (
         "Computed rocks weigh what they stand for, measured ones all the same; the limit is that of as many computed rocks of equal weight as would know as much.",
         "Gerechnete Blöcke wiegen, wofür sie stehen, gemessene alle gleich viel; die Grenze ist die von so vielen gerechneten Blöcken gleichen Gewichts, wie gleich viel wüssten.",
@@ -177,8 +177,8 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "Änderung jeder Statistik durch ihren Wert in A, mit 95-%-Intervall; eine zinnoberrote Raute, wo das Intervall die Null auslässt. Eines von zwanzig Intervallen verfehlt durch Zufall.",
     ),
     (
-        "What lies beyond the frame is drawn at its edge.",
-        "Was außerhalb des Rahmens liegt, ist an seinem Rand gezeichnet.",
+        "An arrow stands where a row goes on beyond the frame.",
+        "Ein Pfeil steht, wo eine Zeile über den Rahmen hinausgeht.",
     ),
     (
         "Share of the rocks that exceed a value: A full, B dashed ({a} and {b} rocks). Axes end where one in two hundred exceeds in both.",

@@ -18,7 +18,7 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ("[grounds]", "Böden"),
     ("[catalogue]", "Katalog"),
     ("[scheme]", "Verfahren"),
-    ("[capture speed]", "Haftgeschwindigk."),
+    ("[capture speed]", "Haftgrenze"),
     ("[tangential answer]", "tangential"),
     ("[impacts on one plane]", "Aufpralle auf Ebene"),
     ("[own dissipation]", "Eigendämpfung"),
@@ -375,12 +375,12 @@ pub(super) const PLAN: &[(&str, &str)] = &[
         "Geschwindigkeit und Höhe alle {x} m ab der Ablösung, über alle Blöcke",
     ),
     (
-        "{a} of memory and {b} of disk: {n} releases, up to {p} points of paths, {c} cells of maps; runs with --yes only",
-        "{a} Speicher und {b} Platte: {n} Ablösungen, bis {p} Bahnpunkte, {c} Kartenzellen; läuft nur mit --yes",
+        "{a} {kind_a} of memory and {b} {kind_b} of disk: {n} releases, up to {p} points of paths, {c} cells of maps; runs with --yes only",
+        "{a} {kind_a} Speicher und {b} {kind_b} Platte: {n} Ablösungen, bis {p} Bahnpunkte, {c} Kartenzellen; läuft nur mit --yes",
     ),
     (
-        "{a} of memory and {b} of disk: {n} releases, up to {p} points of paths, {c} cells of maps",
-        "{a} Speicher und {b} Platte: {n} Ablösungen, bis {p} Bahnpunkte, {c} Kartenzellen",
+        "{a} {kind_a} of memory and {b} {kind_b} of disk: {n} releases, up to {p} points of paths, {c} cells of maps",
+        "{a} {kind_a} Speicher und {b} {kind_b} Platte: {n} Ablösungen, bis {p} Bahnpunkte, {c} Kartenzellen",
     ),
     ("measured ends in {file}", "gemessene Endpunkte in {file}"),
     (

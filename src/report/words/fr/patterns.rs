@@ -29,7 +29,7 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
     ),
     (
         "source “{a}”: no rock of {b} of its {c} events a year was released: they are missing in every number",
-        "source “{a}” : aucun bloc n’est parti pour {b} de ses {c} événements par an : ils manquent dans tous les nombres",
+        "source “{a}”\u{a0}: aucun bloc n’est parti pour {b} de ses {c} événements par an\u{a0}: ils manquent dans tous les nombres",
     ),
     (
         "{a} of {b} rocks were not released, {why}: they are counted, but in no statistic; the first is release {c}",
@@ -88,10 +88,10 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
     ),
     ("half of the restitution is left at {a}", "la moitié de la restitution reste à {a}"),
     (
-        "{a} ({b} to {c} in nine of ten, {d}) {unit}",
-        "{a} ({b} à {c} neuf fois sur dix, {d}) {unit}",
+        "{a} ({b} to {c} in nine of ten, {kind}) {unit}",
+        "{a} ({b} à {c} neuf fois sur dix, {kind}) {unit}",
     ),
-    ("{a} ({b} to {c} in nine of ten, {d})", "{a} ({b} à {c} neuf fois sur dix, {d})"),
+    ("{a} ({b} to {c} in nine of ten, {kind})", "{a} ({b} à {c} neuf fois sur dix, {kind})"),
     (
         "Computed rocks weigh what they stand for, measured ones all the same; the limit is that of as many computed rocks of equal weight as would know as much.",
         "Les blocs calculés pèsent ce qu’ils représentent, les mesurés tous autant\u{a0}; la limite est celle d’autant de blocs calculés de même poids qu’il en faudrait pour en savoir autant.",
@@ -102,7 +102,7 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
     ("Inputs that differ", "Entrées qui diffèrent"),
     ("How it was compared", "Comment on a comparé"),
     (
-        "Percentiles differ by as much as two values that may both be the percentiles of their runs: by the shares of rocks below them (test inversion, Francisco and Fuller 1991), and where releases pair, by how many lie below one of the two only. Where all pairs are alike, the difference is 0. Means by the differences of pairs, shares by adjusted counts (Bonett and Price 2012 for pairs, Agresti and Caffo 2000 without). An interval covers chance in the sample only, not how well ground values and terrain are known. Of twenty statistics that do not differ, one is expected to be called clear.",
+        "Percentiles differ by as much as two values that may both be the centiles of their runs: by the shares of rocks below them (test inversion, Francisco and Fuller 1991), and where releases pair, by how many lie below one of the two only. Where all pairs are alike, the difference is 0. Means by the differences of pairs, shares by adjusted counts (Bonett and Price 2012 for pairs, Agresti and Caffo 2000 without). An interval covers chance in the sample only, not how well ground values and terrain are known. Of twenty statistics that do not differ, one is expected to be called clear.",
         "Les centiles diffèrent d’autant que deux valeurs qui peuvent être toutes deux les centiles de leurs calculs\u{a0}: d’après les parts de blocs au-dessous (inversion de test, Francisco et Fuller 1991) et, où les départs forment des paires, d’après le nombre de ceux qui ne sont au-dessous que de l’une des deux. Où toutes les paires sont égales, la différence est 0. Moyennes par les différences des paires, parts par effectifs ajustés (Bonett et Price 2012 pour les paires, sinon Agresti et Caffo 2000). Un intervalle ne couvre que le hasard de l’échantillon, non la connaissance des sols et du terrain. Sur vingt statistiques qui ne diffèrent pas, une est en moyenne dite nette.",
     ),
     (
@@ -134,15 +134,15 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "Les blocs de B pèsent ce qu’ils représentent, ceux de A tous autant",
     ),
     (
-        "{who}: shares, means and percentiles are those of events, as in the report of each run. Numbers of rocks are of computed ones: rare sizes are computed more often than they come.",
-        "{who}\u{a0}: parts, moyennes et percentiles sont ceux des événements, comme dans le rapport de chaque calcul. Les nombres de blocs sont ceux des blocs calculés\u{a0}: les tailles rares sont calculées plus souvent qu’elles ne surviennent.",
+        "{who}: shares, means and centiles are those of events, as in the report of each run. Numbers of rocks are of computed ones: rare sizes are computed more often than they come.",
+        "{who}\u{a0}: parts, moyennes et centiles sont ceux des événements, comme dans le rapport de chaque calcul. Les nombres de blocs sont ceux des blocs calculés\u{a0}: les tailles rares sont calculées plus souvent qu’elles ne surviennent.",
     ),
     (
         "The runs have other sources or other classes of size: the same release number is another rock in each, nothing pairs, and differences are known no better than both runs apart.",
         "Les calculs ont d’autres sources ou d’autres classes de taille\u{a0}: le même numéro de départ est un autre bloc dans chacun, rien ne forme de paires, et les différences ne sont pas mieux connues que les deux calculs séparément.",
     ),
     (
-        "Where rocks weigh what they stand for, each statistic is that of its own run: percentiles by shares of their weight. Means are known by what each release moves them by (delta method), shares and passages class by class of size and source, as if one more rock of the heaviest class counted in each run (Fay and Feuer 1997).",
+        "Where rocks weigh what they stand for, each statistic is that of its own run: centiles by shares of their weight. Means are known by what each release moves them by (delta method), shares and passages class by class of size and source, as if one more rock of the heaviest class counted in each run (Fay and Feuer 1997).",
         "Où les blocs pèsent ce qu’ils représentent, chaque statistique est celle de son propre calcul\u{a0}: centiles par les parts de leur poids. Les intervalles des moyennes découlent de ce dont chaque départ les déplace (méthode delta), ceux des parts et des passages classe par classe de taille et de source, comme si un bloc de plus de la classe la plus lourde comptait dans chaque calcul (Fay et Feuer 1997).",
     ),
     (
@@ -177,8 +177,8 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "Changement de chaque statistique sur sa valeur en A, avec intervalle à 95 %\u{a0}; un losange vermillon où l’intervalle exclut zéro. Un intervalle sur vingt manque par hasard.",
     ),
     (
-        "What lies beyond the frame is drawn at its edge.",
-        "Ce qui dépasse le cadre est dessiné à son bord.",
+        "An arrow stands where a row goes on beyond the frame.",
+        "Une flèche indique qu’une ligne continue au-delà du cadre.",
     ),
     (
         "Share of the rocks that exceed a value: A full, B dashed ({a} and {b} rocks). Axes end where one in two hundred exceeds in both.",
@@ -365,7 +365,7 @@ pub(super) const VIEW: &[(&str, &str)] = &[
     ("Reach probability", "Probabilité d’atteinte"),
     ("Total energy, 95 %", "Énergie totale, 95 %"),
     ("Bounce height, 95 %", "Hauteur de rebond, 95 %"),
-    ("Deposits in a cell", "Dépôts dans une cellule"),
+    ("Deposits in a cell", "Dépôts dans une maille"),
     (
         "Blocks are shown as balls of their volume.",
         "Les blocs qui ont une forme sont montrés en boules de leur volume.",
@@ -373,7 +373,7 @@ pub(super) const VIEW: &[(&str, &str)] = &[
     ("Shown are the first {a} of {b} rocks.", "Sont montrés les {a} premiers blocs sur {b}."),
     (
         "Map layers in cells of {x} m, each with its largest value.",
-        "Couches en cellules de {x} m, chacune avec sa plus grande valeur.",
+        "Couches en mailles de {x} m, chacune avec sa plus grande valeur.",
     ),
     (
         "Of the paths one in {a} points is drawn, {b} in all.",

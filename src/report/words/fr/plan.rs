@@ -225,7 +225,7 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ),
     (
         "contact by contact, each with springs of its own: its restitution is that of the ground for the mass that it moves",
-        "contact par contact, chacun avec ses propres ressorts : sa restitution est celle du sol pour la masse qu'il met en mouvement",
+        "contact par contact, chacun avec ses propres ressorts\u{a0}: sa restitution est celle du sol pour la masse qu’il met en mouvement",
     ),
     (
         "contact by contact: restitution along the normal, none along the surface; normal and shear stiffness play no part",
@@ -249,7 +249,7 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ),
     (
         "{k} of {n} rows of {file} have a mass_kg that is not that of their radius_m, line {line} the most: {m} kg, but {r} m at {d} kg/m³ weigh {own} kg; {used} is used",
-        "{k} des {n} lignes de {file} ont un mass_kg qui n’est pas celui de leur radius_m, surtout la ligne {line} : {m} kg, mais {r} m à {d} kg/m³ pèsent {own} kg ; {used} est retenu",
+        "{k} des {n} lignes de {file} ont un mass_kg qui n’est pas celui de leur radius_m, surtout la ligne {line}\u{a0}: {m} kg, mais {r} m à {d} kg/m³ pèsent {own} kg\u{a0}; {used} est retenu",
     ),
     (
         "{said}, write [release] size_from = \"mass_kg\" to use the mass, \"radius_m\" to keep the radius",
@@ -257,7 +257,7 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ),
     (
         "[grounds.{name}] rolling_friction acts on blocks beside their shape, which already holds them back as they roll: keep only what soft ground takes; a value that was fitted to spheres counts the shape twice",
-        "[grounds.{name}] rolling_friction agit sur les blocs en plus de leur forme, qui les freine déjà quand ils roulent : n’indiquer que ce que prend un sol mou ; une valeur ajustée à des sphères compte la forme deux fois",
+        "[grounds.{name}] rolling_friction agit sur les blocs en plus de leur forme, qui les freine déjà quand ils roulent\u{a0}: n’indiquer que ce que prend un sol mou\u{a0}; une valeur ajustée à des sphères compte la forme deux fois",
     ),
     ("computed", "calculé"),
     (
@@ -283,15 +283,15 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ),
     (
         "{name}: friction grows with slip, from {a} to {b}",
-        "{name} : le frottement croît avec le glissement, de {a} à {b}",
+        "{name}\u{a0}: le frottement croît avec le glissement, de {a} à {b}",
     ),
     (
         "{name}: the median rock that falls on it at {v} m/s digs in {d} m and loses {x} % of its speed on the way",
-        "{name} : le bloc médian qui y tombe d’aplomb à {v} m/s s’enfonce de {d} m et perd {x} % de sa vitesse en chemin",
+        "{name}\u{a0}: le bloc médian qui y tombe d’aplomb à {v} m/s s’enfonce de {d} m et perd {x} % de sa vitesse en chemin",
     ),
     (
         "{name}: half of the restitution is left at {v} m/s",
-        "{name} : la moitié de la restitution reste à {v} m/s",
+        "{name}\u{a0}: la moitié de la restitution reste à {v} m/s",
     ),
     (
         "one world: {springs}, friction angle {angle}°, restitution of the scheme itself",
@@ -375,18 +375,18 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ),
     ("{a} a year of {b} to {c} m³, {rest}", "{a} par an de {b} à {c} m³, {rest}"),
     ("{a} a year of {b} to {c} m³", "{a} par an de {b} à {c} m³"),
-    ("{a} x {b} cells of {c} m", "{a} x {b} cellules de {c} m"),
+    ("{a} x {b} cells of {c} m", "{a} x {b} mailles de {c} m"),
     (
         "speed and height every {x} m from the release, over all rocks",
         "vitesse et hauteur tous les {x} m depuis le départ, sur tous les blocs",
     ),
     (
-        "{a} of memory and {b} of disk: {n} releases, up to {p} points of paths, {c} cells of maps; runs with --yes only",
-        "{a} de mémoire et {b} de disque\u{a0}: {n} départs, jusqu’à {p} points de trajectoires, {c} cellules de cartes\u{a0}; seulement avec --yes",
+        "{a} {kind_a} of memory and {b} {kind_b} of disk: {n} releases, up to {p} points of paths, {c} cells of maps; runs with --yes only",
+        "{a} {kind_a} de mémoire et {b} {kind_b} de disque\u{a0}: {n} départs, jusqu’à {p} points de trajectoires, {c} mailles de cartes\u{a0}; seulement avec --yes",
     ),
     (
-        "{a} of memory and {b} of disk: {n} releases, up to {p} points of paths, {c} cells of maps",
-        "{a} de mémoire et {b} de disque\u{a0}: {n} départs, jusqu’à {p} points de trajectoires, {c} cellules de cartes",
+        "{a} {kind_a} of memory and {b} {kind_b} of disk: {n} releases, up to {p} points of paths, {c} cells of maps",
+        "{a} {kind_a} de mémoire et {b} {kind_b} de disque\u{a0}: {n} départs, jusqu’à {p} points de trajectoires, {c} mailles de cartes",
     ),
     ("measured ends in {file}", "arrêts mesurés dans {file}"),
     (

@@ -16,7 +16,7 @@ pub(super) const SAMPLES: &[(&str, &str)] = &[
     ),
     (
         "{file}: cells that stand more than {m} m above or below all around them: {n}, the first at ({x}, {y}); errors of measurement, or trees and masts? rocks meet them as ground",
-        "{file}\u{a0}: cellules à plus de {m} m au-dessus ou au-dessous de toutes celles qui les entourent\u{a0}: {n}, la première en ({x}, {y})\u{a0}; erreurs de mesure, ou arbres et mâts\u{a0}? les blocs les rencontrent comme sol",
+        "{file}\u{a0}: mailles à plus de {m} m au-dessus ou au-dessous de toutes celles qui les entourent\u{a0}: {n}, la première en ({x}, {y})\u{a0}; erreurs de mesure, ou arbres et mâts\u{a0}? les blocs les rencontrent comme sol",
     ),
     (
         "[[objects]] without [frequency]: how many releases hit them is computed, how often a year and at what risk is not",
@@ -42,5 +42,18 @@ pub(super) const SAMPLES: &[(&str, &str)] = &[
     (
         "TEK17 § 7-3: more often than the safety classes S3 (1), S2 (2), S1 (3) permit",
         "TEK17 § 7-3\u{a0}: plus souvent que ne le permettent les classes de sécurité S3 (1), S2 (2), S1 (3)",
+    ),
+    // Families of distributions, and units of memory, in places named after them
+    ("[uniform]", "loi uniforme"),
+    ("[normal]", "loi normale"),
+    ("[lognormal]", "loi lognormale"),
+    ("[triangular]", "loi triangulaire"),
+    ("[listed values]", "valeurs listées"),
+    ("[fixed]", "fixe"),
+    ("[MB]", "Mo"),
+    ("[GB]", "Go"),
+    (
+        "Direktoratet for byggkvalitet, Byggteknisk forskrift (TEK17) § 7-3, table of the second paragraph: largest nominal annual probability S1 1/100, S2 1/1000, S3 1/5000",
+        "Direktoratet for byggkvalitet, Byggteknisk forskrift (TEK17) § 7-3, tableau du deuxième alinéa\u{a0}: plus grande probabilité annuelle nominale S1 1/100, S2 1/1000, S3 1/5000",
     ),
 ];

@@ -4,11 +4,11 @@
 pub(super) const SLIPS: &[(&str, &str)] = &[
     (
         "[rocks] density_kg_m3 = {a}: rock has about 2700",
-        "[rocks] density_kg_m3 = {a} : la roche a environ 2700",
+        "[rocks] density_kg_m3 = {a}\u{a0}: la roche a environ 2700",
     ),
     (
         "[rocks] radius_m reaches {r}: larger than any single rock; is it in cm or mm? write metres",
-        "[rocks] radius_m va jusqu’à {r} : plus grand que tout bloc isolé ; en cm ou mm ? écrire des mètres",
+        "[rocks] radius_m va jusqu’à {r}\u{a0}: plus grand que tout bloc isolé\u{a0}; en cm ou mm\u{a0}? écrire des mètres",
     ),
     (
         "volume_m3 reaches {v} m³, a radius of {r} m: larger than any single rock; is it in litres? write cubic metres",
@@ -16,42 +16,42 @@ pub(super) const SLIPS: &[(&str, &str)] = &[
     ),
     (
         "[grounds.{name}] friction_angle_deg = {a} is next to no friction; is it in radians? that would be {b}",
-        "[grounds.{name}] friction_angle_deg = {a} n’est presque aucun frottement ; en radians ? ce serait {b}",
+        "[grounds.{name}] friction_angle_deg = {a} n’est presque aucun frottement\u{a0}; en radians\u{a0}? ce serait {b}",
     ),
     (
         "[grounds.{name}] slip_friction.max = {a} is below the friction coefficient {b} of friction_angle_deg = {c}: friction falls with the way slipped; write {d} or more",
-        "[grounds.{name}] slip_friction.max = {a} est au-dessous du coefficient de frottement {b} de friction_angle_deg = {c} : le frottement baisse avec le chemin glissé ; écrire {d} ou plus",
+        "[grounds.{name}] slip_friction.max = {a} est au-dessous du coefficient de frottement {b} de friction_angle_deg = {c}\u{a0}: le frottement baisse avec le chemin glissé\u{a0}; écrire {d} ou plus",
     ),
     (
         "[[barriers]] \"{name}\" capacity_j = {a} takes next to nothing; is it in kJ? write {b}",
-        "[[barriers]] \"{name}\" capacity_j = {a} n’absorbe presque rien ; en kJ ? écrire {b}",
+        "[[barriers]] \"{name}\" capacity_j = {a} n’absorbe presque rien\u{a0}; en kJ\u{a0}? écrire {b}",
     ),
     (
         "[frequency] energies_j holds {a}: a thrown pebble has as much; is it in kJ? write {b}",
-        "[frequency] energies_j contient {a} : autant qu’un caillou lancé ; en kJ ? écrire {b}",
+        "[frequency] energies_j contient {a}\u{a0}: autant qu’un caillou lancé\u{a0}; en kJ\u{a0}? écrire {b}",
     ),
     (
         "[grounds.{name}] breaks_above_j = {a} breaks every stem at a touch; is it in kJ? write {b}",
-        "[grounds.{name}] breaks_above_j = {a} rompt chaque tronc au premier contact ; en kJ ? écrire {b}",
+        "[grounds.{name}] breaks_above_j = {a} rompt chaque tronc au premier contact\u{a0}; en kJ\u{a0}? écrire {b}",
     ),
     (
         "[rocks] density_kg_m3 = {a}: rock has about 2700; is it in t/m³? write {b}",
-        "[rocks] density_kg_m3 = {a} : la roche a environ 2700 ; en t/m³ ? écrire {b}",
+        "[rocks] density_kg_m3 = {a}\u{a0}: la roche a environ 2700\u{a0}; en t/m³\u{a0}? écrire {b}",
     ),
     (
         "epsg = {a} is no code of EPSG ({b} to {c}): rasters are written without a system",
-        "epsg = {a} n’est pas un code EPSG ({b} à {c}) : les rasters sont écrits sans système",
+        "epsg = {a} n’est pas un code EPSG ({b} à {c})\u{a0}: les rasters sont écrits sans système",
     ),
     (
         "epsg = {a} (Web Mercator) stretches lengths by 1/cos(latitude), 1.46 at 46.8°, and leaves heights: slopes are too gentle; bring the data into the projected system of the country, as 2056 (LV95)",
-        "epsg = {a} (Web Mercator) allonge les longueurs de 1/cos(latitude), 1.46 à 46.8°, et laisse les hauteurs : les pentes sont trop douces ; mettre les données dans le système projeté du pays, comme 2056 (LV95)",
+        "epsg = {a} (Web Mercator) allonge les longueurs de 1/cos(latitude), 1.46 à 46.8°, et laisse les hauteurs\u{a0}: les pentes sont trop douces\u{a0}; mettre les données dans le système projeté du pays, comme 2056 (LV95)",
     ),
     (
         "epsg = {a} is a geographic system in degrees; coordinates are metres here: name the projected system of the meshes, as 2056 (LV95)",
-        "epsg = {a} est un système géographique en degrés ; ici les coordonnées sont des mètres : nommer le système projeté des maillages, comme 2056 (LV95)",
+        "epsg = {a} est un système géographique en degrés\u{a0}; ici les coordonnées sont des mètres\u{a0}: nommer le système projeté des maillages, comme 2056 (LV95)",
     ),
     (
         "{file}: {n} of {all} cells are exactly 0 m high and all others above {low} m: cells without data? then declare 0 as no data (gdal_translate -a_nodata 0)",
-        "{file}\u{a0}: {n} cellules sur {all} sont à 0 m exactement et toutes les autres au-dessus de {low} m\u{a0}: des cellules sans données\u{a0}? alors déclarer 0 comme absence de données (gdal_translate -a_nodata 0)",
+        "{file}\u{a0}: {n} mailles sur {all} sont à 0 m exactement et toutes les autres au-dessus de {low} m\u{a0}: des mailles sans données\u{a0}? alors déclarer 0 comme absence de données (gdal_translate -a_nodata 0)",
     ),
 ];

@@ -88,10 +88,10 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
     ),
     ("half of the restitution is left at {a}", "metà della restituzione resta a {a}"),
     (
-        "{a} ({b} to {c} in nine of ten, {d}) {unit}",
-        "{a} (da {b} a {c} in nove casi su dieci, {d}) {unit}",
+        "{a} ({b} to {c} in nine of ten, {kind}) {unit}",
+        "{a} (da {b} a {c} in nove casi su dieci, {kind}) {unit}",
     ),
-    ("{a} ({b} to {c} in nine of ten, {d})", "{a} (da {b} a {c} in nove casi su dieci, {d})"),
+    ("{a} ({b} to {c} in nine of ten, {kind})", "{a} (da {b} a {c} in nove casi su dieci, {kind})"),
     (
         "Computed rocks weigh what they stand for, measured ones all the same; the limit is that of as many computed rocks of equal weight as would know as much.",
         "I massi calcolati pesano ciò che rappresentano, quelli misurati tutti uguale; il limite è quello di tanti massi calcolati di ugual peso quanti ne saprebbero altrettanto.",
@@ -177,8 +177,8 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "Variazione di ogni statistica rispetto al suo valore in A, con intervallo al 95 %; un rombo vermiglio dove l’intervallo esclude lo zero. Un intervallo su venti manca per caso.",
     ),
     (
-        "What lies beyond the frame is drawn at its edge.",
-        "Ciò che sta oltre il riquadro è disegnato al suo bordo.",
+        "An arrow stands where a row goes on beyond the frame.",
+        "Una freccia indica che una riga prosegue oltre il riquadro.",
     ),
     (
         "Share of the rocks that exceed a value: A full, B dashed ({a} and {b} rocks). Axes end where one in two hundred exceeds in both.",

@@ -43,4 +43,17 @@ pub(super) const SAMPLES: &[(&str, &str)] = &[
         "TEK17 § 7-3: more often than the safety classes S3 (1), S2 (2), S1 (3) permit",
         "TEK17 § 7-3: più spesso di quanto permettano le classi di sicurezza S3 (1), S2 (2), S1 (3)",
     ),
+    // Families of distributions, and units of memory, in places named after them
+    ("[uniform]", "uniforme"),
+    ("[normal]", "normale"),
+    ("[lognormal]", "lognormale"),
+    ("[triangular]", "triangolare"),
+    ("[listed values]", "da un elenco"),
+    ("[fixed]", "fisso"),
+    ("[MB]", "MB"),
+    ("[GB]", "GB"),
+    (
+        "Direktoratet for byggkvalitet, Byggteknisk forskrift (TEK17) § 7-3, table of the second paragraph: largest nominal annual probability S1 1/100, S2 1/1000, S3 1/5000",
+        "Direktoratet for byggkvalitet, Byggteknisk forskrift (TEK17) § 7-3, tabella del secondo comma: massima probabilità annua nominale S1 1/100, S2 1/1000, S3 1/5000",
+    ),
 ];
