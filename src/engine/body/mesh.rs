@@ -12,6 +12,8 @@ use std::collections::BTreeMap;
 pub enum BadSurface {
     /// So many of its edges do not join two triangles in opposite turns.
     Open(usize),
+    /// It is so many surfaces that share no corner.
+    Parts(usize),
     /// It encloses no volume.
     Flat,
     /// More corners than a core may have.
@@ -27,6 +29,7 @@ impl std::fmt::Display for BadSurface {
                 to,
                 "found a surface that is not closed: {edges} of its edges do not join two triangles turned alike"
             ),
+            Self::Parts(parts) => write!(to, "found {parts} surfaces that share no corner"),
             Self::Flat => write!(to, "found a body without volume"),
             Self::TooMany(corners) => {
                 write!(to, "found {corners} corners, where {} is the most", most_corners())
@@ -48,10 +51,10 @@ pub struct Thinned {
 }
 
 impl Surface {
-    /// Whether every edge joins two triangles turned alike.
+    /// Whether every edge joins two triangles turned alike, and all of them are one surface.
     ///
     /// # Errors
-    /// The number of edges that do not.
+    /// The number of edges that do not, or of surfaces.
     pub fn check_closed(&self) -> Result<(), BadSurface> {
         let mut edges: BTreeMap<(u32, u32), i32> = BTreeMap::new();
         for [a, b, c] in &self.triangles {
@@ -62,10 +65,32 @@ impl Surface {
         let one = |(from, to): (u32, u32)| edges.get(&(from, to)).copied().unwrap_or(0);
         let open =
             edges.iter().filter(|((from, to), count)| **count != 1 || one((*to, *from)) != 1);
-        match open.count() {
-            0 => Ok(()),
-            count => Err(BadSurface::Open(count)),
+        match (open.count(), self.parts()) {
+            (0, 0 | 1) => Ok(()),
+            (0, parts) => Err(BadSurface::Parts(parts)),
+            (count, _) => Err(BadSurface::Open(count)),
         }
+    }
+
+    /// How many surfaces its triangles are that share no corner.
+    fn parts(&self) -> usize {
+        let mut part_of: Vec<usize> = (0..self.points.len()).collect();
+        let mut joined = 0;
+        let root = |part_of: &mut [usize], mut point: usize| {
+            while part_of[point] != point {
+                part_of[point] = part_of[part_of[point]];
+                point = part_of[point];
+            }
+            point
+        };
+        for [a, b, c] in &self.triangles {
+            for (one, other) in [(a, b), (a, c)] {
+                let ends = [one, other].map(|point| root(&mut part_of, *point as usize));
+                joined += usize::from(ends[0] != ends[1]);
+                part_of[ends[0]] = ends[1];
+            }
+        }
+        self.points.len() - joined
     }
 
     /// At most `most` corners of the hull, the farthest out of the others' hull first, until none is more than `near` (m)

@@ -145,6 +145,18 @@ fn an_open_surface_is_refused() {
     assert_eq!(surface.check_closed(), Err(BadSurface::Open(3)));
 }
 
+/// Two boxes side by side are no block: their hull is neither.
+#[test]
+fn two_surfaces_are_no_block() {
+    let mut both = box_surface([1.0; 3]);
+    let count = both.points.len() as u32;
+    let beside: Vec<Vec3> = both.points.iter().map(|p| p + Vec3::new(3.0, 0.0, 0.0)).collect();
+    let turned: Vec<_> = both.triangles.iter().map(|t| t.map(|k| k + count)).collect();
+    both.points.extend(beside);
+    both.triangles.extend(turned);
+    assert_eq!(both.check_closed(), Err(BadSurface::Parts(2)));
+}
+
 /// Four corners are a body, wherever they are: a regular tetrahedron's lie three in a plane as seen along the axes.
 #[test]
 fn few_corners_span_a_body() {

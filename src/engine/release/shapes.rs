@@ -339,6 +339,7 @@ fn refused(scene: &Scene, (index, table): (usize, &ShapeTable), why: &BadSurface
 fn remedy(why: &BadSurface) -> &'static str {
     match why {
         BadSurface::Open(_) => "close the scan: fill its holes and join its corners",
+        BadSurface::Parts(_) => "write a file for each block, and leave out what is none of it",
         BadSurface::Flat => "write a body with a volume",
         BadSurface::TooMany(_) => "write fewer corners",
         BadSurface::NoCore => "write a smaller corner_radius, or a less slender shape",

@@ -360,7 +360,7 @@ mod tests {
         for share in [0.02, 0.5, 0.9] {
             let up = share * (2.0 * g * depth).sqrt();
             scars.now = dug;
-            assert!(scars.leave(&body, &Vec3::new(14.0, 0.0, up)) == 1.0);
+            assert!(scars.leave(&body, &Vec3::new(14.0, 0.0, up)) >= 1.0);
             let (mut at, mut v, dt) = (0.0, Vec3::new(14.0, 0.0, up), 1e-6);
             while at >= 0.0 {
                 let cut = cut_area_m2(radius, depth - at, 0.0);
@@ -374,7 +374,7 @@ mod tests {
             assert!((taken[0] / taken[1] - 1.0).abs() < 0.1, "{share}: {taken:?}");
         }
         scars.now = dug;
-        assert!(scars.fly(&body, &Vec3::new(14.0, 0.0, 0.0), 0.0) == 1.0 && scars.now.is_some());
+        assert!(scars.fly(&body, &Vec3::new(14.0, 0.0, 0.0), 0.0) >= 1.0 && scars.now.is_some());
         // over ground that falls away: from the plane it is out after d = g t (T − t)/2
         let kept = scars.fly(&body, &Vec3::new(14.0, 0.0, -9.81), 1.0);
         assert!(scars.now.is_none() && kept < 1.0);
