@@ -27,6 +27,7 @@ mod block_factor;
 mod impact_progress;
 pub(crate) mod plane_state;
 mod stem_load;
+mod joint_blow;
 pub(crate) mod explicit_impact;
 pub(crate) mod plane_kernel;
 pub mod contact_state;

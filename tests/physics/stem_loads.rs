@@ -2,8 +2,11 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use crate::common;
+use crate::stems::stand_on;
+use common::together::{WORLD, World};
 use rockfall::rock::Vec3;
 use rockfall::simulation::Trajectory;
+use rockfall::solver::Scheme;
 use rockfall::terrain::make::{Stem, stem};
 use rockfall::terrain::stl::{Facet, write_binary};
 use std::f64::consts::PI;
@@ -143,5 +146,130 @@ fn stems_struck_at_once_share_the_blow() {
         assert!(whole_j > 0.8 && (taken_j - whole_j).abs() < 0.01, "{scheme}: {whole_j} {taken_j}");
         let off = limited.end.velocity_m_s - stands.end.velocity_m_s;
         assert!(off.norm() < 0.1, "{scheme}: {:?} {:?}", stands.end, limited.end);
+    }
+}
+
+/// Rock at the level of the trees, 6 m before them, that comes along x at 10 m/s, and `more`; it has passed them after 0.6 s and has not come down.
+fn shot(scheme: &str, more: &str) -> String {
+    format!(
+        "{more}[release]\ncount = 1\nvelocity_m_s = [10.0, 0.0, 0.0]\nspin_rad_s = [0.0, 0.0, 0.0]\n\
+         points_m = [[6.0, 0.0, 6.0]]\n{}",
+        solver(scheme).replace("longest_s = 2.0", "longest_s = 0.6")
+    )
+}
+
+/// Trees without friction that break at a share of the shot's energy.
+fn weak(share: f64, restitution: f64) -> String {
+    let limit_j = share * shot_j();
+    format!("friction_angle_deg = 0.0\nrestitution = {restitution}\nbreaks_above_j = {limit_j}")
+}
+
+/// Goes straight on with what stems have left of 10 m/s that took this share of the energy: `v √(1 − E/E₀)`, to the error of
+/// the fixed step and of `adaptive`.
+fn assert_goes_on(fall: &Trajectory, taken: f64, what: &str) {
+    let v = fall.end.velocity_m_s;
+    assert!((fall.ledger.trees_j / shot_j() - taken).abs() < 1e-5, "{what}: {:?}", fall.ledger);
+    assert!((v.x - 10.0 * (1.0 - taken).sqrt()).abs() < 0.25, "{what}: {v:?}");
+    assert!(v.y.abs() < 1e-6 && fall.end.spin_rad_s.norm() < 1e-6, "{what}: {:?}", fall.end);
+}
+
+/// Two walls that a sphere strikes at once, so far apart (m).
+fn funnel(apart_m: f64) -> Vec<Facet> {
+    let (sin, cos) = 35f64.to_radians().sin_cos();
+    let wall = |side: f64| {
+        let at = |far: f64, z: f64| [10.0 - sin * far, side * (0.5 * apart_m + cos * far), z];
+        panel([at(0.0, 0.5), at(8.0, 0.5), at(8.0, 9.0), at(0.0, 9.0)])
+    };
+    [wall(1.0), wall(-1.0)].concat()
+}
+
+/// A sphere strikes two stems at once, or one with two sides, and breaks them: it goes on, in `rigid` too, which threw it back with all that the stems
+/// had left; and what gives way in mid-blow has given nothing back yet, however elastic it is.
+#[test]
+fn a_sphere_goes_on_through_stems_struck_at_once() {
+    for scheme in SCHEMES {
+        for (apart_m, share, taken) in
+            [(0.1, 0.1, 0.2), (0.1, 0.3, 0.6), (0.0, 0.2, 0.2), (0.0, 0.6, 0.6)]
+        {
+            for restitution in [0.2, 0.8] {
+                let trunk = weak(share, restitution);
+                let fall = falls(&funnel(apart_m), &trunk, &shot(scheme, "")).remove(0);
+                assert_goes_on(&fall, taken, &format!("{scheme} {apart_m} {share} {restitution}"));
+            }
+        }
+    }
+}
+
+/// The same of a rock in a world, wide enough to strike two stems of 1 m that stand 4 m apart.
+#[test]
+fn a_rock_of_a_world_goes_on_through_stems_struck_at_once() {
+    let (radius_m, density) = (3.0_f64, 2700.0);
+    let shot_j = 0.5 * density * 4.0 / 3.0 * PI * radius_m.powi(3) * 100.0;
+    let terrain = stand_on(-50.0, 2, Some(0.3 * shot_j));
+    for (scheme, tolerance_m_s) in
+        [(Scheme::Adaptive, 1e-3), (Scheme::Reference, 1e-8), (Scheme::Rigid, 0.0)]
+    {
+        let world = World { scheme, tolerance_m_s, grounds: 2, ..WORLD };
+        let rock = (radius_m, density, [2.0, -6.0, 0.0], [0.0, 10.0, 0.0], [0.0; 3]);
+        let apart = (0.4, density, [20.0, -6.0, 0.0], [0.0, 1.0, 0.0], [0.0; 3]);
+        let fall = &world.falls(&terrain, &[rock, apart], 0.6)[0];
+        let v = fall.end.velocity_m_s;
+        assert!((v.y - 10.0 * 0.4f64.sqrt()).abs() < 0.1, "{scheme:?}: {:?}", fall.end);
+        assert!(v.x.abs() < 1e-6, "{scheme:?}: {:?}", fall.end);
+        let taken = fall.ledger.trees_j / shot_j;
+        assert!((taken - 0.6).abs() < 1e-5, "{scheme:?}: {taken}");
+    }
+}
+
+/// A face that strikes stems flat loads all its corners alike: what the stems take slows the block and does not turn it. The whole limit went through one corner, in
+/// `rigid` a stronger stem threw the block back as it broke, and of two stems springs broke one and left the other.
+#[test]
+fn a_block_goes_on_straight_through_stems_that_it_strikes_flat() {
+    let tree = |y: f64, half: f64| {
+        panel([
+            [10., y - half, 0.5],
+            [10., y + half, 0.5],
+            [10., y + half, 9.],
+            [10., y - half, 9.],
+        ])
+    };
+    let shape = |axes: &str| {
+        format!("[[rocks.shapes]]\nkind = \"box\"\ncorner_radius = 0.1\naxes = {axes}\n")
+    };
+    let (cube, bar) = (shape("[1.0, 1.0, 1.0]"), shape("[1.0, 4.0, 1.0]"));
+    let (stem, fence) = (tree(0.0, 0.15), tree(0.0, 5.0));
+    let two = [tree(0.6, 0.1), tree(-0.6, 0.1)].concat();
+    for scheme in SCHEMES {
+        for (name, trees, block, share, taken) in [
+            ("stem", &stem, &cube, 0.3, 0.3),
+            ("stem", &stem, &cube, 0.9, 0.9),
+            ("fence", &fence, &cube, 0.5, 0.5),
+            ("two", &two, &bar, 0.1, 0.2),
+            ("two", &two, &bar, 0.3, 0.6),
+        ] {
+            let more = shot(scheme, block)
+                .replace("points_m", "orientation = [1.0, 0.0, 0.0, 0.0]\npoints_m");
+            let fall = falls(trees, &weak(share, 0.2), &more).remove(0);
+            assert_goes_on(&fall, taken, &format!("{scheme} {name} {share}"));
+        }
+    }
+}
+
+/// A sphere on the ground comes to a stem that leans over it: the ground does not let it go below, and it presses with all its energy, 0.75 of which is that
+/// across the stem. One that can take 0.85 breaks, and the sphere goes on; with `rigid` it was thrown back with what was left.
+#[test]
+fn a_stem_breaks_against_which_the_ground_presses_a_sphere() {
+    let at = |y: f64, z: f64| [5.0 - z * 30f64.to_radians().tan(), y, z];
+    let tree = panel([at(-5.0, 0.01), at(5.0, 0.01), at(5.0, 8.0), at(-5.0, 8.0)]);
+    for scheme in SCHEMES {
+        let more = format!(
+            "[release]\ncount = 1\nvelocity_m_s = [10.0, 0.0, 0.0]\nspin_rad_s = [0.0, 25.0, 0.0]\n\
+             points_m = [[0.0, 0.0, 0.4]]\n{}",
+            solver(scheme).replace("longest_s = 2.0", "longest_s = 0.6")
+        );
+        let fall = &falls(&tree, &weak(0.85, 0.2), &more)[0];
+        let taken = fall.ledger.trees_j / shot_j();
+        assert!((taken - 0.85).abs() < 1e-5, "{scheme}: {taken}");
+        assert!(fall.end.velocity_m_s.x > 3.0, "{scheme}: {:?}", fall.end);
     }
 }

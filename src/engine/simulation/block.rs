@@ -149,9 +149,10 @@ impl<'a> Falling<'a> for Roll<'a> {
 
     fn step(&mut self, (): &mut (), most_s: f64) -> Result<(Advance, bool), StepError> {
         let from = self.moving.pose.centre;
-        self.footing.press_stem(&self.world);
+        self.footing.press_stems(&self.world, (self.block, &self.moving));
         let (mut done, rejected) = self.advance(most_s)?;
-        self.footing.bend_stem(&self.world, (self.block, &mut self.moving), &mut done.loss);
+        self.footing.press_stems_still(&self.world);
+        self.footing.bend_stems(&self.world, (self.block, &mut self.moving), &mut done.loss);
         self.plough(&from, done.is_free);
         self.is_free = done.is_free;
         // an attitude that is no longer a rotation shows as NaN here, before it can reach a table
@@ -232,16 +233,15 @@ impl Roll<'_> {
             self.dig(touch.triangle, &touch.normal);
         }
         self.footing.aside = struck;
-        let broken_j = self.footing.break_stems(&self.world, block, &mut self.moving);
-        self.recorder.ledger.trees_j += broken_j;
-        self.footing.press_stem(&self.world);
+        let broken = self.break_stems();
+        self.footing.press_stems(&self.world, (block, &self.moving));
         let loss = self.footing.strike(&self.world, block, &mut self.moving);
-        if loss.is_none() && broken_j <= 0.0 {
+        if loss.is_none() && !broken {
             return false;
         }
         self.recorder.effort.unsettled += u64::from(loss.is_some() && self.footing.unsettled);
         let mut loss = loss.unwrap_or_default();
-        self.footing.bend_stem(&self.world, (block, &mut self.moving), &mut loss);
+        self.footing.bend_stems(&self.world, (block, &mut self.moving), &mut loss);
         self.recorder.pay(&loss);
         let is_free = !self.footing.holds(&self.world, (block, &self.moving), true);
         if is_free {
@@ -253,6 +253,13 @@ impl Roll<'_> {
         self.recorder.go_on_with(Motion { velocity_m_s, spin_rad_s, ..self.recorder.now });
         self.recorder.end_all_impacts();
         is_free
+    }
+
+    /// Breaks the stems that cannot take the current blow; whether one could not.
+    fn break_stems(&mut self) -> bool {
+        let lost = self.footing.break_stems(&self.world, self.block, &mut self.moving);
+        self.recorder.pay(&lost.unwrap_or_default());
+        lost.is_some()
     }
 
     /// Digs in where it strikes a triangle fastest, as fast as the centre comes to it.

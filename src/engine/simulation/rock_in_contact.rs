@@ -9,6 +9,7 @@ use super::recorder::Recorder;
 use crate::contact::ContactPoint;
 use crate::contact::history::ContactHistory;
 use crate::solver::contact_state::{Blow, ContactEnvironment, ContactState};
+use crate::solver::loss::Loss;
 use crate::solver::roughness::Meeting;
 use crate::solver::struck::Struck;
 use nalgebra::Rotation3;
@@ -138,7 +139,7 @@ impl RockInContact<'_, '_> {
     fn break_stems(&mut self) {
         let Self { world, state, recorder, .. } = self;
         let world = &*world;
-        let note = |state: &ContactState, touch: &ContactPoint, (taken_j, is_new)| {
+        let note = |state: &ContactState, touch: &ContactPoint, (loss, is_new): (&Loss, bool)| {
             let approach_m_s = -touch.normal.dot(&state.v);
             if is_new && approach_m_s >= world.law(touch.triangle).capture_m_s {
                 let of = (touch.feature, touch.triangle);
@@ -147,7 +148,7 @@ impl RockInContact<'_, '_> {
                 let now_s = recorder.now.time_s;
                 recorder.begin_impact(&struck, now_s, &MeshEnergy::default());
             }
-            recorder.ledger.trees_j += taken_j;
+            recorder.pay(loss);
         };
         state.break_stems(world, note);
         // what the stems took is booked: the step begins with what they left

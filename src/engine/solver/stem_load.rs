@@ -68,25 +68,37 @@ impl StemLoad {
         self.pressed.push((stem, 1.0));
     }
 
+    /// The stems of these triangles of trees are pressed, with what they take by these weights (–); whether there is any weight. A tree that
+    /// stands for good has its share too.
+    pub(super) fn share(
+        &mut self,
+        stems: &Stems,
+        weights: impl Iterator<Item = (u32, f64)> + Clone,
+    ) -> bool {
+        let all: f64 = weights.clone().map(|(_, weight)| weight).sum();
+        if all <= 0.0 {
+            return false;
+        }
+        self.pressed.clear();
+        for (triangle, weight) in weights.filter(|(_, weight)| *weight > 0.0) {
+            let Some(stem) = stems.of_triangle(triangle) else { continue };
+            let share = weight / all;
+            if let Some((_, known)) = self.pressed.iter_mut().find(|(known, _)| *known == stem) {
+                *known += share;
+            } else if !self.pressed.is_full() {
+                self.pressed.push((stem, share));
+            }
+        }
+        true
+    }
+
     /// Sees which stems are pressed. Springs hold energy by the squares of their forces, and so what trees take is shared, evenly in the
     /// limit of stiff springs, where no force is known; a tree that stands for good has its share too.
     pub(super) fn look(&mut self, terrain: &Terrain, stems: &Stems, histories: &ContactHistories) {
-        let trees = || histories.iter().filter(|history| terrain.is_tree(history.triangle));
-        if trees().next().is_none() {
-            return;
-        }
-        let force2 = |history: &ContactHistory| history.normal_force * history.normal_force;
-        let is_known = trees().any(|history| force2(history) > 0.0);
-        let weight = |history| if is_known { force2(history) } else { 1.0 };
-        let all: f64 = trees().map(weight).sum();
-        self.pressed.clear();
-        for history in trees() {
-            let Some(stem) = stems.of_triangle(history.triangle) else { continue };
-            let share = weight(history) / all;
-            match self.pressed.iter_mut().find(|(known, _)| *known == stem) {
-                Some((_, known)) => *known += share,
-                None => self.pressed.push((stem, share)),
-            }
+        let trees = histories.iter().filter(|history| terrain.is_tree(history.triangle));
+        let force2 = |one: &ContactHistory| (one.triangle, one.normal_force * one.normal_force);
+        if !self.share(stems, trees.clone().map(force2)) {
+            self.share(stems, trees.map(|history| (history.triangle, 1.0)));
         }
     }
 }

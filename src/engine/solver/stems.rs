@@ -5,32 +5,39 @@
 //! in the rigid limit the impulse ends there. What a stem took in earlier contacts with the same rock is not given back. A stem
 //! gives way to one rock alone: the next, also one that shares its world, finds it whole.
 //!
+//! A stem that is struck by one contact alone has a law of its own (`yielding`); all else, with the ground that is touched, is one blow of all
+//! contacts (`joint_blow`): a push that is cut short goes on forward, and must not be read from the speed with which the whole blow has thrown the rock off.
+//!
 //! The limit is an energy (J), drawn for each stem and rock from the scene's distribution: what a
 //! trunk takes until it breaks is known from pull and impact tests as an energy, and it needs no
 //! model of the trunk's motion.
 
+use super::body::Twist;
 use super::contact_state::{ContactEnvironment, ContactState};
+use super::joint_blow::{JointBody, JointContact, JointContacts, joint_blow};
 use super::loss::Loss;
 use super::yielding::yielding_impact;
-use crate::contact::ContactPoint;
-use crate::contact::TOUCH;
 use crate::contact::history::ContactHistory;
+use crate::contact::{ContactPoint, MOST, TOUCH};
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
 use crate::terrain::stems::Stems;
+use arrayvec::ArrayVec;
+use nalgebra::Matrix3;
 
 /// A stem that has more than this times the motion left (–) cannot give way.
 /// The tenth on top is for what weight may add within the contact.
 pub(super) const WITHSTANDS: f64 = 1.1;
 
-/// How a stem gives way to a blow in the rigid limit.
-#[derive(Debug, Clone, Copy)]
+/// How stems give way to a blow in the rigid limit.
+#[derive(Debug, Clone)]
 pub(crate) struct Broken {
-    stem: u32,
+    /// The stems that are gone.
+    stems: ArrayVec<u32, MOST>,
     /// Velocity (m/s) and spin (rad/s) with which the rock goes on.
-    pub(crate) motion: (Vec3, Vec3),
-    /// What was left of the stem and is lost (J).
-    pub(crate) taken_j: f64,
+    pub(crate) motion: Twist,
+    /// What was struck, and what the blow has lost there.
+    pub(crate) struck: ArrayVec<(ContactPoint, Loss), MOST>,
 }
 
 impl ContactState {
@@ -85,54 +92,86 @@ impl ContactState {
         gives_way
     }
 
-    /// How the stem that is struck at `touch` with a velocity and spin gives way, if it cannot take its `share` (–) of the blow.
+    /// How stems give way to the blow on all that the last look has found, at a velocity and a spin, if one does.
     ///
-    /// Only asked where the motion could break it at all; the impact itself is followed by
-    /// `yielding_impact`.
+    /// One that is struck alone breaks as if nothing else were there; the rest of the blow falls with what it leaves. Where several contacts with trees
+    /// are struck, or what else is touched presses the rock against one, all are followed together.
     pub(crate) fn broken_by(
         &self,
         world: &ContactEnvironment,
-        (touch, share): (&ContactPoint, f64),
+        (v, w): (&Vec3, &Vec3),
+    ) -> Option<Broken> {
+        let stems = world.terrain.stems.as_ref()?;
+        let body = &world.body;
+        let motion_j = 0.5 * (body.mass * v.norm_squared() + body.inertia * w.norm_squared());
+        let stands =
+            |touch: &&ContactPoint| !world.terrain.is_gone(touch.triangle, &self.near.gone);
+        let standing: ArrayVec<ContactPoint, MOST> =
+            self.touches.iter().filter(stands).copied().collect();
+        let may_break = |touch: &ContactPoint| {
+            let stem = stems.of_triangle(touch.triangle);
+            stem.is_some_and(|stem| self.stem_load.left_j(stems, stem) <= WITHSTANDS * motion_j)
+        };
+        if !standing.iter().any(may_break) {
+            return None;
+        }
+        let comes = |touch: &&ContactPoint| {
+            world.terrain.is_tree(touch.triangle) && touch.normal.dot(v) < 0.0
+        };
+        let mut struck = standing.iter().filter(comes);
+        let first = struck.next()?;
+        let alone = struck.next().is_none().then(|| self.broken_alone(world, first, (v, w)));
+        let is_among = standing.len() > 1;
+        let jointly = || is_among.then(|| self.broken_jointly(world, &standing, (*v, *w)));
+        alone.flatten().or_else(|| jointly().flatten())
+    }
+
+    /// How the stem at `touch` gives way that is struck there alone.
+    fn broken_alone(
+        &self,
+        world: &ContactEnvironment,
+        touch: &ContactPoint,
         motion: (&Vec3, &Vec3),
     ) -> Option<Broken> {
         let stems = world.terrain.stems.as_ref()?;
         let stem = stems.of_triangle(touch.triangle)?;
-        if self.near.gone.contains(&stem) {
-            return None;
-        }
         let taken_j = self.stem_load.left_j(stems, stem);
-        let body = &world.body;
-        let speed2 = body.mass * motion.0.norm_squared() + body.inertia * motion.1.norm_squared();
-        let all_j = taken_j / share;
-        if all_j > WITHSTANDS * 0.5 * speed2 {
-            return None;
-        }
         let contact = (world.law(touch.triangle), &touch.normal);
-        if share < 1.0 {
-            // whether it gives way at all: what is left of it goes into it alone
-            yielding_impact(body, contact, motion, all_j)?;
-        }
-        yielding_impact(body, contact, motion, taken_j).map(|motion| Broken {
-            stem,
-            motion,
-            taken_j,
-        })
+        let motion = yielding_impact(&world.body, contact, motion, taken_j)?;
+        let loss = Loss { trees: taken_j, ..Loss::default() };
+        let (stems, struck) =
+            ([stem].into_iter().collect(), [(*touch, loss)].into_iter().collect());
+        Some(Broken { stems, motion, struck })
     }
 
-    /// What share of a blow the stem at `touch` takes of all trees that are struck at once (–): that of the squares of the approaches.
-    fn share_of(&self, world: &ContactEnvironment, stems: &Stems, touch: &ContactPoint) -> f64 {
-        let (mut own, mut all) = (0.0, 0.0);
-        let stem = stems.of_triangle(touch.triangle);
-        for other in self.touches.iter() {
-            let stands = world.terrain.is_tree(other.triangle)
-                && !world.terrain.is_gone(other.triangle, &self.near.gone);
-            if stands {
-                let approach2 = other.normal.dot(&self.v).min(0.0).powi(2);
-                all += approach2;
-                own += if stems.of_triangle(other.triangle) == stem { approach2 } else { 0.0 };
-            }
-        }
-        if all > 0.0 { own / all } else { 1.0 }
+    /// How stems give way among all these touches of one instant.
+    fn broken_jointly(
+        &self,
+        world: &ContactEnvironment,
+        touches: &[ContactPoint],
+        (v, w): Twist,
+    ) -> Option<Broken> {
+        let stems = world.terrain.stems.as_ref()?;
+        let contact = |(k, touch): (usize, &ContactPoint)| JointContact {
+            n: touch.normal,
+            lever: touch.normal * -world.body.radius,
+            law: world.law(touch.triangle).of_patch(touch.gain2, world.dashpot_share(touches, k)),
+            captured: world.captures(touch, &v),
+            stem: stems.of_triangle(touch.triangle),
+        };
+        let contacts: JointContacts = touches.iter().enumerate().map(contact).collect();
+        let body = JointBody {
+            mass_kg: world.body.mass,
+            inverse: Matrix3::identity() / world.body.inertia,
+        };
+        let left_j = |stem| self.stem_load.left_j(stems, stem);
+        let end = joint_blow(&body, &contacts, (v, w), left_j)?;
+        let taken = touches.iter().zip(&end.taken);
+        Some(Broken {
+            stems: end.broken.into_iter().collect(),
+            motion: end.motion,
+            struck: taken.map(|(touch, loss)| (*touch, loss.on(world, touch.triangle))).collect(),
+        })
     }
 
     /// What is struck at a triangle is pressed: what the blow takes there is its load, also if the rock has left at the end.
@@ -143,42 +182,56 @@ impl ContactState {
         }
     }
 
-    /// A stem is gone within a step whose losses hold what it took.
+    /// Stems are gone within a step whose losses hold what they took.
     pub(crate) fn fell_broken(&mut self, world: &ContactEnvironment, broken: &Broken) {
-        self.stem_load.broken_j += broken.taken_j;
-        if let Some(stems) = world.terrain.stems.as_ref() {
-            self.fell(stems, broken.stem);
+        let Some(stems) = world.terrain.stems.as_ref() else { return };
+        for (touch, loss) in &broken.struck {
+            self.stem_load.broken_j += loss.trees;
+            // what stands after the same blow has taken its part too
+            let stands = stems.of_triangle(touch.triangle);
+            if let Some(stem) = stands.filter(|stem| !broken.stems.contains(stem)) {
+                self.stem_load.take(stem, loss.trees);
+            }
+        }
+        for &stem in &broken.stems {
+            self.fell(stems, stem);
         }
     }
 
-    /// Breaks the stems that cannot take the current blow, in the rigid limit; `note` hears of each, with the touch and the
-    /// energy it took (J), and whether the rock has just come to it.
+    /// Breaks the stems that cannot take the current blow, in the rigid limit; `note` hears of all that is struck, with the touch and
+    /// what it took, and whether the rock has just come to it.
     ///
     /// Before the blow itself: a stem that breaks takes its energy, and the rock goes on with what is left.
     pub(crate) fn break_stems(
         &mut self,
         world: &ContactEnvironment,
-        mut note: impl FnMut(&Self, &ContactPoint, (f64, bool)),
+        mut note: impl FnMut(&Self, &ContactPoint, (&Loss, bool)),
     ) {
         let Some(stems) = world.terrain.stems.as_ref() else { return };
         let c = self.c;
         self.look(world, &c, world.body.radius * (1.0 + TOUCH));
-        let touches = self.touches.clone();
-        for touch in touches.iter() {
-            let struck = (touch, self.share_of(world, stems, touch));
-            let Some(broken) = self.broken_by(world, struck, (&self.v, &self.w)) else { continue };
-            let of_stem =
-                |history: &ContactHistory| stems.of_triangle(history.triangle) == Some(broken.stem);
-            // only the blow that falls next has been announced: a memory alone is of a rock that rolls up to the stem
-            let known = |one: &&ContactHistory| one.announced && !one.captured && of_stem(one);
-            let is_new = !self.is_struck
-                || !self.histories.iter().chain(self.struck.iter()).any(|one| known(&one));
-            note(self, touch, (broken.taken_j, is_new));
+        while let Some(broken) = self.broken_by(world, (&self.v, &self.w)) {
+            for (touch, loss) in &broken.struck {
+                note(self, touch, (loss, self.is_new(stems, touch)));
+            }
             (self.v, self.w) = broken.motion;
-            self.fell(stems, broken.stem);
+            self.fell_broken(world, &broken);
+            // what it took is booked, and is not among the losses of the step
+            self.stem_load.broken_j = 0.0;
         }
         // what stands and throws the rock off is forgotten with the step
         self.stem_load.look(world.terrain, stems, &self.histories);
+    }
+
+    /// Whether a rock has just come to the stem that it touches: only the blow that falls next has been announced, and a memory alone is of a
+    /// rock that rolls up to it.
+    fn is_new(&self, stems: &Stems, touch: &ContactPoint) -> bool {
+        let stem = stems.of_triangle(touch.triangle);
+        let known = |one: &ContactHistory| {
+            let is_same = stems.of_triangle(one.triangle) == stem;
+            one.announced && !one.captured && is_same && (stem.is_some() || one.n == touch.normal)
+        };
+        !self.is_struck || !self.histories.iter().chain(self.struck.iter()).any(known)
     }
 
     /// A stem is gone for this rock, with all that its contacts remember.

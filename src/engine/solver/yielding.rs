@@ -13,9 +13,9 @@ use crate::rock::Vec3;
 
 /// Step (rad of the contact's oscillation).
 /// 5e-3 rad with a midpoint rule: an error of some 1e-5 of the speed, over at most 4000 steps.
-const STEP: f64 = 5e-3;
+pub(super) const STEP: f64 = 5e-3;
 /// A rock has come off within this (rad), or creeps out so heavily damped that nothing is left to take.
-const COMES_OFF: f64 = 20.0;
+pub(super) const COMES_OFF: f64 = 20.0;
 /// Halvings of the step in which it gives way: all the digits there are.
 pub(super) const BISECTIONS: u32 = 60;
 

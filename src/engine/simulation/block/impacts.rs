@@ -88,9 +88,7 @@ impl Roll<'_> {
     /// contact.
     fn dig_and_break(&mut self, (triangle, n): (u32, &Vec3), until_s: f64) {
         self.dig(triangle, n);
-        let broken_j = self.footing.break_stems(&self.world, self.block, &mut self.moving);
-        self.recorder.ledger.trees_j += broken_j;
-        if broken_j > 0.0 {
+        if self.break_stems() {
             self.footing.springs.refresh();
         }
         self.footing.springs.until_s = until_s;

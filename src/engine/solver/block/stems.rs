@@ -2,87 +2,215 @@
 //!
 //! The rule is that of spheres (`solver::stems`): what a block puts into its contacts with a stem counts against what the stem can
 //! take; when that is what was left of the stem, the stem is gone and the block goes on. A blow that would take more ends there
-//! ([`BlockContact::yielding`](super::solve::BlockContact)).
+//! ([`BlockContact::yielding`](super::solve::BlockContact), and of several contacts `solver::joint_blow`).
 
 use super::rolling::Turning;
-use super::{Footing, Moving};
+use super::springs::BlockHistory;
+use super::{Footing, Moving, STILL_M_S};
 use crate::body::Block;
+use crate::contact::block::{BlockTouch, MOST_TOUCHES};
+use crate::flight::top::momentum_of;
 use crate::rock::Vec3;
 use crate::solver::environment::ContactEnvironment;
+use crate::solver::joint_blow::{JointBody, JointContact, JointContacts, joint_blow};
+use crate::solver::law::capture_m_s;
 use crate::solver::loss::Loss;
 use crate::solver::stems::{WITHSTANDS, given_back};
 use crate::terrain::stems::Stems;
+use arrayvec::ArrayVec;
 
 impl Footing {
-    /// Breaks the stems among the contacts that touch which cannot take the current blow; what they took (J).
+    /// Breaks the stems among the contacts that touch which cannot take the current blow; what it has lost there.
+    ///
+    /// One that is struck by one contact alone breaks as if nothing else were there; the rest of the blow falls with what it leaves. Where several
+    /// contacts with trees are struck, or what else is touched presses the block against one, all are followed together.
     pub(crate) fn break_stems(
         &mut self,
         world: &ContactEnvironment,
         block: &Block,
         moving: &mut Moving,
-    ) -> f64 {
-        let Some(stems) = world.terrain.stems.as_ref() else { return 0.0 };
-        let mut taken_j = 0.0;
-        while let Some((stem, left_j)) = self.break_next(world, stems, (block, moving)) {
-            taken_j += left_j;
-            self.fell(stem);
+    ) -> Option<Loss> {
+        let stems = world.terrain.stems.as_ref()?;
+        let mut taken: Option<Loss> = None;
+        while let Some(loss) = self.break_next(world, stems, (block, moving)) {
+            taken.get_or_insert_default().add(&loss, 1.0);
             let pose = moving.pose;
             self.look(world, block, &pose, block.ball_m);
         }
-        taken_j
+        taken
     }
 
-    /// Breaks the first stem that cannot take the blow; it, and what was left of it (J).
+    /// Breaks the next stems that cannot take the blow; what it has lost.
     fn break_next(
-        &self,
+        &mut self,
         world: &ContactEnvironment,
         stems: &Stems,
         (block, moving): (&Block, &mut Moving),
-    ) -> Option<(u32, f64)> {
-        let (mass, motion_j) = (moving.mass(block), moving.motion_j(block));
-        self.touching(block).find_map(|touch| {
-            let stem = stems.of_triangle(touch.triangle)?;
-            let left_j = self.stem_load.left_j(stems, stem);
-            let u = moving.at(block, &touch.lever);
-            if left_j > WITHSTANDS * motion_j || touch.normal.dot(&u) >= 0.0 {
-                return None;
-            }
-            let mut contact = self.contact(world, (&mass, touch), 0.0, Vec3::zeros());
-            contact.impulse = contact.yielding(&u, left_j)?;
-            moving.take(&[contact], &Turning::NONE, block.mass_kg);
-            Some((stem, left_j))
-        })
+    ) -> Option<Loss> {
+        let motion_j = moving.motion_j(block);
+        let may_break = |touch: &BlockTouch| {
+            let stem = stems.of_triangle(touch.triangle);
+            stem.is_some_and(|stem| self.stem_load.left_j(stems, stem) <= WITHSTANDS * motion_j)
+        };
+        if !self.touching(block).any(may_break) {
+            return None;
+        }
+        let comes = |touch: &&BlockTouch| {
+            world.terrain.is_tree(touch.triangle) && moving.approach_m_s(block, touch) > STILL_M_S
+        };
+        let struck: ArrayVec<BlockTouch, 2> =
+            self.touching(block).filter(comes).take(2).copied().collect();
+        // what springs have pressed already is theirs to follow
+        let on_trees = |one: &BlockHistory| world.terrain.is_tree(one.triangle);
+        let goes_on = |one: &BlockHistory| on_trees(one) && one.normal_force > 0.0;
+        let begins = !self.springs.histories.iter().any(goes_on);
+        let is_among = begins && self.touching(block).nth(1).is_some();
+        let alone = match struck.as_slice() {
+            [] => return None,
+            [touch] => self.break_alone(world, touch, (block, moving)),
+            _ => None,
+        };
+        let jointly = alone.is_none() && is_among;
+        if jointly { self.break_jointly(world, (block, moving)) } else { alone }
     }
 
-    /// After impulses with these losses: the stem that is touched has taken what went into contacts with trees. Where that is more
-    /// than it can, it gives way, and the block gets back what was too much.
-    pub(crate) fn bend_stem(
+    /// Breaks the stem at a touch, if it is struck there alone and cannot take that; what it had left is lost.
+    fn break_alone(
+        &mut self,
+        world: &ContactEnvironment,
+        touch: &BlockTouch,
+        (block, moving): (&Block, &mut Moving),
+    ) -> Option<Loss> {
+        let stems = world.terrain.stems.as_ref()?;
+        let stem = stems.of_triangle(touch.triangle)?;
+        let left_j = self.stem_load.left_j(stems, stem);
+        let mut contact = self.contact(world, (&moving.mass(block), touch), 0.0, Vec3::zeros());
+        contact.impulse = contact.yielding(&moving.at(block, &touch.lever), left_j)?;
+        moving.take(&[contact], &Turning::NONE, block.mass_kg);
+        self.fell(stem);
+        Some(Loss { trees: left_j, ..Loss::default() })
+    }
+
+    /// Breaks the stems among all contacts that touch which cannot take the blow on all of them; what they have lost.
+    fn break_jointly(
+        &mut self,
+        world: &ContactEnvironment,
+        (block, moving): (&Block, &mut Moving),
+    ) -> Option<Loss> {
+        let stems = world.terrain.stems.as_ref()?;
+        self.set_touching_aside(block);
+        let mass = moving.mass(block);
+        let contact = |touch: &BlockTouch| {
+            let approach_m_s = moving.approach_m_s(block, touch);
+            let mut law =
+                Self::law_of_touch(world, &mass, touch, (approach_m_s, self.aside.iter()));
+            let ground = world.ground_of(touch.triangle);
+            law.rub_with(self.slip.friction(ground, world.law(touch.triangle), 0.0));
+            JointContact {
+                n: touch.normal,
+                lever: touch.lever,
+                captured: approach_m_s < capture_m_s(&law),
+                law,
+                stem: stems.of_triangle(touch.triangle),
+            }
+        };
+        let contacts: JointContacts = self.aside.iter().map(contact).collect();
+        let body = JointBody { mass_kg: mass.mass, inverse: mass.inverse };
+        let left_j = |stem| self.stem_load.left_j(stems, stem);
+        let end = joint_blow(&body, &contacts, (moving.v, moving.spin(block)), left_j)?;
+        let (v, w) = end.motion;
+        moving.v = v;
+        moving.momentum = momentum_of(block.inertia_kg_m2, &moving.pose.attitude, &w);
+        let mut lost = Loss::default();
+        for ((contact, touch), loss) in contacts.iter().zip(&self.aside).zip(&end.taken) {
+            lost.add(&loss.on(world, touch.triangle), 1.0);
+            // what stands after the same blow has taken its part too
+            if let Some(stem) = contact.stem.filter(|stem| !end.broken.contains(stem)) {
+                self.stem_load.take(stem, loss.sum());
+            }
+        }
+        end.broken.iter().for_each(|&stem| self.fell(stem));
+        Some(lost)
+    }
+
+    /// After impulses with these losses: the stems that are touched have taken what went into contacts with trees. One for which that
+    /// is more than it can take gives way, and the block gets back what was too much.
+    pub(crate) fn bend_stems(
         &mut self,
         world: &ContactEnvironment,
         (block, moving): (&Block, &mut Moving),
         loss: &mut Loss,
     ) {
         let Some(stems) = world.terrain.stems.as_ref().filter(|_| loss.trees > 0.0) else { return };
-        // the block may have left what it pressed within the step
-        let normal = self.press_stem(world).unwrap_or_else(Vec3::zeros);
-        let Some(&(stem, _)) = self.stem_load.pressed.first() else { return };
-        if let Some(beyond_j) = self.stem_load.yields(stems, stem, loss.trees) {
-            moving.v += given_back(block.mass_kg, &moving.v, beyond_j, &normal);
+        let taken_j = loss.trees;
+        for (stem, share) in self.stem_load.pressed.clone() {
+            let Some(beyond_j) = self.stem_load.yields(stems, stem, share * taken_j) else {
+                continue;
+            };
+            let push = self.push_of(stems, stem);
+            moving.v += given_back(block.mass_kg, &moving.v, beyond_j, &push);
             self.springs.refresh();
             loss.trees -= beyond_j;
             self.fell(stem);
         }
     }
 
-    /// Notes which stem the contacts of the last look press deepest, and the normal there; as before if they press none.
-    pub(crate) fn press_stem(&mut self, world: &ContactEnvironment) -> Option<Vec3> {
-        let stems = world.terrain.stems.as_ref()?;
-        let touched = self.touches.found.iter().filter_map(|touch| {
-            stems.of_triangle(touch.triangle).map(|stem| (stem, touch.gap_m, touch.normal))
-        });
-        let (stem, _, normal) = touched.min_by(|one, other| one.1.total_cmp(&other.1))?;
-        self.stem_load.press(stem);
-        Some(normal)
+    /// Direction of the joint push of the contacts with a stem: by the forces of their springs, or where these are not known, that of the
+    /// contact of the last look that is pressed deepest; 0 if there is none.
+    fn push_of(&self, stems: &Stems, stem: u32) -> Vec3 {
+        let is_of = |triangle: u32| stems.of_triangle(triangle) == Some(stem);
+        let springs = self.springs.histories.iter().filter(|history| is_of(history.triangle));
+        let push: Vec3 = springs.map(|history| history.n * history.normal_force.max(0.0)).sum();
+        let touched = self.touches.found.iter().filter(|touch| is_of(touch.triangle));
+        let deepest = touched.min_by(|one, other| one.gap_m.total_cmp(&other.gap_m));
+        if push == Vec3::zeros() { deepest.map_or(push, |touch| touch.normal) } else { push }
+    }
+
+    /// Notes which stems are pressed before a blow or a step, each with its share: springs hold energy by the squares of their forces, and what
+    /// is struck takes it by the squares of its approaches; else as after a step.
+    pub(crate) fn press_stems(
+        &mut self,
+        world: &ContactEnvironment,
+        (block, moving): (&Block, &Moving),
+    ) {
+        let Some(stems) = world.terrain.stems.as_ref() else { return };
+        let approach2 = |touch: &BlockTouch| moving.approach_m_s(block, touch).max(0.0).powi(2);
+        let trees = self.touching(block).filter(|touch| world.terrain.is_tree(touch.triangle));
+        let struck: ArrayVec<(u32, f64), MOST_TOUCHES> =
+            trees.take(MOST_TOUCHES).map(|touch| (touch.triangle, approach2(touch))).collect();
+        if !self.press_by_springs(world, stems) && !self.stem_load.share(stems, struck.into_iter())
+        {
+            self.press_deepest(stems);
+        }
+    }
+
+    /// The same after a step, with the springs of its end or else the contacts of its last look; as before if they press none: the block may have left
+    /// what it pressed within the step.
+    pub(crate) fn press_stems_still(&mut self, world: &ContactEnvironment) {
+        let Some(stems) = world.terrain.stems.as_ref() else { return };
+        if !self.press_by_springs(world, stems) {
+            self.press_deepest(stems);
+        }
+    }
+
+    /// Notes which stems springs press, and whether there are any.
+    fn press_by_springs(&mut self, world: &ContactEnvironment, stems: &Stems) -> bool {
+        let histories = self.springs.histories.iter();
+        let trees = histories.filter(|history| world.terrain.is_tree(history.triangle));
+        let force2 = |history: &BlockHistory| history.normal_force * history.normal_force;
+        self.stem_load.share(stems, trees.map(|history| (history.triangle, force2(history))))
+    }
+
+    /// Notes the stem that the contacts of the last look press deepest, if they press one.
+    fn press_deepest(&mut self, stems: &Stems) {
+        let touched =
+            self.touches.found.iter().filter_map(|touch| {
+                stems.of_triangle(touch.triangle).map(|stem| (stem, touch.gap_m))
+            });
+        let deepest = touched.min_by(|one, other| one.1.total_cmp(&other.1));
+        if let Some((stem, _)) = deepest {
+            self.stem_load.press(stem);
+        }
     }
 
     /// A stem is gone for this block.

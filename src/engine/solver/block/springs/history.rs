@@ -83,7 +83,7 @@ impl Footing {
     /// The law of a contact that begins at a speed of approach (m/s): its dashpots have the damping ratio of the ground for the mass that the
     /// contact moves, `m_n = 1/(V_N M⁻¹ V_Nᵀ)`, so that restitution without friction is that of the ground; where several touch at once, itself
     /// among `all`, each has its share.
-    pub(super) fn law_of_touch<'t>(
+    pub(in super::super) fn law_of_touch<'t>(
         world: &ContactEnvironment,
         mass: &Mass,
         touch: &BlockTouch,

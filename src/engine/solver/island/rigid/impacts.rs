@@ -236,12 +236,20 @@ impl RigidIsland {
             .min_by(|a, b| a.normal.dot(&v).total_cmp(&b.normal.dot(&v)))
             .copied();
         let Some(touch) = hit else { return ball.is_struck(s) };
-        if let Some(broken) = state.broken_by(&world, (&touch, 1.0), (&v, &ball.w)) {
-            ball.v += broken.motion.0 - v;
-            ball.c += (broken.motion.0 - v) * s;
-            ball.w = broken.motion.1;
-            self.losses[k].trees += broken.taken_j;
-            self.hits.push(hit_of(k, &touch, (&at, body.radius), -touch.normal.dot(&v)));
+        // how near something is at that instant is known as well as the parabola is the way of the rock
+        state.touches.keep_nearer(touch.distance_m.max(body.radius) + HELD * body.radius);
+        if let Some(broken) = state.broken_by(&world, (&v, &ball.w)) {
+            let (after, spin) = broken.motion;
+            ball.v += after - v;
+            ball.c += (after - v) * s;
+            ball.w = spin;
+            for (touch, loss) in &broken.struck {
+                self.losses[k].add(loss, 1.0);
+                let approach_m_s = -touch.normal.dot(&v);
+                if is_fast(&world, touch, &v) {
+                    self.hits.push(hit_of(k, touch, (&at, body.radius), approach_m_s));
+                }
+            }
             state.fell_broken(&world, &broken);
             return ball.is_struck(s);
         }
@@ -262,8 +270,6 @@ impl RigidIsland {
         state.press_stem(scene.terrain, touch.triangle);
         let meeting = Meeting { n: touch.normal, triangle: touch.triangle, c: *at, v: *v };
         let turn = state.facets.struck(&world, &meeting);
-        // how near something is at that instant is known as well as the parabola is the way of the rock
-        state.touches.keep_nearer(touch.distance_m.max(body.radius) + HELD * body.radius);
         let approach_m_s = -touch.normal.dot(v);
         if self.blow_together(scene, &BlowStart { pair: None, turn, approach_m_s }, s) {
             return;
