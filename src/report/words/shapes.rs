@@ -65,11 +65,11 @@ const DE: ShapeWords = ShapeWords {
 };
 
 const FR: ShapeWords = ShapeWords {
-    shapes: "formes : {names}",
-    method: "Chaque bloc est une sphère homogène ou un corps convexe arrondi qui tombe, rebondit, glisse et roule sur les maillages triangulaires du versant et des arbres : les centres volent sur des paraboles exactes, les corps tournent librement sous forme close, et un contact appartient à une face, une arête ou un sommet, de sorte que les joints entre triangles ne se sentent pas.",
-    turning: "ω·Iω/2 : I = 2/5 m R² pour une sphère, sinon les moments d’inertie de la forme.",
+    shapes: "formes\u{a0}: {names}",
+    method: "Chaque bloc est une sphère homogène ou un corps convexe arrondi qui tombe, rebondit, glisse et roule sur les maillages triangulaires du versant et des arbres\u{a0}: les centres volent sur des paraboles exactes, les corps tournent librement sous forme close, et un contact appartient à une face, une arête ou un sommet, de sorte que les joints entre triangles ne se sentent pas.",
+    turning: "ω·Iω/2\u{a0}: I = 2/5 m R² pour une sphère, sinon les moments d’inertie de la forme.",
     table_title: "Selon la forme",
-    table_note: "Blocs de chaque sorte de forme, avec les tailles tirées pour eux. Petits chiffres : intervalles à 95 %. Deux sortes diffèrent là où leurs intervalles sont disjoints ; rockfall compare en dit plus sur deux calculs.",
+    table_note: "Blocs de chaque sorte de forme, avec les tailles tirées pour eux. Petits chiffres\u{a0}: intervalles à 95 %. Deux sortes diffèrent là où leurs intervalles sont disjoints\u{a0}; rockfall compare en dit plus sur deux calculs.",
     col_rocks: "blocs",
     col_median: "distance de propagation médiane (m)",
     col_farthest: "distance de propagation, 95 % (m)",

@@ -102,7 +102,7 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
     ("Inputs that differ", "Entrées qui diffèrent"),
     ("How it was compared", "Comment on a comparé"),
     (
-        "Percentiles differ by as much as two values that may both be the centiles of their runs: by the shares of rocks below them (test inversion, Francisco and Fuller 1991), and where releases pair, by how many lie below one of the two only. Where all pairs are alike, the difference is 0. Means by the differences of pairs, shares by adjusted counts (Bonett and Price 2012 for pairs, Agresti and Caffo 2000 without). An interval covers chance in the sample only, not how well ground values and terrain are known. Of twenty statistics that do not differ, one is expected to be called clear.",
+        "Percentiles differ by as much as two values that may both be the percentiles of their runs: by the shares of rocks below them (test inversion, Francisco and Fuller 1991), and where releases pair, by how many lie below one of the two only. Where all pairs are alike, the difference is 0. Means by the differences of pairs, shares by adjusted counts (Bonett and Price 2012 for pairs, Agresti and Caffo 2000 without). An interval covers chance in the sample only, not how well ground values and terrain are known. Of twenty statistics that do not differ, one is expected to be called clear.",
         "Les centiles diffèrent d’autant que deux valeurs qui peuvent être toutes deux les centiles de leurs calculs\u{a0}: d’après les parts de blocs au-dessous (inversion de test, Francisco et Fuller 1991) et, où les départs forment des paires, d’après le nombre de ceux qui ne sont au-dessous que de l’une des deux. Où toutes les paires sont égales, la différence est 0. Moyennes par les différences des paires, parts par effectifs ajustés (Bonett et Price 2012 pour les paires, sinon Agresti et Caffo 2000). Un intervalle ne couvre que le hasard de l’échantillon, non la connaissance des sols et du terrain. Sur vingt statistiques qui ne diffèrent pas, une est en moyenne dite nette.",
     ),
     (
@@ -134,7 +134,7 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "Les blocs de B pèsent ce qu’ils représentent, ceux de A tous autant",
     ),
     (
-        "{who}: shares, means and centiles are those of events, as in the report of each run. Numbers of rocks are of computed ones: rare sizes are computed more often than they come.",
+        "{who}: shares, means and percentiles are those of events, as in the report of each run. Numbers of rocks are of computed ones: rare sizes are computed more often than they come.",
         "{who}\u{a0}: parts, moyennes et centiles sont ceux des événements, comme dans le rapport de chaque calcul. Les nombres de blocs sont ceux des blocs calculés\u{a0}: les tailles rares sont calculées plus souvent qu’elles ne surviennent.",
     ),
     (
@@ -142,7 +142,7 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "Les calculs ont d’autres sources ou d’autres classes de taille\u{a0}: le même numéro de départ est un autre bloc dans chacun, rien ne forme de paires, et les différences ne sont pas mieux connues que les deux calculs séparément.",
     ),
     (
-        "Where rocks weigh what they stand for, each statistic is that of its own run: centiles by shares of their weight. Means are known by what each release moves them by (delta method), shares and passages class by class of size and source, as if one more rock of the heaviest class counted in each run (Fay and Feuer 1997).",
+        "Where rocks weigh what they stand for, each statistic is that of its own run: percentiles by shares of their weight. Means are known by what each release moves them by (delta method), shares and passages class by class of size and source, as if one more rock of the heaviest class counted in each run (Fay and Feuer 1997).",
         "Où les blocs pèsent ce qu’ils représentent, chaque statistique est celle de son propre calcul\u{a0}: centiles par les parts de leur poids. Les intervalles des moyennes découlent de ce dont chaque départ les déplace (méthode delta), ceux des parts et des passages classe par classe de taille et de source, comme si un bloc de plus de la classe la plus lourde comptait dans chaque calcul (Fay et Feuer 1997).",
     ),
     (
