@@ -56,7 +56,9 @@ pub(super) fn draw(report: &Report) -> Drawing {
     };
     let panels: Vec<DistributionPanel<'_>> = SHOWN.iter().enumerate().map(panel).collect();
     let svg = paint("distributions", (WIDTH_PX, height), words.distributions_title, |canvas| {
-        panels.iter().for_each(|panel| panel.draw(canvas, 24.0));
+        for panel in &panels {
+            panel.draw(canvas, 24.0);
+        }
     });
     let note = report.is_weighted.then_some(by_frequency::CURVES);
     let is_beyond = panels.iter().any(|panel| panel.bins.beyond > 0);

@@ -119,7 +119,9 @@ pub(super) fn marks(canvas: &Canvas<'_>, panel: &Panel, report: &Report) {
         for part in on_paper(panel, mark) {
             let pens = MarkKind::of(mark).pens();
             canvas.line(&part, Pen { opacity: 0.8, ..Pen::full(WHITE, pens[0].width_px + 2.2) });
-            pens.iter().for_each(|pen| canvas.line(&part, *pen));
+            for pen in pens {
+                canvas.line(&part, *pen);
+            }
             if mark.barrier.is_some() {
                 canvas.lines(&teeth(&part), Pen::full(GREEN, 1.2));
             }

@@ -220,3 +220,6 @@ impl Instant {
         self.v + self.w.cross(&contact.lever)
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,124 @@
+//! What a blow of several contacts must obey.
+
+use super::{JointBody, JointContact, JointEnd, joint_blow};
+use crate::ground::{Capture, Damping, Ground, Law};
+use crate::rock::{Rock, Vec3};
+use crate::solver::body::{Body, Twist};
+use crate::solver::yielding::yielding_impact;
+use nalgebra::{Matrix3, Rotation3, Unit};
+use proptest::prelude::*;
+
+/// A sphere and its law on trees of a friction angle (rad) and a restitution.
+fn case(friction_rad: f64, restitution: f64) -> (Body, Law) {
+    let rock = Rock { radius_m: 0.5, density_kg_m3: 2700.0 };
+    let ground = Ground::smooth([1e9, 0.25e9], friction_rad, Some(restitution));
+    let capture = Capture { own_m_s: None, tolerance_m_s: 0.0, gravity_m_s2: 9.8 };
+    let law = Law::new(&ground, &Damping::of(ground.restitution), &rock, &capture);
+    (Body::new(&rock, 9.8), law)
+}
+
+/// Contact `stem` of a sphere with this normal.
+fn contact(body: &Body, law: &Law, (n, stem): (Vec3, u32)) -> JointContact {
+    let lever = n * -body.radius;
+    JointContact { n, lever, law: *law, captured: false, stem: Some(stem) }
+}
+
+fn blow(
+    body: &Body,
+    contacts: &[JointContact],
+    motion: Twist,
+    left_j: [f64; 3],
+) -> Option<JointEnd> {
+    let inverse = Matrix3::identity() / body.inertia;
+    let of = JointBody { mass_kg: body.mass, inverse };
+    joint_blow(&of, contacts, motion, |stem| left_j[stem as usize])
+}
+
+fn motion_j(body: &Body, (v, w): Twist) -> f64 {
+    0.5 * (body.mass * v.norm_squared() + body.inertia * w.norm_squared())
+}
+
+fn vector(size: f64) -> impl Strategy<Value = Vec3> {
+    [-1.0..1.0, -1.0..1.0, -1.0..1.0].prop_map(move |x: [f64; 3]| Vec3::from(x) * size)
+}
+
+proptest! {
+    /// One contact is what it is alone.
+    #[test]
+    fn one_contact_is_struck_as_alone(
+        v in vector(10.0), w in vector(10.0), friction in 0.0..0.8f64, e in 0.1..0.8f64, share in 0.05..0.9f64,
+    ) {
+        prop_assume!(v.x < -1.0);
+        let (body, law) = case(friction, e);
+        let limit_j = share * 0.5 * body.mass * v.x * v.x;
+        let alone = yielding_impact(&body, (&law, &Vec3::x()), (&v, &w), limit_j).unwrap();
+        let contacts = [contact(&body, &law, (Vec3::x(), 0))];
+        let end = blow(&body, &contacts, (v, w), [limit_j; 3]).unwrap();
+        // both follow it in steps of the same length
+        let off = (end.motion.0 - alone.0).norm() + (end.motion.1 - alone.1).norm() * body.radius;
+        prop_assert!(off < 1e-9 * v.norm() + 1e-9 * w.norm(), "{off:e}");
+    }
+
+    /// What contacts take is what the motion loses, to rounding; each stem that is gone has taken its limit, and none that stands has reached it.
+    #[test]
+    fn no_energy_is_made_and_each_stem_takes_its_limit(
+        n in prop::array::uniform3(vector(1.0)), v in vector(10.0), w in vector(10.0),
+        (friction, e) in (0.0..0.8f64, 0.1..0.9f64), limits in prop::array::uniform3(0.02..0.8f64),
+    ) {
+        prop_assume!(n.iter().all(|n| n.norm() > 0.1) && v.norm() > 1.0);
+        let (body, law) = case(friction, e);
+        // the last two contacts are with one stem
+        let stems = [0, 1, 1];
+        let contacts: Vec<_> = n.iter().zip(stems).map(|(n, stem)| contact(&body, &law, (n.normalize(), stem))).collect();
+        let before_j = motion_j(&body, (v, w));
+        let left_j = limits.map(|share| share * before_j);
+        let Some(end) = blow(&body, &contacts, (v, w), left_j) else { return Ok(()) };
+        let taken_j: f64 = end.taken.iter().map(|loss| loss.sum()).sum();
+        let lost_j = before_j - motion_j(&body, end.motion);
+        prop_assert!((lost_j - taken_j).abs() < 1e-9 * before_j, "{lost_j} {taken_j}");
+        for stem in [0, 1] {
+            let own = end.taken.iter().zip(stems).filter(|(_, of)| *of == stem);
+            let own_j: f64 = own.map(|(loss, _)| loss.sum()).sum();
+            if end.broken.contains(&stem) {
+                prop_assert!((own_j - left_j[stem as usize]).abs() < 1e-9 * before_j);
+            } else {
+                prop_assert!(own_j < left_j[stem as usize]);
+            }
+        }
+    }
+
+    /// Mirrored normals and equal limits: the rock goes straight on, with what both have left, however steeply it strikes them and however elastic they are.
+    #[test]
+    fn equal_stems_on_both_sides_do_not_turn_a_rock(angle in 0.1..1.3f64, e in 0.0..1.0f64, share in 0.01..0.45f64) {
+        let (body, law) = case(0.0, e);
+        let n = |side: f64| {
+            let turn = Rotation3::from_axis_angle(&Vec3::z_axis(), side * angle);
+            (turn * -Vec3::x(), if side > 0.0 { 0 } else { 1 })
+        };
+        let contacts = [1.0, -1.0].map(|side| contact(&body, &law, n(side)));
+        let all_j = 0.5 * body.mass * 100.0;
+        let end = blow(&body, &contacts, (Vec3::x() * 10.0, Vec3::zeros()), [share * all_j; 3]).unwrap();
+        let left = 10.0 * (1.0 - 2.0 * share).sqrt();
+        prop_assert!((end.motion.0 - Vec3::x() * left).norm() < 1e-6, "{:?}", end.motion);
+        prop_assert!(end.broken.len() == 2);
+    }
+
+    /// However it is turned as a whole, a blow is the same.
+    #[test]
+    fn a_turned_blow_is_the_same(axis in vector(1.0), angle in 0.0..3.0f64, v in vector(10.0)) {
+        prop_assume!(axis.norm() > 0.1);
+        let v = Vec3::new(-1.0 - v.x.abs(), -1.0 - v.y.abs(), v.z);
+        let turn = Rotation3::from_axis_angle(&Unit::new_normalize(axis), angle);
+        let (body, law) = case(0.4, 0.3);
+        let limit_j = 0.2 * body.mass * v.norm_squared();
+        let end = |turn: Rotation3<f64>| {
+            let contacts = [(Vec3::x(), 0), (Vec3::y(), 1)].map(|(n, stem)| contact(&body, &law, (turn * n, stem)));
+            blow(&body, &contacts, (turn * v, Vec3::zeros()), [limit_j; 3]).map(|end| turn.inverse() * end.motion.0)
+        };
+        let [plain, turned] = [Rotation3::identity(), turn].map(end);
+        prop_assert!(plain.is_some() == turned.is_some());
+        if let (Some(plain), Some(turned)) = (plain, turned) {
+            prop_assert!((plain - turned).norm() < 1e-6, "{plain:?} {turned:?}");
+        }
+    }
+}
