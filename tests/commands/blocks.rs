@@ -274,7 +274,7 @@ fn the_page_tells_of_shapes() {
     for (language, facts, table) in [
         ("en", "shapes: EOTA 1:1:1, box", "By shape"),
         ("de", "Formen: EOTA 1:1:1, Quader", "Nach der Form"),
-        ("fr", "formes : EOTA 1:1:1, parallélépipède", "Selon la forme"),
+        ("fr", "formes\u{a0}: EOTA 1:1:1, parallélépipède", "Selon la forme"),
         ("it", "forme: EOTA 1:1:1, parallelepipedo", "Secondo la forma"),
     ] {
         let scene = text().replace("../terrain", folder.to_str().unwrap());

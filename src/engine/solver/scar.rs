@@ -61,7 +61,7 @@ impl Furrow {
 
 /// What a rock in contact stands on.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum Floor {
+pub(crate) enum ScarFloor {
     /// On a ground that bears it as a plane with this normal does, with soil or without.
     On(u16, Vec3),
     /// On nothing that tells: it flies, or leans on a stem or a wall.
@@ -143,16 +143,16 @@ impl Scars {
         &self,
         world: &ContactEnvironment,
         contacts: impl Iterator<Item = (u32, Vec3)>,
-    ) -> Floor {
-        let mut floor = Floor::Unknown;
+    ) -> ScarFloor {
+        let mut floor = ScarFloor::Unknown;
         for (triangle, n) in contacts {
             let ground = world.ground_of(triangle);
             if self.layer(ground).is_some() {
-                return Floor::On(ground, n);
+                return ScarFloor::On(ground, n);
             }
-            let is_first = matches!(floor, Floor::Unknown);
+            let is_first = matches!(floor, ScarFloor::Unknown);
             if is_first && !world.terrain.is_tree(triangle) && self.goes_on_along(&n) {
-                floor = Floor::On(ground, n);
+                floor = ScarFloor::On(ground, n);
             }
         }
         floor
@@ -228,10 +228,10 @@ impl Scars {
     pub(crate) fn plough(
         &mut self,
         body: &Body,
-        (way_m, floor): (f64, Floor),
+        (way_m, floor): (f64, ScarFloor),
         ends: Option<Vec3>,
     ) -> f64 {
-        if let Floor::On(ground, normal) = floor {
+        if let ScarFloor::On(ground, normal) = floor {
             self.stand(body, (ground, normal));
         }
         let Some(now) = &self.now else {
@@ -327,16 +327,16 @@ mod tests {
             let per_m = 2.5 * 1700.0 * area / (2.0 * mass);
             let known = math::exp(-per_m * (deep - shallow) / cosine);
             assert!((after / before / known - 1.0).abs() < 1e-12, "{cosine}");
-            let whole = scars.plough(&body, (0.7, Floor::On(0, up)), None);
+            let whole = scars.plough(&body, (0.7, ScarFloor::On(0, up)), None);
             assert!((whole / math::exp(-per_m * 0.7) - 1.0).abs() < 1e-12, "{whole}");
             // and shared out over the steps before and after as they come
             let mut ahead = 1.0;
             let parts: f64 =
-                (0..7).map(|_| scars.plough(&body, (0.1, Floor::Unknown), None)).product();
+                (0..7).map(|_| scars.plough(&body, (0.1, ScarFloor::Unknown), None)).product();
             scars.pace = Pace::default();
             for way_m in [0.1, 0.2, 0.02, 0.08, 0.1, 0.2] {
                 ahead *= scars.plough_ahead();
-                ahead *= scars.plough(&body, (way_m, Floor::Unknown), None);
+                ahead *= scars.plough(&body, (way_m, ScarFloor::Unknown), None);
             }
             assert!((ahead / whole - 1.0).abs() < 1e-12, "{ahead} {whole}");
             assert!((parts / whole - 1.0).abs() < 1e-12, "{parts} {whole}");

@@ -43,7 +43,8 @@ impl Words {
         if name.starts_with("kind") {
             return self.part(value);
         }
-        if is_number_place(pattern, name) { in_print(value) } else { self.say_inside(value) }
+        let is_printed = is_number(value) && is_number_place(pattern, name);
+        if is_printed { in_print(value) } else { self.say_inside(value) }
     }
 
     /// What stands in a place: a text of its own, or several. Single words are names and numbers.

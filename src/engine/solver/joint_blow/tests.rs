@@ -4,6 +4,7 @@ use super::{JointBody, JointContact, JointEnd, joint_blow};
 use crate::ground::{Capture, Damping, Ground, Law};
 use crate::rock::{Rock, Vec3};
 use crate::solver::body::{Body, Twist};
+use crate::solver::loss::Loss;
 use crate::solver::yielding::yielding_impact;
 use nalgebra::{Matrix3, Rotation3, Unit};
 use proptest::prelude::*;
@@ -73,7 +74,7 @@ proptest! {
         let before_j = motion_j(&body, (v, w));
         let left_j = limits.map(|share| share * before_j);
         let Some(end) = blow(&body, &contacts, (v, w), left_j) else { return Ok(()) };
-        let taken_j: f64 = end.taken.iter().map(|loss| loss.sum()).sum();
+        let taken_j: f64 = end.taken.iter().map(Loss::sum).sum();
         let lost_j = before_j - motion_j(&body, end.motion);
         prop_assert!((lost_j - taken_j).abs() < 1e-9 * before_j, "{lost_j} {taken_j}");
         for stem in [0, 1] {
@@ -93,7 +94,7 @@ proptest! {
         let (body, law) = case(0.0, e);
         let n = |side: f64| {
             let turn = Rotation3::from_axis_angle(&Vec3::z_axis(), side * angle);
-            (turn * -Vec3::x(), if side > 0.0 { 0 } else { 1 })
+            (turn * -Vec3::x(), u32::from(side <= 0.0))
         };
         let contacts = [1.0, -1.0].map(|side| contact(&body, &law, n(side)));
         let all_j = 0.5 * body.mass * 100.0;
