@@ -215,6 +215,10 @@ mod tests {
         let said = |text: &str| words.say_all(text);
         assert_eq!(said("5136 triangles in 2 files"), "5\u{2009}136 triangles dans 2 fichiers");
         assert_eq!(said("2017, 240084 bytes"), "2017, 240\u{2009}084 octets");
+        assert_eq!(
+            said("restitution 0.275 (-0.2 to 0.3 in nine of ten, normal)"),
+            "restitution 0.275 (\u{2212}0.2 à 0.3 neuf fois sur dix, loi normale)"
+        );
         assert_eq!(said("Ground “2017”"), "Sol «\u{a0}2017\u{a0}»");
         assert_eq!(
             said("0 (-0.27 to 0.27 in nine of ten, uniform) | -1 | 0 m/s"),
