@@ -61,8 +61,10 @@ pub const RIGID_STEP_S: f64 = 0.01;
 /// Most rocks that hold each other and have springs yet, where heaps go on in the rigid limit.
 pub(crate) const MOST_WITH_SPRINGS: usize = 8;
 
-/// A block in the rigid limit misses no more than this in a step (–, relative to `√(g R)`).
+/// A block in the rigid limit misses no more than this in a step (–, relative to `√(g R)`) …
 const MISSED: f64 = 0.1;
+/// … and a blow is told from such a miss from this share of it on (–).
+const TOLD: f64 = 0.1;
 
 /// The usual [`Settings::corner_way`] (–).
 pub const CORNER_WAY: f64 = 0.3;
@@ -92,12 +94,12 @@ pub struct Settings {
 
 impl Settings {
     /// Error of a speed (m/s): slower rebounds than half of it mean nothing. Blocks in the rigid limit, of `block_radius_m` (m), miss contacts for
-    /// a step, and what falls meanwhile comes back as a blow, which must not rebound from there on and on: twice what gravity gives in the longest
-    /// step. Blocks so small that they take shorter ones miss a small part of `√(g R)`.
+    /// a step, and what falls meanwhile comes back as a blow, which must not rebound from there on and on: twice a share of what gravity gives in the
+    /// longest step. Blocks so small that they take shorter ones miss a small part of `√(g R)`.
     pub fn speed_error_m_s(&self, gravity_m_s2: f64, block_radius_m: Option<f64>) -> f64 {
         let radius_m = block_radius_m.filter(|_| !self.scheme.has_springs()).unwrap_or(0.0);
         let missed_m_s = MISSED * (gravity_m_s2 * radius_m).sqrt();
-        self.tolerance_m_s.max(2.0 * missed_m_s.min(gravity_m_s2 * self.step_s))
+        self.tolerance_m_s.max(2.0 * TOLD * missed_m_s.min(gravity_m_s2 * self.step_s))
     }
 
     /// The same in the limit of stiff springs, with its usual longest step.

@@ -2,8 +2,9 @@
 //!
 //! A step drifts for half its time (straight on, and round as a free top), meets the contacts of the middle with one set of impulses,
 //! weight included, and drifts on. Impulses are asked for what brings each contact point back to the surface, and back to where it
-//! stuck, at the end of the step: what changed its velocity since the start of the step by turning alone is taken off twice. So a push does
-//! no work, a block in rest stays where it is, and pivoting keeps its energy to second order.
+//! stuck, at the end of the step: what changed its velocity since the start of the step by turning alone is taken off twice, and the velocity
+//! along the normal that it began with once. So a push does no work, a block in rest stays where it is, and pivoting keeps its energy to
+//! second order. What comes down to the surface within the step is not thrown back by it.
 //!
 //! An impact is that of stiff springs ([`strike`](Footing::strike)).
 
@@ -48,8 +49,11 @@ const AHEAD: f64 = 1.0;
 const SLIDES: f64 = 1e-6;
 /// A block turns no further in one step (rad) than this share of the longest way of a corner over the balls' radius.
 const TURN: f64 = 0.1;
-/// What was pressed in is let out no faster than this (–, relative to the speed `√(g R)` of a fall by half the radius).
+/// What was pressed in is let out no faster than this (–, relative to the speed `√(g R)` of a fall by half the radius) …
 const LET_OUT: f64 = 0.1;
+/// … and so fast only what is as deep as this (–, relative to the radius), the rest in proportion: it comes to the surface slower and slower. Let
+/// out within one step it was thrown up, at the cost of all other motion, and came down again: a block that rolls on two corners rocked on without end.
+const DEEP: f64 = 0.01;
 /// An approach slower than this is none (m/s): rounding.
 const STILL_M_S: f64 = 1e-9;
 /// A gain of energy that is rounding (–); it is taken off the motion all the same.
@@ -216,11 +220,12 @@ impl Footing {
         let (v, w) = (moving.v, moving.spin(block));
         self.contacts.clear();
         let out_m_s = LET_OUT * (world.body.gravity.norm() * block.radius_m).sqrt();
+        let let_out = (DEEP * block.radius_m, out_m_s);
         let came = |touch: &BlockTouch| Came::of(block, [&start, moving], touch, dt);
         // stopped within the step, what strikes would give nothing back
         self.set_aside(|touch| !came(touch).strikes(world, block, touch));
         for touch in &self.aside {
-            let goal = came(touch).goal(touch, dt, out_m_s);
+            let goal = came(touch).goal(touch, dt, let_out);
             let ahead_m = 0.5 * dt * slip_m_s(block, &start, (&touch.normal, &touch.lever));
             self.contacts.push(self.contact(world, (&mass, touch), ahead_m, goal));
         }

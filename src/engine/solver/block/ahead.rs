@@ -56,12 +56,14 @@ impl Came {
 
     /// The velocity that the contact point seeks in the middle of a step: along the normal what ends the step at the surface, along the surface
     /// what ends it where it began, as far as turning has moved it.
-    /// What was pressed in is let out with `out_m_s` (m/s) at most.
-    pub(super) fn goal(&self, touch: &BlockTouch, dt: f64, out_m_s: f64) -> Vec3 {
+    ///
+    /// At the surface a step ends that began with the gap `g` and the speed `b` and ends with `−2g/Δt − b`. A contact that comes down on it would be
+    /// thrown back so: it ends no faster than what was pressed in is let out, with `out_m_s` (m/s) from `deep_m` (m) on.
+    pub(super) fn goal(&self, touch: &BlockTouch, dt: f64, (deep_m, out_m_s): (f64, f64)) -> Vec3 {
         let n = &touch.normal;
-        // a contact that was pressed in is let out slowly: it must not be thrown
-        let out = (-2.0 * self.gap_m / dt).min(out_m_s);
         let up = n.dot(&self.turned);
+        let most_m_s = out_m_s * (-self.gap_m / deep_m).clamp(0.0, 1.0);
+        let out = (-2.0 * self.gap_m / dt - n.dot(&self.began)).min(most_m_s);
         n * (out - up) - (self.turned - n * up)
     }
 }

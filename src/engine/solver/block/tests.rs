@@ -3,6 +3,7 @@ use super::*;
 mod blow;
 mod cases;
 mod clamp;
+mod gentle;
 mod kept;
 mod ledger;
 mod limit;
@@ -13,7 +14,7 @@ mod slip;
 mod springs;
 mod yielding;
 
-use crate::body::{Shape, Solid, Surface, box_surface, prism_surface};
+use crate::body::{Shape, Solid, Surface, box_surface, eota, prism_surface};
 use crate::flight::block::{Tumble, first_touch};
 use crate::flight::top::Top;
 use crate::flight::{FlightEnd, Parabola};
