@@ -28,7 +28,7 @@ use crate::solver::body::Body;
 use crate::solver::environment::ContactEnvironment;
 use crate::solver::loss::Loss;
 use crate::solver::roughness::RoughFacets;
-use crate::solver::scar::{Scars, taken_j};
+use crate::solver::scar::Scars;
 use crate::solver::step_control::{Advance, StepError};
 use crate::solver::struck::Struck;
 
@@ -120,7 +120,7 @@ impl<'a> Falling<'a> for Roll<'a> {
         self.recorder.fly(&path, Some(&tumble.top), dt);
         self.footing.slip.fly(dt);
         let kept = self.scars.fly(&self.world.body, &self.recorder.now.velocity_m_s, dt);
-        self.recorder.slow_in_soil(kept);
+        self.recorder.slow_in_flight(kept);
         self.moving.pose = tumble.pose(dt);
         self.moving.v = self.recorder.now.velocity_m_s;
         stop
@@ -287,8 +287,7 @@ impl Roll<'_> {
         if kept >= 1.0 {
             return;
         }
-        self.recorder.ledger.soil_j += taken_j(&self.world.body, &self.moving.v, kept);
-        self.moving.v *= kept;
+        self.moving.v = self.recorder.slowed_in_soil(&self.moving.v, kept);
         self.footing.springs.refresh();
     }
 

@@ -137,7 +137,7 @@ impl<'a> Falling<'a> for Fall<'a> {
         let begun = self.state.stopwatches.now();
         self.recorder.fly(&flight, None, dt);
         let kept = self.soil.fly(&self.body, &self.recorder.now.velocity_m_s, dt);
-        self.recorder.slow_in_soil(kept);
+        self.recorder.slow_in_flight(kept);
         self.state.stopwatches.stop(TimedPiece::NotesInFlight, begun);
         stop
     }

@@ -9,7 +9,6 @@
 use super::fall::{Fall, Slips};
 use crate::contact::history::ContactHistory;
 use crate::rock::Vec3;
-use crate::solver::scar::taken_j;
 
 /// Growth of `κ s` within one step, about (–): friction changes between steps.
 /// Taken at the step's middle, so what is left of the error is of second order in it.
@@ -79,10 +78,9 @@ impl Fall<'_> {
         if kept >= 1.0 {
             return;
         }
-        let (v, w) = (self.state.v, self.state.w);
-        self.recorder.ledger.soil_j += taken_j(&self.body, &v, kept);
+        let v = self.recorder.slowed_in_soil(&self.state.v, kept);
         let world = self.settings.around(self.body, self.laws);
-        self.state.redirect(&world, v * kept, w);
+        self.state.redirect(&world, v, self.state.w);
     }
 
     /// Gives the grounds their friction after all the way slipped and so much more (m).

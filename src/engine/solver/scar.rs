@@ -293,11 +293,6 @@ impl Scars {
     }
 }
 
-/// Energy (J) that the soil takes of a rock that keeps a share of its velocity (–).
-pub(crate) fn taken_j(body: &Body, v: &Vec3, kept: f64) -> f64 {
-    0.5 * body.mass * v.norm_squared() * (1.0 - kept * kept)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

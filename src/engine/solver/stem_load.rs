@@ -10,6 +10,10 @@ use arrayvec::ArrayVec;
 /// A stem with no more than this left of what it can take (–) gives way: the steps come ever nearer to the end of it.
 const AT_LIMIT: f64 = 1e-6;
 
+/// A stem that has more than this times the motion left (–) cannot give way.
+/// The tenth on top is for what weight may add within the contact.
+const WITHSTANDS: f64 = 1.1;
+
 /// What one rock has done to the stems; its memory is taken once for all rocks of a thread.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct StemLoad {
@@ -52,6 +56,16 @@ impl StemLoad {
     pub(super) fn left_j(&self, stems: &Stems, stem: u32) -> f64 {
         let taken = self.taken.iter().find(|(known, _)| *known == stem).map_or(0.0, |(_, j)| *j);
         self.limits_j[stems.ground_of(stem)] - taken
+    }
+
+    /// Whether all of this motion (J) might break a stem.
+    pub(super) fn may_yield(&self, stems: &Stems, stem: u32, motion_j: f64) -> bool {
+        self.left_j(stems, stem) <= WITHSTANDS * motion_j
+    }
+
+    /// The same of the stem that a triangle belongs to, if it does to one.
+    pub(super) fn may_yield_at(&self, stems: &Stems, triangle: u32, motion_j: f64) -> bool {
+        stems.of_triangle(triangle).is_some_and(|stem| self.may_yield(stems, stem, motion_j))
     }
 
     /// Notes what a stem has taken (J), negative where its springs gave something back.

@@ -25,10 +25,6 @@ use crate::terrain::stems::Stems;
 use arrayvec::ArrayVec;
 use nalgebra::Matrix3;
 
-/// A stem that has more than this times the motion left (–) cannot give way.
-/// The tenth on top is for what weight may add within the contact.
-pub(super) const WITHSTANDS: f64 = 1.1;
-
 /// How stems give way to a blow in the rigid limit.
 #[derive(Debug, Clone)]
 pub(crate) struct Broken {
@@ -49,9 +45,9 @@ impl ContactState {
         let motion_j = self.motion_j(&world.body);
         let (mut longest_s, mut may_yield) = (f64::INFINITY, false);
         for &(stem, _) in &self.stem_load.pressed {
-            let left_j = self.stem_load.left_j(stems, stem);
-            // all of the rock's motion would not break it: no step need be limited
-            if left_j <= WITHSTANDS * motion_j {
+            // all of the rock's motion would not break another: no step need be limited
+            if self.stem_load.may_yield(stems, stem, motion_j) {
+                let left_j = self.stem_load.left_j(stems, stem);
                 let of_stem =
                     |history: &ContactHistory| stems.of_triangle(history.triangle) == Some(stem);
                 longest_s = longest_s.min(self.time_to_take_s(world, left_j, of_stem));
@@ -108,10 +104,8 @@ impl ContactState {
             |touch: &&ContactPoint| !world.terrain.is_gone(touch.triangle, &self.near.gone);
         let standing: ArrayVec<ContactPoint, MOST> =
             self.touches.iter().filter(stands).copied().collect();
-        let may_break = |touch: &ContactPoint| {
-            let stem = stems.of_triangle(touch.triangle);
-            stem.is_some_and(|stem| self.stem_load.left_j(stems, stem) <= WITHSTANDS * motion_j)
-        };
+        let may_break =
+            |touch: &ContactPoint| self.stem_load.may_yield_at(stems, touch.triangle, motion_j);
         if !standing.iter().any(may_break) {
             return None;
         }

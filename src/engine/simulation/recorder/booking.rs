@@ -1,6 +1,7 @@
 //! Impacts as they begin and end, and what contacts take of a rock's energy.
 
 use super::Recorder;
+use crate::rock::Vec3;
 use crate::simulation::Ledger;
 use crate::simulation::impacts::MeshEnergy;
 use crate::solver::loss::Loss;
@@ -50,12 +51,17 @@ impl Recorder<'_> {
         }
     }
 
-    /// The rock keeps a share of its speed (–) at the end of a flight; soil has the rest.
-    pub(in crate::simulation) fn slow_in_soil(&mut self, kept: f64) {
-        let v = self.now.velocity_m_s;
+    /// What of this velocity (m/s) is left to the rock that keeps a share of it (–); soil has the energy of the rest.
+    pub(in crate::simulation) fn slowed_in_soil(&mut self, v: &Vec3, kept: f64) -> Vec3 {
         self.ledger.soil_j +=
             0.5 * self.form.rock.mass_kg() * v.norm_squared() * (1.0 - kept * kept);
-        self.now.velocity_m_s = v * kept;
+        v * kept
+    }
+
+    /// The same of its velocity at the end of a flight.
+    pub(in crate::simulation) fn slow_in_flight(&mut self, kept: f64) {
+        let v = self.now.velocity_m_s;
+        self.now.velocity_m_s = self.slowed_in_soil(&v, kept);
     }
 
     /// Writes losses into the ledger, what springs take up counted in.

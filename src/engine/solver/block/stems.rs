@@ -15,7 +15,7 @@ use crate::solver::environment::ContactEnvironment;
 use crate::solver::joint_blow::{JointBody, JointContact, JointContacts, joint_blow};
 use crate::solver::law::capture_m_s;
 use crate::solver::loss::Loss;
-use crate::solver::stems::{WITHSTANDS, given_back};
+use crate::solver::stems::given_back;
 use crate::terrain::stems::Stems;
 use arrayvec::ArrayVec;
 
@@ -48,10 +48,8 @@ impl Footing {
         (block, moving): (&Block, &mut Moving),
     ) -> Option<Loss> {
         let motion_j = moving.motion_j(block);
-        let may_break = |touch: &BlockTouch| {
-            let stem = stems.of_triangle(touch.triangle);
-            stem.is_some_and(|stem| self.stem_load.left_j(stems, stem) <= WITHSTANDS * motion_j)
-        };
+        let may_break =
+            |touch: &BlockTouch| self.stem_load.may_yield_at(stems, touch.triangle, motion_j);
         if !self.touching(block).any(may_break) {
             return None;
         }
