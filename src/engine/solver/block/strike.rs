@@ -64,19 +64,25 @@ impl Footing {
 
     /// Whether a blow is fast enough to rebound and meets something that rubs and has dashpots. Ground that gives nothing back is no case of its
     /// own: its dashpots are those of the restitution that tends to 0, and where friction and lever couple, what they leave is not what
-    /// impulses make of a contact that must stop dead.
+    /// impulses make of a contact that must stop dead. Nor is that what they leave of a contact that lasts and is pressed by the blow of another,
+    /// with friction or without.
     fn is_followed_to_its_limit(
         &self,
         world: &ContactEnvironment,
         (block, moving): (&Block, &Moving),
     ) -> bool {
         let law = |touch: &BlockTouch| world.law(touch.triangle);
-        (self.touching(block).any(|touch| Self::is_struck(world, (block, moving), touch))
-            || self.can_clamp(world, block))
-            && self.touching(block).any(|touch| law(touch).shear.is_on())
-            && self
-                .touching(block)
-                .all(|touch| !law(touch).shear.is_on() || law(touch).shear.is_damped())
+        let is_struck = |touch: &BlockTouch| Self::is_struck(world, (block, moving), touch);
+        let shear = || self.touching(block).map(|touch| &law(touch).shear);
+        let is_damped = |touch: &BlockTouch| law(touch).normal(false).is_damped(block.mass_kg);
+        let is_struck_anywhere = self.touching(block).any(is_struck);
+        if !shear().any(|shear| shear.is_on()) {
+            return is_struck_anywhere
+                && self.touching(block).any(|touch| !is_struck(touch))
+                && self.touching(block).all(is_damped);
+        }
+        (is_struck_anywhere || self.can_clamp(world, block))
+            && shear().all(|shear| !shear.is_on() || shear.is_damped())
     }
 
     /// The blow of contacts that do not slip, where pushes alone leave nothing to slip either, as of a face that falls flat: friction has

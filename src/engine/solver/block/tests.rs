@@ -3,6 +3,7 @@ use super::*;
 mod blow;
 mod cases;
 mod clamp;
+mod foot;
 mod gentle;
 mod kept;
 mod ledger;

@@ -99,7 +99,8 @@ impl Footing {
             let law = Self::law_of_touch(world, &mass, touch, (approach_m_s, touches.iter()));
             let mut contact = SpringContact::just_touching((k, touch), &law, friction);
             contact.captured = approach_m_s < capture_m_s(&law);
-            contact.waits = approach_m_s < 0.0;
+            // what neither comes nor parts lasts, whatever rounding says
+            contact.waits = approach_m_s < -capture_m_s(&law);
             self.clamp.load(&mut contact, touch);
             contacts.push(contact);
         }
