@@ -4,7 +4,7 @@ mod apart;
 mod spread;
 
 pub use apart::EndDistances;
-pub use spread::{EndSpread, effective, rank};
+pub use spread::{EndSpread, effective, mean_95, rank};
 
 use super::row::{Row, StopKind};
 use super::sample::Sample;
@@ -188,6 +188,12 @@ impl Agreement {
             stayed: each.iter().map(|one| one.stayed).sum(),
             ends_m: first.ends_m.map(|_| mean(|one| one.ends_m.unwrap_or(f64::NAN))),
         })
+    }
+
+    /// The limit of [`Self::ks_limit`] for measured ends that are worth so many independent ones: throws of one block are alike.
+    pub fn ks_limit_worth(&self, worth: f64) -> f64 {
+        let both = (self.ks_limit / KOLMOGOROV_95).powi(2);
+        KOLMOGOROV_95 * (both - 1.0 / self.measured as f64 + 1.0 / worth).max(0.0).sqrt()
     }
 
     /// Compares measured and computed ways; none if either is empty.

@@ -32,7 +32,9 @@ const MARKED: [f64; 2] = [0.50, 0.95];
 pub(super) fn nobody(words: &Words, line: &ReportLine) -> Option<String> {
     let what = if line.is_barrier { words.the_line_of_barrier } else { words.the_line };
     let below = format::percent_at_most(line.reach.high);
-    let nobody = if line.is_weighted {
+    let nobody = if line.reach.high >= 1.0 {
+        words.drawn().nobody_untold.to_owned()
+    } else if line.is_weighted {
         words.say(by_frequency::NOBODY)
     } else {
         words.nobody_line.to_owned()
@@ -358,8 +360,9 @@ pub(super) fn retention(lines: &[ReportLine], words: &Words) -> Drawing {
 /// The share that reaches a line, and what is left of it behind barriers; a lower bound has its sign.
 fn reach_in_words(line: &ReportLine, words: &Words) -> Label {
     let said = |reach: &Estimate| {
-        let share = percent_shown(reach.value);
-        format!("{}{share}", format::sign(reach.is))
+        let all = [reach.value, reach.low, reach.high];
+        let [share, low, high] = format::percents(all, decimals_shown);
+        format!("{}{share} ({})", format::sign(reach.is), words.interval(&low, &high))
     };
     let left = line.arriving.map(|arriving| fill(words.left, &[("share", &said(&arriving))]));
     Label::new(said(&line.reach), (0.0, 0.0)).followed_by(left.unwrap_or_default())
@@ -385,13 +388,12 @@ fn bar(canvas: &Canvas<'_>, panel: &Panel, (line, name, y): (&ReportLine, &str, 
     canvas.text(&Label::new(name, (frame.left - 6.0, y)).right());
 }
 
-/// A share in per cent with a digit that is not 0, however small it is.
-fn percent_shown(share: f64) -> String {
-    let decimals = match share {
+/// Decimals of a share in per cent that show a digit that is not 0, however small it is.
+fn decimals_shown(share: f64) -> usize {
+    match share {
         small if small > 0.0 && small < 1e-4 => 4,
         small if small > 0.0 && small < 1e-3 => 3,
         small if small > 0.0 && small < 1e-2 => 2,
         _ => 1,
-    };
-    format::percent(share, decimals)
+    }
 }

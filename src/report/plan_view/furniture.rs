@@ -6,7 +6,7 @@ use crate::report::axis::{Axis, nice_step};
 use crate::report::canvas::{Canvas, Label, NORMAL, Pen, SMALL, text_width};
 use crate::report::colour::{GREEN, INK, WHITE};
 use crate::report::format;
-use crate::report::model::Report;
+use crate::report::model::{MapMark, Report};
 use crate::report::panel::{FOOT_PX, Panel};
 use crate::report::site::{self, MarkKind};
 use crate::report::svg::path::PaperFrame;
@@ -98,7 +98,7 @@ enum Symbol {
 
 impl MapLegend {
     /// Names only what the map shows.
-    pub(super) fn of(report: &Report) -> Self {
+    pub(super) fn of(panel: &Panel, report: &Report) -> Self {
         let words = report.words();
         let mut entries = Vec::new();
         if let Some(zone) = report.zones.first().filter(|_| !report.releases.is_empty()) {
@@ -129,7 +129,9 @@ impl MapLegend {
             (MarkKind::Object, words.drawn().key_object),
             (MarkKind::Barrier, words.key_barrier),
         ] {
-            if report.marks.iter().any(|mark| MarkKind::of(mark) == kind) {
+            let is_drawn =
+                |mark: &&MapMark| MarkKind::of(mark) == kind && site::is_on_paper(panel, mark);
+            if report.marks.iter().find(is_drawn).is_some() {
                 entries.push((Symbol::Place(kind), name.to_owned()));
             }
         }

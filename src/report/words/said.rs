@@ -21,8 +21,10 @@ impl Words {
             return Some((*said).to_owned());
         }
         let with_places = self.recorded().filter(|(known, _)| known.contains('{'));
-        let mut found =
-            with_places.filter_map(|(known, said)| Some((known, places(known, text)?, said)));
+        // a list of two such texts is none of them
+        let is_one = |(name, value): &(&str, &str)| *name != "x" || !value.contains(", ");
+        let whole = |known| places(known, text).filter(|found| found.iter().all(is_one));
+        let mut found = with_places.filter_map(|(known, said)| Some((known, whole(known)?, said)));
         let (known, places, said) = found.next()?;
         let values: Vec<(&str, String)> = places
             .into_iter()
@@ -35,7 +37,10 @@ impl Words {
 
     /// A recorded text that may be made of several.
     pub(crate) fn say_all(&self, text: &str) -> String {
-        if text.contains(' ') { self.say_inside(text) } else { self.say(text) }
+        let said = if text.contains(' ') { self.say_inside(text) } else { self.say(text) };
+        // a number of things and their names
+        let of_things = said.split_once(": ").filter(|(count, _)| is_number(count));
+        of_things.map(|(count, names)| format!("{count}{}{names}", self.colon())).unwrap_or(said)
     }
 
     /// What stands in a place of a pattern: a kind of something, a number as in print, or a text.
@@ -183,6 +188,11 @@ mod tests {
         let words = Words::of(Language::De);
         let said = words.say("300 along a line of 30.0 m, from 2 points in turn, seed 1");
         assert_eq!(said, "300 entlang einer Linie von 30.0 m, reihum von 2 Punkten, Startwert 1");
+        let two = words.say_all("along a line of 35.2 m, along a line of 20.1 m");
+        assert_eq!(two, "entlang einer Linie von 35.2 m, entlang einer Linie von 20.1 m");
+        assert_eq!(words.say_all("200.0 m long, 6 m wide"), "200.0 m lang, 6 m breit");
+        let french = Words::of(Language::Fr).say_all("5: asphalt, forest");
+        assert_eq!(french, "5\u{a0}: asphalt, forest");
         assert_eq!(words.say("left out: the scene has none"), "weggelassen: die Szene hat keine");
         assert_eq!(words.say("Nothing that is known"), "Nothing that is known");
         // a line may be called as the program calls something
@@ -241,7 +251,8 @@ mod tests {
     fn all_languages_know_the_same() {
         let names = |text: &str| {
             let inside = text.split('{').skip(1).filter_map(|rest| rest.split_once('}'));
-            let mut names: Vec<String> = inside.map(|(name, _)| name.to_owned()).collect();
+            let names = inside.map(|(name, _)| name.to_owned()).filter(|name| !name.contains('|'));
+            let mut names: Vec<String> = names.collect();
             names.sort_unstable();
             names.dedup();
             names
