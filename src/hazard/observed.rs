@@ -330,6 +330,16 @@ mod tests {
         assert!((found.ks_limit - 1.36 * (0.25_f64 + 1.0 / worth).sqrt()).abs() < 1e-12);
     }
 
+    /// By hand: 80 ends worth 14 beside 960 have the limit 1.36 √(1/14 + 1/960) = 0.366, not 1.36 √(1/80 + 1/960) = 0.158.
+    #[test]
+    fn the_limit_is_that_of_independent_ends() {
+        let some = |n: usize| ways(&(1..=n).map(|k| k as f64).collect::<Vec<_>>());
+        let found = Agreement::of(&some(80), &some(960)).unwrap();
+        assert!((found.ks_limit - 0.158).abs() < 5e-4);
+        assert!((found.ks_limit_worth(14.0) - 0.366).abs() < 5e-4);
+        assert!((found.ks_limit_worth(80.0) - found.ks_limit).abs() < 1e-12);
+    }
+
     /// A computed end that weighs twice is two computed ends, and one that weighs nothing is none.
     #[test]
     fn weights_are_numbers_of_ends() {

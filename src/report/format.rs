@@ -153,7 +153,7 @@ pub(super) fn with_interval(all: [f64; 3]) -> [String; 3] {
         // alone: a maximum is read as it is, a small derivative or a bound only for its size
         // as it was rounded before
         if !(low.is_finite() || high.is_finite())
-            && value == math::rounded(value, 2)
+            && (value - math::rounded(value, 2)).abs() < 1e-12 * value.abs()
             && (-4..9).contains(&exponent_of(value))
         {
             return all.map(|number| {

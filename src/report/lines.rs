@@ -70,7 +70,7 @@ pub(super) fn draw(words: &Words, line: &ReportLine) -> Drawing {
         bins.bars(canvas, &along);
         along.axes(canvas);
         head(canvas, &cloud, words.first_crossing);
-        draw_cloud(canvas, &cloud, line, size);
+        draw_cloud(canvas, &cloud, (line, size), words);
         let behind = |of: fn(&super::model::Behind) -> &Vec<BandPoint>| {
             line.behind.as_ref().map(of).map(Vec::as_slice)
         };
@@ -85,10 +85,12 @@ pub(super) fn draw(words: &Words, line: &ReportLine) -> Drawing {
             key(canvas, &curves[0], words);
         }
     });
-    Drawing { svg, caption: caption(words, line) }
+    let is_shown = |limit: &f64| (curves[0].x.low..=curves[0].x.high).contains(&(limit / size));
+    let limits = if INTENSITY_J.iter().any(is_shown) { words.drawn().swiss_limits } else { "" };
+    Drawing { svg, caption: caption(words, line, (bins.width, limits)) }
 }
 
-fn caption(words: &Words, line: &ReportLine) -> String {
+fn caption(words: &Words, line: &ReportLine, (bin_m, limits): (f64, &str)) -> String {
     let count = |n: usize| format::decimal(n as f64, 0);
     let behind = line.behind.as_ref().map_or(String::new(), |behind| {
         let at = behind.reach;
@@ -111,10 +113,11 @@ fn caption(words: &Words, line: &ReportLine) -> String {
             ("crossing", &count(line.crossings.len())),
             ("releases", &count(line.releases)),
             ("again", &count(line.crossing_again)),
+            ("bin", &format::plain(bin_m)),
         ],
     );
     let note = line.is_weighted.then_some(by_frequency::CURVES);
-    by_frequency::noted(caption + &behind, note, words)
+    by_frequency::noted(caption + limits + &behind, note, words)
 }
 
 fn head(canvas: &Canvas<'_>, panel: &Panel, words: &str) {
@@ -178,7 +181,7 @@ fn lower_panels(
     ]
 }
 
-fn draw_cloud(canvas: &Canvas<'_>, panel: &Panel, line: &ReportLine, size: f64) {
+fn draw_cloud(canvas: &Canvas<'_>, panel: &Panel, (line, size): (&ReportLine, f64), words: &Words) {
     panel.grid(canvas);
     let spots: Vec<Spot> = line
         .crossings
@@ -188,7 +191,7 @@ fn draw_cloud(canvas: &Canvas<'_>, panel: &Panel, line: &ReportLine, size: f64) 
         .collect();
     canvas.dots(&spots, if spots.len() > MANY { 1.1 } else { 2.0 }, BLUE);
     let weak = line.crossings.iter().filter(|at| at.total_j / size < panel.x.low).count();
-    weaker(canvas, panel, weak);
+    panel.weaker(canvas, words, weak);
     percentiles(canvas, panel, line, size);
     panel.axes(canvas);
 }
@@ -228,15 +231,6 @@ fn percentiles(canvas: &Canvas<'_>, panel: &Panel, line: &ReportLine, size: f64)
         panel.line(canvas, &[(panel.x.low, height), (panel.x.high, height)], pen(p));
         let (x, y) = (panel.frame.right - 26.0, level(height));
         name(canvas, panel, (&words(p), &[(x, y - 8.0), (x, y + 9.0)]), &lines);
-    }
-}
-
-/// How many rocks have less energy than the axis shows.
-pub(super) fn weaker(canvas: &Canvas<'_>, panel: &Panel, count: usize) {
-    if count > 0 {
-        let words = format!("← +{}", format::decimal(count as f64, 0));
-        let at = (panel.frame.left + 4.0, panel.frame.top + 10.0);
-        canvas.text_on_rim(&Label::new(words, at).coloured(GREY));
     }
 }
 

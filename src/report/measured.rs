@@ -92,7 +92,7 @@ pub(super) fn mean_of(observed: &Observed) -> [Estimate; 2] {
     let weights = observed.weights.as_ref().unwrap_or(&even);
     let ways: Vec<Weighted> =
         observed.computed.iter().copied().zip(weights.iter().copied()).collect();
-    let mean = Sample::weighted(runouts(&ways).into_iter()).mean();
+    let mean = Sample::weighted(runouts(&ways)).mean();
     let end = |end: Option<f64>| end.unwrap_or(f64::NAN);
     let ends = mean.map_or([f64::NAN; 2], |mean| [mean.low_95, mean.high_95].map(end));
     [

@@ -123,7 +123,7 @@ fn barrier(annual: &Annual, one: &AnnualBarrier, words: &Words) -> EstimateTable
         about: About::Year,
         place: name.clone(),
         title: fill(words.barrier_year_title, &[("name", &words.quoted(name))]),
-        note: words.barrier_year_note.to_owned(),
+        note: words.barrier_year_note.to_owned() + words.drawn().rough,
         columns: how_often(words),
         rows: rows.map(|(what, rate)| (what.to_owned(), cells(rate, annual))).into(),
     }
@@ -182,7 +182,7 @@ fn passages(annual: &Annual, place: &AnnualPlace, words: &Words) -> EstimateTabl
                 ("rocks", &format::decimal(annual.rocks as f64, 0)),
                 ("effective", &format::decimal(annual.effective_rocks, 0)),
             ],
-        ),
+        ) + words.drawn().rough,
         columns: how_often(words),
         rows,
     }
@@ -239,7 +239,7 @@ fn returns(place: &AnnualPlace, words: &Words) -> EstimateTable {
         about: About::Year,
         place: place.name.clone(),
         title: named(words.returns_title, place, words),
-        note: words.returns_note.to_owned(),
+        note: words.returns_note.to_owned() + words.drawn().rough,
         columns: columns.into(),
         rows: all.map(row).collect(),
     }

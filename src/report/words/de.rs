@@ -177,7 +177,7 @@ pub(super) static WORDS: Words = Words {
     reach_caption: "Pauschalgefälle, atan(Höhenverlust / Auslaufstrecke), von der Ablösung bis zum Ende. Schattiert: wo die Mediane beobachteter Ereignisse liegen. {verdict}",
     // Distributions and single rocks
     distributions_title: "Geschwindigkeit, Energie und Sprunghöhe",
-    distributions_caption: "Verteilungen des größten Wertes jedes Blocks über alle Ablösungen. Die Energien erreichen ihre Größtwerte zu verschiedenen Zeitpunkten und addieren sich daher nicht; ihre Achsen sind logarithmisch. Linien: P50 voll, P95 gestrichelt, P99 punktiert.",
+    distributions_caption: "Verteilungen des größten Wertes jedes Blocks über alle Ablösungen. Die Energien erreichen ihre Größtwerte zu verschiedenen Zeitpunkten und addieren sich daher nicht; ihre Achsen sind logarithmisch, wo sie sich um mehr als das 3-Fache unterscheiden.",
     no_finite: "kein endlicher Wert",
     none_above_zero: "kein Wert über 0",
     along_title: "Entlang des Weges",
@@ -200,7 +200,7 @@ pub(super) static WORDS: Words = Words {
     energy_exceeded: "Überschrittene Energie",
     height_exceeded: "Überschrittene Höhe",
     line_behind: " Grün, gestrichelt: was hinter {barriers} bleibt (Erreichen {reach}, {low} bis {high}).",
-    line_caption: "Linie {name}, {length} m lang, überquert von {crossing} von {releases} {releases|Ablösung|Ablösungen}, davon {again} mehrmals; alle Werte beim ersten Durchgang, auf der Parabel oder dem Schritt, der sie quert. Oben: Anteil der Ablösungen je Linienabschnitt, ab der ersten Ecke. Mitte: lotrechte Höhe des tiefsten Punktes und Gesamtenergie, P50 voll, P95 gestrichelt. Unten: Anteil aller Ablösungen, die mit mehr durchgehen (bedingt auf die Ablösung), mit 95-%-Band; die Schweizer Grenzen der Intensität sind markiert.",
+    line_caption: "Linie {name}, {length} m lang, überquert von {crossing} von {releases} {releases|Ablösung|Ablösungen}, davon {again} mehrmals; alle Werte beim ersten Durchgang, auf der Parabel oder dem Schritt, der sie quert. Oben: Anteil der Ablösungen je {bin} m der Linie, ab der ersten Ecke. Mitte: lotrechte Höhe des tiefsten Punktes und Gesamtenergie, P50 voll, P95 gestrichelt. Unten: Anteil aller Ablösungen, die mit mehr durchgehen (bedingt auf die Ablösung), mit 95-%-Band.",
     line_axis: "Entlang der Linie (m)",
     energy_axis: "Gesamtenergie ({unit})",
     share_of_releases: "Anteil der Ablösungen",

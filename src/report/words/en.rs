@@ -171,7 +171,7 @@ pub(super) static WORDS: Words = Words {
     reach_caption: "Reach angle (Fahrböschung), atan(drop / runout), from release to end. Shaded: where the medians of observed events lie. {verdict}",
     // Distributions and single rocks
     distributions_title: "Speed, energy and bounce height",
-    distributions_caption: "Distributions over all releases of each rock's largest value. The energies reach their largest values at different instants, so they do not add up; their axes are logarithmic. Lines: P50 full, P95 dashed, P99 dotted.",
+    distributions_caption: "Distributions over all releases of each rock's largest value. The energies reach their largest values at different instants, so they do not add up; their axes are logarithmic where they differ by more than a factor of 3.",
     no_finite: "no finite value",
     none_above_zero: "no value above 0",
     along_title: "Along the way",
@@ -194,7 +194,7 @@ pub(super) static WORDS: Words = Words {
     energy_exceeded: "Energy exceeded",
     height_exceeded: "Height exceeded",
     line_behind: " Green, dashed: what is left behind {barriers} (reach {reach}, {low} to {high}).",
-    line_caption: "Line {name}, {length} m long, crossed by {crossing} of {releases} {releases|release|releases}, by {again} of them more than once; all values at the first crossing, on the parabola or the step that crosses. Above: share of releases per length of line, from its first corner. Middle: vertical height of the lowest point and total energy, P50 full, P95 dashed. Below: share of all releases that cross with more (conditional on release), with 95 % band; the Swiss limits of intensity are marked.",
+    line_caption: "Line {name}, {length} m long, crossed by {crossing} of {releases} {releases|release|releases}, by {again} of them more than once; all values at the first crossing, on the parabola or the step that crosses. Above: share of releases per {bin} m of the line, from its first corner. Middle: vertical height of the lowest point and total energy, P50 full, P95 dashed. Below: share of all releases that cross with more (conditional on release), with 95 % band.",
     line_axis: "Along the line (m)",
     energy_axis: "Total energy ({unit})",
     share_of_releases: "Share of releases",

@@ -177,7 +177,7 @@ pub(super) static WORDS: Words = Words {
     reach_caption: "Angle d’énergie (Fahrböschung), atan(dénivelée / distance), du départ à l’arrêt. Ombré\u{a0}: où se trouvent les médianes d’événements observés. {verdict}",
     // Distributions and single rocks
     distributions_title: "Vitesse, énergie et hauteur de rebond",
-    distributions_caption: "Distributions, sur tous les départs, de la plus grande valeur de chaque bloc. Les énergies culminent à des instants différents et ne s’additionnent donc pas\u{a0}; axes logarithmiques. Traits\u{a0}: P50 plein, P95 tirets, P99 pointillé.",
+    distributions_caption: "Distributions, sur tous les départs, de la plus grande valeur de chaque bloc. Les énergies culminent à des instants différents et ne s’additionnent donc pas\u{a0}; axes logarithmiques là où elles diffèrent de plus d’un facteur 3.",
     no_finite: "aucune valeur finie",
     none_above_zero: "aucune valeur au-dessus de 0",
     along_title: "Le long du parcours",
@@ -200,7 +200,7 @@ pub(super) static WORDS: Words = Words {
     energy_exceeded: "Énergie dépassée",
     height_exceeded: "Hauteur dépassée",
     line_behind: " Vert, tirets\u{a0}: ce qui reste derrière {barriers} (atteinte {reach}, {low} à {high}).",
-    line_caption: "Ligne {name}, longue de {length} m, franchie par {crossing} {crossing|départ|départ|départs} sur {releases}, dont {again} plusieurs fois\u{a0}; valeurs au premier passage, sur la parabole ou le pas qui la coupe. En haut\u{a0}: part des départs par longueur de ligne, depuis le premier sommet. Au milieu\u{a0}: hauteur verticale du point le plus bas et énergie totale, P50 plein, P95 tirets. En bas\u{a0}: part de tous les départs qui passent avec plus (conditionnel au départ), avec bande à 95 %\u{a0}; les limites suisses d’intensité sont marquées.",
+    line_caption: "Ligne {name}, longue de {length} m, franchie par {crossing} {crossing|départ|départ|départs} sur {releases}, dont {again} plusieurs fois\u{a0}; valeurs au premier passage, sur la parabole ou le pas qui la coupe. En haut\u{a0}: part des départs par {bin} m de ligne, depuis le premier sommet. Au milieu\u{a0}: hauteur verticale du point le plus bas et énergie totale, P50 plein, P95 tirets. En bas\u{a0}: part de tous les départs qui passent avec plus (conditionnel au départ), avec bande à 95 %.",
     line_axis: "Le long de la ligne (m)",
     energy_axis: "Énergie totale ({unit})",
     share_of_releases: "Part des départs",

@@ -177,7 +177,7 @@ pub(super) static WORDS: Words = Words {
     reach_caption: "Angolo di propagazione (Fahrböschung), atan(dislivello / distanza), dal distacco all’arresto. Ombreggiato: dove stanno le mediane di eventi osservati. {verdict}",
     // Distributions and single rocks
     distributions_title: "Velocità, energia e altezza di rimbalzo",
-    distributions_caption: "Distribuzioni, su tutti i distacchi, del valore massimo di ogni masso. Le energie hanno il massimo in istanti diversi e quindi non si sommano; assi logaritmici. Linee: P50 piena, P95 tratteggiata, P99 punteggiata.",
+    distributions_caption: "Distribuzioni, su tutti i distacchi, del valore massimo di ogni masso. Le energie hanno il massimo in istanti diversi e quindi non si sommano; assi logaritmici dove differiscono di oltre un fattore 3.",
     no_finite: "nessun valore finito",
     none_above_zero: "nessun valore sopra 0",
     along_title: "Lungo il percorso",
@@ -200,7 +200,7 @@ pub(super) static WORDS: Words = Words {
     energy_exceeded: "Energia superata",
     height_exceeded: "Altezza superata",
     line_behind: " Verde, tratteggio: ciò che resta dietro {barriers} (raggiungimento {reach}, da {low} a {high}).",
-    line_caption: "Linea {name}, lunga {length} m, attraversata da {crossing} {crossing|distacco|distacchi} su {releases}, {again} più volte; valori al primo passaggio, sulla parabola o sul passo che la taglia. Sopra: quota dei distacchi per lunghezza di linea, dal primo vertice. In mezzo: altezza verticale del punto più basso ed energia totale, P50 piena, P95 tratteggiata. Sotto: quota di tutti i distacchi che passano con di più (condizionata al distacco), con banda al 95 %; sono segnati i limiti svizzeri di intensità.",
+    line_caption: "Linea {name}, lunga {length} m, attraversata da {crossing} {crossing|distacco|distacchi} su {releases}, {again} più volte; valori al primo passaggio, sulla parabola o sul passo che la taglia. Sopra: quota dei distacchi per {bin} m di linea, dal primo vertice. In mezzo: altezza verticale del punto più basso ed energia totale, P50 piena, P95 tratteggiata. Sotto: quota di tutti i distacchi che passano con di più (condizionata al distacco), con banda al 95 %.",
     line_axis: "Lungo la linea (m)",
     energy_axis: "Energia totale ({unit})",
     share_of_releases: "Quota dei distacchi",

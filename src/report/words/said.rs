@@ -38,6 +38,7 @@ impl Words {
     /// A recorded text that may be made of several.
     pub(crate) fn say_all(&self, text: &str) -> String {
         let said = if text.contains(' ') { self.say_inside(text) } else { self.say(text) };
+        let said = if self.said.is_empty() { with_thousands(&said) } else { said };
         // a number of things and their names
         let of_things = said.split_once(": ").filter(|(count, _)| is_number(count));
         of_things.map(|(count, names)| format!("{count}{}{names}", self.colon())).unwrap_or(said)
@@ -136,6 +137,23 @@ fn is_number(text: &str) -> bool {
         && digits.ends_with(|c: char| c.is_ascii_digit())
         && digits.chars().all(|c| c.is_ascii_digit() || c == '.')
         && digits.matches('.').count() < 2
+}
+
+/// What large numbers in plans of this language count: these stand as in print, and nothing that a user wrote does.
+const COUNTED: [&str; 8] =
+    ["steps", "triangles", "bytes", "facets", "points", "cells", "releases", "J"];
+
+/// A recorded English text with thousands set apart in what it counts.
+fn with_thousands(text: &str) -> String {
+    let words: Vec<&str> = text.split(' ').collect();
+    let is_counted = |at: usize| {
+        let next = words.get(at + 1).map(|next| next.trim_end_matches([',', ';', '.', ')']));
+        next.is_some_and(|next| COUNTED.contains(&next))
+    };
+    let said = |(at, word): (usize, &&str)| {
+        if word.len() > 4 && is_counted(at) { in_print(word) } else { (*word).to_owned() }
+    };
+    words.iter().enumerate().map(said).collect::<Vec<_>>().join(" ")
 }
 
 /// A number with its digits as recorded, but thousands set apart and a minus sign; any other text as it is.
@@ -244,6 +262,18 @@ mod tests {
         );
         // a name that is a sign or a range is none of a number
         assert_eq!(said("-2017 (26.0 m)"), "-2017 (26.0 m)");
+    }
+
+    /// English texts are recorded as they are said, but for the thousands of what they count.
+    #[test]
+    fn english_counts_have_their_thousands() {
+        let said = |text: &str| Words::of(Language::En).say_all(text);
+        assert_eq!(
+            said("over budget after 5000000 steps and flights"),
+            "over budget after 5\u{2009}000\u{2009}000 steps and flights"
+        );
+        assert_eq!(said("37280 triangles in 2 files"), "37\u{2009}280 triangles in 2 files");
+        assert_eq!(said("20170.stl, road 20170"), "20170.stl, road 20170");
     }
 
     /// Every language knows the same, with the same places.
