@@ -358,7 +358,9 @@ fn reach_in_words(line: &ReportLine, words: &Words) -> Label {
         let [share, low, high] = format::percents(all, decimals_shown);
         format!("{}{share} ({})", format::sign(reach.is), words.interval(&low, &high))
     };
-    let left = line.arriving.map(|arriving| fill(words.left, &[("share", &said(&arriving))]));
+    // its interval is drawn: written too, it would leave the bars no room beside long names
+    let alone = |share: Estimate| said(&share).split(" (").next().unwrap_or_default().to_owned();
+    let left = line.arriving.map(|share| fill(words.left, &[("share", &alone(share))]));
     Label::new(said(&line.reach), (0.0, 0.0)).followed_by(left.unwrap_or_default())
 }
 
