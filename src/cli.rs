@@ -18,7 +18,10 @@ use crate::error::{Error, Result};
 use crate::hazard::barrier_warnings;
 use crate::output::{self, Mode, Results};
 use crate::plan::Plan;
-use crate::report::{self, format::significant};
+use crate::report::{
+    self,
+    format::{counted, significant},
+};
 use crate::run::{RunEnd, RunOptions, Selection, read_measured, run_observed};
 use crate::scene::Scene;
 use crate::study::target_precision::TargetPrecision;
@@ -239,7 +242,10 @@ fn last_words(results: &Results) -> String {
     let (releases, took) = (results.hazard.rocks(), results.summary.run);
     let time = in_words(Duration::from_secs_f64(took.seconds.max(0.0)));
     let rate = significant(took.releases_per_second, 3);
-    said.push(format!("{releases} releases in {time} ({rate} a second)"));
+    said.push(format!(
+        "{releases} {} in {time} ({rate} a second)",
+        counted(releases, "release", "releases")
+    ));
     said.push(format!("results in {}", results.dir.display()));
     said.push(report_in(&results.dir));
     said.join("\n")

@@ -42,7 +42,7 @@ pub use lines::{CrossingRow, Line, LineFloor, LineInfo, LineQuantity, LineSummar
 pub use maps::{INTENSITY_J, Layer, MapFrame, MapState, Maps};
 pub use observed::{
     Agreement, EndDistances, EndSpread, KOLMOGOROV_95, ObservedPath, Weighted, distances,
-    effective, ks_limit, rank, runouts,
+    effective, ks_limit, mean_95, rank, runouts,
 };
 pub use open::{OpenRock, OpenRocks};
 pub use profile::{Profile, ProfilePoint, StretchStatistic};

@@ -86,6 +86,8 @@ pub struct RunInfo {
     pub asked: AnnualRequest,
     /// Measured ways to compare with; none if the scene names none.
     pub observed: Vec<ObservedPath>,
+    /// Independent ends that they are worth (–).
+    pub observed_worth: Option<f64>,
     /// Least runout of a computed rock that is compared with them (m); none compares all.
     pub observed_least_runout_m: Option<f64>,
     /// Whether `paths.csv` is written.
@@ -150,8 +152,7 @@ impl Output {
     ///
     /// # Errors
     ///
-    /// If the folder holds results that `mode` does not allow to touch, cannot be written, or is being written by
-    /// another process.
+    /// If the folder holds results that `mode` does not allow to touch, cannot be written, or is in use.
     pub fn create(info: RunInfo, dir: &Path, mode: Mode) -> Result<Self> {
         // looked at before it is touched: a folder that is refused stays as it is
         folder::look(dir, &info, mode)?;

@@ -179,8 +179,11 @@ pub fn drawings(report: &Report) -> Vec<(Heading, Drawing)> {
     let heading =
         |file: &str, title: &str| Heading { file: file.to_owned(), title: title.to_owned() };
     let named = |template: &str, name: &str| fill(template, &[("name", &words.quoted(name))]);
+    // without paths there is nothing to see from the side
+    let is_shown = |file: &str| file != side_view::FILE || !report.paths.is_empty();
     let mut drawn: Vec<(Heading, Drawing)> = FIGURES
         .iter()
+        .filter(|figure| is_shown(figure.file))
         .map(|figure| (heading(figure.file, (figure.title)(words)), (figure.draw)(report)))
         .collect();
     if let Some(view) = &report.profile {

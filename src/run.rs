@@ -9,7 +9,7 @@ pub use options::{RunOptions, Selection};
 
 use crate::ensemble::Ensemble;
 use crate::error::{Error, Result};
-use crate::hazard::{Hazard, ObservedPath};
+use crate::hazard::{Hazard, ObservedPath, effective};
 use crate::output::{self, Mode, Output, Results, RunInfo};
 use crate::plan::Plan;
 use crate::report;
@@ -118,6 +118,13 @@ pub fn read_measured(plan: &Plan) -> Result<Vec<ObservedPath>> {
     plan.measured.as_ref().map_or(Ok(Vec::new()), ObservedPath::read)
 }
 
+/// Independent ends that the measured ones are worth; none where none are measured.
+fn measured_worth(plan: &Plan, measured: &[ObservedPath]) -> Result<Option<f64>> {
+    let Some(ends) = &plan.measured else { return Ok(None) };
+    let runouts: Vec<f64> = measured.iter().map(ObservedPath::runout_m).collect();
+    Ok(Some(effective(&runouts, &ObservedPath::read_blocks(&ends.file)?)))
+}
+
 /// One go at so many releases; a target precision may ask for another with more.
 struct Round<'a> {
     plan: &'a Plan,
@@ -160,6 +167,7 @@ impl Round<'_> {
         let Self { plan, options, releases, ensemble } = *self;
         let ground_of =
             |sheet: &crate::terrain::Sheet| plan.ground_names[usize::from(sheet.ground)].clone();
+        let observed = read_measured(plan)?;
         Ok(RunInfo {
             title: plan.title.clone(),
             identity: options.identity((plan.scene_hash.clone(), plan.seed), releases),
@@ -171,7 +179,8 @@ impl Round<'_> {
             profile_step_m: plan.recorders().profile_step_m.unwrap_or_default(),
             barriers: infos::barriers(plan),
             asked: year::asked(plan),
-            observed: read_measured(plan)?,
+            observed_worth: measured_worth(plan, &observed)?,
+            observed,
             observed_least_runout_m: plan.measured.as_ref().and_then(|ends| ends.least_runout_m),
             keeps_paths: matches!(options.selection, Selection::Only(_)) || plan.paths.is_kept(),
             keeps_impacts: plan.impacts.is_kept(),

@@ -263,6 +263,12 @@ impl Scene {
     }
 
     fn check(&mut self) -> Checked {
+        if self.title.trim().is_empty() {
+            let remedy = "name the place and the question, as in title = \"Road below the quarry\"";
+            return Err(
+                Complaint::about("title", remedy).finding("found an empty title".to_owned())
+            );
+        }
         if is_broken(&self.title) {
             let found = format!("found {:?}", self.title);
             return Err(Complaint::about("title", BROKEN).finding(found));

@@ -4,7 +4,7 @@ mod apart;
 mod spread;
 
 pub use apart::EndDistances;
-pub use spread::{EndSpread, effective, rank};
+pub use spread::{EndSpread, effective, mean_95, rank};
 
 use super::row::{Row, StopKind};
 use super::sample::Sample;
@@ -190,6 +190,12 @@ impl Agreement {
         })
     }
 
+    /// The limit of [`Self::ks_limit`] for measured ends that are worth so many independent ones: throws of one block are alike.
+    pub fn ks_limit_worth(&self, worth: f64) -> f64 {
+        let both = (self.ks_limit / KOLMOGOROV_95).powi(2);
+        KOLMOGOROV_95 * (both - 1.0 / self.measured as f64 + 1.0 / worth).max(0.0).sqrt()
+    }
+
     /// Compares measured and computed ways; none if either is empty.
     pub fn of(measured: &[ObservedPath], computed: &[ObservedPath]) -> Option<Self> {
         let computed: Vec<Weighted> = computed.iter().map(|way| (*way, 1.0)).collect();
@@ -322,6 +328,16 @@ mod tests {
         assert!((found.ks - (0.5 - 9.0 / 99.0)).abs() < 1e-12 && found.computed == 11);
         let worth = 99.0 * 99.0 / (10.0 * 0.81 + 8100.0);
         assert!((found.ks_limit - 1.36 * (0.25_f64 + 1.0 / worth).sqrt()).abs() < 1e-12);
+    }
+
+    /// By hand: 80 ends worth 14 beside 960 have the limit 1.36 √(1/14 + 1/960) = 0.366, not 1.36 √(1/80 + 1/960) = 0.158.
+    #[test]
+    fn the_limit_is_that_of_independent_ends() {
+        let some = |n: usize| ways(&(1..=n).map(|k| k as f64).collect::<Vec<_>>());
+        let found = Agreement::of(&some(80), &some(960)).unwrap();
+        assert!((found.ks_limit - 0.158).abs() < 5e-4);
+        assert!((found.ks_limit_worth(14.0) - 0.366).abs() < 5e-4);
+        assert!((found.ks_limit_worth(80.0) - found.ks_limit).abs() < 1e-12);
     }
 
     /// A computed end that weighs twice is two computed ends, and one that weighs nothing is none.

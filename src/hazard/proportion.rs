@@ -1,12 +1,13 @@
 //! A share of the rocks, with its confidence interval.
 
 use super::beta::quantile;
+use crate::math;
 use serde::{Deserialize, Serialize};
 
 /// Chance that an interval misses on one side: half of 1 − 95 %.
 pub(super) const ONE_TAIL: f64 = 0.025;
-/// None of `n` seen bounds a share by so much over `n`, with 95 % confidence: `1 − 0.05^(1/n)` at most.
-pub(super) const RULE_OF_THREE: f64 = 3.0;
+/// Chance that the one-sided bound of what was never seen misses: 1 − 95 %.
+const UNSEEN: f64 = 0.05;
 /// What is missing to all by no more than rounding (–).
 const ALL: f64 = 1e-12;
 /// Half width of the two-sided 95 % interval of the standard normal distribution (–).
@@ -35,8 +36,8 @@ pub(crate) fn student_95(freedom: f64) -> f64 {
 ///
 /// The interval is that of Clopper and Pearson (1934): the shares with which so few, or so many, would be counted in 2.5 % of all samples. It
 /// holds the truth in at least 95 % of samples, however rare what is counted and however few the rocks; Wilson's (1927), which is
-/// right on average, in 84 % at worst, where one or none is expected. Where nothing (or everything) was counted, the free end is the rule of three, one-sided:
-/// having seen none among `n`, the share is below `3/n` with 95 % confidence; so for shares from there to the two-sided `3.7/n` it is 93.8 %.
+/// right on average, in 84 % at worst, where one or none is expected. Where nothing (or everything) was counted, the free end
+/// is one-sided, see [`unseen`]; so for shares from there to the two-sided `1 − 0.025^(1/n)` it is 93.8 %, of few rocks 93.0 %.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Proportion {
     /// How many were counted.
@@ -83,9 +84,16 @@ impl Proportion {
     }
 }
 
+/// Share (0..1) that a sample of which none was seen leaves open with 95 % confidence, where one rock stands for `h` of all at most:
+/// `1 − 0.05^h`, of `n` rocks alike the exact `1 − 0.05^(1/n)` (3/n is its limit for large n). Rocks that weigh less only lower it, as
+/// `1 − exp(−x)` is concave.
+pub(super) fn unseen(heaviest: f64) -> f64 {
+    1.0 - math::pow(UNSEEN, heaviest.min(1.0))
+}
+
 /// 95 % interval of a share that is known with a variance, see [`between_tails`]; one-sided where nothing or all is seen.
 pub(super) fn interval_95(share: f64, (variance, heaviest): (f64, f64)) -> [f64; 2] {
-    let open = (RULE_OF_THREE * heaviest).min(1.0);
+    let open = unseen(heaviest);
     if share <= 0.0 {
         [0.0, open]
     } else if share >= 1.0 - ALL {

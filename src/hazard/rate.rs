@@ -5,7 +5,7 @@
 //! Every rock may count for more or less than one, by its exposure `y` for instance.
 
 use super::classes::class_of;
-use super::proportion::{Proportion, RULE_OF_THREE, interval_95};
+use super::proportion::{Proportion, interval_95, unseen};
 use crate::frequency::Weights;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -120,8 +120,8 @@ pub(super) struct Limits {
     sparse: Vec<(usize, f64)>,
 }
 
-/// With fewer rocks in a stratum what none seen leaves open, `3/n` and all of it below four rocks, may lie beyond what one more rock
-/// of it adds to the upper end, `1 − 0.025^(1/n)`: from nine rocks on it does not, and beside other strata hardly from so many on.
+/// With fewer rocks in a stratum what none seen leaves open, `1 − 0.05^(1/n)` and all of it without rocks, may lie beyond what one more
+/// rock of it adds to the upper end beside other strata; hardly from so many on.
 const MANY: usize = 14;
 
 impl Limits {
@@ -144,11 +144,15 @@ impl Limits {
         most: impl Fn(usize) -> f64,
     ) -> Self {
         let few = |at: &usize| weights.strata() > 1 && weights.rocks(*at) < MANY;
-        let unseen = |at: usize| {
-            let share = (RULE_OF_THREE / weights.rocks(at).max(1) as f64).min(1.0);
+        let open = |at: usize| {
+            // without a rock nothing is known
+            let share = match weights.rocks(at) {
+                0 => 1.0,
+                rocks => unseen(1.0 / rocks as f64),
+            };
             (at, most(at) * weights.per_year(at) * share)
         };
-        let mut sparse: Vec<(usize, f64)> = strata.clone().filter(few).map(unseen).collect();
+        let mut sparse: Vec<(usize, f64)> = strata.clone().filter(few).map(open).collect();
         sparse.sort_by(|one, other| other.1.total_cmp(&one.1));
         // of a stratum without rocks all events may belong to what none was seen to do
         let heaviest_of = |at: usize| match weights.rocks(at) {

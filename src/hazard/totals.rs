@@ -2,6 +2,7 @@
 
 use super::profile::Profile;
 use super::sum::Sum;
+use crate::math;
 use crate::simulation::{Effort, Ledger, Stop, Trajectory};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -179,8 +180,9 @@ impl Totals {
         if let Some(rise) = self.largest_energy_rise_j.filter(|rise| rise.value > RISE * released_j)
         {
             warnings.push(format!(
-                "release {}: its mechanical energy rose by {:.2e} J in one contact; take a smaller tolerance or step",
-                rise.release, rise.value
+                "release {}: its mechanical energy rose by {} J in one contact; take a smaller tolerance or step",
+                rise.release,
+                math::rounded(rise.value, 3)
             ));
         }
         warnings

@@ -82,6 +82,7 @@ impl Shard {
             barriers,
             asked,
             observed,
+            observed_worth,
             observed_least_runout_m,
             site,
             ..
@@ -104,6 +105,7 @@ impl Shard {
             barriers: barriers.into_iter().map(|one| one.barrier).collect(),
             asked,
             observed,
+            observed_worth,
             observed_least_runout_m,
             keeps_paths: keeps(PATHS),
             keeps_impacts: keeps(IMPACTS),

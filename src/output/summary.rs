@@ -42,7 +42,7 @@ const DEFINITIONS: [(&str, &str); 13] = [
     ),
     (
         "intervals",
-        "95 %: of percentiles by order statistics, whatever the distribution (low_95 and high_95 two-sided, upper_95 one-sided); of means the outer ends of Student's and Hall's, normal for their logarithm where that would reach below 0, none where all values are equal; of shares Clopper and Pearson, 3/n (one-sided) where none was seen. Conditional on release; numbers a year stand under annual only. With sources that sample sizes by importance rocks weigh what they stand for: ratios of sums, intervals by the delta method, of percentiles Woodruff's",
+        "95 %: of percentiles by order statistics, whatever the distribution (low_95 and high_95 two-sided, upper_95 one-sided); of means the outer ends of Student's and Hall's, normal for their logarithm where that would reach below 0, none where all values are equal; of shares Clopper and Pearson, 1 − 0.05^(1/n) (one-sided) where none or all were seen. Conditional on release; numbers a year stand under annual only. With sources that sample sizes by importance rocks weigh what they stand for: ratios of sums, intervals by the delta method, of percentiles Woodruff's",
     ),
     (
         "lines",
@@ -102,6 +102,9 @@ pub struct Summary {
     /// Measured ways, if the scene names any.
     #[serde(default)]
     pub observed: Vec<ObservedPath>,
+    /// Independent ends that they are worth (–): throws of one block are alike. None in results of before.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub observed_worth: Option<f64>,
     /// Least runout of a computed rock that is compared with them (m); none compares all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub observed_least_runout_m: Option<f64>,
@@ -172,6 +175,7 @@ impl Summary {
             residual: Vec::new(),
             site: info.site,
             observed: info.observed,
+            observed_worth: info.observed_worth,
             observed_least_runout_m: info.observed_least_runout_m,
             open_on_maps: info.maps.and_then(|map| hazard.open_on(&map)),
             maps: info.maps,

@@ -26,7 +26,8 @@ const WITH: Pen = Pen::full(ORANGE, 1.7).dashed();
 pub(super) fn nobody(words: &Words, view: &AnnualView) -> Option<String> {
     let what = if view.is_object { words.object } else { words.line };
     let place = fill(what, &[("name", &words.quoted(&view.name))]);
-    let rate = format::significant(view.most_per_year, 2);
+    // a bound is not rounded down
+    let rate = format::significant(math::rounded_up(view.most_per_year), 2);
     let count = |rocks: f64| format::decimal(rocks, 0);
     let [rocks, effective] = [view.rocks as f64, view.effective_rocks].map(count);
     let found: [(&str, &dyn std::fmt::Display); 4] =

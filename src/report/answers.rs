@@ -82,9 +82,9 @@ fn barrier(of: &BarrierSummary) -> String {
         (Some(design), _) => {
             let (unit, size) = energy_unit(design.energy_j);
             format!(
-                "; its rule asks for {} {unit} and {} m",
-                significant(design.energy_j / size, 3),
-                significant(design.height_m, 3)
+                "; its rule asks for {} and {}",
+                known((design.energy_j, design.energy_95_j), size, unit),
+                known((design.height_m, design.height_95_m), 1.0, "m")
             )
         }
         (None, Some(_)) => {
@@ -123,9 +123,13 @@ fn height(p95: &Percentile) -> String {
 }
 
 fn with_interval(p95: &Percentile, size: f64, unit: &str) -> String {
-    let end = |end: Option<f64>| end.map_or(f64::NAN, |end| end / size);
-    let [value, low, high] =
-        format::with_interval([p95.value / size, end(p95.low_95), end(p95.high_95)]);
+    known((p95.value, [p95.low_95, p95.high_95]), size, unit)
+}
+
+/// A value with its interval in a unit so many times as large.
+fn known((value, ends): (f64, [Option<f64>; 2]), size: f64, unit: &str) -> String {
+    let [low, high] = ends.map(|end| end.map_or(f64::NAN, |end| end / size));
+    let [value, low, high] = format::with_interval([value / size, low, high]);
     format!("{value} {unit} ({})", interval(&low, &high))
 }
 
@@ -173,7 +177,7 @@ mod tests {
         assert_eq!(said(940_000, 1_000_000), "94.00 % (93.95 % to 94.05 %)");
         assert_eq!(said(940, 1000), "94.0 % (92.3 % to 95.4 %)");
         assert_eq!(said(0, 1_000_000), "0 % (0 % to 0.00030 %)");
-        assert_eq!(said(3, 3_000), "0.10 % (0.021 % to 0.29 %)");
+        assert_eq!(said(3, 3_000), "0.10 % (0.02 % to 0.29 %)");
     }
 
     /// An object is hit, a line crossed: both stand below each other.
@@ -194,12 +198,12 @@ mod tests {
         assert!(said("barn", true).starts_with("object \"barn\": no rock hits it"));
     }
 
-    /// None of 2000 bounds a share by 3/2000, one decimal of which would be 0.1 %.
+    /// None of 2000 bounds a share by 0.15 %, one decimal of which would be 0.1 %.
     #[test]
     fn none_of_many_is_bounded_from_above() {
         let said = |of: usize| interval_of_none(&Proportion::new(0, of)).replace('\u{2009}', " ");
         assert_eq!(said(2000), "(0 % to 0.15 %)");
         assert_eq!(said(10_000), "(0 % to 0.030 %)");
-        assert_eq!(said(1), "(0 % to 100 %)");
+        assert_eq!(said(1), "(0 % to 95 %)");
     }
 }

@@ -125,7 +125,7 @@ fn draw_cloud(
     canvas.dots(&spots, if spots.len() > MANY { 1.1 } else { 2.0 }, BLUE);
     canvas.outline(&stopped, Pen::full(GREEN, 1.6));
     let weak = rocks.iter().filter(|rock| rock.total_j / size < panel.x.low).count();
-    super::lines::weaker(canvas, panel, weak);
+    panel.weaker(canvas, words, weak);
     if let Some(design) = barrier.design {
         draw_design(canvas, panel, (&design, size), words.design);
     }

@@ -7,7 +7,7 @@ use super::colour::{GREY, INK};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
 use super::histogram::EqualBins;
-use super::model::{Estimate, Is, Report, ReportQuantity};
+use super::model::{Estimate, Is, Quantile, Report, ReportQuantity};
 use super::panel::{FOOT_PX, Panel};
 use super::runout;
 use super::svg::path::PaperFrame;
@@ -21,6 +21,8 @@ const SHOWN: [ReportQuantity; 6] = [
     ReportQuantity::Total,
     ReportQuantity::Impacts,
 ];
+/// Energies within so small a factor of each other have a linear axis (–).
+const NARROW: f64 = 3.0;
 const COLUMNS: usize = 2;
 const PLOT_PX: f64 = 112.0;
 const HEAD_PX: f64 = 38.0;
@@ -63,7 +65,11 @@ pub(super) fn draw(report: &Report) -> Drawing {
     let note = report.is_weighted.then_some(by_frequency::CURVES);
     let is_beyond = panels.iter().any(|panel| panel.bins.beyond > 0);
     let beyond = if is_beyond { words.drawn().beyond } else { "" };
-    let caption = format!("{}{beyond}", words.distributions_caption);
+    // where rocks are too few for any percentile there is no line
+    let is_marked = |q: &Quantile| q.at.value.is_finite();
+    let marked = SHOWN.iter().filter_map(|one| report.quantiles.get(one)).flatten().any(is_marked);
+    let lines = if marked { words.drawn().quantile_lines } else { "" };
+    let caption = format!("{}{lines}{beyond}", words.distributions_caption);
     Drawing { svg, caption: by_frequency::noted(caption, note, words) }
 }
 
@@ -88,7 +94,10 @@ impl<'a> DistributionPanel<'a> {
         let values: Vec<(f64, f64)> =
             si.iter().map(|(v, weight)| (v / unit_size, *weight)).collect();
         let bins = match quantity {
-            _ if quantity.is_energy() => EqualBins::of_ratios(&values),
+            // where all is much alike a logarithmic axis would be far wider than the values
+            _ if quantity.is_energy() && !is_narrow(&values) => EqualBins::of_ratios(&values),
+            _ if quantity.is_energy() => EqualBins::of(&values),
+            ReportQuantity::Impacts => EqualBins::clipped(&values).whole(&values),
             // its axis shows what is observed elsewhere besides
             ReportQuantity::ReachAngle => EqualBins::clipped(&values).seen(&values, LEAST_DEG),
             _ => EqualBins::clipped(&values),
@@ -166,6 +175,13 @@ fn last_of(words: &[String], width_px: f64) -> String {
     let fits = |said: &String| text_width(said, SMALL) <= width_px;
     let whole = (0..words.len()).map(from).find(fits);
     whole.unwrap_or_else(|| fitted(words.last().map_or("", String::as_str), SMALL, width_px))
+}
+
+/// Whether all values above 0 are within a small factor of each other.
+fn is_narrow(values: &[(f64, f64)]) -> bool {
+    let positive = || values.iter().map(|(v, _)| *v).filter(|v| v.is_finite() && *v > 0.0);
+    let ends = positive().reduce(f64::min).zip(positive().reduce(f64::max));
+    ends.is_some_and(|(low, high)| high < NARROW * low)
 }
 
 /// Name with its unit.

@@ -8,7 +8,7 @@ use super::{distributions, plan_view, reach_angle, runout, side_view, stops};
 pub const FIGURES: [Figure; 6] = [
     Figure { file: "plan.svg", title: |words| words.plan_title, draw: plan_view::draw },
     Figure { file: "stops.svg", title: |words| words.stops_title, draw: stops::draw },
-    Figure { file: "side.svg", title: |words| words.side_title, draw: side_view::draw },
+    Figure { file: side_view::FILE, title: |words| words.side_title, draw: side_view::draw },
     Figure { file: "runout.svg", title: |words| words.runout, draw: runout::draw },
     Figure { file: "reach_angle.svg", title: |words| words.reach_angle, draw: reach_angle::draw },
     Figure {

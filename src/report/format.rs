@@ -151,11 +151,25 @@ pub(super) fn with_interval(all: [f64; 3]) -> [String; 3] {
     };
     if !(width.is_finite() && width > 0.0 && value.is_finite()) {
         // alone: a maximum is read as it is, a small derivative or a bound only for its size
+        // as it was rounded before
+        if !(low.is_finite() || high.is_finite())
+            && (value - math::rounded(value, 2)).abs() < 1e-12 * value.abs()
+            && (-4..9).contains(&exponent_of(value))
+        {
+            return all.map(|number| {
+                if number.is_finite() { plain(number) } else { significant(number, 2) }
+            });
+        }
         let digits = if value.abs() >= 0.1 { 4 } else { 3 };
         return told_apart(all, |number, more| like(value, digits + usize::from(more))(number));
     }
+    if all.iter().all(|number| !number.is_finite() || is_as_written(*number)) {
+        return all.map(|number| decimal(number, 0));
+    }
     let place = last_place(value, width);
-    told_apart(all, |number, more| to_place(number, place - i32::from(more)))
+    // ends stand to the place of the value, where that is one of its own
+    let least = if digits_to(value, place) >= 2 { 1 } else { 2 };
+    told_apart(all, |number, more| to_place(number, place - i32::from(more), least))
 }
 
 /// The place of the last digit (power of ten) that an interval of that width leaves to a value: it is at most a fifth of the interval,
@@ -178,8 +192,13 @@ fn exponent_of(value: f64) -> i32 {
     if value == 0.0 { 0 } else { math::log10(value.abs()).floor() as i32 }
 }
 
-/// A number to a place; one that has not two digits there, as beside an interval far wider than it is, has two of its own.
-fn to_place(number: f64, place: i32) -> String {
+/// Digits that a number has down to a place.
+fn digits_to(number: f64, place: i32) -> i32 {
+    exponent_of(number) - place + 1
+}
+
+/// A number to a place; one that has fewer digits there than it needs, as beside an interval far wider than it is, has two of its own.
+fn to_place(number: f64, place: i32, least: usize) -> String {
     if number == 0.0 {
         return "0".to_owned();
     }
@@ -187,8 +206,8 @@ fn to_place(number: f64, place: i32) -> String {
     if !number.is_finite() {
         return significant(number, 2);
     }
-    match usize::try_from(exponent_of(number) - place + 1) {
-        Ok(digits) if digits >= 2 => like(number, digits)(number),
+    match usize::try_from(digits_to(number, place)) {
+        Ok(digits) if digits >= least => like(number, digits)(number),
         _ => significant(math::rounded(number, 2), 2),
     }
 }
@@ -293,7 +312,7 @@ mod tests {
         let said = |all: [f64; 3]| percents(all, |share| usize::from(share < 0.1)).join(" ");
         let written = |said: &str| said.replace('%', "\u{2009}%");
         assert_eq!(said([0.9400, 0.9396, 0.9404]), written("94.00% 93.96% 94.04%"));
-        assert_eq!(said([0.94, 0.93, 0.95]), written("94.0% 93.0% 95.0%"));
+        assert_eq!(said([0.94, 0.93, 0.95]), written("94% 93% 95%"));
         assert_eq!(said([0.0, 0.0, 0.0003]), written("0% 0% 0.030%"));
         assert_eq!(said([0.000_443, 0.000_04, 0.010_056]), written("0.044% 0.0040% 1.0%"));
         assert_eq!(said([0.0, 0.0, 0.0]), written("0.0% 0.0% 0.0%"));
@@ -308,7 +327,10 @@ mod tests {
         assert_eq!(said([73.32, 70.41, 75.68]), "73.3 70.4 75.7");
         assert_eq!(said([108.2, 104.9, 113.6]), "108 105 114");
         assert_eq!(said([4.2, 3.53, 7.34]), "4.2 3.5 7.3");
-        assert_eq!(said([104.0, 43.0, 330.0]), "100 43 330");
+        assert_eq!(said([104.2, 43.0, 330.0]), "100 40 330");
+        assert_eq!(said([2.6, 0.49, 4.7]), "2.6 0.5 4.7");
+        // counts stay counts
+        assert_eq!(said([5.0, 4.0, 6.0]), "5 4 6");
         assert_eq!(said([0.000_98, 0.000_002_2, 0.975_166]), "0.00098 2.2×10⁻⁶ 0.98");
         assert_eq!(said([41_500.0, 41.8, 28_972_000.0]), "42 000 42 29 000 000");
         assert_eq!(said([0.005, 0.0, 2.3641]), "0.0050 0 2.4");

@@ -120,6 +120,9 @@ pub(super) fn warnings_first(hazard: &Hazard, words: &Words) -> Vec<String> {
         let percent = format::percent_of_part(share.share, usize::from(share.share < 0.1));
         let (n, of) = (count(share.count), count(share.of));
         let rocks = fill(&some_rocks, &[("n", &n), ("of", &of), ("share", &percent)]);
+        // what the rocks have done: a share is of several
+        let is_share = hazard.weights().is_some();
+        let what = fill(what, &[("n", if is_share { &format::NO_NUMBER } else { &n })]);
         let said =
             || fill(own.censored, &[("rocks", &rocks), ("what", &what), ("remedy", &remedy)]);
         (share.count > 0).then(said)
@@ -309,7 +312,9 @@ fn statistics_table(
         let cells = [mean].into_iter().chain(middle).chain([most]);
         let name = if unit.is_empty() { (*name).to_owned() } else { format!("{name} ({unit})") };
         let clean = |x: Estimate| {
-            if *like == ReportQuantity::Height { x.above_a_mm() } else { x.over(size) }
+            // a thousandth of a degree is rounding too: rocks that roll level do not descend
+            let is_rounding = matches!(like, ReportQuantity::Height | ReportQuantity::ReachAngle);
+            if is_rounding { x.above_a_mm() } else { x.over(size) }
         };
         (name, cells.map(|cell| cell.map(clean)).collect())
     });

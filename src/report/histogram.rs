@@ -70,6 +70,17 @@ impl EqualBins {
         if self.is_empty() || whole >= least { self } else { Self::of_width(values, least) }
     }
 
+    /// The same of counts: no bin is narrower than one of them.
+    pub(super) fn whole(self, values: &[(f64, f64)]) -> Self {
+        let Self { beyond, left_out, all, .. } = self;
+        let last = self.to();
+        if self.is_empty() || self.width >= 1.0 {
+            return self;
+        }
+        let shown: Vec<(f64, f64)> = values.iter().copied().filter(|(v, _)| *v < last).collect();
+        Self { all, left_out, beyond, ..Self::of_width(&shown, 1.0) }
+    }
+
     /// Bins up to the 99.5th percentile where the rest lies far out; how many lie beyond is counted.
     pub(super) fn clipped(values: &[(f64, f64)]) -> Self {
         let finite = finite(values);
@@ -208,6 +219,19 @@ mod tests {
                 assert!(bins.width > 0.0 && bins.from.is_finite());
                 assert!((bins.all - values.len() as f64).abs() < 1e-12);
             }
+        }
+    }
+
+    /// Counts of 5 alone, or of 4 to 6, had bars and ticks of tenths.
+    #[test]
+    fn counts_have_bins_of_whole_numbers() {
+        for counts in [&[5.0; 30][..], &[4.0, 5.0, 5.0, 6.0]] {
+            let values = alike(counts);
+            let bins = EqualBins::clipped(&values).whole(&values);
+            assert!((bins.width - 1.0).abs() < 1e-12 && bins.from.fract() == 0.0, "{bins:?}");
+            assert_eq!(bins.weights.iter().sum::<f64>() as usize, counts.len());
+            let ticks = bins.axis("").ticks(6);
+            assert!(ticks.iter().all(|tick| tick.value.fract() == 0.0), "{ticks:?}");
         }
     }
 

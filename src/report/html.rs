@@ -96,8 +96,10 @@ pub(super) fn head(title: &str, words: &Words) -> String {
     format!(
         "<!DOCTYPE html>\n<html lang=\"{}\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <title>{title}: {}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<main>\n",
-        words.code, words.rockfall_report
+         <title>{title}{}{}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<main>\n",
+        words.code,
+        words.colon(),
+        words.rockfall_report
     )
 }
 
@@ -176,6 +178,7 @@ fn checks(checks: &[Check], words: &Words) -> String {
             match check.verdict {
                 Plausibility::Plausible => escape(words.plausible),
                 Plausibility::AtLimit => escape(words.at_limit),
+                Plausibility::NotJudged => escape(words.drawn().not_judged),
                 Plausibility::Off => format!("<b>{}</b>", escape(words.look_here)),
             },
             escape(&check.found)

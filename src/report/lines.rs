@@ -32,7 +32,9 @@ const MARKED: [f64; 2] = [0.50, 0.95];
 pub(super) fn nobody(words: &Words, line: &ReportLine) -> Option<String> {
     let what = if line.is_barrier { words.the_line_of_barrier } else { words.the_line };
     let below = format::percent_at_most(line.reach.high);
-    let nobody = if line.is_weighted {
+    let nobody = if line.reach.high >= 1.0 {
+        words.drawn().nobody_untold.to_owned()
+    } else if line.is_weighted {
         words.say(by_frequency::NOBODY)
     } else {
         words.nobody_line.to_owned()
@@ -68,7 +70,7 @@ pub(super) fn draw(words: &Words, line: &ReportLine) -> Drawing {
         bins.bars(canvas, &along);
         along.axes(canvas);
         head(canvas, &cloud, words.first_crossing);
-        draw_cloud(canvas, &cloud, line, size);
+        draw_cloud(canvas, &cloud, (line, size), words);
         let behind = |of: fn(&super::model::Behind) -> &Vec<BandPoint>| {
             line.behind.as_ref().map(of).map(Vec::as_slice)
         };
@@ -83,10 +85,12 @@ pub(super) fn draw(words: &Words, line: &ReportLine) -> Drawing {
             key(canvas, &curves[0], words);
         }
     });
-    Drawing { svg, caption: caption(words, line) }
+    let is_shown = |limit: &f64| (curves[0].x.low..=curves[0].x.high).contains(&(limit / size));
+    let limits = if INTENSITY_J.iter().any(is_shown) { words.drawn().swiss_limits } else { "" };
+    Drawing { svg, caption: caption(words, line, (bins.width, limits)) }
 }
 
-fn caption(words: &Words, line: &ReportLine) -> String {
+fn caption(words: &Words, line: &ReportLine, (bin_m, limits): (f64, &str)) -> String {
     let count = |n: usize| format::decimal(n as f64, 0);
     let behind = line.behind.as_ref().map_or(String::new(), |behind| {
         let at = behind.reach;
@@ -109,10 +113,11 @@ fn caption(words: &Words, line: &ReportLine) -> String {
             ("crossing", &count(line.crossings.len())),
             ("releases", &count(line.releases)),
             ("again", &count(line.crossing_again)),
+            ("bin", &format::plain(bin_m)),
         ],
     );
     let note = line.is_weighted.then_some(by_frequency::CURVES);
-    by_frequency::noted(caption + &behind, note, words)
+    by_frequency::noted(caption + limits + &behind, note, words)
 }
 
 fn head(canvas: &Canvas<'_>, panel: &Panel, words: &str) {
@@ -176,7 +181,7 @@ fn lower_panels(
     ]
 }
 
-fn draw_cloud(canvas: &Canvas<'_>, panel: &Panel, line: &ReportLine, size: f64) {
+fn draw_cloud(canvas: &Canvas<'_>, panel: &Panel, (line, size): (&ReportLine, f64), words: &Words) {
     panel.grid(canvas);
     let spots: Vec<Spot> = line
         .crossings
@@ -186,7 +191,7 @@ fn draw_cloud(canvas: &Canvas<'_>, panel: &Panel, line: &ReportLine, size: f64) 
         .collect();
     canvas.dots(&spots, if spots.len() > MANY { 1.1 } else { 2.0 }, BLUE);
     let weak = line.crossings.iter().filter(|at| at.total_j / size < panel.x.low).count();
-    weaker(canvas, panel, weak);
+    panel.weaker(canvas, words, weak);
     percentiles(canvas, panel, line, size);
     panel.axes(canvas);
 }
@@ -226,15 +231,6 @@ fn percentiles(canvas: &Canvas<'_>, panel: &Panel, line: &ReportLine, size: f64)
         panel.line(canvas, &[(panel.x.low, height), (panel.x.high, height)], pen(p));
         let (x, y) = (panel.frame.right - 26.0, level(height));
         name(canvas, panel, (&words(p), &[(x, y - 8.0), (x, y + 9.0)]), &lines);
-    }
-}
-
-/// How many rocks have less energy than the axis shows.
-pub(super) fn weaker(canvas: &Canvas<'_>, panel: &Panel, count: usize) {
-    if count > 0 {
-        let words = format!("← +{}", format::decimal(count as f64, 0));
-        let at = (panel.frame.left + 4.0, panel.frame.top + 10.0);
-        canvas.text_on_rim(&Label::new(words, at).coloured(GREY));
     }
 }
 
@@ -358,10 +354,13 @@ pub(super) fn retention(lines: &[ReportLine], words: &Words) -> Drawing {
 /// The share that reaches a line, and what is left of it behind barriers; a lower bound has its sign.
 fn reach_in_words(line: &ReportLine, words: &Words) -> Label {
     let said = |reach: &Estimate| {
-        let share = percent_shown(reach.value);
-        format!("{}{share}", format::sign(reach.is))
+        let all = [reach.value, reach.low, reach.high];
+        let [share, low, high] = format::percents(all, decimals_shown);
+        format!("{}{share} ({})", format::sign(reach.is), words.interval(&low, &high))
     };
-    let left = line.arriving.map(|arriving| fill(words.left, &[("share", &said(&arriving))]));
+    // its interval is drawn: written too, it would leave the bars no room beside long names
+    let alone = |share: Estimate| said(&share).split(" (").next().unwrap_or_default().to_owned();
+    let left = line.arriving.map(|share| fill(words.left, &[("share", &alone(share))]));
     Label::new(said(&line.reach), (0.0, 0.0)).followed_by(left.unwrap_or_default())
 }
 
@@ -385,13 +384,12 @@ fn bar(canvas: &Canvas<'_>, panel: &Panel, (line, name, y): (&ReportLine, &str, 
     canvas.text(&Label::new(name, (frame.left - 6.0, y)).right());
 }
 
-/// A share in per cent with a digit that is not 0, however small it is.
-fn percent_shown(share: f64) -> String {
-    let decimals = match share {
+/// Decimals of a share in per cent that show a digit that is not 0, however small it is.
+fn decimals_shown(share: f64) -> usize {
+    match share {
         small if small > 0.0 && small < 1e-4 => 4,
         small if small > 0.0 && small < 1e-3 => 3,
         small if small > 0.0 && small < 1e-2 => 2,
         _ => 1,
-    };
-    format::percent(share, decimals)
+    }
 }

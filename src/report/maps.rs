@@ -211,7 +211,9 @@ fn draw_layers(
     let (left, first_top) = panels.first().map_or((0.0, 0.0), corner);
     // all panels have one extent and scale: names stand in all as in the first
     let names = panels.first().map(|panel| Names::of(panel, report, &said)).unwrap_or_default();
-    let marks = names.key(report, &said, WIDTH_PX - left);
+    let marks = panels
+        .first()
+        .map_or_else(Default::default, |panel| names.key((panel, report), &said, WIDTH_PX - left));
     let height = marks.height_px();
     let room = if height > 0.0 { height + KEY_GAP_PX } else { 0.0 };
     paint(name, (WIDTH_PX, bottom + room), title, |canvas| {

@@ -5,12 +5,13 @@ use super::canvas::{Canvas, Label, NORMAL, Pen, paint};
 use super::colour::{BLUE, GREY, INK, VERMILLION};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
-use super::model::{Observed, Report};
+use super::model::{Estimate, Observed, Report};
 use super::panel::{FOOT_PX, Panel};
 use super::plan_view::ground;
 use super::svg::path::{PaperFrame, Spot};
 use super::words::{Words, fill};
-use crate::hazard::{Agreement, ObservedPath, Weighted, runouts};
+use crate::hazard::{Agreement, ObservedPath, Sample, Weighted, mean_95, runouts};
+use crate::math;
 
 const TOP_PX: f64 = 26.0;
 const CURVE_PX: f64 = 210.0;
@@ -60,21 +61,54 @@ pub(super) fn draw(report: &Report, observed: &Observed) -> Drawing {
         map.axes(canvas);
     });
     let at = observed.agreement;
-    let number = |value: f64| format::significant(value, 3);
+    let number = |value: f64| format::significant(math::rounded(value, 2), 2);
+    let mean = mean_of(observed).map(|mean| {
+        let [value, low, high] = format::with_interval([mean.value, mean.low, mean.high]);
+        format!("{value} ({})", words.interval(&low, &high))
+    });
     let caption = fill(
         words.measured_caption,
         &[
             ("measured", &at.measured),
             ("computed", &format::decimal(at.computed as f64, 0)),
-            ("mean_measured", &number(at.measured_mean_m)),
-            ("mean_computed", &number(at.computed_mean_m)),
+            ("mean_measured", &mean[0]),
+            ("mean_computed", &mean[1]),
             ("ks", &number(at.ks)),
             ("limit", &number(at.ks_limit)),
             ("side_measured", &number(at.measured_side_m)),
             ("side_computed", &number(at.computed_side_m)),
         ],
     );
-    Drawing { svg, caption: caption + &weighing(observed, words) + &not_compared(&at, words) }
+    let more = worth(observed, words) + &weighing(observed, words);
+    Drawing { svg, caption: caption + &more + &not_compared(&at, words) }
+}
+
+/// Mean runouts, measured and computed, with their intervals (m).
+pub(super) fn mean_of(observed: &Observed) -> [Estimate; 2] {
+    let measured: Vec<f64> = observed.measured.iter().map(ObservedPath::runout_m).collect();
+    let at = &observed.agreement;
+    let [low, high] = mean_95(&measured, observed.worth).unwrap_or([f64::NAN; 2]);
+    let even = vec![1.0; observed.computed.len()];
+    let weights = observed.weights.as_ref().unwrap_or(&even);
+    let ways: Vec<Weighted> =
+        observed.computed.iter().copied().zip(weights.iter().copied()).collect();
+    let mean = Sample::weighted(runouts(&ways)).mean();
+    let end = |end: Option<f64>| end.unwrap_or(f64::NAN);
+    let ends = mean.map_or([f64::NAN; 2], |mean| [mean.low_95, mean.high_95].map(end));
+    [
+        Estimate::new(at.measured_mean_m, low, high),
+        Estimate::new(at.computed_mean_m, ends[0], ends[1]),
+    ]
+}
+
+/// For how many independent ends the limit is, and that it is no test of values fitted to these ends.
+pub(super) fn worth(observed: &Observed, words: &Words) -> String {
+    let count = |n: f64| format::decimal(n, 0);
+    let said = fill(
+        words.drawn().ends_worth,
+        &[("worth", &count(observed.worth)), ("ends", &count(observed.measured.len() as f64))],
+    );
+    said + words.drawn().ends_no_test
 }
 
 /// What caption and table say more where computed rocks weigh what they stand for; else nothing.

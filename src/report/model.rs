@@ -208,7 +208,7 @@ impl Estimate {
         Self { is: Is::Lacking(rocks), ..Self::plain(f64::NAN) }
     }
 
-    /// With what is smaller than a millimetre taken for 0 (m): how far a rolling rock is off the ground is rounding.
+    /// With what is smaller than a thousandth taken for 0 (m, degrees): how far a rolling rock is off the ground is rounding.
     #[must_use]
     pub(super) fn above_a_mm(self) -> Self {
         let mm = |v: f64| if v.abs() < 1e-3 { 0.0 } else { v };
@@ -244,6 +244,8 @@ pub enum Plausibility {
     AtLimit,
     /// It is not.
     Off,
+    /// Too many rocks would have gone on.
+    NotJudged,
 }
 
 /// One point of a curve with a confidence band.

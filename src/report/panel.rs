@@ -3,7 +3,9 @@
 use super::axis::{Axis, Tick};
 use super::canvas::{Canvas, Label, NORMAL, Pen, SMALL, text_width};
 use super::colour::{INK, PALE};
+use super::format;
 use super::svg::path::{PaperFrame, Spot, clipped, thinned};
+use super::words::{Words, fill};
 use plotters::style::RGBColor;
 
 /// Length of a tick (px).
@@ -234,6 +236,15 @@ impl Panel {
         let PaperFrame { left, top, right, bottom } = self.frame;
         let middle = (0.5 * (left + right), 0.5 * (top + bottom));
         canvas.text(&Label::new(why, middle).centred().coloured(super::colour::GREY));
+    }
+
+    /// How many rocks have less energy than the axis shows.
+    pub(super) fn weaker(&self, canvas: &Canvas<'_>, words: &Words, count: usize) {
+        if count > 0 {
+            let said = fill(words.drawn().weaker, &[("n", &format::decimal(count as f64, 0))]);
+            let at = (self.frame.left + 4.0, self.frame.top + 10.0);
+            canvas.text_on_rim(&Label::new(said, at).coloured(super::colour::GREY));
+        }
     }
 }
 

@@ -50,11 +50,11 @@ const TOP_PX: f64 = 10.0;
 pub(super) fn draw(report: &Report) -> Drawing {
     let words = report.words();
     let panel = layout(report);
-    let key = furniture::MapLegend::of(report);
+    let key = furniture::MapLegend::of(&panel, report);
     let width = (panel.frame.right + RIGHT_PX).clamp(NARROWEST_PX, WIDTH_PX);
-    let said = |mark: &MapMark, width_px: f64| site::in_words(mark, &report.marks, width_px);
+    let said = |mark: &MapMark, width_px: f64| site::in_words(mark, &report.marks, width_px, words);
     let names = Names::of(&panel, report, &said).with_zones(&panel, report);
-    let numbered = names.key(report, &said, width - KEY_LEFT_PX);
+    let numbered = names.key((&panel, report), &said, width - KEY_LEFT_PX);
     let below = panel.frame.bottom + FOOT_PX + key.height_px(width - KEY_LEFT_PX) + 8.0;
     let height = below + numbered.height_px();
     let fastest = fastest_m_s(report);
@@ -66,9 +66,11 @@ pub(super) fn draw(report: &Report) -> Drawing {
                 contours = ground::draw(canvas, &panel, ground, &site::outline(&panel, report));
             }
             paths(canvas, &panel, report, fastest);
-            ends(canvas, &panel, report);
+            deposits(canvas, &panel, report);
             site::zones(canvas, &panel, report);
             site::marks(canvas, &panel, report);
+            // what a barrier holds lies at its line: its white rim would hide single ends
+            ends(canvas, &panel, report);
             if let Some(contours) = &contours {
                 contours.labels(canvas);
             }
@@ -87,9 +89,12 @@ pub(super) fn draw(report: &Report) -> Drawing {
     });
     let count = |n: usize| format::decimal(n as f64, 0);
     let found = [count(report.paths.len()), count(report.released())];
-    let caption = fill(words.plan_caption, &[("paths", &found[0]), ("releases", &found[1])]);
+    let caption =
+        if report.paths.is_empty() { words.drawn().plan_no_paths } else { words.plan_caption };
+    let caption = fill(caption, &[("paths", &found[0]), ("releases", &found[1])]);
     let density = if at_rest(report).count() > MANY { words.plan_density } else { "" };
-    Drawing { svg, caption: caption + density + &interval }
+    let aside = site::outside(&panel, report);
+    Drawing { svg, caption: caption + density + &interval + &aside }
 }
 
 /// The map frame: equal scale, as large as the page allows, showing all releases, ends and paths.
@@ -216,21 +221,21 @@ fn at_rest(report: &Report) -> impl Iterator<Item = [f64; 3]> + '_ {
     at_rest.map(|fall| fall.end_m)
 }
 
-/// Ends by stop reason; deposits as density where they are many.
+/// Ends by stop reason, but for deposits that are drawn as density.
 fn ends(canvas: &Canvas<'_>, panel: &Panel, report: &Report) {
     let radius = if report.releases.len() > MANY { 1.3 } else { 2.6 };
     let is_crowd = at_rest(report).count() > MANY;
-    if is_crowd {
-        deposits(canvas, panel, report);
-    }
     for kind in ENDS.into_iter().filter(|kind| !(is_crowd && *kind == EndMark::AtRest)) {
         let ends = report.releases.iter().filter(|fall| EndMark::of(&fall.stop) == Some(kind));
         kind.draw(canvas, &apart(panel, ends.map(|fall| fall.end_m), 0.8 * radius), radius);
     }
 }
 
-/// Squares that are the darker the more rocks lie in them.
+/// Squares that are the darker the more rocks lie in them, where rocks at rest are many.
 fn deposits(canvas: &Canvas<'_>, panel: &Panel, report: &Report) {
+    if at_rest(report).count() <= MANY {
+        return;
+    }
     let mut cells: BTreeMap<(i64, i64), usize> = BTreeMap::new();
     for end in at_rest(report) {
         let (x, y) = panel.at(end[0], end[1]);

@@ -2,9 +2,9 @@
 
 use super::model::{Check, Estimate, Is, Plausibility, ReleaseEnd, Report};
 use super::raster::GroundRaster;
-use super::reach_angle;
 use super::words::fill;
 use super::{by_frequency, format};
+use super::{reach_angle, runout};
 use crate::hazard::Sample;
 use crate::output::Results;
 use crate::simulation::Stop;
@@ -25,6 +25,8 @@ const COARSE: f64 = 5.0;
 const CROWDED: f64 = 0.1;
 /// Rocks at rest from which on their crowding says something.
 const CROWD: usize = 400;
+/// Share of the rocks, by what they stand for, above which those that would have gone on leave open what is seen of all (–).
+const MOST: f64 = 0.5;
 /// Rocks from which on a median says something.
 const ENOUGH: usize = 20;
 
@@ -45,16 +47,28 @@ fn check(name: &str, found: String, passes: bool) -> Check {
     Check { name: name.to_owned(), found, verdict }
 }
 
+/// What looks right where most rocks would have gone on is not judged: faster and farther they may be anything.
+fn not_judged(report: &Report, check: Check) -> Check {
+    let open = report.releases.iter().filter(|fall| runout::is_open(fall));
+    let is_early = weight(open) > MOST * weight(&report.releases);
+    if !is_early || check.verdict == Plausibility::Off {
+        return check;
+    }
+    let found = check.found + report.words().drawn().not_judged_why;
+    Check { found, verdict: Plausibility::NotJudged, ..check }
+}
+
 fn reach(report: &Report) -> Option<Check> {
     let at = reach_angle::median(report)?;
     let Estimate { value: median, is, .. } = at;
-    // an upper bound above the bands proves nothing wrong
+    // an upper bound that is not below the bands proves nothing, neither right nor wrong
     let is_free = is == Is::AtMost && median > 40.0;
     let verdict = if is_free { Plausibility::Plausible } else { reach_angle::observed(&at) };
     let words = report.words();
     let median = format!("{}{}", format::sign(is), format::significant(median, 3));
     let found = fill(words.check_reach_found, &[("median", &median)]);
-    Some(Check { name: words.check_reach.to_owned(), found, verdict })
+    let check = Check { name: words.check_reach.to_owned(), found, verdict };
+    Some(if is == Is::AtMost { not_judged(report, check) } else { check })
 }
 
 fn speed(report: &Report) -> Option<Check> {
@@ -80,7 +94,8 @@ fn speed(report: &Report) -> Option<Check> {
             ("limit", &FAST_M_S),
         ],
     );
-    Some(check(words.check_speed, found, fast.is_empty() || share <= FEW))
+    let passes = fast.is_empty() || share <= FEW;
+    Some(not_judged(report, check(words.check_speed, found, passes)))
 }
 
 /// What rocks weigh together.

@@ -77,7 +77,7 @@ fn verdict(median: &Estimate, words: &Words) -> String {
     let text = match observed(median) {
         Plausibility::Plausible => words.median_inside,
         Plausibility::AtLimit => words.median_at_limit,
-        Plausibility::Off => words.median_outside,
+        Plausibility::Off | Plausibility::NotJudged => words.median_outside,
     };
     let at = format!("{}{}", format::sign(median.is), format::significant(median.value, 3));
     fill(text, &[("median", &at)])

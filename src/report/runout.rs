@@ -98,13 +98,13 @@ fn caption(report: &Report, bins: &EqualBins) -> String {
     let said = |n: usize, text: &str| {
         if n == 0 { String::new() } else { fill(text, &[("n", &count(n))]) }
     };
-    let caption = fill(
-        words.runout_caption,
-        &[("n", &count(report.released())), ("width", &format::plain(bins.width))],
-    );
-    let caption = caption
-        + &said(open_rocks(report), words.runout_open)
-        + &said(bins.left_out, words.runout_left_out);
+    let has_curve = !report.runout_exceedance.is_empty() || report.releases.is_empty();
+    let text = if has_curve { words.runout_caption } else { words.drawn().runout_no_curve };
+    let open = if has_curve { open_rocks(report) } else { 0 };
+    let caption =
+        fill(text, &[("n", &count(report.released())), ("width", &format::plain(bins.width))]);
+    let caption =
+        caption + &said(open, words.runout_open) + &said(bins.left_out, words.runout_left_out);
     by_frequency::noted(caption, report.is_weighted.then_some(by_frequency::CURVES), words)
 }
 

@@ -18,6 +18,8 @@ pub(super) use names::{more_above_px, name_marks, without_room};
 use plotters::style::RGBColor;
 use std::collections::BTreeSet;
 
+/// File of the figure.
+pub(super) const FILE: &str = "side.svg";
 /// Room above the profile for the names of lines and barriers (px).
 const TOP_PX: f64 = 24.0;
 /// Least and greatest height of the profile (px).

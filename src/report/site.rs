@@ -8,6 +8,7 @@ use super::format;
 use super::model::{MapMark, Report, ReportQuantity};
 use super::panel::Panel;
 use super::svg::path::{PaperFrame, Spot, clipped};
+use super::words::{Words, fill};
 use crate::math;
 use crate::output::ReleaseZone;
 
@@ -160,6 +161,22 @@ fn is_clear(room: &PaperFrame, lines: &[Vec<Spot>]) -> bool {
     lines.iter().all(|line| clipped(line, &near).is_empty())
 }
 
+/// Whether some of a mark lies inside the frame.
+pub(super) fn is_on_paper(panel: &Panel, mark: &MapMark) -> bool {
+    !on_paper(panel, mark).is_empty()
+}
+
+/// Which lines, objects and barriers lie beside the frame; nothing where none does.
+pub(super) fn outside(panel: &Panel, report: &Report) -> String {
+    let words = report.words();
+    let beside = report.marks.iter().filter(|mark| !is_on_paper(panel, mark));
+    let names: Vec<String> = beside.map(|mark| words.quoted(&mark.name)).collect();
+    if names.is_empty() {
+        return String::new();
+    }
+    fill(words.drawn().outside, &[("names", &names.join(", "))])
+}
+
 /// The parts of a mark inside the frame.
 fn on_paper(panel: &Panel, mark: &MapMark) -> Vec<Vec<Spot>> {
     let spots: Vec<Spot> = mark.corners_m.iter().map(|&[x, y]| panel.at(x, y)).collect();
@@ -186,13 +203,13 @@ fn teeth(part: &[Spot]) -> Vec<Vec<Spot>> {
 
 /// Name of a mark, with height and capacity of a barrier, in a width (px): a name may be cut, but so that it is told from those of `all`
 /// marks; a number may not.
-pub(super) fn in_words(mark: &MapMark, all: &[MapMark], width_px: f64) -> String {
+pub(super) fn in_words(mark: &MapMark, all: &[MapMark], width_px: f64, words: &Words) -> String {
     let names = all.iter().map(|mark| mark.name.as_str());
     let Some(numbers) = mark.barrier.map(|(height_m, capacity_j)| size(height_m, capacity_j))
     else {
         return fitted_among(&mark.name, names, (SMALL, width_px));
     };
-    let numbers = format!(": {numbers}");
+    let numbers = format!("{}{numbers}", words.colon());
     let room = width_px - text_width(&numbers, SMALL);
     fitted_among(&mark.name, names, (SMALL, room)) + &numbers
 }

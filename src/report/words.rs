@@ -156,6 +156,11 @@ impl Words {
         Language::ALL.iter().find(is_own).copied().unwrap_or_default()
     }
 
+    /// Between a name and what it has: French has a space before it that does not break.
+    pub(super) fn colon(&self) -> &'static str {
+        if self.code == "fr" { "\u{a0}: " } else { ": " }
+    }
+
     /// A name that the user has given, in quotation marks.
     pub(super) fn quoted(&self, name: &str) -> String {
         fill(self.quoted, &[("x", &name)])
@@ -184,6 +189,20 @@ impl Words {
     }
 }
 
+/// What stands in a place with forms: `{n|rock|rocks}` is "rock" where `n` is 1, and of three forms the first is that of none.
+fn form<'a>(place: &'a str, found: &[(&str, &dyn Display)]) -> Option<&'a str> {
+    let (name, forms) = place.split_once('|')?;
+    let count = found.iter().find(|(known, _)| *known == name)?.1.to_string();
+    let forms: Vec<&str> = forms.split('|').collect();
+    let (none, rest) =
+        if forms.len() > 2 { (forms[0], &forms[1..]) } else { (forms[1], &forms[..]) };
+    Some(match count.as_str() {
+        "0" => none,
+        "1" => rest[0],
+        _ => rest[1],
+    })
+}
+
 /// A text with what is found in its places; a place that nothing is given for stays as it is.
 pub(crate) fn fill(text: &str, found: &[(&str, &dyn Display)]) -> String {
     let mut filled = String::with_capacity(text.len() + 16 * found.len());
@@ -196,6 +215,7 @@ pub(crate) fn fill(text: &str, found: &[(&str, &dyn Display)]) -> String {
             break;
         };
         match found.iter().find(|(known, _)| *known == name) {
+            None if name.contains('|') => filled += form(name, found).unwrap_or(name),
             Some((_, value)) => {
                 let _ = write!(filled, "{value}");
             }
@@ -215,7 +235,9 @@ mod tests {
     /// Places of a text, in order of their names.
     fn places(text: &str) -> Vec<&str> {
         let inside = text.split('{').skip(1).filter_map(|rest| rest.split_once('}'));
-        let mut places: Vec<&str> = inside.map(|(name, _)| name).collect();
+        // which words have forms is the affair of each language
+        let mut places: Vec<&str> =
+            inside.map(|(name, _)| name).filter(|name| !name.contains('|')).collect();
         places.sort_unstable();
         places
     }
@@ -304,6 +326,9 @@ mod tests {
     fn what_is_found_is_put_in_once() {
         let filled = fill("{a} of {b}, {c}", &[("a", &"{b}"), ("b", &2)]);
         assert_eq!(filled, "{b} of 2, {c}");
+        let forms =
+            ["0", "1", "7"].map(|n| fill("{n} {n|rock|rocks}{n|, none|, alone|}", &[("n", &n)]));
+        assert_eq!(forms, ["0 rocks, none", "1 rock, alone", "7 rocks"]);
         let words = Words::of(Language::En);
         assert_eq!(words.interval("1", format::NO_NUMBER), "at least 1");
     }

@@ -62,6 +62,7 @@ pub fn info(releases: usize) -> RunInfo {
         barriers: vec![],
         asked: AnnualRequest::default(),
         observed: vec![],
+        observed_worth: None,
         observed_least_runout_m: None,
         keeps_paths: true,
         keeps_impacts: true,

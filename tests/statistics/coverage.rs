@@ -88,7 +88,7 @@ fn nothing_seen_gives_the_one_sided_bound() {
         RockSource { name: "wall".to_owned(), law: FrequencyLaw::Events { per_year: 0.05 } };
     let found = road(&asked(vec![events]), 600, &[]).without_barriers;
     assert_eq!(found.passages.rocks, 0);
-    near(found.passages.high_95, 3.0 * 0.05 / 600.0, 1e-12);
+    near(found.passages.high_95, 0.05 * (1.0 - 0.05_f64.powf(1.0 / 600.0)), 1e-12);
     assert!(found.returns[0].energy_j.is_none() && found.passages.low_95.abs() < f64::EPSILON);
 
     let class = |volume: f64, per_year: f64| Class { volume_m3: [volume; 2], per_year };
@@ -96,7 +96,7 @@ fn nothing_seen_gives_the_one_sided_bound() {
     let law = FrequencyLaw::Classes([class(1.0, 1.0)].into_iter().chain(rarer).collect());
     let asked = asked(vec![RockSource { name: "wall".to_owned(), law }]);
     let found = road(&asked, 1100, &[]).without_barriers.passages;
-    near(found.high_95, 3.0 / 100.0, 1e-12);
+    near(found.high_95, 6.0 * (1.0 - 0.05_f64.powf(1.0 / 600.0)), 1e-12);
     let frequency = asked.frequency.clone().unwrap();
     let mean = 3.0 * frequency.per_year() / frequency.weights(1100).effective_rocks();
     let (mut honest, mut plain) = (0, 0);

@@ -115,16 +115,25 @@ fn shares_have_the_intervals_of_clopper_and_pearson() {
     }
 }
 
-/// None among n: below 3/n; all of n: above 1 − 3/n; nothing known: 0..1.
+/// None among n: below 1 − 0.05^(1/n), with which none is seen in 5 % of all samples; all of n: above 0.05^(1/n); nothing known: 0..1.
 #[test]
-fn none_and_all_follow_the_rule_of_three() {
+fn none_and_all_have_the_exact_one_sided_bound() {
     let ends = |count, of| {
         let Proportion { low_95, high_95, .. } = Proportion::new(count, of);
         (low_95, high_95)
     };
-    assert_eq!(ends(0, 1000), (0.0, 0.003));
-    assert_eq!(ends(1000, 1000), (1.0 - 0.003, 1.0));
-    assert_eq!(ends(0, 2), (0.0, 1.0));
+    for of in [1_usize, 2, 3, 30, 1000] {
+        let (low, high) = ends(0, of);
+        assert!(
+            low == 0.0 && ((1.0 - high).powf(of as f64) - 0.05).abs() < 1e-12,
+            "{high} of {of}"
+        );
+        let (low, high) = ends(of, of);
+        assert!(
+            (high - 1.0).abs() < 1e-12 && (low.powf(of as f64) - 0.05).abs() < 1e-12,
+            "{low} of {of}"
+        );
+    }
     assert_eq!(ends(0, 0), (0.0, 1.0));
 }
 

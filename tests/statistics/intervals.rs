@@ -40,8 +40,8 @@ fn coverage(intervals: &[Proportion], p: f64) -> f64 {
     held.map(|(_, chance)| chance).sum()
 }
 
-/// Exact coverage just beside every end, where it is least: 95 % or more at every share. Only between 3/n and 3.7/n, beyond the
-/// one-sided bound of none and within the two-sided one, it is 93.8 %. (Wilson's was 83.8 % at 0.18/n.)
+/// Exact coverage just beside every end, where it is least: 95 % or more at every share. Only beyond the
+/// one-sided bound of none and within the two-sided one, about 3/n to 3.7/n, it is 93.8 %, of 30 rocks 93.0 %. (Wilson's was 83.8 % at 0.18/n.)
 #[test]
 fn shares_hold_the_truth_however_rare() {
     for n in [30, 100, 1000, 10_000] {
@@ -54,8 +54,11 @@ fn shares_hold_the_truth_however_rare() {
             (100.0_f64.min(0.5 * n as f64), 1.0 - 0.025_f64.powf(1.0 / n as f64));
         for p in beside.filter(|p| (1e-9..last / n as f64).contains(p)) {
             let found = coverage(&intervals, p);
-            let of_none = (3.0 / n as f64..two_sided).contains(&p);
-            assert!(found >= if of_none { 0.938 } else { 0.95 - 1e-8 }, "{p} of {n}: {found}");
+            let of_none = (1.0 - 0.05_f64.powf(1.0 / n as f64)..two_sided).contains(&p);
+            assert!(
+                found >= if of_none { if n > 30 { 0.938 } else { 0.929 } } else { 0.95 - 1e-8 },
+                "{p} of {n}: {found}"
+            );
         }
     }
 }
@@ -310,9 +313,11 @@ fn one_two_and_three_rocks_are_told_honestly() {
         assert!((found.low_95 - ends[0]).abs() < 1e-6 && (found.high_95 - ends[1]).abs() < 1e-6);
     }
     for n in 1..=3 {
-        for count in [0, n] {
+        let open = 1.0 - 0.05_f64.powf(1.0 / n as f64);
+        for (count, ends) in [(0, [0.0, open]), (n, [1.0 - open, 1.0])] {
             let found = Proportion::new(count, n);
-            assert_eq!((found.low_95, found.high_95), (0.0, 1.0), "{count} of {n}");
+            let off = [found.low_95 - ends[0], found.high_95 - ends[1]];
+            assert!(off.iter().all(|off| off.abs() < 1e-12), "{count} of {n}: {found:?}");
         }
         let weights = strata(&[1.0, 0.2, 0.01]).weights(n);
         for count in 0..=n {

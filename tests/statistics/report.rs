@@ -4,6 +4,7 @@ pub(crate) mod boxes;
 mod page;
 mod places;
 mod raster;
+mod said;
 mod slender;
 mod slope;
 mod studies;

@@ -78,6 +78,7 @@ pub(super) fn info(terrain: &Terrain, grounds: &[String], rocks: usize) -> RunIn
         barriers: Vec::new(),
         asked: AnnualRequest::default(),
         observed: Vec::new(),
+        observed_worth: None,
         observed_least_runout_m: None,
         profile_step_m: 10.0,
         keeps_paths: false,

@@ -1,6 +1,7 @@
 //! What a run may take of memory and disk, estimated before it begins.
 
 use super::Plan;
+use crate::count::counted;
 use crate::error::{Error, Result};
 use std::fmt;
 
@@ -114,9 +115,10 @@ impl Cost {
 impl fmt::Display for Cost {
     fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { releases, path_points, cells, disk_bytes, mesh_bytes, memory_bytes } = *self;
+        let what = counted(releases as usize, "release", "releases");
         write!(
             to,
-            "{} of memory and {} of disk: {releases} releases, up to {path_points:.0} points of paths, {cells} cells of maps",
+            "{} of memory and {} of disk: {releases} {what}, up to {path_points:.0} points of paths, {cells} cells of maps",
             size(mesh_bytes + memory_bytes),
             size(disk_bytes)
         )

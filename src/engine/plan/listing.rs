@@ -313,7 +313,10 @@ fn places(releases: &Releases) -> String {
 
 fn place(place: &Where, zones_are_sources: bool) -> String {
     match place {
-        Where::Points(points) => format!("from {} points in turn", points.len()),
+        Where::Points(points) => match points.len() {
+            1 => "from one point".to_owned(),
+            points => format!("from {points} points in turn"),
+        },
         Where::Line(line) => format!("along a line of {:.1} m", line.length_m()),
         Where::Area(area) => format!("over an area of {:.1} m²", area.area_m2()),
         Where::Zones(zones) => {

@@ -1,7 +1,7 @@
 //! Where ends lie and how they spread, measured beside computed.
 
 use super::{ObservedPath, Weighted, mean_direction, runouts};
-use crate::hazard::proportion::NORMAL_95;
+use crate::hazard::proportion::{NORMAL_95, student_95};
 use crate::math;
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
@@ -19,7 +19,8 @@ impl EndSpread {
     /// How much of the computed lies farther than all that was measured.
     pub const BEYOND: &str = "share past the farthest measured (–)";
     /// Standard deviations along and across the mean direction of the measured ends.
-    const DEVIATIONS: [&str; 2] = ["standard deviation along (m)", "standard deviation across (m)"];
+    pub const DEVIATIONS: [&str; 2] =
+        ["standard deviation along (m)", "standard deviation across (m)"];
 
     /// Figures of measured and computed ways: what, of the measured, of the computed.
     pub fn figures(
@@ -135,6 +136,18 @@ pub fn rank(measured: &ObservedPath, computed: &[ObservedPath]) -> Option<f64> {
     (!computed.is_empty()).then(|| sum / computed.len() as f64)
 }
 
+/// 95 % interval of the mean of values that are worth so many independent ones, Student's; none of fewer than two.
+pub fn mean_95(values: &[f64], worth: f64) -> Option<[f64; 2]> {
+    let n = values.len() as f64;
+    if n < 2.0 || worth < 2.0 {
+        return None;
+    }
+    let mean = values.iter().sum::<f64>() / n;
+    let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+    let half = student_95(worth - 1.0) * (squares / (n - 1.0) / worth).sqrt();
+    Some([mean - half, mean + half])
+}
+
 /// Independent values that values in groups are worth: `n / (1 + (m̄ − 1) ρ)` with the intraclass correlation ρ of a
 /// one-way analysis of variance (Donner and Koval 1980) and the mean size m̄ of a group. All of them without groups.
 pub fn effective(values: &[f64], groups: &[String]) -> f64 {
@@ -168,6 +181,19 @@ mod tests {
     fn groups(sizes: &[usize]) -> Vec<String> {
         let each = sizes.iter().enumerate();
         each.flat_map(|(group, size)| vec![group.to_string(); *size]).collect()
+    }
+
+    /// Of 25 independent values with standard deviation 5 the mean is known to 2.064 (Student, 24 degrees of freedom) times 1; of 100 that
+    /// are worth 25 to the same.
+    #[test]
+    fn a_mean_is_known_as_well_as_independent_values_tell() {
+        let half = |n: usize| {
+            let values: Vec<f64> = (0..n).map(|k| if k % 2 == 0 { 95.0 } else { 105.0 }).collect();
+            let [low, high] = mean_95(&values, 25.0).unwrap();
+            0.5 * (high - low) * ((n - 1) as f64 / n as f64).sqrt()
+        };
+        assert!((half(100) - 2.0639).abs() < 1e-3 && (half(26) - 2.0639).abs() < 1e-3);
+        assert!(mean_95(&[1.0], 1.0).is_none());
     }
 
     /// Groups whose values are all alike are worth one each; groups that spread like the whole are worth all.

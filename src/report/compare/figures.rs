@@ -70,7 +70,7 @@ fn rows(groups: &[Group], words: &Words) -> Vec<(String, [f64; 3])> {
             group => {
                 let group = words.say(group);
                 let name = group.split(',').next().unwrap_or_default();
-                format!("{name}: {}", row.name_in(words))
+                format!("{name}{}{}", words.colon(), row.name_in(words))
             }
         };
         let change = [row.difference.value, low, high].map(|x| x / a.abs());

@@ -10,7 +10,9 @@ pub(super) const PLAN: &str = "Plan: ";
 
 /// What went in and differs: name, first, second; empty when nothing does.
 pub(super) fn differing(a: &Summary, b: &Summary) -> Vec<(String, [String; 2])> {
-    let [mine, others] = [a, b].map(said);
+    let [mut mine, mut others] = [a, b].map(said);
+    one_name(&mut mine, &others);
+    one_name(&mut others, &mine);
     let mut names: Vec<&String> = Vec::new();
     for (name, _) in mine.iter().chain(&others) {
         if !names.contains(&name) {
@@ -18,6 +20,17 @@ pub(super) fn differing(a: &Summary, b: &Summary) -> Vec<(String, [String; 2])> 
         }
     }
     names.into_iter().flat_map(|name| differing_of(name, &mine, &others)).collect()
+}
+
+/// A ground has trees in one run and none in the other: what is said of it stands in one row, as of a ground.
+fn one_name(rows: &mut [SaidOfGround], others: &[SaidOfGround]) {
+    for (name, _) in rows {
+        let Some(ground) = name.strip_prefix("Trees ") else { continue };
+        let plain = format!("Ground {ground}");
+        if others.iter().any(|(other, _)| *other == plain) {
+            *name = plain;
+        }
+    }
 }
 
 /// A row for each value of a name that one run has and the other has not: a plan says the same of every ground.
@@ -59,4 +72,21 @@ fn said(run: &Summary) -> Vec<SaidOfGround> {
     let entries = run.plan_entries.iter().filter(|entry| !REPEATED.contains(&entry.name.as_str()));
     rows.extend(entries.map(|entry| row(&format!("{PLAN}{}", entry.name), entry.said.clone())));
     rows
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Without its trees a forest was told twice: as trees that one run lacks, and as a ground that the other lacks.
+    #[test]
+    fn a_ground_with_trees_and_without_is_one_row() {
+        let row = |name: &str| vec![(name.to_owned(), "friction angle 35°".to_owned())];
+        let (mut with, without) = (row("Trees “forest”"), row("Ground “forest”"));
+        one_name(&mut with, &without);
+        assert_eq!(with[0].0, "Ground “forest”");
+        let mut alone = row("Trees “wood”");
+        one_name(&mut alone, &without);
+        assert_eq!(alone[0].0, "Trees “wood”");
+    }
 }

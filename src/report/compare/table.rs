@@ -209,12 +209,23 @@ pub(super) fn headline(groups: &[Group]) -> Vec<String> {
     lines
 }
 
+/// A value beside a difference that is known so well: no digit beyond a twentieth of that interval, but at least two; four alone.
+fn told(value: f64, interval: Option<(f64, f64)>) -> String {
+    let width = interval.map_or(f64::NAN, |(low, high)| high - low);
+    if !(width.is_finite() && width > 0.0 && value != 0.0) {
+        return format::significant(value, 4);
+    }
+    let digits = math::log10(value.abs()).floor() - math::log10(0.05 * width).floor() + 1.0;
+    let digits = digits.clamp(2.0, 6.0) as usize;
+    format::significant(math::rounded(value, digits), digits)
+}
+
 /// Both values, the difference with its sign, and its interval; bounds with theirs.
 pub(super) fn in_words(row: &ComparedStatistic, words: &Words) -> [String; 4] {
     let Difference { a, b, value, interval } = row.difference;
     let number = |v: f64, is: Is| match is {
         Is::Lacking(rocks) => format!("{} ({})", format::NO_NUMBER, words.more_rocks(rocks)),
-        is => sign(is).to_owned() + &format::significant(v, 4),
+        is => sign(is).to_owned() + &told(v, row.difference.interval),
     };
     // a difference is written as finely as its interval allows: its last digit is at most a twentieth of it
     let ends = interval.map(|(low, high)| [low, high]);

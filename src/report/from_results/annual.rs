@@ -9,6 +9,7 @@ use crate::hazard::{
     Annual, AnnualBarrier, AnnualFigures, AnnualPlace, EventRate, ExceedancePoint, ReturnEnergy,
     Risk, RiskKind, Saved,
 };
+use crate::math;
 use crate::output::Results;
 
 /// Curves of all places.
@@ -122,7 +123,7 @@ fn barrier(annual: &Annual, one: &AnnualBarrier, words: &Words) -> EstimateTable
         about: About::Year,
         place: name.clone(),
         title: fill(words.barrier_year_title, &[("name", &words.quoted(name))]),
-        note: words.barrier_year_note.to_owned(),
+        note: words.barrier_year_note.to_owned() + words.drawn().rough,
         columns: how_often(words),
         rows: rows.map(|(what, rate)| (what.to_owned(), cells(rate, annual))).into(),
     }
@@ -181,7 +182,7 @@ fn passages(annual: &Annual, place: &AnnualPlace, words: &Words) -> EstimateTabl
                 ("rocks", &format::decimal(annual.rocks as f64, 0)),
                 ("effective", &format::decimal(annual.effective_rocks, 0)),
             ],
-        ),
+        ) + words.drawn().rough,
         columns: how_often(words),
         rows,
     }
@@ -191,6 +192,11 @@ fn of(rate: &EventRate, map: impl Fn(f64) -> f64) -> Estimate {
     let is = Is::at_least_if(rate.censored);
     let found = estimate(map(rate.per_year), Some(map(rate.low_95)), Some(map(rate.high_95)));
     Estimate { is, ..found }
+}
+
+/// A derivative without an interval of its own: two digits, as it is a rough number.
+fn slope_of(slope: f64) -> Estimate {
+    Estimate::plain(math::rounded(slope, 2))
 }
 
 fn cells(rate: &EventRate, annual: &Annual) -> Vec<Option<Estimate>> {
@@ -203,8 +209,8 @@ fn cells(rate: &EventRate, annual: &Annual) -> Vec<Option<Estimate>> {
         Some(years),
         Some(of(rate, |x| -100.0 * libm::expm1(-x))),
         Some(of(rate, |x| 100.0 * x / annual.events_per_year)),
-        Some(estimate(rate.by_log_rate, None, None)),
-        rate.by_exponent.map(|slope| estimate(slope, None, None)),
+        Some(slope_of(rate.by_log_rate)),
+        rate.by_exponent.map(slope_of),
     ]
 }
 
@@ -219,7 +225,7 @@ fn returns(place: &AnnualPlace, words: &Words) -> EstimateTable {
             // more seldom than that, but perhaps not by much
             None => estimate(f64::NAN, None, one.high_95.filter(|high| *high > 0.0).map(kilo)),
         };
-        let slope = |slope: Option<f64>| slope.map(|joule| estimate(kilo(joule), None, None));
+        let slope = |slope: Option<f64>| slope.map(|joule| slope_of(kilo(joule)));
         let name = fill(words.years, &[("n", &format::plain(one.years))]) + which;
         (name, vec![Some(energy), slope(one.by_log_rate), slope(one.by_exponent)])
     };
@@ -233,7 +239,7 @@ fn returns(place: &AnnualPlace, words: &Words) -> EstimateTable {
         about: About::Year,
         place: place.name.clone(),
         title: named(words.returns_title, place, words),
-        note: words.returns_note.to_owned(),
+        note: words.returns_note.to_owned() + words.drawn().rough,
         columns: columns.into(),
         rows: all.map(row).collect(),
     }
@@ -242,9 +248,11 @@ fn returns(place: &AnnualPlace, words: &Words) -> EstimateTable {
 fn risks(place: &AnnualPlace, words: &Words) -> Option<EstimateTable> {
     let row = |which: &str, risk: &Risk| {
         let Risk { kind, rate } = risk;
-        let slope = |slope: f64| estimate(slope, None, None);
-        let cells =
-            vec![Some(of(rate, |x| x)), Some(slope(rate.by_log_rate)), rate.by_exponent.map(slope)];
+        let cells = vec![
+            Some(of(rate, |x| x)),
+            Some(slope_of(rate.by_log_rate)),
+            rate.by_exponent.map(slope_of),
+        ];
         (format!("{}{which}", risk_name(*kind, words)), cells)
     };
     let mut rows = Vec::new();

@@ -1,13 +1,14 @@
 //! Measured ends and calibration, gathered from summary, releases and `calibration.json`.
 
 use super::super::format;
-use super::super::measured::{not_compared, weighing};
+use super::super::measured::{mean_of, not_compared, weighing, worth};
 use super::super::model::{About, Estimate, EstimateTable, Observed};
 use super::super::words::{Words, fill};
 use super::estimate;
 use crate::calibrate::{Calibration, CalibrationTrial, SiteMeasure, Told};
 use crate::error::Result;
-use crate::hazard::{Agreement, ObservedPath};
+use crate::hazard::{Agreement, EndSpread, ObservedPath};
+use crate::math;
 use crate::output::{Results, read_calibration};
 
 /// Columns of both tables.
@@ -53,8 +54,9 @@ pub(super) fn observed(results: &Results) -> Result<Option<Observed>> {
         }
     };
     Ok(agreement.map(|found| {
-        let agreement = Agreement { stayed, ..found };
-        Observed { measured, computed, weights, agreement }
+        let worth = results.summary.observed_worth.unwrap_or(measured.len() as f64);
+        let agreement = Agreement { stayed, ks_limit: found.ks_limit_worth(worth), ..found };
+        Observed { measured, computed, weights, worth, agreement }
     }))
 }
 
@@ -80,9 +82,12 @@ pub(super) fn tables(results: &Results, words: &Words) -> Result<Vec<EstimateTab
         tables.push(EstimateTable {
             about: About::Measured,
             title: words.agreement_title.to_owned(),
-            note: note + &weighing(&observed, words) + &not_compared(agreement, words),
+            note: note
+                + &worth(&observed, words)
+                + &weighing(&observed, words)
+                + &not_compared(agreement, words),
             columns: columns(words),
-            rows: vec![(words.this_run.to_owned(), cells(&observed.agreement))],
+            rows: vec![(words.this_run.to_owned(), known(&observed))],
             ..EstimateTable::default()
         });
     }
@@ -98,7 +103,7 @@ fn calibration(found: &Calibration, words: &Words) -> EstimateTable {
         let values = found.names.iter().zip(&trial.values);
         let values: Vec<String> =
             values.map(|(name, value)| format!("{name} = {value:.3}")).collect();
-        (format!("{who}: {}", values.join(", ")), cells(of))
+        (format!("{who}{}{}", words.colon(), values.join(", ")), cells(of))
     };
     let mut rows = vec![row(words.uncalibrated, &found.before, &found.before.all)];
     for (part, trial) in found.held_out.iter().enumerate() {
@@ -195,6 +200,36 @@ fn cells(of: &Agreement) -> Vec<Option<Estimate>> {
         of.computed_side_m,
     ];
     numbers.map(|value| Some(Estimate::plain(value))).into()
+}
+
+/// The same of one run, each with its interval, or with no more than two digits where it has none.
+fn known(observed: &Observed) -> Vec<Option<Estimate>> {
+    let of = &observed.agreement;
+    let rounded = |value: f64| Estimate::plain(math::rounded(value, 2));
+    let side = |ways: &[ObservedPath], value: f64, worth: f64| {
+        let across = EndSpread::DEVIATIONS[1];
+        match EndSpread::deviation_95(across, ways, worth) {
+            Some([Some(low), Some(high)]) if (low..=high).contains(&value) => {
+                Estimate::new(value, low, high)
+            }
+            _ => rounded(value),
+        }
+    };
+    let computed = match &observed.weights {
+        None => side(&observed.computed, of.computed_side_m, of.computed as f64),
+        Some(_) => rounded(of.computed_side_m),
+    };
+    let [measured_mean, computed_mean] = mean_of(observed);
+    let cells = [
+        measured_mean,
+        computed_mean,
+        rounded(of.ks),
+        rounded(of.ks_limit),
+        rounded(of.area_m),
+        side(&observed.measured, of.measured_side_m, observed.worth),
+        computed,
+    ];
+    cells.map(Some).into()
 }
 
 #[cfg(test)]

@@ -131,7 +131,7 @@ pub struct AnnualView {
 impl AnnualView {
     /// Whether any rock comes.
     pub(in crate::report) fn is_met(&self) -> bool {
-        self.curves().flatten().any(|point| point.x > 0.0)
+        self.curves().flatten().any(|point| point.x > 0.0 && point.y.value > 0.0)
     }
 
     /// Its curves.
@@ -245,7 +245,9 @@ pub struct Observed {
     pub computed: Vec<ObservedPath>,
     /// What each of these stands for (–); none where all weigh the same.
     pub weights: Option<Vec<f64>>,
-    /// How well they agree.
+    /// Independent ends that the measured ones are worth (–).
+    pub worth: f64,
+    /// How well they agree; the limit is that of so many ends.
     pub agreement: Agreement,
 }
 

@@ -1,12 +1,13 @@
 //! What a map carries beside itself: north arrow, scale bar, colour bar and the key of its marks.
 
 use super::{EndMark, RIGHT_PX};
+use crate::math;
 use crate::output::ReleaseZone;
 use crate::report::axis::{Axis, nice_step};
 use crate::report::canvas::{Canvas, Label, NORMAL, Pen, SMALL, text_width};
 use crate::report::colour::{GREEN, INK, WHITE};
 use crate::report::format;
-use crate::report::model::Report;
+use crate::report::model::{MapMark, Report};
 use crate::report::panel::{FOOT_PX, Panel};
 use crate::report::site::{self, MarkKind};
 use crate::report::svg::path::PaperFrame;
@@ -78,9 +79,11 @@ fn scale_bar(canvas: &Canvas<'_>, panel: &Panel) {
 }
 
 /// From how many rocks on each shade of deposits stands.
-fn classes(words: &Words) -> String {
+fn classes(panel: &Panel, words: &Words) -> String {
     let from: Vec<String> = super::DEPOSITS.iter().map(|(from, _)| from.to_string()).collect();
-    fill(words.drawn().per_square, &[("classes", &from.join(", "))])
+    let side_m = super::DEPOSIT_PX * (panel.x.high - panel.x.low) / panel.frame.width();
+    let side = format::significant(math::rounded(side_m, 2), 2);
+    fill(words.drawn().per_square, &[("classes", &from.join(", ")), ("side", &side)])
 }
 
 /// The marks on the map and what they mean.
@@ -98,7 +101,7 @@ enum Symbol {
 
 impl MapLegend {
     /// Names only what the map shows.
-    pub(super) fn of(report: &Report) -> Self {
+    pub(super) fn of(panel: &Panel, report: &Report) -> Self {
         let words = report.words();
         let mut entries = Vec::new();
         if let Some(zone) = report.zones.first().filter(|_| !report.releases.is_empty()) {
@@ -119,7 +122,7 @@ impl MapLegend {
                 report.releases.iter().filter(|f| EndMark::of(&f.stop) == Some(mark)).count();
             if count > 0 {
                 let is_density = mark == EndMark::AtRest && count > super::MANY;
-                let scale = if is_density { classes(words) } else { String::new() };
+                let scale = if is_density { classes(panel, words) } else { String::new() };
                 let text = format!("{name} ({}){scale}", format::decimal(count as f64, 0));
                 entries.push((if is_density { Symbol::Density } else { Symbol::Mark(mark) }, text));
             }
@@ -129,7 +132,9 @@ impl MapLegend {
             (MarkKind::Object, words.drawn().key_object),
             (MarkKind::Barrier, words.key_barrier),
         ] {
-            if report.marks.iter().any(|mark| MarkKind::of(mark) == kind) {
+            let is_drawn =
+                |mark: &&MapMark| MarkKind::of(mark) == kind && site::is_on_paper(panel, mark);
+            if report.marks.iter().find(is_drawn).is_some() {
                 entries.push((Symbol::Place(kind), name.to_owned()));
             }
         }

@@ -141,7 +141,7 @@ fn contours(
     for i in (low / interval_m).ceil() as i64..=(high / interval_m).floor() as i64 {
         let level_m = i as f64 * interval_m;
         let lines: Vec<Vec<Spot>> = field
-            .lines_at(level_m)
+            .lines_at(just_below(level_m, interval_m))
             .iter()
             .flat_map(|line| clipped(line, frame))
             .filter(|line| length(line) > SHORTEST_PX)
@@ -163,6 +163,13 @@ fn contours(
         canvas.lines(&lines, pen);
     }
     Some(Contours { interval_m, labels })
+}
+
+/// Where the line of a level is drawn: lower by less than can be seen. Level ground at the very height would else be cut up by the
+/// rounding of its heights, which are in single precision.
+fn just_below(level_m: f64, interval_m: f64) -> f64 {
+    let rounding_m = 4.0 * f64::from(f32::EPSILON) * level_m.abs();
+    level_m - rounding_m.max(1e-3 * interval_m)
 }
 
 fn length(line: &[Spot]) -> f64 {
@@ -301,5 +308,25 @@ fn outlines(
         if outline.iter().any(|&spot| panel.frame.holds(spot)) {
             canvas.polygon(&outline, colour, 0.85);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A terrace at a round height, with heights off by rounding, between a slope above and one below: one line, along its edge.
+    #[test]
+    fn a_terrace_at_the_height_of_a_contour_has_one_line() {
+        let noise = |x: f64, y: f64| {
+            f64::from(f32::EPSILON) * 100.0 * (0.5 - f64::from((x + y) as i32 % 2))
+        };
+        let terrace =
+            |x: f64, y: f64| 100.0 + noise(x, y) + (x - 20.0).max(0.0) + (x - 10.0).min(0.0);
+        let field = Field::sample((0.0, 0.0), 1.0, (31, 31), terrace);
+        assert!(field.lines_at(100.0).len() > 10, "the noise is there");
+        let lines = field.lines_at(just_below(100.0, 5.0));
+        assert_eq!(lines.len(), 1);
+        assert!(lines[0].iter().all(|(x, _)| (x - 10.0).abs() < 0.01), "{lines:?}");
     }
 }

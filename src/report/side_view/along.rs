@@ -12,6 +12,19 @@ const SOME_GROUND: f64 = 0.5;
 /// Ground so far below the rocks, over the length shown (–), is still shown.
 const NEAR_GROUND: f64 = 0.25;
 
+/// Ground so far below the lowest centre, over the least height of a centre above it (–): on a slope, and for larger rocks, it is more.
+const TWICE: f64 = 2.0;
+
+/// How high a centre is above the ground where it is least (m): about the radius of the smallest rock; 0 where that is not known.
+fn least_gap_m(report: &Report) -> f64 {
+    let Some(ground) = &report.ground else { return 0.0 };
+    let gap = |[x, y, z]: [f64; 3]| z - ground.height_at(x, y);
+    let ends = report.releases.iter().flat_map(|fall| [fall.start_m, fall.end_m]);
+    let points = report.paths.iter().flat_map(|path| path.points.iter().map(|p| p.place_m));
+    let gaps = ends.chain(points).map(gap).filter(|gap| *gap > 0.0);
+    gaps.reduce(f64::min).unwrap_or(0.0)
+}
+
 /// The line from the mean release to the mean end, in plan view.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct FallLine {
@@ -99,14 +112,15 @@ impl FallLine {
         let margin = (0.03 * (along.1 - along.0)).max(0.02);
         let along = (along.0 - margin, along.1 + margin);
         let z = range.z.unwrap_or((0.0, 1.0));
-        let margin = (0.05 * (z.1 - z.0)).max(0.02 * (along.1 - along.0));
+        let touch = least_gap_m(report);
+        let margin = (0.05 * (z.1 - z.0)).max(0.02 * (along.1 - along.0)).max(touch);
         // the ground below rocks that hardly fall is seen too
         let ends = report.releases.iter().flat_map(|fall| [fall.start_m, fall.end_m]);
         let ground = report.ground.iter().flat_map(|ground| {
             ends.clone().map(|[x, y, _]| ground.height_at(x, y) - SOME_GROUND * margin)
         });
         // but not that far below rocks which are still in flight
-        let lowest = z.0 - NEAR_GROUND * (along.1 - along.0);
+        let lowest = z.0 - (NEAR_GROUND * (along.1 - along.0)).max(TWICE * touch);
         let low = ground.filter(|low| *low >= lowest).fold(z.0 - margin, f64::min);
         (along, (low, z.1 + margin))
     }

@@ -2,7 +2,7 @@
 
 mod zones;
 
-use super::{TOOTH_PX, on_paper};
+use super::{TOOTH_PX, is_on_paper, on_paper};
 use crate::math;
 use crate::report::canvas::{Canvas, Label, Pen, SMALL, bold_width, fitted, text_width};
 use crate::report::colour::{DARK_GREEN, INK, WHITE};
@@ -100,10 +100,15 @@ impl Names {
     }
 
     /// What numbers and letters on the map stand for, in lines of a width (px); nothing where it has all names itself.
-    pub(in crate::report) fn key(&self, report: &Report, said: NameOf<'_>, width_px: f64) -> Key {
+    pub(in crate::report) fn key(
+        &self,
+        (panel, report): (&Panel, &Report),
+        said: NameOf<'_>,
+        width_px: f64,
+    ) -> Key {
         let mut key = Key::default();
         let marks = report.marks.iter().zip(1..).filter(|_| self.are_numbers);
-        for (mark, number) in marks {
+        for (mark, number) in marks.filter(|(mark, _)| is_on_paper(panel, mark)) {
             key.add(number.to_string(), &|width| said(mark, width), width_px);
         }
         for (letter, name) in &self.lettered {

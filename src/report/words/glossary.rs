@@ -9,7 +9,7 @@ pub(super) const DE: Glossary = [
     ),
     (
         "95-%-Intervall",
-        "Für Perzentile aus Ordnungsstatistiken, ohne Annahme einer Verteilung; bei Blöcken ungleichen Gewichts nach Woodruff: die Werte, bei denen der gewichtete Anteil darunter das Perzentil in seinem eigenen Intervall lässt. Für Anteile das exakte Intervall nach Clopper und Pearson. Es deckt nur den Zufall der Stichprobe ab.",
+        "Für Perzentile aus Ordnungsstatistiken, ohne Annahme einer Verteilung; bei Blöcken ungleichen Gewichts nach Woodruff: die Werte, bei denen der gewichtete Anteil darunter das Perzentil in seinem eigenen Intervall lässt. Für Anteile das exakte Intervall nach Clopper und Pearson; bei keinem und bei allen von n die einseitige Schranke 1 − 0.05^(1/n). Für Mittelwerte die äußeren Enden der Intervalle nach Student und Hall. Es deckt nur den Zufall der Stichprobe ab.",
     ),
     (
         "≥ und ≤",
@@ -99,7 +99,7 @@ pub(super) const FR: Glossary = [
     ),
     (
         "Intervalle à 95 %",
-        "Pour les centiles, par statistiques d’ordre, sans loi supposée\u{a0}; pour des blocs de poids différents celui de Woodruff\u{a0}: les valeurs pour lesquelles la part pondérée au-dessous laisse le centile dans son propre intervalle. Pour les parts, l’intervalle exact de Clopper et Pearson. Il ne couvre que l’aléa de l’échantillon.",
+        "Pour les centiles, par statistiques d’ordre, sans loi supposée\u{a0}; pour des blocs de poids différents celui de Woodruff\u{a0}: les valeurs pour lesquelles la part pondérée au-dessous laisse le centile dans son propre intervalle. Pour les parts, l’intervalle exact de Clopper et Pearson\u{a0}; pour aucun et pour tous sur n, la borne unilatérale 1 − 0.05^(1/n). Pour les moyennes, les bouts extrêmes des intervalles de Student et de Hall. Il ne couvre que l’aléa de l’échantillon.",
     ),
     (
         "≥ et ≤",
@@ -186,7 +186,7 @@ pub(super) const IT: Glossary = [
     ),
     (
         "Intervallo al 95 %",
-        "Per i percentili da statistiche d’ordine, senza supporre una distribuzione; per massi di peso diverso quello di Woodruff: i valori per i quali la quota pesata al di sotto lascia il percentile nel proprio intervallo. Per le quote l’intervallo esatto di Clopper e Pearson. Copre solo il caso nel campione.",
+        "Per i percentili da statistiche d’ordine, senza supporre una distribuzione; per massi di peso diverso quello di Woodruff: i valori per i quali la quota pesata al di sotto lascia il percentile nel proprio intervallo. Per le quote l’intervallo esatto di Clopper e Pearson; per nessuno e per tutti su n il limite unilaterale 1 − 0.05^(1/n). Per le medie gli estremi esterni degli intervalli di Student e di Hall. Copre solo il caso nel campione.",
     ),
     (
         "≥ e ≤",
@@ -276,7 +276,7 @@ pub(super) const EN: Glossary = [
     ),
     (
         "95 % interval",
-        "For percentiles from order statistics, which assumes no distribution; of rocks that differ in weight Woodruff’s: the values at which the weighted share below them leaves the percentile within its own interval. For shares the exact interval of Clopper and Pearson. It covers chance in the sample only.",
+        "For percentiles from order statistics, which assumes no distribution; of rocks that differ in weight Woodruff’s: the values at which the weighted share below them leaves the percentile within its own interval. For shares the exact interval of Clopper and Pearson; for none and all of n the one-sided bound 1 − 0.05^(1/n). For means the outer ends of Student’s and Hall’s intervals. It covers chance in the sample only.",
     ),
     (
         "≥ and ≤",

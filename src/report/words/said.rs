@@ -21,8 +21,10 @@ impl Words {
             return Some((*said).to_owned());
         }
         let with_places = self.recorded().filter(|(known, _)| known.contains('{'));
-        let mut found =
-            with_places.filter_map(|(known, said)| Some((known, places(known, text)?, said)));
+        // a list of two such texts is none of them
+        let is_one = |(name, value): &(&str, &str)| *name != "x" || !value.contains(", ");
+        let whole = |known| places(known, text).filter(|found| found.iter().all(is_one));
+        let mut found = with_places.filter_map(|(known, said)| Some((known, whole(known)?, said)));
         let (known, places, said) = found.next()?;
         let values: Vec<(&str, String)> = places
             .into_iter()
@@ -35,7 +37,11 @@ impl Words {
 
     /// A recorded text that may be made of several.
     pub(crate) fn say_all(&self, text: &str) -> String {
-        if text.contains(' ') { self.say_inside(text) } else { self.say(text) }
+        let said = if text.contains(' ') { self.say_inside(text) } else { self.say(text) };
+        let said = if self.said.is_empty() { with_thousands(&said) } else { said };
+        // a number of things and their names
+        let of_things = said.split_once(": ").filter(|(count, _)| is_number(count));
+        of_things.map(|(count, names)| format!("{count}{}{names}", self.colon())).unwrap_or(said)
     }
 
     /// What stands in a place of a pattern: a kind of something, a number as in print, or a text.
@@ -133,6 +139,23 @@ fn is_number(text: &str) -> bool {
         && digits.matches('.').count() < 2
 }
 
+/// What large numbers in plans of this language count: these stand as in print, and nothing that a user wrote does.
+const COUNTED: [&str; 8] =
+    ["steps", "triangles", "bytes", "facets", "points", "cells", "releases", "J"];
+
+/// A recorded English text with thousands set apart in what it counts.
+fn with_thousands(text: &str) -> String {
+    let words: Vec<&str> = text.split(' ').collect();
+    let is_counted = |at: usize| {
+        let next = words.get(at + 1).map(|next| next.trim_end_matches([',', ';', '.', ')']));
+        next.is_some_and(|next| COUNTED.contains(&next))
+    };
+    let said = |(at, word): (usize, &&str)| {
+        if word.len() > 4 && is_counted(at) { in_print(word) } else { (*word).to_owned() }
+    };
+    words.iter().enumerate().map(said).collect::<Vec<_>>().join(" ")
+}
+
 /// A number with its digits as recorded, but thousands set apart and a minus sign; any other text as it is.
 fn in_print(text: &str) -> String {
     if !is_number(text) {
@@ -183,6 +206,11 @@ mod tests {
         let words = Words::of(Language::De);
         let said = words.say("300 along a line of 30.0 m, from 2 points in turn, seed 1");
         assert_eq!(said, "300 entlang einer Linie von 30.0 m, reihum von 2 Punkten, Startwert 1");
+        let two = words.say_all("along a line of 35.2 m, along a line of 20.1 m");
+        assert_eq!(two, "entlang einer Linie von 35.2 m, entlang einer Linie von 20.1 m");
+        assert_eq!(words.say_all("200.0 m long, 6 m wide"), "200.0 m lang, 6 m breit");
+        let french = Words::of(Language::Fr).say_all("5: asphalt, forest");
+        assert_eq!(french, "5\u{a0}: asphalt, forest");
         assert_eq!(words.say("left out: the scene has none"), "weggelassen: die Szene hat keine");
         assert_eq!(words.say("Nothing that is known"), "Nothing that is known");
         // a line may be called as the program calls something
@@ -236,12 +264,25 @@ mod tests {
         assert_eq!(said("-2017 (26.0 m)"), "-2017 (26.0 m)");
     }
 
+    /// English texts are recorded as they are said, but for the thousands of what they count.
+    #[test]
+    fn english_counts_have_their_thousands() {
+        let said = |text: &str| Words::of(Language::En).say_all(text);
+        assert_eq!(
+            said("over budget after 5000000 steps and flights"),
+            "over budget after 5\u{2009}000\u{2009}000 steps and flights"
+        );
+        assert_eq!(said("37280 triangles in 2 files"), "37\u{2009}280 triangles in 2 files");
+        assert_eq!(said("20170.stl, road 20170"), "20170.stl, road 20170");
+    }
+
     /// Every language knows the same, with the same places.
     #[test]
     fn all_languages_know_the_same() {
         let names = |text: &str| {
             let inside = text.split('{').skip(1).filter_map(|rest| rest.split_once('}'));
-            let mut names: Vec<String> = inside.map(|(name, _)| name.to_owned()).collect();
+            let names = inside.map(|(name, _)| name.to_owned()).filter(|name| !name.contains('|'));
+            let mut names: Vec<String> = names.collect();
             names.sort_unstable();
             names.dedup();
             names

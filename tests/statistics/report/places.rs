@@ -147,7 +147,8 @@ fn observed() -> Observed {
     let (measured, computed): (Vec<ObservedPath>, Vec<ObservedPath>) =
         ((0..40).map(way).collect(), (5..300).map(way).collect());
     let agreement = Agreement::of(&measured, &computed).expect("neither is empty");
-    Observed { measured, computed, weights: None, agreement }
+    let worth = measured.len() as f64;
+    Observed { measured, computed, weights: None, worth, agreement }
 }
 
 /// A site with all of it.

@@ -73,9 +73,9 @@ function legend(scene, shown, layer, contour) {
     scene.stops.forEach((stop, i) => found.has(i) && entry(STOP_COLOURS[i], "dot", T(STOP_NAMES[stop] ?? stop)));
   }
   if (scene.walls.length > 0 && shown.walls) {
-    made("h3", box, T("Lines and nets"));
-    if (scene.walls.some((wall) => wall.height_m === null)) entry(LINE_COLOUR, "", T("evaluation line"));
-    if (scene.walls.some((wall) => wall.height_m !== null)) entry(BARRIER_COLOUR, "field", T("net, at its height"));
+    made("h3", box, T("Lines and barriers"));
+    if (scene.walls.some((wall) => wall.height_m === null)) entry(LINE_COLOUR, "", T("line or object"));
+    if (scene.walls.some((wall) => wall.height_m !== null)) entry(BARRIER_COLOUR, "field", T("barrier, at its height"));
   }
   if (layer >= 0) {
     const { name, unit, limits } = scene.maps.layers[layer];

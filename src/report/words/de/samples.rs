@@ -22,6 +22,12 @@ pub(super) const SAMPLES: &[(&str, &str)] = &[
         "[[objects]] without [frequency]: how many releases hit them is computed, how often a year and at what risk is not",
         "[[objects]] ohne [frequency]: wie viele Ablösungen sie treffen, wird gerechnet, wie oft im Jahr und mit welchem Risiko nicht",
     ),
+    (
+        "{a} {kind_a} of memory and {b} {kind_b} of disk: {n} release, up to {p} points of paths, {c} cells of maps",
+        "{a} {kind_a} Speicher und {b} {kind_b} Platte: {n} Ablösung, bis {p} Bahnpunkte, {c} Kartenzellen",
+    ),
+    ("from one point", "von einem Punkt"),
+    ("{a} m long, {b} m wide", "{a} m lang, {b} m breit"),
     ("{name}: {a} a year of {b} m³, {rest}", "{name}: {a} pro Jahr von {b} m³, {rest}"),
     ("{name}: {a} a year of {b} m³", "{name}: {a} pro Jahr von {b} m³"),
     ("{a} a year of {b} m³, {rest}", "{a} pro Jahr von {b} m³, {rest}"),

@@ -22,6 +22,12 @@ pub(super) const SAMPLES: &[(&str, &str)] = &[
         "[[objects]] without [frequency]: how many releases hit them is computed, how often a year and at what risk is not",
         "[[objects]] sans [frequency]\u{a0}: combien de départs les touchent est calculé, combien de fois par an et avec quel risque ne l’est pas",
     ),
+    (
+        "{a} {kind_a} of memory and {b} {kind_b} of disk: {n} release, up to {p} points of paths, {c} cells of maps",
+        "{a} {kind_a} de mémoire et {b} {kind_b} de disque\u{a0}: {n} départ, jusqu’à {p} points de trajectoires, {c} mailles de cartes",
+    ),
+    ("from one point", "d’un seul point"),
+    ("{a} m long, {b} m wide", "longueur {a} m, largeur {b} m"),
     ("{name}: {a} a year of {b} m³, {rest}", "{name}\u{a0}: {a} par an de {b} m³, {rest}"),
     ("{name}: {a} a year of {b} m³", "{name}\u{a0}: {a} par an de {b} m³"),
     ("{a} a year of {b} m³, {rest}", "{a} par an de {b} m³, {rest}"),

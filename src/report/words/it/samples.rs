@@ -22,6 +22,12 @@ pub(super) const SAMPLES: &[(&str, &str)] = &[
         "[[objects]] without [frequency]: how many releases hit them is computed, how often a year and at what risk is not",
         "[[objects]] senza [frequency]: quanti distacchi li colpiscono è calcolato, quante volte all’anno e con quale rischio no",
     ),
+    (
+        "{a} {kind_a} of memory and {b} {kind_b} of disk: {n} release, up to {p} points of paths, {c} cells of maps",
+        "{a} {kind_a} di memoria e {b} {kind_b} di disco: {n} distacco, fino a {p} punti di traiettorie, {c} celle di mappe",
+    ),
+    ("from one point", "da un solo punto"),
+    ("{a} m long, {b} m wide", "lungo {a} m, largo {b} m"),
     ("{name}: {a} a year of {b} m³, {rest}", "{name}: {a} all’anno di {b} m³, {rest}"),
     ("{name}: {a} a year of {b} m³", "{name}: {a} all’anno di {b} m³"),
     ("{a} a year of {b} m³, {rest}", "{a} all’anno di {b} m³, {rest}"),

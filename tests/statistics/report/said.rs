@@ -1,0 +1,99 @@
+//! What captions and keys say where few or none are there: only what is drawn, with the numbers and forms that hold.
+
+use super::{places, slope};
+use rockfall::report::model::{MapMark, Report};
+use rockfall::report::{self, html};
+use rockfall::scene::Language;
+
+/// Caption and drawing of a figure; nothing where it is not drawn.
+fn figure(report: &Report, file: &str) -> Option<(String, String)> {
+    let drawn = report::drawings(report);
+    let found = drawn.into_iter().find(|(heading, _)| heading.file == file);
+    found.map(|(_, drawing)| (drawing.caption, drawing.svg))
+}
+
+fn plan(report: &Report) -> (String, String) {
+    figure(report, "plan.svg").expect("every report has a plan")
+}
+
+/// A line far from all rocks is not in the frame: the key has no line, and the caption says which is missing.
+#[test]
+fn a_key_names_what_is_drawn() {
+    let far = |name: &str, y: f64| MapMark {
+        name: name.to_owned(),
+        corners_m: vec![[0.0, y], [10.0, y]],
+        barrier: None,
+        is_object: false,
+    };
+    let report = Report { marks: vec![far("road far off", 1e5)], ..slope::report(20, 20) };
+    let (caption, svg) = plan(&report);
+    assert!(caption.contains("Outside the frame: “road far off”."), "{caption}");
+    assert!(!svg.contains("evaluation line") && !svg.contains("road far off"));
+    let (caption, svg) = plan(&places::site());
+    assert!(!caption.contains("Outside the frame") && svg.contains("evaluation line"));
+}
+
+/// Without stored paths there is no side view, and the plan does not say how paths are coloured.
+#[test]
+fn without_paths_no_figure_shows_any() {
+    let report = slope::report(60, 0);
+    assert!(figure(&report, "side.svg").is_none());
+    let (caption, _) = plan(&report);
+    assert!(caption.contains("No path of the 60 releases is stored"), "{caption}");
+    assert!(!caption.contains("colour gives the speed"), "{caption}");
+    let page = html::page(&report, &report::drawings(&report));
+    assert!(!page.contains("Side view"), "no chapter names it");
+}
+
+/// One is not many, in any language; French says none as one.
+#[test]
+fn one_release_is_said_as_one() {
+    for (language, words) in [
+        (Language::En, "paths of 1 of 1 release;"),
+        (Language::De, "Bahnen von 1 von 1 Ablösung;"),
+        (Language::Fr, "Trajectoires de 1 départ sur 1"),
+        (Language::It, "Traiettorie di 1 distacco su 1;"),
+    ] {
+        let report = Report { language, ..slope::report(1, 1) };
+        let (caption, _) = plan(&report);
+        assert!(caption.contains(words), "{caption}");
+        let drawn = report::drawings(&report);
+        assert!(drawn.iter().all(|(_, drawing)| !drawing.caption.contains('|')), "{language:?}");
+    }
+    let (caption, _) = plan(&slope::report(3, 2));
+    assert!(caption.contains("paths of 2 of 3 releases;"), "{caption}");
+}
+
+/// A place that no rock came to has a sentence: its curve was an empty frame from 1 to 10 J, where energies were asked for.
+#[test]
+fn a_year_without_a_rock_has_no_curve() {
+    let mut report = places::site();
+    assert!(figure(&report, "annual_1.svg").is_some());
+    let view = &mut report.annual[0];
+    view.with = None;
+    view.without.iter_mut().for_each(|point| point.y.value = 0.0);
+    assert!(figure(&report, "annual_1.svg").is_none());
+}
+
+/// The limit beside measured ends is that of as many independent ones as they are worth, and means have intervals.
+#[test]
+fn measured_ends_say_how_many_are_independent() {
+    let mut report = places::site();
+    let observed = report.observed.as_mut().unwrap();
+    observed.worth = 14.0;
+    observed.agreement.ks_limit = observed.agreement.ks_limit_worth(14.0);
+    let (caption, _) = figure(&report, "measured.svg").unwrap();
+    assert!(caption.contains("The limit is that of 14 independent ends"), "{caption}");
+    assert!(caption.contains("limit at 5 % 0.37;"), "{caption}");
+    assert!(caption.contains("it is no test of them") && caption.contains(" to "), "{caption}");
+}
+
+/// Without percentiles no line is drawn, and none is explained.
+#[test]
+fn styles_of_lines_are_said_where_there_are_lines() {
+    let mut report = slope::report(40, 4);
+    let lines = "Lines: P50 full";
+    assert!(figure(&report, "distributions.svg").unwrap().0.contains(lines));
+    report.quantiles.clear();
+    assert!(!figure(&report, "distributions.svg").unwrap().0.contains(lines));
+}
