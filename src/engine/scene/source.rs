@@ -117,6 +117,11 @@ impl<'a> Lookup<'a> {
         if let Some(brackets) = self.wrong_brackets(&trail, &said.found) {
             said = brackets;
         }
+        if !self.is_toml {
+            let begins = self.text[..span.start].rfind('\n').map_or(0, |at| at + 1);
+            let line = self.text[begins..].lines().next();
+            said = line.and_then(wording::of_line).unwrap_or(said);
+        }
         if let Some(key) = said.missing {
             if trail.is_empty() && TABLES.contains(&key.as_str()) {
                 said.remedy = format!("write the table [{key}]");

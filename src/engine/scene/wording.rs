@@ -60,6 +60,31 @@ pub(super) fn of(message: &str) -> Said {
     }
 }
 
+/// What is wrong with a line that is no TOML, in the cases that come up: no value, a decimal comma, a text without quotes.
+pub(super) fn of_line(line: &str) -> Option<Said> {
+    let (key, value) = line.split('#').next()?.split_once('=')?;
+    let (key, value) = (key.trim(), value.trim());
+    let is_number = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
+    if value.is_empty() {
+        return Some(Said::new(format!("found no value of {key}"), format!("write {key} = …")));
+    }
+    if let Some((whole, decimals)) = value.split_once(',')
+        && is_number(whole)
+        && is_number(decimals)
+    {
+        let remedy = format!("write {key} = {whole}.{decimals}, with a decimal point");
+        return Some(Said::new(format!("found {value}"), remedy));
+    }
+    let is_bare = value.starts_with(char::is_alphabetic) && !value.contains(['"', '\'']);
+    let is_word = ["true", "false", "inf", "nan"].contains(&value);
+    (is_bare && !is_word).then(|| {
+        Said::new(
+            format!("found {value}"),
+            format!("write {key} = \"{value}\": texts stand in quotes"),
+        )
+    })
+}
+
 /// Names of types as a scene's author would say them.
 fn plain(expected: &str) -> String {
     match expected {
