@@ -37,7 +37,7 @@ pub(crate) fn student_95(freedom: f64) -> f64 {
 /// The interval is that of Clopper and Pearson (1934): the shares with which so few, or so many, would be counted in 2.5 % of all samples. It
 /// holds the truth in at least 95 % of samples, however rare what is counted and however few the rocks; Wilson's (1927), which is
 /// right on average, in 84 % at worst, where one or none is expected. Where nothing (or everything) was counted, the free end
-/// is one-sided, see [`unseen`]; so for shares from there to the two-sided `1 − 0.025^(1/n)` it is 93.8 %, of few rocks 93.0 %.
+/// is one-sided, `1 − 0.05^h`; so for shares from there to the two-sided `1 − 0.025^(1/n)` it is 93.8 %, of few rocks 93.0 %.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Proportion {
     /// How many were counted.

@@ -9,6 +9,7 @@ use super::solve::{BlockContact, SWEEPS, rigid_turning, solve};
 use super::{Footing, Moving, ROUNDING, ROUNDING_OF_SPEED, STILL_M_S};
 use crate::body::Block;
 use crate::contact::block::BlockTouch;
+use crate::ground::FrictionElement;
 use crate::math;
 use crate::rock::Vec3;
 use crate::solver::environment::ContactEnvironment;
@@ -76,7 +77,7 @@ impl Footing {
         let shear = || self.touching(block).map(|touch| &law(touch).shear);
         let is_damped = |touch: &BlockTouch| law(touch).normal(false).is_damped(block.mass_kg);
         let is_struck_anywhere = self.touching(block).any(is_struck);
-        if !shear().any(|shear| shear.is_on()) {
+        if !shear().any(FrictionElement::is_on) {
             return is_struck_anywhere
                 && self.touching(block).any(|touch| !is_struck(touch))
                 && self.touching(block).all(is_damped);
