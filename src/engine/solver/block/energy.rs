@@ -90,10 +90,14 @@ impl PartOfMotion {
         0.5 * self.slope_j
     }
 
-    /// The most that can be taken from it (J).
+    /// The most that can be taken from it (J): where it climbs, weight slows it besides, and it is worth more than it holds; it is stopped
+    /// all the same, and not turned back.
     pub(super) fn most_j(&self) -> f64 {
-        let least_j = self.slope_j.max(0.0).powi(2) / (2.0 * self.curvature_j);
-        if self.curvature_j > 0.0 { least_j } else { 0.0 }
+        let slope_j = self.slope_j.max(0.0);
+        if slope_j >= self.curvature_j {
+            return slope_j - 0.5 * self.curvature_j.max(0.0);
+        }
+        slope_j * slope_j / (2.0 * self.curvature_j)
     }
 
     /// The `δ` (–) with which it has lost so much (J), or the most if it has less.
@@ -241,5 +245,25 @@ impl Footing {
             loss.add(&Loss::on_slope(taken).on(world, triangle), share);
         }
         loss
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What can be taken from a part of a motion is just what stopping takes, or less where it falls and would get more from its weight: never what only
+    /// turning it back would.
+    #[test]
+    fn a_part_of_motion_gives_what_it_is_said_to_have() {
+        for slope_j in [-1.0, 0.0, 0.4, 1.0, 1.7, 3.0] {
+            let part =
+                PartOfMotion { v: Vec3::x(), momentum: Vec3::zeros(), slope_j, curvature_j: 1.0 };
+            let most_j = part.most_j();
+            let change_j = |share: f64| slope_j * share + 0.5 * share * share;
+            assert!((change_j(part.less(most_j)) + most_j).abs() < 1e-6, "{slope_j}: {most_j}");
+            let least_j = (0..=100).map(|k| change_j(-0.01 * f64::from(k))).fold(0.0, f64::min);
+            assert!((most_j + least_j).abs() < 1e-4, "{slope_j}: {most_j} {least_j}");
+        }
     }
 }
