@@ -150,8 +150,7 @@ pub(super) fn with_interval(all: [f64; 3]) -> [String; 3] {
         _ => high - low,
     };
     if !(width.is_finite() && width > 0.0 && value.is_finite()) {
-        // alone: a maximum is read as it is, a small derivative or a bound only for its size
-        // as it was rounded before
+        // what was rounded to two digits before stays so
         if !(low.is_finite() || high.is_finite())
             && (value - math::rounded(value, 2)).abs() < 1e-12 * value.abs()
             && (-4..9).contains(&exponent_of(value))
@@ -160,6 +159,7 @@ pub(super) fn with_interval(all: [f64; 3]) -> [String; 3] {
                 if number.is_finite() { plain(number) } else { significant(number, 2) }
             });
         }
+        // alone: a maximum is read as it is, a small derivative or a bound only for its size
         let digits = if value.abs() >= 0.1 { 4 } else { 3 };
         return told_apart(all, |number, more| like(value, digits + usize::from(more))(number));
     }

@@ -65,10 +65,12 @@ impl Surface {
         let one = |(from, to): (u32, u32)| edges.get(&(from, to)).copied().unwrap_or(0);
         let open =
             edges.iter().filter(|((from, to), count)| **count != 1 || one((*to, *from)) != 1);
-        match (open.count(), self.parts()) {
-            (0, 0 | 1) => Ok(()),
-            (0, parts) => Err(BadSurface::Parts(parts)),
-            (count, _) => Err(BadSurface::Open(count)),
+        match open.count() {
+            0 => match self.parts() {
+                0 | 1 => Ok(()),
+                parts => Err(BadSurface::Parts(parts)),
+            },
+            count => Err(BadSurface::Open(count)),
         }
     }
 

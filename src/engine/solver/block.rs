@@ -219,8 +219,7 @@ impl Footing {
         let (mass, weight) = (moving.mass(block), world.body.gravity * dt);
         let (v, w) = (moving.v, moving.spin(block));
         self.contacts.clear();
-        let out_m_s = LET_OUT * (world.body.gravity.norm() * block.radius_m).sqrt();
-        let let_out = (DEEP * block.radius_m, out_m_s);
+        let let_out = (DEEP * block.radius_m, LET_OUT * world.body.fall_speed_m_s());
         let came = |touch: &BlockTouch| Came::of(block, [&start, moving], touch, dt);
         // stopped within the step, what strikes would give nothing back
         self.set_aside(|touch| !came(touch).strikes(world, block, touch));
