@@ -22,7 +22,7 @@ pub use worth::{SiteMeasure, Told};
 use crate::ensemble::Ensemble;
 use crate::error::{Error, Flaw, Result};
 use crate::frequency::Frequency;
-use crate::hazard::{Agreement, ks_limit};
+use crate::hazard::Agreement;
 use crate::math;
 use crate::random::Distribution;
 use crate::release::check_shapes;
@@ -296,10 +296,10 @@ impl fmt::Display for Calibration {
         }
         self.write_trial(to, "fit on all", &self.whole)?;
         let (ends, effective) = self.ends;
-        let limit = self.independent_ks_limit();
+        let limit = self.independent_ks_limit(&self.whole.all);
         writeln!(
             to,
-            "{ends} measured ends, worth {effective:.0} independent ones: for so many the KS limit on all ends is {limit:.2}; fitted to the same ends, their KS is no test"
+            "{ends} measured ends, worth {effective:.0} independent ones, to which the limits belong: {limit:.2} on all ends; fitted to the same ends, their KS is no test"
         )?;
         self.told.iter().try_for_each(|told| writeln!(to, "{told}"))?;
         self.measures.iter().try_for_each(|measure| writeln!(to, "{measure}"))
@@ -307,9 +307,11 @@ impl fmt::Display for Calibration {
 }
 
 impl Calibration {
-    /// The KS limit of the fit on all ends for as many ends as they are worth: throws of one block are alike.
-    pub fn independent_ks_limit(&self) -> f64 {
-        ks_limit(self.ends.1, self.whole.all.computed as f64)
+    /// The 5 % limit of the KS distance (–) between some of the measured ends and what was computed, for as many ends as those are
+    /// worth: throws of one block are alike. Parts are worth their share of all.
+    pub fn independent_ks_limit(&self, of: &Agreement) -> f64 {
+        let (ends, worth) = self.ends;
+        of.ks_limit_worth(worth * of.measured as f64 / ends.max(1) as f64)
     }
 
     fn write_trial(
@@ -332,7 +334,7 @@ impl Calibration {
                 of.computed_mean_m,
                 of.measured_mean_m,
                 of.ks,
-                of.ks_limit,
+                self.independent_ks_limit(of),
                 of.area_m,
                 of.computed_side_m,
                 of.measured_side_m,

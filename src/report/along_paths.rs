@@ -51,7 +51,7 @@ fn chosen(report: &Report) -> Vec<Chosen<'_>> {
         rocks.iter().copied().max_by(|a, b| a.0.max_total_j.total_cmp(&b.0.max_total_j));
     let words = report.words();
     let picked = [
-        (words.median_runout, middle),
+        (if rocks.len() == 1 { words.only_path } else { words.median_runout }, middle),
         (words.most_energy, strongest),
         (words.farthest, rocks.last().copied()),
     ];

@@ -81,7 +81,7 @@ words! {
     no_path, median, runout_axis, share_farther, open_end, no_curve, runout_open,
     runout_left_out, runout_caption, low_slope, high_talus, band, median_inside, median_at_limit, median_outside,
     reach_caption, distributions_title, distributions_caption, no_finite, none_above_zero, along_title, along_alt,
-    along_energy, along_axis, along_rock, along_rock_caption, median_runout, most_energy,
+    along_energy, along_axis, along_rock, along_rock_caption, median_runout, only_path, most_energy,
     farthest, along_caption, line_title, nobody_line, the_line, the_line_of_barrier, where_pass,
     first_crossing, energy_exceeded, height_exceeded, line_behind, line_caption, line_axis,
     energy_axis, share_of_releases, with_barriers, without, without_barriers, retention,

@@ -76,14 +76,29 @@ pub(super) fn headline(results: &Results, words: &Words) -> Option<EstimateTable
         .flat_map(|place| both(place, words).filter_map(move |one| row(place, one)))
         .collect();
     let columns = how_often(words);
-    (!rows.is_empty()).then(|| EstimateTable {
-        about: About::Year,
-        title: words.year().head_title.to_owned(),
-        note: words.year().head_note.to_owned(),
-        columns: [0, 1, 4, 5].map(|column| columns[column].clone()).into(),
-        rows,
-        ..EstimateTable::default()
+    (!rows.is_empty()).then(|| {
+        let mut table = EstimateTable {
+            about: About::Year,
+            title: words.year().head_title.to_owned(),
+            columns: [0, 1, 4, 5].map(|column| columns[column].clone()).into(),
+            rows,
+            ..EstimateTable::default()
+        };
+        let has_exponent = leave_out_exponent(&mut table);
+        let exponent = if has_exponent { words.year().head_exponent } else { "" };
+        table.note = fill(words.year().head_note, &[("exponent", &exponent)]);
+        table
     })
+}
+
+/// Leaves the last column out where it is empty: sources without a power law have no exponent. Whether it stays.
+fn leave_out_exponent(table: &mut EstimateTable) -> bool {
+    let is_empty = table.rows.iter().all(|(_, cells)| cells.last().is_none_or(Option::is_none));
+    if is_empty {
+        table.columns.pop();
+        table.rows.iter_mut().for_each(|(_, cells)| cells.truncate(table.columns.len()));
+    }
+    !is_empty
 }
 
 /// Three tables a place: how often, with what energy, at what risk; and one a barrier.
@@ -95,7 +110,12 @@ pub(super) fn tables(results: &Results, words: &Words) -> Vec<EstimateTable> {
     // where no rock comes, one sentence says what there is to say
     let met = annual.places.iter().filter(|place| place.without_barriers.passages.rocks > 0);
     let places = met.flat_map(each).flatten();
-    places.chain(annual.barriers.iter().map(|one| barrier(annual, one, words))).collect()
+    let all = places.chain(annual.barriers.iter().map(|one| barrier(annual, one, words)));
+    let mut tables: Vec<EstimateTable> = all.collect();
+    for table in &mut tables {
+        leave_out_exponent(table);
+    }
+    tables
 }
 
 /// Columns of how often something happens.
@@ -281,5 +301,27 @@ fn risk_name(kind: RiskKind, words: &Words) -> &'static str {
         RiskKind::VehiclesHit => words.vehicles_hit,
         RiskKind::Individual => words.individual_risk,
         RiskKind::Deaths => words.deaths,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Sources without a power law have no exponent: no column of nothing.
+    #[test]
+    fn a_column_in_which_nothing_stands_is_left_out() {
+        let one = Some(Estimate::new(1.0, 0.5, 2.0));
+        let of = |last: [Option<Estimate>; 2]| EstimateTable {
+            columns: vec!["a year".to_owned(), "by exponent".to_owned()],
+            rows: last.map(|last| ("a place".to_owned(), vec![one, last])).into(),
+            ..EstimateTable::default()
+        };
+        let mut table = of([None, one]);
+        assert!(leave_out_exponent(&mut table));
+        assert_eq!(table, of([None, one]));
+        let mut table = of([None, None]);
+        assert!(!leave_out_exponent(&mut table));
+        assert!(table.columns == ["a year"] && table.rows.iter().all(|(_, cells)| *cells == [one]));
     }
 }

@@ -103,7 +103,7 @@ fn calibration(found: &Calibration, words: &Words) -> EstimateTable {
         let values = found.names.iter().zip(&trial.values);
         let values: Vec<String> =
             values.map(|(name, value)| format!("{name} = {value:.3}")).collect();
-        (format!("{who}{}{}", words.colon(), values.join(", ")), cells(of))
+        (format!("{who}{}{}", words.colon(), values.join(", ")), cells(of, found))
     };
     let mut rows = vec![row(words.uncalibrated, &found.before, &found.before.all)];
     for (part, trial) in found.held_out.iter().enumerate() {
@@ -161,7 +161,7 @@ fn told(found: &Calibration, words: &Words) -> EstimateTable {
             &[
                 ("ends", &found.ends.0),
                 ("worth", &format::decimal(found.ends.1, 0)),
-                ("limit", &format::decimal(found.independent_ks_limit(), 2)),
+                ("limit", &format::decimal(found.independent_ks_limit(&found.whole.all), 2)),
             ],
         ),
         columns: vec![words.fitted.to_owned()],
@@ -189,12 +189,12 @@ fn spread(found: &Calibration, words: &Words) -> EstimateTable {
     }
 }
 
-fn cells(of: &Agreement) -> Vec<Option<Estimate>> {
+fn cells(of: &Agreement, found: &Calibration) -> Vec<Option<Estimate>> {
     let numbers = [
         of.measured_mean_m,
         of.computed_mean_m,
         of.ks,
-        of.ks_limit,
+        found.independent_ks_limit(of),
         of.area_m,
         of.measured_side_m,
         of.computed_side_m,

@@ -187,6 +187,7 @@ pub(super) static WORDS: Words = Words {
     along_rock: "Ablösung {n}: {why}",
     along_rock_caption: "Ablösung {n} ({why})",
     median_runout: "mediane Strecke",
+    only_path: "einzige gespeicherte Bahn",
     most_energy: "größte Energie",
     farthest: "am weitesten",
     along_caption: "Entlang des Weges ausgewählter Blöcke mit gespeicherter Bahn, über dem zurückgelegten Weg im Grundriss: {who}. Höhe: lotrecht, vom Gelände darunter bis zum tiefsten Punkt.",

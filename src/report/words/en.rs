@@ -181,6 +181,7 @@ pub(super) static WORDS: Words = Words {
     along_rock: "release {n}: {why}",
     along_rock_caption: "release {n} ({why})",
     median_runout: "median runout",
+    only_path: "the only stored path",
     most_energy: "most energy",
     farthest: "farthest",
     along_caption: "Along the way of chosen rocks with a stored path, over the distance travelled in plan view: {who}. Height: vertical, from the ground right below to the lowest point.",

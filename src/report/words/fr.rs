@@ -187,6 +187,7 @@ pub(super) static WORDS: Words = Words {
     along_rock: "départ {n}\u{a0}: {why}",
     along_rock_caption: "départ {n} ({why})",
     median_runout: "distance médiane",
+    only_path: "seule trajectoire enregistrée",
     most_energy: "énergie maximale",
     farthest: "le plus loin",
     along_caption: "Le long du parcours de blocs choisis à trajectoire enregistrée, selon la distance parcourue en plan\u{a0}: {who}. Hauteur\u{a0}: verticale, du terrain juste au-dessous au point le plus bas.",

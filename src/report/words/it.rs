@@ -187,6 +187,7 @@ pub(super) static WORDS: Words = Words {
     along_rock: "distacco {n}: {why}",
     along_rock_caption: "distacco {n} ({why})",
     median_runout: "distanza mediana",
+    only_path: "unica traiettoria salvata",
     most_energy: "massima energia",
     farthest: "il più lontano",
     along_caption: "Lungo il percorso di massi scelti con traiettoria salvata, in funzione della distanza percorsa in pianta: {who}. Altezza: verticale, dal terreno sottostante al punto più basso.",

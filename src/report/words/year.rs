@@ -32,13 +32,14 @@ pub(super) use words_of;
 
 words_of! {
     YearWords:
-    head_title, head_note, head_row, maps_title, maps_alt, map_period, map_energy, map_by_exponent,
+    head_title, head_note, head_exponent, head_row, maps_title, maps_alt, map_period, map_energy, map_by_exponent,
     map_level, maps_caption, maps_by_exponent, maps_level, weighed_needs,
 }
 
 const EN: YearWords = YearWords {
     head_title: "How often a year",
-    head_note: "A year, not conditional on release. Small figures: 95 % intervals of chance in the sample; they do not say how well rate and exponent are known. 10 % more events a year at the sources change a number by 0.1 of its change with ln(rate), an exponent larger by 0.1 by 0.1 of its change with exponent. The chapter on the year has all energies, the risks, and what each barrier keeps away.",
+    head_note: "A year, not conditional on release. Small figures: 95 % intervals of chance in the sample; they do not say how well the law of the sources is known. 10 % more events a year at the sources change a number by 0.1 of its change with ln(rate){exponent}. The chapter on the year has all energies, the risks, and what each barrier keeps away.",
+    head_exponent: ", an exponent larger by 0.1 by 0.1 of its change with exponent",
     head_row: "{name}: {energy} kJ or more{barriers}",
     maps_title: "A year on the map",
     maps_alt: "Maps of return period and energy",
@@ -54,7 +55,8 @@ const EN: YearWords = YearWords {
 
 const DE: YearWords = YearWords {
     head_title: "Wie oft pro Jahr",
-    head_note: "Pro Jahr, nicht bedingt auf die Ablösung. Kleine Zahlen: 95-%-Intervalle des Zufalls der Stichprobe; sie sagen nicht, wie gut Rate und Exponent bekannt sind. 10 % mehr Ereignisse pro Jahr an den Quellen ändern eine Zahl um 0.1 ihrer Änderung mit ln(Rate), ein um 0.1 größerer Exponent um 0.1 ihrer Änderung mit dem Exponenten. Das Kapitel über das Jahr enthält alle Energien, die Risiken und was jedes Schutzbauwerk fernhält.",
+    head_note: "Pro Jahr, nicht bedingt auf die Ablösung. Kleine Zahlen: 95-%-Intervalle des Zufalls der Stichprobe; sie sagen nicht, wie gut das Gesetz der Quellen bekannt ist. 10 % mehr Ereignisse pro Jahr an den Quellen ändern eine Zahl um 0.1 ihrer Änderung mit ln(Rate){exponent}. Das Kapitel über das Jahr enthält alle Energien, die Risiken und was jedes Schutzbauwerk fernhält.",
+    head_exponent: ", ein um 0.1 größerer Exponent um 0.1 ihrer Änderung mit dem Exponenten",
     head_row: "{name}: {energy} kJ oder mehr{barriers}",
     maps_title: "Das Jahr auf der Karte",
     maps_alt: "Karten von Wiederkehrperiode und Energie",
@@ -70,7 +72,8 @@ const DE: YearWords = YearWords {
 
 const FR: YearWords = YearWords {
     head_title: "Combien de fois par an",
-    head_note: "Par an, non conditionnel au départ. Petits chiffres\u{a0}: intervalles à 95 % de l’aléa de l’échantillon\u{a0}; ils ne disent pas si taux et exposant sont bien connus. 10 % d’événements en plus par an aux sources changent un nombre de 0.1 de sa variation avec ln(taux), un exposant plus grand de 0.1 de 0.1 de sa variation avec l’exposant. Toutes les énergies, les risques et ce que chaque ouvrage évite sont au chapitre de l’année.",
+    head_note: "Par an, non conditionnel au départ. Petits chiffres\u{a0}: intervalles à 95 % de l’aléa de l’échantillon\u{a0}; ils ne disent pas si la loi des sources est bien connue. 10 % d’événements en plus par an aux sources changent un nombre de 0.1 de sa variation avec ln(taux){exponent}. Toutes les énergies, les risques et ce que chaque ouvrage évite sont au chapitre de l’année.",
+    head_exponent: ", un exposant plus grand de 0.1 de 0.1 de sa variation avec l’exposant",
     head_row: "{name}\u{a0}: {energy} kJ ou plus{barriers}",
     maps_title: "L’année sur la carte",
     maps_alt: "Cartes de période de retour et d’énergie",
@@ -86,7 +89,8 @@ const FR: YearWords = YearWords {
 
 const IT: YearWords = YearWords {
     head_title: "Quante volte all’anno",
-    head_note: "All’anno, non condizionato al distacco. Cifre piccole: intervalli al 95 % del caso nel campione; non dicono quanto bene siano noti tasso ed esponente. Il 10 % di eventi in più all’anno alle sorgenti cambia un numero di 0.1 della sua variazione con ln(tasso), un esponente maggiore di 0.1 di 0.1 della sua variazione con l’esponente. Tutte le energie, i rischi e ciò che ogni barriera evita sono nel capitolo dell’anno.",
+    head_note: "All’anno, non condizionato al distacco. Cifre piccole: intervalli al 95 % del caso nel campione; non dicono quanto bene sia nota la legge delle sorgenti. Il 10 % di eventi in più all’anno alle sorgenti cambia un numero di 0.1 della sua variazione con ln(tasso){exponent}. Tutte le energie, i rischi e ciò che ogni barriera evita sono nel capitolo dell’anno.",
+    head_exponent: ", un esponente maggiore di 0.1 di 0.1 della sua variazione con l’esponente",
     head_row: "{name}: {energy} kJ o più{barriers}",
     maps_title: "L’anno sulla mappa",
     maps_alt: "Mappe di tempo di ritorno ed energia",

@@ -97,3 +97,13 @@ fn styles_of_lines_are_said_where_there_are_lines() {
     report.quantiles.clear();
     assert!(!figure(&report, "distributions.svg").unwrap().0.contains(lines));
 }
+
+/// One path is no median of several.
+#[test]
+fn the_only_path_is_called_so() {
+    let said = |paths: usize| figure(&slope::report(20, paths), "along.svg").map(|(said, _)| said);
+    let one = said(1).expect("one path is drawn");
+    assert!(one.contains("the only stored path") && !one.contains("median runout"), "{one}");
+    let three = said(3).expect("three paths are drawn");
+    assert!(three.contains("median runout") && !three.contains("only"), "{three}");
+}
