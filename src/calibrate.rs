@@ -163,7 +163,8 @@ fn vary_of(scenes: &[Scene]) -> Result<(&[VaryTable], usize)> {
     let vary = first.calibrate.as_ref().map_or(&[][..], |table| &table.vary);
     if !(1..=MOST).contains(&vary.len()) {
         let remedy = format!("write deposits and one to {MOST} entries of vary");
-        return wrong(first, "found nothing to fit, or too much", remedy);
+        let found = if vary.is_empty() { "nothing".to_owned() } else { vary.len().to_string() };
+        return wrong(first, &format!("found {found} to fit"), remedy);
     }
     for scene in scenes {
         if scene.calibrate.is_none() {

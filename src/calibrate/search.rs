@@ -33,8 +33,11 @@ const POINTS: [(usize, f64); 3] = [(200, 1.0), (80, 0.35), (80, 0.12)];
 /// Bases of the even points (Halton's sequence).
 const BASES: [usize; 6] = [2, 3, 5, 7, 11, 13];
 
-/// Trials of one search for so many values, at least.
+/// Trials of one search for so many values, at least; none for no value.
 pub(super) fn trials(values: usize) -> usize {
+    if values == 0 {
+        return 0;
+    }
     if values > MOST_IN_A_GRID {
         return POINTS.iter().map(|(points, _)| points).sum();
     }
@@ -347,5 +350,6 @@ mod tests {
             }
         }
         assert_eq!(trials(3), 125 + 64 + 64);
+        assert_eq!(trials(0), 0);
     }
 }

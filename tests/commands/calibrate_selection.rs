@@ -168,3 +168,18 @@ fn finalists_and_assessment_stand_in_the_list_of_trials() {
         "what is compared has equal rocks"
     );
 }
+
+/// Measured ends may stand in a scene without a value to fit; there is nothing to calibrate then.
+#[test]
+fn a_scene_without_a_value_to_fit_is_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    fs::write(dir.path().join("ends.csv"), "x_m,y_m\n-20,0\n-18,1\n-19,-1\n").unwrap();
+    for vary in ["", "vary = []"] {
+        let table = format!("[calibrate]\ndeposits = \"ends.csv\"\n{vary}");
+        let scene = rough(dir.path(), 1, &table);
+        let done = rockfall(&["calibrate", word(&scene)]);
+        let said = String::from_utf8(done.stderr).unwrap();
+        assert_eq!(done.status.code(), Some(2), "{said}");
+        assert!(said.contains("rough.toml: [calibrate]: found nothing to fit; write"), "{said}");
+    }
+}

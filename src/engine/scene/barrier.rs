@@ -59,7 +59,7 @@ pub enum Simulation {
 pub struct DesignTable {
     /// The standard it follows; absent = the scene's own rule.
     pub rule: Option<Standard>,
-    /// Percentile of energy and height (per cent), above 0 and below 100; UNI 11211-4 takes 95 if it is absent.
+    /// Percentile of energy and height (per cent), above 0 and below 100; UNI 11211-4 takes 95 if it is absent, and none below.
     pub percentile: Option<f64>,
     /// UNI 11211-4 only, which must have it.
     pub topography: Option<Topography>,
@@ -126,7 +126,7 @@ impl DesignTable {
         ];
         for (list, factors) in lists {
             for (name, factor) in factors {
-                number(name, *factor, Allowed::Positive, "").map_err(|wrong| wrong.inside(list))?;
+                self.check_factor(name, *factor).map_err(|wrong| wrong.inside(list))?;
             }
         }
         match self.rule {
@@ -134,6 +134,16 @@ impl DesignTable {
             Some(Standard::Uni11211) => self.check_uni(),
             Some(Standard::Onr24810) => self.check_onr(),
         }
+    }
+
+    /// Partial factors of a standard are on the safe side.
+    fn check_factor(&self, name: &str, factor: f64) -> Checked {
+        number(name, factor, Allowed::Positive, "")?;
+        if self.rule.is_some() && factor < 1.0 {
+            let remedy = "write 1.0 or more, as factors of a standard are, or leave rule out";
+            return Err(Complaint::about(name, remedy));
+        }
+        Ok(())
     }
 
     fn check_own(&self) -> Checked {
@@ -185,6 +195,11 @@ impl DesignTable {
                 let remedy = format!("remove it: the rule sets it from {name} = …");
                 return Err(Complaint::about(name, remedy).inside(list));
             }
+        }
+        if self.percentile() < UNI_PERCENTILE {
+            let remedy =
+                "write 95.0 or more, or nothing for 95, as the standard has it, or leave rule out";
+            return Err(Complaint::about("percentile", remedy));
         }
         if self.free_height_m < UNI_FREE_HEIGHT_M {
             let remedy = "write 0.5 or more, as the standard asks for, or leave rule out";
