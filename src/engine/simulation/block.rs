@@ -28,7 +28,7 @@ use crate::solver::body::Body;
 use crate::solver::environment::ContactEnvironment;
 use crate::solver::loss::Loss;
 use crate::solver::roughness::RoughFacets;
-use crate::solver::scar::Scars;
+use crate::solver::scar::{GroundBlow, Scars};
 use crate::solver::step_control::{Advance, StepError};
 use crate::solver::struck::Struck;
 
@@ -228,10 +228,7 @@ impl Roll<'_> {
             };
             self.recorder.begin_impact(&struck, now_s, &MeshEnergy::default());
         }
-        let fastest = self.moving.fastest(block, struck.iter());
-        if let Some(touch) = fastest {
-            self.dig(touch.triangle, &touch.normal);
-        }
+        self.dig_where(&struck);
         self.footing.aside = struck;
         let broken = self.break_stems();
         self.footing.press_stems(&self.world, (block, &self.moving));
@@ -262,12 +259,33 @@ impl Roll<'_> {
         lost.is_some()
     }
 
-    /// Digs in where it strikes a triangle fastest, as fast as the centre comes to it.
-    fn dig(&mut self, triangle: u32, normal: &Vec3) {
-        let v = &self.moving.v;
-        let speeds = (-normal.dot(v), v.norm());
-        let on = (self.world.ground_of(triangle), *normal);
-        let kept = self.scars.enter(&self.world.body, on, speeds);
+    /// Digs into the soil of what is struck.
+    fn dig_where(&mut self, struck: &[BlockTouch]) {
+        if !self.scars.are_any() {
+            return;
+        }
+        let mut blows = std::mem::take(&mut self.footing.blows);
+        blows.clear();
+        blows.extend(struck.iter().map(|touch| {
+            let of_point_m_s = self.moving.approach_m_s(self.block, touch);
+            self.blow_on((touch.triangle, touch.normal), of_point_m_s)
+        }));
+        self.dig(&blows);
+        self.footing.blows = blows;
+    }
+
+    /// What strikes a triangle with a normal, with this approach of the point that touches (m/s).
+    fn blow_on(&self, (triangle, normal): (u32, Vec3), of_point_m_s: f64) -> GroundBlow {
+        let approach_m_s = -normal.dot(&self.moving.v);
+        GroundBlow { ground: self.world.ground_of(triangle), normal, approach_m_s, of_point_m_s }
+    }
+
+    /// Digs into the soil of the blows, as fast as the centre comes to it.
+    fn dig(&mut self, blows: &[GroundBlow]) {
+        let holding = self.footing.touching(self.block).map(|touch| touch.triangle);
+        let in_soil = self.scars.holds(&self.world, holding);
+        let how = (self.moving.v.norm(), in_soil);
+        let kept = self.scars.enter(&self.world.body, blows, how);
         self.slow(kept);
     }
 

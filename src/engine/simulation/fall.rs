@@ -6,6 +6,7 @@ use super::recorder::{Keep, Recorder};
 use super::rock_in_contact::RockInContact;
 use super::settings::RunSettings;
 use super::{Stop, Trajectory};
+use crate::contact::TOUCH;
 use crate::flight::{Parabola, time_of_impact_past};
 use crate::ground::Law;
 use crate::random::RandomStream;
@@ -14,6 +15,7 @@ use crate::rock::{Motion, Vec3};
 use crate::solver::body::Body;
 use crate::solver::contact_state::ContactState;
 use crate::solver::loss::Loss;
+use crate::solver::rigid::STRUCK_TOGETHER;
 use crate::solver::roughness::RoughFacets;
 use crate::solver::scar::Scars;
 use crate::solver::slip::Slip;
@@ -72,7 +74,8 @@ impl<'a> Fall<'a> {
     fn look(&mut self) {
         let Motion { position_m: c, velocity_m_s: v, spin_rad_s: w, .. } = self.recorder.now;
         let world = self.settings.around(self.body, self.laws);
-        self.state.begin(&world, c, v, w);
+        let touch = if self.is_rigid() { STRUCK_TOGETHER } else { TOUCH };
+        self.state.begin_within(&world, (c, v, w), touch);
     }
 
     /// The journey, complete.
@@ -146,7 +149,7 @@ impl<'a> Falling<'a> for Fall<'a> {
         self.look();
         self.in_contact().announce();
         // soil takes speed out of the blow before any spring answers
-        let kept = self.answer_blow();
+        let kept = self.answer_blows();
         self.recorder.now.velocity_m_s *= kept;
         let world = self.settings.around(self.body, self.laws);
         let held = if self.is_rigid() { Loss::default() } else { self.state.stored_j(&world) };
@@ -168,7 +171,7 @@ impl<'a> Falling<'a> for Fall<'a> {
         let mut done = solver::advance(stepper, &world, self.state, most_s)?;
         self.in_contact().announce();
         self.soil_after_step(&before, done.dt);
-        self.answer_blow();
+        self.answer_blows();
         let world = self.settings.around(self.body, self.laws);
         // a stem has given way: stiffness and contacts changed, so the stepper forgets its factors and its step
         if self.state.bend(&world, &mut done.loss) {

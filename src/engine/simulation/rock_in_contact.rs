@@ -8,10 +8,10 @@ use super::impacts::MeshEnergy;
 use super::recorder::Recorder;
 use crate::contact::ContactPoint;
 use crate::contact::history::ContactHistory;
-use crate::solver::contact_state::{Blow, ContactEnvironment, ContactState};
+use crate::solver::contact_state::{ContactEnvironment, ContactState};
 use crate::solver::loss::Loss;
 use crate::solver::roughness::Meeting;
-use crate::solver::struck::Struck;
+use crate::solver::struck::{Blow, Struck};
 use nalgebra::Rotation3;
 use std::f64::consts::PI;
 
@@ -33,9 +33,8 @@ pub(super) struct RockInContact<'r, 'a> {
 impl RockInContact<'_, '_> {
     /// Notes down impacts that have just begun, and turns the rock against the facet of the fastest.
     ///
-    /// Why the fastest: all contacts that begin at one instant see the same facet of rough ground,
-    /// and the blow that counts for soil and dashpot is the fastest of them. Speeds are those
-    /// before the blow.
+    /// Why the fastest: all contacts that begin at one instant see the same facet of rough ground. Soil and dashpots are those of
+    /// every ground that is struck. Speeds are those before the blow.
     pub(super) fn announce(&mut self) {
         let Some(fastest) = self.fastest_unannounced() else { return };
         let facet = self.next_facet(&fastest);
@@ -48,11 +47,8 @@ impl RockInContact<'_, '_> {
         // be charged with it
         let held_j = self.held_j(|history| history.announced);
         let until_s = self.recorder.now.time_s + self.impact_time();
-        let rebounds = self.announce_all((&fastest, to_facet_m_s), (until_s, &held_j));
-        if rebounds {
-            let approach_m_s = fastest.approach_m_s.max(to_facet_m_s);
-            self.state.blow = Some(Blow { approach_m_s, ..fastest });
-        }
+        self.state.blows.clear();
+        self.announce_all((&fastest, to_facet_m_s), (until_s, &held_j));
         // The rock is turned instead of the mesh: contact itself stays as it is. What is captured is turned too: the facet
         // takes what it takes.
         if let Some((turn, _)) = facet {
@@ -86,26 +82,27 @@ impl RockInContact<'_, '_> {
         begun.reduce(|one, other| if other.approach_m_s > one.approach_m_s { other } else { one })
     }
 
-    /// Notes down the contacts that have begun, the `fastest` by its approach to the facet; whether any rebounds.
+    /// Notes down the contacts that have begun, the `fastest` by its approach to the facet, and the blows of those that rebound.
     /// One that was captured, or is too slow, is announced but is no impact.
     fn announce_all(
         &mut self,
         (fastest, to_facet_m_s): (&Blow, f64),
         (until_s, held_j): (f64, &MeshEnergy),
-    ) -> bool {
+    ) {
         let Self { world, state, recorder, .. } = self;
-        let ContactState { c, histories, struck, .. } = &mut **state;
-        let mut rebounds = false;
+        let ContactState { c, histories, struck, blows, .. } = &mut **state;
         // in the rigid limit what is about to be struck stands in a list of its own
         for history in histories.iter_mut().chain(struck.iter_mut()) {
             if std::mem::replace(&mut history.announced, true) || history.captured {
                 continue;
             }
-            rebounds = true;
             let own_m_s = -history.n.dot(&recorder.now.velocity_m_s);
             // the facet counts for the contact that it was drawn for
             let is_fastest = history.n == fastest.n;
             let approach_m_s = if is_fastest { own_m_s.max(to_facet_m_s) } else { own_m_s };
+            let (n, triangle) = (history.n, history.triangle);
+            // none is left out: as many contacts as a rock has at once
+            blows.try_push(Blow { approach_m_s, n, triangle }).ok();
             // what comes too slowly is no impact
             history.impact = if approach_m_s < world.law(history.triangle).capture_m_s {
                 0
@@ -115,7 +112,6 @@ impl RockInContact<'_, '_> {
                 recorder.begin_impact(&struck, until_s, held_j)
             };
         }
-        rebounds
     }
 
     /// Breaks the stems that cannot take the current blow, and meets the next facet if it is time for it; returns the longest

@@ -7,34 +7,61 @@
 //! falls with the speed of the impact, is the ground's own (`Law::struck_at`).
 
 use super::fall::{Fall, Slips};
+use crate::contact::MOST;
 use crate::contact::history::ContactHistory;
 use crate::rock::Vec3;
+use crate::solver::scar::GroundBlow;
+use crate::solver::struck::Blow;
+use arrayvec::ArrayVec;
 
 /// Growth of `κ s` within one step, about (–): friction changes between steps.
 /// Taken at the step's middle, so what is left of the error is of second order in it.
 const GROWTH_OF_STEP: f64 = 0.02;
 
 impl Fall<'_> {
-    /// Gives the ground that has just been struck its dashpot, and lets the rock dig in; returns what it keeps of its speed (–).
+    /// Lets the rock dig into the soil that has just been struck, and gives the grounds that were their dashpots; returns what it keeps of
+    /// its speed (–).
     ///
-    /// Order: the soil takes its share first, and the dashpot is that of the speed that is left.
+    /// Order: the soil takes its share first, and the dashpots are those of the speed that is left.
     /// `kept` is a factor on the velocity, so the direction stays and the spin is untouched: drag
     /// acts at the centre.
-    pub(super) fn answer_blow(&mut self) -> f64 {
-        let Some(blow) = self.state.blow.take() else { return 1.0 };
-        let ground = self.settings.around(self.body, self.laws).ground_of(blow.triangle);
-        let speeds = (blow.approach_m_s, self.state.v.norm());
-        let kept = self.soil.scars.enter(&self.body, (ground, blow.n), speeds);
+    pub(super) fn answer_blows(&mut self) -> f64 {
+        if self.state.blows.is_empty() {
+            return 1.0;
+        }
+        let kept = if self.soil.scars.are_any() { self.dig() } else { 1.0 };
         self.slow(kept);
-        self.laws[usize::from(ground)].struck_at(kept * blow.approach_m_s);
+        let world = self.settings.around(self.body, self.laws);
+        let of = |blow: &Blow| (world.ground_of(blow.triangle), kept * blow.approach_m_s);
+        let mut struck: ArrayVec<(u16, f64), MOST> = self.state.blows.iter().map(of).collect();
+        self.state.blows.clear();
+        // the fastest on each ground last
+        struck.sort_by(|one, other| one.1.total_cmp(&other.1));
+        for (ground, approach_m_s) in struck {
+            self.laws[usize::from(ground)].struck_at(approach_m_s);
+        }
         kept
+    }
+
+    /// What the rock keeps of its speed as it digs into what it strikes (–).
+    fn dig(&mut self) -> f64 {
+        let world = self.settings.around(self.body, self.laws);
+        let (state, scars) = (&self.state, &mut *self.soil.scars);
+        let holding = state.histories.iter().chain(state.struck.iter());
+        let in_soil = scars.holds(&world, holding.map(|history| history.triangle));
+        let blow = |&Blow { approach_m_s, n: normal, triangle }: &Blow| {
+            let ground = world.ground_of(triangle);
+            GroundBlow { ground, normal, approach_m_s, of_point_m_s: approach_m_s }
+        };
+        let struck: ArrayVec<GroundBlow, MOST> = state.blows.iter().map(blow).collect();
+        scars.enter(&self.body, &struck, (state.v.norm(), in_soil))
     }
 
     /// Before a step: what strikes, how friction has grown, and the longest step (s).
     /// The longest step is the least of what stems, scars and growing friction allow.
     pub(super) fn before_step(&mut self) -> f64 {
         let longest_s = self.in_contact().before_step();
-        self.answer_blow();
+        self.answer_blows();
         self.state.plane.ploughs = self.soil.scars.are_any();
         let kept = self.soil.scars.plough_ahead();
         self.slow(kept);

@@ -25,6 +25,7 @@ use super::law::capture_m_s;
 use super::loss::Loss;
 use super::rigid::HELD;
 use super::roughness::RoughFacets;
+use super::scar::GroundBlow;
 use super::slip::Slip;
 use super::stem_load::StemLoad;
 use crate::body::Block;
@@ -86,6 +87,8 @@ pub(crate) struct Footing {
     wanted: Vec<(BlockContact, f64)>,
     /// Touches set aside for a moment.
     pub(crate) aside: Vec<BlockTouch>,
+    /// What strikes grounds at one instant.
+    pub(crate) blows: Vec<GroundBlow>,
     /// Springs of its contacts, in the schemes that have them, and which belongs to each of the last look.
     pub(crate) springs: Springs,
     of_touch: Vec<Option<usize>>,

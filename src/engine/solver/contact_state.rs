@@ -10,6 +10,7 @@ use super::loss::Loss;
 use super::plane_state::PlaneState;
 use super::roughness::{RoughFacets, Tilt};
 use super::stem_load::StemLoad;
+use super::struck::Blow;
 use super::tableau::STAGES;
 use crate::contact::history::{ContactHistories, HISTORIES};
 use crate::contact::neighbours::Neighbours;
@@ -17,6 +18,7 @@ use crate::contact::{ContactPoints, MOST, TOUCH};
 use crate::ground::Law;
 use crate::rock::Vec3;
 use crate::stopwatch::{Stopwatches, TimedPiece};
+use arrayvec::ArrayVec;
 use nalgebra::Rotation3;
 
 /// Rates of change of a rock in contact.
@@ -63,17 +65,6 @@ impl StateRates {
     };
 }
 
-/// An impact that rebounds.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Blow {
-    /// Speed of approach (m/s), to the facet on rough ground.
-    pub(crate) approach_m_s: f64,
-    /// Normal of the surface.
-    pub(crate) n: Vec3,
-    /// Triangle whose ground answers.
-    pub(crate) triangle: u32,
-}
-
 /// Impacts that an implicit step runs into: see `step_control::onset`.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Onset {
@@ -116,8 +107,8 @@ pub struct ContactState {
     pub(crate) impact: ImpactProgress,
     /// Contacts that are about to be struck anew within an episode (`rigid`).
     pub struck: ContactHistories,
-    /// The blow that has been announced last, until somebody takes it.
-    pub(crate) blow: Option<Blow>,
+    /// The blows that have been announced last, of one instant, until somebody takes them.
+    pub(crate) blows: ArrayVec<Blow, MOST>,
     /// The facets it meets on rough ground.
     pub(crate) facets: RoughFacets,
     /// What it has done to the stems.
@@ -177,7 +168,7 @@ impl ContactState {
             is_struck: true,
             onset: Onset::default(),
             may_yield: false,
-            blow: None,
+            blows: ArrayVec::new_const(),
             facets: RoughFacets::default(),
             stem_load: StemLoad::default(),
             scratch: DdaScratch::default(),
@@ -190,20 +181,31 @@ impl ContactState {
 impl ContactState {
     /// Takes a rock that has just touched; contacts slower than the capture speed are captured.
     pub fn begin(&mut self, world: &ContactEnvironment, c: Vec3, v: Vec3, w: Vec3) {
+        self.begin_within(world, (c, v, w), TOUCH);
+    }
+
+    /// The same with what is nearer than `touch` (–, relative to R) taken as touched.
+    pub(crate) fn begin_within(
+        &mut self,
+        world: &ContactEnvironment,
+        (c, v, w): (Vec3, Vec3, Vec3),
+        touch: f64,
+    ) {
         (self.c, self.v, self.w) = (c, v, w);
         self.histories.clear();
         self.fresh = false;
         self.plane.forget();
         self.impact.forget();
         self.struck.clear();
-        (self.is_struck, self.blow, self.onset) = (true, None, Onset::default());
+        self.blows.clear();
+        (self.is_struck, self.onset) = (true, Onset::default());
         // Nothing of the rock before, not even a guess, may tell.
         self.contacts.iter_mut().for_each(|contact| contact.mode = SlipState::default());
         if !self.near.covers(&c) {
             let margin = self.way_of_impact(world);
             self.collect_within(world, &c, margin);
         }
-        self.look(world, &c, world.body.radius * (1.0 + TOUCH));
+        self.look(world, &c, world.body.radius * (1.0 + touch));
         // An impact rebounds or not as a whole, by its fastest approach.
         let captured = self.touches.iter().all(|touch| world.captures(touch, &v));
         for k in 0..self.touches.len() {

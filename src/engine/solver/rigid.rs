@@ -35,6 +35,9 @@ pub(super) use contact::{GroundContact, settle, sustained_m_s};
 
 /// Touches no further away than this still hold the rock (–, relative to R).
 pub(crate) const HELD: f64 = 1e-4;
+/// What a rock is nearer to than this when it strikes something else it strikes with it (–, relative to R): steps end so far from what they
+/// come to, and of two walls that a rock rolls between neither is first.
+pub(crate) const STRUCK_TOGETHER: f64 = 1e-6;
 /// Local error of an impact followed in its own time (–, relative to its speed).
 pub(crate) const IMPACT: f64 = 2e-5;
 /// An approach slower than this is none (–, relative to `√(g R)`): what a step leaves of it rubs off no more than rounding of the ground.
@@ -60,7 +63,7 @@ pub fn advance(
     state.look_ahead_again(world, &c);
     if hits(world, state) {
         // only what touches at this instant takes part in the impact
-        let touches = state.touches.nearer(world.body.radius * (1.0 + TOUCH));
+        let touches = state.touches.nearer(world.body.radius * (1.0 + STRUCK_TOGETHER));
         if state.is_struck {
             impact(world, state, &touches, &mut done);
         } else {

@@ -59,6 +59,30 @@ impl Furrow {
     }
 }
 
+/// What strikes the rock: a ground, on a plane.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct GroundBlow {
+    pub(crate) ground: u16,
+    /// Unit normal, from the mesh to the rock.
+    pub(crate) normal: Vec3,
+    /// How fast the centre comes to it (m/s).
+    pub(crate) approach_m_s: f64,
+    /// The same of the point that touches, spin included (m/s).
+    pub(crate) of_point_m_s: f64,
+}
+
+impl GroundBlow {
+    /// Whether none of all that strike the same ground comes in faster; of equal ones the first.
+    fn is_fastest_of(&self, place: usize, all: &[Self]) -> bool {
+        let is_before = |(k, other): (usize, &Self)| {
+            let [one, other_m_s] = [self, other].map(|blow| blow.of_point_m_s);
+            other.ground == self.ground
+                && (other_m_s > one || other_m_s.total_cmp(&one).is_eq() && k < place)
+        };
+        !all.iter().enumerate().any(is_before)
+    }
+}
+
 /// What a rock in contact stands on.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum ScarFloor {
@@ -135,8 +159,8 @@ impl Scars {
         self.is_any
     }
 
-    /// What of these contacts, by triangle and normal, the rock stands on in its scar: the first with soil that drags, else the first
-    /// that goes on as the plane of the scar does.
+    /// What of these contacts, by triangle and normal, the rock stands on in its scar: what has soil that drags, first of all that which it is in
+    /// and else the first ground, or, without any, the first that goes on as the plane of the scar does.
     ///
     /// A stem that it leans on, or a wall beside the soil, is no floor: the rock has not climbed out of the soil by it.
     pub(crate) fn floor(
@@ -144,11 +168,18 @@ impl Scars {
         world: &ContactEnvironment,
         contacts: impl Iterator<Item = (u32, Vec3)>,
     ) -> ScarFloor {
+        let own = self.now.map(|now| now.ground);
         let mut floor = ScarFloor::Unknown;
+        // of several grounds with soil, whatever the order in which they are touched
+        let mut soil: Option<(bool, u16)> = None;
         for (triangle, n) in contacts {
             let ground = world.ground_of(triangle);
             if self.layer(ground).is_some() {
-                return ScarFloor::On(ground, n);
+                let rank = (own != Some(ground), ground);
+                if soil.is_none_or(|known| rank < known) {
+                    (soil, floor) = (Some(rank), ScarFloor::On(ground, n));
+                }
+                continue;
             }
             let is_first = matches!(floor, ScarFloor::Unknown);
             if is_first && !world.terrain.is_tree(triangle) && self.goes_on_along(&n) {
@@ -156,6 +187,15 @@ impl Scars {
             }
         }
         floor
+    }
+
+    /// Whether a rock with these contacts, by triangle, stands in soil that drags.
+    pub(crate) fn holds(
+        &self,
+        world: &ContactEnvironment,
+        mut triangles: impl Iterator<Item = u32>,
+    ) -> bool {
+        triangles.any(|triangle| self.layer(world.ground_of(triangle)).is_some())
     }
 
     /// Whether a plane with this normal continues that of the scar.
@@ -189,21 +229,34 @@ impl Scars {
         };
     }
 
-    /// An impact on a ground, on a plane with this normal, with an approach (m/s) of a rock at a speed (m/s): what it keeps of its
-    /// speed on the way in (–), from the depth that it is in already.
+    /// What strikes at one instant a rock at a speed (m/s), which is `in_soil` by other contacts or not: what it keeps of its speed on the
+    /// way in (–), from the depth that it is in already. Of the grounds that are struck, each by what comes in fastest, that counts which is
+    /// dug deepest: whichever comes first or is hit fastest, soil beside a hard wall is dug.
     pub(crate) fn enter(
         &mut self,
         body: &Body,
-        on: (u16, Vec3),
-        (approach_m_s, speed_m_s): (f64, f64),
+        struck: &[GroundBlow],
+        (speed_m_s, in_soil): (f64, bool),
     ) -> f64 {
-        let Some(dug) = self.dug(body, on, approach_m_s.max(0.0)) else {
-            if self.goes_on_along(&on.1) {
+        let (mut deepest, mut ends) = (None, false);
+        let fastest = |(place, blow): &(usize, &GroundBlow)| blow.is_fastest_of(*place, struck);
+        for (_, blow) in struck.iter().enumerate().filter(fastest) {
+            let on = (blow.ground, blow.normal);
+            let Some(dug) = self.dug(body, on, blow.approach_m_s.max(0.0)) else {
+                ends |= !in_soil && self.goes_on_along(&blow.normal);
+                continue;
+            };
+            if deepest.is_none_or(|known: Furrow| dug.depth_m > known.depth_m) {
+                deepest = Some(dug);
+            }
+        }
+        let Some(dug) = deepest else {
+            if ends {
                 self.now = None;
             }
             return 1.0;
         };
-        self.stand(body, on);
+        self.stand(body, (dug.ground, dug.normal));
         let depth_m = self.now.map_or(0.0, |now| now.depth_m);
         if dug.depth_m <= depth_m {
             return 1.0;
@@ -211,7 +264,7 @@ impl Scars {
         self.now = Some(dug);
         // speed over the way in: ∫ A ds is the volume that the ball sweeps down to d, along the
         // velocity
-        let cosine = (approach_m_s / speed_m_s).min(1.0);
+        let cosine = (dug.approach_m_s / speed_m_s).min(1.0);
         let swept = |to_m| swept_m3(body.radius, to_m, cosine);
         math::exp(-dug.drag_per_m3 * (swept(dug.depth_m) - swept(depth_m)))
     }
@@ -294,87 +347,4 @@ impl Scars {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use std::f64::consts::PI;
-
-    /// The hard plane lies far below the ball, so that all of it is cut, without gravity: `v = v₀ exp(−C ρ_s A z/2m)` with `A = π R²`, on the
-    /// way in, square and at an angle, and along the plane, in one step or many.
-    #[test]
-    fn a_ball_deep_in_soil_slows_by_the_closed_form_of_drag() {
-        let radius = 0.5;
-        let mass = 2700.0 * 4.0 / 3.0 * PI * radius * radius * radius;
-        let inertia = 0.4 * mass * radius * radius;
-        let body = Body { mass, inertia, radius, gravity: Vec3::zeros() };
-        let (up, speed) = (Vec3::z(), 10.0);
-        for cosine in [1.0, 0.6] {
-            let enter = |strength_kn_m2| {
-                let scar = Scar { strength_kn_m2, drag: 2.5, soil_density_kg_m3: 1700.0 };
-                let layers = vec![Some(scar)];
-                let mut scars = Scars { layers, is_any: true, ..Scars::default() };
-                let kept = scars.enter(&body, (0, up), (cosine * speed, speed));
-                (scar.depth_m(mass, cosine * speed), kept, scars)
-            };
-            let (shallow, before, _) = enter(10.0);
-            let (deep, after, mut scars) = enter(5.0);
-            assert!(shallow > 2.0 * radius && deep > shallow);
-            let area = PI * radius * radius;
-            let per_m = 2.5 * 1700.0 * area / (2.0 * mass);
-            let known = math::exp(-per_m * (deep - shallow) / cosine);
-            assert!((after / before / known - 1.0).abs() < 1e-12, "{cosine}");
-            let whole = scars.plough(&body, (0.7, ScarFloor::On(0, up)), None);
-            assert!((whole / math::exp(-per_m * 0.7) - 1.0).abs() < 1e-12, "{whole}");
-            // and shared out over the steps before and after as they come
-            let mut ahead = 1.0;
-            let parts: f64 =
-                (0..7).map(|_| scars.plough(&body, (0.1, ScarFloor::Unknown), None)).product();
-            scars.pace = Pace::default();
-            for way_m in [0.1, 0.2, 0.02, 0.08, 0.1, 0.2] {
-                ahead *= scars.plough_ahead();
-                ahead *= scars.plough(&body, (way_m, ScarFloor::Unknown), None);
-            }
-            assert!((ahead / whole - 1.0).abs() < 1e-12, "{ahead} {whole}");
-            assert!((parts / whole - 1.0).abs() < 1e-12, "{parts} {whole}");
-        }
-    }
-
-    /// A hop within the soil takes what drag takes on the way flown, step by step, as deep as the ball then is; so little is left out where
-    /// gravity alone bends the way. One that rises out is dragged until it is out, and a flight of no time takes nothing.
-    #[test]
-    fn a_hop_in_a_scar_is_dragged_as_deep_as_it_is() {
-        let (radius, g) = (0.4, 9.81);
-        let mass = 2700.0 * 4.0 / 3.0 * PI * radius * radius * radius;
-        let (inertia, gravity) = (0.4 * mass * radius * radius, Vec3::new(0.0, 0.0, -g));
-        let body = Body { mass, inertia, radius, gravity };
-        let scar = Scar { strength_kn_m2: 8000.0, drag: 2.5, soil_density_kg_m3: 1700.0 };
-        let layers = vec![Some(scar)];
-        let mut scars = Scars { layers, is_any: true, ..Scars::default() };
-        scars.enter(&body, (0, Vec3::z()), (3.0, 14.0));
-        let (dug, k) = (scars.now, scar.drag_per_m3(mass));
-        let depth = scar.depth_m(mass, 3.0);
-        for share in [0.02, 0.5, 0.9] {
-            let up = share * (2.0 * g * depth).sqrt();
-            scars.now = dug;
-            assert!(scars.leave(&body, &Vec3::new(14.0, 0.0, up)) >= 1.0);
-            let (mut at, mut v, dt) = (0.0, Vec3::new(14.0, 0.0, up), 1e-6);
-            while at >= 0.0 {
-                let cut = cut_area_m2(radius, depth - at, 0.0);
-                v += (gravity - v * (k * cut * v.norm())) * dt;
-                at += v.z * dt;
-            }
-            let hop_s = 2.0 * up / g;
-            let kept = scars.fly(&body, &Vec3::new(14.0, 0.0, -up), hop_s);
-            assert!(scars.now.is_some(), "{share}");
-            let taken = [1.0 - kept, 1.0 - v.norm() / 14.0_f64.hypot(up)];
-            assert!((taken[0] / taken[1] - 1.0).abs() < 0.1, "{share}: {taken:?}");
-        }
-        scars.now = dug;
-        assert!(scars.fly(&body, &Vec3::new(14.0, 0.0, 0.0), 0.0) >= 1.0 && scars.now.is_some());
-        // over ground that falls away: from the plane it is out after d = g t (T − t)/2
-        let kept = scars.fly(&body, &Vec3::new(14.0, 0.0, -9.81), 1.0);
-        assert!(scars.now.is_none() && kept < 1.0);
-        let out_s = 0.5 * (1.0 - (1.0 - 8.0 * depth / g).sqrt());
-        let most = k * cut_area_m2(radius, depth, 0.0) * 14.9 * out_s;
-        assert!(-math::ln(kept) < 0.5 * most && -math::ln(kept) > 0.25 * most, "{kept}");
-    }
-}
+mod tests;

@@ -16,9 +16,10 @@ use super::body::Twist;
 use super::contact_state::{ContactEnvironment, ContactState};
 use super::joint_blow::{JointBody, JointContact, JointContacts, joint_blow};
 use super::loss::Loss;
+use super::rigid::STRUCK_TOGETHER;
 use super::yielding::yielding_impact;
 use crate::contact::history::ContactHistory;
-use crate::contact::{ContactPoint, MOST, TOUCH};
+use crate::contact::{ContactPoint, MOST};
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
 use crate::terrain::stems::Stems;
@@ -203,7 +204,7 @@ impl ContactState {
     ) {
         let Some(stems) = world.terrain.stems.as_ref() else { return };
         let c = self.c;
-        self.look(world, &c, world.body.radius * (1.0 + TOUCH));
+        self.look(world, &c, world.body.radius * (1.0 + STRUCK_TOGETHER));
         while let Some(broken) = self.broken_by(world, (&self.v, &self.w)) {
             for (touch, loss) in &broken.struck {
                 note(self, touch, (loss, self.is_new(stems, touch)));

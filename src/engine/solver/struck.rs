@@ -3,6 +3,17 @@
 use crate::contact::{Feature, FeatureKind};
 use crate::rock::Vec3;
 
+/// An impact that rebounds.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Blow {
+    /// Speed of approach (m/s), to the facet on rough ground.
+    pub(crate) approach_m_s: f64,
+    /// Normal of the surface.
+    pub(crate) n: Vec3,
+    /// Triangle whose ground answers.
+    pub(crate) triangle: u32,
+}
+
 /// A patch that is struck.
 #[derive(Debug, Clone, Copy)]
 pub struct Struck {

@@ -7,6 +7,7 @@ use super::{Roll, turned};
 use crate::rock::Vec3;
 use crate::solver::loss::Loss;
 use crate::solver::roughness::Meeting;
+use crate::solver::scar::GroundBlow;
 use crate::solver::struck::Struck;
 use nalgebra::Rotation3;
 use std::f64::consts::PI;
@@ -51,12 +52,19 @@ impl Roll<'_> {
         // whether a block rebounds is judged by its approach to the facet
         let capture_m_s = self.world.law(fastest.triangle).capture_m_s;
         let to_facet_m_s = facet.map(|(_, speed)| speed).filter(|speed| *speed >= capture_m_s);
+        let mut blows = std::mem::take(&mut self.footing.blows);
+        blows.clear();
+        let begin = self.footing.springs.histories.iter().filter(|history| !history.announced);
+        for one in begin.filter(|history| to_facet_m_s.is_some() || !history.captured) {
+            blows.push(self.blow_on((one.triangle, one.n), one.approach_m_s));
+        }
         for k in 0..self.footing.springs.histories.len() {
             self.begin_impact(k, to_facet_m_s, (until_s, &held_j));
         }
         if to_facet_m_s.is_some() || !fastest.captured {
-            self.dig_and_break((fastest.triangle, &fastest.n), until_s);
+            self.dig_and_break(&blows, until_s);
         }
+        self.footing.blows = blows;
         // what is captured is turned too: the facet takes what it takes
         if let Some((turn, _)) = facet {
             self.footing.turn_against(self.block, &mut self.moving, (turn, until_s));
@@ -84,10 +92,9 @@ impl Roll<'_> {
         Some((turn, at.approach_m_s(&turn)))
     }
 
-    /// What an impact that rebounds does to the ground and to stems; it is that of the triangle and the normal of its fastest
-    /// contact.
-    fn dig_and_break(&mut self, (triangle, n): (u32, &Vec3), until_s: f64) {
-        self.dig(triangle, n);
+    /// What impacts that rebound do to the grounds and to stems.
+    fn dig_and_break(&mut self, blows: &[GroundBlow], until_s: f64) {
+        self.dig(blows);
         if self.break_stems() {
             self.footing.springs.refresh();
         }

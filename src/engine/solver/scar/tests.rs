@@ -1,0 +1,91 @@
+//! Drag in a scar, part by part, against its closed forms.
+
+use super::*;
+use std::f64::consts::PI;
+
+/// The hard plane lies far below the ball, so that all of it is cut, without gravity: `v = v₀ exp(−C ρ_s A z/2m)` with `A = π R²`, on the
+/// way in, square and at an angle, and along the plane, in one step or many.
+#[test]
+fn a_ball_deep_in_soil_slows_by_the_closed_form_of_drag() {
+    let radius = 0.5;
+    let mass = 2700.0 * 4.0 / 3.0 * PI * radius * radius * radius;
+    let inertia = 0.4 * mass * radius * radius;
+    let body = Body { mass, inertia, radius, gravity: Vec3::zeros() };
+    let (up, speed) = (Vec3::z(), 10.0);
+    for cosine in [1.0, 0.6] {
+        let enter = |strength_kn_m2| {
+            let scar = Scar { strength_kn_m2, drag: 2.5, soil_density_kg_m3: 1700.0 };
+            let layers = vec![Some(scar)];
+            let mut scars = Scars { layers, is_any: true, ..Scars::default() };
+            let blow = GroundBlow {
+                ground: 0,
+                normal: up,
+                approach_m_s: cosine * speed,
+                of_point_m_s: speed,
+            };
+            let kept = scars.enter(&body, &[blow], (speed, false));
+            (scar.depth_m(mass, cosine * speed), kept, scars)
+        };
+        let (shallow, before, _) = enter(10.0);
+        let (deep, after, mut scars) = enter(5.0);
+        assert!(shallow > 2.0 * radius && deep > shallow);
+        let area = PI * radius * radius;
+        let per_m = 2.5 * 1700.0 * area / (2.0 * mass);
+        let known = math::exp(-per_m * (deep - shallow) / cosine);
+        assert!((after / before / known - 1.0).abs() < 1e-12, "{cosine}");
+        let whole = scars.plough(&body, (0.7, ScarFloor::On(0, up)), None);
+        assert!((whole / math::exp(-per_m * 0.7) - 1.0).abs() < 1e-12, "{whole}");
+        // and shared out over the steps before and after as they come
+        let mut ahead = 1.0;
+        let parts: f64 =
+            (0..7).map(|_| scars.plough(&body, (0.1, ScarFloor::Unknown), None)).product();
+        scars.pace = Pace::default();
+        for way_m in [0.1, 0.2, 0.02, 0.08, 0.1, 0.2] {
+            ahead *= scars.plough_ahead();
+            ahead *= scars.plough(&body, (way_m, ScarFloor::Unknown), None);
+        }
+        assert!((ahead / whole - 1.0).abs() < 1e-12, "{ahead} {whole}");
+        assert!((parts / whole - 1.0).abs() < 1e-12, "{parts} {whole}");
+    }
+}
+
+/// A hop within the soil takes what drag takes on the way flown, step by step, as deep as the ball then is; so little is left out where
+/// gravity alone bends the way. One that rises out is dragged until it is out, and a flight of no time takes nothing.
+#[test]
+fn a_hop_in_a_scar_is_dragged_as_deep_as_it_is() {
+    let (radius, g) = (0.4, 9.81);
+    let mass = 2700.0 * 4.0 / 3.0 * PI * radius * radius * radius;
+    let (inertia, gravity) = (0.4 * mass * radius * radius, Vec3::new(0.0, 0.0, -g));
+    let body = Body { mass, inertia, radius, gravity };
+    let scar = Scar { strength_kn_m2: 8000.0, drag: 2.5, soil_density_kg_m3: 1700.0 };
+    let layers = vec![Some(scar)];
+    let mut scars = Scars { layers, is_any: true, ..Scars::default() };
+    let blow = GroundBlow { ground: 0, normal: Vec3::z(), approach_m_s: 3.0, of_point_m_s: 3.0 };
+    scars.enter(&body, &[blow], (14.0, false));
+    let (dug, k) = (scars.now, scar.drag_per_m3(mass));
+    let depth = scar.depth_m(mass, 3.0);
+    for share in [0.02, 0.5, 0.9] {
+        let up = share * (2.0 * g * depth).sqrt();
+        scars.now = dug;
+        assert!(scars.leave(&body, &Vec3::new(14.0, 0.0, up)) >= 1.0);
+        let (mut at, mut v, dt) = (0.0, Vec3::new(14.0, 0.0, up), 1e-6);
+        while at >= 0.0 {
+            let cut = cut_area_m2(radius, depth - at, 0.0);
+            v += (gravity - v * (k * cut * v.norm())) * dt;
+            at += v.z * dt;
+        }
+        let hop_s = 2.0 * up / g;
+        let kept = scars.fly(&body, &Vec3::new(14.0, 0.0, -up), hop_s);
+        assert!(scars.now.is_some(), "{share}");
+        let taken = [1.0 - kept, 1.0 - v.norm() / 14.0_f64.hypot(up)];
+        assert!((taken[0] / taken[1] - 1.0).abs() < 0.1, "{share}: {taken:?}");
+    }
+    scars.now = dug;
+    assert!(scars.fly(&body, &Vec3::new(14.0, 0.0, 0.0), 0.0) >= 1.0 && scars.now.is_some());
+    // over ground that falls away: from the plane it is out after d = g t (T − t)/2
+    let kept = scars.fly(&body, &Vec3::new(14.0, 0.0, -9.81), 1.0);
+    assert!(scars.now.is_none() && kept < 1.0);
+    let out_s = 0.5 * (1.0 - (1.0 - 8.0 * depth / g).sqrt());
+    let most = k * cut_area_m2(radius, depth, 0.0) * 14.9 * out_s;
+    assert!(-math::ln(kept) < 0.5 * most && -math::ln(kept) > 0.25 * most, "{kept}");
+}
