@@ -23,6 +23,7 @@ mod rate;
 mod residual;
 mod row;
 mod sample;
+mod strata;
 mod sum;
 mod totals;
 
@@ -252,36 +253,28 @@ impl Hazard {
 
     /// All values of one quantity, sorted: for curves and histograms.
     pub fn sample(&self, quantity: Quantity) -> Sample {
-        let weights = self.weights();
-        let each = self.weighed(quantity, weights.as_ref());
+        let weights = self.weights_or_equal();
         match quantity.open() {
             Some(open) => {
-                let seen = each.zip(self.is_open.iter().copied());
-                Sample::censored(
-                    seen.map(|((value, weighs), is_bound)| (value, weighs, is_bound)),
-                    open,
-                )
+                let seen = self.of_releases(quantity).zip(self.is_open.iter().copied());
+                let each = seen.map(|((value, release), is_bound)| (value, release, is_bound));
+                Sample::censored_of_releases(each, &weights, open)
             }
-            None => Sample::weighted(each),
+            None => Sample::of_releases(self.of_releases(quantity), &weights),
         }
     }
 
     /// The same, the values of rocks that would have gone on taken as they were seen.
     pub fn sample_as_seen(&self, quantity: Quantity) -> Sample {
-        Sample::weighted(self.weighed(quantity, self.weights().as_ref()))
+        Sample::of_releases(self.of_releases(quantity), &self.weights_or_equal())
     }
 
-    /// Values in the order of releases, each with what it weighs.
-    fn weighed<'a>(
-        &'a self,
-        quantity: Quantity,
-        weights: Option<&'a Weights>,
-    ) -> impl Iterator<Item = (f64, f64)> + 'a {
+    /// Values in the order of releases, each with its own.
+    fn of_releases(&self, quantity: Quantity) -> impl Iterator<Item = (f64, usize)> {
         let first = self.first.unwrap_or(0);
         let is_released = |at: &usize| self.not_released.binary_search(at).is_err();
         let released = (first..first + self.rocks()).filter(is_released);
-        let weighs = move |release| weights.map_or(1.0, |all| all.of_release(release));
-        self.values(quantity).iter().copied().zip(released.map(weighs))
+        self.values(quantity).iter().copied().zip(released)
     }
 
     /// The values of one quantity in the order of releases (rocks that were never released have none); infinite where a

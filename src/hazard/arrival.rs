@@ -16,5 +16,5 @@ pub struct Arrival {
 
 /// Values of rocks, each with what the rock stands for.
 pub(super) fn sample(rocks: &[Arrival], weights: &Weights, of: impl Fn(&Arrival) -> f64) -> Sample {
-    Sample::weighted(rocks.iter().map(|rock| (of(rock), weights.of_release(rock.release))))
+    Sample::of_releases(rocks.iter().map(|rock| (of(rock), rock.release)), weights)
 }

@@ -334,8 +334,8 @@ impl Line {
         match &self.weights {
             None => Sample::of(values),
             Some(weights) => {
-                let each = self.releases.iter().map(|at| weights.of_release(*at as usize));
-                Sample::weighted(values.zip(each))
+                let each = self.releases.iter().map(|at| *at as usize);
+                Sample::of_releases(values.zip(each), weights)
             }
         }
     }

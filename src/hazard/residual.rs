@@ -125,8 +125,8 @@ impl LinePassages {
             for at in some() {
                 Largest::update(&mut largest, release(at), values[at]);
             }
-            let each = some().map(|at| (values[at], weights.of_release(release(at))));
-            statistic(&Sample::weighted(each), largest)
+            let each = some().map(|at| (values[at], release(at)));
+            statistic(&Sample::of_releases(each, weights), largest)
         };
         Passing {
             reach: share_up_to(weights, some().map(release).collect::<Vec<_>>().into_iter(), open),

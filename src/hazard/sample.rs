@@ -2,6 +2,8 @@
 
 use super::proportion::student_95;
 use super::quantile::{Open, Percentile, worth};
+use super::strata::Strata;
+use crate::frequency::Weights;
 use crate::math;
 use serde::{Deserialize, Serialize};
 
@@ -11,6 +13,8 @@ pub struct Sample {
     sorted: Vec<f64>,
     /// What each of them weighs; none where all weigh the same.
     weights: Option<Vec<f64>>,
+    /// The strata of weighted values, where they are known.
+    strata: Option<Strata>,
     /// The same with censored values (bounds only) at the far end of their possible range; none when no value is censored.
     far: Option<(Box<Sample>, Open)>,
 }
@@ -61,44 +65,83 @@ impl Sample {
     pub fn of(values: impl IntoIterator<Item = f64>) -> Self {
         let mut sorted: Vec<f64> = values.into_iter().filter(|value| value.is_finite()).collect();
         sorted.sort_unstable_by(f64::total_cmp);
-        Self { sorted, weights: None, far: None }
+        Self { sorted, weights: None, strata: None, far: None }
     }
 
     /// Sorts values, each with what it weighs (0 or more).
     pub fn weighted(values: impl IntoIterator<Item = (f64, f64)>) -> Self {
-        Self::sorted(values.into_iter().filter(|(value, _)| value.is_finite()).collect())
+        let finite = values.into_iter().filter(|(value, _)| value.is_finite());
+        Self::sorted(finite.map(|(value, weighs)| (value, weighs, 0)).collect(), None)
     }
 
-    /// Sorts values with their weights; an open end of where a rock may lie is one of them.
-    fn sorted(mut pairs: Vec<(f64, f64)>) -> Self {
+    /// Sorts values of releases, each with what its release stands for. The interval of the mean is that of stratified sampling.
+    pub fn of_releases(values: impl IntoIterator<Item = (f64, usize)>, weights: &Weights) -> Self {
+        let finite = values.into_iter().filter(|(value, _)| value.is_finite());
+        Self::sorted(
+            finite.map(|(value, release)| of_release(value, release, weights)).collect(),
+            Some(weights),
+        )
+    }
+
+    /// Sorts values with their weights and strata; an open end of where a rock may lie is one of them.
+    fn sorted(mut rows: Vec<(f64, f64, u16)>, weights: Option<&Weights>) -> Self {
         #[expect(clippy::float_cmp, reason = "equal weights are the same number")]
-        let are_equal = pairs.windows(2).all(|pair| pair[0].1 == pair[1].1);
+        let are_equal = rows.windows(2).all(|pair| pair[0].1 == pair[1].1);
         if are_equal {
-            let mut sorted: Vec<f64> = pairs.into_iter().map(|(value, _)| value).collect();
+            let mut sorted: Vec<f64> = rows.into_iter().map(|(value, ..)| value).collect();
             sorted.sort_unstable_by(f64::total_cmp);
-            return Self { sorted, weights: None, far: None };
+            return Self { sorted, weights: None, strata: None, far: None };
         }
-        pairs.sort_by(|one, other| one.0.total_cmp(&other.0).then(one.1.total_cmp(&other.1)));
-        let (sorted, weights) = pairs.into_iter().unzip();
-        Self { sorted, weights: Some(weights), far: None }
+        rows.sort_by(|one, other| {
+            let by = [one.0.total_cmp(&other.0), one.1.total_cmp(&other.1)];
+            by[0].then(by[1]).then(one.2.cmp(&other.2))
+        });
+        let strata = weights.map(|weights| Strata {
+            of: rows.iter().map(|(.., stratum)| *stratum).collect(),
+            rocks: Strata::rocks_of(weights),
+        });
+        let (sorted, weights) = rows.into_iter().map(|(value, weighs, _)| (value, weighs)).unzip();
+        Self { sorted, weights: Some(weights), strata, far: None }
     }
 
     /// Sorts values, each with what it weighs, of which some are only bounds (true): the rock was seen in part. The truth
     /// lies on the `open` side; of a bound that is no number nothing is known, and it counts only there.
     pub fn censored(values: impl IntoIterator<Item = (f64, f64, bool)>, open: Open) -> Self {
-        let known = |(value, _, is_bound): &(f64, f64, bool)| *is_bound || value.is_finite();
-        let seen: Vec<(f64, f64, bool)> = values.into_iter().filter(known).collect();
+        let rows = values.into_iter().map(|(value, weighs, is)| ((value, weighs, 0), is));
+        Self::bounded(rows, open, None)
+    }
+
+    /// The same of releases, each with what it stands for, as [`Self::of_releases`].
+    pub fn censored_of_releases(
+        values: impl IntoIterator<Item = (f64, usize, bool)>,
+        weights: &Weights,
+        open: Open,
+    ) -> Self {
+        let rows = values
+            .into_iter()
+            .map(|(value, release, is)| (of_release(value, release, weights), is));
+        Self::bounded(rows, open, Some(weights))
+    }
+
+    fn bounded(
+        rows: impl Iterator<Item = ((f64, f64, u16), bool)>,
+        open: Open,
+        weights: Option<&Weights>,
+    ) -> Self {
+        let seen: Vec<((f64, f64, u16), bool)> =
+            rows.filter(|((value, ..), is_bound)| *is_bound || value.is_finite()).collect();
         let far_end = match open {
             Open::Above => f64::INFINITY,
             Open::Below => f64::NEG_INFINITY,
         };
-        let far = seen.iter().any(|(.., is_bound)| *is_bound).then(|| {
-            let moved = |&(value, weighs, is_bound): &(f64, f64, bool)| {
-                (if is_bound { far_end } else { value }, weighs)
+        let far = seen.iter().any(|(_, is_bound)| *is_bound).then(|| {
+            let moved = |&((value, weighs, stratum), is_bound): &((f64, f64, u16), bool)| {
+                (if is_bound { far_end } else { value }, weighs, stratum)
             };
-            (Box::new(Self::sorted(seen.iter().map(moved).collect())), open)
+            (Box::new(Self::sorted(seen.iter().map(moved).collect(), weights)), open)
         });
-        Self { far, ..Self::weighted(seen.into_iter().map(|(value, weighs, _)| (value, weighs))) }
+        let finite = seen.into_iter().map(|(row, _)| row).filter(|(value, ..)| value.is_finite());
+        Self { far, ..Self::sorted(finite.collect(), weights) }
     }
 
     /// How many of the values are only bounds.
@@ -131,11 +174,14 @@ impl Sample {
     ///
     /// Where the lower end would be below 0 although no value is, it is `mean · exp(−half/mean)`, normal for the logarithm of the mean.
     /// Summed in ascending order, so the same values give the same bits however they arrived. Weighted values: ratio of
-    /// sums, with the variance `Σ w² (x − mean)² / (Σ w)²` of its linearisation (delta method).
+    /// sums, with the variance `Σ w² (x − mean)² / (Σ w)²` of its linearisation (delta method), of releases stratum by stratum.
     pub fn mean(&self) -> Option<Mean> {
-        let spread = match &self.weights {
-            None => Spread::of(&self.sorted),
-            Some(weights) => Spread::weighted((&self.sorted, weights), self.effective_rocks()),
+        let spread = match (&self.weights, &self.strata) {
+            (None, _) => Spread::of(&self.sorted),
+            (Some(weights), None) => {
+                Spread::weighted((&self.sorted, weights), self.effective_rocks())
+            }
+            (Some(weights), Some(strata)) => Spread::stratified((&self.sorted, weights), strata),
         };
         let (value, below, above) = (spread.mean, spread.below(), spread.above());
         let is_positive = self.sorted.first().is_some_and(|least| *least >= 0.0) && value > 0.0;
@@ -223,6 +269,11 @@ impl Sample {
     }
 }
 
+/// A value of a release, what it stands for, and its stratum.
+fn of_release(value: f64, release: usize, weights: &Weights) -> (f64, f64, u16) {
+    (value, weights.of_release(release), weights.stratum_of(release) as u16)
+}
+
 /// A mean, how well it is known, and how skewed that is.
 struct Spread {
     mean: f64,
@@ -256,6 +307,16 @@ impl Spread {
             [2, 3].map(|power| pairs().map(|(x, w)| (w * (x - mean)).powi(power)).sum::<f64>());
         let error = squares.sqrt() / all;
         Self { mean, error, skewness: skewness(squares, cubes), student: student_95(worth - 1.0) }
+    }
+
+    /// The same of rocks that were released stratum by stratum.
+    fn stratified((values, weights): (&[f64], &[f64]), strata: &Strata) -> Self {
+        let pairs = || values.iter().zip(weights);
+        let all: f64 = weights.iter().sum();
+        let mean = pairs().map(|(x, w)| w * x).sum::<f64>() / all;
+        let [variance, third, freedom] = strata.moments(pairs().map(|(x, w)| w * (x - mean) / all));
+        let skewness = skewness(variance, third);
+        Self { mean, error: variance.sqrt(), skewness, student: student_95(freedom) }
     }
 
     /// How far the interval reaches below the mean.

@@ -55,7 +55,7 @@ const DEFINITIONS: [(&str, &str); 13] = [
     ("max_height_m", "vertical, from the ground below to the lowest point of the rock"),
     (
         "percentiles",
-        "over all rocks that were released, linear between neighbouring order statistics; rocks that left the terrain, ran out of time or failed count with what they had done until then",
+        "over all rocks that were released, linear between neighbouring order statistics; of rocks that stand for unlike numbers of events the smallest value that at least this share of all weight does not exceed; rocks that left the terrain, ran out of time or failed count with what they had done until then",
     ),
     ("reach_angle_deg", "atan(drop / runout)"),
     (

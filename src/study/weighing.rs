@@ -55,13 +55,13 @@ impl Weigh {
         p: f64,
     ) -> Option<Percentile> {
         let weights = self.0.as_ref().map(|frequency| frequency.weights(values.len()));
-        let weight = |release| weights.as_ref().map_or(1.0, |all| all.of_release(release));
-        let each = values.iter().enumerate().map(|(release, value)| (*value, weight(release)));
+        let weights = weights.unwrap_or_else(|| Weights::equal(values.len()));
+        let each = values.iter().enumerate().map(|(release, value)| (*value, release));
         let sample = match open {
-            None => Sample::weighted(each),
+            None => Sample::of_releases(each, &weights),
             Some((bounds, side)) => {
-                let seen = each.zip(bounds).map(|((value, weighs), is)| (value, weighs, *is));
-                Sample::censored(seen, side)
+                let seen = each.zip(bounds).map(|((value, release), is)| (value, release, *is));
+                Sample::censored_of_releases(seen, &weights, side)
             }
         };
         sample.percentile(p)

@@ -157,6 +157,43 @@ fn weighted_means_and_percentiles_are_covered() {
     }
 }
 
+/// A mean over all rocks, and over those that pass a place, knows that every class has as many rocks as it has: it lies in its interval as
+/// often as it should, and that of all rocks is less than half as wide as if sizes came by chance. At a place that only a few rocks of a
+/// class pass, it is no narrower than chance leaves it.
+#[test]
+fn a_mean_knows_the_classes_that_were_released() {
+    const RUNS: u64 = 1000;
+    let c = 0.4;
+    let asked = asked(vec![power_law(0.1, 0.5)]);
+    let frequency = asked.frequency.clone().unwrap();
+    let weights = frequency.weights(400);
+    let moment = |p: f64| 100_f64.powf(p) - 0.1_f64.powf(p);
+    let mean = 0.5 / (c - 0.5) * moment(c - 0.5) / -moment(-0.5);
+    for (reach, most_width) in [(1.0, 0.5), (0.1, 1.1)] {
+        let (mut inside, mut widths) = (0, [0.0; 2]);
+        for seed in 0..RUNS {
+            let values = (0..400).filter_map(|index| {
+                let mut random = stream(seed, Purpose::Size, index);
+                let volume = frequency.stratum(index).quantile_m3(unit(&mut random)).unwrap();
+                let passes = unit(&mut random) < reach;
+                passes.then(|| (volume.powf(c) * (0.5 + unit(&mut random)), index))
+            });
+            let values: Vec<(f64, usize)> = values.collect();
+            let weighed = values.iter().map(|(x, index)| (*x, weights.of_release(*index)));
+            let by_chance = Sample::weighted(weighed).mean().unwrap();
+            let found = Sample::of_releases(values, &weights).mean().unwrap();
+            near(found.value, by_chance.value, 1e-12);
+            let [low, high] = [found.low_95, found.high_95].map(Option::unwrap);
+            inside += u32::from(low <= mean && mean <= high);
+            widths[0] += high - low;
+            widths[1] += by_chance.high_95.unwrap() - by_chance.low_95.unwrap();
+        }
+        let (share, width) = (f64::from(inside) / RUNS as f64, widths[0] / widths[1]);
+        println!("reach {reach}: {inside} of {RUNS}, {width:.3} of the width by chance");
+        assert!((0.93..=0.985).contains(&share) && width < most_width, "{reach}: {share} {width}");
+    }
+}
+
 /// Six of 300 rocks stand for half of all: 300 of them are worth `594²/15 294` = 23 of equal weight, and none of the six beyond P95 says
 /// little; that half of all weight lies on six of them says as little of where the lower end is.
 #[test]

@@ -81,8 +81,8 @@ impl Population {
         match &self.among.standing {
             None => Sample::of(values.iter().map(|(_, x)| x / size)),
             Some(of) => {
-                let weight = |release: usize| of.weights.of_release(release);
-                Sample::weighted(values.iter().map(|&(release, x)| (x / size, weight(release))))
+                let each = values.iter().map(|&(release, x)| (x / size, release));
+                Sample::of_releases(each, &of.weights)
             }
         }
     }
@@ -90,14 +90,14 @@ impl Population {
     /// The same where those of rocks that would have gone on are bounds: the truth lies on that side. A rock that has left no number is one
     /// of which nothing is known.
     pub(super) fn censored_sample(&self, values: &Values, side: Open) -> Sample {
-        let weight = |release: usize| {
-            self.among.standing.as_ref().map_or(1.0, |of| of.weights.of_release(release))
-        };
         let is_open = |release: usize| self.open.binary_search(&release).is_ok();
         let has_none = |release: &&usize| values.binary_search_by_key(*release, |of| of.0).is_err();
-        let unknown = self.open.iter().filter(has_none).map(|&at| (f64::NAN, weight(at), true));
-        let seen = values.iter().map(|&(at, x)| (x, weight(at), is_open(at)));
-        Sample::censored(seen.chain(unknown), side)
+        let unknown = self.open.iter().filter(has_none).map(|&at| (f64::NAN, at, true));
+        let each = values.iter().map(|&(at, x)| (x, at, is_open(at))).chain(unknown);
+        match &self.among.standing {
+            None => Sample::censored(each.map(|(x, _, is_open)| (x, 1.0, is_open)), side),
+            Some(of) => Sample::censored_of_releases(each, &of.weights, side),
+        }
     }
 }
 
