@@ -5,7 +5,7 @@ use super::populations::{ComparedQuantity, Population};
 use super::table::{ComparedStatistic, Group};
 use crate::hazard::{Quantity, Sample, Values};
 use crate::report::axis::Axis;
-use crate::report::canvas::{Canvas, Label, NORMAL, Pen, SMALL, paint, text_width};
+use crate::report::canvas::{Canvas, Label, NORMAL, Pen, SMALL, fitted_among, paint, text_width};
 use crate::report::colour::{BLUE, GREY, INK, PALE, VERMILLION};
 use crate::report::figure::{Drawing, Heading, WIDTH_PX};
 use crate::report::format;
@@ -112,10 +112,17 @@ fn goes_on(canvas: &Canvas<'_>, panel: &Panel, (values, y): (&[f64; 3], f64), co
     }
 }
 
+/// The names of the rows, each cut so that it is told from the others and leaves room for the changes.
+fn fitted_names(rows: &[(String, [f64; 3])]) -> Vec<String> {
+    let all = || rows.iter().map(|(name, _)| name.as_str());
+    all().map(|name| fitted_among(name, all(), (SMALL, 0.55 * WIDTH_PX))).collect()
+}
+
 fn changes(groups: &[Group], words: &Words) -> Drawing {
     let rows = rows(groups, words);
-    let widest = rows.iter().map(|(name, _)| text_width(name, SMALL)).fold(0.0, f64::max);
-    let left = widest.min(0.55 * WIDTH_PX) + 16.0;
+    let names = fitted_names(&rows);
+    let widest = names.iter().map(|name| text_width(name, SMALL)).fold(0.0, f64::max);
+    let left = widest + 16.0;
     let bottom = 8.0 + ROW_PX * rows.len().max(2) as f64;
     let frame = PaperFrame { left, top: 8.0, right: WIDTH_PX - 14.0, bottom };
     let reach = reach_of(&rows);
@@ -124,7 +131,7 @@ fn changes(groups: &[Group], words: &Words) -> Drawing {
     let svg = paint("compare", (WIDTH_PX, bottom + FOOT_PX), &words.say(CHANGES), |canvas| {
         panel.grid_upright(canvas);
         panel.upright(canvas, 0.0, Pen::full(GREY, 1.2));
-        for (k, (name, values)) in rows.iter().enumerate() {
+        for (k, ((_, values), name)) in rows.iter().zip(&names).enumerate() {
             let y = frame.top + ROW_PX * (k as f64 + 0.5);
             canvas.line(&[(frame.left, y), (frame.right, y)], Pen::full(PALE, 0.5).dotted());
             let edge = 1.05 * reach;
@@ -250,6 +257,18 @@ mod tests {
         assert_eq!(shown([-0.2, -0.3, -0.1], 3.0), bits([-0.2, -0.3, -0.1]));
         // below zero there is no such end
         assert_eq!(shown([-1.0, -1.24, -0.76], -3.0), bits([-1.0, -1.24, -0.76]));
+    }
+
+    /// A long name ran out of the figure at its left, where it begins.
+    #[test]
+    fn long_names_keep_their_beginning_and_what_tells_them_apart() {
+        let long = "un très long nom pour voir comment la figure le dessine à côté de ses barres";
+        let row = |what: &str| (format!("line “{long}”: {what}"), [0.0; 3]);
+        let names = fitted_names(&[row("P95 of energy"), row("P95 of height")]);
+        for (name, end) in names.iter().zip(["energy", "height"]) {
+            assert!(text_width(name, SMALL) <= 0.55 * WIDTH_PX, "{name}");
+            assert!(name.starts_with("line “un très") && name.ends_with(end), "{name}");
+        }
     }
 
     /// One row of 200 % leaves the others legible.
