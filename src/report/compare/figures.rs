@@ -60,17 +60,20 @@ pub(super) fn all(comparison: &Comparison) -> Vec<(Heading, Drawing)> {
     drawn
 }
 
-/// The rows of the first figure: name, change and its interval over the value of A.
-fn rows(groups: &[Group], words: &Words) -> Vec<(String, [f64; 3])> {
-    let relative = |group: &Group, row: &ComparedStatistic| -> Option<(String, [f64; 3])> {
+/// A row of the first figure: its place, which may be nowhere, and its statistic; change and its interval over the value of A.
+type ChangeRow = ([String; 2], [f64; 3]);
+
+/// The rows of the first figure.
+fn rows(groups: &[Group], words: &Words) -> Vec<ChangeRow> {
+    let relative = |group: &Group, row: &ComparedStatistic| -> Option<ChangeRow> {
         let (low, high) = row.difference.interval?;
         let a = row.difference.a;
         let named = match group.name.as_str() {
-            "All releases" => row.name_in(words),
+            "All releases" => [String::new(), row.name_in(words)],
             group => {
                 let group = words.say(group);
                 let name = group.split(',').next().unwrap_or_default();
-                format!("{name}{}{}", words.colon(), row.name_in(words))
+                [name.to_owned(), words.colon().to_owned() + &row.name_in(words)]
             }
         };
         let change = [row.difference.value, low, high].map(|x| x / a.abs());
@@ -89,7 +92,7 @@ fn possible([change, low, high]: [f64; 3], a: f64) -> [f64; 3] {
 }
 
 /// Largest change that the axis shows (–): some times the median row, so that a few that change by far do not squeeze the others.
-fn reach_of(rows: &[(String, [f64; 3])]) -> f64 {
+fn reach_of(rows: &[ChangeRow]) -> f64 {
     let most = |values: &[f64; 3]| {
         values.iter().filter(|x| x.is_finite()).fold(0.0_f64, |most, x| most.max(x.abs()))
     };
@@ -112,10 +115,14 @@ fn goes_on(canvas: &Canvas<'_>, panel: &Panel, (values, y): (&[f64; 3], f64), co
     }
 }
 
-/// The names of the rows, each cut so that it is told from the others and leaves room for the changes.
-fn fitted_names(rows: &[(String, [f64; 3])]) -> Vec<String> {
-    let all = || rows.iter().map(|(name, _)| name.as_str());
-    all().map(|name| fitted_among(name, all(), (SMALL, 0.55 * WIDTH_PX))).collect()
+/// The names of the rows: places are cut so that they are told apart and leave room for statistics and changes.
+fn fitted_names(rows: &[ChangeRow]) -> Vec<String> {
+    let places = || rows.iter().map(|([place, _], _)| place.as_str());
+    let name = |([place, statistic], _): &ChangeRow| {
+        let room = 0.55 * WIDTH_PX - text_width(statistic, SMALL);
+        fitted_among(place, places(), (SMALL, room)) + statistic
+    };
+    rows.iter().map(name).collect()
 }
 
 fn changes(groups: &[Group], words: &Words) -> Drawing {
@@ -259,13 +266,19 @@ mod tests {
         assert_eq!(shown([-1.0, -1.24, -0.76], -3.0), bits([-1.0, -1.24, -0.76]));
     }
 
-    /// A long name ran out of the figure at its left, where it begins.
+    /// A long name ran out of the figure at its left, where it begins; cut at its end it would lose its statistic.
     #[test]
-    fn long_names_keep_their_beginning_and_what_tells_them_apart() {
-        let long = "un très long nom pour voir comment la figure le dessine à côté de ses barres";
-        let row = |what: &str| (format!("line “{long}”: {what}"), [0.0; 3]);
-        let names = fitted_names(&[row("P95 of energy"), row("P95 of height")]);
-        for (name, end) in names.iter().zip(["energy", "height"]) {
+    fn long_names_keep_their_beginning_and_their_statistic() {
+        let place =
+            "line “un très long nom pour voir comment la figure le dessine à côté des barres";
+        let row =
+            |end: &str, what: &str| ([format!("{place} {end}”"), format!(": {what}")], [0.0; 3]);
+        let rows =
+            [row("nord", "P95 of energy"), row("sud", "P95 of energy"), row("sud", "Passages")];
+        let names = fitted_names(&rows);
+        for (name, end) in
+            names.iter().zip(["nord”: P95 of energy", "sud”: P95 of energy", "sud”: Passages"])
+        {
             assert!(text_width(name, SMALL) <= 0.55 * WIDTH_PX, "{name}");
             assert!(name.starts_with("line “un très") && name.ends_with(end), "{name}");
         }
@@ -274,7 +287,7 @@ mod tests {
     /// One row of 200 % leaves the others legible.
     #[test]
     fn a_row_that_changes_by_far_does_not_squeeze_the_others() {
-        let row = |x: f64| (String::new(), [x, 0.9 * x, 1.1 * x]);
+        let row = |x: f64| ([String::new(), String::new()], [x, 0.9 * x, 1.1 * x]);
         let rows = [0.05, 0.05, 0.05, 2.0].map(row);
         assert!((reach_of(&rows) - OVER_MEDIAN * 1.1 * 0.05).abs() < 1e-12);
         assert!((reach_of(&[]) - LEAST_CHANGE).abs() < 1e-12);
