@@ -42,6 +42,14 @@ impl MapFrame {
         inside.then(|| place[1] as u32 * self.columns + place[0] as u32)
     }
 
+    /// The cell nearest to a place: at the border of the terrain a rock lies on it with its centre beyond.
+    fn nearest_cell(&self, [x, y, _]: [f64; 3]) -> u32 {
+        let along = |way_m: f64, cells: u32| {
+            ((way_m / self.cell_m).max(0.0) as u32).min(cells.saturating_sub(1))
+        };
+        along(y - self.south_m, self.rows) * self.columns + along(x - self.west_m, self.columns)
+    }
+
     /// Number of cells.
     pub fn cells(&self) -> usize {
         self.columns as usize * self.rows as usize
@@ -225,8 +233,8 @@ impl Maps {
                 }
             }
         }
-        if let (StopKind::AtRest, Some(cell)) = (stop, self.frame.cell(end_m)) {
-            self.known(cell).0.deposits += 1;
+        if stop == StopKind::AtRest {
+            self.known(self.frame.nearest_cell(end_m)).0.deposits += 1;
         }
     }
 
@@ -283,6 +291,21 @@ mod tests {
         assert_eq!(maps.intensity_cells(&weights), [1, 1, 0]);
         assert_eq!(value(Layer::ExceedsWeak), Some(2.0 / 6.0));
         assert_eq!(value(Layer::ExceedsMedium), Some(0.0));
+    }
+
+    /// A rock that lies on the border of the terrain has its centre beyond it, and still counts where it lies.
+    #[test]
+    fn a_rock_at_rest_on_the_border_counts_in_its_cell() {
+        let frame =
+            MapFrame { west_m: 100.0, south_m: 50.0, cell_m: 2.0, columns: 3, rows: 2, epsg: None };
+        let mut maps = Maps::new(frame, &[], MapState::default());
+        for end_m in [[99.8, 51.0, 0.0], [106.2, 54.3, 0.0], [103.0, 49.9, 0.0], [103.0, 51.0, 0.0]]
+        {
+            maps.add(0, &[], (StopKind::AtRest, end_m));
+        }
+        let weights = Weights::equal(4);
+        let found: Vec<(u32, f64)> = maps.values(Layer::Deposits, &weights).collect();
+        assert_eq!(found, [(0, 1.0), (1, 2.0), (5, 1.0)]);
     }
 
     /// One wild rock among a hundred leaves the class where it was; the sixth makes it: P95 of 100 is the 95th.

@@ -8,6 +8,7 @@ pub use spread::{EndSpread, effective, mean_95, rank};
 
 use super::row::{Row, StopKind};
 use super::sample::Sample;
+use crate::count::counted;
 use crate::error::{Error, Result};
 use crate::file::{self, LONGEST_TEXT};
 use crate::gis::FARTHEST_M;
@@ -131,7 +132,8 @@ impl ObservedPath {
             Error::input(path, format!("line {line}"), found, file::table_remedy(&table, remedy))
         })?;
         if ways.len() < 2 {
-            let found = format!("found {} measured ends", ways.len());
+            let ends = counted(ways.len(), "end", "ends");
+            let found = format!("found {} measured {ends}", ways.len());
             return Err(Error::input(path, "rows", found, "write at least two"));
         }
         if let Some((line, way)) = ways.iter().find(|(_, way)| !way.ran(ends.least_runout_m)) {

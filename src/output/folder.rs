@@ -7,6 +7,7 @@ use super::progress::{Identity, PROGRESS, Progress};
 use super::removal::{remove, remove_all};
 use super::summary::{SUMMARY, Summary};
 use super::{CROSSINGS, IMPACTS, PATHS, RELEASES, RunInfo, TABLES, maps};
+use crate::count::number_of;
 use crate::error::{Error, Result};
 use crate::file::{part_of, write_atomic};
 use std::ffi::OsStr;
@@ -138,8 +139,11 @@ fn claimed(dir: &Path, identity: &Identity, mode: Mode) -> Result<Option<Progres
             "take another --out or replace them with --overwrite",
         ),
         _ => {
-            let how_far =
-                format!("holds {} of {} releases of an interrupted run", found.done, old.releases);
+            let how_far = format!(
+                "holds {} of {} of an interrupted run",
+                found.done,
+                number_of(old.releases as u64, "release")
+            );
             let remedy = if mode == Mode::Merge {
                 "take another --out or replace them with --overwrite"
             } else {

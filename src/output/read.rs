@@ -6,6 +6,7 @@ use super::rows::{ImpactRow, PathRow};
 use super::summary::{SUMMARY, Summary};
 use super::vector;
 use super::{CROSSINGS, IMPACTS, PATHS, RELEASES, table};
+use crate::count::number_of;
 use crate::error::{Error, Result};
 use crate::hazard::{
     AnnualRequest, Barrier, BarrierSummary, CrossingRow, Hazard, Layer, Line, LineInfo, OpenRocks,
@@ -110,9 +111,15 @@ impl Results {
     /// If its file cannot be read or understood.
     pub fn map(&self, layer: Layer) -> Result<Option<Grid>> {
         let path = self.dir.join(super::maps::FOLDER).join(layer.file()).with_extension("asc");
-        // results of an earlier version lack the newer layers
-        let is_there = self.summary.maps.is_some() && path.exists();
-        is_there.then(|| Grid::read(&path)).transpose()
+        match (self.summary.maps.is_some(), path.exists()) {
+            (true, true) => Grid::read(&path).map(Some),
+            // every run with maps has this one; results of an earlier version lack the newer layers
+            (true, false) if layer == Layer::Reach => {
+                let found = "the run has written this map, and it is not there";
+                Err(Error::input(&path, "file", found, AGAIN))
+            }
+            _ => Ok(None),
+        }
     }
 
     /// One of the maps of a year by the name of its file without ending; none where it was not asked for.
@@ -287,6 +294,9 @@ pub(super) fn recall(
     }
 }
 
+/// What to do about a file of a run that is not what the run has written.
+const AGAIN: &str = "restore the file as it was written, or run again with --overwrite";
+
 /// Every table must be as long as when the run was finished.
 pub(super) fn check_lengths(dir: &Path, written: &BTreeMap<String, u64>) -> Result<()> {
     for (name, written) in written {
@@ -296,8 +306,8 @@ pub(super) fn check_lengths(dir: &Path, written: &BTreeMap<String, u64>) -> Resu
             return Err(Error::input(
                 &path,
                 "length",
-                format!("found {found} bytes where the run had written {written}"),
-                "restore the file as it was written, or run again with --overwrite",
+                format!("found {} where the run had written {written}", number_of(found, "byte")),
+                AGAIN,
             ));
         }
     }

@@ -30,7 +30,7 @@ const DEFINITIONS: [(&str, &str); 13] = [
     ),
     (
         "barriers",
-        "a barrier stops a rock whose highest point is not above its edge (height_m + 2 radius) and whose total energy it can take; it changes no rock's way, but what it stops does not arrive at the barriers behind it; design energy = percentile x speed factors squared x mass factors, design height = percentile of the highest point x height factors + free height; none where fewer rocks arrive than bound the percentile, design_lacks says how many are missing; energy_95_j and height_95_m are the intervals of the percentile with the same factors",
+        "a barrier stops a rock whose highest point is not above its edge (height_m + 2 radius) and whose total energy it can take; it changes no rock's way, but what it stops does not arrive at the barriers behind it; design energy = percentile x speed factors squared x mass factors, design height = percentile of the highest point x height factors + free height; none where fewer rocks arrive than bound the percentile, design_lacks says how many are missing; energy_95_j and height_95_m are the intervals of the percentile with the same factors, open where they are",
     ),
     (
         "censored",

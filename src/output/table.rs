@@ -1,5 +1,6 @@
 //! CSV files that grow row by row and can be cut back to a length that is known to be good.
 
+use crate::count::number_of;
 use crate::error::{Error, Result};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -39,7 +40,10 @@ impl CsvTable {
             return Err(Error::input(
                 &path,
                 "length",
-                format!("{found} bytes where the interrupted run had written {bytes}"),
+                format!(
+                    "{} where the interrupted run had written {bytes}",
+                    number_of(found, "byte")
+                ),
                 "restore the file, or start again with --overwrite",
             ));
         }
@@ -68,7 +72,7 @@ impl CsvTable {
             return Err(Error::input(
                 other,
                 "length",
-                format!("{found} bytes where the run had written {bytes}"),
+                format!("{} where the run had written {bytes}", number_of(found, "byte")),
                 "restore the file, or run again with --overwrite",
             ));
         }

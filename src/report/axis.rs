@@ -68,14 +68,28 @@ impl Axis {
 
     /// An axis for energies: logarithmic over those above 0 where they spread over more than 30 times, else from 0.
     pub fn energies(values: impl IntoIterator<Item = f64>, title: impl Into<String>) -> Self {
-        let some: Vec<f64> = values.into_iter().filter(|v| v.is_finite() && *v > 0.0).collect();
-        let least = some.iter().copied().reduce(f64::min).unwrap_or(1.0);
-        let most = some.iter().copied().reduce(f64::max).unwrap_or(1.0);
+        Self::energies_beside(values, f64::NAN, title)
+    }
+
+    /// The same with a limit beside the values: the axis holds both, however far the limit is from them.
+    pub fn energies_beside(
+        values: impl IntoIterator<Item = f64>,
+        limit: f64,
+        title: impl Into<String>,
+    ) -> Self {
+        let is_shown = |value: &f64| value.is_finite() && *value > 0.0;
+        let limit = Some(limit).filter(is_shown);
+        let some: Vec<f64> = values.into_iter().filter(is_shown).collect();
+        let largest = some.iter().copied().reduce(f64::max);
+        // what is a ten-thousandth of the largest needs no room
+        let weakest = some.iter().copied().reduce(f64::min);
+        let weakest = weakest.zip(largest).map(|(least, most)| least.max(1e-4 * most));
+        let least = weakest.into_iter().chain(limit).reduce(f64::min).unwrap_or(1.0);
+        let most = largest.into_iter().chain(limit).reduce(f64::max).unwrap_or(1.0);
         if most > 30.0 * least {
-            // what is a ten-thousandth of the largest needs no room
-            Self::ratios(least.max(1e-4 * most), most, title)
+            Self::ratios(least, most, title)
         } else {
-            Self::from_zero(some, title)
+            Self::from_zero(some.into_iter().chain(limit), title)
         }
     }
 
@@ -237,6 +251,18 @@ mod tests {
         }
         let axis = Axis::log(0.0, 0.0, "");
         assert!(axis.high > axis.low && axis.low > 0.0);
+    }
+
+    /// A barrier that takes far more than any rock has, or far less, leaves the rocks on the axis.
+    #[test]
+    fn a_limit_far_from_the_energies_keeps_them_on_the_axis() {
+        for limit in [1e-9, 1e-3, 1.0, 1e3, 1e9] {
+            let axis = Axis::energies_beside([3.0, 40.0, 900.0], limit, "");
+            let is_held = |value: f64| (axis.low..=axis.high).contains(&value);
+            assert!([3.0, 900.0, limit].into_iter().all(is_held), "{limit}: {axis:?}");
+        }
+        // the weakest of the rocks alone may stay out
+        assert!(Axis::energies([1e-9, 900.0], "").low > 1e-3);
     }
 
     #[test]

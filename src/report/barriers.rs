@@ -85,15 +85,15 @@ fn cloud_panel(
     let reach = |at: &Estimate| 1.05 * [at.value, at.high].into_iter().fold(0.0, f64::max);
     let (design_m, design_j) =
         barrier.design.map_or((0.0, 0.0), |of| (reach(&of.height_m), reach(&of.energy_j)));
-    let energies =
-        rocks.iter().map(|rock| rock.total_j).chain([1.05 * barrier.capacity_j, design_j]);
+    let energies = rocks.iter().map(|rock| rock.total_j).chain([design_j]);
     let tops = rocks.iter().map(|rock| rock.top_m).filter(|top| top.is_finite());
     let tops = tops.chain([1.05 * barrier.height_m, design_m]);
     let frame = PaperFrame { left: 0.0, top: TOP_PX, right: RIGHT_PX, bottom: TOP_PX + CLOUD_PX };
     let mut panel = Panel::new(
         frame,
-        Axis::energies(
+        Axis::energies_beside(
             energies.map(|joule| joule / size),
+            1.05 * barrier.capacity_j / size,
             fill(words.energy_axis, &[("unit", &unit)]),
         ),
         Axis::from_zero(tops, words.top_axis),

@@ -147,6 +147,12 @@ fn band(curve: &[Exceedance]) -> Vec<BandPoint> {
     curve.iter().filter(|at| !at.censored).map(point).collect()
 }
 
+/// A unit of energy for a whole table: kJ where it has no number.
+fn energy_unit_of(estimates: impl Iterator<Item = f64>) -> (&'static str, f64) {
+    let largest = estimates.filter(|value| value.is_finite()).reduce(f64::max);
+    largest.map_or(("kJ", 1e3), |largest| ReportQuantity::Total.unit(largest))
+}
+
 /// Share at `x` on a curve of points that rise in x and fall in share: 1 before the curve, `after` behind it.
 fn share_at(curve: &[(f64, f64)], x: f64, after: f64) -> f64 {
     let k = curve.partition_point(|&(value, _)| value < x);

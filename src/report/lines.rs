@@ -23,7 +23,8 @@ const GAP_PX: f64 = 30.0;
 /// Room of the key above the heads of the lower panels (px).
 const KEY_PX: f64 = 18.0;
 const RIGHT_PX: f64 = WIDTH_PX - 20.0;
-/// Heights up to here at least are shown (m): rocks that only roll are not drawn as if they leapt.
+/// Heights up to here at least are shown (m), or up to the radius of the smallest rock: rocks that only roll are not drawn as if they
+/// leapt.
 const LEAST_M: f64 = 0.1;
 /// Marked percentiles, the second one dashed.
 const MARKED: [f64; 2] = [0.50, 0.95];
@@ -125,6 +126,10 @@ fn head(canvas: &Canvas<'_>, panel: &Panel, words: &str) {
     canvas.text(&Label::new(words, at).bold().sized(NORMAL));
 }
 
+fn least_m(line: &ReportLine) -> f64 {
+    LEAST_M.min(line.least_radius_m)
+}
+
 fn upper_panels(
     words: &Words,
     line: &ReportLine,
@@ -148,7 +153,7 @@ fn upper_panels(
     let mut cloud = Panel::new(
         frame(TOP_PX + ALONG_PX + FOOT_PX + GAP_PX, CLOUD_PX),
         Axis::energies(energies, fill(words.energy_axis, &[("unit", &unit)])),
-        Axis::from_zero(heights.chain([LEAST_M]), words.height_axis),
+        Axis::from_zero(heights.chain([least_m(line)]), words.height_axis),
     );
     align([&mut along, &mut cloud]);
     (along, cloud)
@@ -174,7 +179,7 @@ fn lower_panels(
         panel
     };
     let energies = line.energy_exceedance.iter().map(|p| p.x / size);
-    let heights = line.height_exceedance.iter().map(|p| p.x).chain([LEAST_M]);
+    let heights = line.height_exceedance.iter().map(|p| p.x).chain([least_m(line)]);
     [
         panel(0, Axis::energies(energies, fill(words.energy_axis, &[("unit", &unit)]))),
         panel(1, Axis::from_zero(heights, words.height_axis)),

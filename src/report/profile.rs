@@ -47,6 +47,7 @@ pub(super) fn draw(report: &Report, view: &ProfileView) -> Drawing {
         &[
             ("step", &format::plain(view.step_m)),
             ("rocks", &words.rocks(report.released())),
+            ("n", &report.released()),
             ("needs", &NEEDS),
         ],
     );

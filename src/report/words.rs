@@ -332,4 +332,21 @@ mod tests {
         let words = Words::of(Language::En);
         assert_eq!(words.interval("1", format::NO_NUMBER), "at least 1");
     }
+
+    /// A run of one release stood in the captions as "über alle 1 Block".
+    #[test]
+    fn one_rock_is_said_as_one() {
+        let expected = ["over the 1 rock", "über den 1 Block", "sur le 1 bloc", "sul 1 masso"];
+        for (language, expected) in Language::ALL.into_iter().zip(expected) {
+            let words = Words::of(language);
+            let found: [(&str, &dyn Display); 2] = [("rocks", &words.rocks(1)), ("n", &1)];
+            let said = fill(words.profile_caption, &found);
+            assert!(said.contains(expected), "{said}");
+            let one = fill(words.side_caption, &[("paths", &1), ("releases", &1)]);
+            let plurals = ["releases", "Ablösungen", "départs", "distacchi"];
+            assert!(plurals.iter().all(|plural| !one.contains(plural)), "{one}");
+            let more = fill(words.rule_lacks, &[("n", &1)]);
+            assert!(!more.contains("arrive.") || language != Language::En, "{more}");
+        }
+    }
 }

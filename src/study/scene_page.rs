@@ -32,11 +32,12 @@ pub(super) fn page(study: &SceneStudy, wish: Option<Wish>) -> String {
     let mut page = format!("# Error against run time: {}\n\n", study.title);
     let _ = writeln!(
         page,
-        "{} releases under each of {} settings, {} {}. Paths of rocks are chaotic: the same release ends metres apart under any two \
+        "{} {} under each of {} settings, {} {}. Paths of rocks are chaotic: the same release ends metres apart under any two \
          settings, so single paths do not converge, but their statistics do. **Sampling error**: half the 95 % interval of the percentile \
          (order statistics, whatever the distribution). **Error of the steps**: the percentile minus where it goes when the steps are refined, \
          from a fit over all settings with the same releases; its interval from drawing the rocks again 400 times.\n",
         format::decimal(study.releases as f64, 0),
+        format::counted(study.releases, "release", "releases"),
         study.rungs.len(),
         study.threads,
         format::counted(study.threads, "thread", "threads")
@@ -75,6 +76,10 @@ pub fn sentence(study: &SceneStudy, statistic: &StudyStatistic, wanted: Option<f
     let (unit, size) = written_unit(subject.unit, statistic.own.value);
     let small = |value: f64| few_digits(value / size, 2);
     let value = few_digits(statistic.own.value / size, 3);
+    // as in reports: what nothing bounds from above is no number
+    if statistic.own.upper_95.is_none() && statistic.own.lacks(study.releases).is_some() {
+        return format!("**P{} {name}**: {}", statistic.percent, lacking(study, statistic));
+    }
     let head = format!("**P{} {name} {value} {unit}**", statistic.percent);
     let (Some(sampling), Some(total)) = (statistic.sampling_error(), statistic.total_error())
     else {
@@ -96,12 +101,24 @@ pub fn sentence(study: &SceneStudy, statistic: &StudyStatistic, wanted: Option<f
     )
 }
 
+/// How many rocks a percentile needs before it is told at all, and before it has an interval.
+fn lacking(study: &SceneStudy, statistic: &StudyStatistic) -> String {
+    let more = statistic.own.lacks(study.releases).unwrap_or(1);
+    let needed = statistic.own.needs_for_interval(f64::from(statistic.percent) / 100.0);
+    format!(
+        "too few rocks, {more} more {} needed; {needed} in all for an interval.",
+        format::counted(more, "is", "are")
+    )
+}
+
 /// Why a statistic has no errors.
 fn without_errors(study: &SceneStudy, statistic: &StudyStatistic) -> String {
     if statistic.is_only_bound(study.releases) {
         return format!(
-            "only a bound. {} of {} rocks left the terrain, ran out of time or failed, and no number of releases makes it narrower; give terrain that reaches farther, or a longer [solver] longest_s.",
-            statistic.open, study.releases
+            "only a bound. {} of {} {} left the terrain, ran out of time or failed, and no number of releases makes it narrower; give terrain that reaches farther, or a longer [solver] longest_s.",
+            statistic.open,
+            study.releases,
+            format::counted(study.releases, "rock", "rocks")
         );
     }
     let needed = statistic.own.needs_for_interval(f64::from(statistic.percent) / 100.0);

@@ -111,6 +111,11 @@ fn shards_merge_with_weights() {
         assert!(page.contains(said), "{said}");
     }
     the_first_page_says_how_often(&page, &summary(&whole));
+    // maps are results, not figures: what has lost them is run again
+    fs::remove_dir_all(whole.join("maps")).unwrap();
+    let drawn = rockfall(&["draw", whole.to_str().unwrap()]);
+    let message = String::from_utf8_lossy(&drawn.stderr).into_owned();
+    assert!(drawn.status.code() == Some(2) && message.contains("run again"), "{message}");
 }
 
 /// How often a year a block above 300 kJ reaches the road, with and without the net, stands on the first page, before what

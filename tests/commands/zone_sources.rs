@@ -311,3 +311,19 @@ fn rings_that_meet_are_refused() {
         assert!(said.contains("zones.geojson: feature 1: ") && said.contains(says), "{said}");
     }
 }
+
+/// Volumes of zones that nothing asks for change no size, and the plan says so.
+#[test]
+fn volumes_that_are_not_used_are_said() {
+    let dir = Folder::new();
+    let said = |properties: &str, year: &str| {
+        let text = over_zones(&dir, [properties; 2], year).replace("[frequency]\nNONE", "");
+        let scene = Scene::read(&dir.put("scene.toml", &text)).unwrap();
+        let (terrain, _) = scene.read_terrain().unwrap();
+        Plan::compile(&scene, terrain).unwrap().to_string()
+    };
+    let warning = "says how large the rocks of its zones are, which is not used";
+    assert!(said("\"volume_m3\":1.0", "NONE").contains(warning));
+    assert!(said("\"volume_m3\":1.0", "per_year = 0.1").contains(warning));
+    assert!(!said("\"weight\":1.0", "NONE").contains(warning));
+}

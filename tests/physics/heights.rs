@@ -124,3 +124,40 @@ fn cells_and_stretches_are_as_high_as_the_path_in_them() {
     let found = higher_than_its_place(plate, "restitution = 0.2\nroughness_deg = 10.0");
     assert_eq!(found.map(|(points, _)| points), [0, 0], "{found:?}");
 }
+
+/// A slope of 30° over 120 m, so wide, as STL.
+fn strip(wide_m: f64) -> String {
+    let corners = [[0.0, 0.0, 60.0], [wide_m, 0.0, 60.0], [wide_m, 120.0, 0.0], [0.0, 120.0, 0.0]];
+    let vertex = |k: usize| {
+        let [x, y, z] = corners[k];
+        format!("vertex {x} {y} {z}\n")
+    };
+    let facet = |corners: [usize; 3]| {
+        let vertices = corners.map(vertex).concat();
+        format!("facet normal 0 0 1\nouter loop\n{vertices}endloop\nendfacet\n")
+    };
+    format!("solid slope\n{}endsolid\n", [[0, 1, 2], [0, 2, 3]].map(facet).concat())
+}
+
+/// Rocks of a strip of 6 km cross it and do not run along it: its profile had stretches of 100 m. Where the terrain is as long as it is
+/// wide, a stretch stays a fiftieth of its diagonal.
+#[test]
+fn the_profile_of_a_strip_is_that_of_its_slope() {
+    let step_m = |wide_m: f64| {
+        let dir = tempfile::tempdir().unwrap();
+        std::fs::write(dir.path().join("slope.stl"), strip(wide_m)).unwrap();
+        let text = SCENE
+            .replace("SHAPE", "")
+            .replace("GROUND", "restitution = 0.3\nrolling_friction = 0.2")
+            .replace("../terrain/tyrol.stl", "slope.stl")
+            .replace("origin_m = [177233.32, 377092.44, 0.0]", "")
+            .replace("profile_step_m = 3.0", "");
+        let (before, after) = text.split_once("polygon_m").unwrap();
+        let (_, after) = after.split_once('\n').unwrap();
+        let text = format!("{before}line_m = [[20.0, 5.0], [90.0, 5.0]]\n{after}");
+        let scene = Scene::parse(&text, &dir.path().join("strip.toml")).unwrap();
+        Plan::of_scene(&scene).unwrap().recorders().profile_step_m.unwrap()
+    };
+    let steps_m = [120.0, 300.0, 6000.0].map(step_m);
+    assert_eq!(steps_m.map(|step_m| step_m as u32), [2, 2, 10]);
+}

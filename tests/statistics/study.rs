@@ -202,6 +202,10 @@ fn a_panel_without_sampling_says_why() {
     let faults = boxes::faults(&drawn, "error.svg");
     assert!(faults.is_empty(), "{}", faults.join("\n"));
     assert!(study("40", "few").contains("too few rocks for an interval"));
+    // as in a report, no P95 of fewer than 59
+    let page = fs::read_to_string(dir.path().join("few/README.md")).unwrap();
+    let few = "**P95 runout**: too few rocks, 19 more are needed; 72 in all for an interval.";
+    assert!(page.contains(few), "{page}");
     // 59 rocks bound a P95 on one side, an interval of it takes 72
     assert!(study("65", "nearly").contains("too few rocks for an interval"));
     let page = fs::read_to_string(dir.path().join("nearly/README.md")).unwrap();

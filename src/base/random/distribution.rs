@@ -3,6 +3,7 @@
 use super::normal::Truncated;
 use super::written::{Lognormal, NormalTable};
 use super::{RandomStream, unit};
+use crate::count::number_of;
 use crate::error::Flaw;
 use crate::math;
 
@@ -192,8 +193,9 @@ impl Distribution {
         finite(&values)?;
         finite(&weights)?;
         if values.is_empty() || values.len() != weights.len() {
+            let of = |count: usize, what| number_of(count as u64, what);
             return Err(Flaw::new(
-                format!("found {} values and {} weights", values.len(), weights.len()),
+                format!("found {} and {}", of(values.len(), "value"), of(weights.len(), "weight")),
                 "write at least one value, and one weight for each",
             ));
         }

@@ -1,5 +1,6 @@
 //! ESRI ASCII grids, and triangles from grids of heights.
 
+use crate::count::number_of;
 use crate::error::{Error, Result};
 use crate::file::{self, LONGEST_MESH};
 use crate::gis::FARTHEST_M;
@@ -198,7 +199,8 @@ impl Grid {
             }
         }
         if values.len() < columns * rows {
-            let found = format!("{} values for ncols x nrows = {columns} x {rows}", values.len());
+            let found = number_of(values.len() as u64, "value");
+            let found = format!("{found} for ncols x nrows = {columns} x {rows}");
             let place = format!("line {} (the last)", text.lines().count());
             return Err(Error::input(
                 file,

@@ -16,6 +16,7 @@ pub use spacing::Spacing;
 pub use super::facets::Facet;
 
 use super::facets::Facets;
+use crate::count::number_of;
 use crate::error::{Error, Result};
 use crate::file::{self, LONGEST_MESH};
 use crate::rock::Vec3;
@@ -195,7 +196,8 @@ fn neither(bytes: &[u8], file: &Path) -> Error {
         return Error::input(file, "start", format!("found {kind}, no STL"), *remedy);
     }
     let (Some(triangles), false) = (binary::announced(bytes), is_text(bytes)) else {
-        let found = format!("{} bytes that do not begin with `solid`", bytes.len());
+        let bytes = number_of(bytes.len() as u64, "byte");
+        let found = format!("{bytes} that do not begin with `solid`");
         return Error::input(file, "start", found, EXPORT);
     };
     let expected = 84 + 50 * u64::from(triangles);

@@ -91,8 +91,14 @@ fn of_zones(scene: &Scene) -> Option<String> {
         });
     }
     let says = scene.frequency.is_none() && zones.list().iter().any(Zone::says_how_often);
-    says.then(|| {
-        format!("{file} says how often its zones release rocks, and the scene asks for nothing a year: write the table [frequency], and each zone is a source")
+    if says {
+        return Some(format!(
+            "{file} says how often its zones release rocks, and the scene asks for nothing a year: write the table [frequency], and each zone is a source"
+        ));
+    }
+    let has_size = |zone: &Zone| zone.volume_m3.is_some() || zone.volumes_m3 != [None; 2];
+    zones.list().iter().any(has_size).then(|| {
+        format!("{file} says how large the rocks of its zones are, which is not used: sizes are those of the scene; where each zone says how often too, and [frequency] has no law of its own, each has its own")
     })
 }
 

@@ -85,12 +85,14 @@ fn ground_row(scene: &Scene, name: &str, ground: &GroundTable) -> (String, Strin
     (format!("{what} “{name}”"), parts.join("; "))
 }
 
+/// A number to four digits, large ones as powers of ten.
+pub(super) fn short(number: f64) -> String {
+    let rounded: f64 = format!("{number:.3e}").parse().unwrap_or(number);
+    if rounded.abs() >= 1e5 { format!("{rounded:e}") } else { rounded.to_string() }
+}
+
 /// A number, or how it is drawn: its middle, where nine of ten draws lie, and the family.
 fn words(value: &Distribution, unit: &str) -> String {
-    let short = |number: f64| {
-        let rounded: f64 = format!("{number:.3e}").parse().unwrap_or(number);
-        if rounded.abs() >= 1e5 { format!("{rounded:e}") } else { rounded.to_string() }
-    };
     if let Some(number) = value.as_fixed() {
         return short(number) + unit;
     }
@@ -139,3 +141,15 @@ const FITTED: &str = "calibrated on measured ends ([calibrate] fitted of the sce
 /// Of a scene with measured ends beside values that were not fitted to them, or not to these.
 const NOT_FITTED: &str =
     "written in the scene; measured ends ([calibrate]) stand beside it and are not fitted";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A capacity of 10⁹ kJ stood in the plan as ten digits without a gap.
+    #[test]
+    fn large_numbers_are_powers_of_ten() {
+        let said = [1e9, 2.5e5, 3000.0, 0.005, 1234.56].map(short);
+        assert_eq!(said, ["1e9", "2.5e5", "3000", "0.005", "1235"]);
+    }
+}

@@ -1,5 +1,6 @@
 //! The plan in words: one line for everything that is computed and everything that is left out.
 
+use super::inputs::short;
 use super::{EvaluationLine, Part, Paths, Plan, RestRule, annual, settings};
 use crate::count::counted;
 use crate::ground::Ground;
@@ -142,7 +143,8 @@ impl Plan {
             )
         });
         list.part("paths", paths, |Paths { first, step_s }| {
-            format!("kept for {} of {count} releases, every {step_s} s", first.min(&count))
+            let releases = counted(count, "release", "releases");
+            format!("kept for {} of {count} {releases}, every {step_s} s", first.min(&count))
         });
         list.part("impacts", impacts, |()| "kept".to_owned());
         list.part("lines", lines, |lines| {
@@ -152,7 +154,7 @@ impl Plan {
         });
         list.part("barriers", barriers, |all| {
             let each = |b: &BarrierTable| {
-                format!("{} ({} m, {} kJ)", b.name, b.height_m, b.capacity_j / 1e3)
+                format!("{} ({} m, {} kJ)", b.name, b.height_m, short(b.capacity_j / 1e3))
             };
             let each: Vec<String> = all.iter().map(each).collect();
             format!("{}: judged on the rocks that cross, they change no way", each.join(", "))

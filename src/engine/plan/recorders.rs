@@ -356,7 +356,11 @@ pub(super) fn map_grid(scene: &Scene, terrain: &Terrain) -> Result<Option<MapGri
     scene.maps.as_ref().map(|maps| MapGrid::over(terrain, maps, &scene.file)).transpose()
 }
 
-/// Length of the stretches of a profile (m): as the scene says, or a round part of the terrain's diagonal in plan view.
+/// Way in plan view over the height of the terrain that hardly any rock exceeds (–): reach angles below 18° are those of rock avalanches.
+const WAY_OVER_DROP: f64 = 3.0;
+
+/// Length of the stretches of a profile (m): as the scene says, or a round part of the way that rocks can go: no farther than the terrain's
+/// diagonal in plan view, and on a long strip no farther than its height lets them or it is wide.
 ///
 /// # Errors
 /// A length so small that there would be too many.
@@ -364,7 +368,10 @@ pub(super) fn profile_step_m(scene: &Scene, terrain: &Terrain) -> Result<f64> {
     let (low, high) = terrain.index.bounds();
     let longest_m = math::hypot(high.x - low.x, high.y - low.y);
     let Some(asked) = scene.record.profile_step_m else {
-        return Ok(round_below(longest_m / STRETCHES));
+        let across_m = (high.x - low.x).min(high.y - low.y);
+        let way_m = longest_m.min(across_m.max(WAY_OVER_DROP * (high.z - low.z)));
+        // a round number is less by up to 2.5 times
+        return Ok(round_below((way_m / STRETCHES).max(2.5 * longest_m / MOST_STRETCHES)));
     };
     if longest_m > MOST_STRETCHES * asked {
         let found = format!("found {asked} on a terrain of {longest_m:.0} m");

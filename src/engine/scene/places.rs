@@ -4,6 +4,7 @@ use super::blocks::BlockRow;
 pub use super::geometry::Corner;
 use super::geometry::{meet, minus, twice_area};
 use super::holes::bridged;
+use crate::count::counted;
 use crate::error::Flaw;
 pub(super) use crate::gis::FARTHEST_M;
 use crate::math;
@@ -108,6 +109,10 @@ impl Polyline {
     }
 }
 
+fn different(corners: usize) -> String {
+    format!("{corners} {}", counted(corners, "corner", "different corners"))
+}
+
 impl TryFrom<Vec<Corner>> for Polyline {
     type Error = Flaw;
 
@@ -115,7 +120,7 @@ impl TryFrom<Vec<Corner>> for Polyline {
         finite(corners_m.as_flattened())?;
         corners_m.dedup();
         if corners_m.len() < 2 {
-            let found = format!("found a line with {} different corners", corners_m.len());
+            let found = format!("found a line with {}", different(corners_m.len()));
             return Err(Flaw::new(found, "write at least two: [[x, y], [x, y]]"));
         }
         let mut along_m = vec![0.0];
@@ -203,7 +208,7 @@ impl TryFrom<Vec<Corner>> for Area {
             corners_m.pop();
         }
         if corners_m.len() < 3 {
-            let found = format!("found a polygon with {} different corners", corners_m.len());
+            let found = format!("found a polygon with {}", different(corners_m.len()));
             return Err(Flaw::new(found, "write at least three: [[x, y], [x, y], [x, y]]"));
         }
         if let Some((i, j)) = first_meeting(&corners_m) {

@@ -4,6 +4,7 @@ use super::Scene;
 use super::blocks::BlockRow;
 use super::check::{Allowed, Checked, Complaint, drawn, number, optional, suggest};
 use crate::body::{SHARPEST, ShapeKind, most_corners};
+use crate::count::number_of;
 use crate::error::{Error, Result};
 use crate::random::Distribution;
 use serde::Deserialize;
@@ -115,7 +116,7 @@ impl ShapeTable {
     fn check_sizes(&self) -> Checked {
         if let Some(axes) = &self.axes {
             if axes.len() != 3 {
-                let found = format!("found {} values", axes.len());
+                let found = format!("found {}", number_of(axes.len() as u64, "value"));
                 let about = Complaint::about("axes", "write three, as in axes = [1.0, 0.8, 0.5]");
                 return Err(about.finding(found));
             }

@@ -5,7 +5,7 @@ use super::populations::{ComparedQuantity, Population};
 use super::table::{ComparedStatistic, Group};
 use crate::hazard::{Quantity, Sample, Values};
 use crate::report::axis::Axis;
-use crate::report::canvas::{Canvas, Label, NORMAL, Pen, SMALL, paint, text_width};
+use crate::report::canvas::{Canvas, Label, NORMAL, Pen, SMALL, fitted_among, paint, text_width};
 use crate::report::colour::{BLUE, GREY, INK, PALE, VERMILLION};
 use crate::report::figure::{Drawing, Heading, WIDTH_PX};
 use crate::report::format;
@@ -60,17 +60,20 @@ pub(super) fn all(comparison: &Comparison) -> Vec<(Heading, Drawing)> {
     drawn
 }
 
-/// The rows of the first figure: name, change and its interval over the value of A.
-fn rows(groups: &[Group], words: &Words) -> Vec<(String, [f64; 3])> {
-    let relative = |group: &Group, row: &ComparedStatistic| -> Option<(String, [f64; 3])> {
+/// A row of the first figure: its place, which may be nowhere, and its statistic; change and its interval over the value of A.
+type ChangeRow = ([String; 2], [f64; 3]);
+
+/// The rows of the first figure.
+fn rows(groups: &[Group], words: &Words) -> Vec<ChangeRow> {
+    let relative = |group: &Group, row: &ComparedStatistic| -> Option<ChangeRow> {
         let (low, high) = row.difference.interval?;
         let a = row.difference.a;
         let named = match group.name.as_str() {
-            "All releases" => row.name_in(words),
+            "All releases" => [String::new(), row.name_in(words)],
             group => {
                 let group = words.say(group);
                 let name = group.split(',').next().unwrap_or_default();
-                format!("{name}{}{}", words.colon(), row.name_in(words))
+                [name.to_owned(), words.colon().to_owned() + &row.name_in(words)]
             }
         };
         let change = [row.difference.value, low, high].map(|x| x / a.abs());
@@ -89,7 +92,7 @@ fn possible([change, low, high]: [f64; 3], a: f64) -> [f64; 3] {
 }
 
 /// Largest change that the axis shows (–): some times the median row, so that a few that change by far do not squeeze the others.
-fn reach_of(rows: &[(String, [f64; 3])]) -> f64 {
+fn reach_of(rows: &[ChangeRow]) -> f64 {
     let most = |values: &[f64; 3]| {
         values.iter().filter(|x| x.is_finite()).fold(0.0_f64, |most, x| most.max(x.abs()))
     };
@@ -112,10 +115,21 @@ fn goes_on(canvas: &Canvas<'_>, panel: &Panel, (values, y): (&[f64; 3], f64), co
     }
 }
 
+/// The names of the rows: places are cut so that they are told apart and leave room for statistics and changes.
+fn fitted_names(rows: &[ChangeRow]) -> Vec<String> {
+    let places = || rows.iter().map(|([place, _], _)| place.as_str());
+    let name = |([place, statistic], _): &ChangeRow| {
+        let room = 0.55 * WIDTH_PX - text_width(statistic, SMALL);
+        fitted_among(place, places(), (SMALL, room)) + statistic
+    };
+    rows.iter().map(name).collect()
+}
+
 fn changes(groups: &[Group], words: &Words) -> Drawing {
     let rows = rows(groups, words);
-    let widest = rows.iter().map(|(name, _)| text_width(name, SMALL)).fold(0.0, f64::max);
-    let left = widest.min(0.55 * WIDTH_PX) + 16.0;
+    let names = fitted_names(&rows);
+    let widest = names.iter().map(|name| text_width(name, SMALL)).fold(0.0, f64::max);
+    let left = widest + 16.0;
     let bottom = 8.0 + ROW_PX * rows.len().max(2) as f64;
     let frame = PaperFrame { left, top: 8.0, right: WIDTH_PX - 14.0, bottom };
     let reach = reach_of(&rows);
@@ -124,7 +138,7 @@ fn changes(groups: &[Group], words: &Words) -> Drawing {
     let svg = paint("compare", (WIDTH_PX, bottom + FOOT_PX), &words.say(CHANGES), |canvas| {
         panel.grid_upright(canvas);
         panel.upright(canvas, 0.0, Pen::full(GREY, 1.2));
-        for (k, (name, values)) in rows.iter().enumerate() {
+        for (k, ((_, values), name)) in rows.iter().zip(&names).enumerate() {
             let y = frame.top + ROW_PX * (k as f64 + 0.5);
             canvas.line(&[(frame.left, y), (frame.right, y)], Pen::full(PALE, 0.5).dotted());
             let edge = 1.05 * reach;
@@ -252,10 +266,28 @@ mod tests {
         assert_eq!(shown([-1.0, -1.24, -0.76], -3.0), bits([-1.0, -1.24, -0.76]));
     }
 
+    /// A long name ran out of the figure at its left, where it begins; cut at its end it would lose its statistic.
+    #[test]
+    fn long_names_keep_their_beginning_and_their_statistic() {
+        let place =
+            "line “un très long nom pour voir comment la figure le dessine à côté des barres";
+        let row =
+            |end: &str, what: &str| ([format!("{place} {end}”"), format!(": {what}")], [0.0; 3]);
+        let rows =
+            [row("nord", "P95 of energy"), row("sud", "P95 of energy"), row("sud", "Passages")];
+        let names = fitted_names(&rows);
+        for (name, end) in
+            names.iter().zip(["nord”: P95 of energy", "sud”: P95 of energy", "sud”: Passages"])
+        {
+            assert!(text_width(name, SMALL) <= 0.55 * WIDTH_PX, "{name}");
+            assert!(name.starts_with("line “un très") && name.ends_with(end), "{name}");
+        }
+    }
+
     /// One row of 200 % leaves the others legible.
     #[test]
     fn a_row_that_changes_by_far_does_not_squeeze_the_others() {
-        let row = |x: f64| (String::new(), [x, 0.9 * x, 1.1 * x]);
+        let row = |x: f64| ([String::new(), String::new()], [x, 0.9 * x, 1.1 * x]);
         let rows = [0.05, 0.05, 0.05, 2.0].map(row);
         assert!((reach_of(&rows) - OVER_MEDIAN * 1.1 * 0.05).abs() < 1e-12);
         assert!((reach_of(&[]) - LEAST_CHANGE).abs() < 1e-12);

@@ -220,6 +220,15 @@ fn told(value: f64, interval: Option<(f64, f64)>) -> String {
     format::significant(math::rounded(value, digits), digits)
 }
 
+/// A number to so many decimals; below 0 its last digits are 0.
+fn to_decimals(value: f64, decimals: f64) -> String {
+    if decimals >= 0.0 {
+        return format::decimal(value, decimals.min(9.0) as usize);
+    }
+    let place = math::pow(10.0, -decimals);
+    format::decimal((value / place).round() * place, 0)
+}
+
 /// Both values, the difference with its sign, and its interval; bounds with theirs.
 pub(super) fn in_words(row: &ComparedStatistic, words: &Words) -> [String; 4] {
     let Difference { a, b, value, interval } = row.difference;
@@ -237,9 +246,8 @@ pub(super) fn in_words(row: &ComparedStatistic, words: &Words) -> [String; 4] {
         _ if largest > 0.0 => 3.0 - math::log10(largest).floor(),
         _ => 0.0,
     };
-    let decimals = decimals.clamp(0.0, 9.0) as usize;
     let signed = |v: f64| {
-        let text = format::decimal(v, decimals);
+        let text = to_decimals(v, decimals);
         let is_zero = !text.bytes().any(|byte| (b'1'..=b'9').contains(&byte));
         if v > 0.0 && !is_zero { format!("+{text}") } else { text }
     };
@@ -251,4 +259,30 @@ pub(super) fn in_words(row: &ComparedStatistic, words: &Words) -> [String; 4] {
     };
     let change = sign(bounds::of_difference(row.bounds)).to_owned() + &signed(value);
     [number(a, row.bounds[0]), number(b, row.bounds[1]), change, interval]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is known to a hundred thousand is not told to ones.
+    #[test]
+    fn large_differences_have_no_more_digits_than_their_interval_leaves() {
+        let said = |[a, b, low, high]: [f64; 4]| {
+            let row = ComparedStatistic {
+                name: "Largest total energy, P95".to_owned(),
+                unit: "kJ",
+                rocks: [1000; 2],
+                difference: Difference { a, b, value: b - a, interval: Some((low, high)) },
+                bounds: [Is::Value; 2],
+                is_headline: true,
+            };
+            let [_, _, change, interval] = in_words(&row, Words::of(Language::En));
+            format!("{change} ({interval})").replace('\u{2009}', " ").replace('\u{2212}', "-")
+        };
+        let found = said([769_450.0, 0.0148, -969_630.4, -602_087.1]);
+        assert_eq!(found, "-770 000 (-970 000 to -600 000)");
+        assert_eq!(said([100.0, 103.2, -1.4, 8.1]), "+3.2 (-1.4 to +8.1)");
+        assert_eq!(said([5000.0, 5321.0, 210.0, 432.0]), "+320 (+210 to +430)");
+    }
 }

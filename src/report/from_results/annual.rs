@@ -3,8 +3,8 @@
 use super::super::format;
 use super::super::model::{About, AnnualView, BandPoint, Estimate, EstimateTable, Is};
 use super::super::words::{Words, fill};
-use super::estimate;
 use super::lines::steps;
+use super::{energy_unit_of, estimate};
 use crate::hazard::{
     Annual, AnnualBarrier, AnnualFigures, AnnualPlace, EventRate, ExceedancePoint, ReturnEnergy,
     Risk, RiskKind, Saved,
@@ -86,7 +86,8 @@ pub(super) fn headline(results: &Results, words: &Words) -> Option<EstimateTable
         };
         let has_exponent = leave_out_exponent(&mut table);
         let exponent = if has_exponent { words.year().head_exponent } else { "" };
-        table.note = fill(words.year().head_note, &[("exponent", &exponent)]);
+        table.note = fill(words.year().head_note, &[("exponent", &exponent)])
+            + zero_note(&table.rows, words);
         table
     })
 }
@@ -202,16 +203,29 @@ fn passages(annual: &Annual, place: &AnnualPlace, words: &Words) -> EstimateTabl
                 ("rocks", &format::decimal(annual.rocks as f64, 0)),
                 ("effective", &format::decimal(annual.effective_rocks, 0)),
             ],
-        ) + words.drawn().rough,
+        ) + zero_note(&rows, words)
+            + words.drawn().rough,
         columns: how_often(words),
         rows,
     }
 }
 
+/// A rate or what follows from it; a plain 0 where not even its upper end is more, as no rock can do that.
 fn of(rate: &EventRate, map: impl Fn(f64) -> f64) -> Estimate {
+    if rate.high_95 == 0.0 && !rate.censored {
+        return Estimate::plain(0.0);
+    }
     let is = Is::at_least_if(rate.censored);
     let found = estimate(map(rate.per_year), Some(map(rate.low_95)), Some(map(rate.high_95)));
     Estimate { is, ..found }
+}
+
+/// What a plain 0 means, where one stands in the first column.
+fn zero_note(rows: &[(String, Vec<Option<Estimate>>)], words: &Words) -> &'static str {
+    let is_plain = |at: &Estimate| at.value == 0.0 && at.high.is_nan();
+    let first = |cells: &[Option<Estimate>]| cells.first().copied().flatten();
+    let is_any = rows.iter().any(|(_, cells)| first(cells).is_some_and(|at| is_plain(&at)));
+    if is_any { words.drawn().plain_zero } else { "" }
 }
 
 /// A derivative without an interval of its own: two digits, as it is a rough number.
@@ -235,17 +249,19 @@ fn cells(rate: &EventRate, annual: &Annual) -> Vec<Option<Estimate>> {
 }
 
 fn returns(place: &AnnualPlace, words: &Words) -> EstimateTable {
+    let energies = both(place, words).flat_map(|(_, figures)| &figures.returns);
+    let (unit, size_j) = energy_unit_of(energies.filter_map(|one| one.energy_j.or(one.high_95)));
     let row = |(which, is, one): (&str, Is, &ReturnEnergy)| {
-        let kilo = |joule: f64| joule / 1e3;
+        let sized = |joule: f64| joule / size_j;
         let energy = match one.energy_j {
             Some(joule) => Estimate {
                 is,
-                ..estimate(kilo(joule), Some(kilo(one.low_95)), one.high_95.map(kilo))
+                ..estimate(sized(joule), Some(sized(one.low_95)), one.high_95.map(sized))
             },
             // more seldom than that, but perhaps not by much
-            None => estimate(f64::NAN, None, one.high_95.filter(|high| *high > 0.0).map(kilo)),
+            None => estimate(f64::NAN, None, one.high_95.filter(|high| *high > 0.0).map(sized)),
         };
-        let slope = |slope: Option<f64>| slope.map(|joule| slope_of(kilo(joule)));
+        let slope = |slope: Option<f64>| slope.map(|joule| slope_of(sized(joule)));
         let name = fill(words.years, &[("n", &format::plain(one.years))]) + which;
         (name, vec![Some(energy), slope(one.by_log_rate), slope(one.by_exponent)])
     };
@@ -253,7 +269,7 @@ fn returns(place: &AnnualPlace, words: &Words) -> EstimateTable {
         let is = Is::at_least_if(figures.passages.censored);
         figures.returns.iter().map(move |r| (which, is, r))
     });
-    let by = |text: &str| fill(text, &[("unit", &"kJ")]);
+    let by = |text: &str| fill(text, &[("unit", &unit)]);
     let columns = [words.energy_axis, words.col_by_rate, words.col_by_exponent].map(by);
     EstimateTable {
         about: About::Year,
@@ -307,6 +323,29 @@ fn risk_name(kind: RiskKind, words: &Words) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Where not one rock can have so much energy there is no chance to tell of: it stood there as 0.00 (0.00 to 0.00).
+    #[test]
+    fn what_no_rock_can_do_is_a_plain_0() {
+        let rate = |high_95: f64, censored: bool| EventRate {
+            rocks: 0,
+            per_year: 0.0,
+            low_95: 0.0,
+            high_95,
+            censored,
+            by_log_rate: 0.0,
+            by_exponent: None,
+        };
+        let is_plain = |rate: EventRate| {
+            let found = of(&rate, |x| x);
+            let words = Words::of(crate::scene::Language::En);
+            let note = zero_note(&[(String::new(), vec![Some(found)])], words);
+            assert_eq!(found.high.is_nan(), !note.is_empty());
+            found.high.is_nan()
+        };
+        assert!(is_plain(rate(0.0, false)));
+        assert!(!is_plain(rate(1e-4, false)) && !is_plain(rate(0.0, true)));
+    }
 
     /// Sources without a power law have no exponent: no column of nothing.
     #[test]

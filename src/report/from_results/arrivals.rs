@@ -1,10 +1,10 @@
 //! The first tables of the page: what arrives at each line, and at each barrier.
 
-use super::super::model::{About, Estimate, EstimateTable, ReportQuantity};
+use super::super::model::{About, Estimate, EstimateTable};
 use super::super::site;
 use super::super::words::{Words, fill};
 use super::lines::{of_share, shown};
-use super::{of_percentile, percentile_of};
+use super::{energy_unit_of, of_percentile, percentile_of};
 use crate::hazard::{BarrierSummary, LineQuantity, Residual, Statistic};
 use crate::output::Results;
 
@@ -22,12 +22,6 @@ fn of(statistic: &Statistic) -> Option<Estimate> {
     Some(of_percentile(statistic.percentiles.get("p95")?, (statistic.rocks, None)))
 }
 
-/// A unit of energy for a whole table: kJ where it has no number.
-fn energy_unit(estimates: impl Iterator<Item = f64>) -> (&'static str, f64) {
-    let largest = estimates.filter(|value| value.is_finite()).reduce(f64::max);
-    largest.map_or(("kJ", 1e3), |largest| ReportQuantity::Total.unit(largest))
-}
-
 fn percent(share: Estimate) -> Estimate {
     share.over(0.01)
 }
@@ -40,7 +34,7 @@ fn lines(results: &Results, words: &Words, order: &[String]) -> Option<EstimateT
     own.sort_by_key(|(_, line)| order.iter().position(|name| *name == line.info.name));
     let p95 = |line: &crate::hazard::Line, of| percentile_of(&line.sample(of), P, None);
     let energies = own.iter().filter_map(|(_, line)| p95(line, LineQuantity::Total));
-    let (unit, size) = energy_unit(energies.map(|at| at.value));
+    let (unit, size) = energy_unit_of(energies.map(|at| at.value));
     let mut rows = Vec::new();
     for (_, line) in &own {
         let reach = of_share(&line.reach(releases));
@@ -99,7 +93,7 @@ fn barriers(results: &Results, words: &Words) -> Option<EstimateTable> {
     let all = &results.summary.barriers;
     let design = |one: &BarrierSummary| one.design_values.as_ref().map(|design| design.energy_j);
     let energies = all.iter().flat_map(|one| [of(&one.energy_j).map(|at| at.value), design(one)]);
-    let (unit, size) = energy_unit(energies.flatten());
+    let (unit, size) = energy_unit_of(energies.flatten());
     let row = |one: &BarrierSummary| {
         let barrier = &one.barrier;
         let name =

@@ -4,12 +4,12 @@ use super::super::by_frequency;
 use super::super::format;
 use super::super::model::{
     About, BarrierView, DesignView, Estimate, EstimateTable, Is, PlaceView, ReportQuantity,
-    RockView,
+    RockView, energy_unit,
 };
 use super::super::raster::GroundRaster;
 use super::super::words::open::missing as missing_rocks;
 use super::super::words::{Words, fill};
-use super::{estimate, of_percentile, statistics};
+use super::{energy_unit_of, estimate, of_percentile, statistics};
 use crate::error::Result;
 use crate::frequency::Weights;
 use crate::hazard::{
@@ -63,7 +63,11 @@ pub(super) fn design(one: &BarrierSummary) -> Option<DesignView> {
     one.design_values.as_ref().map(design_view).or(lacking)
 }
 
-/// Whether the ground on the left of a barrier's line is higher than on its right, 10 m to each side of its middle.
+/// Distance to each side of a barrier at which the ground says where uphill is (m).
+const ASIDE_M: f64 = 10.0;
+
+/// Whether the ground on the left of a barrier's line is higher than on its right, beside its middle: 10 m to each side, or where the
+/// terrain does not reach so far, as far as its other places do. None on level ground.
 fn left_is_uphill(
     results: &Results,
     one: &BarrierSummary,
@@ -74,11 +78,20 @@ fn left_is_uphill(
     let pair = corners.get(corners.len().checked_sub(1)? / 2..)?.get(..2)?;
     let [dx, dy] = [pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]];
     let (x, y) = (0.5 * (pair[0][0] + pair[1][0]), 0.5 * (pair[0][1] + pair[1][1]));
-    let aside = 10.0 / math::hypot(dx, dy);
-    let height =
-        |side: f64| ground.map(|g| g.height_at(x - side * aside * dy, y + side * aside * dx));
-    let (left, right) = (height(1.0)?, height(-1.0)?);
-    (left - right).is_finite().then_some(left > right)
+    let length = math::hypot(dx, dy);
+    let height = |aside_m: f64| {
+        let part = aside_m / length;
+        ground.map(|g| g.height_at(x - part * dy, y + part * dx))
+    };
+    let places_m = one.by_place.iter().map(|place| place.offset_m.abs()).fold(0.0, f64::max);
+    is_higher_ahead(height, [ASIDE_M, places_m])
+}
+
+/// Whether heights rise with the distance, by the first of some distances to both sides that tells (m).
+fn is_higher_ahead(height: impl Fn(f64) -> Option<f64>, distances_m: [f64; 2]) -> Option<bool> {
+    let rise = |aside_m: f64| Some(height(aside_m)? - height(-aside_m)?);
+    let mut known = distances_m.into_iter().filter_map(rise);
+    known.find(|rise| rise.is_finite() && *rise != 0.0).map(|rise| rise > 0.0)
 }
 
 /// `weights`: none where all rocks weigh the same.
@@ -132,8 +145,14 @@ fn say_by_frequency(table: &mut EstimateTable, words: &Words) {
     table.note = by_frequency::noted(note, Some(by_frequency::SHARES), words);
 }
 
+/// A unit for some design energies.
+fn unit_of<'a>(designs: impl Iterator<Item = &'a Option<Design>>) -> (&'static str, f64) {
+    energy_unit_of(designs.flatten().map(|design| design.energy_j))
+}
+
 fn counts(barriers: &[BarrierSummary], words: &Words) -> EstimateTable {
-    let design_energy = fill(words.col_design_energy, &[("unit", &"kJ")]);
+    let (unit, size_j) = unit_of(barriers.iter().map(|one| &one.design_values));
+    let design_energy = fill(words.col_design_energy, &[("unit", &unit)]);
     let columns = [
         words.col_height,
         words.col_capacity,
@@ -151,7 +170,7 @@ fn counts(barriers: &[BarrierSummary], words: &Words) -> EstimateTable {
         title: words.barriers_title.to_owned(),
         note: fill(words.barriers_note, &[("rules", &rules.join(" "))]).trim_end().to_owned(),
         columns: columns.map(str::to_owned).into(),
-        rows: barriers.iter().map(|one| (one.barrier.name.clone(), cells(one))).collect(),
+        rows: barriers.iter().map(|one| (one.barrier.name.clone(), cells(one, size_j))).collect(),
         ..EstimateTable::default()
     }
 }
@@ -166,7 +185,7 @@ fn percent(share: &Proportion) -> Option<Estimate> {
     (share.of > 0).then(|| Estimate { is, ..estimate(value, Some(low), Some(high)) })
 }
 
-fn cells(one: &BarrierSummary) -> Vec<Option<Estimate>> {
+fn cells(one: &BarrierSummary, size_j: f64) -> Vec<Option<Estimate>> {
     let design = design(one);
     vec![
         Some(plain(one.barrier.height_m)),
@@ -177,7 +196,7 @@ fn cells(one: &BarrierSummary) -> Vec<Option<Estimate>> {
         Some(plain(one.over as f64)),
         Some(plain(one.through as f64)),
         design.map(|design| design.height_m),
-        design.map(|design| design.energy_j.over(1e3)),
+        design.map(|design| design.energy_j.over(size_j)),
     ]
 }
 
@@ -195,13 +214,15 @@ fn in_words(one: &BarrierSummary, words: &Words) -> Option<String> {
         fill(words.free_distance, &[("m", &format::significant(free_m, 3))])
     });
     let factors = |what, list| factors(what, list, words);
+    let (unit, size) = energy_unit(design.energy_percentile_j);
     let said = fill(
         words.rule,
         &[
             ("name", &name),
             ("standard", &standard),
             ("percentile", &rule.percentile),
-            ("energy", &percentile(&one.energy_j, design.energy_percentile_j, 1e3)),
+            ("energy", &percentile(&one.energy_j, design.energy_percentile_j, size)),
+            ("unit", &unit),
             ("top", &percentile(&one.top_m, design.height_percentile_m, 1.0)),
             ("speed", &factors(words.factor_speed, &rule.speed_factors)),
             ("mass", &factors(words.factor_mass, &rule.mass_factors)),
@@ -221,10 +242,22 @@ fn percentile(of: &Statistic, value: f64, unit: f64) -> String {
     value
 }
 
+/// The name of a factor: those of the standards in the language of the page, the scene's own as written there.
+fn factor_name(name: &str, words: &Words) -> String {
+    match name {
+        "topography" => words.drawn().topography.to_owned(),
+        "simulation" => words.drawn().simulation.to_owned(),
+        "block_volume" => words.drawn().block_volume.to_owned(),
+        own => own.replace('_', " "),
+    }
+}
+
 /// Partial factors on something, one by one.
 fn factors(what: &str, list: &BTreeMap<String, f64>, words: &Words) -> String {
-    let each: Vec<String> =
-        list.iter().map(|(name, factor)| format!("{} {factor}", name.replace('_', " "))).collect();
+    let each: Vec<String> = list
+        .iter()
+        .map(|(name, factor)| format!("{} {factor}", factor_name(name, words)))
+        .collect();
     let text = if each.is_empty() { words.no_factor } else { words.factors };
     fill(text, &[("what", &what), ("list", &each.join(", "))])
 }
@@ -276,9 +309,10 @@ fn sensitivity(one: &BarrierSummary, words: &Words, left_is_uphill: Option<bool>
     let mut columns: Vec<String> =
         [words.col_arriving_percent.to_owned()].into_iter().chain(stopped).collect();
     let has_design = one.by_place.iter().any(|place| place.design_values.is_some());
+    let (unit, size_j) = unit_of(one.by_place.iter().map(|place| &place.design_values));
     if has_design {
         columns.push(words.col_design_height.to_owned());
-        columns.push(fill(words.col_design_energy, &[("unit", &"kJ")]));
+        columns.push(fill(words.col_design_energy, &[("unit", &unit)]));
     }
     let row = |place: &AtPlace| {
         let name = match place.offset_m {
@@ -290,7 +324,7 @@ fn sensitivity(one: &BarrierSummary, words: &Words, left_is_uphill: Option<bool>
         if has_design {
             let design = place.design_values.as_ref().map(design_view);
             cells.push(design.map(|design| design.height_m));
-            cells.push(design.map(|design| design.energy_j.over(1e3)));
+            cells.push(design.map(|design| design.energy_j.over(size_j)));
         }
         (name, cells)
     };
@@ -318,4 +352,46 @@ fn side(aside_m: f64, words: &Words, left_is_uphill: Option<bool>) -> String {
         (false, None) => words.to_the_right,
     };
     format!("{}\u{2009}m {towards}", format::plain(aside_m.abs()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Language;
+
+    /// On a terrain of 5 m nothing is known 10 m aside, and the other places of the barrier say where it falls.
+    #[test]
+    fn a_small_terrain_has_an_uphill_too() {
+        let slope = |half_m: f64| {
+            move |at_m: f64| Some(if at_m.abs() > half_m { f64::NAN } else { -0.5 * at_m })
+        };
+        assert_eq!(is_higher_ahead(slope(100.0), [10.0, 0.2]), Some(false));
+        assert_eq!(is_higher_ahead(slope(2.5), [10.0, 0.2]), Some(false));
+        assert_eq!(is_higher_ahead(slope(2.5), [10.0, 0.0]), None, "no other place");
+        assert_eq!(is_higher_ahead(|_| Some(3.0), [10.0, 0.2]), None, "level");
+    }
+
+    /// Names of the standards' factors are words of the program, names of others are the user's.
+    #[test]
+    fn factors_of_a_standard_are_named_in_the_language() {
+        let list = ["block_volume", "dichte_m", "topography"].map(|name| (name.to_owned(), 1.02));
+        let said = |language| factors("", &list.clone().into(), Words::of(language));
+        assert!(said(Language::De).contains("Blockvolumen 1.02, dichte m 1.02, Topografie 1.02"));
+        assert!(said(Language::En).contains("block volume 1.02, dichte m 1.02, topography 1.02"));
+    }
+
+    /// Designs of a few joules are said in joules.
+    #[test]
+    fn design_energies_have_the_unit_of_their_size() {
+        let design = |energy_j: f64| Design {
+            energy_percentile_j: energy_j,
+            energy_j,
+            energy_95_j: [None; 2],
+            height_percentile_m: 1.0,
+            height_m: 1.0,
+            height_95_m: [None; 2],
+        };
+        assert_eq!(unit_of([&Some(design(14.6)), &None].into_iter()).0, "J");
+        assert_eq!(unit_of([&Some(design(14.6)), &Some(design(1e6))].into_iter()).0, "kJ");
+    }
 }

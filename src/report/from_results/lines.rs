@@ -99,16 +99,22 @@ pub(super) fn lines(results: &Results, ground: Option<&GroundRaster>) -> Result<
         line.energy_exceedance = exceedance(all().map(energy), (&weights, &open));
         line.height_exceedance = exceedance(all().map(height), (&weights, &open));
     }
-    // on level ground the line that most rocks reach comes first; stable: lines without ground keep the order of the scene
-    let height = |line: &ReportLine| {
-        if line.elevation_m.is_nan() { f64::NEG_INFINITY } else { line.elevation_m.round() }
-    };
-    let key = |line: &ReportLine| (height(line), line.crossings.len());
-    lines.sort_by(|a, b| {
-        let ((high_a, many_a), (high_b, many_b)) = (key(a), key(b));
-        high_b.total_cmp(&high_a).then(many_b.cmp(&many_a))
-    });
+    sort_downslope(&mut lines);
     Ok(lines)
+}
+
+/// The highest line first; on level ground the one that most rocks reach. Stable: the rest, and lines without ground, keep the
+/// order of the scene.
+fn sort_downslope(lines: &mut [ReportLine]) {
+    // heights of level ground differ in the last bits of their means
+    let micrometres = |line: &ReportLine| match line.elevation_m {
+        unknown if unknown.is_nan() => f64::NEG_INFINITY,
+        known => (1e6 * known).round(),
+    };
+    lines.sort_by(|a, b| {
+        let higher = micrometres(b).total_cmp(&micrometres(a));
+        higher.then(b.crossings.len().cmp(&a.crossings.len()))
+    });
 }
 
 /// Crossings of a rock at their lines; `weight` says what a release weighs.
@@ -120,6 +126,7 @@ fn take(
     let passes = hazard::unstopped(barriers, rock);
     for (row, passes) in rock.iter().zip(passes) {
         if let Some(line) = lines.iter_mut().find(|line| line.name == row.line) {
+            line.least_radius_m = line.least_radius_m.min(row.radius_m);
             line.crossings.push(LinePoint {
                 release: row.index,
                 along_m: row.along_m,
@@ -216,6 +223,7 @@ fn empty(line: &hazard::Line, releases: usize) -> ReportLine {
         number: 0,
         is_barrier: false,
         elevation_m: f64::NAN,
+        least_radius_m: f64::INFINITY,
         length_m: line.info.length_m,
         releases,
         reach: of_share(&line.reach(releases)),
@@ -280,6 +288,40 @@ pub(super) fn tables(results: &Results, words: &Words) -> Vec<EstimateTable> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A barrier a quarter of a metre above a line stands before it, however many rocks cross each.
+    #[test]
+    fn lines_follow_each_other_down_the_slope() {
+        let at = |(number, elevation_m, rocks): (usize, f64, usize)| {
+            let info = hazard::LineInfo {
+                name: number.to_string(),
+                length_m: 1.0,
+                corners_m: Vec::new(),
+                of_barrier: false,
+                floor: None,
+            };
+            let point = |release| LinePoint {
+                release,
+                along_m: 0.0,
+                height_m: 0.0,
+                total_j: 1.0,
+                passes: true,
+                weight: 1.0,
+            };
+            let crossings = (0..rocks).map(point).collect();
+            ReportLine { number, elevation_m, crossings, ..empty(&hazard::Line::new(info), 10) }
+        };
+        let order = |of: &[(usize, f64, usize)]| -> Vec<usize> {
+            let mut lines: Vec<ReportLine> = of.iter().copied().map(at).collect();
+            sort_downslope(&mut lines);
+            lines.iter().map(|line| line.number).collect()
+        };
+        assert_eq!(order(&[(1, 3.50, 10), (2, 3.75, 9)]), [2, 1]);
+        assert_eq!(
+            order(&[(1, f64::NAN, 9), (2, 0.0, 3), (3, 1e-13, 4), (4, 0.0, 3)]),
+            [3, 2, 4, 1]
+        );
+    }
 
     /// Five rocks of one energy: all of them exceed whatever is less, none has more.
     #[test]

@@ -151,6 +151,8 @@ pub struct ReportLine {
     pub is_barrier: bool,
     /// Mean height of the ground along it (m); NaN where there is none. Lines stand in downslope order.
     pub elevation_m: f64,
+    /// Radius of the smallest rock that crosses it (m); infinite where none does.
+    pub least_radius_m: f64,
     /// Its length (m).
     pub length_m: f64,
     /// All releases.

@@ -54,8 +54,8 @@ impl MapLayers {
         let every = (frame.columns.max(frame.rows) as usize).div_ceil(LONGEST).max(1);
         let mut layers = Vec::new();
         for (layer, name, unit, size, counts) in SHOWN {
-            let path = results.dir.join("maps").join(layer.file()).with_extension("asc");
-            let values: Vec<Option<f64>> = coarsened(&Grid::read(&path)?, every)
+            let Some(grid) = results.map(layer)? else { continue };
+            let values: Vec<Option<f64>> = coarsened(&grid, every)
                 .map(|value| value.filter(|value| *value > 0.0 || !counts).map(|v| v / size))
                 .collect();
             let most = values.iter().flatten().copied().fold(0.0, f64::max);

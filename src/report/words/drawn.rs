@@ -6,7 +6,8 @@ words_of! {
     DrawnWords:
     key_object, per_square, aside, sources, reach_open, profile_marks, beyond, ends_worth,
     ends_no_test, nobody_untold, outside, plan_no_paths, not_judged, not_judged_why,
-    quantile_lines, swiss_limits, weaker, runout_no_curve, rough,
+    quantile_lines, swiss_limits, weaker, runout_no_curve, rough, topography, simulation,
+    block_volume, plain_zero,
 }
 
 const EN: DrawnWords = DrawnWords {
@@ -29,6 +30,10 @@ const EN: DrawnWords = DrawnWords {
     weaker: "← {n} with less energy",
     runout_no_curve: "Horizontal distance from release to end. Above: no curve, as rocks that would have gone on decide it from its beginning. Below: share of releases per {width} m.",
     rough: " Changes with ln(rate) and exponent are derivatives without an interval, rough to two digits.",
+    topography: "topography",
+    simulation: "simulation",
+    block_volume: "block volume",
+    plain_zero: " A 0 without an interval: no rock can have so much energy.",
 };
 
 const DE: DrawnWords = DrawnWords {
@@ -51,6 +56,10 @@ const DE: DrawnWords = DrawnWords {
     weaker: "← {n} mit weniger Energie",
     runout_no_curve: "Horizontale Strecke von der Ablösung bis zum Ende. Oben: keine Kurve, da Blöcke, die weitergelaufen wären, sie von Anfang an bestimmen. Unten: Anteil der Ablösungen je {width} m.",
     rough: " Änderungen mit ln(Rate) und Exponent sind Ableitungen ohne Intervall, grob auf zwei Stellen.",
+    topography: "Topografie",
+    simulation: "Simulation",
+    block_volume: "Blockvolumen",
+    plain_zero: " Eine 0 ohne Intervall: kein Block kann so viel Energie haben.",
 };
 
 const FR: DrawnWords = DrawnWords {
@@ -73,6 +82,10 @@ const FR: DrawnWords = DrawnWords {
     weaker: "← {n} d’énergie moindre",
     runout_no_curve: "Distance horizontale du départ à l’arrêt. En haut\u{a0}: pas de courbe, car des blocs qui auraient continué la déterminent dès son début. En bas\u{a0}: part des départs par {width} m.",
     rough: " Les variations avec ln(taux) et exposant sont des dérivées sans intervalle, approximatives, à deux chiffres.",
+    topography: "topographie",
+    simulation: "simulation",
+    block_volume: "volume du bloc",
+    plain_zero: " Un 0 sans intervalle\u{a0}: aucun bloc ne peut avoir autant d’énergie.",
 };
 
 const IT: DrawnWords = DrawnWords {
@@ -95,4 +108,8 @@ const IT: DrawnWords = DrawnWords {
     weaker: "← {n} con meno energia",
     runout_no_curve: "Distanza orizzontale dal distacco all’arresto. Sopra: nessuna curva, perché massi che avrebbero proseguito la determinano fin dall’inizio. Sotto: quota dei distacchi per {width} m.",
     rough: " Le variazioni con ln(tasso) ed esponente sono derivate senza intervallo, approssimate a due cifre.",
+    topography: "topografia",
+    simulation: "simulazione",
+    block_volume: "volume del masso",
+    plain_zero: " Uno 0 senza intervallo: nessun masso può avere tanta energia.",
 };

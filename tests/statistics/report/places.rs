@@ -61,6 +61,7 @@ fn line(number: usize, name: &str, rocks: usize) -> ReportLine {
         number,
         is_barrier: false,
         elevation_m: 900.0 - number as f64,
+        least_radius_m: 0.5,
         length_m: 60.0,
         releases: 1000,
         reach: Estimate::new(rocks as f64 / 1000.0, 0.0, 0.4),

@@ -26,6 +26,7 @@ pub(super) const SAMPLES: &[(&str, &str)] = &[
         "{a} {kind_a} of memory and {b} {kind_b} of disk: {n} release, up to {p} points of paths, {c} cells of maps",
         "{a} {kind_a} Speicher und {b} {kind_b} Platte: {n} Ablösung, bis {p} Bahnpunkte, {c} Kartenzellen",
     ),
+    ("kept for {k} of {n} release, every {t} s", "behalten für {k} von {n} Ablösung, alle {t} s"),
     ("from one point", "von einem Punkt"),
     ("{a} m long, {b} m wide", "{a} m lang, {b} m breit"),
     ("{name}: {a} a year of {b} m³, {rest}", "{name}: {a} pro Jahr von {b} m³, {rest}"),

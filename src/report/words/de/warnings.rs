@@ -42,4 +42,8 @@ pub(super) const WARNINGS: &[(&str, &str)] = &[
         "{who}: the rocks of one world meet each other, but all intervals take them for independent and are too narrow for what they share: a change that is clear here may be chance. Run several seeds of each scene and compare.",
         "{who}: die Blöcke einer gemeinsamen Welt begegnen einander, aber alle Intervalle nehmen sie als unabhängig und sind zu eng für das, was sie teilen: eine Änderung, die hier deutlich ist, kann Zufall sein. Mehrere Startwerte (seed) jeder Szene rechnen und vergleichen.",
     ),
+    (
+        "{file} says how large the rocks of its zones are, which is not used: sizes are those of the scene; where each zone says how often too, and [frequency] has no law of its own, each has its own",
+        "{file} sagt, wie groß die Blöcke seiner Zonen sind, was nicht verwendet wird: Größen sind die der Szene; wo jede Zone auch sagt, wie oft, und [frequency] kein eigenes Gesetz hat, hat jede ihre eigenen",
+    ),
 ];

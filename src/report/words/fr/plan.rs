@@ -320,7 +320,7 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ),
     (
         "kept for {k} of {n} releases, every {t} s",
-        "gardées pour {k} départs sur {n}, toutes les {t} s",
+        "gardées pour {k} {k|départ|départ|départs} sur {n}, toutes les {t} s",
     ),
     ("kept", "gardés"),
     (

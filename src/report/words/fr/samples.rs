@@ -26,6 +26,10 @@ pub(super) const SAMPLES: &[(&str, &str)] = &[
         "{a} {kind_a} of memory and {b} {kind_b} of disk: {n} release, up to {p} points of paths, {c} cells of maps",
         "{a} {kind_a} de mémoire et {b} {kind_b} de disque\u{a0}: {n} départ, jusqu’à {p} points de trajectoires, {c} mailles de cartes",
     ),
+    (
+        "kept for {k} of {n} release, every {t} s",
+        "gardées pour {k} {k|départ|départ|départs} sur {n}, toutes les {t} s",
+    ),
     ("from one point", "d’un seul point"),
     ("{a} m long, {b} m wide", "longueur {a} m, largeur {b} m"),
     ("{name}: {a} a year of {b} m³, {rest}", "{name}\u{a0}: {a} par an de {b} m³, {rest}"),

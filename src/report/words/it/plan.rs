@@ -314,7 +314,7 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ),
     (
         "kept for {k} of {n} releases, every {t} s",
-        "conservate per {k} distacchi su {n}, ogni {t} s",
+        "conservate per {k} {k|distacco|distacchi} su {n}, ogni {t} s",
     ),
     ("kept", "conservati"),
     (

@@ -26,6 +26,10 @@ pub(super) const SAMPLES: &[(&str, &str)] = &[
         "{a} {kind_a} of memory and {b} {kind_b} of disk: {n} release, up to {p} points of paths, {c} cells of maps",
         "{a} {kind_a} di memoria e {b} {kind_b} di disco: {n} distacco, fino a {p} punti di traiettorie, {c} celle di mappe",
     ),
+    (
+        "kept for {k} of {n} release, every {t} s",
+        "conservate per {k} {k|distacco|distacchi} su {n}, ogni {t} s",
+    ),
     ("from one point", "da un solo punto"),
     ("{a} m long, {b} m wide", "lungo {a} m, largo {b} m"),
     ("{name}: {a} a year of {b} m³, {rest}", "{name}: {a} all’anno di {b} m³, {rest}"),
