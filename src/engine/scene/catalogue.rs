@@ -98,7 +98,7 @@ const SOIL: KnownGround = KnownGround {
     restitution: KnownValue::Fixed(0.0),
     scar: Some(Scar { strength_kn_m2: 15000.0, drag: 2.5, soil_density_kg_m3: 1700.0 }),
     beside: Some(
-        "normal_stiffness_n_m = 1e7, tangential_ratio = 0.25, friction_angle_deg = 52.4, boxes with corner_radius = 0.288",
+        "normal_stiffness_n_m = 1e7, tangential_ratio = 0.25, friction_angle_deg = 52.4, boxes with corner_radius = 0.275",
     ),
     source: "soil: site means of Lu et al. 2019; friction: largest of the example of Leine et al. 2014; corner radius: fitted with this program to the 80 ends of Tschamut 2014",
     ..NOTHING_ELSE
