@@ -175,6 +175,15 @@ impl ContactPoints {
         Self(self.0.iter().filter(|touch| touch.distance_m < reach).copied().collect())
     }
 
+    /// Forgets what a ball with this radius (m) and velocity `v` does not touch, nor comes to within `together` (–, relative to the radius).
+    pub(crate) fn keep_struck(&mut self, radius_m: f64, v: &Vec3, together: f64) {
+        let [touched, near] = [TOUCH, together].map(|gap| radius_m * (1.0 + gap));
+        self.retain(|touch| {
+            let comes = touch.normal.dot(v) < 0.0;
+            touch.distance_m < touched || touch.distance_m < near && comes
+        });
+    }
+
     /// Forgets those that are not nearer than `reach` (m).
     pub fn keep_nearer(&mut self, reach: f64) {
         self.retain(|touch| touch.distance_m < reach);

@@ -74,8 +74,8 @@ impl<'a> Fall<'a> {
     fn look(&mut self) {
         let Motion { position_m: c, velocity_m_s: v, spin_rad_s: w, .. } = self.recorder.now;
         let world = self.settings.around(self.body, self.laws);
-        let touch = if self.is_rigid() { STRUCK_TOGETHER } else { TOUCH };
-        self.state.begin_within(&world, (c, v, w), touch);
+        let together = if self.is_rigid() { STRUCK_TOGETHER } else { TOUCH };
+        self.state.begin_within(&world, (c, v, w), together);
     }
 
     /// The journey, complete.

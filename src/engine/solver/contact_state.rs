@@ -184,12 +184,12 @@ impl ContactState {
         self.begin_within(world, (c, v, w), TOUCH);
     }
 
-    /// The same with what is nearer than `touch` (–, relative to R) taken as touched.
+    /// The same with what it comes to within `together` (–, relative to R) taken as touched.
     pub(crate) fn begin_within(
         &mut self,
         world: &ContactEnvironment,
         (c, v, w): (Vec3, Vec3, Vec3),
-        touch: f64,
+        together: f64,
     ) {
         (self.c, self.v, self.w) = (c, v, w);
         self.histories.clear();
@@ -205,7 +205,8 @@ impl ContactState {
             let margin = self.way_of_impact(world);
             self.collect_within(world, &c, margin);
         }
-        self.look(world, &c, world.body.radius * (1.0 + touch));
+        self.look(world, &c, world.body.radius * (1.0 + together));
+        self.touches.keep_struck(world.body.radius, &v, together);
         // An impact rebounds or not as a whole, by its fastest approach.
         let captured = self.touches.iter().all(|touch| world.captures(touch, &v));
         for k in 0..self.touches.len() {

@@ -35,7 +35,7 @@ pub(super) use contact::{GroundContact, settle, sustained_m_s};
 
 /// Touches no further away than this still hold the rock (–, relative to R).
 pub(crate) const HELD: f64 = 1e-4;
-/// What a rock is nearer to than this when it strikes something else it strikes with it (–, relative to R): steps end so far from what they
+/// What a rock comes to within this when it strikes something else it strikes with it (–, relative to R): steps end so far from what they
 /// come to, and of two walls that a rock rolls between neither is first.
 pub(crate) const STRUCK_TOGETHER: f64 = 1e-6;
 /// Local error of an impact followed in its own time (–, relative to its speed).
@@ -63,7 +63,8 @@ pub fn advance(
     state.look_ahead_again(world, &c);
     if hits(world, state) {
         // only what touches at this instant takes part in the impact
-        let touches = state.touches.nearer(world.body.radius * (1.0 + STRUCK_TOGETHER));
+        let mut touches = state.touches.nearer(world.body.radius * (1.0 + STRUCK_TOGETHER));
+        touches.keep_struck(world.body.radius, &state.v, STRUCK_TOGETHER);
         if state.is_struck {
             impact(world, state, &touches, &mut done);
         } else {

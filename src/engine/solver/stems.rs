@@ -205,6 +205,7 @@ impl ContactState {
         let Some(stems) = world.terrain.stems.as_ref() else { return };
         let c = self.c;
         self.look(world, &c, world.body.radius * (1.0 + STRUCK_TOGETHER));
+        self.touches.keep_struck(world.body.radius, &self.v, STRUCK_TOGETHER);
         while let Some(broken) = self.broken_by(world, (&self.v, &self.w)) {
             for (touch, loss) in &broken.struck {
                 note(self, touch, (loss, self.is_new(stems, touch)));
