@@ -181,7 +181,9 @@ impl Sample {
             (Some(weights), None) => {
                 Spread::weighted((&self.sorted, weights), self.effective_rocks())
             }
-            (Some(weights), Some(strata)) => Spread::stratified((&self.sorted, weights), strata),
+            (Some(weights), Some(strata)) => {
+                Spread::stratified((&self.sorted, weights), strata, self.effective_rocks())
+            }
         };
         let (value, below, above) = (spread.mean, spread.below(), spread.above());
         let is_positive = self.sorted.first().is_some_and(|least| *least >= 0.0) && value > 0.0;
@@ -310,13 +312,15 @@ impl Spread {
     }
 
     /// The same of rocks that were released stratum by stratum.
-    fn stratified((values, weights): (&[f64], &[f64]), strata: &Strata) -> Self {
+    fn stratified((values, weights): (&[f64], &[f64]), strata: &Strata, worth: f64) -> Self {
         let pairs = || values.iter().zip(weights);
         let all: f64 = weights.iter().sum();
         let mean = pairs().map(|(x, w)| w * x).sum::<f64>() / all;
         let [variance, third, freedom] = strata.moments(pairs().map(|(x, w)| w * (x - mean) / all));
         let skewness = skewness(variance, third);
-        Self { mean, error: variance.sqrt(), skewness, student: student_95(freedom) }
+        // of a few heavy rocks the variance itself is known badly, whatever stratum they are of
+        let student = student_95(freedom.min(worth - 1.0));
+        Self { mean, error: variance.sqrt(), skewness, student }
     }
 
     /// How far the interval reaches below the mean.

@@ -3,9 +3,12 @@
 //! Between strata chance decides nothing: what share of all events each has is known, and how many rocks it got. What varies is what the
 //! rocks of one stratum do. So the variance of a sum over them is that of stratified sampling (Cochran 1977, Sampling Techniques,
 //! section 5.4), `Σ_j n_j/(n_j − 1) (Σ z² − (Σ z)²/n_j)` with the pull `z` of each rock on what is estimated: 0 of those that do not come to
-//! a place, 5A.2 of domains. A stratum of one rock tells nothing of what varies within: its pull counts whole.
+//! a place, 5A.2 of domains. A stratum of few rocks tells too little of what varies within: their pulls count whole.
 
 use crate::frequency::Weights;
+
+/// Rocks of a stratum from which on it tells what varies within.
+pub(super) const ENOUGH: usize = 20;
 
 /// The strata of values.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,10 +34,10 @@ impl Strata {
         (0..weights.strata()).map(|stratum| weights.rocks(stratum) as f64).collect()
     }
 
-    /// What the variance within a stratum is multiplied by, and one over its rocks; without what is known of a single rock.
+    /// What the variance within a stratum is multiplied by, and one over its rocks; 1 and 0 of few.
     fn within(&self, stratum: u16) -> (f64, f64) {
         let n = self.rocks.get(usize::from(stratum)).copied().unwrap_or(0.0);
-        if n > 1.0 { (n / (n - 1.0), 1.0 / n) } else { (1.0, 0.0) }
+        if n >= ENOUGH as f64 { (n / (n - 1.0), 1.0 / n) } else { (1.0, 0.0) }
     }
 
     /// Variance of the sum of pulls, the third central moment of it, and its degrees of freedom (Satterthwaite 1946, by the rocks of each

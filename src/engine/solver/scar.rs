@@ -246,7 +246,12 @@ impl Scars {
                 ends |= !in_soil && self.goes_on_along(&blow.normal);
                 continue;
             };
-            if deepest.is_none_or(|known: Furrow| dug.depth_m > known.depth_m) {
+            // of two as deep that which takes less: it is no matter of sides, and on the safe side
+            let is_deeper = |known: Furrow| {
+                let [one, other] = [&dug, &known].map(|of| (of.depth_m, -of.drag_per_m3));
+                one > other
+            };
+            if deepest.is_none_or(is_deeper) {
                 deepest = Some(dug);
             }
         }

@@ -1,5 +1,6 @@
 //! Differences between runs whose rocks weigh what they stand for.
 //!
+//! Where all rocks of a stratum have a value, pulls are less their mean, which is no chance: how many rocks it got is known.
 //! Values are those of [`Sample::weighted`](super::super::Sample::weighted) and of shares of events, and pulls are what the intervals of means and shares are made of: of a
 //! mean `w (x − mean)/Σw` (delta method), of a share
 //! `w (1 − k_j/n_j)` of a rock of stratum `j` that counts and `−w k_j/n_j` of one that does not. So each
@@ -7,6 +8,7 @@
 
 use super::super::proportion::NORMAL_95;
 use super::super::rate::share_of;
+use super::super::strata::ENOUGH;
 use super::{Chance, Difference, Reading, Values, sample, variance};
 use crate::frequency::Weights;
 
@@ -29,13 +31,32 @@ impl Reading {
         let all: f64 = weighed.iter().map(|(.., weight)| weight).sum();
         let pull =
             |&(release, x, weight): &(usize, f64, f64)| (release, weight * (x - value) / all);
-        let chance = (weighed.len() > 1).then(|| Chance::Pulls(weighed.iter().map(pull).collect()));
+        let mut pulls: Values = weighed.iter().map(pull).collect();
+        within_strata(&mut pulls, weights);
+        let chance = (weighed.len() > 1).then_some(Chance::Pulls(pulls));
         Some(Self { value, rocks: weighed.len(), chance })
     }
 
     /// The weighted percentile `p` (0 < p < 1) of the finite ones; none of nothing.
     pub fn weighted_percentile(values: &[(usize, f64)], weights: &Weights, p: f64) -> Option<Self> {
         Self::of_percentile(weighed(values, weights), p)
+    }
+}
+
+/// Takes out of pulls what is the same for all rocks of a stratum, where it is complete and has rocks enough.
+fn within_strata(pulls: &mut Values, weights: &Weights) {
+    let mut strata = vec![(0_usize, 0.0); weights.strata()];
+    for (release, pull) in pulls.iter() {
+        let of = &mut strata[weights.stratum_of(*release)];
+        *of = (of.0 + 1, of.1 + pull);
+    }
+    for (release, pull) in pulls.iter_mut() {
+        let stratum = weights.stratum_of(*release);
+        let (rocks, sum) = strata[stratum];
+        if rocks >= ENOUGH && rocks == weights.rocks(stratum) {
+            let n = rocks as f64;
+            *pull = (*pull - sum / n) * (n / (n - 1.0)).sqrt();
+        }
     }
 }
 

@@ -89,3 +89,27 @@ fn a_hop_in_a_scar_is_dragged_as_deep_as_it_is() {
     let most = k * cut_area_m2(radius, depth, 0.0) * 14.9 * out_s;
     assert!(-math::ln(kept) < 0.5 * most && -math::ln(kept) > 0.25 * most, "{kept}");
 }
+
+/// Of two soils that are dug as deep that counts which takes less, whichever is struck first.
+#[test]
+fn of_two_soils_as_deep_the_weaker_drag_counts() {
+    let mass = 1400.0;
+    let body = Body { mass, inertia: 0.1 * mass, radius: 0.5, gravity: Vec3::z() * -9.81 };
+    let soil = |drag| Some(Scar { strength_kn_m2: 5000.0, drag, soil_density_kg_m3: 1700.0 });
+    let blow = |ground: u16, side: f64| {
+        let normal = Vec3::new(side, 0.0, 1.0).normalize();
+        GroundBlow { ground, normal, approach_m_s: 4.0, of_point_m_s: 4.0 }
+    };
+    let kept = |layers: Vec<Option<Scar>>, blows: [GroundBlow; 2]| {
+        let mut scars = Scars { layers, is_any: true, ..Scars::default() };
+        scars.enter(&body, &blows, (10.0, false))
+    };
+    let both = [soil(1.2), soil(4.0)];
+    let one = kept(both.into(), [blow(0, 1.0), blow(1, -1.0)]);
+    let swapped = kept(both.into(), [blow(1, -1.0), blow(0, 1.0)]);
+    let weak = kept(vec![soil(1.2), None], [blow(0, 1.0), blow(1, -1.0)]);
+    assert!((one - swapped).abs() < 1e-15 && (one - weak).abs() < 1e-15, "{one} {swapped} {weak}");
+    // hard ground beside soil takes nothing of it
+    let beside = kept(vec![None, soil(1.2)], [blow(0, 1.0), blow(1, -1.0)]);
+    assert!((beside - weak).abs() < 1e-15 && weak < 0.99, "{beside} {weak}");
+}
