@@ -8,7 +8,7 @@
 use crate::frequency::Weights;
 
 /// Rocks of a stratum from which on it tells what varies within.
-pub(super) const ENOUGH: usize = 20;
+pub(super) const FEWEST_OF_STRATUM: usize = 20;
 
 /// The strata of values.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,7 +37,7 @@ impl Strata {
     /// What the variance within a stratum is multiplied by, and one over its rocks; 1 and 0 of few.
     fn within(&self, stratum: u16) -> (f64, f64) {
         let n = self.rocks.get(usize::from(stratum)).copied().unwrap_or(0.0);
-        if n >= ENOUGH as f64 { (n / (n - 1.0), 1.0 / n) } else { (1.0, 0.0) }
+        if n >= FEWEST_OF_STRATUM as f64 { (n / (n - 1.0), 1.0 / n) } else { (1.0, 0.0) }
     }
 
     /// Variance of the sum of pulls, the third central moment of it, and its degrees of freedom (Satterthwaite 1946, by the rocks of each

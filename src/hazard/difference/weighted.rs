@@ -8,7 +8,7 @@
 
 use super::super::proportion::NORMAL_95;
 use super::super::rate::share_of;
-use super::super::strata::ENOUGH;
+use super::super::strata::FEWEST_OF_STRATUM;
 use super::{Chance, Difference, Reading, Values, sample, variance};
 use crate::frequency::Weights;
 
@@ -53,7 +53,7 @@ fn within_strata(pulls: &mut Values, weights: &Weights) {
     for (release, pull) in pulls.iter_mut() {
         let stratum = weights.stratum_of(*release);
         let (rocks, sum) = strata[stratum];
-        if rocks >= ENOUGH && rocks == weights.rocks(stratum) {
+        if rocks >= FEWEST_OF_STRATUM && rocks == weights.rocks(stratum) {
             let n = rocks as f64;
             *pull = (*pull - sum / n) * (n / (n - 1.0)).sqrt();
         }
