@@ -6,6 +6,7 @@
 
 use super::classes::class_of;
 use super::proportion::{Proportion, interval_95, unseen};
+use super::strata::bessel;
 use crate::frequency::Weights;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -267,7 +268,7 @@ impl<'a> Running<'a> {
             0.0
         };
         // with one stratum the interval is that of a proportion, which wants p (1 − p)
-        let few = if self.weights.strata() == 1 { 1.0 } else { n / (n - 1.0).max(1.0) };
+        let few = if self.weights.strata() == 1 { 1.0 } else { bessel(n) };
         self.weights.per_year(stratum).powi(2) * (few * spread + full) / n
     }
 

@@ -84,7 +84,7 @@ impl Sample {
     }
 
     /// Sorts values with their weights and strata; an open end of where a rock may lie is one of them.
-    fn sorted(mut rows: Vec<(f64, f64, u16)>, weights: Option<&Weights>) -> Self {
+    fn sorted(mut rows: Vec<SampleRow>, weights: Option<&Weights>) -> Self {
         #[expect(clippy::float_cmp, reason = "equal weights are the same number")]
         let are_equal = rows.windows(2).all(|pair| pair[0].1 == pair[1].1);
         if are_equal {
@@ -124,18 +124,18 @@ impl Sample {
     }
 
     fn bounded(
-        rows: impl Iterator<Item = ((f64, f64, u16), bool)>,
+        rows: impl Iterator<Item = (SampleRow, bool)>,
         open: Open,
         weights: Option<&Weights>,
     ) -> Self {
-        let seen: Vec<((f64, f64, u16), bool)> =
+        let seen: Vec<(SampleRow, bool)> =
             rows.filter(|((value, ..), is_bound)| *is_bound || value.is_finite()).collect();
         let far_end = match open {
             Open::Above => f64::INFINITY,
             Open::Below => f64::NEG_INFINITY,
         };
         let far = seen.iter().any(|(_, is_bound)| *is_bound).then(|| {
-            let moved = |&((value, weighs, stratum), is_bound): &((f64, f64, u16), bool)| {
+            let moved = |&((value, weighs, stratum), is_bound): &(SampleRow, bool)| {
                 (if is_bound { far_end } else { value }, weighs, stratum)
             };
             (Box::new(Self::sorted(seen.iter().map(moved).collect(), weights)), open)
@@ -176,13 +176,11 @@ impl Sample {
     /// Summed in ascending order, so the same values give the same bits however they arrived. Weighted values: ratio of
     /// sums, with the variance `Σ w² (x − mean)² / (Σ w)²` of its linearisation (delta method), of releases stratum by stratum.
     pub fn mean(&self) -> Option<Mean> {
-        let spread = match (&self.weights, &self.strata) {
-            (None, _) => Spread::of(&self.sorted),
-            (Some(weights), None) => {
-                Spread::weighted((&self.sorted, weights), self.effective_rocks())
-            }
-            (Some(weights), Some(strata)) => {
-                Spread::stratified((&self.sorted, weights), strata, self.effective_rocks())
+        let spread = match &self.weights {
+            None => Spread::of(&self.sorted),
+            Some(weights) => {
+                let values = (&self.sorted[..], &weights[..]);
+                Spread::weighted(values, self.strata.as_ref(), self.effective_rocks())
             }
         };
         let (value, below, above) = (spread.mean, spread.below(), spread.above());
@@ -271,8 +269,11 @@ impl Sample {
     }
 }
 
+/// A value, what it weighs, and its stratum.
+type SampleRow = (f64, f64, u16);
+
 /// A value of a release, what it stands for, and its stratum.
-fn of_release(value: f64, release: usize, weights: &Weights) -> (f64, f64, u16) {
+fn of_release(value: f64, release: usize, weights: &Weights) -> SampleRow {
     (value, weights.of_release(release), weights.stratum_of(release) as u16)
 }
 
@@ -300,27 +301,23 @@ impl Spread {
         Self { mean, error, skewness: skewness(squares, cubes), student: student_95(n - 1.0) }
     }
 
-    /// The same of values with weights, worth so many of equal weight.
-    fn weighted((values, weights): (&[f64], &[f64]), worth: f64) -> Self {
+    /// The same of values with weights, worth so many of equal weight; of releases stratum by stratum.
+    fn weighted((values, weights): (&[f64], &[f64]), strata: Option<&Strata>, worth: f64) -> Self {
         let pairs = || values.iter().zip(weights);
         let all: f64 = weights.iter().sum();
         let mean = pairs().map(|(x, w)| w * x).sum::<f64>() / all;
-        let [squares, cubes] =
-            [2, 3].map(|power| pairs().map(|(x, w)| (w * (x - mean)).powi(power)).sum::<f64>());
-        let error = squares.sqrt() / all;
-        Self { mean, error, skewness: skewness(squares, cubes), student: student_95(worth - 1.0) }
-    }
-
-    /// The same of rocks that were released stratum by stratum.
-    fn stratified((values, weights): (&[f64], &[f64]), strata: &Strata, worth: f64) -> Self {
-        let pairs = || values.iter().zip(weights);
-        let all: f64 = weights.iter().sum();
-        let mean = pairs().map(|(x, w)| w * x).sum::<f64>() / all;
-        let [variance, third, freedom] = strata.moments(pairs().map(|(x, w)| w * (x - mean) / all));
-        let skewness = skewness(variance, third);
+        let pulls = || pairs().map(|(x, w)| w * (x - mean));
+        let [squares, cubes, freedom] = match strata {
+            None => {
+                let [squares, cubes] = [2, 3].map(|power| pulls().map(|z| z.powi(power)).sum());
+                [squares, cubes, f64::INFINITY]
+            }
+            Some(strata) => strata.moments(pulls()),
+        };
         // of a few heavy rocks the variance itself is known badly, whatever stratum they are of
         let student = student_95(freedom.min(worth - 1.0));
-        Self { mean, error: variance.sqrt(), skewness, student }
+        let error = squares.sqrt() / all;
+        Self { mean, error, skewness: skewness(squares, cubes), student }
     }
 
     /// How far the interval reaches below the mean.

@@ -10,6 +10,11 @@ use crate::frequency::Weights;
 /// Rocks of a stratum from which on it tells what varies within.
 pub(super) const FEWEST_OF_STRATUM: usize = 20;
 
+/// What the mean square deviation of so many rocks is multiplied by to tell the variance of what they are drawn from.
+pub(super) fn bessel(rocks: f64) -> f64 {
+    rocks / (rocks - 1.0).max(1.0)
+}
+
 /// The strata of values.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Strata {
@@ -37,7 +42,7 @@ impl Strata {
     /// What the variance within a stratum is multiplied by, and one over its rocks; 1 and 0 of few.
     fn within(&self, stratum: u16) -> (f64, f64) {
         let n = self.rocks.get(usize::from(stratum)).copied().unwrap_or(0.0);
-        if n >= FEWEST_OF_STRATUM as f64 { (n / (n - 1.0), 1.0 / n) } else { (1.0, 0.0) }
+        if n >= FEWEST_OF_STRATUM as f64 { (bessel(n), 1.0 / n) } else { (1.0, 0.0) }
     }
 
     /// Variance of the sum of pulls, the third central moment of it, and its degrees of freedom (Satterthwaite 1946, by the rocks of each

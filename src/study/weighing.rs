@@ -54,8 +54,11 @@ impl Weigh {
         open: Option<(&[bool], Open)>,
         p: f64,
     ) -> Option<Percentile> {
-        let weights = self.0.as_ref().map(|frequency| frequency.weights(values.len()));
-        let weights = weights.unwrap_or_else(|| Weights::equal(values.len()));
+        let count = values.len();
+        let weights = match &self.0 {
+            None => Weights::equal(count),
+            Some(frequency) => frequency.weights(count),
+        };
         let each = values.iter().enumerate().map(|(release, value)| (*value, release));
         let sample = match open {
             None => Sample::of_releases(each, &weights),

@@ -2,8 +2,10 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use rockfall::plan::Plan;
+use rockfall::rock::Vec3;
 use rockfall::scene::Scene;
 use rockfall::simulation::{Scratch, simulate_release};
+use rockfall::terrain::stl::{Facet, write_binary};
 use std::path::Path;
 
 /// Releases on the slope in Tyrol, with a path point every 4 ms; what differs is put in for `SHAPE` and `GROUND`.
@@ -125,18 +127,10 @@ fn cells_and_stretches_are_as_high_as_the_path_in_them() {
     assert_eq!(found.map(|(points, _)| points), [0, 0], "{found:?}");
 }
 
-/// A slope of 30° over 120 m, so wide, as STL.
-fn strip(wide_m: f64) -> String {
+/// A slope of 30° over 120 m, so wide.
+fn strip(wide_m: f64) -> [Facet; 2] {
     let corners = [[0.0, 0.0, 60.0], [wide_m, 0.0, 60.0], [wide_m, 120.0, 0.0], [0.0, 120.0, 0.0]];
-    let vertex = |k: usize| {
-        let [x, y, z] = corners[k];
-        format!("vertex {x} {y} {z}\n")
-    };
-    let facet = |corners: [usize; 3]| {
-        let vertices = corners.map(vertex).concat();
-        format!("facet normal 0 0 1\nouter loop\n{vertices}endloop\nendfacet\n")
-    };
-    format!("solid slope\n{}endsolid\n", [[0, 1, 2], [0, 2, 3]].map(facet).concat())
+    [[0, 1, 2], [0, 2, 3]].map(|facet| facet.map(|k| Vec3::from(corners[k])))
 }
 
 /// Rocks of a strip of 6 km cross it and do not run along it: its profile had stretches of 100 m. Where the terrain is as long as it is
@@ -145,7 +139,7 @@ fn strip(wide_m: f64) -> String {
 fn the_profile_of_a_strip_is_that_of_its_slope() {
     let step_m = |wide_m: f64| {
         let dir = tempfile::tempdir().unwrap();
-        std::fs::write(dir.path().join("slope.stl"), strip(wide_m)).unwrap();
+        write_binary(&dir.path().join("slope.stl"), &strip(wide_m)).unwrap();
         let text = SCENE
             .replace("SHAPE", "")
             .replace("GROUND", "restitution = 0.3\nrolling_friction = 0.2")

@@ -63,7 +63,7 @@ pub fn advance(
     state.look_ahead_again(world, &c);
     if hits(world, state) {
         // only what touches at this instant takes part in the impact
-        let mut touches = state.touches.nearer(world.body.radius * (1.0 + STRUCK_TOGETHER));
+        let mut touches = state.touches.clone();
         touches.keep_struck(world.body.radius, &state.v, STRUCK_TOGETHER);
         if state.is_struck {
             impact(world, state, &touches, &mut done);

@@ -8,7 +8,7 @@
 
 use super::super::proportion::NORMAL_95;
 use super::super::rate::share_of;
-use super::super::strata::FEWEST_OF_STRATUM;
+use super::super::strata::{FEWEST_OF_STRATUM, bessel};
 use super::{Chance, Difference, Reading, Values, sample, variance};
 use crate::frequency::Weights;
 
@@ -55,7 +55,7 @@ fn within_strata(pulls: &mut Values, weights: &Weights) {
         let (rocks, sum) = strata[stratum];
         if rocks >= FEWEST_OF_STRATUM && rocks == weights.rocks(stratum) {
             let n = rocks as f64;
-            *pull = (*pull - sum / n) * (n / (n - 1.0)).sqrt();
+            *pull = (*pull - sum / n) * bessel(n).sqrt();
         }
     }
 }
@@ -79,7 +79,7 @@ impl WeightedCount<'_> {
             let rocks = (weights.rocks(stratum) as f64).max(1.0);
             let own = f64::from(u8::from(next.next_if_eq(&release).is_some()));
             // the variance of a sample is over one less
-            let few = (rocks / (rocks - 1.0).max(1.0)).sqrt();
+            let few = bessel(rocks).sqrt();
             let pull = (own - counted[stratum] as f64 / rocks) * few;
             (release, pull * weights.of_stratum(stratum) * each)
         };
