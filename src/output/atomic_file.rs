@@ -8,6 +8,10 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
+/// What to do about a file of a run that is not what the run has written.
+pub(super) const RESTORE: &str =
+    "restore the file as it was written, or run again with --overwrite";
+
 /// The path without the ending of a file that is not yet whole.
 pub(super) fn final_path(path: &Path) -> PathBuf {
     if path.extension().is_some_and(|ending| ending == PART) {
@@ -34,12 +38,7 @@ pub(super) fn read_json<T: DeserializeOwned>(path: &Path) -> Result<Option<T>> {
         }
         Err(why) => return Err(Error::file("read", path)(why)),
     };
-    serde_json::from_slice(&text).map(Some).map_err(|why| {
-        Error::input(
-            path,
-            format!("line {}", why.line()),
-            why.to_string(),
-            "restore the file as it was written, or run again with --overwrite",
-        )
-    })
+    serde_json::from_slice(&text)
+        .map(Some)
+        .map_err(|why| Error::input(path, format!("line {}", why.line()), why.to_string(), RESTORE))
 }

@@ -131,14 +131,8 @@ pub(super) fn has_state(dir: &Path, done: usize) -> bool {
 /// Reads it back.
 pub(super) fn read_state(dir: &Path, done: usize) -> Result<MapState> {
     let path = state_path(dir, done);
-    super::atomic_file::read_json(&path)?.ok_or_else(|| {
-        Error::input(
-            &path,
-            "file",
-            "found nothing",
-            "restore the file as it was written, or start again with --overwrite",
-        )
-    })
+    super::atomic_file::read_json(&path)?
+        .ok_or_else(|| Error::input(&path, "file", "found nothing", super::atomic_file::RESTORE))
 }
 
 /// Whether a file in the folder of the maps, whole or not, has a name that a run writes: it may hold others, a terrain

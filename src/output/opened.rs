@@ -42,7 +42,7 @@ pub(super) fn open(
             &dir.join(PROGRESS),
             "bytes",
             format!("no length of {name}"),
-            "restore the file as it was written, or start again with --overwrite",
+            super::atomic_file::RESTORE,
         )),
     }
 }

@@ -1,5 +1,6 @@
 //! Results read back: what figures and pages are drawn from.
 
+use super::atomic_file::RESTORE;
 use super::lock::FolderLock;
 use super::progress::{Identity, PROGRESS, Progress};
 use super::rows::{ImpactRow, PathRow};
@@ -116,7 +117,7 @@ impl Results {
             // every run with maps has this one; results of an earlier version lack the newer layers
             (true, false) if layer == Layer::Reach => {
                 let found = "the run has written this map, and it is not there";
-                Err(Error::input(&path, "file", found, AGAIN))
+                Err(Error::input(&path, "file", found, RESTORE))
             }
             _ => Ok(None),
         }
@@ -294,9 +295,6 @@ pub(super) fn recall(
     }
 }
 
-/// What to do about a file of a run that is not what the run has written.
-const AGAIN: &str = "restore the file as it was written, or run again with --overwrite";
-
 /// Every table must be as long as when the run was finished.
 pub(super) fn check_lengths(dir: &Path, written: &BTreeMap<String, u64>) -> Result<()> {
     for (name, written) in written {
@@ -307,7 +305,7 @@ pub(super) fn check_lengths(dir: &Path, written: &BTreeMap<String, u64>) -> Resu
                 &path,
                 "length",
                 format!("found {} where the run had written {written}", number_of(found, "byte")),
-                AGAIN,
+                RESTORE,
             ));
         }
     }

@@ -44,7 +44,7 @@ impl CsvTable {
                     "{} where the interrupted run had written {bytes}",
                     number_of(found, "byte")
                 ),
-                "restore the file, or start again with --overwrite",
+                super::atomic_file::RESTORE,
             ));
         }
         file.set_len(bytes)
@@ -73,7 +73,7 @@ impl CsvTable {
                 other,
                 "length",
                 format!("{} where the run had written {bytes}", number_of(found, "byte")),
-                "restore the file, or run again with --overwrite",
+                super::atomic_file::RESTORE,
             ));
         }
         let mut rows = BufReader::with_capacity(BUFFER, file);
@@ -112,7 +112,7 @@ pub(super) fn rows<R: DeserializeOwned>(
             &path,
             "line 1",
             header::flaw(&found, (columns, groups)),
-            "restore the file as it was written, or run again with --overwrite",
+            super::atomic_file::RESTORE,
         ));
     };
     let all: Vec<String> = found.iter().map(|&column| column.to_owned()).collect();

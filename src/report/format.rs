@@ -231,12 +231,21 @@ fn like(value: f64, digits: usize) -> impl Fn(f64) -> String {
     let exponent = exponent_of(value);
     let last = f64::from(exponent) - digits as f64 + 1.0;
     move |v| {
-        if !(-4..9).contains(&exponent) {
-            return significant(math::rounded(v, digits), digits);
+        if (-4..9).contains(&exponent) {
+            rounded_at(v, last)
+        } else {
+            significant(math::rounded(v, digits), digits)
         }
-        let place = math::pow(10.0, last.max(0.0));
-        decimal(if last > 0.0 { (v / place).round() * place } else { v }, (-last).max(0.0) as usize)
     }
+}
+
+/// A number whose last digit stands at the place `last` (power of ten): from 1 on zeros follow it.
+pub(super) fn rounded_at(value: f64, last: f64) -> String {
+    if last <= 0.0 {
+        return decimal(value, -last as usize);
+    }
+    let place = math::pow(10.0, last);
+    decimal((value / place).round() * place, 0)
 }
 
 /// A share (0..1) and the ends of its interval in per cent, by the rule of [all numbers](with_interval); so many decimals without one.

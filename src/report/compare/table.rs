@@ -12,6 +12,8 @@ use std::fmt::Write as _;
 
 /// Percentiles that are compared (per cent).
 const PERCENTS: [u8; 4] = [50, 90, 95, 99];
+/// Place beyond which no difference is written (power of ten).
+const FINEST_PLACE: f64 = -9.0;
 
 /// What is said of a difference that rocks that would have gone on may have turned either way.
 pub(super) const LEFT_OPEN: &str = "left open";
@@ -220,15 +222,6 @@ fn told(value: f64, interval: Option<(f64, f64)>) -> String {
     format::significant(math::rounded(value, digits), digits)
 }
 
-/// A number to so many decimals; below 0 its last digits are 0.
-fn to_decimals(value: f64, decimals: f64) -> String {
-    if decimals >= 0.0 {
-        return format::decimal(value, decimals.min(9.0) as usize);
-    }
-    let place = math::pow(10.0, -decimals);
-    format::decimal((value / place).round() * place, 0)
-}
-
 /// Both values, the difference with its sign, and its interval; bounds with theirs.
 pub(super) fn in_words(row: &ComparedStatistic, words: &Words) -> [String; 4] {
     let Difference { a, b, value, interval } = row.difference;
@@ -241,13 +234,13 @@ pub(super) fn in_words(row: &ComparedStatistic, words: &Words) -> [String; 4] {
     let ends = ends.map(|ends| ends.map(|end| if end.is_finite() { end } else { value }));
     let finest = ends.map_or(0.0, |[low, high]| 0.05 * (high - low));
     let largest = ends.map_or(value.abs(), |[low, high]| low.abs().max(high.abs()));
-    let decimals = match finest {
-        fine if fine > 0.0 => -math::log10(fine).floor(),
-        _ if largest > 0.0 => 3.0 - math::log10(largest).floor(),
+    let last = match finest {
+        fine if fine > 0.0 => math::log10(fine).floor(),
+        _ if largest > 0.0 => math::log10(largest).floor() - 3.0,
         _ => 0.0,
     };
     let signed = |v: f64| {
-        let text = to_decimals(v, decimals);
+        let text = format::rounded_at(v, last.max(FINEST_PLACE));
         let is_zero = !text.bytes().any(|byte| (b'1'..=b'9').contains(&byte));
         if v > 0.0 && !is_zero { format!("+{text}") } else { text }
     };
