@@ -68,13 +68,14 @@ pub const PERCENTS: [u8; 5] = [50, 90, 95, 98, 99];
 /// Statistics over all rocks computed so far.
 ///
 /// The statistics are over all rocks that were released. One that left the terrain, ran out of time or work, or failed counts
-/// with what it had done until then; its runout is a lower bound, and so is every percentile of runout that such rocks decide.
+/// with what it had done until then; its runout is a lower bound, and so is every percentile of runout that such rocks decide. So are
+/// the largest values of one that ran out of time or work, or failed.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Hazard {
     stops: BTreeMap<StopKind, EndCounts>,
     values: [Vec<f64>; Quantity::ALL.len()],
-    /// Whether each rock would have gone on, in the order of the values.
-    is_open: Vec<bool>,
+    /// How each rock ended, in the order of the values.
+    ended: Vec<StopKind>,
     /// Those that would have gone on, by rising release.
     open: Vec<OpenRock>,
     largest: [Option<Largest>; Quantity::ALL.len()],
@@ -203,7 +204,7 @@ impl Hazard {
             self.not_released.push(row.index);
             return;
         }
-        self.is_open.push(row.stop.is_open());
+        self.ended.push(row.stop);
         for (slot, quantity) in Quantity::ALL.into_iter().enumerate() {
             let value = quantity.of(row);
             // a failed rock may have left no number; infinite, two equal runs stay equal
@@ -254,14 +255,10 @@ impl Hazard {
     /// All values of one quantity, sorted: for curves and histograms.
     pub fn sample(&self, quantity: Quantity) -> Sample {
         let weights = self.weights_or_equal();
-        match quantity.open() {
-            Some(open) => {
-                let seen = self.of_releases(quantity).zip(self.is_open.iter().copied());
-                let each = seen.map(|((value, release), is_bound)| (value, release, is_bound));
-                Sample::censored_of_releases(each, &weights, open)
-            }
-            None => Sample::of_releases(self.of_releases(quantity), &weights),
-        }
+        let seen = self.of_releases(quantity).zip(&self.ended);
+        let each =
+            seen.map(|((value, release), stop)| (value, release, quantity.is_bound_after(*stop)));
+        Sample::censored_of_releases(each, &weights, quantity.open())
     }
 
     /// The same, the values of rocks that would have gone on taken as they were seen.

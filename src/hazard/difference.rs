@@ -173,6 +173,11 @@ impl Difference {
         Self { value: told(self.value), interval, ..self }
     }
 
+    /// Whether nothing differs, for certain.
+    pub fn is_none(&self) -> bool {
+        self.interval == Some((0.0, 0.0))
+    }
+
     /// Whether the interval leaves out zero.
     pub fn is_clear(&self) -> bool {
         self.interval.is_some_and(|(low, high)| low > 0.0 || high < 0.0)

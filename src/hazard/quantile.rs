@@ -132,6 +132,9 @@ pub(super) struct Departure {
 /// What is added to the variance of a share (in the square of what one rock weighs).
 const HALF_A_ROCK: f64 = 0.5;
 
+/// What sums of weights lack by rounding where they are just a share (–).
+const AT_A_TIE: f64 = 1e-12;
+
 impl WeightBelow {
     /// Of groups of so many rocks of one weight each (weight, rocks); what has the same place has one group, or one after the other.
     pub(super) fn of(groups: impl Iterator<Item = (f64, usize)>) -> Self {
@@ -176,7 +179,7 @@ impl WeightBelow {
 
     /// The first place up to which at least the share `p` of all weight lies.
     pub(super) fn place(&self, p: f64) -> usize {
-        let wanted = p * self.whole()[0];
+        let wanted = p * self.whole()[0] * (1.0 - AT_A_TIE);
         // rounding may keep the last sum from reaching the whole
         let inner = self.sums.get(1..self.sums.len() - 1).unwrap_or_default();
         inner.partition_point(|[below, _]| *below < wanted)

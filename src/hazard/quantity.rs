@@ -1,7 +1,7 @@
 //! The quantities of which statistics are kept.
 
 use super::quantile::Open;
-use super::row::Row;
+use super::row::{Row, StopKind};
 
 /// A quantity that every released rock has one value of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -63,14 +63,17 @@ impl Quantity {
         }
     }
 
-    /// Where the true value of a rock lies that left the terrain, ran out of time or failed; none where its way so far gives
-    /// the value: a largest speed is that on the terrain given.
-    pub fn open(self) -> Option<Open> {
-        match self {
-            Self::Runout | Self::Drop | Self::Time => Some(Open::Above),
-            Self::ReachAngle => Some(Open::Below),
-            _ => None,
-        }
+    /// On which side of what was seen the true value of a rock lies that would have gone on.
+    pub fn open(self) -> Open {
+        if self == Self::ReachAngle { Open::Below } else { Open::Above }
+    }
+
+    /// Whether what was seen of a rock that ended so is only a bound. Largest values and counts of one that left the terrain are those
+    /// on the terrain given; one that ran out of time or failed might have come to larger ones there.
+    pub fn is_bound_after(self, stop: StopKind) -> bool {
+        let is_of_the_end =
+            matches!(self, Self::Runout | Self::Drop | Self::Time | Self::ReachAngle);
+        stop.is_open() && (is_of_the_end || stop != StopKind::LeftTerrain)
     }
 
     /// Its value for one rock.

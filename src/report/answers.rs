@@ -78,11 +78,17 @@ fn barrier(of: &BarrierSummary) -> String {
             interval_of_none(&of.arriving)
         );
     }
+    // with what rocks would come that may still come is not known
+    let (them, by_whom) = if of.arriving.censored {
+        ("those that came", ", by those that came")
+    } else {
+        ("them", "")
+    };
     let design = match (&of.design_values, &of.barrier.design) {
         (Some(design), _) => {
             let (unit, size) = energy_unit(design.energy_j);
             format!(
-                "; its rule asks for {} and {}",
+                "; its rule asks for {} and {}{by_whom}",
                 known((design.energy_j, design.energy_95_j), size, unit),
                 known((design.height_m, design.height_95_m), 1.0, "m")
             )
@@ -95,7 +101,7 @@ fn barrier(of: &BarrierSummary) -> String {
         (None, None) => String::new(),
     };
     format!(
-        "barrier \"{name}\": {} of the rocks arrive {}, it stops {} of them {}{design}",
+        "barrier \"{name}\": {} of the rocks arrive {}, it stops {} of {them} {}{design}",
         share(&of.arriving),
         share_interval(&of.arriving),
         share(&of.stopped),

@@ -78,7 +78,8 @@ impl Comparison {
         }
         notes
             .extend(weighing::note(populations[0].each_ref().map(|of| of.among.standing.as_ref())));
-        notes.extend(populations::censored(&populations[0]));
+        notes.extend(bounds::censored(&populations[0]));
+        notes.extend(inputs::moved(&runs));
         notes.extend(weighing::of_worlds(&runs));
         notes.extend(unpaired(paired, one_seed).map(str::to_owned));
         let groups = populations.iter().map(|pair| table::group(pair, paired, same_run)).collect();
@@ -89,7 +90,7 @@ impl Comparison {
             paired,
             one_seed,
             same_run,
-            inputs: inputs::differing(&runs[0].summary, &runs[1].summary),
+            inputs: inputs::differing(&runs),
             notes,
             groups,
             populations,

@@ -153,11 +153,12 @@ pub(super) fn with_interval(all: [f64; 3]) -> [String; 3] {
         // what was rounded to two digits before stays so
         if !(low.is_finite() || high.is_finite())
             && (value - math::rounded(value, 2)).abs() < 1e-12 * value.abs()
-            && (-4..9).contains(&exponent_of(value))
         {
-            return all.map(|number| {
-                if number.is_finite() { plain(number) } else { significant(number, 2) }
-            });
+            let is_plain = (-4..9).contains(&exponent_of(value));
+            let write = |number: f64| {
+                if number.is_finite() && is_plain { plain(number) } else { significant(number, 2) }
+            };
+            return all.map(write);
         }
         // alone: a maximum is read as it is, a small derivative or a bound only for its size
         let digits = if value.abs() >= 0.1 { 4 } else { 3 };
@@ -224,6 +225,11 @@ pub(super) fn alone(value: f64) -> String {
     }
     let [value, ..] = with_interval([value, f64::NAN, f64::NAN]);
     value
+}
+
+/// A number to so many digits, zeros behind them.
+pub(super) fn to_digits(value: f64, digits: usize) -> String {
+    like(value, digits)(value)
 }
 
 /// Writes numbers to the last place that a value of so many digits has: its interval ends where it ends.

@@ -3,9 +3,11 @@
 mod annual;
 mod arrivals;
 mod barriers;
+pub(super) mod first;
 mod lines;
 mod maps;
 mod measured;
+mod method;
 mod profile;
 mod shapes;
 
@@ -98,38 +100,9 @@ pub fn gather(results: &Results, ground: Option<GroundRaster>) -> Result<Report>
     let failed = report.checks.iter().filter(|check| check.verdict == Plausibility::Off);
     let failed: Vec<String> = failed.map(said).collect();
     let off = report.observed.as_ref().and_then(|found| measured::off(found, words));
-    let first = off.into_iter().chain(warnings_first(hazard, words)).collect();
-    report.text.warnings = [first, report.text.warnings, failed].concat();
+    let before_all = off.into_iter().chain(first::warnings_first(hazard, words)).collect();
+    report.text.warnings = [before_all, report.text.warnings, failed].concat();
     Ok(report)
-}
-
-/// What sources without a rock and rocks that left the terrain do to the numbers, before anything else.
-pub(super) fn warnings_first(hazard: &Hazard, words: &Words) -> Vec<String> {
-    let own = words.open();
-    let kinds = [
-        (StopKind::LeftTerrain, own.have_left, own.remedy_left),
-        (StopKind::TimeUp, own.have_no_time, own.remedy_time),
-        (StopKind::OverBudget, own.have_no_budget, own.remedy_budget),
-        (StopKind::Failed, own.have_failed, own.remedy_budget),
-    ];
-    let weighted = hazard.weights().map(|_| words.say(by_frequency::SHARE));
-    let some_rocks = weighted.unwrap_or_else(|| own.some_rocks.to_owned());
-    let said = |(kind, what, remedy): (StopKind, &str, &str)| {
-        let share = hazard.ended(kind);
-        let count = |n: usize| format::decimal(n as f64, 0);
-        let percent = format::percent_of_part(share.share, usize::from(share.share < 0.1));
-        let (n, of) = (count(share.count), count(share.of));
-        let rocks = fill(&some_rocks, &[("n", &n), ("of", &of), ("share", &percent)]);
-        // what the rocks have done: a share is of several
-        let is_share = hazard.weights().is_some();
-        let what = fill(what, &[("n", if is_share { &format::NO_NUMBER } else { &n })]);
-        let said =
-            || fill(own.censored, &[("rocks", &rocks), ("what", &what), ("remedy", &remedy)]);
-        (share.count > 0).then(said)
-    };
-    let missing = hazard.missing_events();
-    let missing = missing.iter().map(|warning| words.say(warning));
-    missing.chain(kinds.into_iter().filter_map(said)).collect()
 }
 
 /// The exceedance curve with its band upright: the intervals of the percentiles lie along x, figures want them along y.
@@ -235,7 +208,7 @@ fn quantiles(hazard: &Hazard, quantity: hazard::Quantity) -> Vec<Quantile> {
     let sample = hazard.sample(quantity);
     let one = |percent: u8| {
         let probability = f64::from(percent) / 100.0;
-        let at = percentile_of(&sample, probability, quantity.open())?;
+        let at = percentile_of(&sample, probability, Some(quantity.open()))?;
         at.value.is_finite().then_some(Quantile { probability, at })
     };
     PERCENTS.into_iter().filter_map(one).collect()
@@ -263,15 +236,15 @@ pub(super) fn headline(hazard: &Hazard, words: &Words) -> Vec<EstimateRow> {
     let row = |(name, quantity, p, unit): (&str, hazard::Quantity, f64, &str)| {
         let percent = format::decimal(100.0 * p, 0);
         let name = fill(words.percentile_of, &[("quantity", &name), ("percent", &percent)]);
-        let estimate = percentile_of(&hazard.sample(quantity), p, quantity.open())?;
+        let estimate = percentile_of(&hazard.sample(quantity), p, Some(quantity.open()))?;
         Some(EstimateRow { name, estimate, unit: unit.to_owned() })
     };
     asked.into_iter().filter_map(row).collect()
 }
 
 fn table(hazard: &Hazard, words: &Words) -> EstimateTable {
-    let rows =
-        TABLED.map(|(here, there)| (here.name(words), here, hazard.sample(there), there.open()));
+    let rows = TABLED
+        .map(|(here, there)| (here.name(words), here, hazard.sample(there), Some(there.open())));
     let how = if hazard.weights().is_some() { words.woodruff } else { words.order_statistics };
     let note = fill(
         words.all_statistics_note,
@@ -364,7 +337,7 @@ fn text_of(results: &Results, words: &Words) -> Text {
     Text {
         title: summary.title.clone(),
         subtitle: planned("file"),
-        scheme: fill(words.scheme_in_force, &[("scheme", &planned("scheme"))]),
+        method: method::paragraph(&summary.plan_entries, words),
         title_block: title_block(&summary.title_block, words),
         inputs: summary
             .inputs

@@ -195,12 +195,7 @@ pub(super) fn figure_section(figures: &Figures, words: &Words) -> String {
 }
 
 fn method(report: &Report) -> String {
-    let (scheme, words) = (escape(&report.text.scheme), report.words());
-    let mut method = words.method;
-    if !report.shapes.is_empty() {
-        method[0] = words.shapes().method;
-    }
-    format!("<p>{} {scheme}</p>\n", method.join(" "))
+    format!("<p>{}</p>\n", escape(&report.text.method))
 }
 
 fn inputs(report: &Report) -> String {

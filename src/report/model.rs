@@ -96,8 +96,8 @@ pub struct Text {
     pub subtitle: String,
     /// Title block: client, project, author, date. May be empty.
     pub title_block: Vec<(String, String)>,
-    /// How contacts were integrated, in one sentence; closes the method paragraph. May be empty.
-    pub scheme: String,
+    /// How the numbers came about, one paragraph.
+    pub method: String,
     /// Inputs as name and value: rocks, release, grounds, stop rule.
     pub inputs: Vec<(String, String)>,
     /// Health of the meshes, one line each.

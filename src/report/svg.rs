@@ -271,7 +271,7 @@ pub fn document(body: &str, size_px: (f64, f64), title: &str) -> String {
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" \
          width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {wide} {high}\" role=\"img\" \
-         font-family=\"{FONTS}\" stroke-linejoin=\"round\">\n<title>{}</title>\n\
+         font-family=\"{FONTS}\" text-rendering=\"geometricPrecision\" stroke-linejoin=\"round\">\n<title>{}</title>\n\
          <rect x=\"0\" y=\"0\" width=\"{wide}\" height=\"{high}\" fill=\"#ffffff\"/>\n{body}</svg>\n",
         escape(title)
     )

@@ -12,6 +12,7 @@ mod glossary;
 mod it;
 mod along;
 mod drawn;
+mod method;
 pub(super) mod open;
 mod said;
 mod shapes;
@@ -21,6 +22,7 @@ use super::format;
 use crate::scene::Language;
 use along::AlongWords;
 use drawn::DrawnWords;
+use method::MethodWords;
 use open::OpenWords;
 use shapes::ShapeWords;
 use std::fmt::{Display, Write as _};
@@ -34,8 +36,6 @@ macro_rules! words {
             $(pub(crate) $name: &'static str,)+
             /// Points of the compass, from north over east, as they stand behind *towards*.
             pub(crate) compass: [&'static str; 8],
-            /// How the numbers came about, in four sentences; a fifth names the scheme in force.
-            pub(crate) method: [&'static str; 4],
             /// What the terms mean here.
             pub(crate) glossary: [(&'static str, &'static str); 24],
             /// What the program records in English, by patterns, and how it is said here; none in English.
@@ -53,6 +53,7 @@ macro_rules! words {
                 texts.extend(self.open().texts());
                 texts.extend(self.along().texts());
                 texts.extend(self.drawn().texts());
+                texts.extend(self.method().texts());
                 texts
             }
         }
@@ -68,7 +69,7 @@ words! {
     error_study_caption, figures, plan_of, error_head, error_axis, error_time, error_own, error_sampling,
     error_steps, error_mesh, plausible, at_limit, look_here, plausibility, mesh_health, quality, not_recorded,
     remainder, not_stated, terrain, ground_values, releases, lost_rocks, lost_rocks_are,
-    not_accounted, seed_row, version, rate, numerical_remainder, scene, scheme_in_force,
+    not_accounted, seed_row, version, rate, numerical_remainder, scene,
     in_english, all_rocks, value, interval_head, unit, headline_note, percentile_of,
     all_statistics, all_statistics_note, order_statistics, woodruff, mean, maximum, runout,
     reach_angle, max_speed, max_translational, max_rotational, max_total, max_height, impacts,
@@ -90,12 +91,12 @@ words! {
     col_height_vertical, col_height_normal, barrier_name, nobody_barrier, barrier_cloud,
     stopped_by_height, stopped_by_place, barrier_caption, barrier_design, barrier_no_design,
     barrier_places, top_axis, no_rock_arrives, design, stopped_axis, offset_uphill,
-    offset_downhill, offset_left, barriers_head_title, barriers_head_note, col_arriving_of,
+    offset_downhill, offset_left, barriers_head_title, barriers_head_design, barriers_head_note, barriers_head_note_design, col_arriving_of,
     col_passing, col_top, col_design_energy, col_design_height, barriers_title, barriers_note,
     col_height, col_capacity, col_arriving, col_arriving_percent, col_stopped, col_over,
     col_through, rule_lacks, no_factor, factors, factor_speed, factor_mass, factor_height,
     own_rule, rule, free_distance, arriving_title, arriving_note, sensitivity_title,
-    sensitivity_note, col_stopped_at, at_its_place, uphill, downhill, to_the_left, to_the_right,
+    sensitivity_note, sensitivity_design, col_stopped_at, at_its_place, uphill, downhill, to_the_left, to_the_right,
     maps_title, maps_alt, map_reach, map_intensity, maps_caption, map_values_title,
     map_values_alt, map_energy, map_height, map_deposits, map_exceeds, map_values_caption,
     map_ends_title, map_ends_alt, map_ends_caption, maps_few, maps_joined,
@@ -129,6 +130,11 @@ impl Words {
     /// What is said of a year on the first page and on its maps.
     pub(super) fn year(&self) -> &'static YearWords {
         YearWords::of(self.language())
+    }
+
+    /// How the numbers came about.
+    pub(super) fn method(&self) -> &'static MethodWords {
+        MethodWords::of(self.language())
     }
 
     /// What is said of rocks that would have gone on.
@@ -293,7 +299,7 @@ mod tests {
         for language in Language::ALL {
             let words = Words::of(language);
             let said = words.said.iter().copied().flatten().map(|(_, said)| *said);
-            let texts = words.texts().into_iter().map(|(_, text)| text).chain(words.method);
+            let texts = words.texts().into_iter().map(|(_, text)| text);
             let terms = words.glossary.iter().map(|(_, meaning)| *meaning);
             let view = words.view.iter().map(|(_, said)| *said);
             for text in texts.chain(said).chain(terms).chain(view) {
@@ -310,7 +316,7 @@ mod tests {
     fn french_marks_keep_their_space() {
         let words = Words::of(Language::Fr);
         let said = words.said.iter().copied().flatten().map(|(_, said)| *said);
-        let texts = words.texts().into_iter().map(|(_, text)| text).chain(words.method);
+        let texts = words.texts().into_iter().map(|(_, text)| text);
         let terms = words.glossary.iter().map(|(_, meaning)| *meaning);
         for text in texts.chain(said).chain(terms).chain(words.view.iter().map(|(_, said)| *said)) {
             for wrong in [" :", " ;", " ?", " !", "« ", " »"] {

@@ -38,7 +38,7 @@ pub struct PercentileLadder {
     pub values: Vec<f64>,
     /// Where the values go.
     pub limit: Interval,
-    /// How far the scene's own setting is off: percentile minus limit.
+    /// How far the line through all settings stands at the scene's own setting from its limit.
     pub own_error: Interval,
 }
 

@@ -53,7 +53,7 @@ pub struct Rung {
     /// Values of each subject, release by release; NaN for a failed rock, −∞ for one that has none.
     values: Vec<Vec<f64>>,
     /// Whether each rock would have gone on: it left the terrain, ran out of time or failed.
-    is_open: Vec<bool>,
+    ended: Vec<StopKind>,
 }
 
 /// One percentile of one quantity.
@@ -192,7 +192,8 @@ pub fn study(
         let finest = meshes.len().saturating_sub(2);
         let on = |meshes: &[Vec<f64>]| Paired::weighing(meshes, &rocks);
         let (on_meshes, on_finest) = (on(&on_mesh), on(&on_mesh[finest..]));
-        let open = quantity.open().map(|side| (&rungs[own].is_open[..], side));
+        let open = quantity.bounds_of(&rungs[own].ended);
+        let open = open.as_ref().map(|(is_bound, side)| (&is_bound[..], *side));
         for percent in PERCENTS {
             let p = f64::from(percent) / 100.0;
             let Some(found) = weighing.percentile(&all[own], open, p) else { continue };
@@ -275,7 +276,7 @@ impl Rung {
             failed: 0,
             rise_j: 0.0,
             values: Vec::new(),
-            is_open: Vec::new(),
+            ended: Vec::new(),
         }
     }
 
@@ -310,7 +311,7 @@ impl Rung {
         self.failed += usize::from(failed);
         self.rise_j = self.rise_j.max(fall.ledger.rise_j);
         self.effort.add(&fall.effort);
-        self.is_open.push(row.stop.is_open());
+        self.ended.push(row.stop);
         for (values, subject) in self.values.iter_mut().zip(subjects) {
             values.push(if failed { f64::NAN } else { subject.value(row, fall) });
         }

@@ -1,6 +1,7 @@
 //! Both errors of a scene's statistics over run time.
 
 use super::scene::{Of, SceneStudy, StudyQuantity, StudyStatistic};
+use super::scene_page::written_unit;
 use crate::hazard::Quantity;
 use crate::report::axis::Axis;
 use crate::report::canvas::{Canvas, Label, NORMAL, Pen, SMALL, paint, text_width};
@@ -88,7 +89,7 @@ fn panel(
     let (least, most) = reach(&errors);
     let subject = &study.subjects[statistic.subject];
     let words = Words::of(study.language);
-    let (name, unit) = (name(subject, words), subject.unit);
+    let (name, (unit, _)) = (name(subject, words), unit_of(study, statistic));
     let found: [(&str, &dyn Display); 3] =
         [("percent", &SHOWN), ("quantity", &name), ("unit", &unit)];
     let title = fill(words.error_axis, &found);
@@ -109,6 +110,11 @@ fn reach(errors: &[f64]) -> (f64, f64) {
     (least.max(SMALLEST * most), most)
 }
 
+/// The unit of the errors of a statistic, and its size.
+fn unit_of(study: &SceneStudy, statistic: &StudyStatistic) -> (&'static str, f64) {
+    written_unit(study.subjects[statistic.subject].unit, statistic.own.value)
+}
+
 /// Everything that must find room: run time (s) and error.
 fn points(study: &SceneStudy, statistic: &StudyStatistic) -> Vec<(f64, f64)> {
     let both = steps(study, statistic).into_iter().chain(meshes(study, statistic));
@@ -119,7 +125,8 @@ fn points(study: &SceneStudy, statistic: &StudyStatistic) -> Vec<(f64, f64)> {
 /// Sampling error of the first so many releases over the time they take.
 fn sampling(study: &SceneStudy, statistic: &StudyStatistic) -> Vec<(f64, f64)> {
     let each_s = study.rungs[study.own].seconds / study.releases as f64;
-    statistic.sampling.iter().map(|&(n, error)| (each_s * n as f64, error)).collect()
+    let (_, size) = unit_of(study, statistic);
+    statistic.sampling.iter().map(|&(n, error)| (each_s * n as f64, error / size)).collect()
 }
 
 /// Why there is no error of sampling; none where there is one.
@@ -139,18 +146,20 @@ fn no_sampling(study: &SceneStudy, statistic: &StudyStatistic, words: &Words) ->
 
 /// Error of the steps and what it is at most, over the time of all releases under each setting.
 fn steps(study: &SceneStudy, statistic: &StudyStatistic) -> Vec<(f64, f64, f64)> {
+    let (_, size) = unit_of(study, statistic);
     let one = |rung: &super::scene::Rung| {
         let error = statistic.step_error(rung.relative, rung.step.scheme);
-        (rung.seconds, error.value.abs(), error.at_most())
+        (rung.seconds, error.value.abs() / size, error.at_most() / size)
     };
     study.rungs.iter().map(one).collect()
 }
 
 /// The same of the meshes.
 fn meshes(study: &SceneStudy, statistic: &StudyStatistic) -> Vec<(f64, f64, f64)> {
+    let (_, size) = unit_of(study, statistic);
     let one = |mesh: &super::scene::MeshRung| {
         let error = statistic.mesh_error_of(mesh);
-        (mesh.rung.seconds, error.value.abs(), error.at_most())
+        (mesh.rung.seconds, error.value.abs() / size, error.at_most() / size)
     };
     study.meshes.iter().map(one).collect()
 }

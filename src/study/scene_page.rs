@@ -34,8 +34,9 @@ pub(super) fn page(study: &SceneStudy, wish: Option<Wish>) -> String {
         page,
         "{} {} under each of {} settings, {} {}. Paths of rocks are chaotic: the same release ends metres apart under any two \
          settings, so single paths do not converge, but their statistics do. **Sampling error**: half the 95 % interval of the percentile \
-         (order statistics, whatever the distribution). **Error of the steps**: the percentile minus where it goes when the steps are refined, \
-         from a fit over all settings with the same releases; its interval from drawing the rocks again 400 times.\n",
+         (order statistics, whatever the distribution). **Error of the steps**: how far a straight line through the percentiles of all settings, over the \
+         error that each step should have and with the same releases, stands at the scene's own setting from where it goes when the steps are refined; \
+         its interval from drawing the rocks again 400 times. A single percentile of the table lies off that line by what chaos does to the few rocks beside it.\n",
         format::decimal(study.releases as f64, 0),
         format::counted(study.releases, "release", "releases"),
         study.rungs.len(),
@@ -197,7 +198,7 @@ fn told_apart(error: &Interval) -> f64 {
 }
 
 /// The unit that a value is written in, and its size: an energy of many digits tells none of the last.
-fn written_unit(unit: &'static str, value: f64) -> (&'static str, f64) {
+pub(super) fn written_unit(unit: &'static str, value: f64) -> (&'static str, f64) {
     if unit == "J" { energy_unit(value) } else { (unit, 1.0) }
 }
 
@@ -255,14 +256,14 @@ fn statistics_table(page: &mut String, study: &SceneStudy) {
     let _ = writeln!(page, " limit |\n|---|{}---|", "---|".repeat(study.rungs.len()));
     for statistic in &study.statistics {
         let subject = &study.subjects[statistic.subject];
-        let (name, unit) = (&subject.name, subject.unit);
-        let _ = write!(page, "| P{} {name} ({unit}) |", statistic.percent);
+        let (unit, size) = written_unit(subject.unit, statistic.own.value);
+        let told = |value: f64| significant(value / size, 5);
+        let _ = write!(page, "| P{} {} ({unit}) |", statistic.percent, subject.name);
         for value in &statistic.ladder.values {
-            let _ = write!(page, " {} |", significant(*value, 5));
+            let _ = write!(page, " {} |", told(*value));
         }
-        let limit = statistic.ladder.limit;
-        let ends = [limit.low, limit.high].map(|end| significant(end, 5));
-        let _ = writeln!(page, " {} ({} to {}) |", significant(limit.value, 5), ends[0], ends[1]);
+        let Interval { value, low, high } = statistic.ladder.limit;
+        let _ = writeln!(page, " {} ({} to {}) |", told(value), told(low), told(high));
     }
 }
 
@@ -284,13 +285,13 @@ fn mesh_table(page: &mut String, study: &SceneStudy) {
     let _ = writeln!(page, " error of the own mesh |\n|---|{columns}---|");
     for statistic in &study.statistics {
         let subject = &study.subjects[statistic.subject];
-        let (name, unit) = (&subject.name, subject.unit);
+        let (unit, size) = written_unit(subject.unit, statistic.own.value);
         let Some(meshes) = &statistic.meshes else { continue };
-        let _ = write!(page, "| P{} {name} ({unit}) |", statistic.percent);
+        let _ = write!(page, "| P{} {} ({unit}) |", statistic.percent, subject.name);
         for value in &meshes.values {
-            let _ = write!(page, " {} |", significant(*value, 5));
+            let _ = write!(page, " {} |", significant(*value / size, 5));
         }
-        let _ = writeln!(page, " {} |", with_ends(&meshes.own_error, (unit, 1.0)));
+        let _ = writeln!(page, " {} |", with_ends(&meshes.own_error, (unit, size)));
     }
 }
 

@@ -1,6 +1,6 @@
 //! What a scene's study looks at: quantities of whole journeys, and what passes the scene's lines.
 
-use crate::hazard::{Open, Quantity, Row};
+use crate::hazard::{Open, Quantity, Row, StopKind};
 use crate::plan::{EvaluationLine, Plan};
 use crate::rock::Rock;
 use crate::simulation::{Crossing, Trajectory};
@@ -60,12 +60,11 @@ impl StudyQuantity {
         whole.into_iter().chain(lines).collect()
     }
 
-    /// On which side the truth of a rock lies that was seen only in part; none where what was seen is its value.
-    pub(super) fn open(&self) -> Option<Open> {
-        match self.of {
-            Of::Rock(quantity) => quantity.open(),
-            Of::HeightAt(_) | Of::EnergyAt(_) => None,
-        }
+    /// Whether the value of each rock is only a bound, by how it ended, and on which side the truth lies.
+    pub(super) fn bounds_of(&self, ended: &[StopKind]) -> Option<(Vec<bool>, Open)> {
+        let Of::Rock(quantity) = self.of else { return None };
+        let is_bound = ended.iter().map(|stop| quantity.is_bound_after(*stop));
+        Some((is_bound.collect(), quantity.open()))
     }
 
     pub(super) fn value(&self, row: &Row, fall: &Trajectory) -> f64 {

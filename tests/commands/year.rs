@@ -172,7 +172,10 @@ fn the_closed_case_through_the_program() {
     // weighted back, the median rock is that of the law: V = (½ (0.1^−½ + 100^−½))^−2 = 0.3765 m³, all at 20 m/s
     let median = &found["statistics"]["max_total_j"]["percentiles"]["p50"];
     let exact = 540e3 * (0.5 * (0.1_f64.powf(-0.5) + 0.1)).powi(-2);
-    assert!(number(&median["low_95"]) < exact && exact < number(&median["high_95"]), "{median}");
+    assert!(number(&median["low_95"]) < exact, "{median}");
+    assert!((number(&median["value"]) / exact - 1.0).abs() < 0.05, "{median}");
+    // the time of all is up: for all that the run knows they might have become faster
+    assert!(median["high_95"].is_null() && median["censored"] == true, "{median}");
 }
 
 /// Objects against brute force: along a path stored every 2 ms no rock is over an object before its hit, and at the hit

@@ -231,6 +231,36 @@ fn rocks_that_left_the_terrain_leave_the_far_end_open() {
     assert!(curve[first].value <= 81.0, "{}", curve[first].value);
 }
 
+/// A rock whose time was up, or that failed, might have become faster on the same terrain: its largest speed is a lower bound, as its
+/// runout is. One that left the terrain has had its largest speed there.
+#[test]
+fn largest_values_of_rocks_that_were_stopped_too_early_are_bounds() {
+    for (stop, is_bound) in [
+        (StopKind::TimeUp, true),
+        (StopKind::OverBudget, true),
+        (StopKind::Failed, true),
+        (StopKind::LeftTerrain, false),
+        (StopKind::AtRest, false),
+    ] {
+        let mut hazard = Hazard::default();
+        let row = Row::of(&fall(1), info(1).origin_m);
+        for index in 1..=100 {
+            let stop = if index <= 20 { stop } else { StopKind::AtRest };
+            let max_speed_m_s = index as f64;
+            hazard.add(&Row { index, stop, max_speed_m_s, max_total_j: max_speed_m_s, ..row });
+        }
+        for quantity in [Quantity::MaxSpeed, Quantity::MaxTotal, Quantity::Impacts] {
+            let sample = hazard.sample(quantity);
+            assert_eq!(sample.bounds() > 0, is_bound, "{stop:?}");
+            assert_eq!(sample.percentile(0.9).unwrap().high_95.is_none(), is_bound, "{stop:?}");
+        }
+        // eighty came to rest: were all others faster, the median would be the 70th value
+        let median = hazard.sample(Quantity::MaxSpeed).percentile(0.5).unwrap();
+        assert!((median.value - 50.5).abs() < 1e-12 && median.censored == is_bound);
+        assert_eq!(median.high_95, Some(if is_bound { 81.0 } else { 61.0 }), "{stop:?}");
+    }
+}
+
 /// A bound is the largest value only where the truth may be larger, or where it is larger than every value that is known.
 #[test]
 fn a_bound_below_the_largest_value_decides_nothing() {

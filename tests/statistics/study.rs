@@ -187,27 +187,27 @@ fn a_panel_without_sampling_says_why() {
     let scene = scene
         .replace("../terrain/quick_slope.stl", mesh.to_str().unwrap())
         .replace("../terrain/quick_trees.stl", trees.to_str().unwrap())
-        + "\n[solver]\nlongest_s = 1.0\n";
-    let file = dir.path().join("short.toml");
-    fs::write(&file, scene).unwrap();
-    let study = |releases: &str, out: &str| {
+        + "\n[solver]\n";
+    let study = |releases: &str, out: &str, time: &str| {
+        let file = dir.path().join(out.to_owned() + ".toml");
+        fs::write(&file, scene.clone() + time).unwrap();
         let out = dir.path().join(out);
         let asked = ["study", "error", file.to_str().unwrap(), "--releases", releases];
         let (code, said, _) = rockfall(&asked, &out);
         assert_eq!(code, Some(0), "{said}");
         fs::read_to_string(out.join("error.svg")).unwrap()
     };
-    let drawn = study("100", "bound");
+    let drawn = study("100", "bound", "longest_s = 1.0\n");
     assert!(drawn.contains("only a bound, 100 of 100 rocks would have gone on"), "{drawn}");
     let faults = boxes::faults(&drawn, "error.svg");
     assert!(faults.is_empty(), "{}", faults.join("\n"));
-    assert!(study("40", "few").contains("too few rocks for an interval"));
+    assert!(study("40", "few", "").contains("too few rocks for an interval"));
     // as in a report, no P95 of fewer than 59
     let page = fs::read_to_string(dir.path().join("few/README.md")).unwrap();
     let few = "**P95 runout**: too few rocks, 19 more are needed; 72 in all for an interval.";
     assert!(page.contains(few), "{page}");
     // 59 rocks bound a P95 on one side, an interval of it takes 72
-    assert!(study("65", "nearly").contains("too few rocks for an interval"));
+    assert!(study("65", "nearly", "").contains("too few rocks for an interval"));
     let page = fs::read_to_string(dir.path().join("nearly/README.md")).unwrap();
     assert!(page.contains("72 or more are needed") && !page.contains("59 or more"), "{page}");
 }

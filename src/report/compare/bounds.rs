@@ -2,8 +2,9 @@
 
 use super::populations::{ComparedQuantity, CountedShare, Population};
 use crate::frequency::Weights;
-use crate::hazard::{self, Difference, Open, Percentile, Quantity, Values};
+use crate::hazard::{self, Difference, Open, Percentile, StopKind, Values};
 use crate::report::bound::Is;
+use crate::report::format;
 
 /// What rocks that would have gone on do to a number of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -42,12 +43,12 @@ impl RunBound {
         if let Some(rocks) = seen.as_ref().and_then(|(seen, rocks)| seen.lacks(*rocks)) {
             return Self { is: Is::Lacking(rocks), farther: [0.0; 2] };
         }
-        let side = match measure {
-            ComparedQuantity::Whole(quantity) => Quantity::open(quantity),
-            _ => None,
-        };
-        let Some(side) = side.filter(|_| !of.open.is_empty()) else { return Self::default() };
-        let censored = of.censored_sample(values, side);
+        let ComparedQuantity::Whole(quantity) = measure else { return Self::default() };
+        if of.open.is_empty() {
+            return Self::default();
+        }
+        let side = quantity.open();
+        let censored = of.censored_sample(values, quantity);
         let (is_bound, farther) = match p {
             None => censored.mean().map_or(UNKNOWN, |mean| known_if(!mean.censored)),
             Some(p) => of_percentile([seen.map(|(seen, _)| seen), censored.percentile(p)], side),
@@ -101,4 +102,24 @@ pub(super) fn written(is: Is) -> &'static str {
         Is::AtMost => "<=",
         Is::Value | Is::Lacking(_) => "",
     }
+}
+
+/// Share of rocks that would have gone on from which on it must be said what that does (–).
+const MANY_OPEN: f64 = 0.01;
+
+/// What rocks that would have gone on do to the numbers, where there are some.
+pub(super) fn censored(pair: &[Population; 2]) -> Option<String> {
+    let open = |of: &Population| -> f64 {
+        let ways = StopKind::ALL.iter().zip(&of.shares);
+        ways.filter(|(stop, _)| stop.is_open()).map(|(_, share)| share.share()).sum()
+    };
+    let [a, b] = [open(&pair[0]), open(&pair[1])];
+    (a.max(b) > MANY_OPEN).then(|| {
+        format!(
+            "{} of the rocks of A and {} of B left the terrain, were still moving at the end or failed: all differences are of \
+             the ways as far as they were followed, and those of runout and reach angle are of bounds.",
+            format::percent(a, 1),
+            format::percent(b, 1)
+        )
+    })
 }

@@ -2,7 +2,7 @@
 
 use super::Comparison;
 use super::populations::{ComparedQuantity, Population};
-use super::table::{ComparedStatistic, Group};
+use super::table::{ComparedStatistic, Group, signed_percent};
 use crate::hazard::{Quantity, Sample, Values};
 use crate::report::axis::Axis;
 use crate::report::canvas::{Canvas, Label, NORMAL, Pen, SMALL, fitted_among, paint, text_width};
@@ -21,12 +21,16 @@ const CURVE_PX: f64 = 165.0;
 const CHANGES: &str = "What changes from A to B";
 const CHANGES_CAPTION: &str = "Change of each statistic over its value in A, with its 95 % interval; a vermillion diamond where the \
     interval leaves out zero. One in twenty intervals misses by chance.";
-const BEHIND_CAPTION: &str = "A name in quotation marks alone stands for the rocks that the barriers of each run have let through to that place.";
+const BEHIND_CAPTION: &str = "A name in quotation marks alone stands for the rocks that the barriers of each run have let through to that place: at a barrier those that arrive at it. Those that pass it are a share of all releases.";
+/// Said where the first figure has fewer rows than there are first statistics.
+const SAME_CAPTION: &str = "Statistics that are the same in both runs are left out.";
 const CURVES_CAPTION: &str = "Share of the rocks that exceed a value: A full, B dashed ({a} and {b} rocks). Axes end where one in \
     two hundred exceeds in both.";
 /// The same where rocks weigh what they stand for.
 const WEIGHTED_CAPTION: &str = "Share of the rocks by frequency that exceed a value: A full, B dashed ({a} and {b} rocks computed). Axes \
     end where one in two hundred exceeds in both.";
+const BEYOND_CAPTION: &str =
+    "An arrow stands where a row goes on beyond the frame, with the change where that lies beyond.";
 const HEAD_PX: f64 = 30.0;
 /// Room for the key above the panels (px).
 const KEY_PX: f64 = 20.0;
@@ -80,8 +84,24 @@ fn rows(groups: &[Group], words: &Words) -> Vec<ChangeRow> {
         (a.abs() > 0.0).then(|| (named, possible(change, a)))
     };
     let rows = groups.iter().flat_map(|group| group.rows.iter().map(move |row| (group, row)));
-    let first = rows.filter(|(_, row)| row.is_headline);
+    let first = rows.filter(|(_, row)| row.is_headline && !row.difference.is_none());
     first.filter_map(|(group, row)| relative(group, row)).collect()
+}
+
+/// Says of a row whose change lies beyond the frame how large it is, at the edge where it goes on.
+fn change_beyond(
+    canvas: &Canvas<'_>,
+    frame: &PaperFrame,
+    (change, y): (f64, f64),
+    colour: RGBColor,
+) {
+    let text = signed_percent(change, 0);
+    let label = if change > 0.0 {
+        Label::new(text, (frame.right - 10.0, y)).right()
+    } else {
+        Label::new(text, (frame.left + 10.0, y))
+    };
+    canvas.text(&label.coloured(colour));
 }
 
 /// A change and its interval as far as they can be: what is positive in both runs falls by no more than all of it, whatever the
@@ -145,10 +165,12 @@ fn changes(groups: &[Group], words: &Words) -> Drawing {
             let [at, low, high] = values.map(|x| panel.at(100.0 * x.clamp(-edge, edge), 0.0).0);
             let is_clear = values[1] > 0.0 || values[2] < 0.0;
             let colour = if is_clear { VERMILLION } else { INK };
-            canvas.line(&[(low, y), (high, y)], Pen::full(colour, 1.6));
-            // told apart without colour: a diamond where the interval leaves out zero
             if values[0].abs() <= edge {
+                canvas.line(&[(low, y), (high, y)], Pen::full(colour, 1.6));
+                // told apart without colour: a diamond where the interval leaves out zero
                 canvas.mark(if is_clear { 2 } else { 0 }, (at, y), 3.0, colour);
+            } else {
+                change_beyond(canvas, &frame, (values[0], y), colour);
             }
             goes_on(canvas, &panel, (values, y), colour);
             canvas.text(&Label::new(name.clone(), (frame.left - 8.0, y)).right());
@@ -164,11 +186,15 @@ fn changes(groups: &[Group], words: &Words) -> Drawing {
     if groups.iter().any(|group| group.name.starts_with('“')) {
         caption = format!("{caption} {}", words.say(BEHIND_CAPTION));
     }
+    if groups
+        .iter()
+        .flat_map(|group| &group.rows)
+        .any(|row| row.is_headline && row.difference.is_none())
+    {
+        caption = format!("{caption} {}", words.say(SAME_CAPTION));
+    }
     if beyond {
-        caption = format!(
-            "{caption} {}",
-            words.say("An arrow stands where a row goes on beyond the frame.")
-        );
+        caption = format!("{caption} {}", words.say(BEYOND_CAPTION));
     }
     Drawing { svg, caption }
 }

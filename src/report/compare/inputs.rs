@@ -1,16 +1,19 @@
 //! Which inputs of two runs differ.
 
-use crate::output::Summary;
+use crate::hazard::LineInfo;
+use crate::output::Results;
+use crate::report::format;
 
 /// Lines of the plan that say nothing that the other rows do not, or follow from what differs.
-const REPEATED: [&str; 6] = ["scene", "file", "version", "releases", "flat edges", "corners"];
+const REPEATED: [&str; 8] =
+    ["scene", "file", "version", "releases", "flat edges", "corners", "lifted", "at most"];
 
 /// Stands before the parts of the plan.
 pub(super) const PLAN: &str = "Plan: ";
 
 /// What went in and differs: name, first, second; empty when nothing does.
-pub(super) fn differing(a: &Summary, b: &Summary) -> Vec<(String, [String; 2])> {
-    let [mut mine, mut others] = [a, b].map(said);
+pub(super) fn differing(runs: &[Results; 2]) -> Vec<(String, [String; 2])> {
+    let [mut mine, mut others] = runs.each_ref().map(said);
     one_name(&mut mine, &others);
     one_name(&mut others, &mine);
     let mut names: Vec<&String> = Vec::new();
@@ -58,7 +61,9 @@ fn differing_of(
 type SaidOfGround = (String, String);
 
 /// All that a run says of what went in, as name and value.
-fn said(run: &Summary) -> Vec<SaidOfGround> {
+fn said(run: &Results) -> Vec<SaidOfGround> {
+    let places = places(run);
+    let run = &run.summary;
     let row = |name: &str, value: String| (name.to_owned(), value);
     let id = &run.identity;
     let mut rows = vec![
@@ -69,9 +74,55 @@ fn said(run: &Summary) -> Vec<SaidOfGround> {
         row("Releases", id.releases.to_string()),
     ];
     rows.extend(run.inputs.iter().cloned());
+    rows.extend(places);
     let entries = run.plan_entries.iter().filter(|entry| !REPEATED.contains(&entry.name.as_str()));
     rows.extend(entries.map(|entry| row(&format!("{PLAN}{}", entry.name), entry.said.clone())));
     rows
+}
+
+/// Lines and objects of the scene, its barriers among them.
+fn lines(run: &Results) -> impl Iterator<Item = &LineInfo> {
+    run.lines.iter().map(|line| &line.info).filter(|line| !line.of_barrier)
+}
+
+/// Where rocks are released, and where lines, objects and barriers stand.
+fn places(run: &Results) -> Vec<SaidOfGround> {
+    let zone = |(name, corners_m): (Option<&str>, &[[f64; 2]])| {
+        let whose = name.map_or(String::new(), |name| format!(" “{name}”"));
+        (format!("Place of releases{whose}"), place(corners_m))
+    };
+    let zones = run.summary.site.named_zones().map(|(name, zone)| (name, zone.corners_m()));
+    let line = |line: &LineInfo| (format!("Place of “{}”", line.name), place(&line.corners_m));
+    zones.map(zone).chain(lines(run).map(line)).collect()
+}
+
+/// Corners or points on the map: the first, the last and the mean tell whether any has moved.
+fn place(corners_m: &[[f64; 2]]) -> String {
+    let at = |[x, y]: [f64; 2]| format!("({}, {})", format::decimal(x, 1), format::decimal(y, 1));
+    match corners_m {
+        [] => format::NO_NUMBER.to_owned(),
+        [only] => at(*only),
+        [first, .., last] => {
+            let count = corners_m.len();
+            let mean =
+                |k: usize| corners_m.iter().map(|corner| corner[k]).sum::<f64>() / count as f64;
+            let centre = at([mean(0), mean(1)]);
+            format!("{count} corners: first {}, last {}, mean {centre}", at(*first), at(*last))
+        }
+    }
+}
+
+/// A note on what has one name in both runs and stands at two places; nothing where there is none.
+pub(super) fn moved(runs: &[Results; 2]) -> Option<String> {
+    let [a, b] = runs;
+    let has_moved = |one: &&LineInfo| {
+        lines(b).any(|other| other.name == one.name && other.corners_m != one.corners_m)
+    };
+    let names: Vec<String> = lines(a).filter(has_moved).map(|line| line.name.clone()).collect();
+    (!names.is_empty()).then(|| {
+        let names = names.join(", ");
+        format!("Not at the same place in both runs: {names}. What differs there may come from the place alone.")
+    })
 }
 
 #[cfg(test)]
@@ -88,5 +139,14 @@ mod tests {
         let mut alone = row("Trees “wood”");
         one_name(&mut alone, &without);
         assert_eq!(alone[0].0, "Trees “wood”");
+    }
+
+    /// A line that is turned about its middle keeps length and middle; one corner of many that moves keeps both ends.
+    #[test]
+    fn a_place_tells_whether_it_has_moved() {
+        let line = place(&[[0.0, 0.0], [10.0, 5.0], [20.0, 0.0]]);
+        assert_eq!(line, "3 corners: first (0.0, 0.0), last (20.0, 0.0), mean (10.0, 1.7)");
+        assert_ne!(place(&[[0.0, 0.0], [10.0, 6.0], [20.0, 0.0]]), line);
+        assert_ne!(place(&[[10.0, -10.0], [10.0, 5.0], [10.0, 10.0]]), line);
     }
 }

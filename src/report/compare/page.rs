@@ -1,7 +1,7 @@
 //! `compare.html`: one page in the style of the report, without a script.
 
 use super::Comparison;
-use super::table::{ComparedStatistic, Group, LEFT_OPEN, in_words};
+use super::table::{ComparedStatistic, Group, LEFT_OPEN, in_words, signed_percent};
 use crate::report::figure::{Drawing, Heading};
 use crate::report::format::{self, escape};
 use crate::report::html::{figure_section, head, list, section};
@@ -14,7 +14,7 @@ const METHOD: &str = "Percentiles differ by as much as two values that may both 
     difference is 0. Means by the differences of pairs, shares \
     by adjusted counts (Bonett and Price 2012 for pairs, Agresti and Caffo 2000 without). An interval covers chance in the \
     sample only, not how well ground values and terrain are known. Of twenty statistics that do not differ, one is \
-    expected to be called clear.";
+    expected to be called clear. B − A is the difference of the values before they are rounded.";
 
 /// The same where rocks weigh what they stand for.
 const WEIGHTED: &str = "Where rocks weigh what they stand for, each statistic is that of its own run: percentiles by shares of their weight. Means are known by what each \
@@ -122,13 +122,6 @@ fn table(group: &Group, comparison: &Comparison) -> String {
     )
 }
 
-/// A change in per cent, with its sign as the change itself has one.
-fn signed_percent(share: f64) -> String {
-    let said = format::percent(share, 1);
-    let is_zero = !said.bytes().any(|byte| (b'1'..=b'9').contains(&byte));
-    if share > 0.0 && !is_zero { format!("+{said}") } else { said }
-}
-
 fn table_row(row: &ComparedStatistic, words: &Words) -> String {
     let name = match row.unit {
         "" => row.name_in(words),
@@ -138,12 +131,12 @@ fn table_row(row: &ComparedStatistic, words: &Words) -> String {
     let count = |k: usize| format::decimal(row.rocks[k] as f64, 0);
     let share = match row.difference.a {
         0.0 => format::NO_NUMBER.to_owned(),
-        a => signed_percent(row.difference.value / a.abs()),
+        a => signed_percent(row.difference.value / a.abs(), 1),
     };
     let verdict = match row.difference.interval {
         None => "",
         Some(_) if row.difference.is_clear() => "clear",
-        Some((0.0, 0.0)) => "the same",
+        Some(_) if row.difference.is_none() => "the same",
         Some((low, high)) if low.is_infinite() || high.is_infinite() => LEFT_OPEN,
         Some(_) => "within chance",
     };

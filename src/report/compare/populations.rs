@@ -3,11 +3,9 @@
 use super::weighing::{self, CountedReleases};
 use crate::error::Result;
 use crate::hazard::{
-    self, Barrier, CrossingRow, Open, Quantity, Reading, Row, Sample, StopKind, Values,
-    WeightedCount,
+    self, Barrier, CrossingRow, Quantity, Reading, Row, Sample, StopKind, Values, WeightedCount,
 };
 use crate::output::Results;
-use crate::report::format;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -21,8 +19,8 @@ pub(super) struct Population {
     pub(super) shares: Vec<CountedShare>,
     /// Quantities: what, and its value for each release that has one.
     pub(super) values: Vec<(ComparedQuantity, Values)>,
-    /// Releases that would have gone on, of whole ways: their own values are bounds.
-    pub(super) open: Vec<usize>,
+    /// Releases that would have gone on, of whole ways, and how they ended: values of theirs are bounds.
+    pub(super) open: Vec<(usize, StopKind)>,
 }
 
 /// A share of some releases of a run.
@@ -53,7 +51,7 @@ impl CountedShare {
     }
 
     /// Of all that could (–).
-    fn share(&self) -> f64 {
+    pub(super) fn share(&self) -> f64 {
         match &self.among.standing {
             None => self.releases.len() as f64 / self.among.releases.len().max(1) as f64,
             Some(of) => hazard::share_of(&of.weights, self.releases.iter().copied()).share,
@@ -89,11 +87,15 @@ impl Population {
 
     /// The same where those of rocks that would have gone on are bounds: the truth lies on that side. A rock that has left no number is one
     /// of which nothing is known.
-    pub(super) fn censored_sample(&self, values: &Values, side: Open) -> Sample {
-        let is_open = |release: usize| self.open.binary_search(&release).is_ok();
-        let has_none = |release: &&usize| values.binary_search_by_key(*release, |of| of.0).is_err();
-        let unknown = self.open.iter().filter(has_none).map(|&at| (f64::NAN, at, true));
+    pub(super) fn censored_sample(&self, values: &Values, quantity: Quantity) -> Sample {
+        let bounds =
+            || self.open.iter().filter(|(_, stop)| quantity.is_bound_after(*stop)).map(|of| of.0);
+        let open: Vec<usize> = bounds().collect();
+        let is_open = |release: usize| open.binary_search(&release).is_ok();
+        let has_none = |release: &usize| values.binary_search_by_key(release, |of| of.0).is_err();
+        let unknown = bounds().filter(has_none).map(|at| (f64::NAN, at, true));
         let each = values.iter().map(|&(at, x)| (x, at, is_open(at))).chain(unknown);
+        let side = quantity.open();
         match &self.among.standing {
             None => Sample::censored(each.map(|(x, _, is_open)| (x, 1.0, is_open)), side),
             Some(of) => Sample::censored_of_releases(each, &of.weights, side),
@@ -199,9 +201,6 @@ struct AtLine {
     barriers_stop: bool,
 }
 
-/// Share of rocks that would have gone on from which on it must be said what that does (–).
-const MANY_OPEN: f64 = 0.01;
-
 /// What is said of rocks that one of the runs did not release; nothing where there are none.
 fn not_released(
     whole: &[Arc<CountedReleases>; 2],
@@ -212,23 +211,6 @@ fn not_released(
         format!(
             "{a} rocks of A and {b} of B count only among the ways in which rocks end: they were not released, or the same rock \
              of the other run was not."
-        )
-    })
-}
-
-/// What rocks that would have gone on do to the numbers, where there are some.
-pub(super) fn censored(pair: &[Population; 2]) -> Option<String> {
-    let open = |of: &Population| -> f64 {
-        let ways = StopKind::ALL.iter().zip(&of.shares);
-        ways.filter(|(stop, _)| stop.is_open()).map(|(_, share)| share.share()).sum()
-    };
-    let [a, b] = [open(&pair[0]), open(&pair[1])];
-    (a.max(b) > MANY_OPEN).then(|| {
-        format!(
-            "{} of the rocks of A and {} of B left the terrain, were still moving at the end or failed: all differences are of \
-             the ways as far as they were followed, and those of runout and reach angle are of bounds.",
-            format::percent(a, 1),
-            format::percent(b, 1)
         )
     })
 }
@@ -260,7 +242,7 @@ fn all(
         let stop = StopKind::ALL.iter().position(|stop| *stop == row.stop).unwrap_or(0);
         found.shares[stop].releases.push(row.index);
         if among.contains(row.index) {
-            found.open.extend(row.stop.is_open().then_some(row.index));
+            found.open.extend(row.stop.is_open().then_some((row.index, row.stop)));
             for ((_, values), quantity) in found.values.iter_mut().zip(WHOLE) {
                 // a failed rock may have left no number
                 let value = Some(quantity.of(&row)).filter(|value| value.is_finite());

@@ -214,12 +214,25 @@ pub(super) fn headline(groups: &[Group]) -> Vec<String> {
 /// A value beside a difference that is known so well: no digit beyond a twentieth of that interval, but at least two; four alone.
 fn told(value: f64, interval: Option<(f64, f64)>) -> String {
     let width = interval.map_or(f64::NAN, |(low, high)| high - low);
-    if !(width.is_finite() && width > 0.0 && value != 0.0) {
+    if value == 0.0 || !value.is_finite() {
         return format::significant(value, 4);
     }
+    if !(width.is_finite() && width > 0.0) {
+        return format::to_digits(value, 4);
+    }
     let digits = math::log10(value.abs()).floor() - math::log10(0.05 * width).floor() + 1.0;
-    let digits = digits.clamp(2.0, 6.0) as usize;
-    format::significant(math::rounded(value, digits), digits)
+    format::to_digits(value, digits.clamp(2.0, 6.0) as usize)
+}
+
+/// Text of a number with its sign, also where it is positive; nothing stands before a zero.
+fn signed(value: f64, text: String) -> String {
+    let is_zero = !text.bytes().any(|byte| (b'1'..=b'9').contains(&byte));
+    if value > 0.0 && !is_zero { format!("+{text}") } else { text }
+}
+
+/// A change (–) in per cent with its sign.
+pub(super) fn signed_percent(share: f64, decimals: usize) -> String {
+    signed(share, format::percent(share, decimals))
 }
 
 /// Both values, the difference with its sign, and its interval; bounds with theirs.
@@ -239,18 +252,18 @@ pub(super) fn in_words(row: &ComparedStatistic, words: &Words) -> [String; 4] {
         _ if largest > 0.0 => math::log10(largest).floor() - 3.0,
         _ => 0.0,
     };
-    let signed = |v: f64| {
-        let text = format::rounded_at(v, last.max(FINEST_PLACE));
-        let is_zero = !text.bytes().any(|byte| (b'1'..=b'9').contains(&byte));
-        if v > 0.0 && !is_zero { format!("+{text}") } else { text }
-    };
-    let end = |v: f64| if v.is_finite() { signed(v) } else { format::NO_NUMBER.to_owned() };
+    // what is clear is not told with an end at zero, as far as two digits more tell it
+    let nearest = interval.map_or(0.0, |(low, high)| low.abs().min(high.abs()));
+    let is_told = !row.difference.is_clear() || nearest >= 0.5 * math::pow(10.0, last);
+    let last = if is_told { last } else { math::log10(nearest).floor().max(last - 2.0) };
+    let number_of = |v: f64| signed(v, format::rounded_at(v, last.max(FINEST_PLACE)));
+    let end = |v: f64| if v.is_finite() { number_of(v) } else { format::NO_NUMBER.to_owned() };
     let interval = match interval {
         None => words.no_interval.to_owned(),
         Some((low, high)) if low.is_infinite() && high.is_infinite() => words.say(LEFT_OPEN),
         Some((low, high)) => words.interval(&end(low), &end(high)),
     };
-    let change = sign(bounds::of_difference(row.bounds)).to_owned() + &signed(value);
+    let change = sign(bounds::of_difference(row.bounds)).to_owned() + &number_of(value);
     [number(a, row.bounds[0]), number(b, row.bounds[1]), change, interval]
 }
 

@@ -124,12 +124,38 @@ fn barriers(results: &Results, words: &Words) -> Option<EstimateTable> {
         fill(words.col_design_energy, &[("unit", &unit)]),
         words.col_design_height.to_owned(),
     ];
-    (!all.is_empty()).then(|| EstimateTable {
+    let has_design = has_design(all);
+    let told =
+        |text: &str, of_design: &str| text.to_owned() + if has_design { of_design } else { "" };
+    let table = EstimateTable {
         about: About::Barriers,
-        title: words.barriers_head_title.to_owned(),
-        note: words.barriers_head_note.to_owned(),
+        title: told(words.barriers_head_title, words.barriers_head_design),
+        note: told(words.barriers_head_note, words.barriers_head_note_design),
         columns: columns.into(),
         rows: all.iter().map(row).collect(),
         ..EstimateTable::default()
-    })
+    };
+    (!all.is_empty()).then(|| with_design_if_any(table, all))
+}
+
+/// Whether some barrier has a rule of design.
+fn has_design(all: &[BarrierSummary]) -> bool {
+    all.iter().any(|one| one.barrier.design.is_some())
+}
+
+/// A table of barriers without its last two columns, height and energy of the design, where no barrier has a rule for them:
+/// they would look as if too few rocks arrived.
+pub(super) fn with_design_if_any(
+    mut table: EstimateTable,
+    all: &[BarrierSummary],
+) -> EstimateTable {
+    if has_design(all) {
+        return table;
+    }
+    let kept = table.columns.len().saturating_sub(2);
+    table.columns.truncate(kept);
+    for (_, cells) in &mut table.rows {
+        cells.truncate(kept);
+    }
+    table
 }

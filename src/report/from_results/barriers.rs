@@ -9,6 +9,7 @@ use super::super::model::{
 use super::super::raster::GroundRaster;
 use super::super::words::open::missing as missing_rocks;
 use super::super::words::{Words, fill};
+use super::arrivals::with_design_if_any;
 use super::{energy_unit_of, estimate, of_percentile, statistics};
 use crate::error::Result;
 use crate::frequency::Weights;
@@ -165,14 +166,15 @@ fn counts(barriers: &[BarrierSummary], words: &Words) -> EstimateTable {
         &design_energy,
     ];
     let rules: Vec<String> = barriers.iter().filter_map(|one| in_words(one, words)).collect();
-    EstimateTable {
+    let table = EstimateTable {
         about: About::Barriers,
         title: words.barriers_title.to_owned(),
         note: fill(words.barriers_note, &[("rules", &rules.join(" "))]).trim_end().to_owned(),
         columns: columns.map(str::to_owned).into(),
         rows: barriers.iter().map(|one| (one.barrier.name.clone(), cells(one, size_j))).collect(),
         ..EstimateTable::default()
-    }
+    };
+    with_design_if_any(table, barriers)
 }
 
 fn plain(value: f64) -> Estimate {
@@ -328,11 +330,12 @@ fn sensitivity(one: &BarrierSummary, words: &Words, left_is_uphill: Option<bool>
         }
         (name, cells)
     };
+    let of_design = one.barrier.design.as_ref().map_or("", |_| words.sensitivity_design);
     EstimateTable {
         about: About::Barriers,
         place: one.barrier.name.clone(),
         title: named(words.sensitivity_title, one, words),
-        note: words.sensitivity_note.to_owned(),
+        note: words.sensitivity_note.to_owned() + of_design,
         columns,
         rows: one.by_place.iter().map(row).collect(),
     }

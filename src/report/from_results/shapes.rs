@@ -77,10 +77,7 @@ fn table(kinds: &BTreeMap<ShapeKind, Weighed>, words: &Words) -> EstimateTable {
 
 fn estimate(rocks: &Weighed, quantity: Quantity, p: f64) -> Option<Estimate> {
     let counted = rocks.iter().filter(|(_, row)| row.stop.is_released());
-    let values = counted.map(|(weighs, row)| (quantity.of(row), *weighs, row.stop.is_open()));
-    let sample = match quantity.open() {
-        Some(open) => Sample::censored(values, open),
-        None => Sample::weighted(values.map(|(value, weighs, _)| (value, weighs))),
-    };
-    percentile_of(&sample, p, quantity.open())
+    let values =
+        counted.map(|(weighs, row)| (quantity.of(row), *weighs, quantity.is_bound_after(row.stop)));
+    percentile_of(&Sample::censored(values, quantity.open()), p, Some(quantity.open()))
 }

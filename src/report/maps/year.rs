@@ -33,8 +33,8 @@ pub(in crate::report) fn draw(report: &Report, maps: &CellMap, year: &YearCells)
     if let Some(levels) = &year.levels {
         let LevelCells { name, source, .. } = levels;
         layers.push(of_levels(fill(said.map_level, &[("name", &short(name))]), levels));
-        let name = words.say(name);
-        level = fill(said.maps_level, &[("name", &name), ("source", source)]);
+        let [name, source] = [name, source].map(|text| words.say(text));
+        level = fill(said.maps_level, &[("name", &name), ("source", &source)]);
     }
     // no shaded ground: it stands in all other maps, and would cost more than all else of the year
     let svg = draw_layers("maps-year", said.maps_alt, (report, maps, None), &layers);

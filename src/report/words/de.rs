@@ -1,5 +1,6 @@
 //! German, as rockfall engineers of Switzerland and Austria write it.
 
+mod compared;
 mod patterns;
 mod plan;
 mod samples;
@@ -51,7 +52,7 @@ pub(super) static WORDS: Words = Words {
     ch_inputs: "Methode und Eingaben",
     ch_words: "Begriffe",
     figure: "Abbildung {n}. {title}.",
-    no_error_study: "Die Intervalle beschreiben den Zufall der Stichprobe. Fehler der Zeitschritte und des Dreiecksnetzes enthalten sie nicht: `rockfall study error SCENE --out DIR/error` (DIR: Ordner dieser Ergebnisse) bestimmt den der Zeitschritte und seinen Aufwand, mit `--meshes` auch den des Netzes; das nächste `rockfall run` oder `rockfall draw DIR` zeigt die Abbildung dann hier.",
+    no_error_study: "Die Intervalle beschreiben den Zufall der Stichprobe. Fehler der Zeitschritte und des Dreiecksnetzes enthalten sie nicht: `rockfall study error SCENE --out DIR/error` (DIR: Ordner dieser Ergebnisse) bestimmt den der Zeitschritte und seinen Aufwand, mit `--meshes` auch den des Dreiecksnetzes; das nächste `rockfall run` oder `rockfall draw DIR` zeigt die Abbildung dann hier.",
     error_study: "Fehler und Rechenzeit",
     error_study_caption: "Fehler der 95. Perzentile aus dem Zufall der Stichprobe, aus den Zeitschritten und, wo untersucht, aus dem Dreiecksnetz, über der Rechenzeit, die sie kosten; bestimmt mit `rockfall study error` bei {releases} Ablösungen je Einstellung.",
     figures: "Abbildungen",
@@ -62,7 +63,7 @@ pub(super) static WORDS: Words = Words {
     error_own: "Einstellung der Szene",
     error_sampling: "Stichprobe: halbes 95-%-Intervall",
     error_steps: "Schritte: Schätzung und 95-%-Schranke",
-    error_mesh: "Netz: ebenso",
+    error_mesh: "Dreiecksnetz: ebenso",
     plausible: "plausibel",
     at_limit: "an der Grenze",
     look_here: "hier hinsehen",
@@ -83,7 +84,6 @@ pub(super) static WORDS: Words = Words {
     rate: "{n} Blöcke pro Sekunde, Dateien inbegriffen",
     numerical_remainder: "numerischer Rest {share}",
     scene: "Szene",
-    scheme_in_force: "Angewandtes Verfahren: {scheme}.",
     in_english: "Vom Programm auf Englisch protokolliert.",
     // The table of all rocks
     all_rocks: "Alle Blöcke",
@@ -229,7 +229,7 @@ pub(super) static WORDS: Words = Words {
     // Barriers
     barrier_name: "Schutzbauwerk {name}",
     nobody_barrier: "Kein Block erreicht das Schutzbauwerk {name}.",
-    barrier_cloud: "Ankommende Blöcke und Tragvermögen",
+    barrier_cloud: "Ankommende Blöcke und Energieaufnahme",
     stopped_by_height: "Aufgehalten nach Höhe",
     stopped_by_place: "Aufgehalten nach Lage",
     barrier_caption: "Schutzbauwerk {name}; es kommen an: {rocks}. Oben: Gesamtenergie und Höhe des obersten Punktes jedes Blocks; innerhalb des grünen Rahmens hält es sie auf.{design} Unten: Anteil der ankommenden Blöcke, den ein Bauwerk anderer Höhe und gleicher Energieaufnahme aufhielte{places}{weighs}",
@@ -243,8 +243,10 @@ pub(super) static WORDS: Words = Words {
     offset_uphill: "Abstand vom Ort (m), bergwärts positiv",
     offset_downhill: "Abstand vom Ort (m), talwärts positiv",
     offset_left: "Abstand vom Ort (m), links positiv",
-    barriers_head_title: "Was auf jedes Schutzbauwerk trifft und was die Bemessung verlangt",
-    barriers_head_note: "Blöcke, die ein Bauwerk davor aufhält, sind weggelassen. Bemessungswerte sind das Perzentil der Regel mit allen Faktoren; ihre Intervalle sind die des Perzentils.",
+    barriers_head_title: "Was auf jedes Schutzbauwerk trifft",
+    barriers_head_design: " und was die Bemessung verlangt",
+    barriers_head_note: "Blöcke, die ein Bauwerk davor aufhält, sind weggelassen.",
+    barriers_head_note_design: " Bemessungswerte sind das Perzentil der Regel mit allen Faktoren; ihre Intervalle sind die des Perzentils.",
     col_arriving_of: "Ankommende (% der Ablösungen)",
     col_passing: "davon kommen vorbei (%)",
     col_top: "oberster Punkt P95 (m)",
@@ -271,7 +273,8 @@ pub(super) static WORDS: Words = Words {
     arriving_title: "Blöcke, die das Schutzbauwerk {name} erreichen",
     arriving_note: "Überqueren die Linie: {crossing}; von einem Bauwerk davor aufgehalten: {before}; übrig: {left}.",
     sensitivity_title: "Schutzbauwerk {name} mit anderen Höhen und Lagen",
-    sensitivity_note: "Anteil der dort ankommenden Blöcke, den ein Bauwerk dieser Höhe und gleicher Energieaufnahme aufhielte. Die anderen Bauwerke bleiben, wo sie sind. Kein Bemessungswert, wo zu wenige Blöcke ankommen.",
+    sensitivity_note: "Anteil der dort ankommenden Blöcke, den ein Bauwerk dieser Höhe und gleicher Energieaufnahme aufhielte. Die anderen Bauwerke bleiben, wo sie sind.",
+    sensitivity_design: " Kein Bemessungswert, wo zu wenige Blöcke ankommen.",
     col_stopped_at: "aufgehalten bei {m} m (%)",
     at_its_place: "an seinem Ort",
     uphill: "bergwärts",
@@ -387,14 +390,8 @@ pub(super) static WORDS: Words = Words {
     individual_risk: "Individualrisiko (Tod einer Person)",
     deaths: "Erwartete Todesfälle",
     compass: ["Norden", "Nordosten", "Osten", "Südosten", "Süden", "Südwesten", "Westen", "Nordwesten"],
-    method: [
-        "Jeder Block ist eine homogene Kugel, die über die Dreiecksnetze von Hang und Bäumen fällt, springt, gleitet und rollt: Flüge sind exakte Parabeln, und ein Kontakt gehört zu einer Fläche, Kante oder Ecke, so dass Nähte zwischen Dreiecken nicht spürbar sind.",
-        "Kontakte folgen der sphärischen diskontinuierlichen Deformationsanalyse (SDDA): Federn rechtwinklig zur und entlang der Oberfläche, begrenzt durch Coulombsche Reibung, mit einer Dämpfung, die den angegebenen Rückprallkoeffizienten ergibt, und wahlweise Rollreibung.",
-        "Jeder Block ist allein eine Funktion von Szene, Startwert und seiner Nummer: derselbe allein, unter allen anderen und auf beliebig vielen Rechenkernen.",
-        "Alle Blöcke werden gezählt, auch fehlgeschlagene und solche, die das Gelände verließen, und jeder Schätzwert steht neben seinem Vertrauensintervall.",
-    ],
     glossary: glossary::DE,
     // What the program records in English, and its words here
-    said: &[plan::PLAN, patterns::RECORDED, samples::SAMPLES, slips::SLIPS, warnings::WARNINGS],
+    said: &[plan::PLAN, patterns::RECORDED, compared::COMPARED, samples::SAMPLES, slips::SLIPS, warnings::WARNINGS],
     view: patterns::VIEW,
 };

@@ -106,7 +106,7 @@ const IT: DrawnWords = DrawnWords {
     quantile_lines: " Linee: P50 piena, P95 tratteggiata, P99 punteggiata.",
     swiss_limits: " Sono segnati i limiti svizzeri di intensità.",
     weaker: "← {n} con meno energia",
-    runout_no_curve: "Distanza orizzontale dal distacco all’arresto. Sopra: nessuna curva, perché massi che avrebbero proseguito la determinano fin dall’inizio. Sotto: quota dei distacchi per {width} m.",
+    runout_no_curve: "Distanza orizzontale dal distacco all’arresto. Sopra: nessuna curva, perché massi che avrebbero proseguito la determinano fin dall’inizio. Sotto: percentuale dei distacchi per {width} m.",
     rough: " Le variazioni con ln(tasso) ed esponente sono derivate senza intervallo, approssimate a due cifre.",
     topography: "topografia",
     simulation: "simulazione",

@@ -1,5 +1,6 @@
 //! French, as rockfall engineers of Switzerland and France write it.
 
+mod compared;
 mod patterns;
 mod plan;
 mod samples;
@@ -83,7 +84,6 @@ pub(super) static WORDS: Words = Words {
     rate: "{n} blocs par seconde, fichiers compris",
     numerical_remainder: "reste numérique {share}",
     scene: "scène",
-    scheme_in_force: "Schéma appliqué\u{a0}: {scheme}.",
     in_english: "Consigné par le programme en anglais.",
     // The table of all rocks
     all_rocks: "Tous les blocs",
@@ -153,7 +153,7 @@ pub(super) static WORDS: Words = Words {
     profile_axis: "Distance horizontale depuis le départ (m)",
     bearing: "azimut {degrees}°",
     no_bearing: "les blocs ne bougent pas en moyenne\u{a0}: prise vers l’est",
-    along_fall_line: "Distance le long de la ligne de pente moyenne (m)",
+    along_fall_line: "Distance le long de la ligne de plus grande pente moyenne (m)",
     height_axis: "Hauteur (m)",
     elevation_axis: "Altitude (m)",
     bounce_axis: "Rebond (m)",
@@ -243,8 +243,10 @@ pub(super) static WORDS: Words = Words {
     offset_uphill: "Distance à son lieu (m), vers l’amont positif",
     offset_downhill: "Distance à son lieu (m), vers l’aval positif",
     offset_left: "Distance à son lieu (m), à gauche positif",
-    barriers_head_title: "Ce que reçoit chaque ouvrage et ce qu’exige son dimensionnement",
-    barriers_head_note: "Les blocs arrêtés par un ouvrage précédent sont exclus. Les valeurs de dimensionnement sont le centile de la règle avec tous ses facteurs\u{a0}; leurs intervalles sont ceux du centile.",
+    barriers_head_title: "Ce que reçoit chaque ouvrage",
+    barriers_head_design: " et ce qu’exige son dimensionnement",
+    barriers_head_note: "Les blocs arrêtés par un ouvrage précédent sont exclus.",
+    barriers_head_note_design: " Les valeurs de dimensionnement sont le centile de la règle avec tous ses facteurs\u{a0}; leurs intervalles sont ceux du centile.",
     col_arriving_of: "arrivent (% des départs)",
     col_passing: "dont le franchissent (%)",
     col_top: "point le plus haut P95 (m)",
@@ -271,7 +273,8 @@ pub(super) static WORDS: Words = Words {
     arriving_title: "Blocs qui atteignent l’ouvrage {name}",
     arriving_note: "Franchissent sa ligne\u{a0}: {crossing}\u{a0}; arrêtés par un ouvrage précédent\u{a0}: {before}\u{a0}; restent\u{a0}: {left}.",
     sensitivity_title: "Ouvrage {name} à d’autres hauteurs et lieux",
-    sensitivity_note: "Part des blocs y arrivant qu’arrêterait un ouvrage de cette hauteur et de même capacité. Les autres ouvrages restent en place. Pas de dimensionnement là où trop peu de blocs arrivent.",
+    sensitivity_note: "Part des blocs y arrivant qu’arrêterait un ouvrage de cette hauteur et de même capacité. Les autres ouvrages restent en place.",
+    sensitivity_design: " Pas de dimensionnement là où trop peu de blocs arrivent.",
     col_stopped_at: "arrêtés à {m} m (%)",
     at_its_place: "à son lieu",
     uphill: "vers l’amont",
@@ -380,21 +383,15 @@ pub(super) static WORDS: Words = Words {
     are_stopped: "… sont arrêtés",
     go_over: "… passent par-dessus",
     break_through: "… passent à travers",
-    risk_kept_away: ", écarté par {name}",
+    risk_kept_away: ", en moins grâce à {name}",
     risk_note: "Impacts par an × présence × vulnérabilité. L’intervalle est celui des impacts\u{a0}: présence et vulnérabilité sont celles de la scène. Ce qui est tolérable n’est pas dit ici.",
     person_hit: "Impacts en présence d’une personne",
     vehicles_hit: "Véhicules touchés",
     individual_risk: "Risque individuel (décès d’une personne)",
     deaths: "Décès attendus",
     compass: ["le nord", "le nord-est", "l’est", "le sud-est", "le sud", "le sud-ouest", "l’ouest", "le nord-ouest"],
-    method: [
-        "Chaque bloc est une sphère homogène qui tombe, rebondit, glisse et roule sur les maillages du versant et des arbres\u{a0}: les vols sont des paraboles exactes, et un contact appartient à une face, une arête ou un sommet, de sorte que les joints entre triangles ne se sentent pas.",
-        "Les contacts suivent l’analyse sphérique des déformations discontinues (SDDA)\u{a0}: ressorts normaux et tangentiels, limités par le frottement de Coulomb, avec un amortissement qui donne la restitution indiquée et, en option, un frottement de roulement.",
-        "Chaque bloc est fonction de la scène, de la graine et de son seul numéro\u{a0}: le même seul, parmi tous les autres et sur n’importe quel nombre de processeurs.",
-        "Tous les blocs sont comptés, y compris ceux en échec ou sortis du terrain, et chaque estimation est accompagnée de son intervalle de confiance.",
-    ],
     glossary: glossary::FR,
     // What the program records in English, and its words here
-    said: &[plan::PLAN, patterns::RECORDED, samples::SAMPLES, slips::SLIPS, warnings::WARNINGS],
+    said: &[plan::PLAN, patterns::RECORDED, compared::COMPARED, samples::SAMPLES, slips::SLIPS, warnings::WARNINGS],
     view: patterns::VIEW,
 };

@@ -40,7 +40,7 @@ pub(super) const DE: Glossary = [
     ),
     (
         "Ende",
-        "Zur Ruhe gekommen: während der Ruhezeit langsamer als die Ruhegeschwindigkeit, in Kontakt. Gelände verlassen: über den Rand der Netze hinaus. Zeit abgelaufen: noch in Bewegung bei der längsten gerechneten Zeit. Fehlgeschlagen: die Rechnung konnte nicht fortfahren.",
+        "Zur Ruhe gekommen: während der Ruhezeit langsamer als die Ruhegeschwindigkeit, in Kontakt. Gelände verlassen: über den Rand der Dreiecksnetze hinaus. Zeit abgelaufen: noch in Bewegung bei der längsten gerechneten Zeit. Fehlgeschlagen: die Rechnung konnte nicht fortfahren.",
     ),
     (
         "Auswertelinie",
@@ -186,7 +186,7 @@ pub(super) const IT: Glossary = [
     ),
     (
         "Intervallo al 95 %",
-        "Per i percentili da statistiche d’ordine, senza supporre una distribuzione; per massi di peso diverso quello di Woodruff: i valori per i quali la quota pesata al di sotto lascia il percentile nel proprio intervallo. Per le quote l’intervallo esatto di Clopper e Pearson; per nessuno e per tutti su n il limite unilaterale 1 − 0.05^(1/n). Per le medie gli estremi esterni degli intervalli di Student e di Hall. Copre solo il caso nel campione.",
+        "Per i percentili da statistiche d’ordine, senza supporre una distribuzione; per massi di peso diverso quello di Woodruff: i valori per i quali la percentuale pesata al di sotto lascia il percentile nel proprio intervallo. Per le percentuali l’intervallo esatto di Clopper e Pearson; per nessuno e per tutti su n il limite unilaterale 1 − 0.05^(1/n). Per le medie gli estremi esterni degli intervalli di Student e di Hall. Copre solo il caso nel campione.",
     ),
     (
         "≥ e ≤",
@@ -225,7 +225,7 @@ pub(super) const IT: Glossary = [
     ),
     (
         "Ritenzione",
-        "Quota dei distacchi che non raggiunge una linea: ciò che manca fra due linee si è fermato lì o ha lasciato il terreno.",
+        "Percentuale dei distacchi che non raggiunge una linea: ciò che manca fra due linee si è fermato lì o ha lasciato il terreno.",
     ),
     (
         "Altezza normale al versante",
@@ -245,7 +245,7 @@ pub(super) const IT: Glossary = [
     ),
     (
         "Condizionato al distacco, all’anno",
-        "Condizionato al distacco: dato che un masso si è staccato; una quota dei distacchi. All’anno: quante volte accade, compresa la frequenza delle sorgenti. Solo tabelle e figure che dicono «all’anno» o «tempo di ritorno» contengono numeri del secondo tipo.",
+        "Condizionato al distacco: dato che un masso si è staccato; una percentuale dei distacchi. All’anno: quante volte accade, compresa la frequenza delle sorgenti. Solo tabelle e figure che dicono «all’anno» o «tempo di ritorno» contengono numeri del secondo tipo.",
     ),
     (
         "Frequenza di passaggio, superamento di energia",

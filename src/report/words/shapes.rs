@@ -5,7 +5,7 @@ use crate::body::ShapeKind;
 
 words_of! {
     ShapeWords:
-    shapes, method, turning, table_title, table_note, col_rocks, col_median, col_farthest,
+    shapes, turning, table_title, table_note, col_rocks, col_median, col_farthest,
     col_speed, col_energy, sphere, eota111, eota221, boxes, ellipsoid, prism, mesh,
 }
 
@@ -26,7 +26,6 @@ impl ShapeWords {
 
 const EN: ShapeWords = ShapeWords {
     shapes: "shapes: {names}",
-    method: "Each rock is a homogeneous sphere or a rounded convex block that falls, bounces, slides and rolls over the triangle meshes of slope and trees: centres fly on exact parabolas, blocks turn freely in closed form, and a contact belongs to one face, edge or corner, so that seams between triangles are not felt.",
     turning: "ω·Iω/2: I = 2/5 m R² of a sphere, of a block the moments of inertia of its shape.",
     table_title: "By shape",
     table_note: "Rocks of each kind of shape, with the sizes that were drawn for them. Small figures: 95 % intervals. Two kinds differ where their intervals lie apart; rockfall compare tells more of two runs.",
@@ -46,7 +45,6 @@ const EN: ShapeWords = ShapeWords {
 
 const DE: ShapeWords = ShapeWords {
     shapes: "Formen: {names}",
-    method: "Jeder Block ist eine homogene Kugel oder ein gerundeter konvexer Körper, der über die Dreiecksnetze von Hang und Bäumen fällt, springt, gleitet und rollt: Mittelpunkte fliegen auf exakten Parabeln, Körper drehen sich frei in geschlossener Form, und ein Kontakt gehört zu einer Fläche, Kante oder Ecke, so dass Nähte zwischen Dreiecken nicht spürbar sind.",
     turning: "ω·Iω/2: bei einer Kugel I = 2/5 m R², sonst die Trägheitsmomente der Form.",
     table_title: "Nach der Form",
     table_note: "Blöcke jeder Art von Form, mit den Größen, die für sie gezogen wurden. Kleine Zahlen: 95-%-Intervalle. Zwei Arten unterscheiden sich, wo ihre Intervalle auseinander liegen; mehr über zwei Läufe sagt rockfall compare.",
@@ -66,7 +64,6 @@ const DE: ShapeWords = ShapeWords {
 
 const FR: ShapeWords = ShapeWords {
     shapes: "formes\u{a0}: {names}",
-    method: "Chaque bloc est une sphère homogène ou un corps convexe arrondi qui tombe, rebondit, glisse et roule sur les maillages triangulaires du versant et des arbres\u{a0}: les centres volent sur des paraboles exactes, les corps tournent librement sous forme close, et un contact appartient à une face, une arête ou un sommet, de sorte que les joints entre triangles ne se sentent pas.",
     turning: "ω·Iω/2\u{a0}: I = 2/5 m R² pour une sphère, sinon les moments d’inertie de la forme.",
     table_title: "Selon la forme",
     table_note: "Blocs de chaque sorte de forme, avec les tailles tirées pour eux. Petits chiffres\u{a0}: intervalles à 95 %. Deux sortes diffèrent là où leurs intervalles sont disjoints\u{a0}; rockfall compare en dit plus sur deux calculs.",
@@ -86,7 +83,6 @@ const FR: ShapeWords = ShapeWords {
 
 const IT: ShapeWords = ShapeWords {
     shapes: "forme: {names}",
-    method: "Ogni blocco è una sfera omogenea o un corpo convesso arrotondato che cade, rimbalza, scivola e rotola sulle maglie triangolari di versante e alberi: i centri volano su parabole esatte, i corpi ruotano liberamente in forma chiusa, e un contatto appartiene a una faccia, uno spigolo o un vertice, così che le giunture tra triangoli non si sentono.",
     turning: "ω·Iω/2: I = 2/5 m R² per una sfera, altrimenti i momenti d’inerzia della forma.",
     table_title: "Secondo la forma",
     table_note: "Blocchi di ogni tipo di forma, con le dimensioni estratte per loro. Cifre piccole: intervalli al 95 %. Due tipi differiscono dove i loro intervalli sono disgiunti; rockfall compare dice di più su due calcoli.",

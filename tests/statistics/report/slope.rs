@@ -278,7 +278,7 @@ fn text() -> Text {
         title_block: vec![("Client".to_owned(), "Road authority".to_owned())],
         title: "Made slope: cliff, talus & meadow".to_owned(),
         subtitle: "A <test> scene with parabolas for rocks".to_owned(),
-        scheme: "Steps are adaptive with a local error of 0.05 m/s.".to_owned(),
+        method: "Steps are adaptive with a local error of 0.05 m/s.".to_owned(),
         inputs: vec![
             ("Rocks".to_owned(), "radius 0.4 m, density 2700 kg/m³".to_owned()),
             ("Stop rule".to_owned(), "slower than 0.02 m/s for 0.3 s in contact".to_owned()),

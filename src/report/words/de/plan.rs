@@ -79,7 +79,7 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ),
     (
         "a sphere looks the same from every side; its spin is computed, how far it has turned is not",
-        "eine Kugel sieht von allen Seiten gleich aus; ihr Drall wird gerechnet, ihre Lage nicht",
+        "eine Kugel sieht von allen Seiten gleich aus; ihre Drehung wird gerechnet, ihre Lage nicht",
     ),
     (
         "one rock has 6 unknowns, a dense factor is enough",

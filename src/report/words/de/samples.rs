@@ -34,8 +34,8 @@ pub(super) const SAMPLES: &[(&str, &str)] = &[
     ("{a} a year of {b} m³, {rest}", "{a} pro Jahr von {b} m³, {rest}"),
     ("{a} a year of {b} m³", "{a} pro Jahr von {b} m³"),
     (
-        "A name in quotation marks alone stands for the rocks that the barriers of each run have let through to that place.",
-        "Ein Name in Anführungszeichen allein steht für die Blöcke, die die Schutzbauwerke jeder Rechnung bis dorthin durchgelassen haben.",
+        "A name in quotation marks alone stands for the rocks that the barriers of each run have let through to that place: at a barrier those that arrive at it. Those that pass it are a share of all releases.",
+        "Ein Name in Anführungszeichen allein steht für die Blöcke, die die Schutzbauwerke jeder Rechnung bis dorthin durchgelassen haben: bei einem Schutzbauwerk die, die dort ankommen. Die es passieren, sind ein Anteil aller Ablösungen.",
     ),
     (
         "islands of rocks that may touch, each with its own step; heaps of more than {n} that touch go on as with rigid where none is struck hard: what a spring does within a blow is left out there",

@@ -48,7 +48,7 @@ pub(super) const SLIPS: &[(&str, &str)] = &[
     ),
     (
         "epsg = {a} is a geographic system in degrees; coordinates are metres here: name the projected system of the meshes, as 2056 (LV95)",
-        "epsg = {a} ist ein geographisches System in Grad; Koordinaten sind hier Meter: das projizierte System der Netze nennen, etwa 2056 (LV95)",
+        "epsg = {a} ist ein geographisches System in Grad; Koordinaten sind hier Meter: das projizierte System der Dreiecksnetze nennen, etwa 2056 (LV95)",
     ),
     (
         "{file}: {n} of {all} cells are exactly 0 m high and all others above {low} m: cells without data? then declare 0 as no data (gdal_translate -a_nodata 0)",

@@ -2,7 +2,7 @@
 
 /// By patterns, as for the plan.
 pub(super) const WARNINGS: &[(&str, &str)] = &[
-    ("[grounds.{name}] lies under no mesh", "[grounds.{name}] liegt unter keinem Netz"),
+    ("[grounds.{name}] lies under no mesh", "[grounds.{name}] liegt unter keinem Dreiecksnetz"),
     (
         "[grounds.{name}] has breaks_above_j, but no tree: only trees give way",
         "[grounds.{name}] hat breaks_above_j, aber keinen Baum: nur Bäume geben nach",
@@ -40,7 +40,7 @@ pub(super) const WARNINGS: &[(&str, &str)] = &[
     ("1/year", "1/a"),
     (
         "{who}: the rocks of one world meet each other, but all intervals take them for independent and are too narrow for what they share: a change that is clear here may be chance. Run several seeds of each scene and compare.",
-        "{who}: die Blöcke einer gemeinsamen Welt begegnen einander, aber alle Intervalle nehmen sie als unabhängig und sind zu eng für das, was sie teilen: eine Änderung, die hier deutlich ist, kann Zufall sein. Mehrere Startwerte (seed) jeder Szene rechnen und vergleichen.",
+        "{who}: die Blöcke einer gemeinsamen Welt begegnen einander, aber alle Intervalle nehmen sie als unabhängig und sind zu eng für das, was sie teilen: eine Änderung, die hier signifikant ist, kann Zufall sein. Mehrere Startwerte (seed) jeder Szene rechnen und vergleichen.",
     ),
     (
         "{file} says how large the rocks of its zones are, which is not used: sizes are those of the scene; where each zone says how often too, and [frequency] has no law of its own, each has its own",

@@ -63,7 +63,7 @@ pub(super) const PLAN: &[(&str, &str)] = &[
         "des arrêts mesurés dans {file}, sans les blocs calculés dont la distance de propagation est inférieure à {least} m",
     ),
     ("measured ends in {file}", "des arrêts mesurés dans {file}"),
-    ("left out: {why}", "laissé de côté\u{a0}: {why}"),
+    ("left out: {why}", "hors calcul\u{a0}: {why}"),
     ("leapt over: {why}", "franchi d’un bond\u{a0}: {why}"),
     ("the scene has none", "la scène n’en a pas"),
     ("no ground has any", "aucun sol n’en a"),

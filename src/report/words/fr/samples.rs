@@ -37,8 +37,8 @@ pub(super) const SAMPLES: &[(&str, &str)] = &[
     ("{a} a year of {b} m³, {rest}", "{a} par an de {b} m³, {rest}"),
     ("{a} a year of {b} m³", "{a} par an de {b} m³"),
     (
-        "A name in quotation marks alone stands for the rocks that the barriers of each run have let through to that place.",
-        "Un nom seul entre guillemets désigne les blocs que les ouvrages de chaque calcul ont laissés passer jusque-là.",
+        "A name in quotation marks alone stands for the rocks that the barriers of each run have let through to that place: at a barrier those that arrive at it. Those that pass it are a share of all releases.",
+        "Un nom seul entre guillemets désigne les blocs que les ouvrages de chaque calcul ont laissés passer jusque-là\u{a0}: à un ouvrage, ceux qui y arrivent. Ceux qui le passent sont une part de tous les départs.",
     ),
     (
         "islands of rocks that may touch, each with its own step; heaps of more than {n} that touch go on as with rigid where none is struck hard: what a spring does within a blow is left out there",

@@ -40,7 +40,7 @@ pub(super) const WARNINGS: &[(&str, &str)] = &[
     ("1/year", "1/a"),
     (
         "{who}: the rocks of one world meet each other, but all intervals take them for independent and are too narrow for what they share: a change that is clear here may be chance. Run several seeds of each scene and compare.",
-        "{who}\u{a0}: les blocs d’un même monde se rencontrent, mais tous les intervalles les prennent pour indépendants et sont trop étroits pour ce qu’ils partagent\u{a0}: une variation nette ici peut être due au hasard. Calculer avec plusieurs graines (seed) de chaque scène et comparer.",
+        "{who}\u{a0}: les blocs d’un même monde se rencontrent, mais tous les intervalles les prennent pour indépendants et sont trop étroits pour ce qu’ils partagent\u{a0}: une variation significative ici peut être due au hasard. Calculer avec plusieurs graines (seed) de chaque scène et comparer.",
     ),
     (
         "{file} says how large the rocks of its zones are, which is not used: sizes are those of the scene; where each zone says how often too, and [frequency] has no law of its own, each has its own",

@@ -63,7 +63,7 @@ pub(super) const PLAN: &[(&str, &str)] = &[
         "arresti misurati in {file}, senza i massi calcolati la cui distanza di arresto è minore di {least} m",
     ),
     ("measured ends in {file}", "arresti misurati in {file}"),
-    ("left out: {why}", "tralasciato: {why}"),
+    ("left out: {why}", "fuori dal calcolo: {why}"),
     ("leapt over: {why}", "saltato: {why}"),
     ("the scene has none", "la scena non ne ha"),
     ("no ground has any", "nessun suolo ne ha"),
@@ -383,6 +383,6 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ),
     (
         "the same number of rocks is computed for every source, however often it releases them in a year. Percentiles, shares and maps are weighted back and hold for the sources as they are; counts of rocks and dots in figures show rocks as computed",
-        "per ogni sorgente si calcola lo stesso numero di massi, comunque spesso ne distacchi in un anno. Percentili, quote e mappe sono ripesati e valgono per le sorgenti come sono; conteggi e punti nelle figure mostrano i massi come calcolati",
+        "per ogni sorgente si calcola lo stesso numero di massi, comunque spesso ne distacchi in un anno. Percentili, percentuali e mappe sono ripesati e valgono per le sorgenti come sono; conteggi e punti nelle figure mostrano i massi come calcolati",
     ),
 ];

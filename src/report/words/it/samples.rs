@@ -37,8 +37,8 @@ pub(super) const SAMPLES: &[(&str, &str)] = &[
     ("{a} a year of {b} m³, {rest}", "{a} all’anno di {b} m³, {rest}"),
     ("{a} a year of {b} m³", "{a} all’anno di {b} m³"),
     (
-        "A name in quotation marks alone stands for the rocks that the barriers of each run have let through to that place.",
-        "Un nome da solo fra virgolette indica i massi che le barriere di ogni calcolo hanno lasciato passare fin lì.",
+        "A name in quotation marks alone stands for the rocks that the barriers of each run have let through to that place: at a barrier those that arrive at it. Those that pass it are a share of all releases.",
+        "Un nome da solo fra virgolette indica i massi che le barriere di ogni calcolo hanno lasciato passare fin lì: a una barriera, quelli che vi arrivano. Quelli che la superano sono una percentuale di tutti i distacchi.",
     ),
     (
         "islands of rocks that may touch, each with its own step; heaps of more than {n} that touch go on as with rigid where none is struck hard: what a spring does within a blow is left out there",

@@ -40,7 +40,7 @@ pub(super) const WARNINGS: &[(&str, &str)] = &[
     ("1/year", "1/a"),
     (
         "{who}: the rocks of one world meet each other, but all intervals take them for independent and are too narrow for what they share: a change that is clear here may be chance. Run several seeds of each scene and compare.",
-        "{who}: i massi di uno stesso mondo si incontrano, ma tutti gli intervalli li considerano indipendenti e sono troppo stretti per ciò che hanno in comune: una variazione qui netta può essere caso. Calcolare con più semi (seed) di ogni scena e confrontare.",
+        "{who}: i massi di uno stesso mondo si incontrano, ma tutti gli intervalli li considerano indipendenti e sono troppo stretti per ciò che hanno in comune: una variazione qui significativa può essere caso. Calcolare con più semi (seed) di ogni scena e confrontare.",
     ),
     (
         "{file} says how large the rocks of its zones are, which is not used: sizes are those of the scene; where each zone says how often too, and [frequency] has no law of its own, each has its own",

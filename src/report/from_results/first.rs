@@ -1,0 +1,40 @@
+//! What must be read before any number.
+
+use super::super::words::{Words, fill};
+use super::super::{by_frequency, format};
+use crate::hazard::{Hazard, StopKind};
+
+/// What sources without a rock and rocks that left the terrain do to the numbers, before anything else.
+pub(in crate::report) fn warnings_first(hazard: &Hazard, words: &Words) -> Vec<String> {
+    let own = words.open();
+    let kinds = [
+        (StopKind::LeftTerrain, own.have_left, own.remedy_left),
+        (StopKind::TimeUp, own.have_no_time, own.remedy_time),
+        (StopKind::OverBudget, own.have_no_budget, own.remedy_budget),
+        (StopKind::Failed, own.have_failed, own.remedy_budget),
+    ];
+    let weighted = hazard.weights().map(|_| words.say(by_frequency::SHARE));
+    let some_rocks = weighted.unwrap_or_else(|| own.some_rocks.to_owned());
+    let said = |(kind, what, remedy): (StopKind, &str, &str)| {
+        let share = hazard.ended(kind);
+        let count = |n: usize| format::decimal(n as f64, 0);
+        let percent = format::percent_of_part(share.share, usize::from(share.share < 0.1));
+        let (n, of) = (count(share.count), count(share.of));
+        let rocks = fill(&some_rocks, &[("n", &n), ("of", &of), ("share", &percent)]);
+        // what the rocks have done: a share is of several
+        let has_left = kind == StopKind::LeftTerrain;
+        let largest = if has_left { own.largest_left } else { own.largest_open };
+        let is_share = hazard.weights().is_some();
+        let what = fill(what, &[("n", if is_share { &format::NO_NUMBER } else { &n })]);
+        let said = || {
+            fill(
+                own.censored,
+                &[("rocks", &rocks), ("what", &what), ("largest", &largest), ("remedy", &remedy)],
+            )
+        };
+        (share.count > 0).then(said)
+    };
+    let missing = hazard.missing_events();
+    let missing = missing.iter().map(|warning| words.say(warning));
+    missing.chain(kinds.into_iter().filter_map(said)).collect()
+}
