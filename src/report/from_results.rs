@@ -3,6 +3,7 @@
 mod annual;
 mod arrivals;
 mod barriers;
+mod design;
 pub(super) mod first;
 mod lines;
 mod maps;

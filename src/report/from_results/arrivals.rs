@@ -3,6 +3,7 @@
 use super::super::model::{About, Estimate, EstimateTable};
 use super::super::site;
 use super::super::words::{Words, fill};
+use super::design::{design as of_rule, has_design, with_design_if_any};
 use super::lines::{of_share, shown};
 use super::{energy_unit_of, of_percentile, percentile_of};
 use crate::hazard::{BarrierSummary, LineQuantity, Residual, Statistic};
@@ -111,8 +112,8 @@ fn barriers(results: &Results, words: &Words) -> Option<EstimateTable> {
             some(percent(passing)),
             of(&one.energy_j).map(|at| at.over(size)),
             of(&one.top_m),
-            super::barriers::design(one).map(|design| design.energy_j.over(size)),
-            super::barriers::design(one).map(|design| design.height_m),
+            of_rule(one).map(|design| design.energy_j.over(size)),
+            of_rule(one).map(|design| design.height_m),
         ];
         (name, cells)
     };
@@ -136,26 +137,4 @@ fn barriers(results: &Results, words: &Words) -> Option<EstimateTable> {
         ..EstimateTable::default()
     };
     (!all.is_empty()).then(|| with_design_if_any(table, all))
-}
-
-/// Whether some barrier has a rule of design.
-fn has_design(all: &[BarrierSummary]) -> bool {
-    all.iter().any(|one| one.barrier.design.is_some())
-}
-
-/// A table of barriers without its last two columns, height and energy of the design, where no barrier has a rule for them:
-/// they would look as if too few rocks arrived.
-pub(super) fn with_design_if_any(
-    mut table: EstimateTable,
-    all: &[BarrierSummary],
-) -> EstimateTable {
-    if has_design(all) {
-        return table;
-    }
-    let kept = table.columns.len().saturating_sub(2);
-    table.columns.truncate(kept);
-    for (_, cells) in &mut table.rows {
-        cells.truncate(kept);
-    }
-    table
 }

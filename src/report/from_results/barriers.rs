@@ -3,13 +3,13 @@
 use super::super::by_frequency;
 use super::super::format;
 use super::super::model::{
-    About, BarrierView, DesignView, Estimate, EstimateTable, Is, PlaceView, ReportQuantity,
-    RockView, energy_unit,
+    About, BarrierView, Estimate, EstimateTable, Is, PlaceView, ReportQuantity, RockView,
+    energy_unit,
 };
 use super::super::raster::GroundRaster;
 use super::super::words::open::missing as missing_rocks;
 use super::super::words::{Words, fill};
-use super::arrivals::with_design_if_any;
+use super::design::{design, design_view, with_design_if_any};
 use super::{energy_unit_of, estimate, of_percentile, statistics};
 use crate::error::Result;
 use crate::frequency::Weights;
@@ -46,22 +46,6 @@ pub(super) fn views(results: &Results, ground: Option<&GroundRaster>) -> Result<
             .collect(),
     };
     Ok(summaries.iter().zip(arrivals).map(view).collect())
-}
-
-fn design_view(design: &Design) -> DesignView {
-    let of = |value: f64, [low, high]: [Option<f64>; 2]| estimate(value, low, high);
-    DesignView {
-        height_m: of(design.height_m, design.height_95_m),
-        energy_j: of(design.energy_j, design.energy_95_j),
-    }
-}
-
-/// What the rule of a barrier asks for, or how many rocks are missing; none without a rule.
-pub(super) fn design(one: &BarrierSummary) -> Option<DesignView> {
-    let lacking = Estimate::lacking(one.design_lacks);
-    let lacking =
-        (one.design_lacks > 0).then_some(DesignView { height_m: lacking, energy_j: lacking });
-    one.design_values.as_ref().map(design_view).or(lacking)
 }
 
 /// Distance to each side of a barrier at which the ground says where uphill is (m).

@@ -18,12 +18,14 @@ pub(super) fn paragraph(plan: &[PlanEntry], words: &Words) -> String {
     let method = words.method();
     let has = |part: &str| kept(plan, part).is_some();
     let scheme = kept(plan, "scheme").unwrap_or_default();
-    let is_rigid = scheme.split(',').next() == Some(Scheme::Rigid.name());
+    let name = scheme.split(',').next().unwrap_or_default();
+    let known = serde_json::from_value(name.into());
+    let has_springs = known.map_or(true, |scheme: Scheme| scheme.has_springs());
     let body = if has("shape") { method.shapes } else { method.spheres };
     let meshes = if has("trees") { method.slope_and_trees } else { method.slope };
     [
         fill(body, &[("meshes", &meshes)]),
-        if is_rigid { method.rigid } else { method.springs }.to_owned(),
+        if has_springs { method.springs } else { method.rigid }.to_owned(),
         if has("rock against rock") { method.one_world } else { method.alone }.to_owned(),
         method.counted.to_owned(),
         fill(method.scheme, &[("scheme", &words.say(scheme))]),
