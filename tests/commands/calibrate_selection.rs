@@ -183,3 +183,33 @@ fn a_scene_without_a_value_to_fit_is_refused() {
         assert!(said.contains("rough.toml: [calibrate]: found nothing to fit; write"), "{said}");
     }
 }
+
+/// 24 independent ends. Of a standard deviation the difference computed − measured lies in its interval, whose lower end is below the
+/// upper one; past the farthest of 24 ends lies, by chance, up to the share `1 − q` with `q²⁴ = 0.05`, 0.12.
+#[test]
+fn intervals_of_the_spread_hold_the_difference() {
+    let dir = tempfile::tempdir().unwrap();
+    let vary = r#"vary = [{ ground = "meadow", key = "rolling_friction", from = 0.2, to = 0.8, before = 0.45 }]"#;
+    let more = format!("[calibrate]\ndeposits = \"ends.csv\"\nheld_out = 0.0\n{vary}");
+    let measured = ways(&rough(dir.path(), 7, ""), 7, 24);
+    let mut table = "release_x_m,release_y_m,x_m,y_m\n".to_owned();
+    for ObservedPath { start_m: [from_x, from_y], end_m: [x, y] } in measured {
+        writeln!(table, "{from_x},{from_y},{x},{y}").unwrap();
+    }
+    fs::write(dir.path().join("ends.csv"), table).unwrap();
+    let scene = rough(dir.path(), 1, &more);
+    let out = dir.path().join("fit");
+    let done = rockfall(&["calibrate", word(&scene), "--releases", "40", "--out", word(&out)]);
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    let found = read_calibration(&out).unwrap().unwrap();
+    let spread = found.measures.iter().filter(|one| one.what.starts_with("standard deviation"));
+    let spread: Vec<_> = spread.collect();
+    assert_eq!(spread.len(), 2, "along and across");
+    for one in spread {
+        let off = one.computed - one.measured;
+        let (low, high) = (one.low_95.unwrap(), one.high_95.unwrap());
+        assert!(low < off && off < high, "{one:?}");
+    }
+    let past = found.measures.iter().find(|one| one.what.starts_with("share past")).unwrap();
+    assert!(past.what.contains("by chance up to 0.12 "), "{past:?}");
+}

@@ -43,6 +43,7 @@ mod library;
 mod pages;
 mod rust_version;
 mod table_sizes;
+mod read_off;
 mod same_everywhere;
 mod shards;
 mod still_moving;

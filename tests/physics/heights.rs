@@ -4,7 +4,7 @@
 use rockfall::plan::Plan;
 use rockfall::rock::Vec3;
 use rockfall::scene::Scene;
-use rockfall::simulation::{Scratch, simulate_release};
+use rockfall::simulation::{PathState, Scratch, simulate_release};
 use rockfall::terrain::stl::{Facet, write_binary};
 use std::path::Path;
 
@@ -154,4 +154,36 @@ fn the_profile_of_a_strip_is_that_of_its_slope() {
     };
     let steps_m = [120.0, 300.0, 6000.0].map(step_m);
     assert_eq!(steps_m.map(|step_m| step_m as u32), [2, 2, 10]);
+}
+
+/// In flight a rock is in every cell and stretch as fast, and has as much energy, as at each point of its path there: also where it rises
+/// over the edge of a cell and leaves it slower than it came.
+#[test]
+fn a_flying_rock_is_as_fast_in_its_cells_as_on_its_path() {
+    let plan = plan("", "restitution = 0.6\nrolling_friction = 0.4");
+    let grid = plan.recorders().cells.unwrap();
+    let step_m = plan.recorders().profile_step_m.unwrap();
+    let mut scratch = Scratch::default();
+    let (mut points, mut faster) = (0, [0; 2]);
+    for index in 0..plan.count {
+        let fall = simulate_release(&plan, index, None, &mut scratch).unwrap();
+        let start = fall.start.position_m;
+        let flying = fall.path.iter().filter(|point| point.state == PathState::Flight);
+        for motion in flying.map(|point| &point.motion) {
+            let at = motion.position_m;
+            let [column, row] = grid.place(at.x, at.y).map(|place| place.floor() as i64);
+            let cell = grid.cell(column, row).unwrap();
+            let in_cell = fall.passages.iter().find(|one| one.cell == cell).unwrap();
+            let number = ((at.x - start.x).hypot(at.y - start.y) / step_m) as u32;
+            let in_stretch = fall.stretches.iter().find(|one| one.number == number).unwrap();
+            let total_j = motion.translational_j(&fall.rock) + motion.rotational_j(&fall.rock);
+            // but for rounding
+            faster[0] += usize::from(total_j > in_cell.total_j * (1.0 + 1e-9));
+            let speed_m_s = motion.velocity_m_s.norm();
+            faster[1] += usize::from(speed_m_s > in_stretch.speed_m_s + 1e-9);
+            points += 1;
+        }
+    }
+    assert!(points > 10_000, "{points} points in flight");
+    assert_eq!(faster, [0, 0], "points above the energy of a cell and the speed of a stretch");
 }

@@ -37,6 +37,7 @@ mod roughness;
 mod schemes_agree;
 mod sheets;
 mod soil;
+mod spins_on;
 mod stem_loads;
 mod stems;
 mod struck_through;

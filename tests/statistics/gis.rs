@@ -7,6 +7,9 @@
     reason = "a test fails by panicking, and says what it leaves out"
 )]
 
+use crate::made;
+
+use rockfall::output::{self as results, Mode};
 use serde_json::Value;
 use std::path::Path;
 use std::process::{Command, Output};
@@ -115,6 +118,42 @@ fn vectors(maps: &Path) {
             (177_200.0..178_000.0).contains(&x) && (377_000.0..377_900.0).contains(&y)
         };
         assert!(inside(numbers[0], numbers[1]) && inside(numbers[2], numbers[3]), "{extent}");
+    }
+}
+
+fn features(path: &Path) -> Vec<Value> {
+    let all: Value = serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
+    all["features"].as_array().unwrap().clone()
+}
+
+/// What a line's feature says of its reach is what the summary says, each end as itself; and along a path a homogeneous sphere has
+/// `(2/5 m R² ω²)/2` in its spin.
+#[test]
+fn features_say_what_the_tables_say() {
+    let dir = tempfile::tempdir().unwrap();
+    let mut written = results::Output::create(made::info(12), dir.path(), Mode::Fresh).unwrap();
+    written.write(&(0..12).map(made::fall).collect::<Vec<_>>()).unwrap();
+    let found = written.finish().unwrap();
+    let lines = features(&dir.path().join("maps/lines.geojson"));
+    assert_eq!(lines.len(), found.summary.lines.len());
+    for (feature, line) in lines.iter().zip(&found.summary.lines) {
+        let reach = &line.reach;
+        let ends = [reach.low_95, reach.share, reach.high_95];
+        let keys = ["reach_low_95", "reach", "reach_high_95"];
+        let said = keys.map(|key| feature["properties"][key].as_f64().unwrap());
+        let is_near = said.iter().zip(ends).all(|(one, other)| (one - other).abs() < 1e-12);
+        assert!(is_near && said[0] < said[1] && said[1] < said[2], "{feature}");
+    }
+    for feature in features(&dir.path().join("maps/paths.geojson")) {
+        let said = &feature["properties"];
+        let fall = made::fall(said["index"].as_u64().unwrap() as usize);
+        for (point, joule) in fall.path.iter().zip(said["rotational_j"].as_array().unwrap()) {
+            let (rock, spin_rad_s) = (&fall.rock, point.motion.spin_rad_s.norm());
+            let inertia_kg_m2 = 0.4 * rock.mass_kg() * rock.radius_m.powi(2);
+            let exact = 0.5 * inertia_kg_m2 * spin_rad_s.powi(2);
+            // written to a thousandth of a joule
+            assert!((joule.as_f64().unwrap() - exact).abs() <= 5.1e-4, "{joule} for {exact}");
+        }
     }
 }
 

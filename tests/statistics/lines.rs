@@ -127,6 +127,11 @@ fn the_same_line_gives_the_same_crossings() {
         assert!((whole.along_m + back.along_m - 40.0).abs() < 1e-9);
         assert!((whole.motion.position_m.y + plan.terrain.origin_m.y - 26.0).abs() < 1e-9);
         assert_eq!(whole.times, pieces.times);
+        // along the normal of a slope of angle β the centre is cos β times as high over it as straight down
+        let (at_m, r) = (whole.motion.position_m, fall.rock.radius_m);
+        let (_, normal) = plan.terrain.slope_under(at_m.x, at_m.y, at_m.z).unwrap();
+        let along_normal_m = (whole.height_m + r) * normal.z.abs() - r;
+        assert!((whole.height_normal_m - along_normal_m).abs() < 1e-9, "rock {}", fall.index);
         assert!(at(4).is_none());
     }
     assert!(falls.iter().filter(|fall| !fall.crossings.is_empty()).count() > 50);

@@ -9,6 +9,7 @@ mod tiff;
 #[path = "../yearly/mod.rs"]
 mod yearly;
 
+mod by_hand;
 mod coverage;
 mod differences;
 mod ensemble;

@@ -149,6 +149,34 @@ fn no_rock_comes_to_a_line_above_what_its_energy_lifts_it_to() {
     assert!(may_come(StopKind::Failed, 10.0, Some(floor)));
 }
 
+/// The same rocks at 10 m/s, which lifts them 5.1 m: what their spin or pressed springs hold lifts them 4 m more, over a line 8 m above their
+/// end. Of a sphere that turns with `ω R` it is `(ω R)²/(5 g)`.
+#[test]
+fn spin_and_springs_lift_a_rock_as_speed_does() {
+    let floor = Some(LineFloor { ground_m: 508.0, gravity_m_s2: 9.81 });
+    let may_come = |rim_m_s: f64, springs_j_kg: f64| {
+        let way = Row::of(&fall(1), Vec3::zeros());
+        let row = Row {
+            stop: StopKind::TimeUp,
+            end_m: [20.0, 30.0, 500.0],
+            end_velocity_m_s: [0.0, -10.0, 0.0],
+            end_spin_rad_s: [0.0, 0.0, rim_m_s / way.radius_m],
+            springs_j: springs_j_kg * way.mass_kg,
+            ..way
+        };
+        let none = std::iter::empty::<Result<CrossingRow, Infallible>>();
+        let line = LineInfo { floor, ..yearly::line("road") };
+        let rocks = OpenRock::of(&row).into_iter().collect();
+        let open = OpenRocks::find(rocks, (&[line], |_: &CrossingRow| None), none).unwrap();
+        open.at("road").count() == 1
+    };
+    let (rim_m_s, springs_j_kg) = ((4.0 * 5.0 * 9.81_f64).sqrt(), 4.0 * 9.81);
+    assert!(!may_come(0.0, 0.0));
+    assert!(may_come(rim_m_s, 0.0) && may_come(0.0, springs_j_kg));
+    // 2 m more are too few
+    assert!(!may_come(0.5_f64.sqrt() * rim_m_s, 0.0) && !may_come(0.0, 0.5 * springs_j_kg));
+}
+
 /// A road 10 m below where the rocks of [`may_still_come`] end.
 fn road_below() -> LineInfo {
     let floor = Some(LineFloor { ground_m: 490.0, gravity_m_s2: 10.0 });
@@ -235,6 +263,9 @@ fn rocks_that_ended_on_the_map_are_missing_in_it() {
         (StopKind::Failed, [f64::NAN, 10.0, 0.0], true),
         (StopKind::LeftTerrain, [10.0, 10.0, 0.0], true),
         (StopKind::LeftTerrain, [19.9, 10.0, 0.0], false),
+        // within the cells along the edge, on whichever side
+        (StopKind::LeftTerrain, [1.0, 10.0, 0.0], false),
+        (StopKind::LeftTerrain, [10.0, 1.0, 0.0], false),
         (StopKind::LeftTerrain, [10.0, -0.3, 0.0], false),
         (StopKind::AtRest, [10.0, 10.0, 0.0], false),
     ];
@@ -245,7 +276,7 @@ fn rocks_that_ended_on_the_map_are_missing_in_it() {
         assert_eq!(is_missing, expected, "{stop:?} {end_m:?}");
         hazard.add(&row);
     }
-    assert_eq!(hazard.open_on(&map), Some(Proportion::new(4, 7)));
+    assert_eq!(hazard.open_on(&map), Some(Proportion::new(4, 9)));
 }
 
 /// By hand: of three sources with 0.1, 0.2 and 0.3 events a year a part of a run holds releases 4 and 5, one of the second and one of the

@@ -113,3 +113,72 @@ fn of_two_soils_as_deep_the_weaker_drag_counts() {
     let beside = kept(vec![None, soil(1.2)], [blow(0, 1.0), blow(1, -1.0)]);
     assert!((beside - weak).abs() < 1e-15 && weak < 0.99, "{beside} {weak}");
 }
+
+/// A ball of stone of radius 0.5 m on soil of this strength, where gravity is `g`, and what drags it on each metre when all of it is cut (1/m).
+fn deep(strength_kn_m2: f64, g: f64) -> (Body, Scars, f64) {
+    let (radius, scar) = (0.5_f64, Scar { strength_kn_m2, drag: 2.5, soil_density_kg_m3: 1700.0 });
+    let mass = 2700.0 * 4.0 / 3.0 * PI * radius.powi(3);
+    let body = Body { mass, inertia: 0.1 * mass, radius, gravity: Vec3::z() * -g };
+    let scars = Scars { layers: vec![Some(scar)], is_any: true, ..Scars::default() };
+    (body, scars, 2.5 * 1700.0 * PI * radius * radius / (2.0 * mass))
+}
+
+fn square(approach_m_s: f64) -> GroundBlow {
+    GroundBlow { ground: 0, normal: Vec3::z(), approach_m_s, of_point_m_s: approach_m_s }
+}
+
+/// A harder impact in a scar digs on from where the ball is: it takes the way from the depth of the first to its own, and a softer one takes
+/// nothing.
+#[test]
+fn a_harder_impact_digs_on_from_the_depth_of_the_first() {
+    let (body, mut scars, per_m) = deep(5.0, 0.0);
+    scars.enter(&body, &[square(6.0)], (6.0, false));
+    let first_m = scars.now.unwrap().depth_m;
+    assert!(first_m > 2.0 * body.radius);
+    assert!(scars.enter(&body, &[square(4.0)], (4.0, false)) >= 1.0);
+    let kept = scars.enter(&body, &[square(9.0)], (9.0, false));
+    let more_m = scars.now.unwrap().depth_m - first_m;
+    assert!((kept / math::exp(-per_m * more_m) - 1.0).abs() < 1e-12, "{kept} over {more_m} m");
+}
+
+/// Square out of a depth `d ≥ R` a ball cuts `π R² (d − R/3)`. Half of the step in which contact ends is along the plane, and what was dragged
+/// ahead of a step that never came is not dragged again on the way out.
+#[test]
+fn the_way_out_takes_what_was_not_taken_along_the_plane() {
+    let up = Vec3::z() * 10.0;
+    let in_scar = || {
+        let (body, mut scars, per_m) = deep(5.0, 0.0);
+        scars.enter(&body, &[square(6.0)], (6.0, false));
+        let out_m = scars.now.unwrap().depth_m - body.radius / 3.0;
+        (body, scars, per_m, out_m)
+    };
+    let is = |kept: f64, exact: f64| assert!((kept / exact - 1.0).abs() < 1e-12, "{kept} {exact}");
+    let (body, mut scars, per_m, out_m) = in_scar();
+    let kept = scars.plough(&body, (0.4, ScarFloor::Unknown), Some(up));
+    is(kept, math::exp(-per_m * (0.5 * 0.4 + out_m)));
+    let (body, mut scars, per_m, out_m) = in_scar();
+    scars.plough(&body, (0.4, ScarFloor::Unknown), None);
+    let ahead = scars.plough_ahead();
+    is(ahead, math::exp(-per_m * 0.2));
+    is(ahead * scars.leave(&body, &up), math::exp(-per_m * out_m));
+}
+
+/// A ball 1.2 m deep needs 4.9 m/s to rise to the surface, after what drag takes on the way, seven tenths: at 8 m/s it stays in its scar, at 20
+/// m/s it is out.
+#[test]
+fn drag_decides_whether_a_ball_leaves_its_scar() {
+    let (body, mut scars, per_m) = deep(20.0, 9.81);
+    scars.enter(&body, &[square(6.0)], (6.0, false));
+    let depth_m = 1.2;
+    let dug = Some(Furrow { depth_m, ..scars.now.unwrap() });
+    let kept = math::exp(-per_m * (depth_m - body.radius / 3.0));
+    for (up_m_s, leaves) in [(8.0_f64, false), (20.0, true)] {
+        assert_eq!((kept * up_m_s).powi(2) > 2.0 * 9.81 * depth_m, leaves);
+        assert!(up_m_s.powi(2) > 2.0 * 9.81 * depth_m);
+        scars.now = dug;
+        let found = scars.leave(&body, &(Vec3::z() * up_m_s));
+        let exact = if leaves { kept } else { 1.0 };
+        assert!((found / exact - 1.0).abs() < 1e-12, "{up_m_s} m/s: {found}");
+        assert_eq!(scars.now.is_none(), leaves);
+    }
+}
