@@ -156,10 +156,10 @@ fn the_profile_of_a_strip_is_that_of_its_slope() {
     assert_eq!(steps_m.map(|step_m| step_m as u32), [2, 2, 10]);
 }
 
-/// In flight a rock is in every cell and stretch as fast, and has as much energy, as at each point of its path there: also where it rises
-/// over the edge of a cell and leaves it slower than it came.
+/// A rock is in every stretch as fast as at each point of its path there, and has in flight in every cell as much energy: also where it
+/// rises over the edge of a cell and leaves it slower than it came, or slows down in contact.
 #[test]
-fn a_flying_rock_is_as_fast_in_its_cells_as_on_its_path() {
+fn a_rock_is_as_fast_in_its_stretches_and_cells_as_on_its_path() {
     let plan = plan("", "restitution = 0.6\nrolling_friction = 0.4");
     let grid = plan.recorders().cells.unwrap();
     let step_m = plan.recorders().profile_step_m.unwrap();
@@ -168,8 +168,8 @@ fn a_flying_rock_is_as_fast_in_its_cells_as_on_its_path() {
     for index in 0..plan.count {
         let fall = simulate_release(&plan, index, None, &mut scratch).unwrap();
         let start = fall.start.position_m;
-        let flying = fall.path.iter().filter(|point| point.state == PathState::Flight);
-        for motion in flying.map(|point| &point.motion) {
+        for point in &fall.path {
+            let (motion, is_flying) = (&point.motion, point.state == PathState::Flight);
             let at = motion.position_m;
             let [column, row] = grid.place(at.x, at.y).map(|place| place.floor() as i64);
             let cell = grid.cell(column, row).unwrap();
@@ -178,10 +178,12 @@ fn a_flying_rock_is_as_fast_in_its_cells_as_on_its_path() {
             let in_stretch = fall.stretches.iter().find(|one| one.number == number).unwrap();
             let total_j = motion.translational_j(&fall.rock) + motion.rotational_j(&fall.rock);
             // but for rounding
-            faster[0] += usize::from(total_j > in_cell.total_j * (1.0 + 1e-9));
+            faster[0] += usize::from(is_flying && total_j > in_cell.total_j * (1.0 + 1e-9));
             let speed_m_s = motion.velocity_m_s.norm();
-            faster[1] += usize::from(speed_m_s > in_stretch.speed_m_s + 1e-9);
-            points += 1;
+            // in contact the way bends within a step, and the speed is not even: a stretch is known to a thousandth
+            let known = if is_flying { 1.0 + 1e-9 } else { 1.001 };
+            faster[1] += usize::from(speed_m_s > in_stretch.speed_m_s * known);
+            points += usize::from(is_flying);
         }
     }
     assert!(points > 10_000, "{points} points in flight");

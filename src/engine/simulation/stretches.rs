@@ -53,21 +53,20 @@ impl Stretches {
         (math::hypot(at.x - self.from_m[0], at.y - self.from_m[1]) / step_m) as u32
     }
 
-    /// Notes a step in contact: the speed at its end, and how high it is.
-    /// A stretch that a step passes over entirely gets the speed of the step's end.
+    /// Notes a step in contact, how fast and how high it is: the speed goes evenly from that at its start to that at its end.
     pub(super) fn step(&mut self, [from, to]: [&Motion; 2], heights: &StepHeights) {
         let Some(step_m) = self.step_m else { return };
-        let speed_m_s = to.velocity_m_s.norm();
+        let [begins_m_s, ends_m_s] = [from, to].map(|at| at.velocity_m_s.norm());
         let number = self.number_at(&to.position_m, step_m);
         // steps are shorter than stretches as a rule: seldom is one left
         let before = self.found.last().map(|last| last.number);
         if before.is_none_or(|before| before == number) {
-            return self.note_part(number, speed_m_s, (heights, [0.0, 1.0]));
+            return self.note_part(number, begins_m_s.max(ends_m_s), (heights, [0.0, 1.0]));
         }
         let [place, way] = self.seen_from_release([&from.position_m, &to.position_m]);
+        let speed_m_s = |share: f64| begins_m_s + share * (ends_m_s - begins_m_s);
         walk(place, way, step_m, |number, s0, s1| {
-            let is_left = before == Some(number);
-            self.note_part(number, if is_left { 0.0 } else { speed_m_s }, (heights, [s0, s1]));
+            self.note_part(number, speed_m_s(s0).max(speed_m_s(s1)), (heights, [s0, s1]));
         });
     }
 
