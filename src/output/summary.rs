@@ -34,7 +34,7 @@ const DEFINITIONS: [(&str, &str); 13] = [
     ),
     (
         "censored",
-        "the value is a bound only: rocks that left the terrain, ran out of time or failed decide it. Runout, drop and time are then at least, reach angle at most what is written, and shares and numbers a year of rocks that come to a line at least, where such rocks may still come to it; the interval is open on that side, or its upper end takes those rocks as arriving; censored counts those rocks",
+        "the value is a bound only: rocks that left the terrain, ran out of time or failed decide it. Runout, drop and time are then at least, reach angle at most what is written; largest values and impacts of rocks that ran out of time or failed are at least that, those of rocks that left the terrain are those on it. So are shares and numbers a year of rocks that come to a line at least, where such rocks may still come to it; the interval is open on that side, or its upper end takes those rocks as arriving; censored counts those rocks",
     ),
     (
         "energy_balance_error",
@@ -46,7 +46,7 @@ const DEFINITIONS: [(&str, &str); 13] = [
     ),
     (
         "lines",
-        "over rocks, of the value at the first crossing, which is interpolated on the parabola of a flight or the cubic of a step; reach = rocks that cross / rocks released; may_still_come = rocks that have not crossed but may, with any energy up to that of their fall to it: they are missing in the statistics, whose percentiles may be too low; floor = no ground of the line is lower, and no rock without the energy to come up to it comes; height_m vertical, height_normal_m along the normal of the triangle below",
+        "over rocks, of the value at the first crossing, which is interpolated on the parabola of a flight or the cubic of a step; reach = rocks that cross / rocks released; may_still_come = rocks that have not crossed but may, with any energy up to that of their fall to it: they are missing in the statistics, whose percentiles may be too low, or too high where the fast come first; floor = no ground of the line is lower, and no rock without the energy to come up to it comes; height_m vertical, height_normal_m along the normal of the triangle below",
     ),
     (
         "maps",
