@@ -34,7 +34,7 @@ const DEFINITIONS: [(&str, &str); 13] = [
     ),
     (
         "censored",
-        "the value is a bound only: rocks that left the terrain, ran out of time or failed decide it. Runout, drop and time are then at least, reach angle at most what is written; largest values and impacts of rocks that ran out of time or failed are at least that, those of rocks that left the terrain are those on it. So are shares and numbers a year of rocks that come to a line at least, where such rocks may still come to it; the interval is open on that side, or its upper end takes those rocks as arriving; censored counts those rocks",
+        "the value is a bound only: rocks that left the terrain, ran out of time or failed decide it. Runout, drop and time are then at least, reach angle at most what is written; largest values and impacts of rocks that ran out of time or failed are at least that, those of rocks that left the terrain are those on it. Shares and numbers a year of rocks that come to a line are at least that too, where such rocks may still come to it; the interval is open on that side, or its upper end takes those rocks as arriving; censored counts those rocks",
     ),
     (
         "energy_balance_error",
