@@ -1,7 +1,6 @@
 //! How a gap between a part of a block and a feature of the mesh changes from now on, and how long it surely stays open.
 
 use super::{Bends, CAUTION};
-use crate::body::HullFace;
 use crate::rock::Vec3;
 
 /// The time sought for a bound is halved, on a scale of powers, so many times at most.
@@ -128,22 +127,22 @@ impl Clearance {
         })
     }
 
-    /// Of a point (m) of the mesh and the plane of a face of a block that flies like `centre`, as far as `most` (s); the ball (m) lies on
-    /// the face. The face is turned as `turn` turns its vectors, and their rates.
+    /// Of a point (m) of the mesh and a plane that is fixed to a block, which flies like `centre`, as far as `most` (s); the ball (m) lies on
+    /// the plane. The plane is turned as `turn` turns its vectors, and their rates.
     ///
-    /// `δ = m·(p − c) − h − r` with the face's unit normal `m` and its height `h` over the centre.
-    pub(super) fn of_face(
-        (face, ball): (&HullFace, f64),
+    /// `δ = m·(p − c) − h − r` with the plane's unit normal `m` and its height `h` over the centre.
+    pub(super) fn of_own_plane(
+        ((normal, level), ball): ((&Vec3, f64), f64),
         point: &Vec3,
         (centre, turn): (&Flying, impl Fn(&Vec3) -> [Vec3; 3]),
         (bends, most): (&Bends, f64),
     ) -> Self {
-        let ([m, m1, m2], off) = (turn(&face.normal), point - centre.p);
+        let ([m, m1, m2], off) = (turn(normal), point - centre.p);
         let fastest = centre.velocity.norm() + centre.bend * most;
         let third = bends.jerk * (off.norm() + fastest * most)
             + 3.0 * (bends.bend * fastest + bends.spin * centre.bend);
         Self {
-            now_m: m.dot(&off) - face.level - ball,
+            now_m: m.dot(&off) - level - ball,
             parting_m_s: m1.dot(&off) - m.dot(&centre.velocity),
             second: m2.dot(&off) - 2.0 * m1.dot(&centre.velocity) - m.dot(&centre.acceleration),
             bend: f64::INFINITY,

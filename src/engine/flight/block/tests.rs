@@ -156,7 +156,8 @@ fn gaps_are_no_less_than_their_bounds() {
         let of_lines = Clearance::of_lines(&flying, block.ball_m, (&e, &w), (&bends, most));
         let turned = |own: &Vec3| search.turned(own);
         let moving = (&search.centre(), turned);
-        let of_face = Clearance::of_face((face, block.ball_m), &point, moving, (&bends, most));
+        let plane = ((&face.normal, face.level), block.ball_m);
+        let of_face = Clearance::of_own_plane(plane, &point, moving, (&bends, most));
         let size = between_lines(flying.map(|end| end.p), (&e, &w), 0.0).1;
         for share in [0.01, 0.1, 0.4, 0.7, 1.0] {
             let pose = tumble.pose(share * most);

@@ -8,6 +8,10 @@ use crate::contact::closest::closest_on;
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
 
+/// A time is short that is less than this share of the one asked for (–): a block that hangs on a peak or an edge by a hair's breadth would
+/// be followed in ever so many of them.
+const LITTLE: f64 = 0.01;
+
 /// The search of a window at one moment.
 pub(super) struct WindowSearch<'a> {
     pub(super) terrain: &'a Terrain,
@@ -135,6 +139,31 @@ impl WindowSearch<'_> {
         least
     }
 
+    /// How long some corners, with all between them, surely keep off points of the mesh and all between those (s), no longer than `most`:
+    /// asked where little is `known_s`. The plane square to `n`, from the block to them, is fixed to the block here: one that turns about where
+    /// it touches does not come nearer, while its corners come nearer to a plane of the terrain.
+    fn off_own_plane(
+        &self,
+        corners: &[u8],
+        (n, points): (&Vec3, &[Vec3]),
+        (known_s, most): (f64, f64),
+    ) -> f64 {
+        if known_s >= LITTLE * most {
+            return known_s;
+        }
+        let Tumble { block, .. } = self.tumble;
+        let own = self.moment.pose.attitude.inverse() * n;
+        let levels = corners.iter().map(|&k| own.dot(&block.core.corners[usize::from(k)]));
+        let level = levels.fold(f64::NEG_INFINITY, f64::max);
+        let found_s = points.iter().fold(most, |least, point| {
+            let moving = (&self.centre(), |own: &Vec3| self.turned(own));
+            let plane = ((&own, level), block.ball_m);
+            let gap = Clearance::of_own_plane(plane, point, moving, (&self.bends, least));
+            self.open_at_least(0.0, Some(gap), least)
+        });
+        found_s.max(known_s)
+    }
+
     /// An edge of the block: with `n` from the nearest points of two segments, the plane square to
     /// `n` keeps both apart, and the ridge stays on its side as long as both its ends do. Nor do the
     /// edges meet before the endless lines along them do.
@@ -164,7 +193,9 @@ impl WindowSearch<'_> {
             if off_plane < least {
                 let line = (&edge.a, &edge.along);
                 let gap = Clearance::of_lines(&ends, ball, line, (&self.bends, least));
-                least = self.open_at_least(off_plane, gap, least);
+                let known_s = self.open_at_least(off_plane, gap, least);
+                let own = &self.tumble.block.core.ridges[k].ends;
+                least = self.off_own_plane(own, (&-n, &[edge.a, end]), (known_s, least));
             }
         }
         least
@@ -206,9 +237,10 @@ impl WindowSearch<'_> {
             let off_plane = self.off_plane(corners, (&n, peak), least);
             if off_plane < least {
                 let moving = (&self.centre(), |own: &Vec3| self.turned(own));
-                let of_face = (face, self.tumble.block.ball_m);
-                let gap = Clearance::of_face(of_face, peak, moving, (&self.bends, least));
-                least = self.open_at_least(off_plane, Some(gap), least);
+                let plane = ((&face.normal, face.level), self.tumble.block.ball_m);
+                let gap = Clearance::of_own_plane(plane, peak, moving, (&self.bends, least));
+                let known_s = self.open_at_least(off_plane, Some(gap), least);
+                least = self.off_own_plane(&face.corners, (&-n, &[*peak]), (known_s, least));
             }
         }
         least
