@@ -224,3 +224,44 @@ fn what_rounding_leaves_of_a_window_is_no_touch() {
         assert_eq!(end, FlightEnd::Flies, "{flight}");
     }
 }
+
+/// A block that turns about a peak under one of its edges, a hair's breadth off it, does not come nearer: nor do the ends of the edge, one of
+/// which moves towards a plane through the peak that stands still, say that it soon may.
+#[test]
+fn a_block_that_turns_about_a_peak_keeps_off_it() {
+    let peak = Vec3::zeros();
+    let base = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+    let base = base.map(|(x, y)| Vec3::new(x, y, -1.0));
+    let sides: Vec<Facet> = (0..4).map(|k| [base[k], base[(k + 1) % 4], peak]).collect();
+    let (terrain, blocks) = (made(sides), blocks());
+    let block = &blocks[0];
+    // with an edge along x straight below its centre
+    let attitude = turn(&Vec3::x_axis(), 0.9);
+    let end = |k: u8| attitude * block.core.corners[usize::from(k)];
+    let middle = |ends: [u8; 2]| (end(ends[0]) + end(ends[1])) * 0.5;
+    let (edge, lowest) = block
+        .core
+        .ridges
+        .iter()
+        .map(|ridge| middle(ridge.ends))
+        .enumerate()
+        .min_by(|a, b| a.1.z.total_cmp(&b.1.z))
+        .unwrap();
+    let start = -lowest + Vec3::z() * (block.ball_m + 1e-9) - terrain.origin_m;
+    // the point of the block over the peak stands still, but for parting
+    let (spin, arm) = (Vec3::y(), lowest - Vec3::z() * block.ball_m);
+    let velocity = Vec3::z() * 1e-6 - spin.cross(&arm);
+    let path = Parabola { start, velocity, gravity: 0.0, radius: block.bound_m };
+    let inertia = Vec3::from(block.inertia_kg_m2);
+    let momentum = attitude * inertia.component_mul(&(attitude.inverse() * spin));
+    let top = Top::new(block.inertia_kg_m2, attitude, momentum);
+    let tumble = Tumble { block, top, path };
+    let mut near = Neighbours::default();
+    near.collect(&terrain, &start, block.ball_m, 3.0 * block.bound_m, block.ball_m);
+    let (mut ahead, mut corners, mut tested) = Default::default();
+    FeaturesAhead::look(&mut ahead, &terrain, &tumble, &mut near, (0.0, 1.0));
+    let mut search = search((&terrain, &ahead), &tumble, (&mut corners, &mut tested));
+    assert!(!search.ahead.edges.is_empty());
+    let step = search.safe_step(BlockPart::Ridge(edge), 1.0);
+    assert!(step > 1e-5, "{step:e}");
+}
