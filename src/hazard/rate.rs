@@ -385,3 +385,6 @@ pub(super) fn proportion(
     let share = if running.are_all() { 1.0 } else { share };
     Proportion { share, low_95, high_95, ..plain }
 }
+
+#[cfg(test)]
+mod tests;

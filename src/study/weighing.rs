@@ -86,3 +86,27 @@ impl Weigh {
         inner.chain([values.len()]).filter_map(half).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The half width of a median of a thousand values in a row is half of what lies between the ranks that enclose it: the highest below which
+    /// no more than a fortieth of all samples have the median, and the one as far from the other end. Summed here from the binomial of a fair coin.
+    #[test]
+    fn half_the_interval_of_a_median_is_half_of_what_its_ranks_enclose() {
+        let n = 1000_i32;
+        // P(B = k) of a fair coin, from 2⁻ⁿ on by the ratio of neighbours
+        let mut chance = 0.5_f64.powi(n);
+        let (mut below, mut low) = (0.0, 0);
+        while below + chance <= 0.025 {
+            below += chance;
+            chance *= f64::from(n - low) / f64::from(low + 1);
+            low += 1;
+        }
+        let high = n + 1 - low;
+        let values: Vec<f64> = (1..=n).map(f64::from).collect();
+        let found = Weigh(None).sampling(&values, None, 0.5);
+        assert_eq!(found.last(), Some(&(1000, 0.5 * f64::from(high - low))), "{low} to {high}");
+    }
+}

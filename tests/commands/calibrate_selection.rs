@@ -213,3 +213,32 @@ fn intervals_of_the_spread_hold_the_difference() {
     let past = found.measures.iter().find(|one| one.what.starts_with("share past")).unwrap();
     assert!(past.what.contains("by chance up to 0.12 "), "{past:?}");
 }
+
+/// Values tried stand for half a step of the last grid to either side: half a step inside each end of the interval is a value that was tried.
+#[test]
+fn an_interval_ends_half_a_step_beyond_values_tried() {
+    let dir = tempfile::tempdir().unwrap();
+    let mut table = "release_x_m,release_y_m,x_m,y_m\n".to_owned();
+    for ObservedPath { start_m: [from_x, from_y], end_m: [x, y] } in
+        ways(&rough(dir.path(), 1, ""), 31, 20)
+    {
+        writeln!(table, "{from_x},{from_y},{x},{y}").unwrap();
+    }
+    fs::write(dir.path().join("ends.csv"), table).unwrap();
+    let vary = "vary = [{ ground = \"meadow\", key = \"rolling_friction\", from = 0.05, to = 3.0, before = 0.7 }]";
+    let more = format!("[calibrate]\ndeposits = \"ends.csv\"\nheld_out = 0.0\n{vary}");
+    let scene = rough(dir.path(), 1, &more);
+    let out = dir.path().join("fit");
+    let done = rockfall(&["calibrate", word(&scene), "--releases", "40", "--out", word(&out)]);
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    let trials = fs::read_to_string(out.join("calibration.csv")).unwrap();
+    let rows = trials.lines().filter(|row| row.contains(",search,"));
+    let tried: Vec<f64> = rows.map(|row| row.split(',').nth(1).unwrap().parse().unwrap()).collect();
+    let half = 0.5 * (tried[tried.len() - 1] - tried[tried.len() - 2]);
+    let told = &read_calibration(&out).unwrap().unwrap().told[0];
+    assert!(half > 0.0 && told.low_95 > 0.05 && told.high_95 < 3.0, "{told:?}");
+    for inside in [told.low_95 + half, told.high_95 - half] {
+        let is_tried = tried.iter().any(|value| (value - inside).abs() < 1e-9);
+        assert!(is_tried, "{inside} of {told:?}, half a step {half}: {tried:?}");
+    }
+}

@@ -10,7 +10,7 @@ use rockfall::rock::{Rock, Vec3};
 use rockfall::simulation::{Ledger, Scratch, Trajectory};
 use rockfall::solver::Scheme;
 use rockfall::terrain::Terrain;
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2, PI};
 
 /// Rocks that strike noisy meshes and folds again and again: far larger than their triangles, and smaller ones.
 fn journeys(ground: &Ground, scheme: Scheme, see: &mut impl FnMut(&str, &Trajectory)) {
@@ -172,5 +172,35 @@ fn the_row_of_a_stem_is_what_the_stem_took() {
         assert!((of(true) / limit_j - 1.0).abs() < 1e-9, "{scheme:?}: {} of {limit_j} J", of(true));
         assert!(of(false) <= ground_j * (1.0 + 1e-9), "{scheme:?}: {} {ground_j}", of(false));
         assert!(of(false) > 0.5 * ground_j, "{scheme:?}: {} {ground_j}", of(false));
+    }
+}
+
+/// A rock that strikes both sides of a right-angled groove at once, one twice as fast as the other: each side takes `(1 − e²) m u²/2` of its
+/// own speed `u`, so their rows stand four to one.
+#[test]
+fn rows_of_a_groove_share_by_the_squares_of_the_speeds() {
+    let groove = fold(FRAC_PI_2);
+    let ground = Ground { restitution: Some(0.5), friction_angle_rad: 0.0, ..GROUND };
+    let (fast, slow, r) = (8.0, 4.0, ROCK.radius_m);
+    // normals (±1, 0, 1)/√2 from the sides into the rock
+    let v = [(slow - fast) * FRAC_1_SQRT_2, 0.0, -(fast + slow) * FRAC_1_SQRT_2];
+    let before_s = 1e-3;
+    let start = [-v[0] * before_s, 0.1, r / FRAC_1_SQRT_2 - v[2] * before_s];
+    for (scheme, tolerance_m_s) in [
+        (Scheme::Adaptive, 1e-3),
+        (Scheme::Reference, 1e-8),
+        (Scheme::Dda, 0.0),
+        (Scheme::Rigid, 0.0),
+    ] {
+        let case = Case { scheme, tolerance_m_s, ground, ..CASE };
+        let run = case.run(&groove, [start, v, [0.0; 3]], 0.02);
+        let mut rows: Vec<f64> = run.impacts.iter().map(|row| row.energy_lost_j).collect();
+        rows.sort_by(f64::total_cmp);
+        println!("{scheme:?}: {rows:?}");
+        let exact = [slow, fast].map(|u| 0.5 * ROCK.mass_kg() * u * u * 0.75);
+        assert_eq!(rows.len(), 2, "{scheme:?}: {rows:?}");
+        for (found, exact) in rows.iter().zip(exact) {
+            assert!((found / exact - 1.0).abs() < 0.02, "{scheme:?}: {found} for {exact} J");
+        }
     }
 }

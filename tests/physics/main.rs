@@ -40,6 +40,7 @@ mod soil;
 mod spins_on;
 mod stem_loads;
 mod stems;
+mod stems_struck_again;
 mod struck_through;
 mod tangential;
 mod traps;

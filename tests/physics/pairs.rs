@@ -229,6 +229,28 @@ fn a_bond_in_tension_breaks_at_its_strength() {
     }
 }
 
+/// A bond has the section of the smaller rock: spheres of 0.25 and 0.5 m pulled apart by their own speeds, with no momentum in sum, load it by
+/// `u √(p_N m)` with their relative speed and their reduced mass, and it holds `σ π 0.25²`.
+#[test]
+fn a_bond_of_unequal_rocks_has_the_section_of_the_smaller() {
+    let (radii_m, density_kg_m3, u) = ([0.25, 0.5], 2700.0, 0.4);
+    let [light, heavy] = radii_m.map(|radius_m| Rock { radius_m, density_kg_m3 }.mass_kg());
+    let pull = u * (GROUND.normal_stiffness_n_m * light * heavy / (light + heavy)).sqrt();
+    let area = std::f64::consts::PI * 0.25_f64.powi(2);
+    for (share, holds) in [(1.03, true), (0.97, false)] {
+        let strength = Strength { tensile_pa: share * pull / area, cohesion_pa: 1e12 };
+        let world = World { restitution: 1.0, tolerance_m_s: 1e-5, strength, ..WORLD };
+        let sphere = |k: usize, x: f64, v: f64| {
+            (radii_m[k], density_kg_m3, [x, 0.0, 20.0], [v, 0.0, 0.0], [0.0; 3])
+        };
+        let (slow, fast) = (u * light / (light + heavy), u * heavy / (light + heavy));
+        let falls = world.falls(&space(), &[sphere(0, -0.25, -fast), sphere(1, 0.5, slow)], 1.0);
+        let apart = falls[1].end.position_m.x - falls[0].end.position_m.x;
+        assert_eq!(apart < 0.76, holds, "{share}: {apart}");
+        momentum_is_kept(&falls);
+    }
+}
+
 /// Two bonded spheres slide past each other without normal force: shear breaks the bond at `c A`.
 #[test]
 fn a_bond_in_shear_breaks_at_its_cohesion() {

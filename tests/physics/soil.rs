@@ -260,6 +260,26 @@ fn restitution_falls_with_the_speed_of_the_impact() {
     }
 }
 
+/// The soil takes its share before the rock rebounds: restitution that falls with speed is that of what is left, `e(k v) k v` up, and on its way out the
+/// soil takes its share again.
+#[test]
+fn restitution_in_a_scar_is_that_of_the_speed_left() {
+    let flat = plane(0.0);
+    let (v, half_m_s) = (10.0, 9.144);
+    let scar = Scar { drag: 2.0 * MEADOW.drag, ..MEADOW };
+    for row in rows() {
+        let mut case = slick(&row, 0.6, Some(scar));
+        case.ground.restitution_half_m_s = Some(half_m_s);
+        let (r, m) = (case.rock.radius_m, case.rock.mass_kg());
+        let kept = (-scar.drag_per_m3(m) * swept_m3(r, scar.depth_m(m, v), 1.0)).exp();
+        let within = kept * v;
+        let e = 0.6 / (1.0 + (within / half_m_s).powi(2));
+        let run = case.run(&flat, [[0.0, 0.0, r], [0.0, 0.0, -v], [0.0; 3]], 0.01);
+        let exact = e * within * kept;
+        hold(&row, "rebound from the soil", [speed_off(&case, &run), exact, v], row.impact);
+    }
+}
+
 /// A sphere slides down 45° under friction that grows with slip: u' = g (sin − 7/2 μ(s) cos), s' = u, so that
 /// u²/2 = g (s sin − 7/2 cos ∫ μ ds). Slip and its way follow from velocity and place: u = 7/2 v − 5/2 g t sin.
 #[test]

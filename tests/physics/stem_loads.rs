@@ -12,32 +12,47 @@ use rockfall::terrain::stl::{Facet, write_binary};
 use std::f64::consts::PI;
 
 /// Two triangles between four corners (m).
-fn panel(corners: [[f64; 3]; 4]) -> Vec<Facet> {
+pub(crate) fn panel(corners: [[f64; 3]; 4]) -> Vec<Facet> {
     let [a, b, c, d] = corners.map(Vec3::from);
     vec![[a, b, c], [a, c, d]]
 }
 
 /// Rocks of 0.4 m and density 2700 kg/m³ on level ground with trees of these facets; `more` ends the scene.
 fn falls(trees: &[Facet], trunk: &str, more: &str) -> Vec<Trajectory> {
+    falls_among(&[(trees, trunk)], more)
+}
+
+/// The same among trees of several kinds, each with its facets and what its trunks are.
+pub(crate) fn falls_among(kinds: &[(&[Facet], &str)], more: &str) -> Vec<Trajectory> {
     let dir = tempfile::tempdir().unwrap();
     let ground = panel([[-60., -60., 0.], [60., -60., 0.], [60., 60., 0.], [-60., 60., 0.]]);
     write_binary(&dir.path().join("ground.stl"), &ground).unwrap();
-    write_binary(&dir.path().join("trees.stl"), trees).unwrap();
+    for (k, (trees, _)) in kinds.iter().enumerate() {
+        write_binary(&dir.path().join(format!("trees{k}.stl")), trees).unwrap();
+    }
+    let mesh = |k: usize| format!("[[trees]]\nmesh = \"trees{k}.stl\"\nground = \"trunk{k}\"\n");
+    let meshes: Vec<String> = (0..kinds.len()).map(mesh).collect();
+    let trunk = |(k, (_, trunk)): (usize, &(&[Facet], &str))| {
+        format!(
+            "[grounds.trunk{k}]\nnormal_stiffness_n_m = 1e10\nshear_stiffness_n_m = 0.25e10\n{trunk}\n"
+        )
+    };
+    let trunks: Vec<String> = kinds.iter().enumerate().map(trunk).collect();
+    let (meshes, trunks) = (meshes.concat(), trunks.concat());
     let text = format!(
-        "title = \"t\"\nseed = 1\n[[terrain]]\nmesh = \"ground.stl\"\nground = \"rock\"\n[[trees]]\nmesh = \"trees.stl\"\n\
-         ground = \"trunk\"\n[grounds.rock]\nnormal_stiffness_n_m = 1e10\nshear_stiffness_n_m = 0.25e10\n\
-         friction_angle_deg = 30.0\nrestitution = 0.4\n[grounds.trunk]\nnormal_stiffness_n_m = 1e10\n\
-         shear_stiffness_n_m = 0.25e10\n{trunk}\n[rocks]\ndensity_kg_m3 = 2700.0\nradius_m = 0.4\n{more}"
+        "title = \"t\"\nseed = 1\n[[terrain]]\nmesh = \"ground.stl\"\nground = \"rock\"\n{meshes}\
+         [grounds.rock]\nnormal_stiffness_n_m = 1e10\nshear_stiffness_n_m = 0.25e10\n\
+         friction_angle_deg = 30.0\nrestitution = 0.4\n{trunks}[rocks]\ndensity_kg_m3 = 2700.0\nradius_m = 0.4\n{more}"
     );
     common::falls(&common::plan_in(dir.path(), &text))
 }
 
 /// `m v²/2` at 10 m/s (J).
-fn shot_j() -> f64 {
+pub(crate) fn shot_j() -> f64 {
     0.5 * 2700.0 * 4.0 / 3.0 * PI * 0.4_f64.powi(3) * 100.0
 }
 
-const SCHEMES: [&str; 4] = ["adaptive", "reference", "dda", "rigid"];
+pub(crate) const SCHEMES: [&str; 4] = ["adaptive", "reference", "dda", "rigid"];
 
 fn solver(scheme: &str) -> String {
     let step = if scheme == "dda" { "step_s = 1e-5" } else { "" };
@@ -150,7 +165,7 @@ fn stems_struck_at_once_share_the_blow() {
 }
 
 /// Rock at the level of the trees, 6 m before them, that comes along x at 10 m/s, and `more`; it has passed them after 0.6 s and has not come down.
-fn shot(scheme: &str, more: &str) -> String {
+pub(crate) fn shot(scheme: &str, more: &str) -> String {
     format!(
         "{more}[release]\ncount = 1\nvelocity_m_s = [10.0, 0.0, 0.0]\nspin_rad_s = [0.0, 0.0, 0.0]\n\
          points_m = [[6.0, 0.0, 6.0]]\n{}",
@@ -159,7 +174,7 @@ fn shot(scheme: &str, more: &str) -> String {
 }
 
 /// Trees without friction that break at a share of the shot's energy.
-fn weak(share: f64, restitution: f64) -> String {
+pub(crate) fn weak(share: f64, restitution: f64) -> String {
     let limit_j = share * shot_j();
     format!("friction_angle_deg = 0.0\nrestitution = {restitution}\nbreaks_above_j = {limit_j}")
 }

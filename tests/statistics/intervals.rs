@@ -344,3 +344,23 @@ fn one_two_and_three_rocks_are_told_honestly() {
         assert!(ends.is_sorted() && ends[0] >= 0.0 && ends[2] > 0.5 * REACH, "{passages:?}");
     }
 }
+
+/// Where the rocks of one stratum vary and those of another are all at the mean, the first alone says how far: twenty of them, ten a metre to
+/// either side. The interval of the mean is that of Student with 19 degrees of freedom, 2.0930 (table), on `w √(20 s²)` with `s² = 20/19`.
+#[test]
+fn the_interval_of_a_mean_has_the_freedom_of_the_stratum_that_varies() {
+    let weights = strata(&[1.0, 0.9]).weights(40);
+    let runout_m = |release: usize| match release % 4 {
+        0 => 4.0,
+        2 => 6.0,
+        _ => 5.0,
+    };
+    let sample = Sample::of_releases((0..40).map(|k| (runout_m(k), k)), &weights);
+    let mean = sample.mean().unwrap();
+    assert!((mean.value - 5.0).abs() < 1e-12, "{mean:?}");
+    // shares of all weight: a rock of the first has 1/20 of 1/1.9
+    let exact = 2.093_024 / (20.0 * 1.9) * (20.0_f64 * 20.0 / 19.0).sqrt();
+    for half in [mean.high_95.unwrap() - 5.0, 5.0 - mean.low_95.unwrap()] {
+        assert!((half / exact - 1.0).abs() < 1e-4, "{half} {exact}");
+    }
+}

@@ -191,3 +191,20 @@ impl Ranges {
         self.z = wider(self.z, z);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A line of the map that goes from 1 m right of the fall line to 3 m left of it has crossed it after a quarter of its way; one that stays on
+    /// one side never does.
+    #[test]
+    fn a_line_of_the_map_is_met_where_it_crosses_the_fall_line() {
+        let line = FallLine { from: (0.0, 0.0), way: (1.0, 0.0), is_given: true };
+        let met = line.meets(&[[0.0, -1.0], [4.0, 3.0]]).unwrap_or(f64::NAN);
+        assert!((met - 1.0).abs() < 1e-12, "{met}");
+        let back = line.meets(&[[4.0, 3.0], [0.0, -1.0]]).unwrap_or(f64::NAN);
+        assert!((back - 1.0).abs() < 1e-12, "{back}");
+        assert_eq!(line.meets(&[[0.0, 1.0], [4.0, 3.0]]), None);
+    }
+}

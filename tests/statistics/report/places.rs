@@ -1,6 +1,6 @@
 //! Lines, barriers and maps as a site in map coordinates has them: long names, seven digits, crowds and nobody.
 
-use super::slope;
+use super::{slope, svg};
 use rockfall::hazard::{Agreement, ObservedPath};
 use rockfall::output::ReleaseZone;
 use rockfall::report::model::{
@@ -331,6 +331,33 @@ fn energies_of_unlike_rocks_along_their_ways_are_all_readable() {
     );
     // 10 kJ beside 1.2 GJ
     assert!(faint.contains("a factor of 120\u{2009}000; below 2 kJ"), "{faint}");
+}
+
+/// Energy goes with the square of the speed: where a rock is half as fast as at its fastest, its curve stands at a quarter.
+#[test]
+fn at_half_its_speed_a_rock_has_a_quarter_of_its_energy() {
+    let mut report = site();
+    report.quantiles.clear();
+    report.paths.truncate(1);
+    let most_m_s = report.releases[report.paths[0].index].max_speed_m_s;
+    let points = &mut report.paths[0].points;
+    points.truncate(4);
+    for (k, (point, share)) in points.iter_mut().zip([0.0, 1.0, 0.5, 0.4]).enumerate() {
+        point.place_m = [EAST_M + 10.0 * k as f64, NORTH_M, 500.0];
+        point.speed_m_s = share * most_m_s;
+        point.clearance_m = 0.0;
+    }
+    let drawn = rockfall::report::drawings(&report);
+    let (_, along) =
+        drawn.into_iter().find(|(heading, _)| heading.file == "along.svg").expect("is drawn");
+    let tags = along.svg.split('<').filter_map(|rest| rest.split('>').next());
+    let curves: Vec<Vec<(f64, f64)>> = tags.map(svg::points).filter(|p| p.len() == 4).collect();
+    // that of the speed comes first, then that of the energy
+    for (curve, share) in [(&curves[0], 0.5), (&curves[1], 0.25)] {
+        let [bottom, top, half] = [0, 1, 2].map(|k| curve[k].1);
+        let found = (half - bottom) / (top - bottom);
+        assert!((found - share).abs() < 5e-3, "{found} for {share}: {curve:?}");
+    }
 }
 
 /// Of too few rocks no P95 is known: then neither figure nor caption has one.

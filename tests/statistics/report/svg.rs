@@ -71,7 +71,7 @@ pub(crate) fn attribute<'a>(tag: &'a str, name: &str) -> Option<&'a str> {
 }
 
 /// All points that an element draws through.
-fn points(tag: &str) -> Vec<(f64, f64)> {
+pub(crate) fn points(tag: &str) -> Vec<(f64, f64)> {
     let number =
         |name: &str| attribute(tag, name).and_then(|v| v.parse::<f64>().ok()).unwrap_or(0.0);
     if let Some(data) = tag.strip_prefix("path d=\"") {
