@@ -80,6 +80,8 @@ fn a_stem_that_springs_of_a_block_break_has_taken_its_limit() {
             let fall = falls_among(&[(&fence, &weak(0.6, 0.2))], &shot).remove(0);
             let taken = fall.ledger.trees_j / shot_j() / 0.6;
             assert!(taken < 1.0 + 1e-6, "{scheme} {k}: {taken} of the limit");
+            let goes_on = fall.end.velocity_m_s.x > 0.0;
+            assert!(!goes_on || taken > 1.0 - 1e-6, "{scheme} {k}: {taken} of the limit");
             most = most.max(taken);
         }
         assert!(most > 1.0 - 1e-6, "{scheme}: none breaks, {most}");

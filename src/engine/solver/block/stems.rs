@@ -139,7 +139,9 @@ impl Footing {
         (block, moving): (&Block, &mut Moving),
         loss: &mut Loss,
     ) {
-        let Some(stems) = world.terrain.stems.as_ref().filter(|_| loss.trees > 0.0) else { return };
+        let Some(stems) = world.terrain.stems.as_ref().filter(|_| loss.trees != 0.0) else {
+            return;
+        };
         let taken_j = loss.trees;
         for (stem, share) in self.stem_load.pressed.clone() {
             let Some(beyond_j) = self.stem_load.yields(stems, stem, share * taken_j) else {
