@@ -139,6 +139,13 @@ impl WindowSearch<'_> {
         least
     }
 
+    /// The gap of a point of the mesh from a plane of the block with a normal and a level (m), as far as `most` (s).
+    fn to_own_plane(&self, plane: (&Vec3, f64), point: &Vec3, most: f64) -> Clearance {
+        let moving = (&self.centre(), |own: &Vec3| self.turned(own));
+        let ball = self.tumble.block.ball_m;
+        Clearance::of_own_plane((plane, ball), point, moving, (&self.bends, most))
+    }
+
     /// How long some corners, with all between them, surely keep off points of the mesh and all between those (s), no longer than `most`:
     /// asked where little is `known_s`. The plane square to `n`, from the block to them, is fixed to the block here: one that turns about where
     /// it touches does not come nearer, while its corners come nearer to a plane of the terrain.
@@ -151,15 +158,12 @@ impl WindowSearch<'_> {
         if known_s >= LITTLE * most {
             return known_s;
         }
-        let Tumble { block, .. } = self.tumble;
         let own = self.moment.pose.attitude.inverse() * n;
-        let levels = corners.iter().map(|&k| own.dot(&block.core.corners[usize::from(k)]));
+        let corner = |k: u8| &self.tumble.block.core.corners[usize::from(k)];
+        let levels = corners.iter().map(|&k| own.dot(corner(k)));
         let level = levels.fold(f64::NEG_INFINITY, f64::max);
         let found_s = points.iter().fold(most, |least, point| {
-            let moving = (&self.centre(), |own: &Vec3| self.turned(own));
-            let plane = ((&own, level), block.ball_m);
-            let gap = Clearance::of_own_plane(plane, point, moving, (&self.bends, least));
-            self.open_at_least(0.0, Some(gap), least)
+            self.open_at_least(0.0, Some(self.to_own_plane((&own, level), point, least)), least)
         });
         found_s.max(known_s)
     }
@@ -236,9 +240,7 @@ impl WindowSearch<'_> {
             let Some(n) = nearest.and_then(|p| (p - peak).try_normalize(0.0)) else { continue };
             let off_plane = self.off_plane(corners, (&n, peak), least);
             if off_plane < least {
-                let moving = (&self.centre(), |own: &Vec3| self.turned(own));
-                let plane = ((&face.normal, face.level), self.tumble.block.ball_m);
-                let gap = Clearance::of_own_plane(plane, peak, moving, (&self.bends, least));
+                let gap = self.to_own_plane((&face.normal, face.level), peak, least);
                 let known_s = self.open_at_least(off_plane, Some(gap), least);
                 least = self.off_own_plane(&face.corners, (&-n, &[*peak]), (known_s, least));
             }
