@@ -35,6 +35,7 @@ mod measured;
 pub mod panel;
 pub mod canvas;
 mod plan_view;
+mod planned;
 mod plausibility;
 mod profile;
 pub mod raster;

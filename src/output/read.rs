@@ -78,6 +78,11 @@ pub fn read(dir: &Path) -> Result<Results> {
 }
 
 impl Results {
+    /// The lines and objects of the scene, its barriers among them: not the other places of barriers.
+    pub fn lines_of_scene(&self) -> impl Iterator<Item = &Line> {
+        self.lines.iter().filter(|line| !line.info.of_barrier)
+    }
+
     /// The results of a finished run in the folder `dir`.
     ///
     /// # Errors

@@ -117,7 +117,7 @@ pub(super) fn censored(pair: &[Population; 2]) -> Option<String> {
     (a.max(b) > MANY_OPEN).then(|| {
         format!(
             "{} of the rocks of A and {} of B left the terrain, were still moving at the end or failed: all differences are of \
-             the ways as far as they were followed, and those of runout and reach angle are of bounds.",
+             the ways as far as they were followed, and those of runout and reach angle are of bounds, those of largest values too for rocks still on the terrain.",
             format::percent(a, 1),
             format::percent(b, 1)
         )

@@ -80,9 +80,9 @@ fn said(run: &Results) -> Vec<SaidOfGround> {
     rows
 }
 
-/// Lines and objects of the scene, its barriers among them.
+/// What is known of the lines and objects of the scene, its barriers among them.
 fn lines(run: &Results) -> impl Iterator<Item = &LineInfo> {
-    run.lines.iter().map(|line| &line.info).filter(|line| !line.of_barrier)
+    run.lines_of_scene().map(|line| &line.info)
 }
 
 /// Where rocks are released, and where lines, objects and barriers stand.

@@ -88,12 +88,11 @@ impl Population {
     /// The same where those of rocks that would have gone on are bounds: the truth lies on that side. A rock that has left no number is one
     /// of which nothing is known.
     pub(super) fn censored_sample(&self, values: &Values, quantity: Quantity) -> Sample {
-        let bounds =
-            || self.open.iter().filter(|(_, stop)| quantity.is_bound_after(*stop)).map(|of| of.0);
-        let open: Vec<usize> = bounds().collect();
+        let bounds = self.open.iter().filter(|(_, stop)| quantity.is_bound_after(*stop));
+        let open: Vec<usize> = bounds.map(|of| of.0).collect();
         let is_open = |release: usize| open.binary_search(&release).is_ok();
-        let has_none = |release: &usize| values.binary_search_by_key(release, |of| of.0).is_err();
-        let unknown = bounds().filter(has_none).map(|at| (f64::NAN, at, true));
+        let has_none = |release: &&usize| values.binary_search_by_key(*release, |of| of.0).is_err();
+        let unknown = open.iter().filter(has_none).map(|&at| (f64::NAN, at, true));
         let each = values.iter().map(|&(at, x)| (x, at, is_open(at))).chain(unknown);
         let side = quantity.open();
         match &self.among.standing {
@@ -170,8 +169,7 @@ pub(super) fn of(
     let mut notes = Vec::new();
     notes.extend(not_released(&whole, &among));
     let lines = |run: &Results| -> Vec<String> {
-        let own = run.lines.iter().filter(|line| !line.info.of_barrier);
-        own.map(|line| line.info.name.clone()).collect()
+        run.lines_of_scene().map(|line| line.info.name.clone()).collect()
     };
     let [one, other] = [lines(&runs[0]), lines(&runs[1])];
     for (who, mine, others) in [("A", &one, &other), ("B", &other, &one)] {

@@ -4,6 +4,7 @@ use crate::error::Result;
 use crate::frequency::{Frequency, Weights};
 use crate::hazard::Row;
 use crate::output::Results;
+use crate::report::planned::is_one_world;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -66,10 +67,7 @@ const OF_WORLDS: &str = "the rocks of one world meet each other, but all interva
 
 /// What it means that the rocks of a run share one world; nothing where each has the terrain for itself.
 pub(super) fn of_worlds(runs: &[Results; 2]) -> Option<String> {
-    let is_world = |run: &Results| {
-        let mut parts = run.summary.plan_entries.iter();
-        parts.any(|part| part.name == "rock against rock" && !part.said.starts_with("left out"))
-    };
+    let is_world = |run: &Results| is_one_world(&run.summary.plan_entries);
     let named = ["A", "B"].into_iter().zip(runs).filter(|(_, run)| is_world(run));
     let who: Vec<&str> = named.map(|(name, _)| name).collect();
     (!who.is_empty()).then(|| format!("{}: {OF_WORLDS}", who.join(", ")))

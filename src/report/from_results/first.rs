@@ -21,9 +21,9 @@ pub(in crate::report) fn warnings_first(hazard: &Hazard, words: &Words) -> Vec<S
         let percent = format::percent_of_part(share.share, usize::from(share.share < 0.1));
         let (n, of) = (count(share.count), count(share.of));
         let rocks = fill(&some_rocks, &[("n", &n), ("of", &of), ("share", &percent)]);
-        // what the rocks have done: a share is of several
         let has_left = kind == StopKind::LeftTerrain;
         let largest = if has_left { own.largest_left } else { own.largest_open };
+        // what the rocks have done: a share is of several
         let is_share = hazard.weights().is_some();
         let what = fill(what, &[("n", if is_share { &format::NO_NUMBER } else { &n })]);
         let said = || {

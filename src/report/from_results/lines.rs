@@ -35,8 +35,7 @@ const POINTS: usize = 400;
 
 /// The lines of the scene with their numbers in it, from 1: other places of barriers stand with the barriers.
 pub(super) fn shown(results: &Results) -> impl Iterator<Item = (usize, &hazard::Line)> {
-    let own = results.lines.iter().filter(|line| !line.info.of_barrier);
-    own.enumerate().map(|(k, line)| (k + 1, line))
+    results.lines_of_scene().enumerate().map(|(k, line)| (k + 1, line))
 }
 
 /// The barrier on a line, if one stands there.

@@ -1,17 +1,9 @@
 //! How the numbers of a run came about, as its plan says.
 
+use super::super::planned::{is_one_world, kept};
 use super::super::words::{Words, fill};
 use crate::plan::PlanEntry;
 use crate::solver::Scheme;
-
-/// How a part of the plan begins that is left out.
-const LEFT_OUT: &str = "left out";
-
-/// What the plan says of a part, if it keeps it.
-fn kept<'a>(plan: &'a [PlanEntry], part: &str) -> Option<&'a str> {
-    let entry = plan.iter().find(|entry| entry.name == part)?;
-    Some(entry.said.as_str()).filter(|said| !said.starts_with(LEFT_OUT))
-}
 
 /// The paragraph on the method of a run, whose last sentence names the scheme.
 pub(super) fn paragraph(plan: &[PlanEntry], words: &Words) -> String {
@@ -26,7 +18,7 @@ pub(super) fn paragraph(plan: &[PlanEntry], words: &Words) -> String {
     [
         fill(body, &[("meshes", &meshes)]),
         if has_springs { method.springs } else { method.rigid }.to_owned(),
-        if has("rock against rock") { method.one_world } else { method.alone }.to_owned(),
+        if is_one_world(plan) { method.one_world } else { method.alone }.to_owned(),
         method.counted.to_owned(),
         fill(method.scheme, &[("scheme", &words.say(scheme))]),
     ]

@@ -131,6 +131,15 @@ fn search<'a>(
     WindowSearch { terrain, tumble, ahead, bends, moment, corners, tested }
 }
 
+/// What lies ahead of a block in a window of 1 s, among all that is near.
+fn near_ahead(terrain: &Terrain, tumble: &Tumble) -> FeaturesAhead {
+    let (block, mut near) = (tumble.block, Neighbours::default());
+    near.collect(terrain, &tumble.path.start, block.ball_m, 3.0 * block.bound_m, block.ball_m);
+    let mut ahead = FeaturesAhead::default();
+    ahead.look(terrain, tumble, &mut near, (0.0, 1.0));
+    ahead
+}
+
 /// Gaps of edges and of faces are nowhere less than their bounds say, and these are near to them over short times.
 #[test]
 fn gaps_are_no_less_than_their_bounds() {
@@ -192,10 +201,8 @@ fn a_corner_beside_a_sheet_comes_to_its_border() {
     let path = Parabola { start, velocity, gravity: 0.0, radius: block.bound_m };
     let top = Top::new(block.inertia_kg_m2, Rotation3::identity(), Vec3::zeros());
     let tumble = Tumble { block, top, path };
-    let mut near = Neighbours::default();
-    near.collect(&terrain, &start, block.ball_m, 3.0 * block.bound_m, block.ball_m);
-    let (mut ahead, mut corners, mut tested) = Default::default();
-    FeaturesAhead::look(&mut ahead, &terrain, &tumble, &mut near, (0.0, 1.0));
+    let ahead = near_ahead(&terrain, &tumble);
+    let (mut corners, mut tested) = Default::default();
     let mut search = search((&terrain, &ahead), &tumble, (&mut corners, &mut tested));
     let step = search.safe_step(BlockPart::Corner(0), 1.0);
     assert!(step > 0.0 && step < 2.0 * block.ball_m, "{step} {}", block.ball_m);
@@ -256,10 +263,8 @@ fn a_block_that_turns_about_a_peak_keeps_off_it() {
     let momentum = attitude * inertia.component_mul(&(attitude.inverse() * spin));
     let top = Top::new(block.inertia_kg_m2, attitude, momentum);
     let tumble = Tumble { block, top, path };
-    let mut near = Neighbours::default();
-    near.collect(&terrain, &start, block.ball_m, 3.0 * block.bound_m, block.ball_m);
-    let (mut ahead, mut corners, mut tested) = Default::default();
-    FeaturesAhead::look(&mut ahead, &terrain, &tumble, &mut near, (0.0, 1.0));
+    let ahead = near_ahead(&terrain, &tumble);
+    let (mut corners, mut tested) = Default::default();
     let mut search = search((&terrain, &ahead), &tumble, (&mut corners, &mut tested));
     assert!(!search.ahead.edges.is_empty());
     let step = search.safe_step(BlockPart::Ridge(edge), 1.0);

@@ -71,8 +71,8 @@ pub(super) const COMPARED: &[(&str, &str)] = &[
         "Die Läufe haben verschiedene Startwerte: nichts bildet Paare, und Differenzen sind nicht besser bekannt als beide Läufe für sich. Mit einem Startwert lösten sich dieselben Blöcke.",
     ),
     (
-        "{a} of the rocks of A and {b} of B left the terrain, were still moving at the end or failed: all differences are of the ways as far as they were followed, and those of runout and reach angle are of bounds.",
-        "{a} der Blöcke von A und {b} von B verließen das Gelände, bewegten sich am Ende noch oder schlugen fehl: alle Differenzen sind die der Wege, so weit sie verfolgt wurden, und jene von Auslaufstrecke und Pauschalgefälle die von Schranken.",
+        "{a} of the rocks of A and {b} of B left the terrain, were still moving at the end or failed: all differences are of the ways as far as they were followed, and those of runout and reach angle are of bounds, those of largest values too for rocks still on the terrain.",
+        "{a} der Blöcke von A und {b} von B verließen das Gelände, bewegten sich am Ende noch oder schlugen fehl: alle Differenzen sind die der Wege, so weit sie verfolgt wurden, und jene von Auslaufstrecke und Pauschalgefälle die von Schranken, bei Blöcken, die noch auf dem Gelände waren, auch jene der größten Werte.",
     ),
     ("What changes from A to B", "Was sich von A nach B ändert"),
     ("Change from A to B (% of A)", "Änderung von A nach B (% von A)"),

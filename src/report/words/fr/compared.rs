@@ -71,8 +71,8 @@ pub(super) const COMPARED: &[(&str, &str)] = &[
         "Les calculs ont des graines différentes\u{a0}: rien ne forme de paires, et les différences ne sont pas mieux connues que chaque calcul à part. Avec une seule graine, les mêmes blocs partiraient.",
     ),
     (
-        "{a} of the rocks of A and {b} of B left the terrain, were still moving at the end or failed: all differences are of the ways as far as they were followed, and those of runout and reach angle are of bounds.",
-        "{a} des blocs de A et {b} de B ont quitté le terrain, bougeaient encore à la fin ou ont échoué\u{a0}: toutes les différences sont celles des trajets tels qu’ils ont été suivis, et celles de distance et d’angle sont celles de bornes.",
+        "{a} of the rocks of A and {b} of B left the terrain, were still moving at the end or failed: all differences are of the ways as far as they were followed, and those of runout and reach angle are of bounds, those of largest values too for rocks still on the terrain.",
+        "{a} des blocs de A et {b} de B ont quitté le terrain, bougeaient encore à la fin ou ont échoué\u{a0}: toutes les différences sont celles des trajets tels qu’ils ont été suivis, et celles de distance et d’angle sont celles de bornes, comme celles des valeurs maximales pour les blocs encore sur le terrain.",
     ),
     ("What changes from A to B", "Ce qui change de A à B"),
     ("Change from A to B (% of A)", "Changement de A à B (% de A)"),

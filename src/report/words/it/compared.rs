@@ -71,8 +71,8 @@ pub(super) const COMPARED: &[(&str, &str)] = &[
         "I calcoli hanno semi diversi: nulla forma coppie, e le differenze non sono note meglio dei due calcoli separati. Con un solo seme si staccherebbero gli stessi massi.",
     ),
     (
-        "{a} of the rocks of A and {b} of B left the terrain, were still moving at the end or failed: all differences are of the ways as far as they were followed, and those of runout and reach angle are of bounds.",
-        "{a} dei massi di A e {b} di B hanno lasciato il terreno, erano ancora in moto alla fine o sono falliti: tutte le differenze sono quelle dei percorsi fin dove sono stati seguiti, e quelle di distanza e di angolo sono di limiti.",
+        "{a} of the rocks of A and {b} of B left the terrain, were still moving at the end or failed: all differences are of the ways as far as they were followed, and those of runout and reach angle are of bounds, those of largest values too for rocks still on the terrain.",
+        "{a} dei massi di A e {b} di B hanno lasciato il terreno, erano ancora in moto alla fine o sono falliti: tutte le differenze sono quelle dei percorsi fin dove sono stati seguiti, e quelle di distanza e di angolo sono di limiti, come quelle dei valori massimi per i massi ancora sul terreno.",
     ),
     ("What changes from A to B", "Che cosa cambia da A a B"),
     ("Change from A to B (% of A)", "Variazione da A a B (% di A)"),
