@@ -12,6 +12,7 @@ mod damped_folds;
 mod dda;
 mod dda_energy;
 mod dda_island;
+mod dda_ledger;
 mod exact_edge;
 mod exact_plane;
 mod grooves;

@@ -27,10 +27,7 @@ impl ContactState {
             stored.add(&Loss::on_slope([0.0, pressed, 0.0]).on(world, touch.triangle), 1.0);
         }
         for history in self.histories.iter() {
-            let law = world.springs_of(history);
-            let damping = law.stored_j(0.0, history.shear.norm_squared(), 0.0);
-            let rolling = law.stored_j(0.0, 0.0, history.roll.norm_squared());
-            stored.add(&Loss::on_slope([0.0, damping, rolling]).on(world, history.triangle), 1.0);
+            stored.add(&stretched_j(world, history), 1.0);
         }
         stored
     }
@@ -98,6 +95,14 @@ impl ContactState {
         }
         2.0 * work_j / (now_w + (now_w * now_w + 4.0 * grows_w_s * work_j).sqrt())
     }
+}
+
+/// What the springs of shear and rolling of a contact hold (J), by the kind it was counted under.
+pub(super) fn stretched_j(world: &ContactEnvironment, history: &ContactHistory) -> Loss {
+    let law = world.springs_of(history);
+    let damping = law.stored_j(0.0, history.shear.norm_squared(), 0.0);
+    let rolling = law.stored_j(0.0, 0.0, history.roll.norm_squared());
+    Loss::on_slope([0.0, damping, rolling]).on(world, history.triangle)
 }
 
 /// What the normal spring of a touch holds (J) by a law.

@@ -232,9 +232,14 @@ impl FixedStepNormal {
             self.damper * (depth - inside).powi(2)
         } else if self.damper > 0.0 {
             // Lifted off before the spring is back at its length: the dashpot beside it takes the rest.
-            0.5 * self.spring * (inside.powi(2) - depth.max(0.0).powi(2))
+            -self.stored_more_j(depth.max(0.0), inside)
         } else {
             0.0
         }
+    }
+
+    /// How much more the spring holds at `depth` than at `inside` (m, J).
+    pub(crate) fn stored_more_j(&self, depth: f64, inside: f64) -> f64 {
+        0.5 * self.spring * (depth.powi(2) - inside.powi(2))
     }
 }

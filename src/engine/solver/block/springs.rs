@@ -171,10 +171,14 @@ impl Springs {
         ActingAlong::default().and_springs(&self.contacts)
     }
 
-    /// Energy in the springs of the contacts as they were placed (J).
-    fn placed_j(&self) -> f64 {
-        let stored = |contact: &SpringContact| contact.holds_j(contact.penetration, &contact.shear);
-        self.contacts.iter().map(stored).sum::<f64>() + self.rolling.holds_j()
+    /// Energy in the springs of the contacts as they were placed (J), by what it belongs to.
+    fn placed(&self, world: &ContactEnvironment) -> Loss {
+        let mut placed = Loss { rolling: self.rolling.holds_j(), ..Loss::default() };
+        for contact in &self.contacts {
+            let damping = contact.holds_j(contact.penetration, &contact.shear);
+            placed.add(&Loss { damping, ..Loss::default() }.on(world, contact.triangle), 1.0);
+        }
+        placed
     }
 
     /// Notes the fastest approach of the impacts that go on.

@@ -8,6 +8,7 @@ use crate::solver::contact_state::{ContactEnvironment, ContactState};
 use crate::solver::dda_system::StepConstants;
 use crate::solver::dda_system::contact::DdaContact;
 use crate::solver::loss::{Given, Loss};
+use crate::solver::springs::stretched_j;
 use crate::solver::step_control::StepError;
 
 /// A rock on its way through a step.
@@ -112,6 +113,10 @@ impl<'a> DdaBody<'a> {
         let (d, dt) = (*d, scratch.step.dt);
         let kick = scratch.added * (2.0 / dt);
         state.merge_lost(world);
+        // shear and rolling springs that are let go run out against their own dashpots
+        for gone in state.histories.iter().filter(|history| !history.closed) {
+            loss.add(&stretched_j(world, gone), 1.0);
+        }
         state.histories.retain(|history| history.closed);
         state.c += d.fixed_rows::<3>(0);
         state.v += world.body.gravity * dt + kick.fixed_rows::<3>(0);

@@ -111,8 +111,7 @@ impl DdaPairs {
 
     /// Writes their state into their memory, and books what each end gave the other (J); how many bonds broke.
     ///
-    /// Energy: the work of a contact on each of its ends; what they do not get back is lost in it,
-    /// half to each.
+    /// Energy: the work of a contact on each of its ends; what it takes of that is lost in it, half to each.
     ///
     /// # Errors
     /// [`StepError::SankIn`] if a contact is deeper than the springs are meant for: the step is too long for them.
@@ -128,10 +127,10 @@ impl DdaPairs {
             if pair.ways(d).depth > DEEPEST * pair.contact.radius {
                 return Err(StepError::SankIn);
             }
-            let given = Given::of_ends(pair.given_j(d));
+            let (given, lost) = (Given::of_ends(pair.given_j(d)), 0.5 * pair.taken_j(d));
             broken += u64::from(pair.remember(d, &mut pair_histories[pair.contact.history]));
             for (end, given) in pair.ends.into_iter().zip(given) {
-                bodies[end].given.add(&given, 1.0);
+                bodies[end].given.add(&Given { lost, ..given }, 1.0);
             }
         }
         Ok(broken)

@@ -310,6 +310,15 @@ impl DdaContact {
         loss
     }
 
+    /// How much more its springs hold at the step's end than at its start (J); a shear spring that is let go runs out against its own dashpot, and
+    /// counts as if it still held.
+    pub(super) fn stored_more_j(&self, ways: &ContactWays) -> f64 {
+        let depth = if self.bonded { ways.depth } else { ways.depth.max(0.0) };
+        let sheared =
+            if self.shear_memory { self.shear.stored_more_j(&self.forces(ways).0) } else { 0.0 };
+        self.normal.stored_more_j(depth, self.inside()) + sheared
+    }
+
     /// Whether it was closed at the step's end, whether it slid, and the stretch that its shear spring has left (m).
     pub(super) fn left(&self, ways: &ContactWays) -> (bool, bool, Vec3) {
         let stretch =

@@ -114,6 +114,13 @@ impl DdaPairContact {
         [0, 1].map(|k| (act(k) * SIGN[k]).dot(d[k]))
     }
 
+    /// What the contact itself takes of that and keeps (J): dashpots, slider and what its springs hold more at the end. The rest is what the step
+    /// has lost.
+    pub(crate) fn taken_j(&self, d: [&Vec6; 2]) -> f64 {
+        let ways = self.ways(d);
+        self.contact.loss(&ways).sum() + self.contact.stored_more_j(&ways)
+    }
+
     /// Writes what it remembers of the step; whether a bond broke.
     pub(crate) fn remember(&self, d: [&Vec6; 2], pair_history: &mut PairHistory) -> bool {
         let (contact, ways) = (&self.contact, self.ways(d));

@@ -118,6 +118,11 @@ impl DdaSlider {
         let stretched = self.end(force) - self.stretch;
         (force.dot(&(way - stretched)), self.damper * stretched.norm_squared())
     }
+
+    /// How much more the spring holds at `force` than at the step's start (J).
+    pub(crate) fn stored_more_j(&self, force: &Vec3) -> f64 {
+        0.5 * self.spring * (self.end(force).norm_squared() - self.stretch.norm_squared())
+    }
 }
 
 /// The direction of `x`; nothing for nothing.

@@ -8,8 +8,8 @@
 //! the motion again ([`Footing::hold_to`]).
 
 use super::super::{Footing, Moving, Stepped, TOUCH};
-use super::Springs;
 use super::stage::{BlockEnd, StageBase};
+use super::{SpringContact, Springs};
 use crate::body::Block;
 use crate::contact::block::BlockTouch;
 use crate::contact::history::SAME_GRIP;
@@ -18,10 +18,28 @@ use crate::rock::Vec3;
 use crate::solver::Settings;
 use crate::solver::block::orthonormal;
 use crate::solver::environment::ContactEnvironment;
+use crate::solver::loss::Loss;
 use crate::solver::step_control::StepError;
 
 /// Looks at a step's end for contacts that it has run into, at most.
 const LOOKS: u32 = 8;
+
+impl SpringContact {
+    /// What dashpots and slider take (J) where its point moves with `u` (m/s) for `b` (s): its springs take, pressed and stretched as at the end, what
+    /// they were pressed and stretched by. A shear spring that is let go runs out against its own dashpot.
+    fn taken(&self, world: &ContactEnvironment, (u, b): (&Vec3, f64)) -> Loss {
+        let (pressed_m, end) = (self.pen_at(u, b).max(0.0), self.stretch(b));
+        let (closing, rate) = (-self.n.dot(u), (end - self.shear) / b);
+        let sprung_w = self.law.normal(self.captured).storing_w(pressed_m, closing)
+            + self.law.shear.held(end).dot(&rate);
+        let left_j = if pressed_m > 0.0 { 0.0 } else { 0.5 * self.law.shear.held(end).dot(&end) };
+        let damping_w = self.normal_force * closing - sprung_w + left_j / b;
+        let all = self.shear_power(u, &rate, damping_w);
+        let mut taken = Loss::default();
+        taken.add(&all.on(world, self.triangle), b);
+        taken
+    }
+}
 
 impl Footing {
     /// One step of at most `most_s`.
@@ -47,7 +65,7 @@ impl Footing {
             if memory { footing.springs.histories[k].shear } else { Vec3::zeros() }
         };
         self.place(world, (block, &start, &start), 0.0, &shear_of);
-        let had_j = start.motion_j(block) + self.springs.placed_j();
+        let held = self.springs.placed(world);
         let rolled = if memory { self.springs.rolling.stretch } else { Vec3::zeros() };
         let base = BlockEnd { moving: start.clone(), turned: Vec3::zeros(), rolled };
         let stage = StageBase { start: &start, base, times_s: (0.5 * dt, dt) };
@@ -64,19 +82,22 @@ impl Footing {
             return Err(StepError::NotFinite);
         }
         let mut done = Stepped { dt, unsettled: self.unsettled, ..Stepped::default() };
-        for contact in &self.springs.contacts {
+        let Springs { contacts, rolling, .. } = &self.springs;
+        for contact in contacts {
             let u = mean.at(block, &contact.lever);
-            let shear_rate = (contact.stretch(dt) - contact.shear) / dt;
-            done.loss.add(&contact.power(world, &u, &shear_rate), dt);
+            done.loss.add(&contact.taken(world, (&u, dt)), 1.0);
         }
-        let springs = &self.springs;
-        done.loss.add(&springs.rolling.power(world, &springs.contacts, &mean.spin(block)), dt);
+        done.loss.add(&rolling.taken(world, contacts, (&mean.spin(block), dt)), 1.0);
         self.keep((block, &mean), dt);
         self.look_at_all(world, (block, &moving.pose), TOUCH * block.radius_m);
         self.check_depth(block)?;
         let lifted_m = moving.pose.centre - start.pose.centre;
-        let had_j = had_j + block.mass_kg * world.body.gravity.dot(&lifted_m);
-        self.hold_to(world, (block, moving), had_j, &shear_of);
+        let fell_j = block.mass_kg * world.body.gravity.dot(&lifted_m);
+        let had_j = start.motion_j(block) + held.sum() + fell_j;
+        self.hold_to(world, (block, moving), had_j - done.loss.sum(), &shear_of);
+        // what springs hold more at the end than at the start is taken from motion, but not lost
+        done.loss.add(&self.springs.placed(world), 1.0);
+        done.loss.add(&held, -1.0);
         done.slides = self.springs.histories.iter().any(|history| history.slides);
         done.is_free = self.springs.is_free();
         Ok(done)
@@ -158,7 +179,7 @@ impl Footing {
         self.springs.histories.truncate(known);
         let part = moving.part(block, &self.springs.acting_along());
         let (motion_j, allowed_j) = (moving.motion_j(block), had_j - self.springs.owed_j);
-        let made_j = motion_j + self.springs.placed_j() - allowed_j;
+        let made_j = motion_j + self.springs.placed(world).sum() - allowed_j;
         let paid_j = made_j.clamp(0.0, part.most_j());
         self.springs.owed_j = (made_j - paid_j).max(0.0);
         if paid_j > 0.0 {

@@ -117,7 +117,7 @@ impl Footing {
         self.keep((block, moving), 0.0);
         self.springs.grow_old(step.dt);
         let held_j = self.springs.stored_j;
-        self.springs.stored_j = self.springs.placed_j();
+        self.springs.stored_j = self.springs.placed(world).sum();
         self.springs.refresh();
         self.springs.seen = self.sees_the_same(block);
         // what springs store is counted among the losses until they give it back

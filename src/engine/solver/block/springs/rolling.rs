@@ -100,11 +100,35 @@ impl RollingSpring {
         contacts: &[SpringContact],
         w: &Vec3,
     ) -> Loss {
+        self.borne_by(world, contacts, self.moment.dot(w))
+    }
+
+    /// What slider and dashpot take (J) where the block turns with `w` (rad/s) for `b` (s), by the contacts that bear it: the spring takes, at
+    /// the stretch of the end, what it was stretched by.
+    pub(super) fn taken(
+        &self,
+        world: &ContactEnvironment,
+        contacts: &[SpringContact],
+        (w, b): (&Vec3, f64),
+    ) -> Loss {
+        let end = self.stretch_after(b);
+        let sprung = |element: &FrictionElement| element.held(end).dot(&(end - self.base));
+        let sprung_j = self.element.as_ref().map_or(0.0, sprung);
+        self.borne_by(world, contacts, self.moment.dot(w) * b - sprung_j)
+    }
+
+    /// An amount (W or J) that goes into it, by the contacts that bear it.
+    fn borne_by(
+        &self,
+        world: &ContactEnvironment,
+        contacts: &[SpringContact],
+        amount: f64,
+    ) -> Loss {
         let (mut loss, all_n_m) = (Loss::default(), limit_n_m(contacts));
         if self.element.is_none() || all_n_m <= 0.0 {
             return loss;
         }
-        let rolling = self.moment.dot(w) / all_n_m;
+        let rolling = amount / all_n_m;
         for contact in contacts {
             let own = Loss { rolling, ..Loss::default() }.on(world, contact.triangle);
             loss.add(&own, contact.law.rolling.cap(contact.normal_force));
