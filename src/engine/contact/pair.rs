@@ -185,6 +185,15 @@ impl PairHistory {
         self.bond.as_ref().map_or(0.0, over)
     }
 
+    /// Speed (m/s) at which its rocks, pulled apart or along each other, come to load their bond with the lesser of its strengths that is any; without a bond
+    /// there is none.
+    pub(crate) fn breaks_m_s(&self) -> Option<f64> {
+        let bond = self.bond.as_ref()?;
+        let strengths = [bond.pull_n, bond.shear_n].into_iter().filter(|most| *most > 0.0);
+        let least_n = strengths.reduce(f64::min)?;
+        Some(self.law.pressed_m(least_n) * self.law.omega_rad_s())
+    }
+
     /// Lets a contact rebound that came up too slowly for it and is pressed together at a speed (m/s) now, if it is struck through;
     /// whether it is. A bond has no rebound.
     pub(crate) fn release(&mut self, approach_m_s: f64) -> bool {

@@ -23,6 +23,10 @@ const IMPACT: (f64, f64) = (1.0, 2e-4);
 /// 1 % of the speed of the blow.
 const IN_A_HEAP: f64 = 150.0;
 
+/// The same of two that are bonded, of the speed (–) from which their springs would pull as hard as the bond bears: what is off by it is off by as
+/// much of the strength.
+const BONDED: f64 = 0.01;
+
 impl Island<'_> {
     /// The control of the next step: what the rocks may be wrong by, and by which method.
     pub(super) fn control(&mut self, settings: &Settings) -> Control {
@@ -33,6 +37,13 @@ impl Island<'_> {
         for member in self.members.iter_mut().map(|slot| &mut **slot) {
             member.lasting_m_s = lasting_m_s(settings, &member.body);
             is_struck |= member.struck_m_s > 0.0 && !member.is_in_heap();
+        }
+        for pair_history in &self.pair_histories {
+            let Some(breaks_m_s) = pair_history.breaks_m_s() else { continue };
+            for end in [pair_history.a as usize, pair_history.b as usize] {
+                let member = &mut *self.members[end];
+                member.lasting_m_s = member.lasting_m_s.min(BONDED * breaks_m_s);
+            }
         }
         let allowed = self.members.iter().map(|member| member.allowed_m_s(relative));
         self.tolerance = allowed.fold(f64::INFINITY, f64::min);
