@@ -158,6 +158,7 @@ impl Output {
         folder::look(dir, &info, mode)?;
         let mut lock = FolderLock::on(dir)?;
         let found = folder::prepare(dir, (&info, mode), &mut lock)?;
+        found.as_ref().map_or(Ok(()), |found| read::check_lengths(dir, &found.finished))?;
         let bytes = found.as_ref().map(|found| &found.bytes);
         let columns = |plain: &[&'static str], more: &[&'static str]| {
             [plain, if info.has_blocks { more } else { &[] }].concat()
@@ -190,7 +191,6 @@ impl Output {
         if let Some(found) = found {
             hazard.totals = found.totals;
             read::recall(dir, &info.identity, found.done, &mut hazard)?;
-            read::check_lengths(dir, &found.finished)?;
             is_marked = !found.finished.is_empty() && found.done == info.identity.releases;
             lock.keep();
         }
@@ -329,7 +329,7 @@ impl Output {
         let annual = self.annual(year_weights)?;
         let mut summary = Summary::new(self.info, (&self.hazard, &self.lines), seconds);
         (summary.barriers, summary.residual, summary.annual) = (barriers, residual, annual);
-        summary.bytes = bytes;
+        (summary.bytes, summary.map_bytes) = (bytes, maps::lengths(&self.dir));
         summary.write(&self.dir)?;
         self.hazard.totals = summary.totals.clone();
         let results = Results {

@@ -193,7 +193,7 @@ impl Round<'_> {
             title_block: plan.title_block.clone(),
             language: plan.language,
             sources: plan.sources.clone(),
-            warnings: plan.warnings.clone(),
+            warnings: plan.warnings_for(releases),
             mesh_health: infos::mesh_health(plan)?,
         })
     }

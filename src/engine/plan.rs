@@ -178,7 +178,7 @@ pub struct Plan {
     pub sources: [String; 2],
     /// In which language page and figures speak.
     pub language: Language,
-    /// What the user should look at before trusting the results.
+    /// What the user should look at before trusting the results, however many releases there are ([`Self::warnings_for`]).
     pub warnings: Vec<String>,
     /// Warnings that hold only if rocks get as fast as stated in them.
     pub fast_warnings: Vec<FastWarning>,

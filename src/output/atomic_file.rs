@@ -42,3 +42,18 @@ pub(super) fn read_json<T: DeserializeOwned>(path: &Path) -> Result<Option<T>> {
         .map(Some)
         .map_err(|why| Error::input(path, format!("line {}", why.line()), why.to_string(), RESTORE))
 }
+
+/// Length of a file that a run has written (bytes).
+///
+/// # Errors
+/// If it is not there, or cannot be read.
+pub(super) fn length(path: &Path) -> Result<u64> {
+    match fs::metadata(path) {
+        Ok(file) => Ok(file.len()),
+        Err(why) if why.kind() == ErrorKind::NotFound => {
+            let found = "the run has written this file, and it is not there";
+            Err(Error::input(path, "file", found, RESTORE))
+        }
+        Err(why) => Err(Error::file("read", path)(why)),
+    }
+}

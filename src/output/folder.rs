@@ -177,7 +177,8 @@ pub fn releases_in(dir: &Path) -> Result<Option<usize>> {
 
 /// A finished run seen as one that has nothing left to do.
 fn finished_run(dir: &Path, summary: Summary) -> Progress {
-    let Summary { title, identity, totals, run, bytes: finished, .. } = summary;
+    let Summary { title, identity, totals, run, bytes: mut finished, map_bytes, .. } = summary;
+    finished.extend(map_bytes);
     let length = |name: &str| Some((name.to_owned(), fs::metadata(dir.join(name)).ok()?.len()));
     let bytes = TABLES.into_iter().filter_map(length).collect();
     let (done, seconds) = (identity.releases, run.seconds);

@@ -6,6 +6,7 @@ use crate::file::write_atomic;
 use crate::frequency::Weights;
 use crate::hazard::{AnnualRequest, Layer, MapFrame, MapState, Maps, Matrix, year_maps};
 use crate::terrain::geotiff::{Image, NO_DATA, encode};
+use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::fmt::Write as _;
 use std::fs;
@@ -108,6 +109,25 @@ fn geotiff(frame: &MapFrame, said: (&str, &str), cells: &[f32]) -> tiff::TiffRes
     })
 }
 
+/// Length of each raster that a run has written (bytes), by its name in the folder of the results.
+pub(super) fn lengths(dir: &Path) -> BTreeMap<String, u64> {
+    let entries = fs::read_dir(dir.join(FOLDER)).into_iter().flatten().flatten();
+    let rasters = entries.filter(|entry| is_layer(&entry.path()));
+    let length = |entry: fs::DirEntry| {
+        let name = format!("{FOLDER}/{}", entry.file_name().display());
+        Some((name, entry.metadata().ok()?.len()))
+    };
+    rasters.filter_map(length).collect()
+}
+
+/// Whether a file is the raster of a layer.
+fn is_layer(path: &Path) -> bool {
+    let text = |part: Option<&OsStr>| part.and_then(OsStr::to_str).unwrap_or_default().to_owned();
+    let (stem, ending) = (text(path.file_stem()), text(path.extension()));
+    ["asc", "tif"].contains(&ending.as_str())
+        && (Layer::ALL.iter().any(|layer| layer.file() == stem) || is_of_year(&stem))
+}
+
 /// Where the maps after so many rocks wait for a resumed run.
 pub(super) fn state_path(dir: &Path, done: usize) -> PathBuf {
     dir.join(FOLDER).join(format!("{done}.{STATE}"))
@@ -145,7 +165,7 @@ pub(super) fn is_result(path: &Path) -> bool {
         // the ground that figures are drawn on stands beside the maps
         "asc" if ["ground", "trees"].contains(&stem.as_str()) => true,
         "tif" if stem == "ground" => true,
-        "asc" | "tif" => Layer::ALL.iter().any(|layer| layer.file() == stem) || is_of_year(&stem),
+        "asc" | "tif" => is_layer(&whole),
         "geojson" => ["ends", "paths", "lines", "barriers", "release_zone", "zones", "scene_lines"]
             .contains(&stem.as_str()),
         "vtk" => ["paths", "terrain"].contains(&stem.as_str()),

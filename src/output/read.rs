@@ -1,6 +1,6 @@
 //! Results read back: what figures and pages are drawn from.
 
-use super::atomic_file::RESTORE;
+use super::atomic_file::{RESTORE, length};
 use super::lock::FolderLock;
 use super::progress::{Identity, PROGRESS, Progress};
 use super::rows::{ImpactRow, PathRow};
@@ -304,7 +304,7 @@ pub(super) fn recall(
 pub(super) fn check_lengths(dir: &Path, written: &BTreeMap<String, u64>) -> Result<()> {
     for (name, written) in written {
         let path = dir.join(name);
-        let found = std::fs::metadata(&path).map_err(Error::file("read", &path))?.len();
+        let found = length(&path)?;
         if found != *written {
             return Err(Error::input(
                 &path,

@@ -122,6 +122,9 @@ pub struct Summary {
     /// Length of each table (bytes): rows that are missing later are noticed.
     #[serde(default)]
     pub bytes: BTreeMap<String, u64>,
+    /// Length of each raster of the maps (bytes): only the run itself could make one anew.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub map_bytes: BTreeMap<String, u64>,
     /// What was computed, what was left out and why.
     pub plan: Vec<String>,
     /// The same, as pairs of part and text.
@@ -183,6 +186,7 @@ impl Summary {
             totals: hazard.totals.rounded(),
             origin_m: info.origin_m.into(),
             bytes: BTreeMap::new(),
+            map_bytes: BTreeMap::new(),
             plan: info.plan.iter().map(ToString::to_string).collect(),
             plan_entries: info.plan,
             inputs: info.inputs,

@@ -33,9 +33,9 @@ impl CsvTable {
 
     /// Goes on behind the first `bytes` of the file and drops the rest: rows torn by a crash.
     pub(super) fn go_on(path: PathBuf, bytes: u64) -> Result<Self> {
+        let found = super::atomic_file::length(&path)?;
         let mut file =
             OpenOptions::new().write(true).open(&path).map_err(Error::file("open", &path))?;
-        let found = file.metadata().map_err(Error::file("read", &path))?.len();
         if found < bytes {
             return Err(Error::input(
                 &path,

@@ -107,6 +107,31 @@ fn a_finished_folder_is_never_cut() {
     }
 }
 
+/// Rasters are made of all rocks, and cannot be drawn anew from tables: one that is missing or cut in a finished folder is told, and the rest is left
+/// as it is.
+#[test]
+fn a_map_that_is_missing_is_told() {
+    let dir = tempfile::tempdir().unwrap();
+    write_all(dir.path(), Mode::Fresh).unwrap();
+    let before = results(dir.path());
+    let all = names(&dir.path().join("maps"));
+    let rasters: Vec<&String> =
+        all.iter().filter(|name| name.ends_with(".asc") || name.ends_with(".tif")).collect();
+    assert!(rasters.len() > 8, "{all:?}");
+    for path in rasters {
+        let whole = fs::read(path).unwrap();
+        fs::remove_file(path).unwrap();
+        let said = message(write_all(dir.path(), Mode::Resume));
+        assert!(said.contains(path.as_str()) && said.contains("restore the file"), "{said}");
+        fs::write(path, &whole[..whole.len() - 1]).unwrap();
+        let said = message(write_all(dir.path(), Mode::Resume));
+        assert!(said.contains(path.as_str()) && said.contains("bytes where"), "{said}");
+        fs::write(path, &whole).unwrap();
+    }
+    write_all(dir.path(), Mode::Resume).unwrap();
+    assert_eq!(results(dir.path()), before);
+}
+
 /// Killed in the first instant of `--overwrite`, or while any file is written: nothing half-written outlives the next run.
 #[test]
 fn no_half_written_file_stays() {

@@ -212,3 +212,31 @@ fn objects_met_twice_count_once() {
         assert!((hit(name) / by_hand - 1.0).abs() < 1e-9, "{name}: {}", hit(name));
     }
 }
+
+/// What is said of few releases holds for those that an aim began with, and no longer for those that it came to.
+#[test]
+fn warnings_are_those_of_the_releases_that_were_computed() {
+    let dir = tempfile::tempdir().unwrap();
+    let law = "[frequency]\nclasses = [{ volume_m3 = 1.0, per_year = 0.1 }, { volume_m3 = 2.0, per_year = 0.1 }]\n";
+    let file = dir.path().join("classes.toml");
+    // rocks that fall and come to rest: what still moves at the end is no aim
+    let scene = flight(30, law).replace("gravity_m_s2 = 0.0", "gravity_m_s2 = 9.81");
+    let scene =
+        scene.replace("longest_s = 1.0", "longest_s = 60.0").replace("20.0, 0.0]", "2.0, 0.0]");
+    fs::write(&file, scene).unwrap();
+    let read = |out: &Path| -> Value {
+        serde_json::from_slice(&fs::read(out.join("summary.json")).unwrap()).unwrap()
+    };
+    let few = dir.path().join("few");
+    run_into(&file, &few);
+    assert!(read(&few)["warnings"].to_string().contains("30 releases over 2 classes"));
+    let out = dir.path().join("many");
+    let words = ["run", file.to_str().unwrap(), "--quiet", "--out", out.to_str().unwrap()];
+    let done = rockfall(&[&words[..], &["--until", "speed.p50 < 0.3 m/s"]].concat());
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    let summary = read(&out);
+    assert!(number(&summary["releases"]) >= 40.0, "{}", summary["releases"]);
+    for key in ["warnings", "plan", "plan_entries"] {
+        assert!(!summary[key].to_string().contains("releases over 2 classes"), "{key}");
+    }
+}

@@ -55,12 +55,6 @@ pub(super) fn year(
         let remedy = format!("write {} or more", FEW_ROCKS * strata);
         return Err(Error::input(&scene.file, "[release] count", found, remedy));
     }
-    if strata > 1 && count < FEW_ROCKS * strata {
-        warnings.push(format!(
-            "{count} releases over {strata} classes of size and source: with fewer than {FEW_ROCKS} each the intervals a year may be too narrow; write count = {} or more",
-            FEW_ROCKS * strata
-        ));
-    }
     if !frequency.weights(count).are_equal() {
         warnings.push(weighed(strata > frequency.sources().len()).to_owned());
     }
@@ -69,6 +63,15 @@ pub(super) fn year(
         frequency.strata().iter().map(|stratum| largest_m(scene, stratum)).collect();
     let most_j = most_j(scene, terrain, &largest_m);
     Ok(Part::Kept(YearPlan { frequency, matrix, most_j, largest_m }))
+}
+
+/// What is said of so many releases where some class of size and source has too few.
+pub(super) fn too_few(year: &YearPlan, count: usize) -> Option<String> {
+    let strata = year.frequency.strata().len();
+    (strata > 1 && count < FEW_ROCKS * strata).then(|| format!(
+        "{count} releases over {strata} classes of size and source: with fewer than {FEW_ROCKS} each the intervals a year may be too narrow; write count = {} or more",
+        FEW_ROCKS * strata
+    ))
 }
 
 /// What is said where rocks do not all weigh the same; `has_sizes`: some source has classes of size.

@@ -1,6 +1,6 @@
 //! What went into a run, as name and value for the report.
 
-use super::{Plan, annual};
+use super::{Part, Plan, annual};
 use crate::random::Distribution;
 use crate::scene::{GroundTable, MeshFile, ReportTable, Scene, known_ground};
 use crate::terrain::health::Health;
@@ -9,6 +9,15 @@ use crate::terrain::health::Health;
 pub const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), "+", env!("ROCKFALL_BUILD"));
 
 impl Plan {
+    /// The warnings for another number of releases than the scene's: a target precision asks for more.
+    pub fn warnings_for(&self, releases: usize) -> Vec<String> {
+        let too_few = match &self.year {
+            Part::Kept(year) => annual::too_few(year, releases),
+            Part::LeftOut(_) => None,
+        };
+        self.warnings.iter().cloned().chain(too_few).collect()
+    }
+
     /// The same with what was found in the meshes.
     pub(super) fn with_health(mut self, health: Health) -> Self {
         self.warnings.splice(..0, health.warnings());

@@ -78,7 +78,7 @@ impl Plan {
             title_block: _, // with the report
             sources: _,     // with the report
             language: _,    // with the report
-            warnings,
+            warnings: _,    // as for so many releases
             fast_warnings,
         } = self;
         let place = places(places_of_release);
@@ -181,7 +181,7 @@ impl Plan {
         if let Some(measured) = measured {
             list.line("compared with", measured.to_string());
         }
-        list.lines("warning", warnings.iter().cloned());
+        list.lines("warning", self.warnings_for(count).into_iter());
         list.lines("warning", fast_warnings.iter().map(|warning| warning.text.clone()));
         list.0
     }
