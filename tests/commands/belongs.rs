@@ -115,8 +115,10 @@ fn a_map_that_is_missing_is_told() {
     write_all(dir.path(), Mode::Fresh).unwrap();
     let before = results(dir.path());
     let all = names(&dir.path().join("maps"));
-    let rasters: Vec<&String> =
-        all.iter().filter(|name| name.ends_with(".asc") || name.ends_with(".tif")).collect();
+    let rasters: Vec<&String> = all
+        .iter()
+        .filter(|name| Path::new(name).extension().is_some_and(|x| x == "asc" || x == "tif"))
+        .collect();
     assert!(rasters.len() > 8, "{all:?}");
     for path in rasters {
         let whole = fs::read(path).unwrap();
