@@ -176,6 +176,7 @@ fn plan(scene: &Path) -> Result<ExitCode> {
 }
 
 fn verify(out: &Path) -> Result<ExitCode> {
+    output::check_writable(out)?;
     let verification = Verification::run()?;
     verification.write(out)?;
     say(format!("{}\ntable and figures in {}", verification.table(), out.display()));

@@ -20,6 +20,7 @@ pub mod exact_values;
 pub mod order;
 pub mod processor_time;
 pub mod scene;
+mod scene_csv;
 mod scene_figure;
 mod scene_page;
 pub mod bootstrap;
@@ -70,9 +71,9 @@ pub fn write_scene(study: &SceneStudy, wish: Option<Wish>, dir: &Path) -> Result
     fs::create_dir_all(dir).map_err(Error::file("create", dir))?;
     write_atomic(&dir.join("error.svg"), scene_figure::draw(study).as_bytes())?;
     study.studied.write(dir)?;
-    write_atomic(&dir.join("error.csv"), scene_page::csv(study).as_bytes())?;
+    write_atomic(&dir.join("error.csv"), scene_csv::csv(study).as_bytes())?;
     if !study.meshes.is_empty() {
-        write_atomic(&dir.join("mesh.csv"), scene_page::mesh_csv(study).as_bytes())?;
+        write_atomic(&dir.join("mesh.csv"), scene_csv::mesh_csv(study).as_bytes())?;
     }
     write_atomic(&dir.join("README.md"), scene_page::page(study, wish).as_bytes())
 }

@@ -26,10 +26,10 @@ pub(super) struct StabilityArgs {
     /// Folder for page, table and map [default: reports/stability, with a scene reports/stability/<scene name>]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Number of releases, instead of the scene's
+    /// Number of releases of SCENE, instead of its own
     #[arg(long, value_name = "N", value_parser = at_least_1, requires = "scene")]
     releases: Option<usize>,
-    /// Worker threads [default: all cores]
+    /// Worker threads for SCENE [default: all cores]
     #[arg(long, value_name = "N", value_parser = at_least_1, requires = "scene")]
     threads: Option<usize>,
 }
@@ -41,16 +41,16 @@ pub(super) struct ErrorArgs {
     /// Folder for page, table and figures [default: reports/error, with a scene reports/error/<scene name>]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Number of releases under each setting, instead of the scene's
+    /// Number of releases of SCENE under each setting, instead of its own
     #[arg(long, value_name = "N", value_parser = at_least_1, requires = "scene")]
     releases: Option<usize>,
-    /// Worker threads [default: all cores]
+    /// Worker threads for SCENE [default: all cores]
     #[arg(long, value_name = "N", value_parser = at_least_1, requires = "scene")]
     threads: Option<usize>,
-    /// Also run on the slope's mesh with edges 2 and 4 times as long, to see the error of the mesh
+    /// Also run SCENE on its slope's mesh with edges 2 and 4 times as long, to see the error of the mesh
     #[arg(long, requires = "scene")]
     meshes: bool,
-    /// Also find the cheapest setting for this 95 % interval of both errors together, as in "runout.p95 < 1.0 m"
+    /// Also find the cheapest setting of SCENE for this 95 % interval of both errors together, as in "runout.p95 < 1.0 m"
     #[arg(long, value_name = "PRECISION", requires = "scene")]
     within: Option<TargetPrecision>,
 }

@@ -29,6 +29,23 @@ impl Interval {
     pub fn at_most(&self) -> f64 {
         self.low.abs().max(self.high.abs())
     }
+
+    /// The smallest distance from 0 that it holds.
+    pub fn at_least(&self) -> f64 {
+        if self.is_certain() { self.low.abs().min(self.high.abs()) } else { 0.0 }
+    }
+
+    /// The same estimate, with what `other` holds besides.
+    #[must_use]
+    pub fn holding(self, other: &Self) -> Self {
+        Self { low: self.low.min(other.low), high: self.high.max(other.high), ..self }
+    }
+
+    /// So many times it (–, 0 or more).
+    #[must_use]
+    pub fn times(self, times: f64) -> Self {
+        Self { value: self.value * times, low: self.low * times, high: self.high * times }
+    }
 }
 
 /// A percentile under every setting of a ladder, and what is left at the fine end.
@@ -117,23 +134,25 @@ impl Paired {
     /// Fits `value = limit + c xᵏ` to percentile `p`, where `x` is the fineness of each setting over the scene's own
     /// and `k` the order; the interval is that of the whole fit when the rocks are drawn again with replacement.
     ///
-    /// All settings keep the same rocks in every draw: what chance does to all of them alike drops out.
+    /// All settings keep the same rocks in every draw: what chance does to all of them alike drops out. Where the line misses by more than chance, as
+    /// where nothing is chaotic, intervals hold what the finest settings say as well.
     pub fn ladder(&self, p: f64, relative: &[f64], order: f64, seed: u64) -> PercentileLadder {
         let x: Vec<f64> = relative.iter().map(|fine| math::pow(*fine, order)).collect();
         let values = self.percentiles(p, &vec![1; self.weights.len()]);
-        let (limit, slope) = fit(&x, &values);
-        let mut draws = [Vec::with_capacity(DRAWS), Vec::with_capacity(DRAWS)];
-        for draw in 0..DRAWS {
-            let (limit, slope) = fit(&x, &self.percentiles(p, &self.redrawn(seed, draw)));
-            draws[0].push(limit);
-            draws[1].push(slope);
+        let reading = LadderReading::of(&x, &values);
+        let draws: Vec<LadderReading> = (0..DRAWS)
+            .map(|draw| LadderReading::of(&x, &self.percentiles(p, &self.redrawn(seed, draw))))
+            .collect();
+        let told = |of: &dyn Fn(&LadderReading) -> f64| {
+            interval(of(&reading), draws.iter().map(of).collect())
+        };
+        let (mut limit, mut own_error) = (told(&|r| r.limit), told(&|r| r.own_error));
+        if told(&|r| r.own_error - r.own_of_finest).is_certain() {
+            let finest = [told(&|r| r.own_of_finest), told(&|r| r.own_less_finest)];
+            own_error = finest.iter().fold(own_error, Interval::holding);
+            limit = limit.holding(&told(&|r| r.limit_of_finest));
         }
-        let [limits, slopes] = draws;
-        PercentileLadder {
-            values,
-            limit: interval(limit, limits),
-            own_error: interval(slope, slopes),
-        }
+        PercentileLadder { values, limit, own_error }
     }
 
     /// Percentile `p` under setting `to` minus that under setting 0.
@@ -144,6 +163,34 @@ impl Paired {
         };
         let draws = (0..DRAWS).map(|draw| difference(&self.redrawn(seed, draw)));
         interval(difference(&vec![1; self.weights.len()]), draws.collect())
+    }
+}
+
+/// What one ladder of values says of its limit and of the error of the scene's own setting.
+#[derive(Debug, Clone, Copy)]
+struct LadderReading {
+    /// By the line through all settings.
+    limit: f64,
+    own_error: f64,
+    /// By the line through the two finest.
+    limit_of_finest: f64,
+    own_of_finest: f64,
+    /// Against the finest value itself, by the same line where the own setting is the finest.
+    own_less_finest: f64,
+}
+
+impl LadderReading {
+    /// Of values over `x`, from coarse to fine, that is 1 at the scene's own setting.
+    fn of(x: &[f64], values: &[f64]) -> Self {
+        let own = x.iter().position(|x| (x - 1.0).abs() < 1e-9).unwrap_or(0);
+        let finest = x.len().saturating_sub(2);
+        let (limit, own_error) = fit(x, values);
+        let (limit_of_finest, _) = fit(&x[finest..], &values[finest..]);
+        let own_of_finest = values[own] - limit_of_finest;
+        let own_is_finest = own + 1 == x.len();
+        let own_less_finest =
+            if own_is_finest { own_of_finest } else { values[own] - values[x.len() - 1] };
+        Self { limit, own_error, limit_of_finest, own_of_finest, own_less_finest }
     }
 }
 
@@ -182,6 +229,21 @@ mod tests {
         assert!((found.limit.value - 10.0).abs() < 1e-12);
         assert!((found.own_error.value - 0.5).abs() < 1e-12);
         assert!((found.own_error.high - found.own_error.low).abs() < 1e-12);
+    }
+
+    /// Values without chance that fall faster than the law assumed: the line misses the truth, and its interval was none. Now it holds the truth, whether
+    /// the own setting is the coarsest or in the middle.
+    #[test]
+    fn a_law_of_higher_order_is_held() {
+        for relative in [[1.0, 0.25, 0.0625], [2.0, 1.0, 0.5]] {
+            for order in [1.0, 1.5, 2.0] {
+                let rocks = |x: f64| (0..300).map(|_| 10.0 + 0.5 * x.powf(order)).collect();
+                let all: Vec<Vec<f64>> = relative.map(rocks).into();
+                let found = Paired::new(&all).ladder(0.5, &relative, 1.0, 1).own_error;
+                let is_held = found.low < 0.5 + 1e-12 && found.high > 0.5 - 1e-12;
+                assert!(is_held, "{relative:?} {order}: {found:?}");
+            }
+        }
     }
 
     /// Rocks spread evenly over 0..1, the same under both settings but moved by 0.25: the shift is certain although it is

@@ -30,9 +30,11 @@ pub const PERCENTS: [u8; 3] = [50, 95, 99];
 const BLOCKS: usize = 20;
 /// How much longer the edges of the coarser meshes are than the scene's own (–).
 const COARSER: [f64; 2] = [4.0, 2.0];
-/// Order of the mesh's error against the length of its edges that is assumed (–): what a triangle leaves out of a
-/// rough surface goes with its length.
+/// Order of the mesh's error against the length of its edges (–): what a triangle leaves out of a rough surface goes with its
+/// length …
 const MESH_ORDER: f64 = 1.0;
+/// … and out of a smooth one with the square, which leaves so much of what the line through edges twice as long says (–).
+const SMOOTH_MESH: f64 = 1.0 / 3.0;
 
 /// All releases under one setting.
 #[derive(Debug, Clone)]
@@ -105,7 +107,9 @@ pub struct SceneStudy {
     pub rungs: Vec<Rung>,
     /// Which of them is the scene's own.
     pub own: usize,
-    /// On coarser meshes and the scene's own, from coarse to fine; empty where they were not asked for.
+    /// Whether coarser meshes were asked for.
+    pub with_meshes: bool,
+    /// On coarser meshes and the scene's own, from coarse to fine; empty where they were not asked for, or there are none.
     pub meshes: Vec<MeshRung>,
     /// What was looked at.
     pub subjects: Vec<StudyQuantity>,
@@ -199,9 +203,11 @@ pub fn study(
             let Some(found) = weighing.percentile(&all[own], open, p) else { continue };
             let ladder = paired.ladder(p, relatives, order, plan.seed);
             let sampling = weighing.sampling(&all[own], open, p);
-            let meshes = with_meshes.then(|| PercentileLadder {
-                own_error: on_finest.ladder(p, &times[finest..], MESH_ORDER, plan.seed).own_error,
-                ..on_meshes.ladder(p, &times, MESH_ORDER, plan.seed)
+            let meshes = (!meshes.is_empty()).then(|| {
+                let rough = on_finest.ladder(p, &times[finest..], MESH_ORDER, plan.seed).own_error;
+                let own_error = rough.holding(&rough.times(SMOOTH_MESH));
+                let on_all = on_meshes.ladder(p, &times, MESH_ORDER, plan.seed);
+                PercentileLadder { own_error, ..on_all }
             });
             statistics.push(StudyStatistic {
                 subject,
@@ -226,6 +232,7 @@ pub fn study(
         threads: ensemble.threads(),
         rungs,
         own,
+        with_meshes,
         meshes,
         subjects,
         statistics,
@@ -233,7 +240,8 @@ pub fn study(
     })
 }
 
-/// All releases on the slope with longer edges; last its own mesh, where they have been already.
+/// All releases on the slope with longer edges; last its own mesh, where they have been already. Nothing where a slope of few triangles cannot be made
+/// coarser.
 fn meshes(
     plan: &mut Plan,
     subjects: &[StudyQuantity],
@@ -243,6 +251,10 @@ fn meshes(
     let mut meshes = Vec::new();
     for times in COARSER {
         let coarse = coarser(&plan.terrain, times);
+        let is_slope = |t: u32| !coarse.is_tree(t);
+        if !(0..coarse.triangles.len() as u32).any(is_slope) {
+            return Ok(Vec::new());
+        }
         let fine = std::mem::replace(&mut plan.terrain, coarse);
         let mut rung = Rung::new(&plan.step, 1.0, false);
         rung.run(plan, subjects, 0..plan.count, ensemble)?;
@@ -333,18 +345,14 @@ impl StudyStatistic {
 
     /// Error of the steps under a setting so much coarser than the scene's own, signed.
     pub fn step_error(&self, relative: f64, scheme: Scheme) -> Interval {
-        let times = math::pow(relative, ladder_of(scheme).1);
-        let Interval { value, low, high } = self.ladder.own_error;
-        Interval { value: value * times, low: low * times, high: high * times }
+        self.ladder.own_error.times(math::pow(relative, ladder_of(scheme).1))
     }
 
     /// Error of a mesh, signed; nothing where it is not known.
     pub fn mesh_error_of(&self, mesh: &MeshRung) -> Interval {
-        let times = math::pow(mesh.times, MESH_ORDER);
-        let own = self.meshes.as_ref().map(|meshes| meshes.own_error);
-        let Interval { value, low, high } =
-            own.unwrap_or(Interval { value: 0.0, low: 0.0, high: 0.0 });
-        Interval { value: value * times, low: low * times, high: high * times }
+        let none = Interval { value: 0.0, low: 0.0, high: 0.0 };
+        let own = self.meshes.as_ref().map_or(none, |meshes| meshes.own_error);
+        own.times(math::pow(mesh.times, MESH_ORDER))
     }
 
     /// Error of the scene's own mesh, signed; 0 where it is not known.

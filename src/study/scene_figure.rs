@@ -172,7 +172,8 @@ fn draw_statistic(
 ) {
     let has_place = |error: f64| error >= panel.y.low * (1.0 - 1e-9);
     let inside = |error: f64| error.max(panel.y.low);
-    let sampled = sampling(study, statistic);
+    let sampled: Vec<_> =
+        sampling(study, statistic).into_iter().filter(|(_, error)| has_place(*error)).collect();
     panel.line(canvas, &sampled, Pen::full(BLUE, 1.4));
     for &(t, error) in &sampled {
         canvas.mark(0, panel.at(t, error), 2.4, BLUE);
@@ -185,7 +186,7 @@ fn draw_statistic(
             let middle: Vec<(f64, f64)> = middle.iter().map(|&(t, error, _)| (t, error)).collect();
             panel.line(canvas, &middle, Pen::full(ink, 1.4));
         }
-        for &(t, error, most) in bars {
+        for &(t, error, most) in bars.iter().filter(|bar| has_place(bar.2)) {
             let (spot, end) = (panel.at(t, inside(error)), panel.at(t, inside(most)));
             canvas.line(&[spot, end], Pen::full(ink, 0.8));
             canvas.line(&[(end.0 - 3.0, end.1), (end.0 + 3.0, end.1)], Pen::full(ink, 0.8));

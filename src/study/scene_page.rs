@@ -36,7 +36,7 @@ pub(super) fn page(study: &SceneStudy, wish: Option<Wish>) -> String {
          settings, so single paths do not converge, but their statistics do. **Sampling error**: half the 95 % interval of the percentile \
          (order statistics, whatever the distribution). **Error of the steps**: how far a straight line through the percentiles of all settings, over the \
          error that each step should have and with the same releases, stands at the scene's own setting from where it goes when the steps are refined; \
-         its interval from drawing the rocks again 400 times. A single percentile of the table lies off that line by what chaos does to the few rocks beside it.\n",
+         its interval from drawing the rocks again 400 times, and from what the finest settings alone say where the line misses by more than chance. A single percentile of the table lies off that line by what chaos does to the few rocks beside it.\n",
         format::decimal(study.releases as f64, 0),
         format::counted(study.releases, "release", "releases"),
         study.rungs.len(),
@@ -90,16 +90,20 @@ pub fn sentence(study: &SceneStudy, statistic: &StudyStatistic, wanted: Option<f
     let mesh = statistic.meshes.as_ref().map_or_else(String::new, |meshes| {
         format!(", error of the mesh {}", with_ends(&meshes.own_error, (unit, size)))
     });
+    let errors = format!(
+        "sampling error ±{} {unit}, error of the steps {}{mesh}, total {} {unit}",
+        small(sampling),
+        with_ends(&steps, (unit, size)),
+        small(total)
+    );
+    if total <= 0.0 {
+        return format!("{head}: {errors}. All rocks that decide are alike under every setting.");
+    }
     let mesh_error = statistic.meshes.as_ref().map(|meshes| &meshes.own_error);
     let dominates = dominant(sampling, &steps, mesh_error);
     let wanted = wanted.unwrap_or(0.5 * total);
     let offer = offered(study, statistic, (sampling, wanted), &small(wanted));
-    format!(
-        "{head}: sampling error ±{} {unit}, error of the steps {}{mesh}, total {} {unit}. {dominates}; {offer}.",
-        small(sampling),
-        with_ends(&steps, (unit, size)),
-        small(total)
-    )
+    format!("{head}: {errors}. {dominates}; {offer}.")
 }
 
 /// How many rocks a percentile needs before it is told at all, and before it has an interval.
@@ -183,6 +187,10 @@ fn remedy(
     let suspected = larger.map_or("the steps", |_| "the mesh");
     match finer {
         None => format!("{first}, to show whether {suspected} must be finer"),
+        // a smooth surface leaves less than what is told
+        Some("the mesh") if mesh.is_some_and(|error| error.at_least() < wanted) && more <= 1.0 => {
+            "the mesh may have to be finer".to_owned()
+        }
         Some(what) if more > 1.0 && dominant(sampling, steps, mesh) == SAMPLING => {
             format!("{first}, then {what} must be finer")
         }
@@ -212,6 +220,9 @@ fn with_ends(error: &Interval, (unit, size): (&str, f64)) -> String {
     let small = |value: f64| few_digits(value / size, 2);
     let certainty = if error.is_certain() { "" } else { ", not distinguishable from 0" };
     let Interval { value, low, high } = error;
+    if [value, low, high].iter().all(|end| **end == 0.0) {
+        return format!("0 {unit}");
+    }
     format!("{} {unit} ({} to {}{certainty})", small(*value), small(*low), small(*high))
 }
 
@@ -270,12 +281,17 @@ fn statistics_table(page: &mut String, study: &SceneStudy) {
 /// What coarser meshes make of the same releases.
 fn mesh_table(page: &mut String, study: &SceneStudy) {
     if study.meshes.is_empty() {
-        *page += "\nError of the mesh: not asked for (`--meshes`).\n";
+        *page += if study.with_meshes {
+            "\nError of the mesh: not known, the slope has too few triangles to be made coarser.\n"
+        } else {
+            "\nError of the mesh: not asked for (`--meshes`).\n"
+        };
         return;
     }
     *page += "\n## Error of the mesh\n\nThe same releases under the scene's own setting on coarser meshes: vertices of the slope are thinned out, the rest stay where they are \
-        (trees stay as they are). The error of the scene's own mesh is what a straight line in the length of the edges, through the two finest meshes, leaves at length 0, \
-        with its interval from drawing the rocks again; what the surface does below the scene's own triangles no computation knows, so it is a guide, not a bound.\n\n| statistic |";
+        (trees stay as they are). The error of the scene's own mesh is what a straight line in the length of the edges, through the two finest meshes, leaves at length 0, as on a surface that is rough at \
+        all lengths. On one that is smooth between its vertices it goes with the square of the length, and is a third of that: the interval, from drawing the rocks again, holds both. What the surface \
+        does below the scene's own triangles no computation knows, so it is a guide, not a bound.\n\n| statistic |";
     for mesh in &study.meshes {
         let own = if mesh.times > 1.0 { "" } else { ", own" };
         let triangles = format::decimal(mesh.triangles as f64, 0);
@@ -293,67 +309,6 @@ fn mesh_table(page: &mut String, study: &SceneStudy) {
         }
         let _ = writeln!(page, " {} |", with_ends(&meshes.own_error, (unit, size)));
     }
-}
-
-/// What coarser meshes make of the statistics as CSV: one row a statistic and mesh.
-pub(super) fn mesh_csv(study: &SceneStudy) -> String {
-    let mut text = String::from(
-        "quantity,percent,edge_m,triangles,seconds,failed,value,mesh_error,mesh_error_low_95,mesh_error_high_95\n",
-    );
-    for statistic in &study.statistics {
-        let Some(meshes) = &statistic.meshes else { continue };
-        for (mesh, value) in study.meshes.iter().zip(&meshes.values) {
-            let Interval { value: error, low, high } = statistic.mesh_error_of(mesh);
-            let _ = writeln!(
-                text,
-                "{},{},{:.3},{},{:.3},{},{value},{error},{low},{high}",
-                study.subjects[statistic.subject].column,
-                statistic.percent,
-                mesh.edge_m,
-                mesh.triangles,
-                mesh.rung.seconds,
-                mesh.rung.failed,
-            );
-        }
-    }
-    text
-}
-
-/// All numbers as CSV: one row a statistic and setting.
-pub(super) fn csv(study: &SceneStudy) -> String {
-    let mut text = String::from(
-        "quantity,percent,fineness,seconds,steps,rejected,leaps,sweeps,triangles,unsettled,failed,value,step_error,step_error_low_95,step_error_high_95,sampling_error_95,corner_way\n",
-    );
-    for statistic in &study.statistics {
-        for (rung, value) in study.rungs.iter().zip(&statistic.ladder.values) {
-            let step = &rung.step;
-            let by_tolerance = step.scheme.controls_error();
-            let fineness = if by_tolerance { step.tolerance_m_s } else { step.step_s };
-            let error = statistic.step_error(rung.relative, step.scheme);
-            let sampling =
-                statistic.sampling_error().map_or(String::new(), |half| half.to_string());
-            let effort = &rung.effort;
-            let _ = writeln!(
-                text,
-                "{},{},{fineness},{:.3},{},{},{},{},{},{},{},{value},{},{},{},{sampling},{}",
-                study.subjects[statistic.subject].column,
-                statistic.percent,
-                rung.seconds,
-                effort.steps,
-                effort.rejected,
-                effort.leaps,
-                effort.sweeps,
-                effort.triangles,
-                effort.unsettled,
-                rung.failed,
-                error.value,
-                error.low,
-                error.high,
-                step.corner_way
-            );
-        }
-    }
-    text
 }
 
 #[cfg(test)]
@@ -386,7 +341,9 @@ mod tests {
         let first = said(2.0, error(1.2, -0.1, 2.0));
         let whether = "releases are needed first, to show whether the mesh must be finer";
         assert_eq!(first, format!("about 1\u{2009}200 {whether}"));
-        assert_eq!(said(0.5, error(1.2, 0.8, 1.5)), "the mesh must be finer");
+        assert_eq!(said(0.5, error(1.2, 1.1, 1.5)), "the mesh must be finer");
+        // a smooth surface may leave little enough
+        assert_eq!(said(0.5, error(1.2, 0.8, 1.5)), "the mesh may have to be finer");
         let both = said(1.5, error(1.2, 0.8, 1.5));
         assert!(both.ends_with("releases are needed first, then the mesh must be finer"), "{both}");
         // sampling is small enough, but the mesh's interval has to become half as wide
