@@ -26,6 +26,8 @@ const IN_A_HEAP: f64 = 150.0;
 /// The same of two that are bonded, of the speed (–) from which their springs would pull as hard as the bond bears: what is off by it is off by as
 /// much of the strength.
 const BONDED: f64 = 0.01;
+/// That of bonds so weak that any load breaks them, of the local error in lasting contact, at least (–).
+const WEAKEST: f64 = 1e-3;
 
 impl Island<'_> {
     /// The control of the next step: what the rocks may be wrong by, and by which method.
@@ -42,7 +44,9 @@ impl Island<'_> {
             let Some(breaks_m_s) = pair_history.breaks_m_s() else { continue };
             for end in [pair_history.a as usize, pair_history.b as usize] {
                 let member = &mut *self.members[end];
-                member.lasting_m_s = member.lasting_m_s.min(BONDED * breaks_m_s);
+                let least_m_s = WEAKEST * lasting_m_s(settings, &member.body);
+                let bonded_m_s = (BONDED * breaks_m_s).max(least_m_s);
+                member.lasting_m_s = member.lasting_m_s.min(bonded_m_s);
             }
         }
         let allowed = self.members.iter().map(|member| member.allowed_m_s(relative));
