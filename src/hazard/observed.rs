@@ -106,7 +106,7 @@ impl ObservedPath {
     pub fn read_lines(ends: &MeasuredEnds) -> Result<Vec<(u64, Self)>> {
         let path = ends.file.as_path();
         let table = file::read_table(path, LONGEST_TEXT)?;
-        let mut reader = csv::Reader::from_reader(&table[..]);
+        let mut reader = file::table_reader(&table);
         let headers = reader.headers().cloned().unwrap_or_default();
         let way = |row: csv::Result<csv::StringRecord>| {
             let line_of = |position: Option<&csv::Position>| file::line_of(&table, position);
@@ -159,7 +159,7 @@ impl ObservedPath {
     /// A file that cannot be read.
     pub fn read_blocks(path: &Path) -> Result<Vec<String>> {
         let table = file::read_table(path, LONGEST_TEXT)?;
-        let rows = csv::Reader::from_reader(&table[..]).into_deserialize();
+        let rows = file::table_reader(&table).into_deserialize();
         let blocks = rows.map(|row: csv::Result<BlockColumn>| row.ok().map(|thrown| thrown.block));
         Ok(blocks.collect::<Option<_>>().unwrap_or_default())
     }
