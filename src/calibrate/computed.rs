@@ -1,4 +1,4 @@
-//! What one trial computes on a scene, and the same with its rocks drawn again.
+//! What one trial computes on a scene, and the same with its rocks drawn again, as measured ends are.
 
 use crate::hazard::{EndDistances, ObservedPath};
 use crate::random::{RandomStream, unit};
@@ -50,6 +50,13 @@ pub(super) fn times_again(
         }
     }
     times
+}
+
+/// So many of some rows, of which there must be one, drawn with replacement.
+pub(super) fn drawn_from(rows: &[usize], count: usize, random: &mut RandomStream) -> Vec<usize> {
+    let one =
+        |random: &mut _| rows[((unit(random) * rows.len() as f64) as usize).min(rows.len() - 1)];
+    (0..count).map(|_| one(random)).collect()
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use super::computed::{Computed, times_again};
 use super::site::CalibrationSite;
 use crate::hazard::student_95;
 use crate::math;
-use crate::random::{RandomStream, unit};
+use crate::random::RandomStream;
 
 /// How often ends and rocks are drawn again for an interval.
 pub(super) const REDRAWS: usize = 200;
@@ -30,13 +30,6 @@ impl Again {
         let rows = site.redraw(ends, random);
         Self { rows, times: times_again(computed.releases, random) }
     }
-}
-
-/// So many of some rows, of which there must be one, drawn with replacement.
-pub(super) fn drawn_from(rows: &[usize], count: usize, random: &mut RandomStream) -> Vec<usize> {
-    let one =
-        |random: &mut _| rows[((unit(random) * rows.len() as f64) as usize).min(rows.len() - 1)];
-    (0..count).map(|_| one(random)).collect()
 }
 
 /// The tail on either side that makes a 95 % interval of figures of so many independent ends when they are drawn again (–).
@@ -63,7 +56,7 @@ pub(super) fn middle(mut numbers: Vec<f64>, tail: f64) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::{Purpose, stream};
+    use crate::random::{Purpose, stream, unit};
 
     /// Means of ten ends of a known law, drawn again as the measured ones are: the truth lies in the interval in 92 of 100 samples, by a fortieth on
     /// either side in 89; of fourteen, what Tschamut's are worth, in 94 and 91.

@@ -1,10 +1,9 @@
 //! One scene of a calibration and what was measured on it.
 
 use super::beside::read_ways;
-use super::computed::{Computed, ObservedWays};
+use super::computed::{Computed, ObservedWays, drawn_from};
 use super::own::{OwnPlaces, ThrownFrom};
 use super::parts::{few, parts_of, rows_of};
-use super::redraw::drawn_from;
 use super::{CalibrationStage, Ends, put_all, refuse_weights};
 use crate::ensemble::Ensemble;
 use crate::error::Result;

@@ -1,7 +1,7 @@
 //! What a fit is worth: how far the measured ends tell the values, and how far computed ends lie from them.
 
-use super::computed::{Computed, times_again};
-use super::redraw::{Again, REDRAWS, drawn_from, middle, tail_of};
+use super::computed::{Computed, drawn_from, times_again};
+use super::redraw::{Again, REDRAWS, middle, tail_of};
 use super::search::ParameterSearch;
 use super::site::CalibrationSite;
 use super::told::Told;
