@@ -4,20 +4,25 @@
 //! The ends are cut into parts, throws of one block together. The values are fitted to all but one part and scored on
 //! that, for each part in turn, and at last fitted to all. What the parts held out say is what the fit is worth
 //! elsewhere. Of every fit the best trials are followed again with other rocks, which select among them, and the selected one with
-//! others still, which say how good it is: no score profits from the luck of its rocks. The measured ends are then drawn again
-//! many times: the values that fit these best spread as far as the ends leave them open.
+//! others still, which say how good it is: no score profits from the luck of its rocks. Measured ends and computed rocks
+//! are then drawn again many times: the values that fit these best spread as far as both leave them open.
 
 mod beside;
+mod computed;
 mod finalists;
 mod fitted;
+mod own;
 mod parts;
+mod redraw;
 mod search;
 mod site;
+mod told;
 mod worth;
 
 pub use finalists::CalibrationStage;
 pub use fitted::fitted_scene;
-pub use worth::{SiteMeasure, Told};
+pub use told::Told;
+pub use worth::SiteMeasure;
 
 use crate::ensemble::Ensemble;
 use crate::error::{Error, Flaw, Result};
@@ -93,7 +98,8 @@ pub struct Calibration {
     /// Shapes of the rocks, as the plans say them; empty for spheres alone.
     #[serde(default)]
     pub shapes: Vec<String>,
-    /// What is to be said of measured ends beside the terrain, scene by scene.
+    /// What is to be said of measured ends beside the terrain, scene by scene, of values at the end of their range, and of ends that no value tried
+    /// explains.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
     /// Measured ends, and how many independent ones they are worth: throws of one block are alike.
@@ -130,7 +136,7 @@ pub fn calibrate(
     for part in 0..parts {
         held_out.push(search.best(Ends::Without(part), tried)?.trial);
     }
-    Ok(Calibration {
+    let mut found = Calibration {
         names: vary.iter().map(VaryTable::name).collect(),
         releases,
         trials,
@@ -149,7 +155,9 @@ pub fn calibrate(
             .map(str::to_owned)
             .collect(),
         ends,
-    })
+    };
+    found.warnings.extend(found.doubts(vary));
+    Ok(found)
 }
 
 /// What is varied, which every scene must have beside measured ends, and the parts that are held out in turn.
@@ -329,6 +337,9 @@ impl Calibration {
         // before, and fitted on all, there is nothing apart
         let parts = parts.into_iter().filter(|_| trial.fitted.measured < trial.all.measured);
         parts.chain([("all ends", &trial.all)]).try_for_each(|(what, of)| {
+            if of.computed == 0 {
+                return writeln!(to, "  {what:<14} no computed end, {} not compared", of.stayed);
+            }
             writeln!(
                 to,
                 "  {what:<14} runout {:.1} m (measured {:.1}), KS {:.3} (limit {:.3}), area {:.1} m, side {:.1} m (measured {:.1}){}{}",

@@ -67,6 +67,11 @@ pub fn read_table(path: &Path, longest: u64) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
+/// A reader of a table that was read so: blanks around names and numbers are none of them.
+pub fn table_reader(table: &[u8]) -> csv::Reader<&[u8]> {
+    csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(table)
+}
+
 /// The line of a row in a table that was read so, from 1: the reader of tables says where it began to look for the row, which is before
 /// the empty lines that it passes over.
 pub fn line_of(table: &[u8], position: Option<&csv::Position>) -> u64 {

@@ -69,10 +69,11 @@ pub(super) fn effort(trials: usize) -> usize {
 
 /// The best trials that differ, best first.
 fn finalists(trials: &[CalibrationTrial]) -> Vec<Vec<f64>> {
-    let mut sorted: Vec<&CalibrationTrial> = trials.iter().collect();
+    let mut sorted: Vec<&CalibrationTrial> =
+        trials.iter().filter(|trial| trial.fitted.computed > 0).collect();
     sorted.sort_by(|one, other| nearer(one, other));
-    // values that make no difference to any rock: the first says as much as all
-    sorted.dedup_by(|one, other| one.fitted == other.fitted && one.all == other.all);
+    // values that make no difference to any rock beside these ends: the first says as much as all
+    sorted.dedup_by(|one, other| one.fitted == other.fitted);
     sorted.iter().take(most_of(trials.len())).map(|trial| trial.values.clone()).collect()
 }
 
@@ -91,6 +92,9 @@ impl ParameterSearch<'_> {
         let values = selected.ok_or_else(|| self.nothing())?.values.clone();
         let assessed = self.trial(&values, (ends, CalibrationStage::Assessment))?;
         tried(ends, &assessed);
+        if assessed.fitted.computed == 0 {
+            return Err(self.nothing());
+        }
         Ok((assessed, again.len()))
     }
 }

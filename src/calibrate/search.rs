@@ -4,7 +4,8 @@
 //! again after every grid, and the next one spans the values that fit them best, until it has several steps there. Of the values tried
 //! the best are then followed again, see [`super::finalists`].
 
-use super::site::{CalibrationSite, Computed};
+use super::computed::Computed;
+use super::site::CalibrationSite;
 use super::{CalibrationStage, CalibrationTrial, Ends};
 use crate::ensemble::Ensemble;
 use crate::error::{Error, Result};
@@ -71,6 +72,8 @@ pub(super) struct ParameterSearch<'a> {
     releases: usize,
     /// What was computed so far: all searches begin with the same points.
     known: Vec<KnownTrial>,
+    /// Where the trials of the search that runs, or ran last, stand there. Those of others were placed by ends that it may not know.
+    own: Vec<usize>,
     /// Step of the last grid, value by value.
     pub(super) step: Vec<f64>,
 }
@@ -92,6 +95,7 @@ impl<'a> ParameterSearch<'a> {
             ensemble,
             releases,
             known: Vec::new(),
+            own: Vec::new(),
             step: Vec::new(),
         })
     }
@@ -115,12 +119,19 @@ impl<'a> ParameterSearch<'a> {
     ) -> Result<Vec<CalibrationTrial>> {
         let mut ranges: Vec<[f64; 2]> = self.vary.iter().map(|vary| [vary.from, vary.to]).collect();
         let (mut trials, mut stage) = (Vec::new(), 0);
+        self.own.clear();
         loop {
             let of_stage = (ends, CalibrationStage::Search);
-            trials.extend(self.try_all(&points(&ranges, stage), of_stage, tried)?);
+            let points = points(&ranges, stage);
+            trials.extend(self.try_all(&points, of_stage, tried)?);
+            for values in &points {
+                let place = self.place(values, CalibrationStage::Search)?;
+                self.own.push(place);
+            }
             self.step = step(&ranges, stage);
             let best = trials.iter().min_by(|one, other| nearer(one, other));
-            let best = best.ok_or_else(|| self.nothing())?;
+            let best =
+                best.filter(|best| best.fitted.computed > 0).ok_or_else(|| self.nothing())?;
             stage += 1;
             match self.next(&ranges, &best.values, (stage, ends)) {
                 Some(next) => ranges = next,
@@ -180,7 +191,17 @@ impl<'a> ParameterSearch<'a> {
         shapes
     }
 
+    /// What is wrong where no trial has an end to compare.
     pub(super) fn nothing(&self) -> Error {
+        let mut all = self.known.iter().flat_map(|known| self.sites.iter().zip(&known.computed));
+        let short = all.find_map(|(site, computed)| {
+            site.least_runout_m().filter(|_| !computed.stayed.is_empty()).map(|m| (site, m))
+        });
+        if let Some((site, least_m)) = short {
+            let found = format!("found {least_m}, and in no trial a rock that runs so far");
+            let remedy = "write a smaller number, or a wider range (from, to) in vary";
+            return Error::input(site.file(), "[calibrate] least_runout_m", found, remedy);
+        }
         let remedy = "release rocks that do not fail";
         Error::input(self.sites[0].file(), "[calibrate]", "found no computed end", remedy)
     }
@@ -195,8 +216,9 @@ impl<'a> ParameterSearch<'a> {
         let computed = self.computed(place);
         let compare = |of: Ends| {
             let sites = self.sites.iter().zip(computed);
-            let each = sites.map(|(site, computed)| site.compare(computed, of));
-            Agreement::joined(&each.collect::<Option<Vec<_>>>()?)
+            Agreement::joined(
+                &sites.map(|(site, computed)| site.compare(computed, of)).collect::<Vec<_>>(),
+            )
         };
         let apart = if let Ends::Without(part) = ends { Ends::Only(part) } else { Ends::All };
         let found = |of: Ends| compare(of).ok_or_else(|| self.nothing());
@@ -229,9 +251,9 @@ impl<'a> ParameterSearch<'a> {
         &self.known[place].computed
     }
 
-    /// Values of all searches so far with the ends that were computed with them.
+    /// Values of the search that runs, or ran last, with the ends that were computed with them.
     pub(super) fn searched(&self) -> impl Iterator<Item = (&[f64], &[Computed])> {
-        let searched = self.known.iter().filter(|known| known.stage == CalibrationStage::Search);
+        let searched = self.own.iter().map(|&place| &self.known[place]);
         searched.map(|known| (&known.values[..], &known.computed[..]))
     }
 }

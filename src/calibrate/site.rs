@@ -1,6 +1,8 @@
 //! One scene of a calibration and what was measured on it.
 
 use super::beside::read_ways;
+use super::computed::{Computed, ObservedWays, drawn_from};
+use super::own::{OwnPlaces, ThrownFrom};
 use super::parts::{few, parts_of, rows_of};
 use super::{CalibrationStage, Ends, put_all, refuse_weights};
 use crate::ensemble::Ensemble;
@@ -8,29 +10,12 @@ use crate::error::Result;
 use crate::hazard::{
     Agreement, EndDistances, ObservedPath, Row, Weighted, distances, effective, rank, runouts,
 };
-use crate::math;
 use crate::plan::{Part, Plan};
-use crate::random::{RandomStream, unit};
+use crate::random::RandomStream;
 use crate::scene::{CalibrateTable, CalibrationScore, Scene, VaryTable};
 use crate::simulation::{Scratch, simulate_release};
 use crate::terrain::Terrain;
 use std::path::Path;
-
-/// A measured end was released from a place of the scene if that is no farther away (m): positions are measured to a
-/// centimetre or two, and typed with two decimals.
-const SAME_PLACE_M: f64 = 0.1;
-
-/// Computed ways with their release numbers.
-type ObservedWays = Vec<(usize, ObservedPath)>;
-
-/// What one trial computed on a scene.
-pub(super) struct Computed {
-    ways: ObservedWays,
-    /// Release numbers of the rocks that are not compared, as their runout is less than any that was measured can be.
-    stayed: Vec<usize>,
-    /// How far the ends lie from the measured ones; only where a fit is scored by it.
-    apart: Option<EndDistances>,
-}
 
 /// One scene and what was measured on it.
 pub(super) struct CalibrationSite {
@@ -53,17 +38,6 @@ pub(super) struct CalibrationSite {
     shapes: Vec<String>,
     /// Where measured rocks were released; none unless the scene releases from all of these places.
     own: Option<OwnPlaces>,
-}
-
-/// A place of release (m), and the block that was thrown from it, if it is known.
-type ThrownFrom<'a> = ([f64; 2], Option<&'a str>);
-
-/// Places of release that measured ends and releases have in common.
-struct OwnPlaces {
-    /// Place of each measured end.
-    of_end: Vec<usize>,
-    /// Place of each release, in turn; none where nothing was measured.
-    of_release: Vec<Option<usize>>,
 }
 
 impl CalibrationSite {
@@ -135,6 +109,11 @@ impl CalibrationSite {
         &self.scene.file
     }
 
+    /// Least runout of a computed rock that is compared (m); none as short as can be.
+    pub(super) fn least_runout_m(&self) -> Option<f64> {
+        self.least_runout_m
+    }
+
     /// What is to be said of measured ends beside the terrain, if there are any.
     pub(super) fn beside(&self) -> Option<&str> {
         self.beside.as_deref()
@@ -189,8 +168,9 @@ impl CalibrationSite {
             }
         }
         plan.releases.shapes().clone_into(&mut self.shapes);
+        let releases = (plan.count, self.classes(&plan));
         self.terrain = Some(plan.terrain);
-        let mut computed = Computed { ways, stayed, apart: None };
+        let mut computed = Computed { ways, stayed, releases, apart: None };
         if self.score == CalibrationScore::Ends {
             let beside = |rows: &[usize]| self.weighted(&computed, rows);
             computed.apart = Some(EndDistances::of(&self.measured, &self.groups, beside));
@@ -198,18 +178,31 @@ impl CalibrationSite {
         Ok(computed)
     }
 
-    /// Energy distance of some measured ends from the computed ones (m); none where a fit is not scored by it.
-    fn ends_m(&self, computed: &Computed, rows: &[usize]) -> Option<f64> {
-        let apart = computed.apart.as_ref()?;
-        Some(apart.energy_m(&self.measured, &self.groups, rows))
+    /// How many classes the releases take in turn: common places of release, or strata of size and source.
+    fn classes(&self, plan: &Plan) -> usize {
+        let strata = || match &plan.year {
+            Part::Kept(year) => year.frequency.strata().len(),
+            Part::LeftOut(_) => 1,
+        };
+        self.own.as_ref().map_or_else(strata, OwnPlaces::in_turn).max(1)
     }
 
-    /// Compares some of the ends; none where there is none of them.
-    pub(super) fn compare(&self, computed: &Computed, of: Ends) -> Option<Agreement> {
+    /// Energy distance of some measured ends from the computed ones (m), beyond all numbers where nothing was computed beside one of them;
+    /// none where a fit is not scored by it.
+    fn ends_m(&self, computed: &Computed, rows: &[usize]) -> Option<f64> {
+        let apart = computed.apart.as_ref()?;
+        let ends_m = apart.energy_m(&self.measured, &self.groups, rows);
+        // what is no number may have any sign, and would count as the nearest
+        Some(if ends_m.is_nan() { f64::INFINITY } else { ends_m })
+    }
+
+    /// Compares some of the ends, of which there must be one.
+    pub(super) fn compare(&self, computed: &Computed, of: Ends) -> Agreement {
         let rows = self.rows(of);
-        let found = Agreement::of_weighted(&self.ends(&rows), &self.weighted(computed, &rows))?;
+        let found = Agreement::of_weighted(&self.ends(&rows), &self.weighted(computed, &rows))
+            .unwrap_or_else(|| Agreement::of_nothing(&self.ends(&rows)));
         let stayed = self.stayed(computed, &rows);
-        Some(Agreement { stayed, ends_m: self.ends_m(computed, &rows), ..found })
+        Agreement { stayed, ends_m: self.ends_m(computed, &rows), ..found }
     }
 
     /// Rocks that would stand beside some of the ends, had they run.
@@ -256,14 +249,15 @@ impl CalibrationSite {
     }
 
     /// Distance of some measured ends from the computed ones, times their number: the energy distance (m), or that of
-    /// the distributions of runout after Kolmogorov and Smirnov (–).
+    /// the distributions of runout after Kolmogorov and Smirnov (–), which is 1 where nothing was computed.
     pub(super) fn distance(&self, computed: &Computed, rows: &[usize]) -> f64 {
         if let Some(ends_m) = self.ends_m(computed, rows) {
             return rows.len() as f64 * ends_m;
         }
         let measured: Vec<Weighted> = rows.iter().map(|&row| (self.measured[row], 1.0)).collect();
-        let computed = self.weighted(computed, rows);
-        rows.len() as f64 * distances(&runouts(&measured), &runouts(&computed)).0
+        let computed = runouts(&self.weighted(computed, rows));
+        let far = || distances(&runouts(&measured), &computed).0;
+        rows.len() as f64 * if computed.is_empty() { 1.0 } else { far() }
     }
 
     /// Where some measured ends lie among the computed ones of their own places: mean rank, which is 0.5 where they are
@@ -295,43 +289,22 @@ impl CalibrationSite {
 
     /// Independent ends that the measured ones are worth.
     pub(super) fn effective(&self) -> f64 {
-        let runouts: Vec<f64> = self.measured.iter().map(ObservedPath::runout_m).collect();
-        effective(&runouts, &self.blocks)
+        self.worth_of(&self.rows(Ends::All))
+    }
+
+    /// Independent ends that some of the measured ones are worth, which these alone decide: a fit to them knows no other.
+    fn worth_of(&self, rows: &[usize]) -> f64 {
+        let runouts: Vec<f64> = rows.iter().map(|&row| self.measured[row].runout_m()).collect();
+        let blocks: Vec<String> =
+            rows.iter().filter_map(|&row| self.blocks.get(row)).cloned().collect();
+        effective(&runouts, &blocks)
     }
 
     /// As many of these measured ends as they are worth, drawn from them with replacement: their rows.
     pub(super) fn redraw(&self, of: Ends, random: &mut RandomStream) -> Vec<usize> {
         let rows = self.rows(of);
-        let share = rows.len() as f64 / self.measured.len() as f64;
-        let count = ((share * self.effective()).round() as usize).max(2);
-        let one = |random: &mut _| {
-            rows[((unit(random) * rows.len() as f64) as usize).min(rows.len() - 1)]
-        };
-        (0..count).map(|_| one(random)).collect()
-    }
-}
-
-impl OwnPlaces {
-    /// None unless every measured end was released from one of the places. Where both sides name their blocks, a place is
-    /// common to throws of one block only: blocks roll unlike.
-    fn of(measured: &[ObservedPath], blocks: &[String], places: &[ThrownFrom]) -> Option<Self> {
-        let is_same = |(one, its): &ThrownFrom, (other, others): &ThrownFrom| {
-            let is_near = math::hypot(one[0] - other[0], one[1] - other[1]) <= SAME_PLACE_M;
-            is_near && (its.is_none() || others.is_none() || its == others)
-        };
-        let ends = measured.iter().enumerate();
-        let ends: Vec<ThrownFrom> =
-            ends.map(|(row, way)| (way.start_m, blocks.get(row).map(String::as_str))).collect();
-        let place = |from: &ThrownFrom| ends.iter().position(|end| is_same(end, from));
-        let of_release: Vec<Option<usize>> = places.iter().map(place).collect();
-        let of_end: Vec<usize> = ends.iter().filter_map(place).collect();
-        let is_released = |place: &usize| of_release.contains(&Some(*place));
-        let common = !of_end.is_empty() && of_end.iter().all(is_released);
-        common.then_some(Self { of_end, of_release })
-    }
-
-    fn of_release(&self, index: usize) -> Option<usize> {
-        self.of_release[index % self.of_release.len()]
+        let count = (self.worth_of(&rows).round() as usize).max(2);
+        drawn_from(&rows, count, random)
     }
 }
 
@@ -342,34 +315,4 @@ fn bare(scene: &Scene, releases: usize) -> Scene {
     (bare.record.paths, bare.record.impacts) = (Some(0), Some(false));
     (bare.lines, bare.barriers, bare.maps) = (Vec::new(), Vec::new(), None);
     bare
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Three ends from one place and one from another, which the scene releases from evenly, and from a third.
-    #[test]
-    fn ends_are_compared_from_their_own_places() {
-        let way = |x: f64, y: f64| ObservedPath { start_m: [x, 0.0], end_m: [x, y] };
-        let measured = [way(0.0, 1.0), way(5.0, 2.0), way(0.05, 3.0), way(0.0, 4.0)];
-        let places = [[0.0, 0.0], [5.0, 0.0], [9.0, 0.0]].map(|at| (at, None));
-        let own = OwnPlaces::of(&measured, &[], &places).unwrap();
-        assert_eq!(own.of_end, [0, 1, 0, 0]);
-        assert_eq!(
-            (0..4).map(|k| own.of_release(k)).collect::<Vec<_>>(),
-            [Some(0), Some(1), None, Some(0)]
-        );
-        assert!(OwnPlaces::of(&measured, &[], &places[..1]).is_none());
-        assert!(OwnPlaces::of(&measured, &[], &[]).is_none());
-        // the same with blocks: two were thrown from the first place
-        let blocks = ["a", "b", "c", "a"].map(str::to_owned);
-        let thrown = [([0.0, 0.0], Some("a")), ([5.0, 0.0], Some("b")), ([0.0, 0.0], Some("c"))];
-        let own = OwnPlaces::of(&measured, &blocks, &thrown).unwrap();
-        assert_eq!(own.of_end, [0, 1, 2, 0]);
-        assert_eq!(
-            (0..3).map(|k| own.of_release(k)).collect::<Vec<_>>(),
-            [Some(0), Some(1), Some(2)]
-        );
-    }
 }

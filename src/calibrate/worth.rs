@@ -1,41 +1,23 @@
 //! What a fit is worth: how far the measured ends tell the values, and how far computed ends lie from them.
 
+use super::computed::{Computed, drawn_from, times_again};
+use super::redraw::{Again, REDRAWS, middle, tail_of};
 use super::search::ParameterSearch;
-use super::site::{CalibrationSite, Computed};
+use super::site::CalibrationSite;
+use super::told::Told;
 use super::{CalibrationStage, Ends};
 use crate::error::Result;
-use crate::hazard::{EndSpread, KOLMOGOROV_95, student_95};
+use crate::hazard::{EndSpread, Sample, ks_limit, runouts};
 use crate::math;
-use crate::random::{Purpose, stream, unit};
-use crate::scene::VaryTable;
+use crate::random::{Purpose, stream};
 use serde::{Deserialize, Serialize};
 use std::fmt;
-
-/// How often the measured ends are drawn again.
-const REDRAWS: usize = 200;
-/// Share of a value's range above which its interval tells nothing (–).
-const UNTOLD: f64 = 0.6;
 
 /// How far the ranks of measured ends are from even ones.
 const UNEVEN: &str = "largest distance of these ranks from even ones (–)";
 
 /// Most blocks that are told one by one.
 const MOST_BLOCKS: usize = 12;
-
-/// How far the measured ends tell one value.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Told {
-    /// `ground.key`.
-    pub name: String,
-    /// The value that fits all ends best.
-    pub value: f64,
-    /// Lower end of the 95 % interval: where the values lie that fit ends drawn again best.
-    pub low_95: f64,
-    /// Its upper end.
-    pub high_95: f64,
-    /// Whether the interval leaves out a good part of the range.
-    pub is_told: bool,
-}
 
 /// One figure of the measured ends of a scene beside the computed one.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -48,7 +30,8 @@ pub struct SiteMeasure {
     pub measured: f64,
     /// Of the computed ends.
     pub computed: f64,
-    /// 95 % interval of computed less measured, from measured ends drawn again, of standard deviations from their kurtosis: lower end.
+    /// 95 % interval of computed less measured, from measured ends and computed rocks drawn again, of measured standard deviations from their
+    /// kurtosis: lower end.
     /// None of what cannot be below 0: its words say what chance alone comes to; none of too few ends.
     pub low_95: Option<f64>,
     /// Its upper end.
@@ -71,109 +54,80 @@ impl ParameterSearch<'_> {
         Ok((self.told(values), self.measures(place, seed), (ends, worth)))
     }
 
-    /// How far the measured ends tell each value. A value tried stands for half a step to either side.
-    ///
-    /// The intervals are of the trials of all searches, whose rocks are others than those that selected: a selected value outside widens its own.
-    fn told(&self, values: &[f64]) -> Vec<Told> {
-        let ends: f64 = self.sites.iter().map(CalibrationSite::effective).sum();
-        let open = self.left_open(Ends::All, REDRAWS, tail_of(ends));
-        let one = |(at, vary): (usize, &VaryTable)| {
-            let half = 0.5 * self.step[at];
-            let low_95 = (open[at][0].min(values[at]) - half).max(vary.from);
-            let high_95 = (open[at][1].max(values[at]) + half).min(vary.to);
-            let is_told = high_95 - low_95 < UNTOLD * (vary.to - vary.from);
-            Told { name: vary.name(), value: values[at], low_95, high_95, is_told }
-        };
-        self.vary.iter().enumerate().map(one).collect()
-    }
-
-    /// Where the values lie that fit best, of those tried, when the measured ends are drawn again, but for a tail on either side.
-    pub(super) fn left_open(&self, ends: Ends, redraws: usize, tail: f64) -> Vec<[f64; 2]> {
-        let seed = self.sites[0].seed();
-        let best = |redraw: usize| {
-            let mut random = stream(seed, Purpose::Redraw, redraw);
-            let drawn: Vec<Vec<usize>> =
-                self.sites.iter().map(|site| site.redraw(ends, &mut random)).collect();
-            let distance = |computed: &[Computed]| -> f64 {
-                let each = self.sites.iter().zip(&drawn).zip(computed);
-                each.map(|((site, rows), computed)| site.distance(computed, rows)).sum()
-            };
-            let distances: Vec<f64> =
-                self.searched().map(|(_, computed)| distance(computed)).collect();
-            let least = distances.iter().copied().fold(f64::INFINITY, f64::min);
-            // values that make no difference fit equally well, all of them
-            let ties =
-                self.searched().zip(distances).filter(move |(_, distance)| *distance <= least);
-            ties.map(|((values, _), _)| values.to_vec()).collect::<Vec<_>>()
-        };
-        let best: Vec<Vec<Vec<f64>>> = (0..redraws).map(best).collect();
-        let extremes = |at: usize| {
-            let of = move |ties: &Vec<Vec<f64>>| {
-                let values = || ties.iter().map(|values| values[at]);
-                [values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max)]
-            };
-            best.iter().flat_map(of).collect()
-        };
-        (0..self.vary.len()).map(|at| middle(extremes(at), tail)).collect()
-    }
-
     fn measures(&self, place: usize, seed: u64) -> Vec<SiteMeasure> {
-        let sites = self.sites.iter().zip(self.computed(place));
         let of_site = |(site, computed): (&CalibrationSite, &Computed)| {
-            let all: Vec<usize> = (0..site.measured().len()).collect();
-            let found = site.figures(computed, &all);
-            let drawn =
-                |redraw: usize| site.redraw(Ends::All, &mut stream(seed, Purpose::Redraw, redraw));
-            let drawn: Vec<Vec<usize>> = (0..REDRAWS).map(drawn).collect();
-            let again: Vec<_> = drawn.iter().map(|rows| site.figures(computed, rows)).collect();
-            let one = |(at, (what, measured, own)): (usize, (&'static str, f64, f64))| {
-                let scene = site.title();
-                if let Some(most) = site.by_chance(what, computed, &drawn) {
-                    let what = what.replace(" (", &format!(", by chance up to {most:.2} ("));
-                    let (low_95, high_95) = (None, None);
-                    return SiteMeasure { scene, what, measured, computed: own, low_95, high_95 };
-                }
-                let worth = site.effective();
-                let deviation = EndSpread::deviation_95(what, site.measured(), worth);
-                let drawn = || {
-                    let off = again.iter().map(|figures| figures[at].2 - figures[at].1);
-                    middle(off.collect(), tail_of(worth)).map(Some)
-                };
-                let less = |measured: f64| own - measured;
-                let [low_95, high_95] =
-                    deviation.map_or_else(drawn, |[low, high]| [high.map(less), low.map(less)]);
-                let what = what.to_owned();
-                SiteMeasure { scene, what, measured, computed: own, low_95, high_95 }
-            };
-            let of_all = found.into_iter().enumerate().map(one);
-            of_all.chain(site.measures_of_blocks(computed, seed)).collect::<Vec<_>>()
+            let of_all = site.measures_of_all(computed, seed);
+            of_all.into_iter().chain(site.measures_of_blocks(computed, seed)).collect::<Vec<_>>()
         };
-        sites.flat_map(of_site).collect()
+        self.sites.iter().zip(self.computed(place)).flat_map(of_site).collect()
     }
 }
 
+/// Rows of measured ends beside what was computed, both drawn again.
+type DrawnEnds = (Vec<usize>, Computed);
+
 impl CalibrationSite {
+    /// Figures of all measured ends.
+    fn measures_of_all(&self, computed: &Computed, seed: u64) -> Vec<SiteMeasure> {
+        let all: Vec<usize> = (0..self.measured().len()).collect();
+        let drawn: Vec<DrawnEnds> = (0..REDRAWS).map(|k| self.again(computed, (seed, k))).collect();
+        let again: Vec<_> =
+            drawn.iter().map(|(rows, computed)| self.figures(computed, rows)).collect();
+        let (worth, rocks) = (self.effective(), computed.releases.0 as f64);
+        let one = |(at, (what, measured, own)): (usize, (&'static str, f64, f64))| {
+            let scene = self.title();
+            if let Some(most) = self.by_chance(what, computed, &drawn) {
+                let what = what.replace(" (", &format!(", by chance up to {most:.2} ("));
+                let (low_95, high_95) = (None, None);
+                return SiteMeasure { scene, what, measured, computed: own, low_95, high_95 };
+            }
+            let of = |tail: f64, figure: &dyn Fn(&(&'static str, f64, f64)) -> f64| {
+                middle(again.iter().map(|figures| figure(&figures[at])).collect(), tail)
+            };
+            let off = || of(tail_of(worth.min(rocks)), &|(_, measured, own)| own - measured);
+            let deviation = EndSpread::deviation_95(what, self.measured(), worth);
+            let [low_95, high_95] = deviation.map_or_else(
+                || off().map(Some),
+                |ends| less_95((own, of(tail_of(rocks), &|(_, _, own)| *own)), (measured, ends)),
+            );
+            SiteMeasure { scene, what: what.to_owned(), measured, computed: own, low_95, high_95 }
+        };
+        self.figures(computed, &all).into_iter().enumerate().map(one).collect()
+    }
+
+    /// Measured ends and computed rocks drawn again.
+    fn again(&self, computed: &Computed, (seed, redraw): (u64, usize)) -> DrawnEnds {
+        let mut random = stream(seed, Purpose::Redraw, redraw);
+        let again = Again::of(self, (Ends::All, computed), &mut random);
+        (again.rows, computed.again(&again.times))
+    }
+
     /// What a figure that cannot be below 0 comes to by chance, in 95 % of all samples of ends that are alike; none of other
-    /// figures. `drawn` are rows of measured ends drawn again.
-    fn by_chance(&self, what: &str, computed: &Computed, drawn: &[Vec<usize>]) -> Option<f64> {
+    /// figures. `drawn` are measured and computed ends drawn again.
+    fn by_chance(&self, what: &str, computed: &Computed, drawn: &[DrawnEnds]) -> Option<f64> {
         let n = self.effective();
+        let all = || (0..self.measured().len()).collect::<Vec<_>>();
         match what {
             EndSpread::OFFSET => {
-                let off = |rows: &[usize]| {
+                let off = |rows: &[usize], computed: &Computed| {
                     EndSpread::offset_m(&self.ends(rows), &self.weighted(computed, rows))
                 };
-                let all: Vec<usize> = (0..self.measured().len()).collect();
-                let own = off(&all);
+                let own = off(&all(), computed);
                 let moved = |[x, y]: [f64; 2]| math::hypot(x - own[0], y - own[1]);
-                let mut by: Vec<f64> = drawn.iter().map(|rows| moved(off(rows))).collect();
+                let mut by: Vec<f64> =
+                    drawn.iter().map(|(rows, computed)| moved(off(rows, computed))).collect();
                 by.sort_by(f64::total_cmp);
                 by.get((0.95 * by.len() as f64) as usize).copied()
             }
-            // all n measured ends lie below a quantile q of the computed ones with probability qⁿ
-            EndSpread::BEYOND => Some(1.0 - math::pow(0.05, 1.0 / n)),
-            UNEVEN => Some((KOLMOGOROV_95 / n.sqrt()).min(1.0)),
+            EndSpread::BEYOND => Some(beyond_95(n, self.rocks_beside(computed, &all()))),
+            UNEVEN => Some(ks_limit(n, self.rocks_beside(computed, &all())).min(1.0)),
             _ => None,
         }
+    }
+
+    /// Computed ends of equal weight that those beside some measured ends are worth (Kish 1965).
+    fn rocks_beside(&self, computed: &Computed, rows: &[usize]) -> f64 {
+        Sample::weighted(runouts(&self.weighted(computed, rows))).effective_rocks()
     }
 
     /// Figures of some measured ends and of what was computed beside them: what, measured, computed.
@@ -187,27 +141,26 @@ impl CalibrationSite {
     }
 
     /// Mean runout of each block, and by how much it differs from that of the first; ends are drawn again within each
-    /// block, where they are independent.
+    /// block, where they are independent, and computed rocks with them.
     fn measures_of_blocks(&self, computed: &Computed, seed: u64) -> Vec<SiteMeasure> {
         let blocks = self.rows_of_blocks();
         let is_thrown_again = blocks.iter().all(|(_, rows)| rows.len() > 1);
         if !(2..=MOST_BLOCKS).contains(&blocks.len()) || !is_thrown_again {
             return Vec::new();
         }
-        let mean = |rows: &[usize]| {
+        let mean = |computed: &Computed, rows: &[usize]| {
             let figures = EndSpread::figures(&self.ends(rows), &self.weighted(computed, rows));
             // the first of them is the mean runout
             figures.first().map_or([f64::NAN; 2], |(_, measured, computed)| [*measured, *computed])
         };
-        let found: Vec<[f64; 2]> = blocks.iter().map(|(_, rows)| mean(rows)).collect();
+        let found: Vec<[f64; 2]> = blocks.iter().map(|(_, rows)| mean(computed, rows)).collect();
         let again: Vec<Vec<[f64; 2]>> = (0..REDRAWS)
             .map(|redraw| {
                 let mut random = stream(seed, Purpose::Redraw, redraw);
-                let mut drawn = |rows: &[usize]| -> Vec<usize> {
-                    let one = |random: &mut _| rows[(unit(random) * rows.len() as f64) as usize];
-                    rows.iter().map(|_| one(&mut random)).collect()
-                };
-                blocks.iter().map(|(_, rows)| mean(&drawn(rows))).collect()
+                let rows = blocks.iter().map(|(_, rows)| drawn_from(rows, rows.len(), &mut random));
+                let rows: Vec<Vec<usize>> = rows.collect();
+                let computed = computed.again(&times_again(computed.releases, &mut random));
+                rows.iter().map(|rows| mean(&computed, rows)).collect()
             })
             .collect();
         let fewest = |rows: &[usize]| -> f64 {
@@ -232,37 +185,31 @@ impl CalibrationSite {
     }
 }
 
-/// The tail on either side that makes a 95 % interval of figures of so many independent ends when they are drawn again (–).
-///
-/// Ends drawn again vary less than ends do, by the part `(n − 1)/n` of the variance, and how much those vary is itself known the worse the fewer there are:
-/// `Φ(−t √(n/(n − 1)))` with Student's t of `n − 1` degrees of freedom makes good for both (Hesterberg 2015, The American
-/// Statistician 69, 371, section 5.3). Many ends have a fortieth.
-fn tail_of(ends: f64) -> f64 {
-    let n = ends.max(2.0);
-    let far = student_95(n - 1.0) * (n / (n - 1.0)).sqrt();
-    0.5 * math::erfc(far / std::f64::consts::SQRT_2)
+/// 95 % interval of a computed figure less a measured one, each of which has its own: the distances to their ends add up in squares (Zou and
+/// Donner 2008, Statistics in Medicine 27, 1693). None where the measured one has none.
+fn less_95(
+    (computed, [lower, upper]): (f64, [f64; 2]),
+    (measured, [low, high]): (f64, [Option<f64>; 2]),
+) -> [Option<f64>; 2] {
+    let off = computed - measured;
+    [
+        high.map(|high| off - math::hypot(computed - lower, high - measured)),
+        low.map(|low| off + math::hypot(upper - computed, measured - low)),
+    ]
 }
 
-/// The interval that leaves out a tail of the numbers on either side.
-fn middle(mut numbers: Vec<f64>, tail: f64) -> [f64; 2] {
-    numbers.sort_by(f64::total_cmp);
-    let at = |p: f64| {
-        let rank = (p * (numbers.len() as f64 - 1.0)).round() as usize;
-        numbers.get(rank).copied().unwrap_or(f64::NAN)
-    };
-    [at(tail), at(1.0 - tail)]
-}
-
-impl fmt::Display for Told {
-    fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { name, value, low_95, high_95, is_told } = self;
-        let [value, low_95, high_95] = [value, low_95, high_95].map(|&v| math::rounded(v, 4));
-        write!(to, "{name} = {value} (95 %: {low_95} to {high_95})")?;
-        if *is_told {
-            return Ok(());
+/// The share of so many computed ends that lie beyond all of so many measured ones which is exceeded in less than 5 % of all samples that are alike (–):
+/// the farthest `k` of both are computed ones with probability `Π (m − i)/(n + m − i)`, `i < k`.
+fn beyond_95(measured: f64, computed: f64) -> f64 {
+    let (mut chance, mut count) = (1.0, 0.0);
+    while count < computed {
+        chance *= (computed - count) / (measured + computed - count);
+        if chance < 0.05 {
+            break;
         }
-        write!(to, "; warning: the measured ends hardly tell it, other values fit as well")
+        count += 1.0;
     }
+    count / computed.max(1.0)
 }
 
 impl fmt::Display for SiteMeasure {
@@ -287,38 +234,25 @@ fn plain(value: f64) -> String {
 mod tests {
     use super::*;
 
-    /// Means of ten ends of a known law, drawn again as the measured ones are: the truth lies in the interval in 92 of 100 samples, by a fortieth on
-    /// either side in 89; of fourteen, what Tschamut's are worth, in 94 and 91.
+    /// By hand: 5 (4 to 8) less 3 (2.25 to 7) is 2, from √(1² + 4²) below to √(3² + 0.75²) above.
     #[test]
-    fn the_mean_of_few_ends_lies_in_its_interval() {
-        const SAMPLES: usize = 4000;
-        for (n, least) in [(10_usize, 0.91), (14, 0.925)] {
-            let holds = |sample: &usize| {
-                let mut random = stream(n as u64, Purpose::Redraw, *sample);
-                // the sum of twelve even numbers is normal enough (–)
-                let mut end = || (0..12).map(|_| unit(&mut random) - 0.5).sum::<f64>();
-                let ends: Vec<f64> = (0..n).map(|_| end()).collect();
-                let mut again = || -> f64 {
-                    let one = |_| ends[(unit(&mut random) * n as f64) as usize];
-                    (0..n).map(one).sum::<f64>() / n as f64
-                };
-                let means = (0..REDRAWS).map(|_| again()).collect();
-                let [low, high] = middle(means, tail_of(n as f64));
-                low <= 0.0 && 0.0 <= high
-            };
-            let share = (0..SAMPLES).filter(holds).count() as f64 / SAMPLES as f64;
-            assert!((least..=0.96).contains(&share), "{n}: {share}");
-        }
-        assert!((tail_of(1e9) - 0.025).abs() < 1e-6 && tail_of(2.0) < 1e-9);
+    fn a_difference_has_the_errors_of_both() {
+        let [low, high] =
+            less_95((5.0, [4.0, 8.0]), (3.0, [Some(2.25), Some(7.0)])).map(Option::unwrap);
+        assert!((low - (2.0 - 17.0_f64.sqrt())).abs() < 1e-12);
+        assert!((high - (2.0 + 9.5625_f64.sqrt())).abs() < 1e-12);
+        assert_eq!(less_95((5.0, [4.0, 8.0]), (3.0, [None, None])), [None, None]);
     }
 
-    /// Of five and of ten ends: Student's t of four and of nine degrees of freedom, 2.7764 and 2.2622, stretched by `√(n/(n − 1))` to 3.1042 and 2.3845, and
-    /// what a normal variable exceeds by chance there, from tables. A thousandth of t, by which its series is off for three degrees of freedom, is a hundredth of that.
+    /// Of two measured and three computed ends the farthest is a computed one with 3/5, the two farthest are with 3/5 · 2/4 = 0.3, all three with
+    /// 0.3 · 1/3 = 0.1: more than 5 %. Of three measured ones these are 1/2, 1/5 and 1/20, of four 3/7, 1/7 and 1/35. Beside very many computed ends it is the share
+    /// `1 − q` with `qⁿ = 0.05`.
     #[test]
-    fn the_tail_of_few_ends_is_that_of_student() {
-        for (ends, exact) in [(5.0, 9.541e-4), (10.0, 8.5506e-3)] {
-            let tail = tail_of(ends);
-            assert!((tail / exact - 1.0).abs() < 1e-2, "{ends}: {tail} for {exact}");
+    fn the_share_beyond_all_measured_ends_is_that_of_chance() {
+        for (n, wanted) in [(2.0, 1.0), (4.0, 2.0 / 3.0)] {
+            assert!((beyond_95(n, 3.0) - wanted).abs() < 1e-12, "{n}");
         }
+        let many = beyond_95(24.0, 1e6);
+        assert!((many - (1.0 - 0.05_f64.powf(1.0 / 24.0))).abs() < 1e-5, "{many}");
     }
 }

@@ -49,16 +49,21 @@ pub struct Agreement {
     /// Mean runout measured (m).
     pub measured_mean_m: f64,
     /// Mean runout computed (m).
+    #[serde(deserialize_with = "or_nothing")]
     pub computed_mean_m: f64,
     /// Largest difference of the two distributions of runout (–), Kolmogorov and Smirnov.
     pub ks: f64,
     /// The difference that equal distributions exceed in 5 % of all samples (–): `1.36 √((n + m)/(n m))`.
+    #[serde(deserialize_with = "or_nothing")]
     pub ks_limit: f64,
     /// Area between the two distributions of runout (m): how far rocks must be moved on average to agree.
+    #[serde(deserialize_with = "or_nothing")]
     pub area_m: f64,
     /// Standard deviation of the measured ends across the mean measured direction (m).
+    #[serde(deserialize_with = "or_nothing")]
     pub measured_side_m: f64,
     /// The same of the computed ends, across the same direction (m).
+    #[serde(deserialize_with = "or_nothing")]
     pub computed_side_m: f64,
     /// Computed rocks that are not among them, as their runout is less than any that was measured can be.
     #[serde(default)]
@@ -66,6 +71,11 @@ pub struct Agreement {
     /// Energy distance of the ends in plan view, block by block ([`EndDistances`], m); only where a fit is scored by it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ends_m: Option<f64>,
+}
+
+/// A number, which JSON has none for what is none.
+fn or_nothing<'de, D: serde::Deserializer<'de>>(from: D) -> std::result::Result<f64, D::Error> {
+    Ok(Option::deserialize(from)?.unwrap_or(f64::NAN))
 }
 
 impl ObservedPath {
@@ -106,7 +116,7 @@ impl ObservedPath {
     pub fn read_lines(ends: &MeasuredEnds) -> Result<Vec<(u64, Self)>> {
         let path = ends.file.as_path();
         let table = file::read_table(path, LONGEST_TEXT)?;
-        let mut reader = csv::Reader::from_reader(&table[..]);
+        let mut reader = file::table_reader(&table);
         let headers = reader.headers().cloned().unwrap_or_default();
         let way = |row: csv::Result<csv::StringRecord>| {
             let line_of = |position: Option<&csv::Position>| file::line_of(&table, position);
@@ -159,7 +169,7 @@ impl ObservedPath {
     /// A file that cannot be read.
     pub fn read_blocks(path: &Path) -> Result<Vec<String>> {
         let table = file::read_table(path, LONGEST_TEXT)?;
-        let rows = csv::Reader::from_reader(&table[..]).into_deserialize();
+        let rows = file::table_reader(&table).into_deserialize();
         let blocks = rows.map(|row: csv::Result<BlockColumn>| row.ok().map(|thrown| thrown.block));
         Ok(blocks.collect::<Option<_>>().unwrap_or_default())
     }
@@ -195,13 +205,33 @@ impl Agreement {
     /// The limit of [`Self::ks_limit`] for measured ends that are worth so many independent ones: throws of one block are alike.
     pub fn ks_limit_worth(&self, worth: f64) -> f64 {
         let both = (self.ks_limit / KOLMOGOROV_95).powi(2);
-        KOLMOGOROV_95 * (both - 1.0 / self.measured as f64 + 1.0 / worth).max(0.0).sqrt()
+        KOLMOGOROV_95
+            * (both - 1.0 / self.measured as f64 + 1.0 / worth).clamp(0.0, f64::INFINITY).sqrt()
     }
 
     /// Compares measured and computed ways; none if either is empty.
     pub fn of(measured: &[ObservedPath], computed: &[ObservedPath]) -> Option<Self> {
         let computed: Vec<Weighted> = computed.iter().map(|way| (*way, 1.0)).collect();
         Self::of_weighted(measured, &computed)
+    }
+
+    /// Of measured ways beside none that were computed: as far apart as can be, by means that are no numbers.
+    pub fn of_nothing(measured: &[ObservedPath]) -> Self {
+        let even: Vec<Weighted> = measured.iter().map(|way| (*way, 1.0)).collect();
+        let sum: f64 = measured.iter().map(ObservedPath::runout_m).sum();
+        Self {
+            measured: measured.len(),
+            computed: 0,
+            measured_mean_m: sum / measured.len() as f64,
+            computed_mean_m: f64::NAN,
+            ks: 1.0,
+            ks_limit: f64::NAN,
+            area_m: f64::NAN,
+            measured_side_m: EndSpread::of(&even, mean_direction(measured)).across_m(),
+            computed_side_m: f64::NAN,
+            stayed: 0,
+            ends_m: None,
+        }
     }
 
     /// The same where computed ways weigh what they stand for; measured ones stand for one end each. The limit is that of as many

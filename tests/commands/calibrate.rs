@@ -28,7 +28,7 @@ pub(super) fn plate(dir: &Path) {
 }
 
 /// Rocks thrown along a level: how far they roll tells their rolling friction, and next to nothing of restitution.
-fn thrown(dir: &Path, name: &str, speed: [f64; 2], more: &str) -> PathBuf {
+pub(super) fn thrown(dir: &Path, name: &str, speed: [f64; 2], more: &str) -> PathBuf {
     plate(dir);
     let text = format!(
         r#"title = "{name}"
@@ -100,8 +100,8 @@ fn a_known_value_is_found_and_an_idle_one_is_named() {
     assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
     let found = read_calibration(&out).unwrap().unwrap();
     let [rolling, restitution] = &found.told[..] else { panic!("{:?}", found.told) };
-    assert!(rolling.low_95 <= 0.45 && 0.45 <= rolling.high_95, "{said}");
-    assert!(rolling.is_told && rolling.high_95 - rolling.low_95 < 0.25, "{said}");
+    let [low, high] = [rolling.low_95, rolling.high_95].map(Option::unwrap);
+    assert!(low <= 0.45 && 0.45 <= high && rolling.is_told && high - low < 0.25, "{said}");
     assert!(!restitution.is_told, "{said}");
     assert!(said.contains("meadow.restitution") && said.contains("hardly tell it"), "{said}");
     let whole = &found.whole;
@@ -146,8 +146,8 @@ fn the_interval_is_that_of_the_ends() {
     assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
     let found = read_calibration(&out).unwrap().unwrap();
     let told = &found.told[0];
-    let (low, high) = (told.low_95, told.high_95);
-    assert!(low <= 0.45 && 0.45 <= high && high - low < 0.2, "{said}");
+    let [low, high] = [told.low_95, told.high_95].map(Option::unwrap);
+    assert!(low <= 0.45 && 0.45 <= high && high - low < 0.35, "{said}");
     let trials = fs::read_to_string(out.join("calibration.csv")).unwrap();
     let tried = trials.lines().skip(1).map(|row| row.split(',').nth(1).unwrap().parse().unwrap());
     let inside = tried.filter(|value: &f64| low <= *value && *value <= high).count();

@@ -17,7 +17,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Rocks that start alike and part on rough ground: how far a few of them come is luck above all.
-fn rough(dir: &Path, seed: u64, calibrate: &str) -> PathBuf {
+pub(super) fn rough(dir: &Path, seed: u64, calibrate: &str) -> PathBuf {
     plate(dir);
     let text = format!(
         r#"title = "rough"
@@ -50,7 +50,7 @@ points_m = [[-30.0, 0.0]]
 }
 
 /// The ways of so many rocks of another seed; nothing is written or drawn of them.
-fn ways(file: &Path, seed: u64, releases: usize) -> Vec<ObservedPath> {
+pub(super) fn ways(file: &Path, seed: u64, releases: usize) -> Vec<ObservedPath> {
     let mut scene = Scene::read(file).unwrap();
     (scene.seed, scene.release.count) = (seed, releases);
     let plan = Plan::of_scene(&scene).unwrap();
@@ -236,8 +236,9 @@ fn an_interval_ends_half_a_step_beyond_values_tried() {
     let tried: Vec<f64> = rows.map(|row| row.split(',').nth(1).unwrap().parse().unwrap()).collect();
     let half = 0.5 * (tried[tried.len() - 1] - tried[tried.len() - 2]);
     let told = &read_calibration(&out).unwrap().unwrap().told[0];
-    assert!(half > 0.0 && told.low_95 > 0.05 && told.high_95 < 3.0, "{told:?}");
-    for inside in [told.low_95 + half, told.high_95 - half] {
+    let [low, high] = [told.low_95, told.high_95].map(Option::unwrap);
+    assert!(half > 0.0 && low > 0.05 && high < 3.0, "{told:?}");
+    for inside in [low + half, high - half] {
         let is_tried = tried.iter().any(|value| (value - inside).abs() < 1e-9);
         assert!(is_tried, "{inside} of {told:?}, half a step {half}: {tried:?}");
     }

@@ -28,6 +28,7 @@ mod bounded;
 mod bounded_worlds;
 mod calibrate;
 mod calibrate_blocks;
+mod calibrate_doubts;
 mod calibrate_selection;
 mod catalogue;
 mod compare;

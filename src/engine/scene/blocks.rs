@@ -84,7 +84,7 @@ pub(super) fn read(
     let wrong = |line: u64, found: String| {
         Error::input(path, format!("line {line}"), found, file::table_remedy(&table, REMEDY))
     };
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(&table[..]);
+    let mut reader = file::table_reader(&table);
     let headers = reader.headers().cloned().unwrap_or_default();
     let columns = BlockColumns::of(&headers, has_height).map_err(|found| wrong(1, found))?;
     columns.check_size(size_from).map_err(|found| wrong(1, found))?;

@@ -314,6 +314,14 @@ impl VaryTable {
         format!("{}.{}", self.ground.as_deref().unwrap_or("rocks.shapes"), self.key.name())
     }
 
+    /// Whether there are values beyond either end of the range, which were not tried.
+    pub fn goes_on(&self) -> [bool; 2] {
+        // far less than any step of a search
+        let little = 1e-9 * (self.to - self.from);
+        [self.from - little, self.to + little]
+            .map(|beyond| number("", beyond, self.key.allowed(), "").is_ok())
+    }
+
     fn check(&self) -> Checked {
         let key = self.key.name();
         if self.ground.is_some() && self.key.is_of_shapes() {

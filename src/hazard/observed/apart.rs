@@ -13,6 +13,20 @@ pub struct EndDistances {
     to_computed_m: Vec<f64>,
     /// Mean distance of two computed ends of each group (m).
     within_m: Vec<f64>,
+    /// Of each group the computed ends beside it.
+    pulls: Vec<Vec<EndPull>>,
+}
+
+/// What one computed end does to the distance of its group.
+#[derive(Debug, Clone, PartialEq)]
+struct EndPull {
+    /// Which of the computed ends it is.
+    at: usize,
+    /// What it weighs (–).
+    weight: f64,
+    /// By how much the distance grows with its share of all, to first order (m): twice its mean distance from the measured ends of its group
+    /// less that from the computed ones.
+    pull_m: f64,
 }
 
 impl EndDistances {
@@ -23,18 +37,46 @@ impl EndDistances {
         computed: impl Fn(&[usize]) -> Vec<Weighted>,
     ) -> Self {
         let mut to_computed_m = vec![f64::NAN; measured.len()];
-        let mut within_m = Vec::new();
+        let (mut within_m, mut pulls) = (Vec::new(), Vec::new());
         for rows in groups {
-            let mut beside = computed(rows);
-            beside.retain(|(way, weight)| *weight > 0.0 && way.runout_m().is_finite());
+            let all = computed(rows).into_iter().enumerate();
+            let is_beside = |(_, (way, weight)): &(usize, Weighted)| {
+                *weight > 0.0 && way.runout_m().is_finite()
+            };
+            let (places, beside): (Vec<usize>, Vec<Weighted>) = all.filter(is_beside).unzip();
             for &row in rows {
                 to_computed_m[row] = mean_distance_m(&measured[row], &beside);
             }
+            let ends: Vec<Weighted> = rows.iter().map(|&row| (measured[row], 1.0)).collect();
             let whole: f64 = beside.iter().map(|(_, weight)| weight).sum();
-            let each = beside.iter().map(|(way, weight)| weight * mean_distance_m(way, &beside));
-            within_m.push(each.sum::<f64>() / whole);
+            let mut within = 0.0;
+            let pull = |(at, (way, weight)): (usize, &Weighted)| {
+                let from_computed_m = mean_distance_m(way, &beside);
+                within += weight * from_computed_m;
+                let pull_m = 2.0 * (mean_distance_m(way, &ends) - from_computed_m);
+                EndPull { at, weight: *weight, pull_m }
+            };
+            pulls.push(places.into_iter().zip(&beside).map(pull).collect());
+            within_m.push(within / whole);
         }
-        Self { to_computed_m, within_m }
+        Self { to_computed_m, within_m, pulls }
+    }
+
+    /// The same where each computed end stands there so many times, to first order in how their distribution changes: all pairs of
+    /// ends would have to be gone through for every one of many drawings, and change less.
+    #[must_use]
+    pub fn again(&self, times: &[usize]) -> Self {
+        let moved_m = |ends: &Vec<EndPull>| {
+            let mean_m = |times: &dyn Fn(&EndPull) -> f64| {
+                let weights = ends.iter().map(|end| end.weight * times(end));
+                let sum_m: f64 = weights.clone().zip(ends).map(|(w, end)| w * end.pull_m).sum();
+                sum_m / weights.sum::<f64>()
+            };
+            mean_m(&|end| times[end.at] as f64) - mean_m(&|_| 1.0)
+        };
+        let within_m = self.within_m.iter().zip(&self.pulls);
+        let within_m = within_m.map(|(within_m, ends)| within_m - moved_m(ends)).collect();
+        Self { to_computed_m: self.to_computed_m.clone(), within_m, pulls: Vec::new() }
     }
 
     /// Energy distance of some measured ends, which may stand there several times, from the computed ones (m); not a number where
@@ -98,6 +140,20 @@ mod tests {
         assert!(apart.energy_m(&measured, &groups, &[0, 1]).abs() < 1e-14);
         // an end that was drawn twice instead of the other: 2 · 1 − 1 − 0
         assert!((apart.energy_m(&measured, &groups, &[1, 1]) - 1.0).abs() < 1e-14);
+    }
+
+    /// By hand: ends at 0 and 2 m, computed at 1 and 4 m; drawn again, only that at 4 m. Pulls: 2 (1 − 1.5) = −1 and 2 (3 − 1.5) = 3 m, so the distance grows
+    /// by 3 − 1 = 2 m, from 2 · 2 − 1.5 − 1 = 1.5 to 3.5 m. Each as often as before leaves it.
+    #[test]
+    fn computed_ends_drawn_again_move_the_distance_by_their_pulls() {
+        let measured = [way(0.0, 0.0), way(2.0, 0.0)];
+        let computed = [(way(9.0, 0.0), 0.0), (way(1.0, 0.0), 1.0), (way(4.0, 0.0), 1.0)];
+        let groups = [vec![0, 1]];
+        let apart = EndDistances::of(&measured, &groups, |_| computed.to_vec());
+        for (times, wanted) in [([1, 0, 1], 3.5), ([0, 2, 2], 1.5)] {
+            let found = apart.again(&times).energy_m(&measured, &groups, &[0, 1]);
+            assert!((found - wanted).abs() < 1e-14, "{found}");
+        }
     }
 
     /// Two blocks that end 10 m apart, computed the other way round: over all ends alike, block by block not at all.

@@ -145,7 +145,7 @@ fn effort(found: &Calibration, words: &Words) -> String {
 /// How far the measured ends tell each value.
 fn told(found: &Calibration, words: &Words) -> EstimateTable {
     let row = |told: &Told| {
-        let value = estimate(told.value, Some(told.low_95), Some(told.high_95));
+        let value = estimate(told.value, told.low_95, told.high_95);
         let name = if told.is_told {
             told.name.clone()
         } else {
@@ -156,18 +156,25 @@ fn told(found: &Calibration, words: &Words) -> EstimateTable {
     EstimateTable {
         about: About::Measured,
         title: words.told_title.to_owned(),
-        note: fill(
-            words.told_note,
-            &[
-                ("ends", &found.ends.0),
-                ("worth", &format::decimal(found.ends.1, 0)),
-                ("limit", &format::decimal(found.independent_ks_limit(&found.whole.all), 2)),
-            ],
-        ),
+        note: told_note(found, words),
         columns: vec![words.fitted.to_owned()],
         rows: found.told.iter().map(row).collect(),
         ..EstimateTable::default()
     }
+}
+
+/// What the table of values says, and what the fit warns of.
+fn told_note(found: &Calibration, words: &Words) -> String {
+    let note = fill(
+        words.told_note,
+        &[
+            ("ends", &found.ends.0),
+            ("worth", &format::decimal(found.ends.1, 0)),
+            ("limit", &format::decimal(found.independent_ks_limit(&found.whole.all), 2)),
+        ],
+    );
+    let warned = found.warnings.iter().map(|said| format::sentence(&words.say(said)));
+    [note].into_iter().chain(warned).collect::<Vec<_>>().join(" ")
 }
 
 /// Where the ends of the fit lie and how they spread.

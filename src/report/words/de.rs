@@ -329,10 +329,10 @@ pub(super) static WORDS: Words = Words {
     fitted_all: "An allen angepasst",
     hardly_told: "{name} (kaum bestimmt: andere Werte passen ebenso)",
     told_title: "Was die gemessenen Endpunkte aussagen",
-    told_note: "An allen {ends} gemessenen Endpunkten angepasste Werte, mit 95-%-Intervallen aus erneut gezogenen Endpunkten; Würfe eines Blocks ähneln sich, sie sind {worth} unabhängige wert. Für so viele ist die KS-Grenze der Anpassung an alle {limit}; ein Test ist sie nicht, denn die Werte wurden an dieselben Endpunkte angepasst.",
+    told_note: "An allen {ends} gemessenen Endpunkten angepasste Werte, mit 95-%-Intervallen aus erneut gezogenen Endpunkten und gerechneten Blöcken (offen, wo die besten Werte bis ans Ende des versuchten Bereichs reichen); Würfe eines Blocks ähneln sich, sie sind {worth} unabhängige wert. Für so viele ist die KS-Grenze der Anpassung an alle {limit}; ein Test ist sie nicht, denn die Werte wurden an dieselben Endpunkte angepasst.",
     fitted: "angepasst",
     ends_title: "Endpunkte der Anpassung",
-    ends_note: "Gerechnet minus gemessen mit 95-%-Intervall, aus erneut gezogenen gemessenen Endpunkten; von Standardabweichungen aus der Wölbung der Endpunkte (Bonett 2006).",
+    ends_note: "Gerechnet minus gemessen mit 95-%-Intervall, aus erneut gezogenen gemessenen Endpunkten und gerechneten Blöcken; von gemessenen Standardabweichungen aus der Wölbung der Endpunkte (Bonett 2006).",
     difference: "Unterschied",
     // Plausibility
     check_failed: "{name}: {found}",

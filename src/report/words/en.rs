@@ -322,10 +322,10 @@ pub(super) static WORDS: Words = Words {
     fitted_all: "Fitted on all",
     hardly_told: "{name} (hardly told: other values fit as well)",
     told_title: "What the measured ends tell",
-    told_note: "Values fitted on all {ends} measured ends, with 95 % intervals from ends drawn again; throws of one block are alike, so that they are worth {worth} independent ones. For so many the KS limit of the fit on all is {limit}; it is no test, as the values were fitted to the same ends.",
+    told_note: "Values fitted on all {ends} measured ends, with 95 % intervals from measured ends and computed rocks drawn again (open where the best values reach the end of the range tried); throws of one block are alike, so that they are worth {worth} independent ones. For so many the KS limit of the fit on all is {limit}; it is no test, as the values were fitted to the same ends.",
     fitted: "fitted",
     ends_title: "Ends of the fit",
-    ends_note: "Computed less measured with its 95 % interval, from measured ends drawn again; of standard deviations from the kurtosis of the ends (Bonett 2006).",
+    ends_note: "Computed less measured with its 95 % interval, from measured ends and computed rocks drawn again; of measured standard deviations from the kurtosis of the ends (Bonett 2006).",
     difference: "difference",
     // Plausibility
     check_failed: "{name}: {found}",

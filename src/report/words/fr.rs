@@ -329,10 +329,10 @@ pub(super) static WORDS: Words = Words {
     fitted_all: "Calé sur tous",
     hardly_told: "{name} (mal déterminé\u{a0}: d’autres valeurs conviennent aussi)",
     told_title: "Ce que disent les arrêts mesurés",
-    told_note: "Valeurs calées sur les {ends} arrêts mesurés, avec intervalles à 95 % par rééchantillonnage\u{a0}; les lancers d’un même bloc se ressemblent et en valent {worth} indépendants. Pour autant d’arrêts, la limite KS du calage sur tous est {limit}\u{a0}; ce n’est pas un test, les valeurs étant calées sur les mêmes arrêts.",
+    told_note: "Valeurs calées sur les {ends} arrêts mesurés, avec intervalles à 95 % par rééchantillonnage des arrêts et des blocs calculés (ouverts où les meilleures valeurs atteignent le bout de l’intervalle essayé)\u{a0}; les lancers d’un même bloc se ressemblent et en valent {worth} indépendants. Pour autant d’arrêts, la limite KS du calage sur tous est {limit}\u{a0}; ce n’est pas un test, les valeurs étant calées sur les mêmes arrêts.",
     fitted: "calé",
     ends_title: "Arrêts du calage",
-    ends_note: "Calculé moins mesuré avec intervalle à 95 %, par rééchantillonnage des arrêts mesurés\u{a0}; des écarts types d’après l’aplatissement des arrêts (Bonett 2006).",
+    ends_note: "Calculé moins mesuré avec intervalle à 95 %, par rééchantillonnage des arrêts mesurés et des blocs calculés\u{a0}; des écarts types mesurés d’après l’aplatissement des arrêts (Bonett 2006).",
     difference: "différence",
     // Plausibility
     check_failed: "{name}\u{a0}: {found}",

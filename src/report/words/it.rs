@@ -329,10 +329,10 @@ pub(super) static WORDS: Words = Words {
     fitted_all: "Adattato su tutti",
     hardly_told: "{name} (poco determinato: altri valori vanno altrettanto bene)",
     told_title: "Che cosa dicono gli arresti misurati",
-    told_note: "Valori adattati su tutti i {ends} arresti misurati, con intervalli al 95 % da ricampionamento; i lanci di uno stesso blocco si somigliano e ne valgono {worth} indipendenti. Per altrettanti arresti il limite KS dell’adattamento su tutti è {limit}; non è una prova, perché i valori sono adattati agli stessi arresti.",
+    told_note: "Valori adattati su tutti i {ends} arresti misurati, con intervalli al 95 % da ricampionamento di arresti e blocchi calcolati (aperti dove i valori migliori arrivano all’estremo dell’intervallo provato); i lanci di uno stesso blocco si somigliano e ne valgono {worth} indipendenti. Per altrettanti arresti il limite KS dell’adattamento su tutti è {limit}; non è una prova, perché i valori sono adattati agli stessi arresti.",
     fitted: "adattato",
     ends_title: "Arresti dell’adattamento",
-    ends_note: "Calcolato meno misurato con intervallo al 95 %, da ricampionamento degli arresti misurati; delle deviazioni standard dalla curtosi degli arresti (Bonett 2006).",
+    ends_note: "Calcolato meno misurato con intervallo al 95 %, da ricampionamento degli arresti misurati e dei blocchi calcolati; delle deviazioni standard misurate dalla curtosi degli arresti (Bonett 2006).",
     difference: "differenza",
     // Plausibility
     check_failed: "{name}: {found}",

@@ -110,7 +110,7 @@ pub fn read_list(path: &Path) -> Result<TreeList> {
         return read_drawn(path);
     }
     let table = file::read_table(path, LONGEST_TEXT)?;
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(&table[..]);
+    let mut reader = file::table_reader(&table);
     let remedy = || file::table_remedy(&table, REMEDY);
     let header = |found: String| Error::input(path, "line 1", found, remedy());
     let headers = reader.headers().map_err(|why| header(format!("found {why}")))?.clone();

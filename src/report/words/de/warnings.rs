@@ -46,4 +46,16 @@ pub(super) const WARNINGS: &[(&str, &str)] = &[
         "{file} says how large the rocks of its zones are, which is not used: sizes are those of the scene; where each zone says how often too, and [frequency] has no law of its own, each has its own",
         "{file} sagt, wie groß die Blöcke seiner Zonen sind, was nicht verwendet wird: Größen sind die der Szene; wo jede Zone auch sagt, wie oft, und [frequency] kein eigenes Gesetz hat, hat jede ihre eigenen",
     ),
+    (
+        "{name}: the values that fit best reach the lower end of the range tried, {a}, and better ones may lie below it; write a smaller from in vary",
+        "{name}: die am besten passenden Werte reichen bis ans untere Ende des versuchten Bereichs, {a}, bessere können darunter liegen; in vary ein kleineres from schreiben",
+    ),
+    (
+        "{name}: the values that fit best reach the upper end of the range tried, {a}, and better ones may lie above it; write a larger to in vary",
+        "{name}: die am besten passenden Werte reichen bis ans obere Ende des versuchten Bereichs, {a}, bessere können darüber liegen; in vary ein größeres to schreiben",
+    ),
+    (
+        "the values tried do not explain the measured ends: KS distance {a} of the fit on all, 5 % limit {b}; write wider ranges in vary, vary other values, or look at terrain, rocks and releases",
+        "die versuchten Werte erklären die gemessenen Endpunkte nicht: KS-Abstand {a} der Anpassung an alle, 5-%-Grenze {b}; in vary weitere Bereiche schreiben, andere Werte variieren, oder Gelände, Blöcke und Ablösungen prüfen",
+    ),
 ];

@@ -46,4 +46,16 @@ pub(super) const WARNINGS: &[(&str, &str)] = &[
         "{file} says how large the rocks of its zones are, which is not used: sizes are those of the scene; where each zone says how often too, and [frequency] has no law of its own, each has its own",
         "{file} dit la taille des blocs de ses zones, qui n’est pas utilisée\u{a0}: les tailles sont celles de la scène\u{a0}; si chaque zone dit aussi la fréquence et que [frequency] n’a pas de loi propre, chacune a les siennes",
     ),
+    (
+        "{name}: the values that fit best reach the lower end of the range tried, {a}, and better ones may lie below it; write a smaller from in vary",
+        "{name}\u{a0}: les valeurs qui conviennent le mieux atteignent le bas de l’intervalle essayé, {a}, et de meilleures peuvent se trouver au-dessous\u{a0}; écrire dans vary un from plus petit",
+    ),
+    (
+        "{name}: the values that fit best reach the upper end of the range tried, {a}, and better ones may lie above it; write a larger to in vary",
+        "{name}\u{a0}: les valeurs qui conviennent le mieux atteignent le haut de l’intervalle essayé, {a}, et de meilleures peuvent se trouver au-dessus\u{a0}; écrire dans vary un to plus grand",
+    ),
+    (
+        "the values tried do not explain the measured ends: KS distance {a} of the fit on all, 5 % limit {b}; write wider ranges in vary, vary other values, or look at terrain, rocks and releases",
+        "les valeurs essayées n’expliquent pas les arrêts mesurés\u{a0}: distance KS {a} du calage sur tous, limite à 5 % {b}\u{a0}; écrire dans vary des intervalles plus larges, varier d’autres valeurs, ou revoir terrain, blocs et départs",
+    ),
 ];

@@ -46,4 +46,16 @@ pub(super) const WARNINGS: &[(&str, &str)] = &[
         "{file} says how large the rocks of its zones are, which is not used: sizes are those of the scene; where each zone says how often too, and [frequency] has no law of its own, each has its own",
         "{file} dice quanto sono grandi i massi delle sue zone, e non è usato: le dimensioni sono quelle della scena; dove ogni zona dice anche quanto spesso, e [frequency] non ha una legge propria, ognuna ha le sue",
     ),
+    (
+        "{name}: the values that fit best reach the lower end of the range tried, {a}, and better ones may lie below it; write a smaller from in vary",
+        "{name}: i valori che si adattano meglio arrivano all’estremo inferiore dell’intervallo provato, {a}, e valori migliori possono trovarsi al di sotto; scrivere in vary un from più piccolo",
+    ),
+    (
+        "{name}: the values that fit best reach the upper end of the range tried, {a}, and better ones may lie above it; write a larger to in vary",
+        "{name}: i valori che si adattano meglio arrivano all’estremo superiore dell’intervallo provato, {a}, e valori migliori possono trovarsi al di sopra; scrivere in vary un to più grande",
+    ),
+    (
+        "the values tried do not explain the measured ends: KS distance {a} of the fit on all, 5 % limit {b}; write wider ranges in vary, vary other values, or look at terrain, rocks and releases",
+        "i valori provati non spiegano gli arresti misurati: distanza KS {a} dell’adattamento su tutti, limite al 5 % {b}; scrivere in vary intervalli più ampi, variare altri valori, o rivedere terreno, blocchi e distacchi",
+    ),
 ];
