@@ -70,11 +70,15 @@ impl Comparison {
         let ranges = [range(&runs[0]), range(&runs[1])];
         let (populations, mut notes) = populations::of(&runs, &ranges, paired)?;
         if paired && (one.range() != common || other.range() != common) {
-            notes.push(format!(
-                "Only the releases {} to {} are in both runs: the others are left out.",
-                common.start,
-                common.end - 1
-            ));
+            notes.push(if common.len() == 1 {
+                format!("Only release {} is in both runs: the others are left out.", common.start)
+            } else {
+                format!(
+                    "Only the releases {} to {} are in both runs: the others are left out.",
+                    common.start,
+                    common.end - 1
+                )
+            });
         }
         notes
             .extend(weighing::note(populations[0].each_ref().map(|of| of.among.standing.as_ref())));

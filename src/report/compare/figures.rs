@@ -23,7 +23,8 @@ const CHANGES_CAPTION: &str = "Change of each statistic over its value in A, wit
     interval leaves out zero. One in twenty intervals misses by chance.";
 const BEHIND_CAPTION: &str = "A name in quotation marks alone stands for the rocks that the barriers of each run have let through to that place: at a barrier those that arrive at it. Those that pass it are a share of all releases.";
 /// Said where the first figure has fewer rows than there are first statistics.
-const SAME_CAPTION: &str = "Statistics that are the same in both runs are left out.";
+const SAME_CAPTION: &str =
+    "Statistics that are the same in both runs, and whose interval is 0, are left out.";
 const CURVES_CAPTION: &str = "Share of the rocks that exceed a value: A full, B dashed ({a} and {b} rocks). Axes end where one in \
     two hundred exceeds in both.";
 /// The same where rocks weigh what they stand for.

@@ -145,5 +145,8 @@ fn table_row(row: &ComparedStatistic, words: &Words) -> String {
     let cells: String = [format!("{} | {}", count(0), count(1)), a, b, change, interval, share]
         .map(|cell| format!("<td class=\"number\">{cell}</td>"))
         .concat();
-    format!("<tr><th scope=\"row\">{}</th>{cells}<td>{verdict}</td></tr>", escape(&name))
+    format!(
+        "<tr><th scope=\"row\">{}</th>{cells}<td class=\"verdict\">{verdict}</td></tr>",
+        escape(&name)
+    )
 }

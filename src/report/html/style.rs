@@ -49,7 +49,7 @@ tbody th { font-weight: normal; }
 .dense thead th { white-space: normal; overflow-wrap: normal; vertical-align: bottom; }
 .dense tbody th { min-width: 120px; }
 small { font-size: 11px; }
-.lacking { white-space: normal; overflow-wrap: normal; }
+.lacking, .verdict { white-space: normal; overflow-wrap: normal; }
 figure { margin: 20px 0 28px; }
 figure svg { display: block; max-width: 100%; height: auto; margin: 0 auto; }
 figcaption { max-width: 680px; margin: 8px auto 0; font-size: 13px; line-height: 1.45; color: #333; }

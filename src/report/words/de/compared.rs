@@ -62,6 +62,10 @@ pub(super) const COMPARED: &[(&str, &str)] = &[
     ("within chance", "nicht signifikant"),
     ("too few rocks for an interval", "zu wenige Blöcke für ein Intervall"),
     (
+        "Only release {a} is in both runs: the others are left out.",
+        "Nur die Ablösung {a} ist in beiden Läufen: die anderen sind weggelassen.",
+    ),
+    (
         "Only the releases {a} to {b} are in both runs: the others are left out.",
         "Nur die Ablösungen {a} bis {b} sind in beiden Läufen: die anderen sind weggelassen.",
     ),
@@ -77,8 +81,8 @@ pub(super) const COMPARED: &[(&str, &str)] = &[
     ("What changes from A to B", "Was sich von A nach B ändert"),
     ("Change from A to B (% of A)", "Änderung von A nach B (% von A)"),
     (
-        "Statistics that are the same in both runs are left out.",
-        "Statistiken, die in beiden Läufen gleich sind, sind weggelassen.",
+        "Statistics that are the same in both runs, and whose interval is 0, are left out.",
+        "Statistiken, die in beiden Läufen gleich sind und deren Intervall 0 ist, sind weggelassen.",
     ),
     ("Place of releases", "Ort der Ablösungen"),
     ("Place of releases “{name}”", "Ort der Ablösungen „{name}“"),

@@ -62,6 +62,10 @@ pub(super) const COMPARED: &[(&str, &str)] = &[
     ("within chance", "non significatif"),
     ("too few rocks for an interval", "trop peu de blocs pour un intervalle"),
     (
+        "Only release {a} is in both runs: the others are left out.",
+        "Seul le départ {a} est dans les deux calculs\u{a0}: les autres sont laissés de côté.",
+    ),
+    (
         "Only the releases {a} to {b} are in both runs: the others are left out.",
         "Seuls les départs {a} à {b} sont dans les deux calculs\u{a0}: les autres sont laissés de côté.",
     ),
@@ -77,8 +81,8 @@ pub(super) const COMPARED: &[(&str, &str)] = &[
     ("What changes from A to B", "Ce qui change de A à B"),
     ("Change from A to B (% of A)", "Changement de A à B (% de A)"),
     (
-        "Statistics that are the same in both runs are left out.",
-        "Les statistiques égales dans les deux calculs sont omises.",
+        "Statistics that are the same in both runs, and whose interval is 0, are left out.",
+        "Les statistiques égales dans les deux calculs, dont l’intervalle est 0, sont omises.",
     ),
     ("Place of releases", "Lieu des départs"),
     ("Place of releases “{name}”", "Lieu des départs «\u{a0}{name}\u{a0}»"),

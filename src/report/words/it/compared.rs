@@ -62,6 +62,10 @@ pub(super) const COMPARED: &[(&str, &str)] = &[
     ("within chance", "non significativo"),
     ("too few rocks for an interval", "troppo pochi massi per un intervallo"),
     (
+        "Only release {a} is in both runs: the others are left out.",
+        "Solo il distacco {a} è in entrambi i calcoli: gli altri sono tralasciati.",
+    ),
+    (
         "Only the releases {a} to {b} are in both runs: the others are left out.",
         "Solo i distacchi da {a} a {b} sono in entrambi i calcoli: gli altri sono tralasciati.",
     ),
@@ -77,8 +81,8 @@ pub(super) const COMPARED: &[(&str, &str)] = &[
     ("What changes from A to B", "Che cosa cambia da A a B"),
     ("Change from A to B (% of A)", "Variazione da A a B (% di A)"),
     (
-        "Statistics that are the same in both runs are left out.",
-        "Le statistiche uguali in entrambi i calcoli sono omesse.",
+        "Statistics that are the same in both runs, and whose interval is 0, are left out.",
+        "Le statistiche uguali in entrambi i calcoli, con intervallo 0, sono omesse.",
     ),
     ("Place of releases", "Luogo dei distacchi"),
     ("Place of releases “{name}”", "Luogo dei distacchi «{name}»"),
