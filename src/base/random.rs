@@ -81,6 +81,11 @@ pub fn unit(random: &mut RandomStream) -> f64 {
     ((random.0.next_u64() >> 12) as f64 + 0.5) * STEP
 }
 
+/// One of so many, of which there must be one, drawn evenly: its number, from 0.
+pub fn one_of(random: &mut RandomStream, count: usize) -> usize {
+    ((unit(random) * count as f64) as usize).min(count - 1)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,7 +1,7 @@
 //! What one trial computes on a scene, and the same with its rocks drawn again, as measured ends are.
 
 use crate::hazard::{EndDistances, ObservedPath};
-use crate::random::{RandomStream, unit};
+use crate::random::{RandomStream, one_of};
 
 /// Computed ways with their release numbers.
 pub(super) type ObservedWays = Vec<(usize, ObservedPath)>;
@@ -45,8 +45,7 @@ pub(super) fn times_again(
     for class in 0..classes.min(releases) {
         let of_class = (releases - class).div_ceil(classes);
         for _ in 0..(of_class - 1).max(1) {
-            let drawn = ((unit(random) * of_class as f64) as usize).min(of_class - 1);
-            times[class + drawn * classes] += 1;
+            times[class + one_of(random, of_class) * classes] += 1;
         }
     }
     times
@@ -54,9 +53,7 @@ pub(super) fn times_again(
 
 /// So many of some rows, of which there must be one, drawn with replacement.
 pub(super) fn drawn_from(rows: &[usize], count: usize, random: &mut RandomStream) -> Vec<usize> {
-    let one =
-        |random: &mut _| rows[((unit(random) * rows.len() as f64) as usize).min(rows.len() - 1)];
-    (0..count).map(|_| one(random)).collect()
+    (0..count).map(|_| rows[one_of(random, rows.len())]).collect()
 }
 
 #[cfg(test)]

@@ -56,7 +56,7 @@ pub(super) fn middle(mut numbers: Vec<f64>, tail: f64) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::{Purpose, stream, unit};
+    use crate::random::{Purpose, one_of, stream, unit};
 
     /// Means of ten ends of a known law, drawn again as the measured ones are: the truth lies in the interval in 92 of 100 samples, by a fortieth on
     /// either side in 89; of fourteen, what Tschamut's are worth, in 94 and 91.
@@ -70,7 +70,7 @@ mod tests {
                 let mut end = || (0..12).map(|_| unit(&mut random) - 0.5).sum::<f64>();
                 let ends: Vec<f64> = (0..n).map(|_| end()).collect();
                 let mut again = || -> f64 {
-                    let one = |_| ends[(unit(&mut random) * n as f64) as usize];
+                    let one = |_| ends[one_of(&mut random, n)];
                     (0..n).map(one).sum::<f64>() / n as f64
                 };
                 let means = (0..REDRAWS).map(|_| again()).collect();

@@ -120,12 +120,17 @@ pub(super) fn lengths(dir: &Path) -> BTreeMap<String, u64> {
     rasters.filter_map(length).collect()
 }
 
+/// Name without its ending, and ending; nothing for what is no text.
+fn stem_and_ending(path: &Path) -> [&str; 2] {
+    [path.file_stem(), path.extension()]
+        .map(|part| part.and_then(OsStr::to_str).unwrap_or_default())
+}
+
 /// Whether a file is the raster of a layer.
 fn is_layer(path: &Path) -> bool {
-    let text = |part: Option<&OsStr>| part.and_then(OsStr::to_str).unwrap_or_default().to_owned();
-    let (stem, ending) = (text(path.file_stem()), text(path.extension()));
-    ["asc", "tif"].contains(&ending.as_str())
-        && (Layer::ALL.iter().any(|layer| layer.file() == stem) || is_of_year(&stem))
+    let [stem, ending] = stem_and_ending(path);
+    ["asc", "tif"].contains(&ending)
+        && (Layer::ALL.iter().any(|layer| layer.file() == stem) || is_of_year(stem))
 }
 
 /// Where the maps after so many rocks wait for a resumed run.
@@ -159,16 +164,15 @@ pub(super) fn read_state(dir: &Path, done: usize) -> Result<MapState> {
 /// for instance.
 pub(super) fn is_result(path: &Path) -> bool {
     let whole = final_path(path);
-    let text = |part: Option<&OsStr>| part.and_then(OsStr::to_str).unwrap_or_default().to_owned();
-    let (stem, ending) = (text(whole.file_stem()), text(whole.extension()));
-    match ending.as_str() {
+    let [stem, ending] = stem_and_ending(&whole);
+    match ending {
         // the ground that figures are drawn on stands beside the maps
-        "asc" if ["ground", "trees"].contains(&stem.as_str()) => true,
+        "asc" if ["ground", "trees"].contains(&stem) => true,
         "tif" if stem == "ground" => true,
         "asc" | "tif" => is_layer(&whole),
         "geojson" => ["ends", "paths", "lines", "barriers", "release_zone", "zones", "scene_lines"]
-            .contains(&stem.as_str()),
-        "vtk" => ["paths", "terrain"].contains(&stem.as_str()),
+            .contains(&stem),
+        "vtk" => ["paths", "terrain"].contains(&stem),
         STATE => stem.parse::<usize>().is_ok(),
         _ => false,
     }

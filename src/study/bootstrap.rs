@@ -2,7 +2,7 @@
 
 use super::weighing::Weighing;
 use crate::math;
-use crate::random::{Purpose, stream, unit};
+use crate::random::{Purpose, one_of, stream};
 use std::collections::BTreeMap;
 
 /// Times that the rocks are drawn again: the ends of a 95 % interval are then known to a tenth of its width.
@@ -109,7 +109,7 @@ impl Paired {
         let mut times = vec![0u16; self.weights.len()];
         for stratum in &self.strata {
             for _ in stratum {
-                let rock = stratum[(unit(&mut chance) * stratum.len() as f64) as usize];
+                let rock = stratum[one_of(&mut chance, stratum.len())];
                 times[rock as usize] += 1;
             }
         }

@@ -185,15 +185,15 @@ fn remedy(
     let needed = math::rounded(releases as f64 * more * more, 2);
     let first = format!("about {} releases are needed first", format::decimal(needed, 0));
     let suspected = larger.map_or("the steps", |_| "the mesh");
+    // a smooth surface leaves less than what is told
+    let leaves_less = of_mesh.is_some() && mesh.is_some_and(|error| error.at_least() < wanted);
+    let may_do = leaves_less && more <= 1.0;
     match finer {
         None => format!("{first}, to show whether {suspected} must be finer"),
-        // a smooth surface leaves less than what is told
-        Some("the mesh") if mesh.is_some_and(|error| error.at_least() < wanted) && more <= 1.0 => {
-            "the mesh may have to be finer".to_owned()
-        }
         Some(what) if more > 1.0 && dominant(sampling, steps, mesh) == SAMPLING => {
             format!("{first}, then {what} must be finer")
         }
+        Some(what) if may_do => format!("{what} may have to be finer"),
         Some(what) => format!("{what} must be finer"),
     }
 }

@@ -29,15 +29,14 @@ impl SpringContact {
     /// they were pressed and stretched by. A shear spring that is let go runs out against its own dashpot.
     fn taken(&self, world: &ContactEnvironment, (u, b): (&Vec3, f64)) -> Loss {
         let (pressed_m, end) = (self.pen_at(u, b).max(0.0), self.stretch(b));
-        let (closing, rate) = (-self.n.dot(u), (end - self.shear) / b);
-        let sprung_w = self.law.normal(self.captured).storing_w(pressed_m, closing)
-            + self.law.shear.held(end).dot(&rate);
+        // over ways in place of speeds, powers are energies
+        let (way, stretched) = (u * b, end - self.shear);
+        let closed_m = -self.n.dot(&way);
+        let sprung_j = self.law.normal(self.captured).storing_w(pressed_m, closed_m)
+            + self.law.shear.held(end).dot(&stretched);
         let left_j = if pressed_m > 0.0 { 0.0 } else { 0.5 * self.law.shear.held(end).dot(&end) };
-        let damping_w = self.normal_force * closing - sprung_w + left_j / b;
-        let all = self.shear_power(u, &rate, damping_w);
-        let mut taken = Loss::default();
-        taken.add(&all.on(world, self.triangle), b);
-        taken
+        let damping_j = self.normal_force * closed_m - sprung_j + left_j;
+        self.shear_power(&way, &stretched, damping_j).on(world, self.triangle)
     }
 }
 
@@ -94,9 +93,9 @@ impl Footing {
         let lifted_m = moving.pose.centre - start.pose.centre;
         let fell_j = block.mass_kg * world.body.gravity.dot(&lifted_m);
         let had_j = start.motion_j(block) + held.sum() + fell_j;
-        self.hold_to(world, (block, moving), had_j - done.loss.sum(), &shear_of);
+        let holds = self.hold_to(world, (block, moving), had_j - done.loss.sum(), &shear_of);
         // what springs hold more at the end than at the start is taken from motion, but not lost
-        done.loss.add(&self.springs.placed(world), 1.0);
+        done.loss.add(&holds, 1.0);
         done.loss.add(&held, -1.0);
         done.slides = self.springs.histories.iter().any(|history| history.slides);
         done.is_free = self.springs.is_free();
@@ -162,15 +161,15 @@ impl Footing {
         }
     }
 
-    /// Slows the block where motion and springs at a step's end, after its look, hold more than `had_j` (J), and than it owes. A block that
-    /// its springs have just turned round has no motion to pay with: it owes the rest until they have thrown it out.
+    /// Slows the block where motion and springs at a step's end, after its look, hold more than `had_j` (J), and than it owes; what the springs hold.
+    /// A block that its springs have just turned round has no motion to pay with: it owes the rest until they have thrown it out.
     fn hold_to(
         &mut self,
         world: &ContactEnvironment,
         (block, moving): (&Block, &mut Moving),
         had_j: f64,
         shear_of: &impl Fn(&Self, usize) -> Vec3,
-    ) {
+    ) -> Loss {
         // as the next step will find its springs
         let known = self.springs.histories.len();
         self.springs.known = known;
@@ -179,11 +178,13 @@ impl Footing {
         self.springs.histories.truncate(known);
         let part = moving.part(block, &self.springs.acting_along());
         let (motion_j, allowed_j) = (moving.motion_j(block), had_j - self.springs.owed_j);
-        let made_j = motion_j + self.springs.placed(world).sum() - allowed_j;
+        let holds = self.springs.placed(world);
+        let made_j = motion_j + holds.sum() - allowed_j;
         let paid_j = made_j.clamp(0.0, part.most_j());
         self.springs.owed_j = (made_j - paid_j).max(0.0);
         if paid_j > 0.0 {
             moving.pay(&part, paid_j);
         }
+        holds
     }
 }
