@@ -349,7 +349,7 @@ pub(super) static WORDS: Words = Words {
     check_coarse: ": Stufen, Felsblöcke und Rinnen, die solche Blöcke aufhielten oder würfen, fehlen darin; dafür steht roughness_deg oder eine feinere Aufnahme",
     // A year
     year_title: "Jährliche Häufigkeit bei {name}",
-    year_axis: "λ(E ≥ e) (1/Jahr)",
+    year_axis: "λ(E ≥ e) (1/a)",
     year_energy_axis: "Gesamtenergie e ({unit})",
     years: "{n} Jahre",
     nobody_year: "{place}: keiner von {rocks} Blöcken, so aussagekräftig wie {effective} gleichen Gewichts, kommt hierher: weniger als {rate} pro Jahr (Vertrauen 95\u{2009}%).",

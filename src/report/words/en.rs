@@ -342,7 +342,7 @@ pub(super) static WORDS: Words = Words {
     check_coarse: ": steps, boulders and gullies that would stop or throw such rocks are not in it; roughness_deg stands for them, or a finer survey",
     // A year
     year_title: "Frequency a year at {name}",
-    year_axis: "λ(E ≥ e) (1/year)",
+    year_axis: "λ(E ≥ e) (1/a)",
     year_energy_axis: "Total energy e ({unit})",
     years: "{n} years",
     nobody_year: "{place}: none of {rocks} rocks, as precise as {effective} of equal weight, comes here: fewer than {rate} a year (95\u{2009}% confidence).",

@@ -349,7 +349,7 @@ pub(super) static WORDS: Words = Words {
     check_coarse: "\u{a0}: gradins, blocs et ravines qui arrêteraient ou projetteraient ces blocs n’y sont pas\u{a0}; roughness_deg les remplace, ou un levé plus fin",
     // A year
     year_title: "Fréquence annuelle à {name}",
-    year_axis: "λ(E ≥ e) (1/an)",
+    year_axis: "λ(E ≥ e) (1/a)",
     year_energy_axis: "Énergie totale e ({unit})",
     years: "{n} ans",
     nobody_year: "{place}\u{a0}: aucun des {rocks} blocs, valant {effective} de poids égal, n’y arrive\u{a0}: moins de {rate} par an (confiance 95\u{2009}%).",

@@ -349,7 +349,7 @@ pub(super) static WORDS: Words = Words {
     check_coarse: ": gradini, massi e solchi che fermerebbero o lancerebbero tali massi non vi sono; li sostituisce roughness_deg, o un rilievo più fine",
     // A year
     year_title: "Frequenza annua a {name}",
-    year_axis: "λ(E ≥ e) (1/anno)",
+    year_axis: "λ(E ≥ e) (1/a)",
     year_energy_axis: "Energia totale e ({unit})",
     years: "{n} anni",
     nobody_year: "{place}: nessuno dei {rocks} massi, che valgono {effective} di peso uguale, arriva qui: meno di {rate} all’anno (confidenza 95\u{2009}%).",
