@@ -151,7 +151,6 @@ impl<'a> Falling<'a> for Roll<'a> {
         let from = self.moving.pose.centre;
         self.footing.press_stems(&self.world, (self.block, &self.moving));
         let (mut done, rejected) = self.advance(most_s)?;
-        self.footing.press_stems_still(&self.world);
         self.footing.bend_stems(&self.world, (self.block, &mut self.moving), &mut done.loss);
         self.plough(&from, done.is_free);
         self.is_free = done.is_free;

@@ -174,7 +174,7 @@ impl<'a> Falling<'a> for Fall<'a> {
         self.answer_blows();
         let world = self.settings.around(self.body, self.laws);
         // a stem has given way: stiffness and contacts changed, so the stepper forgets its factors and its step
-        if self.state.bend(&world, &mut done.loss) {
+        if self.state.bend(&world, !self.is_rigid(), &mut done.loss) {
             *stepper = Stepper::new(self.settings.step, &world, self.state);
         }
         // one slipping contact makes the whole step "sliding" on the path

@@ -2,6 +2,7 @@
 
 use super::contact_state::{ContactEnvironment, ContactState};
 use super::loss::Loss;
+use super::stem_load::{PressedTree, PressedTrees};
 use crate::contact::history::ContactHistory;
 use crate::contact::{ContactPoint, MOST};
 use crate::ground::Law;
@@ -73,6 +74,51 @@ impl ContactState {
         let of_others: f64 = others.map(|history| self.contact_j(world, history)).sum();
         self.touches = last;
         all - of_others
+    }
+
+    /// The trees that are pressed, with what springs on them hold and the power of their dashpots and of friction. Touches are looked for anew, and
+    /// the last look stays as it was.
+    pub(super) fn pressed_trees(&mut self, world: &ContactEnvironment) -> PressedTrees {
+        let mut pressed = PressedTrees::default();
+        let terrain = world.terrain;
+        let Some(stems) = terrain.stems.as_ref() else { return pressed };
+        if !self.histories.iter().any(|history| terrain.is_tree(history.triangle)) {
+            return pressed;
+        }
+        let (c, last) = (self.c, std::mem::take(&mut self.touches));
+        self.know(world, &c);
+        self.near.touches(terrain, &c, world.body.radius, &mut self.touches);
+        for (k, touch) in self.touches.iter().enumerate() {
+            let memory = self.histories.iter().find(|history| history.feature == touch.feature);
+            if let Some(history) = memory.filter(|_| terrain.is_tree(touch.triangle)) {
+                let law = world.law_of(history, &self.touches, k);
+                let (held_j, weight) = self.pressing(world, (history, touch), &law);
+                let stem = stems.of_triangle(touch.triangle);
+                pressed.press(PressedTree { stem, held_j, weight });
+            }
+        }
+        for history in self.histories.iter().filter(|one| terrain.is_tree(one.triangle)) {
+            let held_j = stretched_j(world, history).sum();
+            let stem = stems.of_triangle(history.triangle);
+            pressed.press(PressedTree { stem, held_j, weight: 0.0 });
+        }
+        self.touches = last;
+        pressed
+    }
+
+    /// What the normal spring of a touch holds (J), and the power that its dashpot and its friction take (W).
+    fn pressing(
+        &self,
+        world: &ContactEnvironment,
+        (history, touch): (&ContactHistory, &ContactPoint),
+        law: &Law,
+    ) -> (f64, f64) {
+        let penetration = (world.body.radius - touch.distance_m).max(0.0);
+        let (normal, apart_m_s) = (law.normal(history.captured), touch.normal.dot(&self.v));
+        let slip_m_s = world.body.slip(&touch.normal, &self.v, &self.w).norm();
+        let cap = if history.slides { law.limits().caps(history.normal_force).0 } else { 0.0 };
+        let taken_w = normal.dissipating_w(penetration, apart_m_s) + cap * slip_m_s;
+        (normal.stored_j(penetration), taken_w)
     }
 
     /// A time (s) within which the contacts of `on` take no more than `work_j`: their forces do not grow faster than springs

@@ -1,7 +1,6 @@
 //! What one rock has done to the stems.
 
 use crate::contact::MOST;
-use crate::contact::history::{ContactHistories, ContactHistory};
 use crate::random::{Purpose, RandomStream, beside};
 use crate::terrain::Terrain;
 use crate::terrain::stems::Stems;
@@ -14,6 +13,61 @@ const AT_LIMIT: f64 = 1e-6;
 /// The tenth on top is for what weight may add within the contact.
 const WITHSTANDS: f64 = 1.1;
 
+/// A tree that is pressed.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct PressedTree {
+    /// Which stem; none for what stands for good.
+    pub(super) stem: Option<u32>,
+    /// What springs on it hold (J).
+    pub(super) held_j: f64,
+    /// Weight of what else it takes (–): power of dashpots and friction, what a blow took, or the square of an approach.
+    pub(super) weight: f64,
+}
+
+/// The trees that are pressed, each once.
+#[derive(Debug, Clone, Default)]
+pub(super) struct PressedTrees(ArrayVec<PressedTree, MOST>);
+
+impl PressedTrees {
+    /// Adds a contact with a tree.
+    pub(super) fn press(&mut self, tree: PressedTree) {
+        match self.0.iter_mut().find(|known| known.stem == tree.stem) {
+            Some(known) => {
+                known.held_j += tree.held_j;
+                known.weight += tree.weight;
+            }
+            None => self.0.try_push(tree).unwrap_or_default(),
+        }
+    }
+
+    pub(super) fn iter(&self) -> impl Iterator<Item = &PressedTree> {
+        self.0.iter()
+    }
+
+    /// Whether there are several, so that it matters what each takes.
+    pub(super) fn are_several(&self) -> bool {
+        self.0.len() > 1
+    }
+
+    /// Whether nothing tells them apart: none has a weight or holds anything.
+    pub(super) fn have_no_weight(&self) -> bool {
+        self.0.iter().all(|tree| tree.weight == 0.0 && tree.held_j == 0.0)
+    }
+
+    /// What each has taken of `lost_j` (J) until `end`: what its springs hold more, and of the rest a share by its weights of both instants.
+    fn taken_until(mut self, end: &Self, lost_j: f64) -> ArrayVec<(Option<u32>, f64), MOST> {
+        for tree in &mut self.0 {
+            tree.held_j = -tree.held_j;
+        }
+        end.0.iter().for_each(|tree| self.press(*tree));
+        let sum = |of: fn(&PressedTree) -> f64| self.0.iter().map(of).sum::<f64>();
+        let (rest_j, weight) = (lost_j - sum(|tree| tree.held_j), sum(|tree| tree.weight));
+        let evenly = 1.0 / self.0.len() as f64;
+        let share = |tree: &PressedTree| if weight > 0.0 { tree.weight / weight } else { evenly };
+        self.0.iter().map(|tree| (tree.stem, tree.held_j + rest_j * share(tree))).collect()
+    }
+}
+
 /// What one rock has done to the stems; its memory is taken once for all rocks of a thread.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct StemLoad {
@@ -21,8 +75,8 @@ pub(crate) struct StemLoad {
     pub(super) limits_j: Vec<f64>,
     /// Stems touched, and what each has taken (J).
     pub(super) taken: Vec<(u32, f64)>,
-    /// The stems pressed at the last look, each with its share (–) of what trees take.
-    pub(super) pressed: ArrayVec<(u32, f64), MOST>,
+    /// The trees pressed since the last step.
+    pub(super) pressed: PressedTrees,
     /// What stems took that broke within the step, and that is among its losses (J).
     pub(super) broken_j: f64,
 }
@@ -35,7 +89,7 @@ impl StemLoad {
         gone.reserve(stems.count());
         self.taken.clear();
         self.taken.reserve(stems.count());
-        self.pressed.clear();
+        self.pressed.0.clear();
         self.broken_j = 0.0;
         let mut random = beside(random, Purpose::Stems);
         self.limits_j.clear();
@@ -76,43 +130,27 @@ impl StemLoad {
         }
     }
 
-    /// This stem alone is pressed.
-    pub(super) fn press(&mut self, stem: u32) {
-        self.pressed.clear();
-        self.pressed.push((stem, 1.0));
+    /// A blow on a triangle has taken so much (J): if that is of a tree, it has its share of what trees have taken since the last step.
+    pub(super) fn strike(&mut self, terrain: &Terrain, triangle: u32, joule: f64) {
+        if let Some(stems) = terrain.stems.as_ref().filter(|_| terrain.is_tree(triangle)) {
+            let weight = joule.max(0.0);
+            self.pressed.press(PressedTree { stem: stems.of_triangle(triangle), held_j: 0.0, weight });
+        }
     }
 
-    /// The stems of these triangles of trees are pressed, with what they take by these weights (–); whether there is any weight. A tree that
-    /// stands for good has its share too.
-    pub(super) fn share(
+    /// Notes what the trees pressed until now have taken of `lost_j` (J), those at the `end` of the step known; the stems that give way, and what each took
+    /// beyond its limit (J).
+    pub(super) fn take_until(
         &mut self,
         stems: &Stems,
-        weights: impl Iterator<Item = (u32, f64)> + Clone,
-    ) -> bool {
-        let all: f64 = weights.clone().map(|(_, weight)| weight).sum();
-        if all <= 0.0 {
-            return false;
-        }
-        self.pressed.clear();
-        for (triangle, weight) in weights.filter(|(_, weight)| *weight > 0.0) {
-            let Some(stem) = stems.of_triangle(triangle) else { continue };
-            let share = weight / all;
-            if let Some((_, known)) = self.pressed.iter_mut().find(|(known, _)| *known == stem) {
-                *known += share;
-            } else if !self.pressed.is_full() {
-                self.pressed.push((stem, share));
-            }
-        }
-        true
-    }
-
-    /// Sees which stems are pressed. Springs hold energy by the squares of their forces, and so what trees take is shared, evenly in the
-    /// limit of stiff springs, where no force is known; a tree that stands for good has its share too.
-    pub(super) fn look(&mut self, terrain: &Terrain, stems: &Stems, histories: &ContactHistories) {
-        let trees = histories.iter().filter(|history| terrain.is_tree(history.triangle));
-        let force2 = |one: &ContactHistory| (one.triangle, one.normal_force * one.normal_force);
-        if !self.share(stems, trees.clone().map(force2)) {
-            self.share(stems, trees.map(|history| (history.triangle, 1.0)));
-        }
+        end: &PressedTrees,
+        lost_j: f64,
+    ) -> ArrayVec<(u32, f64), MOST> {
+        let taken = std::mem::take(&mut self.pressed).taken_until(end, lost_j);
+        let of_stem = |(stem, joule): (Option<u32>, f64)| {
+            let stem = stem?;
+            self.yields(stems, stem, joule).map(|beyond_j| (stem, beyond_j))
+        };
+        taken.into_iter().filter_map(of_stem).collect()
     }
 }

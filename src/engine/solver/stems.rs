@@ -17,11 +17,11 @@ use super::contact_state::{ContactEnvironment, ContactState};
 use super::joint_blow::{JointBody, JointContact, JointContacts, joint_blow};
 use super::loss::Loss;
 use super::rigid::STRUCK_TOGETHER;
+use super::stem_load::PressedTrees;
 use super::yielding::yielding_impact;
 use crate::contact::history::ContactHistory;
 use crate::contact::{ContactPoint, MOST};
 use crate::rock::Vec3;
-use crate::terrain::Terrain;
 use crate::terrain::stems::Stems;
 use arrayvec::ArrayVec;
 use nalgebra::Matrix3;
@@ -42,10 +42,12 @@ impl ContactState {
     /// not take more than is left of it.
     pub(crate) fn longest_before_yield_s(&mut self, world: &ContactEnvironment) -> f64 {
         let Some(stems) = world.terrain.stems.as_ref() else { return f64::INFINITY };
-        self.stem_load.look(world.terrain, stems, &self.histories);
+        self.stem_load.pressed = self.pressed_trees(world);
         let motion_j = self.motion_j(&world.body);
-        let (mut longest_s, mut may_yield) = (f64::INFINITY, false);
-        for &(stem, _) in &self.stem_load.pressed {
+        // what each of several takes is known between steps
+        let (mut longest_s, mut may_yield) =
+            (f64::INFINITY, self.stem_load.pressed.are_several());
+        for stem in self.stem_load.pressed.iter().filter_map(|tree| tree.stem) {
             // all of the rock's motion would not break another: no step need be limited
             if self.stem_load.may_yield(stems, stem, motion_j) {
                 let left_j = self.stem_load.left_j(stems, stem);
@@ -61,32 +63,37 @@ impl ContactState {
 
     /// After a step with these losses: the stems pressed have taken what went into contacts with trees. Whether one has
     /// given way; what the step took beyond its limit is then given back.
-    pub(crate) fn bend(&mut self, world: &ContactEnvironment, loss: &mut Loss) -> bool {
+    pub(crate) fn bend(
+        &mut self,
+        world: &ContactEnvironment,
+        has_springs: bool,
+        loss: &mut Loss,
+    ) -> bool {
         let Some(stems) = world.terrain.stems.as_ref().filter(|_| loss.trees != 0.0) else {
+            self.stem_load.pressed = PressedTrees::default();
             return false;
         };
-        self.stem_load.look(world.terrain, stems, &self.histories);
         // what broke in the limit of stiff springs has had its energy and is gone: the rest went into what stands
         let standing_j = loss.trees - std::mem::take(&mut self.stem_load.broken_j);
-        if standing_j == 0.0 {
-            return false;
-        }
-        let mut gives_way = false;
-        for (stem, share) in self.stem_load.pressed.clone() {
-            let taken_j = share * standing_j;
-            let Some(beyond_j) = self.stem_load.yields(stems, stem, taken_j) else { continue };
-            // the push of all contacts with this stem: energy is given back along it
-            let of_stem =
-                |history: &&ContactHistory| stems.of_triangle(history.triangle) == Some(stem);
-            let push =
-                |history: &ContactHistory| history.n * history.normal_force.max(f64::MIN_POSITIVE);
-            let normal_force: Vec3 = self.histories.iter().filter(of_stem).map(push).sum();
-            self.v += given_back(world.body.mass, &self.v, beyond_j, &normal_force);
+        // with springs what each holds now; without them blows have told what each took
+        let end =
+            if has_springs { self.pressed_trees(world) } else { PressedTrees::default() };
+        let giving_way = self.stem_load.take_until(stems, &end, standing_j);
+        for &(stem, beyond_j) in &giving_way {
+            let push = self.push_of(stems, stem);
+            self.v += given_back(world.body.mass, &self.v, beyond_j, &push);
             loss.trees -= beyond_j;
             self.fell(stems, stem);
-            gives_way = true;
         }
-        gives_way
+        !giving_way.is_empty()
+    }
+
+    /// Direction of the push of all contacts with a stem, by their forces if these are known.
+    fn push_of(&self, stems: &Stems, stem: u32) -> Vec3 {
+        let of_stem = |history: &&ContactHistory| stems.of_triangle(history.triangle) == Some(stem);
+        let histories = || self.histories.iter().filter(of_stem);
+        let push: Vec3 = histories().map(|history| history.n * history.normal_force).sum();
+        if push == Vec3::zeros() { histories().map(|history| history.n).sum() } else { push }
     }
 
     /// How stems give way to the blow on all that the last look has found, at a velocity and a spin, if one does.
@@ -169,14 +176,6 @@ impl ContactState {
         })
     }
 
-    /// What is struck at a triangle is pressed: what the blow takes there is its load, also if the rock has left at the end.
-    pub(crate) fn press_stem(&mut self, terrain: &Terrain, triangle: u32) {
-        let stem = terrain.stems.as_ref().and_then(|stems| stems.of_triangle(triangle));
-        if let Some(stem) = stem {
-            self.stem_load.press(stem);
-        }
-    }
-
     /// Stems are gone within a step whose losses hold what they took.
     pub(crate) fn fell_broken(&mut self, world: &ContactEnvironment, broken: &Broken) {
         let Some(stems) = world.terrain.stems.as_ref() else { return };
@@ -215,8 +214,6 @@ impl ContactState {
             // what it took is booked, and is not among the losses of the step
             self.stem_load.broken_j = 0.0;
         }
-        // what stands and throws the rock off is forgotten with the step
-        self.stem_load.look(world.terrain, stems, &self.histories);
     }
 
     /// Whether a rock has just come to the stem that it touches: only the blow that falls next has been announced, and a memory alone is of a
@@ -237,7 +234,6 @@ impl ContactState {
         self.histories.retain(|history| stems.of_triangle(history.triangle) != Some(stem));
         self.fresh = false;
         self.plane.forget();
-        self.stem_load.pressed.clear();
     }
 }
 

@@ -194,7 +194,7 @@ impl<'a> WorldBody<'a> {
             rock.leave_facet();
         }
         // stems that the step has overloaded take their share of the energy now
-        rock.state.bend(&rock.world, &mut loss);
+        rock.state.bend(&rock.world, true, &mut loss);
         let to = self.motion_at(time_s);
         // A rock may be hit and let go within one step: then it flies another way.
         // neither the mesh nor another rock took or gave anything in this step
@@ -224,7 +224,7 @@ impl<'a> WorldBody<'a> {
             return;
         }
         let rock = self.in_contact(settings);
-        rock.state.bend(&rock.world, &mut loss);
+        rock.state.bend(&rock.world, false, &mut loss);
         let to = self.motion_at(time_s);
         // its impacts are listed with its blows
         self.member.state.histories.iter_mut().for_each(|history| history.announced = true);

@@ -194,10 +194,7 @@ impl Springs {
     /// How much those of the contacts on some triangles hold (J).
     pub(crate) fn held_on_j(&self, is_on: impl Fn(u32) -> bool) -> f64 {
         let holds = |history: &&BlockHistory| history.closed && is_on(history.triangle);
-        let held = self.histories.iter().filter(holds).map(|history| {
-            history.law.stored_j(history.pressed_m, history.shear.norm_squared(), 0.0)
-        });
-        held.sum()
+        self.histories.iter().filter(holds).map(BlockHistory::held_j).sum()
     }
 }
 

@@ -8,13 +8,14 @@ use super::rolling::Turning;
 use super::springs::BlockHistory;
 use super::{Footing, Moving, STILL_M_S};
 use crate::body::Block;
-use crate::contact::block::{BlockTouch, MOST_TOUCHES};
+use crate::contact::block::BlockTouch;
 use crate::flight::top::momentum_of;
 use crate::rock::Vec3;
 use crate::solver::environment::ContactEnvironment;
 use crate::solver::joint_blow::{JointBody, JointContact, JointContacts, joint_blow};
 use crate::solver::law::capture_m_s;
 use crate::solver::loss::Loss;
+use crate::solver::stem_load::{PressedTree, PressedTrees};
 use crate::solver::stems::given_back;
 use crate::terrain::stems::Stems;
 use arrayvec::ArrayVec;
@@ -142,11 +143,11 @@ impl Footing {
         let Some(stems) = world.terrain.stems.as_ref().filter(|_| loss.trees != 0.0) else {
             return;
         };
-        let taken_j = loss.trees;
-        for (stem, share) in self.stem_load.pressed.clone() {
-            let Some(beyond_j) = self.stem_load.yields(stems, stem, share * taken_j) else {
-                continue;
-            };
+        let mut end = self.pressed_by_springs(world, stems, (block, moving));
+        if end.have_no_weight() && self.stem_load.pressed.have_no_weight() {
+            self.deepest(stems).into_iter().for_each(|tree| end.press(tree));
+        }
+        for (stem, beyond_j) in self.stem_load.take_until(stems, &end, loss.trees) {
             let push = self.push_of(stems, stem);
             moving.v += given_back(block.mass_kg, &moving.v, beyond_j, &push);
             self.springs.refresh();
@@ -166,58 +167,57 @@ impl Footing {
         if push == Vec3::zeros() { deepest.map_or(push, |touch| touch.normal) } else { push }
     }
 
-    /// Notes which stems are pressed before a blow or a step, each with its share: springs hold energy by the squares of their forces, and what
-    /// is struck takes it by the squares of its approaches; else as after a step.
+    /// Notes which trees are pressed before a blow or a step: by springs, or else what is struck, by the squares of its approaches.
     pub(crate) fn press_stems(
         &mut self,
         world: &ContactEnvironment,
         (block, moving): (&Block, &Moving),
     ) {
         let Some(stems) = world.terrain.stems.as_ref() else { return };
-        let approach2 = |touch: &BlockTouch| moving.approach_m_s(block, touch).max(0.0).powi(2);
-        let trees = self.touching(block).filter(|touch| world.terrain.is_tree(touch.triangle));
-        let struck: ArrayVec<(u32, f64), MOST_TOUCHES> =
-            trees.take(MOST_TOUCHES).map(|touch| (touch.triangle, approach2(touch))).collect();
-        if !self.press_by_springs(world, stems) && !self.stem_load.share(stems, struck.into_iter())
-        {
-            self.press_deepest(stems);
+        let mut pressed = self.pressed_by_springs(world, stems, (block, moving));
+        if pressed.have_no_weight() {
+            let trees = self.touching(block).filter(|touch| world.terrain.is_tree(touch.triangle));
+            for touch in trees {
+                let weight = moving.approach_m_s(block, touch).max(0.0).powi(2);
+                let stem = stems.of_triangle(touch.triangle);
+                pressed.press(PressedTree { stem, held_j: 0.0, weight });
+            }
         }
+        self.stem_load.pressed = pressed;
     }
 
-    /// The same after a step, with the springs of its end or else the contacts of its last look; as before if they press none: the block may have left
-    /// what it pressed within the step.
-    pub(crate) fn press_stems_still(&mut self, world: &ContactEnvironment) {
-        let Some(stems) = world.terrain.stems.as_ref() else { return };
-        if !self.press_by_springs(world, stems) {
-            self.press_deepest(stems);
-        }
-    }
-
-    /// Notes which stems springs press, and whether there are any.
-    fn press_by_springs(&mut self, world: &ContactEnvironment, stems: &Stems) -> bool {
+    /// The trees that springs press, with what these hold and the power of their dashpots and of friction.
+    fn pressed_by_springs(
+        &self,
+        world: &ContactEnvironment,
+        stems: &Stems,
+        (block, moving): (&Block, &Moving),
+    ) -> PressedTrees {
+        let mut pressed = PressedTrees::default();
         let histories = self.springs.histories.iter();
-        let trees = histories.filter(|history| world.terrain.is_tree(history.triangle));
-        let force2 = |history: &BlockHistory| history.normal_force * history.normal_force;
-        self.stem_load.share(stems, trees.map(|history| (history.triangle, force2(history))))
+        for history in histories.filter(|one| one.closed && world.terrain.is_tree(one.triangle)) {
+            let velocity = moving.at(block, &(history.point - moving.pose.centre));
+            let (held_j, weight) = (history.held_j(), history.taking_w(&velocity));
+            let stem = stems.of_triangle(history.triangle);
+            pressed.press(PressedTree { stem, held_j, weight });
+        }
+        pressed
     }
 
-    /// Notes the stem that the contacts of the last look press deepest, if they press one.
-    fn press_deepest(&mut self, stems: &Stems) {
+    /// The stem that the contacts of the last look press deepest, if they press one.
+    fn deepest(&self, stems: &Stems) -> Option<PressedTree> {
         let touched =
             self.touches.found.iter().filter_map(|touch| {
                 stems.of_triangle(touch.triangle).map(|stem| (stem, touch.gap_m))
             });
         let deepest = touched.min_by(|one, other| one.1.total_cmp(&other.1));
-        if let Some((stem, _)) = deepest {
-            self.stem_load.press(stem);
-        }
+        deepest.map(|(stem, _)| PressedTree { stem: Some(stem), held_j: 0.0, weight: 1.0 })
     }
 
     /// A stem is gone for this block.
     fn fell(&mut self, stem: u32) {
         self.near.gone.push(stem);
         self.near.forget();
-        self.stem_load.pressed.clear();
         self.looked = None;
         self.springs.forget_look();
     }

@@ -41,7 +41,7 @@ pub(super) fn step(
         tried.hold(world, state, met_s);
     }
     let before = (state.v, state.w);
-    let mean = book(world, &tried.contacts, [&before, &tried.after], done);
+    let mean = book((world, state), &tried.contacts, [&before, &tried.after], done);
     (state.v, state.w) = tried.after;
     // mean of both velocities: the parabola under weight alone is exact
     state.c += mean.0 * tried.dt;
@@ -63,20 +63,22 @@ pub(super) fn meet(world: &ContactEnvironment, state: &mut ContactState, done: &
     let mut contacts: ArrayVec<GroundContact, MOST> = touches().map(held).collect();
     let before = (state.v, state.w);
     let after = settle(&mut contacts, &world.body, before, &mut state.sweeps);
-    book(world, &contacts, [&before, &after], done);
+    book((world, state), &contacts, [&before, &after], done);
     (state.v, state.w) = after;
 }
 
 /// Books what contacts took of the motion between two instants; their mean motion.
 fn book(
-    world: &ContactEnvironment,
+    (world, state): (&ContactEnvironment, &mut ContactState),
     contacts: &[GroundContact],
     [before, after]: [&Twist; 2],
     done: &mut Advance,
 ) -> Twist {
     let mean = (0.5 * (before.0 + after.0), 0.5 * (before.1 + after.1));
     for contact in contacts {
-        done.loss.add(&contact.loss(&world.body, &mean).on(world, contact.triangle), 1.0);
+        let loss = contact.loss(&world.body, &mean).on(world, contact.triangle);
+        done.loss.add(&loss, 1.0);
+        state.stem_load.strike(world.terrain, contact.triangle, loss.sum());
     }
     mean
 }

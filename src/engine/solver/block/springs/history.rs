@@ -59,6 +59,19 @@ impl BlockHistory {
         self.part == touch.part && self.feature == touch.feature
     }
 
+    /// What its springs hold (J).
+    pub(crate) fn held_j(&self) -> f64 {
+        self.law.stored_j(self.pressed_m, self.shear.norm_squared(), 0.0)
+    }
+
+    /// Power that its dashpot and its friction take where the block moves with a velocity (m/s) there (W).
+    pub(crate) fn taking_w(&self, velocity: &Vec3) -> f64 {
+        let apart_m_s = self.n.dot(velocity);
+        let slip_m_s = (velocity - self.n * apart_m_s).norm();
+        let cap = if self.slides { self.law.limits().caps(self.normal_force).0 } else { 0.0 };
+        self.law.normal(self.captured).dissipating_w(self.pressed_m, apart_m_s) + cap * slip_m_s
+    }
+
     /// Which parts of block and mesh touch.
     pub(super) fn pair(&self) -> (u16, Feature) {
         (self.part, self.feature)

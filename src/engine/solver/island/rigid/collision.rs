@@ -127,20 +127,25 @@ impl RigidIsland {
         let Some(after) = collide(&bodies, &contacts, self.impact_tolerance()) else {
             return false;
         };
-        let taken_j = self.book(scene, &struck, &contacts, &after);
+        let (taken_j, on_trees) = self.book(scene, &struck, &contacts, &after);
+        drop(contacts);
+        for (rock, triangle, joule) in on_trees {
+            scene.members[rock].state.stem_load.strike(scene.terrain, triangle, joule);
+        }
         self.go_on_from(&struck, &after, (taken_j, s));
         true
     }
 
-    /// Books what the contacts of a blow took; what each rock lost in its contacts (J).
+    /// Books what the contacts of a blow took; what each rock lost in its contacts (J), and what trees took: which rock, on which triangle, and how much (J).
     fn book(
         &mut self,
         scene: &ImpactScene,
         StruckRocks { touching, rocks }: &StruckRocks,
         contacts: &[FrozenContact],
         after: &FrozenCollision,
-    ) -> [f64; BODIES] {
+    ) -> ([f64; BODIES], ArrayVec<(usize, u32, f64), CONTACTS>) {
         let mut taken_j = [0.0; BODIES];
+        let mut on_trees = ArrayVec::new();
         let (pairs, meshes) = contacts.split_at(touching.pairs.len());
         for ((contact, loss), pair) in pairs.iter().zip(&after.loss).zip(&touching.pairs) {
             let ContactEnds { first, second, .. } = contact.ends;
@@ -159,12 +164,15 @@ impl RigidIsland {
             let world = ContactEnvironment { terrain: scene.terrain, body: *body, laws };
             taken_j[contact.ends.first] += loss.sum();
             self.losses[rock].add(&loss.on(&world, at.triangle), 1.0);
+            if scene.terrain.is_tree(at.triangle) {
+                on_trees.push((rock, at.triangle, loss.sum()));
+            }
             if approach_m_s >= capture_m_s(contact.law) {
                 let centre = (&rocks[contact.ends.first].c, body.radius);
                 self.hits.push(hit_of(rock, at, centre, approach_m_s));
             }
         }
-        taken_j
+        (taken_j, on_trees)
     }
 
     /// Lets the rocks go on from a blow, `s` (s) before the end of the step. What none of their contacts took has been handed on.

@@ -267,7 +267,6 @@ impl RigidIsland {
         let tolerance = self.impact_tolerance();
         let IslandBody { state, body, laws, .. } = &mut *scene.members[k];
         let world = ContactEnvironment { terrain: scene.terrain, body: *body, laws };
-        state.press_stem(scene.terrain, touch.triangle);
         let meeting = Meeting { n: touch.normal, triangle: touch.triangle, c: *at, v: *v };
         let turn = state.facets.struck(&world, &meeting);
         let approach_m_s = -touch.normal.dot(v);
@@ -277,14 +276,16 @@ impl RigidIsland {
         let ball = &mut self.balls[k];
         let IslandBody { state, body, laws, .. } = &mut *scene.members[k];
         let world = ContactEnvironment { terrain: scene.terrain, body: *body, laws };
+        let ContactState { touches, stem_load, .. } = state;
         let how = (ball.blows >= LIVELY, tolerance);
         let mut note = |other: &ContactPoint, loss: &Loss, approach_m_s: Option<f64>| {
             self.losses[k].add(loss, 1.0);
+            stem_load.strike(scene.terrain, other.triangle, loss.sum());
             let hit = |approach_m_s| hit_of(k, other, (at, body.radius), approach_m_s);
             self.hits.extend(approach_m_s.map(hit));
         };
         let motion = (v, &ball.w);
-        let after = throw_off((&world, &state.touches), (touch, turn), motion, how, &mut note);
+        let after = throw_off((&world, touches), (touch, turn), motion, how, &mut note);
         let load = ((after.0 - v) * body.mass, (after.1 - ball.w) * body.inertia);
         ball.take_late(&load, s);
         ball.is_struck(s);

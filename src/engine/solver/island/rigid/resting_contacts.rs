@@ -14,7 +14,7 @@ use super::contacts::{BallContact, StepBody};
 use crate::contact::pair::{PairHistory, between};
 use crate::rock::Vec3;
 use crate::solver::contact_state::ContactEnvironment;
-use crate::solver::island::body::BodySlot;
+use crate::solver::island::body::{BodySlot, IslandBody};
 use crate::solver::law::capture_m_s;
 use crate::solver::loss::Given;
 use crate::solver::rigid::{GroundContact, settle, sustained_m_s};
@@ -166,7 +166,7 @@ impl RigidIsland {
     ///
     /// Places go with `(v₀ + v₁)/2`, and so does the work of every impulse: energy balances to
     /// rounding.
-    fn go_on(&mut self, terrain: &Terrain, members: &[BodySlot], dt: f64) {
+    fn go_on(&mut self, terrain: &Terrain, members: &mut [BodySlot], dt: f64) {
         let mean = |ball: &StepBody| -> (Vec3, Vec3) {
             ((ball.v + ball.before.0) * 0.5, (ball.w + ball.before.1) * 0.5)
         };
@@ -174,14 +174,15 @@ impl RigidIsland {
         for ground_contact in
             self.ground_contacts.iter().filter(|ground_contact| ground_contact.normal_force > 0.0)
         {
-            let (member, ball) = (&members[ground_contact.rock], &self.balls[ground_contact.rock]);
-            let world = ContactEnvironment { terrain, body: member.body, laws: &member.laws };
+            let ball = &self.balls[ground_contact.rock];
+            let IslandBody { state, body, laws, .. } = &mut *members[ground_contact.rock];
+            let world = ContactEnvironment { terrain, body: *body, laws };
             // the work of an impulse is that at the mean velocity, exactly
             let motion = mean(ball);
-            self.losses[ground_contact.rock].add(
-                &ground_contact.loss(&world.body, &motion).on(&world, ground_contact.triangle),
-                1.0,
-            );
+            let triangle = ground_contact.triangle;
+            let loss = ground_contact.loss(&world.body, &motion).on(&world, triangle);
+            self.losses[ground_contact.rock].add(&loss, 1.0);
+            state.stem_load.strike(terrain, triangle, loss.sum());
             self.taken_j -= ground_contact.normal_force * ground_contact.n().dot(&motion.0);
         }
         for ball_contact in
