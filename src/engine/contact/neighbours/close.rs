@@ -60,6 +60,21 @@ impl Neighbours {
         self.close = close;
     }
 
+    /// Whether it is sure that a rock touches nothing from nearer than `reach` (m) while its centre stays within `way_m` of `centre`.
+    pub(crate) fn are_out_of_reach(
+        &mut self,
+        terrain: &Terrain,
+        centre: &Vec3,
+        (way_m, reach): (f64, f64),
+    ) -> bool {
+        if self.room_m(centre) < way_m {
+            return false;
+        }
+        self.come_close(terrain, centre, (way_m, way_m), reach);
+        let NearFeatures { faces, edges, corners, saddles, .. } = &self.close;
+        faces.is_empty() && edges.is_empty() && corners.is_empty() && saddles.is_empty()
+    }
+
     /// Chooses what may touch on the short way: every test of [`Neighbours::touches`], with the way allowed for.
     fn choose(&self, terrain: &Terrain, close: &mut NearFeatures) {
         let ShortWay { centre, way_m, reach } = &self.around;

@@ -7,12 +7,14 @@
 //!
 //! ```text
 //! resting_contacts      v₁ = v₀ + g Δt + M⁻¹ Σ J        sustained contacts, geometry of the middle of the step
+//! expected              which blows are due, and when
 //! impacts               blows between v₀ and v₁, each at its own time within the step
 //! position_correction   c moved out of what still overlaps, paid for by energy
 //! ```
 
 mod collision;
 mod contacts;
+mod expected;
 mod position_correction;
 mod newton_step;
 mod impacts;

@@ -40,6 +40,19 @@ pub(super) struct StepBody {
     /// Whether a contact pushed it, and whether it was moved out of something.
     pub(super) pushed: bool,
     pub(super) moved: bool,
+    /// What the mesh does to it in this step.
+    pub(super) on_mesh: OnMesh,
+}
+
+/// What the mesh does to a rock in a step, blows apart.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum OnMesh {
+    /// Nothing.
+    Free,
+    /// It holds what has come to it too slowly to rebound.
+    Settles,
+    /// It holds it from the start.
+    Held,
 }
 
 impl StepBody {
@@ -61,6 +74,7 @@ impl StepBody {
             has_neighbour: false,
             pushed: false,
             moved: false,
+            on_mesh: OnMesh::Free,
         }
     }
 

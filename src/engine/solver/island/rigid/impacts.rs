@@ -8,7 +8,8 @@
 
 use super::RigidIsland;
 use super::collision::BlowStart;
-use super::contacts::{BallContact, ImpactScene, LIVELY, StepBody, hit_of};
+use super::contacts::{BallContact, ImpactScene, LIVELY, OnMesh, StepBody, hit_of};
+use super::expected::NEAR;
 use super::sweeps::FEW;
 use crate::contact::ContactPoint;
 use crate::contact::pair::{PairHistory, between};
@@ -18,8 +19,6 @@ use crate::solver::contact_state::{ContactEnvironment, ContactState};
 use crate::solver::impact::throw;
 use crate::solver::island::body::IslandBody;
 use crate::solver::island::outcome::BlowInStep;
-use crate::solver::island::pair_contact::TOUCH;
-use crate::solver::law::capture_m_s;
 use crate::solver::loss::{Given, Loss};
 use crate::solver::rigid::{HELD, IMPACT, frozen, is_fast};
 use crate::solver::roughness::Meeting;
@@ -28,8 +27,6 @@ use std::cmp::Reverse;
 
 /// Blows on one rock in one step after which the rest is left to the next step.
 const MOST: u32 = 400;
-/// A touch at the time of a blow that is no farther than this (–, relative to R): a mesh is not met on a parabola alone.
-const NEAR: f64 = 1e-3;
 
 /// Local error of a blow in an island of more than [`FEW`] rocks, followed in its own time (–, relative to its speed): a thirtieth
 /// of what sustained contact may leave there of a rock's speed. It is an error of the impulses of friction alone: the rebound
@@ -81,6 +78,9 @@ impl RigidIsland {
             self.blow(scene, place, f64::from_bits(bits));
             self.expect_more(scene);
         }
+        for k in 0..self.balls.len() {
+            self.settle_on(scene, k);
+        }
         all
     }
 
@@ -101,55 +101,6 @@ impl RigidIsland {
                 self.expect_pair(scene, self.of_rocks.at(place));
             }
             self.expect_ground(scene, rock);
-        }
-    }
-
-    /// Notes the blow of a pair, if one is due.
-    fn expect_pair(&mut self, scene: &ImpactScene, place: usize) {
-        let pair_history = &scene.pair_histories[place];
-        let [a, b] = [pair_history.a, pair_history.b].map(|k| &self.balls[k as usize]);
-        let apart = a.c - b.c;
-        let reach = a.body.radius + b.body.radius;
-        let (distance2, widest) = (apart.norm_squared(), reach * (1.0 + TOUCH));
-        if distance2 > widest * widest {
-            return;
-        }
-        let closing = a.v - b.v;
-        let along = apart.dot(&closing);
-        if along >= 0.0 {
-            return;
-        }
-        // |d − u s| = reach with the smaller cancellation; both parts of the root are positive
-        let inside = (reach * reach - distance2).max(0.0);
-        let root = (along * along + closing.norm_squared() * inside).sqrt();
-        let s = (inside / (root - along)).min(a.since_s).min(b.since_s);
-        let (n, _) = between(&(a.c - a.v * s), &(b.c - b.v * s));
-        if -n.dot(&closing) >= capture_m_s(&pair_history.law) {
-            self.due.push((s.to_bits(), Reverse(place), [a.times, b.times]));
-        }
-    }
-
-    /// Notes the blow of a rock on the mesh, if one is due.
-    fn expect_ground(&mut self, scene: &mut ImpactScene, k: usize) {
-        let ball = &self.balls[k];
-        let IslandBody { state, body, laws, .. } = &mut *scene.members[k];
-        let world = ContactEnvironment { terrain: scene.terrain, body: *body, laws };
-        state.look_ahead_again(&world, &ball.c);
-        let mut first: Option<f64> = None;
-        for touch in state.touches.iter() {
-            let s = time_of_touch(ball, &touch.normal, body.radius - touch.distance_m);
-            let is_fast = |s: &f64| {
-                let (_, v) = ball.before_end(*s);
-                -touch.normal.dot(&v) >= capture_m_s(world.law(touch.triangle))
-            };
-            if let Some(s) = s.filter(is_fast) {
-                first = Some(first.unwrap_or(0.0).max(s));
-            }
-        }
-        let meets_facet = || meets_facet(&world, state, ball).then_some(0.0);
-        if let Some(s) = first.or_else(meets_facet) {
-            let place = scene.pair_histories.len() + k;
-            self.due.push((s.to_bits(), Reverse(place), [ball.times; 2]));
         }
     }
 
@@ -227,6 +178,7 @@ impl RigidIsland {
         let (at, v) = ball.before_end(s);
         let reach = body.radius * (1.0 + NEAR);
         state.look(&world, &at, reach);
+        // a rock that the mesh holds is not on the parabola on which it is looked for
         if state.touches.iter().all(|touch| touch.normal.dot(&v) >= 0.0) {
             state.look(&world, &ball.c, reach);
         }
@@ -292,6 +244,32 @@ impl RigidIsland {
     }
 }
 
+impl RigidIsland {
+    /// Holds a rock that has come to the mesh within the step slower than it rebounds, and has fallen on into it since: what a step more would
+    /// take for a blow is no more than its weight has done on the rest of this one.
+    fn settle_on(&mut self, scene: &mut ImpactScene, k: usize) {
+        let tolerance = self.impact_tolerance();
+        let ball = &mut self.balls[k];
+        if ball.on_mesh != OnMesh::Settles {
+            return;
+        }
+        let IslandBody { state, body, laws, .. } = &mut *scene.members[k];
+        let world = ContactEnvironment { terrain: scene.terrain, body: *body, laws };
+        state.look(&world, &ball.c, body.radius * (1.0 + HELD));
+        let ContactState { touches, stem_load, .. } = state;
+        let comes = |touch: &&ContactPoint| is_fast(&world, touch, &ball.v);
+        let Some(touch) = touches.iter().find(comes).copied() else { return };
+        let mut note = |other: &ContactPoint, loss: &Loss, _: Option<f64>| {
+            self.losses[k].add(loss, 1.0);
+            stem_load.strike(scene.terrain, other.triangle, loss.sum());
+        };
+        let motion = (&ball.v, &ball.w);
+        (ball.v, ball.w) =
+            throw_off((&world, touches), (&touch, None), motion, (true, tolerance), &mut note);
+        ball.pushed = true;
+    }
+}
+
 /// Velocity and spin after the impact of a rock on all that it touches at the instant at which it comes to `touch`; as a rock alone it
 /// is turned against a facet, and back. Gives nothing back if it is `dead`. Notes of every contact what it took, and of those struck
 /// the approach (m/s).
@@ -317,25 +295,7 @@ fn throw_off(
     (turn * thrown.velocity_m_s, turn * thrown.spin_rad_s)
 }
 
-/// Whether a rock that slides or rolls strikes the next facet of rough ground, the last one being behind it.
-fn meets_facet(world: &ContactEnvironment, state: &ContactState, ball: &StepBody) -> bool {
-    let reach = ball.body.radius * (1.0 + HELD);
-    let mut held = state.touches.iter().filter(|touch| touch.distance_m <= reach);
-    held.any(|touch| {
-        let at = Meeting { n: touch.normal, triangle: touch.triangle, c: ball.c, v: ball.v };
-        state.facets.meet_next(world, &at)
-    })
-}
-
 /// Mean motion in a blow that fell `s` (s) before the end of the step, from the motions there without and with it.
 fn mean_late(ball: &StepBody, before: &(Vec3, Vec3), s: f64) -> (Vec3, Vec3) {
     ((before.0 + ball.v) * 0.5 - ball.body.gravity * s, (before.1 + ball.w) * 0.5)
-}
-
-/// How long before the end of the step a rock that is pressed in by `pen` (m) along `n` touched (s), on its parabola.
-fn time_of_touch(ball: &StepBody, n: &Vec3, penetration: f64) -> Option<f64> {
-    let speed = -n.dot(&ball.v);
-    let root2 = speed * speed + 2.0 * n.dot(&ball.body.gravity) * penetration.max(0.0);
-    let touches = penetration >= -TOUCH * ball.body.radius && speed > 0.0 && root2 > 0.0;
-    touches.then(|| (2.0 * penetration.max(0.0) / (speed + root2.sqrt())).min(ball.since_s))
 }

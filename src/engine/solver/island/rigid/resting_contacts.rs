@@ -10,7 +10,7 @@
 //! the rocks allows, 0.2 R.
 
 use super::RigidIsland;
-use super::contacts::{BallContact, StepBody};
+use super::contacts::{BallContact, OnMesh, StepBody};
 use crate::contact::pair::{PairHistory, between};
 use crate::rock::Vec3;
 use crate::solver::contact_state::ContactEnvironment;
@@ -67,7 +67,9 @@ impl RigidIsland {
                 let (speed, capture) = (touch.normal.dot(&ball.v), capture_m_s(law));
                 let gap = touch.distance_m - ball.body.radius;
                 let start = (gap - 0.5 * dt * speed, speed);
-                if !is_sustained(start, capture, dt) {
+                // what a flight passes abreast of is not come to slowly: its normal turns on the way
+                let passes = member.flying && !touch.is_on_plane();
+                if passes || !is_sustained(start, capture, dt) {
                     continue;
                 }
                 let mut ground_contact = GroundContact::new(k, touch, law);
@@ -206,7 +208,8 @@ impl RigidIsland {
         for ground_contact in
             self.ground_contacts.iter().filter(|ground_contact| ground_contact.normal_force > 0.0)
         {
-            self.balls[ground_contact.rock].pushed = true;
+            let ball = &mut self.balls[ground_contact.rock];
+            (ball.pushed, ball.on_mesh) = (true, OnMesh::Held);
         }
         for ball in &mut self.balls {
             ball.c += mean(ball).0 * dt;
