@@ -64,6 +64,8 @@ pub struct ContactHistory {
     pub closed: bool,
     /// Approach at which it has come up, if it may rebound, until the impact has taken notice (m/s); else 0.
     pub met_m_s: f64,
+    /// Damping ratio of its impact (–), where the restitution of the ground falls with the speed of the blow; 0 = that of the ground.
+    pub damping_ratio: f64,
     /// Whether its beginning has been noted down.
     pub announced: bool,
     /// As which of the rock's impacts, from 1; 0 where it was none.
@@ -85,6 +87,7 @@ impl ContactHistory {
             slides: false,
             closed: false,
             met_m_s: 0.0,
+            damping_ratio: 0.0,
             announced: false,
             impact: 0,
         }

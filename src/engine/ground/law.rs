@@ -278,16 +278,33 @@ impl Law {
         self.restitution <= 0.0
     }
 
+    /// Damping ratio of an impact at a normal speed (m/s) (–), if it hangs on the speed.
+    pub(crate) fn ratio_at(&self, approach_m_s: f64) -> Option<f64> {
+        let hangs_on_speed = self.restitution_half_m_s.is_finite();
+        hangs_on_speed.then(|| damping_ratio(self.restitution_at(approach_m_s)))
+    }
+
     /// Takes the dashpot of an impact at a normal speed (m/s), until the next one.
     pub fn struck_at(&mut self, approach_m_s: f64) {
-        if self.restitution_half_m_s.is_finite() {
-            let ratio = damping_ratio(self.restitution_at(approach_m_s));
-            let critical = 2.0 * self.p_n / self.omega;
-            self.c_n = ratio * critical;
-            self.c_n_captured = CAPTURE_DAMPING_RATIO.max(ratio) * critical;
-            self.shear.c = along_ratio(ratio) * self.critical[0];
-            self.rolling.c = along_ratio(ratio) * self.critical[1];
+        if let Some(ratio) = self.ratio_at(approach_m_s) {
+            self.damp(ratio);
         }
+    }
+
+    /// The same law with dashpots of a damping ratio (–).
+    pub(crate) fn damped(&self, ratio: f64) -> Self {
+        let mut law = *self;
+        law.damp(ratio);
+        law
+    }
+
+    /// Takes dashpots of a damping ratio (–).
+    fn damp(&mut self, ratio: f64) {
+        let critical = 2.0 * self.p_n / self.omega;
+        self.c_n = ratio * critical;
+        self.c_n_captured = CAPTURE_DAMPING_RATIO.max(ratio) * critical;
+        self.shear.c = along_ratio(ratio) * self.critical[0];
+        self.rolling.c = along_ratio(ratio) * self.critical[1];
     }
 }
 

@@ -5,7 +5,7 @@
 //! here each rock has one entry a cell, however often it comes back.
 
 use super::contact_heights::StepHeights;
-use super::form::{Form, RockInstant, between};
+use super::form::{Form, RockInstant, between, time_share};
 use super::heights::Heights;
 use super::passages::{Passage, Passages};
 use crate::plan::MapGrid;
@@ -73,7 +73,7 @@ impl<'a> CellPassages<'a> {
         self.cells.is_some()
     }
 
-    /// Notes the cells of a step in contact, which are shorter than cells: its ends hold the energy that it has.
+    /// Notes the cells of a step in contact: where it enters and leaves each hold the energy that it has there.
     pub(super) fn step(
         &mut self,
         (terrain, form): (&Terrain, &Form),
@@ -87,14 +87,15 @@ impl<'a> CellPassages<'a> {
             let at = RockInstant::between(ends, s);
             at.motion.translational_j(&form.rock) + form.rotational_j(&at)
         };
-        walk(cells, [&from.position_m, &to.position_m], |cell, s0, s1| {
+        walk(cells, [&from.position_m, &to.position_m], |cell, entered, left| {
+            let [s0, s1] = [entered, left].map(|share| time_share([from, to], share));
             // looked for once a cell, where the step comes into it: from below the mesh holds a rock too
             let known_m = self.found.known_m(cell);
             if known_m.is_none() && terrain.is_under_slope(&between(from, to, s1).position_m) {
                 return;
             }
             let total_j = total_j(s0).max(total_j(s1));
-            let height_m = heights.largest_m([s0, s1], known_m.unwrap_or(0.0));
+            let height_m = heights.largest_m([entered, left], known_m.unwrap_or(0.0));
             self.found.add(CellPassage { cell, total_j, height_m });
         });
     }

@@ -7,6 +7,7 @@
 use crate::body::Block;
 use crate::flight::Parabola;
 use crate::flight::top::Top;
+use crate::math;
 use crate::rock::{Motion, Rock, Vec3};
 use nalgebra::{Quaternion, Rotation3, UnitQuaternion};
 
@@ -228,9 +229,43 @@ pub(super) fn between(from: &Motion, to: &Motion, s: f64) -> Motion {
     }
 }
 
+/// Halvings of a step to find when it has come so far: 2⁻⁴⁰ is rounding.
+const TIMES_HALVED: u32 = 40;
+
+/// The share of a step's time at which it has come a share of its way in plan view, on the cubic of [`between`]: a rock that slows down has most of
+/// its way behind it at half of its time.
+pub(super) fn time_share([from, to]: [&Motion; 2], way_share: f64) -> f64 {
+    let way = (to.position_m - from.position_m).xy();
+    let (dt, way2) = (to.time_s - from.time_s, way.norm_squared());
+    if way2 == 0.0 || way_share <= 0.0 || way_share >= 1.0 {
+        return way_share;
+    }
+    let along = |motion: &Motion| motion.velocity_m_s.xy().dot(&way) * (dt / way2) - 1.0;
+    let (a, b) = (along(from), along(to));
+    let come = |s: f64| s + (a * (1.0 - s) - b * s) * (s * (1.0 - s));
+    math::bisected([0.0, 1.0], TIMES_HALVED, |s| come(s) <= way_share)[0]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Constant braking from 3 m/s to rest within 2 s: `x = 3 t − 0.75 t²`, so that half of the way of 3 m is behind after `2 − √2` s.
+    #[test]
+    fn a_rock_that_slows_down_is_early_half_way() {
+        let at = |time_s: f64, x: f64, speed: f64| Motion {
+            time_s,
+            position_m: Vec3::new(x, 0.0, 0.0),
+            velocity_m_s: Vec3::new(speed, 0.0, 0.0),
+            spin_rad_s: Vec3::zeros(),
+        };
+        let (from, to) = (at(5.0, 1.0, 3.0), at(7.0, 4.0, 0.0));
+        let half = time_share([&from, &to], 0.5);
+        assert!((half - (1.0 - 0.5_f64.sqrt())).abs() < 1e-11, "{half}");
+        assert!((between(&from, &to, half).velocity_m_s.x - 4.5_f64.sqrt()).abs() < 1e-10);
+        assert_eq!([0.0, 1.0].map(|share| time_share([&from, &to], share)), [0.0, 1.0]);
+        assert_eq!(time_share([&from, &from], 0.3), 0.3);
+    }
 
     #[test]
     fn within_a_step_a_block_turns_from_one_attitude_to_the_other() {

@@ -19,8 +19,8 @@ use arrayvec::ArrayVec;
 const GROWTH_OF_STEP: f64 = 0.02;
 
 impl Fall<'_> {
-    /// Lets the rock dig into the soil that has just been struck, and gives the grounds that were their dashpots; returns what it keeps of
-    /// its speed (–).
+    /// Lets the rock dig into the soil that has just been struck, and gives the impacts their dashpots, or the grounds where there are no springs;
+    /// returns what it keeps of its speed (–).
     ///
     /// Order: the soil takes its share first, and the dashpots are those of the speed that is left.
     /// `kept` is a factor on the velocity, so the direction stays and the spin is untouched: drag
@@ -32,6 +32,16 @@ impl Fall<'_> {
         let kept = if self.soil.scars.are_any() { self.dig() } else { 1.0 };
         self.slow(kept);
         let world = self.settings.around(self.body, self.laws);
+        for blow in &self.state.blows {
+            // one that goes on beside it keeps its own
+            let ratio = world.law(blow.triangle).ratio_at(kept * blow.approach_m_s);
+            let struck =
+                |one: &&mut ContactHistory| (one.triangle, one.n) == (blow.triangle, blow.n);
+            if let Some((ratio, history)) = ratio.zip(self.state.histories.iter_mut().find(struck))
+            {
+                history.damping_ratio = ratio;
+            }
+        }
         let of = |blow: &Blow| (world.ground_of(blow.triangle), kept * blow.approach_m_s);
         let mut struck: ArrayVec<(u16, f64), MOST> = self.state.blows.iter().map(of).collect();
         self.state.blows.clear();

@@ -4,6 +4,7 @@
 //! passes its own stretch again. They make the profiles of speed and height over distance.
 
 use super::contact_heights::StepHeights;
+use super::form::time_share;
 use super::heights::Heights;
 use super::passages::{Passage, Passages};
 use crate::math;
@@ -53,7 +54,7 @@ impl Stretches {
         (math::hypot(at.x - self.from_m[0], at.y - self.from_m[1]) / step_m) as u32
     }
 
-    /// Notes a step in contact, how fast and how high it is: the speed goes evenly from that at its start to that at its end.
+    /// Notes a step in contact, how fast and how high it is: the velocity goes evenly in time from that at its start to that at its end.
     pub(super) fn step(&mut self, [from, to]: [&Motion; 2], heights: &StepHeights) {
         let Some(step_m) = self.step_m else { return };
         let [begins_m_s, ends_m_s] = [from, to].map(|at| at.velocity_m_s.norm());
@@ -64,9 +65,10 @@ impl Stretches {
             return self.note_part(number, begins_m_s.max(ends_m_s), (heights, [0.0, 1.0]));
         }
         let [place, way] = self.seen_from_release([&from.position_m, &to.position_m]);
-        let speed_m_s = |share: f64| begins_m_s + share * (ends_m_s - begins_m_s);
-        walk(place, way, step_m, |number, s0, s1| {
-            self.note_part(number, speed_m_s(s0).max(speed_m_s(s1)), (heights, [s0, s1]));
+        let speed_m_s = |s: f64| from.velocity_m_s.lerp(&to.velocity_m_s, s).norm();
+        walk(place, way, step_m, |number, entered, left| {
+            let [s0, s1] = [entered, left].map(|share| time_share([from, to], share));
+            self.note_part(number, speed_m_s(s0).max(speed_m_s(s1)), (heights, [entered, left]));
         });
     }
 

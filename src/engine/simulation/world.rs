@@ -259,10 +259,12 @@ impl BodyWorld<'_> {
     /// What springs between rocks hold (J), half of it each rock's. Heaps in the rigid limit have given all of it to the motion.
     fn held_by_pairs_j(&self) -> Vec<f64> {
         let mut held_j = vec![0.0; self.bodies.len()];
-        if self.is_rigid() || self.heaps.is_some() {
+        if self.is_rigid() {
             return held_j;
         }
-        for pair in self.pair_histories.iter().filter(|pair| pair.is_held()) {
+        // both ends are of one island
+        let is_held = |pair: &&PairHistory| pair.is_held() && !self.body(pair.a).is_unloaded;
+        for pair in self.pair_histories.iter().filter(is_held) {
             let [one, two] = [pair.a, pair.b].map(|k| &self.body(k).member);
             let (_, distance) = between(&one.state.c, &two.state.c);
             let stored_j = pair.stored_j(distance, one.body.radius + two.body.radius);

@@ -59,14 +59,20 @@ impl ContactEnvironment<'_> {
             || self.law(one).has_springs_of(self.law(other))
     }
 
-    /// The law of a contact with `triangle`: springs and dashpots of the ground on which it was pressed, friction of the one that it touches.
+    /// The law of a contact with `triangle`: springs and dashpots of the ground on which it was pressed, friction of the one that it touches. An impact
+    /// on ground whose restitution falls with its speed has dashpots of its own.
     #[inline]
     pub(crate) fn law_touched(&self, history: &ContactHistory, triangle: u32) -> Cow<'_, Law> {
         let (pressed, touched) = (history.springs_of, self.law(triangle));
-        if self.are_alike(pressed, triangle) {
+        let law = if self.are_alike(pressed, triangle) {
             Cow::Borrowed(touched)
         } else {
             Cow::Owned(self.law(pressed).with_friction_of(touched))
+        };
+        if history.damping_ratio > 0.0 {
+            Cow::Owned(law.damped(history.damping_ratio))
+        } else {
+            law
         }
     }
 

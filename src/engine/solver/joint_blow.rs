@@ -22,7 +22,7 @@ use crate::rock::Vec3;
 use arrayvec::ArrayVec;
 use nalgebra::Matrix3;
 
-/// Steps at most: soft ground beside stiff stems takes many of the stems' times.
+/// Steps at most: soft ground beside a stiff stem that stands takes many of the stem's times.
 const JOINT_STEPS: u32 = 40_000;
 
 /// One contact of such a blow.
@@ -109,13 +109,14 @@ pub(crate) fn joint_blow(
         Pressed { depth_m: 0.0, shear: Vec3::zeros(), roll: Vec3::zeros(), taken_j: [0.0; 3] };
     let mut now = Instant { v, w, pressed: contacts.iter().map(|_| none).collect() };
     let mut blow = JointBlow { body, contacts, broken: ArrayVec::new() };
-    let omegas = || contacts.iter().map(|contact| contact.law.omega_rad_s());
-    let [fastest, slowest] = [omegas().fold(0.0, f64::max), omegas().fold(f64::INFINITY, f64::min)];
-    let (step, most) = (STEP / fastest, COMES_OFF / STEP * (fastest / slowest));
-    for _ in 0..most.min(f64::from(JOINT_STEPS)) as u32 {
-        if !blow.presses(&now) {
+    let omegas = contacts.iter().map(|contact| contact.law.omega_rad_s());
+    let mut left_s = COMES_OFF / omegas.fold(f64::INFINITY, f64::min);
+    for _ in 0..JOINT_STEPS {
+        if left_s <= 0.0 || !blow.presses(&now) {
             break;
         }
+        let step = blow.step_s(&now);
+        left_s -= step;
         let next = blow.after(&now, step);
         if blow.next_to_break(&next, &left_j).is_none() {
             now = next;
@@ -138,6 +139,23 @@ impl JointBlow<'_> {
     /// Whether a contact stands.
     fn stands(&self, contact: &JointContact) -> bool {
         contact.stem.is_none_or(|stem| !self.broken.contains(&stem))
+    }
+
+    /// The stiffest contact that touches (rad/s).
+    fn stiffest(&self, at: &Instant) -> f64 {
+        let parts = self.contacts.iter().zip(&at.pressed);
+        let touching =
+            parts.filter(|(contact, pressed)| pressed.depth_m >= 0.0 && self.stands(contact));
+        touching.map(|(contact, _)| contact.law.omega_rad_s()).fold(0.0, f64::max)
+    }
+
+    /// The next step (s): that of the stiffest contact that touches, up to where a stiffer one begins. What is gone or has let go sets none: a soft
+    /// contact would not be over after as many steps of a stiff stem as are taken at most.
+    fn step_s(&self, now: &Instant) -> f64 {
+        let stiffest = self.stiffest(now);
+        let step = STEP / stiffest;
+        let is_alike = |time: f64| self.stiffest(&self.after(now, time)) <= stiffest;
+        if is_alike(step) { step } else { math::bisected([0.0, step], BISECTIONS, is_alike)[1] }
     }
 
     /// The stem that has taken all it can, if one has.

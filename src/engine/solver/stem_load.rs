@@ -134,7 +134,11 @@ impl StemLoad {
     pub(super) fn strike(&mut self, terrain: &Terrain, triangle: u32, joule: f64) {
         if let Some(stems) = terrain.stems.as_ref().filter(|_| terrain.is_tree(triangle)) {
             let weight = joule.max(0.0);
-            self.pressed.press(PressedTree { stem: stems.of_triangle(triangle), held_j: 0.0, weight });
+            self.pressed.press(PressedTree {
+                stem: stems.of_triangle(triangle),
+                held_j: 0.0,
+                weight,
+            });
         }
     }
 

@@ -45,8 +45,7 @@ impl ContactState {
         self.stem_load.pressed = self.pressed_trees(world);
         let motion_j = self.motion_j(&world.body);
         // what each of several takes is known between steps
-        let (mut longest_s, mut may_yield) =
-            (f64::INFINITY, self.stem_load.pressed.are_several());
+        let (mut longest_s, mut may_yield) = (f64::INFINITY, self.stem_load.pressed.are_several());
         for stem in self.stem_load.pressed.iter().filter_map(|tree| tree.stem) {
             // all of the rock's motion would not break another: no step need be limited
             if self.stem_load.may_yield(stems, stem, motion_j) {
@@ -76,8 +75,7 @@ impl ContactState {
         // what broke in the limit of stiff springs has had its energy and is gone: the rest went into what stands
         let standing_j = loss.trees - std::mem::take(&mut self.stem_load.broken_j);
         // with springs what each holds now; without them blows have told what each took
-        let end =
-            if has_springs { self.pressed_trees(world) } else { PressedTrees::default() };
+        let end = if has_springs { self.pressed_trees(world) } else { PressedTrees::default() };
         let giving_way = self.stem_load.take_until(stems, &end, standing_j);
         for &(stem, beyond_j) in &giving_way {
             let push = self.push_of(stems, stem);
