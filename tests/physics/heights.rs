@@ -189,3 +189,56 @@ fn a_rock_is_as_fast_in_its_stretches_and_cells_as_on_its_path() {
     assert!(points > 10_000, "{points} points in flight");
     assert_eq!(faster, [0, 0], "points above the energy of a cell and the speed of a stretch");
 }
+
+/// A rock rolls up a plane, or out on the level, in steps as long as several cells: in each it is as fast as where it enters it, by `7/10 m v²` that height
+/// and rolling friction take, and in each stretch likewise.
+#[test]
+fn a_rolling_rock_is_as_fast_in_a_cell_as_where_it_enters_it() {
+    for (scheme, degrees) in [("adaptive", 27.0_f64), ("rigid", 27.0), ("adaptive", 0.0)] {
+        let slope = degrees.to_radians().tan();
+        let at = |x: f64, y: f64| Vec3::new(x, y, slope * y);
+        let [a, b, c, d] = [at(0.0, 0.0), at(60.0, 0.0), at(60.0, 60.0), at(0.0, 60.0)];
+        let dir = tempfile::tempdir().unwrap();
+        write_binary(&dir.path().join("plane.stl"), &[[a, b, c], [a, c, d]]).unwrap();
+        let friction = if degrees > 0.0 { "" } else { "rolling_friction = 0.3\n" };
+        let (cos, r) = (degrees.to_radians().cos(), 1.0);
+        let z = slope * 10.5 + r / cos;
+        let speed = [12.0 * cos, 12.0 * degrees.to_radians().sin()];
+        let text = format!(
+            "title = \"t\"\nseed = 1\ngravity_m_s2 = 9.81\n[[terrain]]\nmesh = \"plane.stl\"\nground = \"rock\"\n\
+             [grounds.rock]\nnormal_stiffness_n_m = 1e9\nshear_stiffness_n_m = 2.5e8\nfriction_angle_deg = 60.0\n\
+             restitution = 0.0\n{friction}[rocks]\ndensity_kg_m3 = 2700.0\nradius_m = {r}\n[release]\ncount = 1\n\
+             velocity_m_s = [0.0, {}, {}]\nspin_rad_s = [-12.0, 0.0, 0.0]\npoints_m = [[30.5, 10.5, {z}]]\n\
+             [solver]\nscheme = \"{scheme}\"\nlongest_s = 1.0\n[record]\nprofile_step_m = 1.0\n[maps]\ncell_m = 1.0\n",
+            speed[0], speed[1]
+        );
+        let plan = crate::common::plan_in(dir.path(), &text);
+        let fall = &crate::common::falls(&plan)[0];
+        let grid = plan.recorders().cells.unwrap();
+        // 7/10 m v² falls by the height, or by what rolling friction takes on the way: μ_r m g
+        let decline = 9.81 * if degrees > 0.0 { slope } else { 0.3 };
+        let left = |y: f64| 0.7 * 144.0 - decline * (y - 10.5);
+        let mut seen = 0;
+        for y in 11..15 {
+            // places are local, borders of cells whole metres of the map
+            let start = fall.start.position_m;
+            let [column, row] = grid
+                .place(start.x, start.y + f64::from(y) - 10.0)
+                .map(|place| place.floor() as i64);
+            let cell = grid.cell(column, row).unwrap();
+            let passage = fall.passages.iter().find(|one| one.cell == cell).unwrap();
+            let exact_j = fall.rock.mass_kg() * left(f64::from(y));
+            let off = passage.total_j / exact_j - 1.0;
+            assert!(off.abs() < 2e-3, "{scheme} {degrees}°, {y} m: {off:e}");
+            let stretch = fall.stretches.iter().find(|one| one.number == y as u32 - 11).unwrap();
+            // stretches begin at the release
+            let exact = (left(f64::from(y) - 0.5) / 0.7).sqrt();
+            assert!(
+                (stretch.speed_m_s / exact - 1.0).abs() < 2e-3,
+                "{scheme} {degrees}°, {y}: {stretch:?}"
+            );
+            seen += 1;
+        }
+        assert_eq!(seen, 4);
+    }
+}

@@ -33,9 +33,9 @@ pub(crate) fn falls_among(kinds: &[(&[Facet], &str)], more: &str) -> Vec<Traject
     let mesh = |k: usize| format!("[[trees]]\nmesh = \"trees{k}.stl\"\nground = \"trunk{k}\"\n");
     let meshes: Vec<String> = (0..kinds.len()).map(mesh).collect();
     let trunk = |(k, (_, trunk)): (usize, &(&[Facet], &str))| {
-        format!(
-            "[grounds.trunk{k}]\nnormal_stiffness_n_m = 1e10\nshear_stiffness_n_m = 0.25e10\n{trunk}\n"
-        )
+        let stiff = "normal_stiffness_n_m = 1e10\nshear_stiffness_n_m = 0.25e10\n";
+        let own = if trunk.contains("stiffness") { "" } else { stiff };
+        format!("[grounds.trunk{k}]\n{own}{trunk}\n")
     };
     let trunks: Vec<String> = kinds.iter().enumerate().map(trunk).collect();
     let (meshes, trunks) = (meshes.concat(), trunks.concat());

@@ -144,7 +144,8 @@ impl<'a> Falling<'a> for Roll<'a> {
     fn longest_s(&mut self) -> f64 {
         let kept = self.scars.plough_ahead();
         self.slow(kept);
-        self.scars.longest_s(self.moving.v.norm())
+        let apart_s = self.footing.longest_apart_s(&self.world, (self.block, &self.moving));
+        self.scars.longest_s(self.moving.v.norm()).min(apart_s)
     }
 
     fn step(&mut self, (): &mut (), most_s: f64) -> Result<(Advance, bool), StepError> {

@@ -4,7 +4,7 @@ use super::contact_state::{ContactEnvironment, ContactState};
 use super::loss::Loss;
 use super::stem_load::{PressedTree, PressedTrees};
 use crate::contact::history::ContactHistory;
-use crate::contact::{ContactPoint, MOST};
+use crate::contact::{ContactPoint, MOST, TOUCH};
 use crate::ground::Law;
 use crate::rock::Vec3;
 use arrayvec::ArrayVec;
@@ -87,7 +87,8 @@ impl ContactState {
         }
         let (c, last) = (self.c, std::mem::take(&mut self.touches));
         self.know(world, &c);
-        self.near.touches(terrain, &c, world.body.radius, &mut self.touches);
+        // also what has just come to touch: its dashpot takes most at first
+        self.near.touches(terrain, &c, world.body.radius * (1.0 + TOUCH), &mut self.touches);
         for (k, touch) in self.touches.iter().enumerate() {
             let memory = self.histories.iter().find(|history| history.feature == touch.feature);
             if let Some(history) = memory.filter(|_| terrain.is_tree(touch.triangle)) {

@@ -9,6 +9,9 @@ use arrayvec::ArrayVec;
 /// A stem with no more than this left of what it can take (–) gives way: the steps come ever nearer to the end of it.
 const AT_LIMIT: f64 = 1e-6;
 
+/// Longest step while several trees are pressed (rad of the stiffest contact): what each takes is told by both ends of a step.
+pub(super) const APART_RAD: f64 = 0.1;
+
 /// A stem that has more than this times the motion left (–) cannot give way.
 /// The tenth on top is for what weight may add within the contact.
 const WITHSTANDS: f64 = 1.1;

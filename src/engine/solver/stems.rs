@@ -17,7 +17,7 @@ use super::contact_state::{ContactEnvironment, ContactState};
 use super::joint_blow::{JointBody, JointContact, JointContacts, joint_blow};
 use super::loss::Loss;
 use super::rigid::STRUCK_TOGETHER;
-use super::stem_load::PressedTrees;
+use super::stem_load::{APART_RAD, PressedTrees};
 use super::yielding::yielding_impact;
 use crate::contact::history::ContactHistory;
 use crate::contact::{ContactPoint, MOST};
@@ -45,7 +45,9 @@ impl ContactState {
         self.stem_load.pressed = self.pressed_trees(world);
         let motion_j = self.motion_j(&world.body);
         // what each of several takes is known between steps
-        let (mut longest_s, mut may_yield) = (f64::INFINITY, self.stem_load.pressed.are_several());
+        let mut may_yield = self.stem_load.pressed.are_several();
+        let mut longest_s =
+            if may_yield { APART_RAD / self.stiffest(world) } else { f64::INFINITY };
         for stem in self.stem_load.pressed.iter().filter_map(|tree| tree.stem) {
             // all of the rock's motion would not break another: no step need be limited
             if self.stem_load.may_yield(stems, stem, motion_j) {
@@ -84,6 +86,12 @@ impl ContactState {
             self.fell(stems, stem);
         }
         !giving_way.is_empty()
+    }
+
+    /// Stiffest contact (rad/s).
+    fn stiffest(&self, world: &ContactEnvironment) -> f64 {
+        let omegas = self.histories.iter().map(|history| world.springs_of(history).omega_rad_s());
+        omegas.fold(0.0, f64::max)
     }
 
     /// Direction of the push of all contacts with a stem, by their forces if these are known.

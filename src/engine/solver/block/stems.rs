@@ -15,7 +15,7 @@ use crate::solver::environment::ContactEnvironment;
 use crate::solver::joint_blow::{JointBody, JointContact, JointContacts, joint_blow};
 use crate::solver::law::capture_m_s;
 use crate::solver::loss::Loss;
-use crate::solver::stem_load::{PressedTree, PressedTrees};
+use crate::solver::stem_load::{APART_RAD, PressedTree, PressedTrees};
 use crate::solver::stems::given_back;
 use crate::terrain::stems::Stems;
 use arrayvec::ArrayVec;
@@ -184,6 +184,20 @@ impl Footing {
             }
         }
         self.stem_load.pressed = pressed;
+    }
+
+    /// The longest step (s) in which it is told what each of several trees takes that springs press.
+    pub(crate) fn longest_apart_s(
+        &self,
+        world: &ContactEnvironment,
+        (block, moving): (&Block, &Moving),
+    ) -> f64 {
+        let Some(stems) = world.terrain.stems.as_ref() else { return f64::INFINITY };
+        if !self.pressed_by_springs(world, stems, (block, moving)).are_several() {
+            return f64::INFINITY;
+        }
+        let omegas = self.springs.histories.iter().map(|history| history.law.omega_rad_s());
+        APART_RAD / omegas.fold(0.0, f64::max)
     }
 
     /// The trees that springs press, with what these hold and the power of their dashpots and of friction.

@@ -123,3 +123,22 @@ proptest! {
         }
     }
 }
+
+/// A stiff stem breaks at once beside a soft one that stands: the soft one throws the rock back as alone, however much stiffer the other was.
+#[test]
+fn a_stiff_stem_that_breaks_leaves_the_blow_of_a_soft_one() {
+    let (body, soft) = case(0.0, 0.8);
+    for stiffer in [1.0, 1e2, 1e4, 1e6, 1e8] {
+        let rock = Rock { radius_m: 0.5, density_kg_m3: 2700.0 };
+        let ground = Ground::smooth([stiffer * 1e9, stiffer * 0.25e9], 0.0, Some(0.8));
+        let capture = Capture { own_m_s: None, tolerance_m_s: 0.0, gravity_m_s2: 9.8 };
+        let stiff = Law::new(&ground, &Damping::of(ground.restitution), &rock, &capture);
+        let contacts =
+            [contact(&body, &stiff, (Vec3::x(), 0)), contact(&body, &soft, (Vec3::y(), 1))];
+        let v = Vec3::new(-10.0, -10.0, 0.0);
+        let end = blow(&body, &contacts, (v, Vec3::zeros()), [1000.0, 1e9, 1e9]).unwrap();
+        let left = (100.0 - 2.0 * 1000.0 / body.mass).sqrt();
+        let off = (end.motion.0 - Vec3::new(-left, 8.0, 0.0)).norm();
+        assert!(off < 1e-3, "{stiffer:e} times stiffer: {:?}", end.motion.0);
+    }
+}
