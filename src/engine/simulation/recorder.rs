@@ -246,6 +246,15 @@ impl<'a> Recorder<'a> {
         self.step_as(to, PathState::in_contact(slides), false);
     }
 
+    /// Stays where it is until `now_s` (s): one step at rest, in which the speed with which a rock fell asleep takes it nowhere.
+    pub(super) fn stay(&mut self, now_s: f64) {
+        let before = self.now;
+        let still = Vec3::zeros();
+        self.now = Motion { velocity_m_s: still, spin_rad_s: still, ..before };
+        self.step_as(Motion { time_s: now_s, ..self.now }, PathState::Sticking, false);
+        self.now = Motion { time_s: now_s, ..before };
+    }
+
     /// Goes along one step in `state` to `to`; off the ground a rock has a height above it, also one that others hold.
     pub(super) fn step_as(
         &mut self,

@@ -62,13 +62,7 @@ impl<'a> WorldBody<'a> {
     pub(super) fn wake(&mut self, settings: &RunSettings, now_s: f64) {
         if self.state == BodyState::Asleep {
             self.state = BodyState::Moving;
-            // its path gets the time asleep as one step at rest, in which its last speed takes it nowhere
-            let before = self.recorder.now;
-            let (velocity_m_s, spin_rad_s) = (Vec3::zeros(), Vec3::zeros());
-            self.recorder.now = Motion { velocity_m_s, spin_rad_s, ..before };
-            let now = Motion { time_s: now_s, ..self.recorder.now };
-            self.recorder.step_as(now, PathState::Sticking, false);
-            self.recorder.now = Motion { time_s: now_s, ..before };
+            self.recorder.stay(now_s);
         }
         if self.member.flying && self.lands.is_none() {
             self.look_ahead(settings);
