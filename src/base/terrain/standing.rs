@@ -125,7 +125,9 @@ impl Terrain {
                 *number = boxes.len() as u32;
                 boxes.push(StemBox::of(self.sheet_of[t as usize], corners[0]));
             }
-            corners.iter().for_each(|corner| boxes[*number as usize].add(corner));
+            for corner in &corners {
+                boxes[*number as usize].add(corner);
+            }
         }
         boxes
     }

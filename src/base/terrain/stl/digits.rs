@@ -48,7 +48,8 @@ fn last_digit(word: &[u8]) -> i32 {
     let power = power.get(1..).and_then(|power| std::str::from_utf8(power).ok());
     let power: i32 = power.and_then(|power| power.parse().ok()).unwrap_or(0);
     let point = digits.iter().position(|byte| *byte == b'.');
-    power - point.map_or(0, |point| (digits.len() - point - 1) as i32)
+    let decimals = point.map_or(0, |point| digits.len() - point - 1);
+    power.saturating_sub(i32::try_from(decimals).unwrap_or(i32::MAX))
 }
 
 /// A text whose numbers are too coarse for its edges, in the unit of the file.

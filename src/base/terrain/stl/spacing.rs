@@ -1,5 +1,6 @@
 //! What 32-bit coordinates do to a mesh.
 
+use crate::math;
 use crate::terrain::facets::Facets;
 use std::fmt;
 
@@ -57,7 +58,7 @@ impl Spacing {
 
     /// Decimals of a text whose steps are about 0.1 % of the median edge.
     pub fn decimals(&self) -> usize {
-        let wanted = -(WORTH_A_WARNING * self.median_edge).log10().round();
+        let wanted = -math::log10(WORTH_A_WARNING * self.median_edge).round();
         // without an edge millimetres will do
         if wanted.is_finite() { wanted.clamp(FEWEST_DECIMALS, MOST_DECIMALS) as usize } else { 3 }
     }
