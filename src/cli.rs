@@ -226,9 +226,10 @@ fn run(args: &RunArgs) -> Result<ExitCode> {
         RunEnd::Complete(results) => {
             bar.finish();
             if !args.quiet {
-                let barriers = barrier_warnings(&results.summary.barriers);
-                let barriers = barriers.iter().map(|warning| format!("warning: {warning}"));
-                let said = report::headline(&results.hazard).into_iter().chain(barriers);
+                let mut warnings = barrier_warnings(&results.summary.barriers);
+                warnings.extend(report::untouched_trees(&results));
+                let warnings = warnings.iter().map(|warning| format!("warning: {warning}"));
+                let said = report::headline(&results.hazard).into_iter().chain(warnings);
                 say(format!("\n{}\n", said.collect::<Vec<_>>().join("\n")));
                 say(last_words(&results));
             }

@@ -80,6 +80,8 @@ pub struct Hazard {
     open: Vec<OpenRock>,
     largest: [Option<Largest>; Quantity::ALL.len()],
     largest_balance_error: Option<Largest>,
+    /// Energies of falls by a tenth of the radius of the rocks that did not fail (J).
+    small_falls_j: Sum,
     frequency: Option<Frequency>,
     /// The first release added, and those that were never released.
     first: Option<usize>,
@@ -199,7 +201,10 @@ impl Hazard {
         self.stops.entry(row.stop).or_default().add(stratum);
         self.first.get_or_insert(row.index);
         self.open.extend(OpenRock::of(row));
-        Largest::update(&mut self.largest_balance_error, row.index, row.energy_balance_error);
+        Largest::update(&mut self.largest_balance_error, row.index, balance_error(row));
+        if !matches!(row.stop, StopKind::Failed | StopKind::NotReleased) {
+            self.small_falls_j.add(small_fall_j(row));
+        }
         if !row.stop.is_released() {
             self.not_released.push(row.index);
             return;
@@ -211,6 +216,11 @@ impl Hazard {
             self.values[slot].push(if value.is_nan() { f64::INFINITY } else { value });
             Largest::update(&mut self.largest[slot], row.index, value);
         }
+    }
+
+    /// What the numbers of the computation itself warn of; empty when all is well.
+    pub fn warnings(&self) -> Vec<String> {
+        self.totals.warnings(self.rocks(), self.small_falls_j.value())
     }
 
     /// Rocks added so far, never released ones included.
@@ -247,7 +257,7 @@ impl Hazard {
         }
     }
 
-    /// Largest energy balance error of one rock (–).
+    /// Largest energy balance error of one rock (–), over the energy of a fall by a tenth of its radius where it released less.
     pub fn largest_balance_error(&self) -> Option<Largest> {
         self.largest_balance_error
     }
@@ -303,6 +313,23 @@ fn statistic(sample: &Sample, max: Option<Largest>) -> Statistic {
         percentiles,
         max,
     }
+}
+
+/// A rock that released less than it would in a fall by this much of its radius (–) as good as stood still.
+const STANDS: f64 = 0.1;
+/// What that fall is reckoned with (m/s²).
+const EARTH_M_S2: f64 = 9.81;
+
+/// Energy of a fall by a tenth of the radius of a rock (J).
+fn small_fall_j(row: &Row) -> f64 {
+    row.mass_kg * EARTH_M_S2 * STANDS * row.radius_m
+}
+
+/// What the numerics made or lost of the energy of a rock (–), over what it released or that of a fall by a tenth of its radius, whichever is
+/// more: rounding of a rock that stood still is no share of the nothing that it released.
+fn balance_error(row: &Row) -> f64 {
+    // a share of a rock whose ledger is no number is its own
+    row.energy_balance_error.min(row.remainder_j.abs() / small_fall_j(row))
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks so")]

@@ -231,12 +231,13 @@ fn more(until: Option<&TargetPrecision>, hazard: &Hazard, done: usize) -> Result
     if let Some(why) = target.refusal(hazard) {
         return Err(Error::Request(format!("{why}; finish these with --releases {done} --resume")));
     }
-    let sample = hazard.sample_as_seen(target.quantity);
+    let sample = hazard.sample(target.quantity);
     let needed = target.needs(&sample, done);
-    if needed > MOST_RELEASES as f64 {
+    let next = target.next(&sample, done);
+    if needed > MOST_RELEASES as f64 || (next.is_some() && done >= MOST_RELEASES) {
         return Err(Error::Request(format!(
             "--until \"{target}\": {done} releases are written, and about {needed:.0e} would be needed; write a wider interval, or finish these with --releases {done} --resume"
         )));
     }
-    Ok(target.next(&sample, done).map(|next| next.min(MOST_RELEASES)))
+    Ok(next.map(|next| next.min(MOST_RELEASES)))
 }

@@ -103,11 +103,34 @@ impl GisLayer {
     }
 }
 
+/// Whether a property of a file is read for a name: the same in any case, whole or as a Shapefile cuts it off.
+pub fn reads(name: &str, known: &str) -> bool {
+    let is_short = name.get(..COLUMN_BYTES).is_some_and(|short| known.eq_ignore_ascii_case(short));
+    is_short || known.eq_ignore_ascii_case(name)
+}
+
 impl GisFeature {
-    /// A property by name, also where a Shapefile has cut the name off.
+    /// A property by name in any case, also where a Shapefile has cut the name off.
     pub fn property(&self, name: &str) -> Option<&PropertyValue> {
+        let named = |name: &str| self.named(name).next().map(|(_, value)| value);
         let short = name.get(..COLUMN_BYTES);
-        self.properties.get(name).or_else(|| self.properties.get(short?))
+        self.properties.get(name).or_else(|| named(name)).or_else(|| named(short?))
+    }
+
+    /// The properties of a name, however it is written.
+    fn named(&self, name: &str) -> impl Iterator<Item = (&String, &PropertyValue)> {
+        self.properties.iter().filter(move |(known, _)| known.eq_ignore_ascii_case(name))
+    }
+
+    /// Refuses two properties that differ in case alone; `file` is for the message.
+    ///
+    /// # Errors
+    /// If there are two: which one counts is not known.
+    pub fn check_one(&self, name: &str, file: &Path) -> Result<()> {
+        let mut all = self.named(name).map(|(known, _)| known);
+        let (Some(one), Some(other)) = (all.next(), all.next()) else { return Ok(()) };
+        let found = format!("found the properties {one} and {other}");
+        Err(self.wrong(file, found, "keep one of them: case makes no difference"))
     }
 
     /// A property in words.
@@ -121,8 +144,9 @@ impl GisFeature {
     /// A property as a number above 0, or none where there is none.
     ///
     /// # Errors
-    /// Another value; `file` is for the message.
+    /// Another value, or two properties of that name; `file` is for the message.
     pub fn positive(&self, name: &str, file: &Path) -> Result<Option<f64>> {
+        self.check_one(name, file)?;
         let number = match self.property(name) {
             None => return Ok(None),
             Some(PropertyValue::Number(number)) => Some(*number),

@@ -24,6 +24,7 @@ pub mod read;
 pub mod patches;
 pub mod section;
 pub mod seen;
+pub mod standing;
 pub mod stems;
 pub mod stl;
 pub mod walls;
@@ -193,9 +194,19 @@ impl Terrain {
 
     /// Distance from a point to the nearest triangle (m), or `reach_m` when none is nearer.
     pub fn distance_m(&self, point: &Vec3, reach_m: f64) -> f64 {
+        self.distance_to(point, reach_m, |_| true)
+    }
+
+    /// The same of the slope alone, without trees.
+    pub fn slope_distance_m(&self, point: &Vec3, reach_m: f64) -> f64 {
+        self.distance_to(point, reach_m, |triangle| !self.is_tree(triangle))
+    }
+
+    #[inline]
+    fn distance_to(&self, point: &Vec3, reach_m: f64, is_one: impl Fn(u32) -> bool) -> f64 {
         let mut nearest = reach_m;
         self.index.near(point, reach_m, |start, count| {
-            for triangle in start..start + count {
+            for triangle in (start..start + count).filter(|&t| is_one(t)) {
                 let [a, b, c] = self.corners_m(triangle).map(Into::into);
                 let distance =
                     Triangle::new(a, b, c).distance_to_local_point((*point).into(), true);

@@ -10,6 +10,7 @@ mod settings;
 mod sizes;
 mod slips;
 mod stiffness;
+mod trees;
 mod recorders;
 
 pub use annual::YearPlan;

@@ -12,7 +12,7 @@ use crate::random::{Distribution, Purpose, RandomStream, stream, unit};
 use crate::rock::{Motion, Rock, Vec3};
 use crate::scene::{Area, Corner, GroundTable, Polyline, ReleasePoint, Scene, SourceTable, Zones};
 use crate::terrain::Terrain;
-use clear::{clear_of, is_inside_tree};
+use clear::{clear_of, is_in_slope};
 use shapes::Shapes;
 pub use shapes::{DrawnShape, check_shapes};
 use std::path::PathBuf;
@@ -73,6 +73,8 @@ struct TriedPlace {
     release: std::result::Result<Release, Box<Lost>>,
     /// Places drawn for it.
     drawn: usize,
+    /// Places among them in ground so steep that no height is clear of it.
+    steep: usize,
     /// How far it was lifted off steep ground (m).
     lift_m: f64,
 }
@@ -205,15 +207,18 @@ impl Releases {
         let draws = if is_fixed { 1 } else { MOST_DRAWS };
         let zone = self.draw_zone(&mut random, index).unwrap_or_default();
         let around_m = self.around_m(index, &release.rock);
-        let mut lost = None;
+        let (mut lost, mut steep) = (None, 0);
         for drawn in 1..=draws {
             let at_m = self.draw_place(&mut random, (index, zone));
             let why = match self.centre(terrain, (at_m, around_m), &mut random, index) {
                 Ok((centre, lift_m)) => {
                     release.motion.position_m = centre;
                     match self.check_clear(terrain, (index, around_m), &release) {
-                        Ok(()) => return TriedPlace { release: Ok(release), drawn, lift_m },
-                        Err(error) => (IN_GROUND, error),
+                        Ok(()) => return TriedPlace { release: Ok(release), drawn, steep, lift_m },
+                        Err(error) => {
+                            steep += usize::from(is_in_slope(terrain, &centre, around_m));
+                            (IN_GROUND, error)
+                        }
                     }
                 }
                 Err(error) => {
@@ -226,7 +231,7 @@ impl Releases {
             lost.get_or_insert(Box::new(Lost { rock, start, why: why.0, error: why.1 }));
         }
         // at least one place was drawn
-        TriedPlace { release: lost.map_or(Ok(release), Err), drawn: draws, lift_m: 0.0 }
+        TriedPlace { release: lost.map_or(Ok(release), Err), drawn: draws, steep, lift_m: 0.0 }
     }
 
     /// Everything of a release but its place.
@@ -302,40 +307,6 @@ impl Releases {
             let found = format!("found no terrain at ({}, {})", at_m[0], at_m[1]);
             Error::input(&self.file, who, found, outside(terrain))
         })
-    }
-
-    /// Refuses a rock that starts deeper in ground or tree than its weight would press it.
-    fn check_clear(
-        &self,
-        terrain: &Terrain,
-        (index, around_m): (usize, f64),
-        release: &Release,
-    ) -> Result<()> {
-        let Release { rock, motion: Motion { position_m: centre, .. }, grounds } = release;
-        let stiffness = grounds.iter().map(|ground| ground.normal_stiffness_n_m);
-        let pressed_m =
-            rock.mass_kg() * self.gravity_m_s2 / stiffness.fold(f64::INFINITY, f64::min);
-        let depth_m = around_m - terrain.distance_m(centre, around_m);
-        // beyond the edge there is no ground to be under
-        let buried = terrain.is_under_slope(centre);
-        let caged = is_inside_tree(terrain, centre);
-        let is_deep = depth_m > 2.0 * pressed_m + TYPED_DEPTH * around_m;
-        if !(is_deep || buried || caged) {
-            return Ok(());
-        }
-        let [x, y, z]: [f64; 3] = (centre + terrain.origin_m).into();
-        let who = format!("{} at ({x}, {y}, {z})", release_name(index));
-        let found = if buried {
-            "found its centre under the terrain".to_owned()
-        } else if is_deep {
-            format!("found it {depth_m:.2e} m deep in the ground or a tree")
-        } else {
-            "found its centre inside a tree".to_owned()
-        };
-        let remedy = format!(
-            "write a higher place, or another: a rock of radius {around_m} m needs its centre that far from every triangle"
-        );
-        Err(Error::input(&self.file, who, found, remedy))
     }
 
     fn draw_grounds(&self, index: usize) -> Vec<Ground> {

@@ -55,7 +55,7 @@ pub use rocks::{RockContact, Rocks};
 pub use shapes::{CORNERS, Orientation, RandomWord, ShapeTable};
 pub use sketch::sketch;
 pub use solver::SolverTable;
-pub use zones::{Zone, ZonePlace, Zones};
+pub use zones::{ZONE_PROPERTIES, Zone, ZonePlace, Zones};
 
 use crate::error::{Error, Result};
 use crate::random::{Distribution, entries};

@@ -210,6 +210,11 @@ impl Sample {
         Some(seen.between(&far.seen(p)?, *open))
     }
 
+    /// Percentile `p` with each value that is only a bound at the far end of where it may lie, which is infinite; none where no value is one.
+    pub fn far_percentile(&self, p: f64) -> Option<Percentile> {
+        self.far.as_ref()?.0.seen(p)
+    }
+
     /// The same, each value taken as it is.
     fn seen(&self, p: f64) -> Option<Percentile> {
         match &self.weights {

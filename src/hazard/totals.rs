@@ -140,8 +140,9 @@ impl Totals {
 }
 
 impl Totals {
-    /// What the numbers of the computation itself warn of, of so many rocks; empty when all is well.
-    pub fn warnings(&self, rocks: usize) -> Vec<String> {
+    /// What the numbers of the computation itself warn of, of so many rocks; empty when all is well. `least_j` stands for the energy released
+    /// where that is less, as of rocks that stood still (J).
+    pub(super) fn warnings(&self, rocks: usize, least_j: f64) -> Vec<String> {
         let mut warnings = Vec::new();
         let failed: usize = self.failures.values().map(Vec::len).sum();
         if let Some(first) = self.failures.values().flatten().min() {
@@ -168,7 +169,7 @@ impl Totals {
                 "{unsettled} of {steps} contact steps did not settle: their contact forces do not agree with their motion; take a smaller tolerance_m_s, step_s or corner_way, whichever the scheme has"
             ));
         }
-        let lost = self.ledger.remainder_j.value() / self.released_j.value();
+        let lost = self.ledger.remainder_j.value() / self.released_j.value().max(least_j);
         if lost.abs() > NUMERICAL {
             let what = if lost > 0.0 { "lost" } else { "gained" };
             warnings.push(format!(
@@ -176,7 +177,7 @@ impl Totals {
                 100.0 * lost.abs()
             ));
         }
-        let released_j = self.released_j.value() / rocks.max(1) as f64;
+        let released_j = self.released_j.value().max(least_j) / rocks.max(1) as f64;
         if let Some(rise) = self.largest_energy_rise_j.filter(|rise| rise.value > RISE * released_j)
         {
             warnings.push(format!(

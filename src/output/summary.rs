@@ -38,7 +38,7 @@ const DEFINITIONS: [(&str, &str); 13] = [
     ),
     (
         "energy_balance_error",
-        "|numerical remainder of the energy| / (potential energy released + kinetic energy at the start), the largest of all rocks",
+        "|numerical remainder of the energy| / (potential energy released + kinetic energy at the start); largest_energy_balance_error is the largest of all rocks, each over the energy of a fall by a tenth of its radius where it released less",
     ),
     (
         "intervals",

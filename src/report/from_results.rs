@@ -357,7 +357,8 @@ fn text_of(results: &Results, words: &Words) -> Text {
             &summary.warnings[..],
             &fast_warnings(results)[..],
             &hazard::barrier_warnings(&summary.barriers)[..],
-            &summary.totals.warnings(results.hazard.rocks()),
+            first::untouched_trees(results).as_slice(),
+            &results.hazard.warnings(),
         ]
         .concat()
         .iter()

@@ -119,8 +119,16 @@ fn lacking(study: &SceneStudy, statistic: &StudyStatistic) -> String {
 /// Why a statistic has no errors.
 fn without_errors(study: &SceneStudy, statistic: &StudyStatistic) -> String {
     if statistic.is_only_bound(study.releases) {
+        // up to as many as lie beyond the percentile leave it an end, if there are releases enough
+        let beyond = 1.0 - f64::from(statistic.percent) / 100.0;
+        let closes = (statistic.open as f64) < beyond * study.releases as f64;
+        let remedy = if closes {
+            "so that its interval has no end with so few releases; ask for more, give"
+        } else {
+            "and no number of releases makes it narrower; give"
+        };
         return format!(
-            "only a bound. {} of {} {} left the terrain, ran out of time or failed, and no number of releases makes it narrower; give terrain that reaches farther, or a longer [solver] longest_s.",
+            "only a bound. {} of {} {} left the terrain, ran out of time or failed, {remedy} terrain that reaches farther, or a longer [solver] longest_s.",
             statistic.open,
             study.releases,
             format::counted(study.releases, "rock", "rocks")

@@ -45,25 +45,37 @@ impl TargetPrecision {
         Some(found.high_95? - found.low_95?)
     }
 
-    /// Why more releases do not help: rocks that were seen only in part decide this percentile, and its interval is open
-    /// on their side however many there are.
+    /// Why more releases do not help: rocks that were seen only in part decide this percentile.
+    ///
+    /// With ever more releases the ends of its interval come to the percentile as seen, and to that with each of those rocks at the far end of
+    /// where it may have come. Where they are so many that the latter is one of them, the interval is open however many releases there are;
+    /// else it is at least as wide as the two are apart.
     pub fn refusal(&self, hazard: &Hazard) -> Option<String> {
         let sample = hazard.sample(self.quantity);
-        let found = sample.percentile(f64::from(self.percent) / 100.0)?;
-        let is_open = match self.quantity.open() {
-            Open::Above => found.high_95.is_none(),
-            Open::Below => found.low_95.is_none(),
+        let seen = self.percentile(&hazard.sample_as_seen(self.quantity))?;
+        let far = sample.far_percentile(f64::from(self.percent) / 100.0)?;
+        let rocks = sample.values().len();
+        let why = if far.value.is_infinite() && rocks >= 2 * seen.needs {
+            "has an interval without an end"
+        } else if self.gap(&seen, &far).is_some_and(|gap| gap > self.width) {
+            "has a wider interval, as they may have gone on,"
+        } else {
+            return None;
         };
-        let enough = sample.values().len() >= 2 * found.needs;
-        (found.censored || (is_open && enough && sample.bounds() > 0)).then(|| {
-            format!(
-                "--until \"{self}\": {} of {} rocks left the terrain, ran out of time or failed, so that p{} of {} is only a bound and no number of releases narrows it; give terrain that reaches farther, a longer [solver] longest_s, or aim at a smaller percentile",
-                sample.bounds(),
-                sample.values().len(),
-                self.percent,
-                self.name
-            )
-        })
+        Some(format!(
+            "--until \"{self}\": {} of {rocks} rocks left the terrain, ran out of time or failed: p{} of {} {why} with any number of releases; give terrain that reaches farther, a longer [solver] longest_s, or aim at a smaller percentile",
+            sample.bounds(),
+            self.percent,
+            self.name
+        ))
+    }
+
+    /// How far the percentile as seen and that of the far ends lie apart at least, whatever chance did to both.
+    fn gap(&self, seen: &Percentile, far: &Percentile) -> Option<f64> {
+        match self.quantity.open() {
+            Open::Above => Some(far.low_95? - seen.high_95?),
+            Open::Below => Some(seen.low_95? - far.high_95?),
+        }
     }
 
     /// How many releases the width of the interval of a sample, found with `done`, lets expect; 0 when it is narrow enough or

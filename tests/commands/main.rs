@@ -20,6 +20,7 @@ mod svg;
 #[path = "../statistics/report/boxes.rs"]
 mod boxes;
 
+mod astray;
 mod bad_input;
 mod belongs;
 mod blocks;

@@ -21,6 +21,24 @@ fn feature(kind: &str, coordinates: &str) -> String {
     )
 }
 
+/// GIS programs write names of columns in capitals: `WEIGHT` is `weight`, cut off or not. Two of one name say two things.
+#[test]
+fn names_of_properties_are_read_in_any_case() {
+    let file = Path::new(FILE);
+    let read = |names: [&str; 2]| {
+        let [one, other] = names;
+        let text = feature("Point", "[1,2]")
+            .replace("\"weight\":2.5", &format!("\"{one}\":2.5,\"{other}\":3.5"));
+        geojson(&collection(&text)).unwrap().features.remove(0)
+    };
+    let capital = read(["WEIGHT", "FREQUENCY_"]);
+    assert_eq!(capital.positive("weight", file).unwrap(), Some(2.5));
+    assert_eq!(capital.positive("frequency_per_year", file).unwrap(), Some(3.5));
+    assert_eq!(capital.text("NAME").as_deref(), Some("a"));
+    let said = read(["weight", "WEIGHT"]).positive("weight", file).unwrap_err().to_string();
+    assert!(said.contains("feature 1: found the properties WEIGHT and weight; keep one"), "{said}");
+}
+
 /// A square with a square hole.
 const HOLED: &str = "[[[0,0],[9,0],[9,9],[0,9],[0,0]],[[3,3],[3,6],[6,6],[6,3],[3,3]]]";
 

@@ -34,8 +34,6 @@ pub const NO_DATA: f32 = -9999.0;
 /// Heights below this (m) are no terrain but a number for "no data" that the file does not declare; the deepest dry place
 /// of the Earth is 430 m below the sea, the deepest sea 11 000 m.
 const LOWEST_M: f64 = -12_000.0;
-/// The usual ones above [`LOWEST_M`].
-const USUAL_NODATA: [f64; 2] = [-9999.0, -999.0];
 
 /// Cells that one byte of a file can hold at most (–): a run of LZW codes of 12 bits grows to 4096 bytes a code. More are
 /// announced by a file that is damaged.

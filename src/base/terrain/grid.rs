@@ -37,6 +37,9 @@ const HIGHEST_M: f64 = 1e5;
 /// Share of a cell (–) that rounding of its place can never reach: 1e-5 of the smallest cell at the farthest place.
 const ROUNDING_OF_CELL: f64 = 1e-3;
 
+/// Heights (m) that mean "no data" more often than a height.
+pub(super) const USUAL_NODATA: [f64; 2] = [-9999.0, -999.0];
+
 /// Number written for "no data".
 const NODATA: f64 = -9999.0;
 
@@ -186,6 +189,13 @@ impl Grid {
                     let found = format!("`{word}` is not a finite number");
                     Error::input(file, line_name(number), found, "write heights like 1063.95")
                 })?;
+                if header.nodata.is_none() && USUAL_NODATA.contains(&value) {
+                    let found = format!("found a height of {word} m");
+                    let remedy = format!(
+                        "if that means no data, write the line `NODATA_value {word}` below `cellsize`"
+                    );
+                    return Err(Error::input(file, line_name(number), found, remedy));
+                }
                 values.push((!header.is_nodata(value)).then_some(value));
             }
             if values.len() > columns * rows {

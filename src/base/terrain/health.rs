@@ -15,7 +15,7 @@ pub use overlaps::Overlap;
 
 use crate::error::{Error, Result};
 use crate::rock::Vec3;
-use crate::terrain::stl::{Format, Spacing};
+use crate::terrain::stl::{CoarseText, Format, Spacing};
 use crate::terrain::weld::{Piece, Tally, Welded};
 use std::path::Path;
 
@@ -24,6 +24,9 @@ const LEAST_FLAT: f64 = 0.17;
 
 /// Most gaps and overlaps that are kept.
 const MOST_NAMED: usize = 50;
+
+/// What to do with a text of too few digits.
+pub(super) const MORE_DIGITS: &str = "export it with three decimals or more, or with a map origin subtracted and origin_m in the scene";
 
 /// One file as it was read.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -42,6 +45,9 @@ pub struct FileHealth {
     pub normals_off: Tally,
     /// What 32-bit numbers do to the coordinates, in the unit of the file; `None` where they are stored with all digits.
     pub spacing: Option<Spacing>,
+    /// What too few digits do to the coordinates of a text, where they do.
+    #[serde(skip)]
+    pub coarse: Option<CoarseText>,
     /// EPSG code of its coordinates, where the file names one.
     pub epsg: Option<u32>,
     /// What the file holds and what was done with it, in words.
@@ -174,10 +180,18 @@ impl Health {
             let named = |warning: &String| format!("{}: {warning}", file.file);
             file.warnings.iter().map(named).collect::<Vec<_>>()
         };
-        self.files.iter().flat_map(of_file)
+        self.files.iter().flat_map(of_file).chain(self.mostly_flat())
     }
 
-    /// Refuses a terrain whose binary files hold coordinates too large for 32 bits.
+    /// Says that most triangles have no area, if so.
+    pub(super) fn mostly_flat(&self) -> Option<String> {
+        let (flat, all) = (self.zero_area.count, self.triangles + self.zero_area.count);
+        (2 * flat > all).then(|| {
+            format!("{flat} of {all} triangles have no area and are left out: what is left is hardly the terrain; does the file have too few digits?")
+        })
+    }
+
+    /// Refuses a terrain whose binary files hold coordinates too large for 32 bits, or whose texts hold too few digits.
     ///
     /// # Errors
     /// Names the first such file and what to do.
@@ -185,9 +199,19 @@ impl Health {
         let spoiled = self.files.iter().find_map(|file| {
             file.spacing.filter(Spacing::spoils).map(|spacing| (&file.file, spacing))
         });
-        let Some((file, spacing)) = spoiled else { return Ok(()) };
-        let remedy =
-            "export it as ASCII, or with a map origin subtracted and origin_m in the scene";
-        Err(Error::input(Path::new(file), "coordinates", spacing.to_string(), remedy))
+        let wrong = |file: &str, found: String, remedy: String| {
+            Err(Error::input(Path::new(file), "coordinates", found, remedy))
+        };
+        if let Some((file, spacing)) = spoiled {
+            let remedy = format!(
+                "export it as ASCII with {} decimals, or with a map origin subtracted and origin_m in the scene",
+                spacing.decimals()
+            );
+            return wrong(file, spacing.to_string(), remedy);
+        }
+        let is_rounded = |file: &&FileHealth| file.coarse.is_some_and(|coarse| coarse.spoils());
+        let Some(file) = self.files.iter().find(is_rounded) else { return Ok(()) };
+        let found = file.coarse.map_or_else(String::new, |coarse| coarse.to_string());
+        wrong(&file.file, found, MORE_DIGITS.to_owned())
     }
 }

@@ -5,12 +5,14 @@
 
 mod ascii;
 mod binary;
+mod digits;
 mod spacing;
 #[cfg(test)]
 mod tests;
 
 pub use ascii::{ascii_text, write_ascii};
 pub use binary::{binary_bytes, write_binary};
+pub use digits::{CoarseText, LastDigits};
 pub use spacing::Spacing;
 
 pub use super::facets::Facet;
@@ -77,6 +79,8 @@ pub struct Soup {
     pub normals_off: Vec<u32>,
     /// Whether coordinates are stored as 32-bit floats.
     pub is_single: bool,
+    /// The last digits of its numbers, where they are looked at: in texts.
+    pub last_digits: LastDigits,
     /// EPSG code of its coordinates, where the file names one.
     pub epsg: Option<u32>,
     /// What the file holds and what was done with it, in words.
@@ -100,6 +104,7 @@ impl Soup {
             format,
             normals_off: Vec::new(),
             is_single: format == Format::Binary,
+            last_digits: LastDigits::default(),
             epsg: None,
             notes: Vec::new(),
             warnings: Vec::new(),

@@ -7,7 +7,7 @@ use crate::frequency::{Frequency, Stratum, radius_of_m3};
 use crate::random::Distribution;
 use crate::release::{self, Release};
 use crate::rock::Rock;
-use crate::scene::{MatrixTable, ObjectTable, Scene, Zone};
+use crate::scene::{MatrixTable, ObjectTable, Scene, ZONE_PROPERTIES, Zone, Zones};
 use crate::terrain::Terrain;
 
 /// Fewest rocks of a stratum with which the intervals hold what they promise, as simulated runs say.
@@ -84,8 +84,21 @@ fn weighed(has_sizes: bool) -> &'static str {
 }
 
 /// What properties of zones say in vain.
-fn of_zones(scene: &Scene) -> Option<String> {
-    let zones = scene.release.zone_list.as_ref()?;
+fn of_zones(scene: &Scene) -> Vec<String> {
+    let Some(zones) = &scene.release.zone_list else { return Vec::new() };
+    let unknown = (!zones.unused.is_empty()).then(|| {
+        format!(
+            "{}: properties that are not used: {}; zones have {}",
+            zones.file.display(),
+            zones.unused.join(", "),
+            ZONE_PROPERTIES.join(", ")
+        )
+    });
+    unknown.into_iter().chain(in_vain(scene, zones)).collect()
+}
+
+/// What properties of zones say where something else counts.
+fn in_vain(scene: &Scene, zones: &Zones) -> Option<String> {
     let file = zones.file.display();
     if scene.has_zone_sources() {
         let is_weighted = zones.list().iter().any(|zone| zone.weight.is_some());

@@ -1,6 +1,6 @@
 //! What the grounds of a scene ask of the plan: stems that give way, sources of values, grounds without use.
 
-use super::{Part, apart, can_exceed_0, slips};
+use super::{Part, apart, can_exceed_0, slips, trees};
 use crate::contact::pair::Strength;
 use crate::error::{Error, Result};
 use crate::ground::{Damping, Ground, Scar, swept_m3, tangential_restitution};
@@ -124,7 +124,8 @@ fn rolling_of_blocks(scene: &Scene) -> impl Iterator<Item = String> {
 
 /// What the scene warns of that no part of the plan does: grounds, and what all rocks share.
 pub(super) fn warnings(scene: &Scene, terrain: &Terrain) -> Vec<String> {
-    [slips::of(scene, terrain.epsg), unused(scene, terrain), apart::one_sample(scene)].concat()
+    let of_terrain = [unused(scene, terrain), trees::astray(terrain)].concat();
+    [slips::of(scene, terrain.epsg), of_terrain, apart::one_sample(scene)].concat()
 }
 
 /// Warnings about grounds and keys that nothing answers with.

@@ -2,7 +2,7 @@
 
 use crate::frequency::volume_m3;
 use crate::math;
-use crate::scene::{GroundTable, Scene};
+use crate::scene::{BarrierTable, GroundTable, Scene};
 
 /// Densities of rock (kg/m³): pumice is lighter, ore heavier.
 const ROCK_KG_M3: [f64; 2] = [1000.0, 5000.0];
@@ -10,6 +10,10 @@ const ROCK_KG_M3: [f64; 2] = [1000.0, 5000.0];
 const RADIANS: f64 = 1.6;
 /// Capacity below which a number is rather in kJ (J): nets are tested from 100 kJ on (EAD 340059).
 const LEAST_NET_J: f64 = 10e3;
+/// Height above which no net stands (m): the tallest in use have about 10 m. Above, a number is rather in cm, or a dam's.
+const TALLEST_NET_M: f64 = 12.0;
+/// Height from which on it is rather in cm (m): no dam is as high.
+const CENTIMETRES: f64 = 50.0;
 /// Energy below which a number is rather in kJ (J): thin stems break at some kJ, and weak intensities end at 30 kJ.
 const LEAST_J: f64 = 1e3;
 /// Radius of the largest single rocks (m): above, a number is rather in cm or mm.
@@ -45,11 +49,25 @@ pub(super) fn of(scene: &Scene, mesh_epsg: Option<u32>) -> Vec<String> {
             1e3 * barrier.capacity_j
         ));
     }
+    found.extend(scene.barriers.iter().filter_map(tall));
     let asked = scene.frequency.as_ref().and_then(|table| table.energies_j.as_deref());
     found.extend(asked.and_then(limit));
     found.extend(scene.grounds.iter().filter_map(|(name, ground)| stems(name, ground)));
     found.extend(scene.epsg.or(mesh_epsg).and_then(epsg));
     found
+}
+
+/// A barrier that is higher than any net.
+fn tall(barrier: &BarrierTable) -> Option<String> {
+    let BarrierTable { name, height_m, .. } = barrier;
+    let hint = if *height_m >= CENTIMETRES {
+        format!("is it in cm? write {}", height_m / 100.0)
+    } else {
+        "the tallest in use have about 10 m".to_owned()
+    };
+    (*height_m > TALLEST_NET_M).then(|| {
+        format!("[[barriers]] \"{name}\" height_m = {height_m} is higher than any net; {hint}")
+    })
 }
 
 /// Rocks larger than any, by the key that says how large they are.

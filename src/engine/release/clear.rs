@@ -1,8 +1,10 @@
 //! Room for a rock where it starts.
 
+use super::{Release, Releases, TYPED_DEPTH, release_name};
+use crate::error::{Error, Result};
 use crate::flight::{FlightEnd, Parabola, time_of_impact};
 use crate::math;
-use crate::rock::Vec3;
+use crate::rock::{Motion, Vec3};
 use crate::solver::island::partition::Partition;
 use crate::terrain::Terrain;
 use std::f64::consts::TAU;
@@ -23,6 +25,48 @@ pub(super) fn clear_of(terrain: &Terrain, centre: Vec3, radius_m: f64) -> Vec3 {
 
 /// A rock in steep ground is lifted by up to this many radii (–): enough for slopes up to 80°.
 const LIFT: f64 = 6.0;
+
+impl Releases {
+    /// Refuses a rock that starts deeper in ground or tree than its weight would press it.
+    pub(super) fn check_clear(
+        &self,
+        terrain: &Terrain,
+        (index, around_m): (usize, f64),
+        release: &Release,
+    ) -> Result<()> {
+        let Release { rock, motion: Motion { position_m: centre, .. }, grounds } = release;
+        let stiffness = grounds.iter().map(|ground| ground.normal_stiffness_n_m);
+        let pressed_m =
+            rock.mass_kg() * self.gravity_m_s2 / stiffness.fold(f64::INFINITY, f64::min);
+        let depth_m = around_m - terrain.distance_m(centre, around_m);
+        // beyond the edge there is no ground to be under
+        let buried = terrain.is_under_slope(centre);
+        let caged = is_inside_tree(terrain, centre);
+        let is_deep = depth_m > 2.0 * pressed_m + TYPED_DEPTH * around_m;
+        if !(is_deep || buried || caged) {
+            return Ok(());
+        }
+        let [x, y, z]: [f64; 3] = (centre + terrain.origin_m).into();
+        let who = format!("{} at ({x}, {y}, {z})", release_name(index));
+        let found = if buried {
+            "found its centre under the terrain".to_owned()
+        } else if is_deep {
+            format!("found it {depth_m:.2e} m deep in the ground or a tree")
+        } else {
+            "found its centre inside a tree".to_owned()
+        };
+        let remedy = format!(
+            "write a higher place, or another: a rock of radius {around_m} m needs its centre that far from every triangle"
+        );
+        Err(Error::input(&self.file, who, found, remedy))
+    }
+}
+
+/// Whether a rock is in the slope: where it was to be lifted off it, no height near its place is clear. A tree beside it does not count.
+pub(super) fn is_in_slope(terrain: &Terrain, centre: &Vec3, radius_m: f64) -> bool {
+    let reach_m = radius_m * (1.0 - TYPED_DEPTH);
+    terrain.slope_distance_m(centre, reach_m) < reach_m
+}
 
 /// Whether a point is inside a tree, hollow or not: in every horizontal direction there is the same one, a connected part of
 /// the trees' triangles. Walls that do not join enclose nothing.

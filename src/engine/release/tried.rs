@@ -27,13 +27,13 @@ impl Releases {
     /// # Errors
     /// If none of them can be made, or none of a source that has a frequency: its events would be missing.
     pub fn try_out(&self, terrain: &Terrain, warnings: &mut Vec<String>) -> Result<TriedReleases> {
-        let (mut places, mut made, mut first) = (0, Vec::new(), None);
+        let (mut places, mut in_slope, mut made, mut first) = (0, 0, Vec::new(), None);
         let mut lifts_m = Vec::new();
         let sources = self.frequency.as_ref().map_or(&[][..], |frequency| frequency.sources());
         let mut of_source = vec![[0; 2]; sources.len()];
         for index in 0..TRIED {
-            let TriedPlace { release, drawn, lift_m } = self.place_rock(terrain, index);
-            places += drawn;
+            let TriedPlace { release, drawn, steep, lift_m } = self.place_rock(terrain, index);
+            (places, in_slope) = (places + drawn, in_slope + steep);
             if let Some(frequency) = &self.frequency {
                 let [tried, released] = &mut of_source[frequency.stratum(index).source];
                 (*tried, *released) = (*tried + 1, *released + usize::from(release.is_ok()));
@@ -51,7 +51,7 @@ impl Releases {
             return Err(lost.error);
         }
         self.check_sources(&of_source)?;
-        warnings.extend(self.lost_places((places, made.len())));
+        warnings.extend(self.lost_places((places, in_slope), made.len()));
         let largest_m = lifts_m.iter().copied().reduce(f64::max);
         let lifted = largest_m.map(|largest_m| {
             format!(
@@ -85,13 +85,19 @@ impl Releases {
     }
 
     /// What to say of places drawn in vain, and of releases that found none.
-    fn lost_places(&self, (places, made): (usize, usize)) -> Vec<String> {
+    fn lost_places(&self, (places, in_slope): (usize, usize), made: usize) -> Vec<String> {
         let mut warnings = Vec::new();
         let in_vain = places - made;
         if in_vain > 0 && !self.are_points() {
+            let percent = |count: usize| format!("{:.1} %", 100.0 * count as f64 / places as f64);
+            let steep = if in_slope > 0 {
+                format!("; {} on ground so steep that no height is clear of it", percent(in_slope))
+            } else {
+                String::new()
+            };
             warnings.push(format!(
-                "{:.1} % of the places drawn for {TRIED} releases have no ground or no room for the rock (a hole, a tree, the edge of the terrain): such a place is drawn again",
-                100.0 * in_vain as f64 / places as f64
+                "{} of the places drawn for {TRIED} releases have no ground or no room for the rock (a hole, a tree, the edge of the terrain{steep}): such a place is drawn again",
+                percent(in_vain)
             ));
         }
         if made < TRIED {

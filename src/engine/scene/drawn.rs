@@ -146,8 +146,9 @@ struct DrawnLine {
 /// The property that names a feature.
 ///
 /// # Errors
-/// A name that tables and files cannot hold; an empty one is none.
+/// A name that tables and files cannot hold, or two properties of that name; an empty one is none.
 pub(super) fn name_of(feature: &GisFeature, property: &str, file: &Path) -> Result<Option<String>> {
+    feature.check_one(property, file)?;
     let Some(name) = feature.text(property) else { return Ok(None) };
     match name_flaw(&name).filter(|_| !name.trim().is_empty()) {
         Some(remedy) => Err(feature.wrong(file, format!("found {property} = {name:?}"), remedy)),

@@ -3,7 +3,7 @@
 use super::drawn::name_of;
 use super::places::{Area, Polyline};
 use crate::error::{Error, Result};
-use crate::gis::{self, Corner, Geometry, GisFeature, GisLayer, Polygon};
+use crate::gis::{self, Corner, Geometry, GisFeature, GisLayer, Polygon, reads};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
@@ -50,6 +50,8 @@ pub struct Zones {
     pub epsg: Option<u32>,
     /// Name of the system of coordinates, where the file has a name and no code.
     pub system: Option<String>,
+    /// Properties that look like those that are used, and are not.
+    pub unused: Vec<String>,
     list: Vec<Zone>,
     /// Share of the releases up to and including each zone (–), the last one 1.
     shares: Vec<f64>,
@@ -79,7 +81,8 @@ impl Zones {
         if let Some(last) = shares.last_mut() {
             *last = 1.0;
         }
-        Ok(Self { file: file.to_owned(), epsg, system, list, shares })
+        let unused = unused(&features);
+        Ok(Self { file: file.to_owned(), epsg, system, unused, list, shares })
     }
 
     /// The zones.
@@ -165,6 +168,32 @@ fn part(sizes: impl Iterator<Item = f64> + Clone, even: f64) -> (usize, f64) {
         }
     }
     last
+}
+
+/// Properties that a zone may have.
+pub const ZONE_PROPERTIES: [&str; 8] = [
+    "name",
+    "weight",
+    "volume_m3",
+    "frequency_per_year",
+    "per_year_at_1m3",
+    "exponent",
+    "volume_min_m3",
+    "volume_max_m3",
+];
+
+/// How properties begin that mean one of those.
+const LOOK_LIKE: [&str; 5] = ["weight", "freq", "per_year", "volume", "expon"];
+
+/// Names of properties that begin like those of zones and are none of them.
+fn unused(features: &[GisFeature]) -> Vec<String> {
+    let begins = |name: &str, with: &str| {
+        name.get(..with.len()).is_some_and(|start| start.eq_ignore_ascii_case(with))
+    };
+    let is_used = |name: &str| ZONE_PROPERTIES.iter().any(|used| reads(used, name));
+    let looks = |name: &&String| LOOK_LIKE.iter().any(|with| begins(name, with)) && !is_used(name);
+    let names = features.iter().flat_map(|feature| feature.properties.keys()).filter(looks);
+    names.cloned().collect::<BTreeSet<String>>().into_iter().collect()
 }
 
 fn zone(feature: &GisFeature, file: &Path) -> Result<Zone> {

@@ -77,8 +77,7 @@ fn rows(groups: &[Group], words: &Words) -> Vec<ChangeRow> {
             "All releases" => [String::new(), row.name_in(words)],
             group => {
                 let group = words.say(group);
-                let name = group.split(',').next().unwrap_or_default();
-                [name.to_owned(), words.colon().to_owned() + &row.name_in(words)]
+                [place_of(&group).to_owned(), words.colon().to_owned() + &row.name_in(words)]
             }
         };
         let change = [row.difference.value, low, high].map(|x| x / a.abs());
@@ -87,6 +86,22 @@ fn rows(groups: &[Group], words: &Words) -> Vec<ChangeRow> {
     let rows = groups.iter().flat_map(|group| group.rows.iter().map(move |row| (group, row)));
     let first = rows.filter(|(_, row)| row.is_headline && !row.difference.is_none());
     first.filter_map(|(group, row)| relative(group, row)).collect()
+}
+
+/// What ends a name in each language, as [`Words::quoted`] writes it.
+const CLOSING: [char; 3] = ['”', '“', '»'];
+
+/// The place that a heading names, without what follows on it; a name may hold commas.
+fn place_of(heading: &str) -> &str {
+    let behind = heading.rfind(CLOSING).unwrap_or_default();
+    let end = heading[behind..].find(',').map_or(heading.len(), |at| behind + at);
+    &heading[..end]
+}
+
+/// The mark that a place ends with, and the space before it.
+fn closing_of(place: &str) -> &str {
+    let name = place.strip_suffix(CLOSING).unwrap_or(place).trim_end_matches('\u{a0}');
+    &place[name.len()..]
 }
 
 /// Says of a row whose change lies beyond the frame how large it is, at the edge where it goes on.
@@ -140,8 +155,11 @@ fn goes_on(canvas: &Canvas<'_>, panel: &Panel, (values, y): (&[f64; 3], f64), co
 fn fitted_names(rows: &[ChangeRow]) -> Vec<String> {
     let places = || rows.iter().map(|([place, _], _)| place.as_str());
     let name = |([place, statistic], _): &ChangeRow| {
-        let room = 0.55 * WIDTH_PX - text_width(statistic, SMALL);
-        fitted_among(place, places(), (SMALL, room)) + statistic
+        let closing = closing_of(place);
+        let room = 0.55 * WIDTH_PX - text_width(statistic, SMALL) - text_width(closing, SMALL);
+        let cut = fitted_among(place, places(), (SMALL, room));
+        let closing = if cut.ends_with('…') { closing } else { "" };
+        cut + closing + statistic
     };
     rows.iter().map(name).collect()
 }
@@ -309,6 +327,20 @@ mod tests {
             assert!(text_width(name, SMALL) <= 0.55 * WIDTH_PX, "{name}");
             assert!(name.starts_with("line “un très") && name.ends_with(end), "{name}");
         }
+    }
+
+    /// A comma in a name is no end of it, and what is cut keeps its quotation mark.
+    #[test]
+    fn a_name_with_a_comma_is_whole_and_a_cut_one_is_closed() {
+        let heading = "Object “School, parish of Oberrüti”, barriers left aside";
+        assert_eq!(place_of(heading), "Object “School, parish of Oberrüti”");
+        assert_eq!(place_of("Objekt „Schule, Turm“, ohne"), "Objekt „Schule, Turm“");
+        assert_eq!(place_of("All releases"), "All releases");
+        assert_eq!(closing_of("Objet «\u{a0}École\u{a0}»"), "\u{a0}»");
+        let place = format!("Object “{}”", "a very long name of a school ".repeat(4));
+        let names = fitted_names(&[([place, ": Hit it".to_owned()], [0.0; 3])]);
+        assert!(names[0].ends_with("…”: Hit it"), "{names:?}");
+        assert!(text_width(&names[0], SMALL) <= 0.55 * WIDTH_PX);
     }
 
     /// One row of 200 % leaves the others legible.

@@ -2,7 +2,8 @@
 
 use super::super::words::{Words, fill};
 use super::super::{by_frequency, format};
-use crate::hazard::{Hazard, StopKind};
+use crate::hazard::{Hazard, Quantity, StopKind};
+use crate::output::Results;
 
 /// What sources without a rock and rocks that left the terrain do to the numbers, before anything else.
 pub(in crate::report) fn warnings_first(hazard: &Hazard, words: &Words) -> Vec<String> {
@@ -37,4 +38,16 @@ pub(in crate::report) fn warnings_first(hazard: &Hazard, words: &Words) -> Vec<S
     let missing = hazard.missing_events();
     let missing = missing.iter().map(|warning| words.say(warning));
     missing.chain(kinds.into_iter().filter_map(said)).collect()
+}
+
+/// Says that no rock touched a tree, where there are both: trees beside the ways of rocks are usual, a forest of which none is met rather
+/// stands elsewhere than it should.
+pub fn untouched_trees(results: &Results) -> Option<String> {
+    let planned = results.summary.plan_entries.iter().find(|entry| entry.name == "trees");
+    let has_trees = planned.is_some_and(|entry| !entry.said.starts_with("left out"));
+    let touched = results.hazard.values(Quantity::TreeImpacts).iter().any(|count| *count > 0.0);
+    let released = results.hazard.released();
+    (has_trees && released > 0 && !touched).then(|| {
+        format!("trees: none of {released} rocks touched one; do they stand where the rocks come?")
+    })
 }

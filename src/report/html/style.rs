@@ -83,6 +83,7 @@ footer { margin-top: 40px; padding-top: 8px; border-top: 1px solid #bbb; font-si
   .note { break-before: avoid; margin: 1mm 0 2mm; }
   .question { font-size: 10pt; margin-top: 1.5mm; }
   .front { margin-top: 3mm; display: grid; grid-template-columns: 102mm minmax(0, 1fr); column-gap: 5mm; grid-template-rows: auto 1fr; grid-template-areas: 'map warn' 'map rocks' 'answer answer'; }
+  .front:has(.warnings li:nth-child(4)) { grid-template-rows: auto auto; grid-template-areas: 'warn warn' 'map rocks' 'answer answer'; }
   .front .warnings { grid-area: warn; margin: 0 0 2mm; padding: 1.5mm 2.5mm; }
   .front .warnings h2 { font-size: 10pt; }
   .front .warnings ul { font-size: 7.5pt; line-height: 1.3; padding-left: 3.5mm; }
@@ -118,3 +119,18 @@ footer { margin-top: 40px; padding-top: 8px; border-top: 1px solid #bbb; font-si
   pre, .warnings { print-color-adjust: exact; -webkit-print-color-adjust: exact; }
 }
 ";
+
+#[cfg(test)]
+mod tests {
+    use super::STYLE;
+
+    /// Many warnings beside the map made one row that no page could break: it went to the second page, and the first held the title alone.
+    /// From the fourth on they stand above the map, over the whole width.
+    #[test]
+    fn many_warnings_stand_above_the_map_on_paper() {
+        let print = STYLE.split("@media print").nth(1).unwrap_or_default();
+        let many = print.find(".front:has(.warnings li:nth-child(4))");
+        let areas = many.and_then(|at| print[at..].split('}').next());
+        assert!(areas.is_some_and(|rule| rule.contains("'warn warn' 'map rocks'")), "{areas:?}");
+    }
+}

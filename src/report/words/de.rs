@@ -71,7 +71,7 @@ pub(super) static WORDS: Words = Words {
     mesh_health: "Zustand der Dreiecksnetze",
     quality: "Angaben zur Qualität",
     not_recorded: "nicht erfasst",
-    remainder: "{share} der freigesetzten Energie, beim schlechtesten Block",
+    remainder: "{share} der freigesetzten Energie, beim schlechtesten Block; bei einem, der stehen blieb, der eines Falls um ein Zehntel seines Radius",
     not_stated: "nicht angegeben",
     terrain: "Gelände",
     ground_values: "Bodenkennwerte",

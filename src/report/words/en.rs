@@ -64,7 +64,7 @@ pub(super) static WORDS: Words = Words {
     mesh_health: "Health of the meshes",
     quality: "Quality statement",
     not_recorded: "not recorded",
-    remainder: "{share} of the energy released, in the worst rock",
+    remainder: "{share} of the energy released, in the worst rock; of one that stood still, of a fall by a tenth of its radius",
     not_stated: "not stated",
     terrain: "Terrain",
     ground_values: "Ground values",

@@ -71,7 +71,7 @@ pub(super) static WORDS: Words = Words {
     mesh_health: "État des maillages",
     quality: "Déclaration de qualité",
     not_recorded: "non enregistré",
-    remainder: "{share} de l’énergie libérée, pour le pire bloc",
+    remainder: "{share} de l’énergie libérée, pour le pire bloc\u{a0}; pour un bloc resté sur place, de celle d’une chute d’un dixième de son rayon",
     not_stated: "non indiqué",
     terrain: "Terrain",
     ground_values: "Paramètres du sol",

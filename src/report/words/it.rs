@@ -71,7 +71,7 @@ pub(super) static WORDS: Words = Words {
     mesh_health: "Stato delle maglie",
     quality: "Dichiarazione di qualità",
     not_recorded: "non registrato",
-    remainder: "{share} dell’energia liberata, nel masso peggiore",
+    remainder: "{share} dell’energia liberata, nel masso peggiore; per uno rimasto fermo, di quella di una caduta di un decimo del suo raggio",
     not_stated: "non indicato",
     terrain: "Terreno",
     ground_values: "Parametri del suolo",

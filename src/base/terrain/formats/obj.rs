@@ -28,7 +28,11 @@ pub fn parse(bytes: &[u8], file: &Path) -> Result<Soup> {
         };
         match words.next() {
             Some(b"v") => {
-                let xyz: Option<Vec<f64>> = words.take(3).map(parsed).collect();
+                let numbers = words.take(3).enumerate().map(|(axis, word)| {
+                    soup.last_digits.see(axis, word);
+                    parsed(word)
+                });
+                let xyz: Option<Vec<f64>> = numbers.collect();
                 match xyz.as_deref() {
                     Some(&[x, y, z]) if [x, y, z].iter().all(|m| m.is_finite()) => {
                         corners.push(Vec3::new(x, y, z));

@@ -1,9 +1,9 @@
 //! Where the cells of a GeoTIFF lie: pixel scale and tie point or transformation, area or point, coordinate system.
 
-use super::{Implausible, LOWEST_M, USUAL_NODATA, Window, damaged, tag, translate};
+use super::{Implausible, LOWEST_M, Window, damaged, tag, translate};
 use crate::error::{Error, Result};
 use crate::gis::FARTHEST_M;
-use crate::terrain::grid::Grid;
+use crate::terrain::grid::{Grid, USUAL_NODATA};
 use std::io::{Read, Seek};
 use std::path::Path;
 use tiff::decoder::Decoder;

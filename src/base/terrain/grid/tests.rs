@@ -51,6 +51,12 @@ fn a_refused_grid_names_the_line_and_the_cure() {
         ("ncols 3", "columns 3", "line 1", "write one of ncols"),
         ("ncols 3", "ncols 1e12", "header", "no usable `ncols`"),
         ("ncols 3", "ncols 2.5", "header", "no usable `ncols`"),
+        (
+            "NODATA_value -9999\n",
+            "",
+            "line 7",
+            "found a height of -9999 m; if that means no data, write the line `NODATA_value -9999` below `cellsize`",
+        ),
         ("cellsize 2\n", "", "header", "no usable `cellsize`"),
         ("cellsize 2", "cellsize -2", "header", "no usable `cellsize`: found -2"),
         ("xllcorner", "xllcentre", "line 3", "xllcenter"),

@@ -1,11 +1,11 @@
 //! The measurements behind [`Health`](super::Health).
 
-use super::FileHealth;
+use super::{FileHealth, MORE_DIGITS};
 use crate::parallel;
 use crate::rock::Vec3;
 use crate::terrain::groups::Groups;
-use crate::terrain::stl::{Spacing, area_vector};
-use crate::terrain::weld::{Piece, Tally, Welded};
+use crate::terrain::stl::{CoarseText, Spacing, area_vector};
+use crate::terrain::weld::{Piece, Tally, Up, Welded};
 
 /// Longest edge over height (–) above which a triangle counts as a needle: a quarter of a millimetre on 2.5 m. Such a
 /// triangle is kept; its normal is known to about 1e-12.
@@ -29,6 +29,12 @@ pub(super) fn file(piece: &Piece, map_origin_m: Vec3) -> FileHealth {
     for &facet in &soup.normals_off {
         normals_off.add(piece.placed(soup.facets.at(facet as usize)[0]) + map_origin_m);
     }
+    let axes = if piece.up == Up::Y { [0, 2] } else { [0, 1] };
+    let coarse = CoarseText::of(soup, axes);
+    let mut warnings = soup.warnings.clone();
+    warnings.extend(coarse.filter(|coarse| !coarse.spoils()).map(|coarse| {
+        format!("{coarse}: where they were rounded, slopes are wrong; {MORE_DIGITS}")
+    }));
     FileHealth {
         file: piece.file.display().to_string(),
         format: soup.format,
@@ -37,9 +43,10 @@ pub(super) fn file(piece: &Piece, map_origin_m: Vec3) -> FileHealth {
         facing_down: down as f64 / soup.facets.len().max(1) as f64,
         normals_off,
         spacing: soup.is_single.then(|| Spacing::of(&soup.facets)),
+        coarse,
         epsg: soup.epsg,
         notes: soup.notes.clone(),
-        warnings: soup.warnings.clone(),
+        warnings,
     }
 }
 

@@ -1,8 +1,8 @@
 //! The health of a mesh as a table for people.
 
-use super::{FileHealth, Gap, Health, Overlap};
+use super::{FileHealth, Gap, Health, MORE_DIGITS, Overlap};
 use crate::count::counted;
-use crate::terrain::stl::{Format, Spacing};
+use crate::terrain::stl::{CoarseText, Format, Spacing};
 use crate::terrain::weld::Tally;
 use std::fmt;
 
@@ -21,6 +21,9 @@ impl fmt::Display for Health {
             if !tally.examples_m.is_empty() && tally.count > 0 {
                 writeln!(f, "{}", places(tally))?;
             }
+        }
+        if let Some(warning) = self.mostly_flat() {
+            writeln!(f, "warning: {warning}")?;
         }
         named(
             f,
@@ -197,10 +200,14 @@ impl fmt::Display for FileHealth {
             )?;
             writeln!(f, "{}", places(&self.normals_off))?;
         }
+        if let Some(coarse) = self.coarse.filter(CoarseText::spoils) {
+            writeln!(f, "  warning: {coarse}: no rock can be computed on it; {MORE_DIGITS}")?;
+        }
         match self.spacing.filter(Spacing::is_worth_a_warning) {
             Some(spacing) => writeln!(
                 f,
-                "  warning: {spacing}: export with a map origin subtracted, or as ASCII"
+                "  warning: {spacing}: export with a map origin subtracted, or as ASCII with {} decimals",
+                spacing.decimals()
             ),
             None => Ok(()),
         }

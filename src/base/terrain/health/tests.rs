@@ -37,6 +37,21 @@ fn a_sound_plane_has_one_border_and_nothing_wrong() {
     assert_eq!((found.low_m[0], found.high_m[0]), (950.0, 1050.0));
 }
 
+/// Corners that fall together leave triangles without area: where they are most of a mesh, that is said, and of one in three it is not.
+#[test]
+fn a_mesh_of_which_most_has_no_area_says_so() {
+    let line = [p(0.0, 0.0), p(1.0, 0.0), p(2.0, 0.0)];
+    let mesh = |flat: usize| {
+        let plane =
+            [[p(0.0, 0.0), p(2.0, 0.0), p(0.0, 2.0)], [p(2.0, 0.0), p(2.0, 2.0), p(0.0, 2.0)]];
+        health(plane.into_iter().chain(std::iter::repeat_n(line, flat)).collect())
+    };
+    let said: Vec<String> = mesh(3).warnings().collect();
+    assert!(said.len() == 1 && said[0].starts_with("3 of 5 triangles have no area"), "{said:?}");
+    assert!(mesh(3).to_string().contains("warning: 3 of 5 triangles"));
+    assert_eq!(mesh(1).warnings().count(), 0);
+}
+
 /// A hole is one more border; a stem with a lid and a foot has none and is a part of its own.
 #[test]
 fn holes_and_loose_parts_are_counted() {

@@ -1,6 +1,6 @@
 //! Text STL, read word by word in `f64`: other programs differ in case, line ends, names and blank lines.
 
-use super::{Facet, Format, Soup, unit_normal};
+use super::{Facet, Format, LastDigits, Soup, unit_normal};
 use crate::error::{Error, Result};
 use crate::file;
 use crate::rock::Vec3;
@@ -48,7 +48,10 @@ fn read_solid(words: &mut WordReader, soup: &mut Soup) -> Result<()> {
         words.check(word, "facet", "write `facet normal` or `endsolid` here")?;
         let normal = read_normal(words)?;
         words.expect("loop", "write `outer loop`")?;
-        let facet = [read_vertex(words)?, read_vertex(words)?, read_vertex(words)?];
+        let mut facet = [Vec3::zeros(); 3];
+        for corner in &mut facet {
+            *corner = read_vertex(words, &mut soup.last_digits)?;
+        }
         words.expect("endloop", "a facet has three vertices: triangulate the mesh")?;
         words.expect("endfacet", "write `endfacet` after `endloop`")?;
         soup.push(normal, facet);
@@ -76,11 +79,12 @@ fn read_normal(words: &mut WordReader) -> Result<Vec3> {
     Ok(normal.into())
 }
 
-fn read_vertex(words: &mut WordReader) -> Result<Vec3> {
+fn read_vertex(words: &mut WordReader, last_digits: &mut LastDigits) -> Result<Vec3> {
     words.expect("vertex", "a facet has three lines `vertex x y z`")?;
     let mut point = Vec3::zeros();
-    for x in point.iter_mut() {
+    for (axis, x) in point.iter_mut().enumerate() {
         let word = words.some_word("a coordinate")?;
+        last_digits.see(axis, word);
         *x = number(word).filter(|x| x.is_finite()).ok_or_else(|| {
             let found = format!("coordinate `{}` is not a finite number", quoted(word));
             words.error(found, "write numbers like 12.5 or 1.25e1, with a decimal point")

@@ -1,5 +1,6 @@
 //! What 32-bit coordinates do to a mesh.
 
+use crate::math;
 use crate::terrain::facets::Facets;
 use std::fmt;
 
@@ -8,6 +9,11 @@ const WORTH_A_WARNING: f64 = 1e-3;
 
 /// Spacing over median edge above which the mesh is no longer the terrain (–): 1 % is about 0.6°, more on short edges.
 const SPOILS: f64 = 1e-2;
+
+/// Decimals that a text is asked for: fewer than centimetres serve no slope, more no file.
+const FEWEST_DECIMALS: f64 = 2.0;
+/// Decimals that a text is asked for at most.
+const MOST_DECIMALS: f64 = 9.0;
 
 /// Distance of neighbouring 32-bit floats at the largest coordinate, beside the median edge, in the unit of the file.
 ///
@@ -48,6 +54,13 @@ impl Spacing {
     /// Spacing over median edge (–).
     pub fn share(&self) -> f64 {
         self.spacing / self.median_edge
+    }
+
+    /// Decimals of a text whose steps are about 0.1 % of the median edge.
+    pub fn decimals(&self) -> usize {
+        let wanted = -math::log10(WORTH_A_WARNING * self.median_edge).round();
+        // without an edge millimetres will do
+        if wanted.is_finite() { wanted.clamp(FEWEST_DECIMALS, MOST_DECIMALS) as usize } else { 3 }
     }
 
     /// More than 0.1 % of the median edge: say so.

@@ -58,4 +58,40 @@ pub(super) const WARNINGS: &[(&str, &str)] = &[
         "the values tried do not explain the measured ends: KS distance {a} of the fit on all, 5 % limit {b}; write wider ranges in vary, vary other values, or look at terrain, rocks and releases",
         "die versuchten Werte erklären die gemessenen Endpunkte nicht: KS-Abstand {a} der Anpassung an alle, 5-%-Grenze {b}; in vary weitere Bereiche schreiben, andere Werte variieren, oder Gelände, Blöcke und Ablösungen prüfen",
     ),
+    (
+        "{file}: {n} of {of} stems do not stand on the slope: {a} with their foot more than 0.5 m above it, {b} with their top under it, {c} beside it; rocks meet them in the wrong place or not at all. Export the file in the coordinates and heights of the terrain, or look at its scale and up",
+        "{file}: {n} von {of} Stämmen stehen nicht auf dem Hang: {a} mit dem Fuß mehr als 0.5 m darüber, {b} mit der Spitze darunter, {c} daneben; Blöcke treffen sie am falschen Ort oder gar nicht. Die Datei in den Koordinaten und Höhen des Geländes ausgeben, oder scale und up prüfen",
+    ),
+    (
+        "trees: none of {n} rocks touched one; do they stand where the rocks come?",
+        "Bäume: keiner von {n} Blöcken hat einen berührt; stehen sie dort, wo die Blöcke hinkommen?",
+    ),
+    (
+        "{file}: its map coordinates are written in steps of {a}, {b} % of the median edge {c}, and {n} of its {m} facets have no area: where they were rounded, slopes are wrong; export it with three decimals or more, or with a map origin subtracted and origin_m in the scene",
+        "{file}: ihre Kartenkoordinaten sind in Schritten von {a} geschrieben, {b} % der mittleren Kante {c}, und {n} ihrer {m} Dreiecke haben keine Fläche: wo gerundet wurde, stimmen die Neigungen nicht; mit drei oder mehr Nachkommastellen ausgeben, oder mit abgezogenem Ursprung und origin_m in der Szene",
+    ),
+    (
+        "{file}: its map coordinates are written in steps of {a}, {b} % of the median edge {c}: where they were rounded, slopes are wrong; export it with three decimals or more, or with a map origin subtracted and origin_m in the scene",
+        "{file}: ihre Kartenkoordinaten sind in Schritten von {a} geschrieben, {b} % der mittleren Kante {c}: wo gerundet wurde, stimmen die Neigungen nicht; mit drei oder mehr Nachkommastellen ausgeben, oder mit abgezogenem Ursprung und origin_m in der Szene",
+    ),
+    (
+        "{n} of {all} triangles have no area and are left out: what is left is hardly the terrain; does the file have too few digits?",
+        "{n} von {all} Dreiecken haben keine Fläche und sind weggelassen: was übrig ist, ist kaum das Gelände; hat die Datei zu wenige Stellen?",
+    ),
+    (
+        "{file}: properties that are not used: {names}; zones have {known}",
+        "{file}: Eigenschaften, die nicht verwendet werden: {names}; Zonen haben {known}",
+    ),
+    (
+        "{a} % of the places drawn for {n} releases have no ground or no room for the rock (a hole, a tree, the edge of the terrain; {b} % on ground so steep that no height is clear of it): such a place is drawn again",
+        "{a} % der für {n} Ablösungen gezogenen Orte haben keinen Boden oder keinen Platz für den Block (ein Loch, ein Baum, der Rand des Geländes; {b} % auf so steilem Boden, dass keine Höhe frei von ihm ist): ein solcher Ort wird neu gezogen",
+    ),
+    (
+        "[[barriers]] \"{name}\" height_m = {a} is higher than any net; is it in cm? write {b}",
+        "[[barriers]] \"{name}\" height_m = {a} ist höher als jedes Netz; in cm? {b} schreiben",
+    ),
+    (
+        "[[barriers]] \"{name}\" height_m = {a} is higher than any net; the tallest in use have about 10 m",
+        "[[barriers]] \"{name}\" height_m = {a} ist höher als jedes Netz; die höchsten im Einsatz haben etwa 10 m",
+    ),
 ];

@@ -58,4 +58,40 @@ pub(super) const WARNINGS: &[(&str, &str)] = &[
         "the values tried do not explain the measured ends: KS distance {a} of the fit on all, 5 % limit {b}; write wider ranges in vary, vary other values, or look at terrain, rocks and releases",
         "les valeurs essayées n’expliquent pas les arrêts mesurés\u{a0}: distance KS {a} du calage sur tous, limite à 5 % {b}\u{a0}; écrire dans vary des intervalles plus larges, varier d’autres valeurs, ou revoir terrain, blocs et départs",
     ),
+    (
+        "{file}: {n} of {of} stems do not stand on the slope: {a} with their foot more than 0.5 m above it, {b} with their top under it, {c} beside it; rocks meet them in the wrong place or not at all. Export the file in the coordinates and heights of the terrain, or look at its scale and up",
+        "{file}\u{a0}: {n} tiges sur {of} ne se dressent pas sur la pente\u{a0}: {a} avec le pied à plus de 0.5 m au-dessus, {b} avec la cime au-dessous, {c} à côté\u{a0}; les blocs les rencontrent au mauvais endroit ou pas du tout. Exporter le fichier dans les coordonnées et altitudes du terrain, ou revoir scale et up",
+    ),
+    (
+        "trees: none of {n} rocks touched one; do they stand where the rocks come?",
+        "arbres\u{a0}: aucun des {n} blocs n’en a touché un\u{a0}; sont-ils là où viennent les blocs\u{a0}?",
+    ),
+    (
+        "{file}: its map coordinates are written in steps of {a}, {b} % of the median edge {c}, and {n} of its {m} facets have no area: where they were rounded, slopes are wrong; export it with three decimals or more, or with a map origin subtracted and origin_m in the scene",
+        "{file}\u{a0}: ses coordonnées sont écrites par pas de {a}, {b} % de l’arête médiane {c}, et {n} de ses {m} triangles sont sans surface\u{a0}: là où elles ont été arrondies, les pentes sont fausses\u{a0}; l’exporter avec trois décimales ou plus, ou avec une origine soustraite et origin_m dans la scène",
+    ),
+    (
+        "{file}: its map coordinates are written in steps of {a}, {b} % of the median edge {c}: where they were rounded, slopes are wrong; export it with three decimals or more, or with a map origin subtracted and origin_m in the scene",
+        "{file}\u{a0}: ses coordonnées sont écrites par pas de {a}, {b} % de l’arête médiane {c}\u{a0}: là où elles ont été arrondies, les pentes sont fausses\u{a0}; l’exporter avec trois décimales ou plus, ou avec une origine soustraite et origin_m dans la scène",
+    ),
+    (
+        "{n} of {all} triangles have no area and are left out: what is left is hardly the terrain; does the file have too few digits?",
+        "{n} triangles sur {all} sont sans surface et laissés de côté\u{a0}: ce qui reste n’est guère le terrain\u{a0}; le fichier a-t-il trop peu de chiffres\u{a0}?",
+    ),
+    (
+        "{file}: properties that are not used: {names}; zones have {known}",
+        "{file}\u{a0}: propriétés qui ne sont pas utilisées\u{a0}: {names}\u{a0}; les zones ont {known}",
+    ),
+    (
+        "{a} % of the places drawn for {n} releases have no ground or no room for the rock (a hole, a tree, the edge of the terrain; {b} % on ground so steep that no height is clear of it): such a place is drawn again",
+        "{a} % des lieux tirés pour {n} départs n’ont pas de sol ou pas de place pour le bloc (un trou, un arbre, le bord du terrain\u{a0}; {b} % sur un sol si raide qu’aucune hauteur n’en est libre)\u{a0}: un tel lieu est tiré à nouveau",
+    ),
+    (
+        "[[barriers]] \"{name}\" height_m = {a} is higher than any net; is it in cm? write {b}",
+        "[[barriers]] \"{name}\" height_m = {a} est plus haut que tout filet\u{a0}; en cm\u{a0}? écrire {b}",
+    ),
+    (
+        "[[barriers]] \"{name}\" height_m = {a} is higher than any net; the tallest in use have about 10 m",
+        "[[barriers]] \"{name}\" height_m = {a} est plus haut que tout filet\u{a0}; les plus hauts en service ont environ 10 m",
+    ),
 ];

@@ -58,4 +58,40 @@ pub(super) const WARNINGS: &[(&str, &str)] = &[
         "the values tried do not explain the measured ends: KS distance {a} of the fit on all, 5 % limit {b}; write wider ranges in vary, vary other values, or look at terrain, rocks and releases",
         "i valori provati non spiegano gli arresti misurati: distanza KS {a} dell’adattamento su tutti, limite al 5 % {b}; scrivere in vary intervalli più ampi, variare altri valori, o rivedere terreno, blocchi e distacchi",
     ),
+    (
+        "{file}: {n} of {of} stems do not stand on the slope: {a} with their foot more than 0.5 m above it, {b} with their top under it, {c} beside it; rocks meet them in the wrong place or not at all. Export the file in the coordinates and heights of the terrain, or look at its scale and up",
+        "{file}: {n} fusti su {of} non stanno sul pendio: {a} con il piede più di 0.5 m al di sopra, {b} con la cima al di sotto, {c} a lato; i massi li incontrano nel posto sbagliato o per nulla. Esportare il file nelle coordinate e quote del terreno, o rivedere scale e up",
+    ),
+    (
+        "trees: none of {n} rocks touched one; do they stand where the rocks come?",
+        "alberi: nessuno dei {n} massi ne ha toccato uno; stanno dove arrivano i massi?",
+    ),
+    (
+        "{file}: its map coordinates are written in steps of {a}, {b} % of the median edge {c}, and {n} of its {m} facets have no area: where they were rounded, slopes are wrong; export it with three decimals or more, or with a map origin subtracted and origin_m in the scene",
+        "{file}: le sue coordinate sono scritte a passi di {a}, {b} % dello spigolo mediano {c}, e {n} dei suoi {m} triangoli sono senza area: dove sono state arrotondate, le pendenze sono sbagliate; esportarlo con tre o più decimali, o con un’origine sottratta e origin_m nella scena",
+    ),
+    (
+        "{file}: its map coordinates are written in steps of {a}, {b} % of the median edge {c}: where they were rounded, slopes are wrong; export it with three decimals or more, or with a map origin subtracted and origin_m in the scene",
+        "{file}: le sue coordinate sono scritte a passi di {a}, {b} % dello spigolo mediano {c}: dove sono state arrotondate, le pendenze sono sbagliate; esportarlo con tre o più decimali, o con un’origine sottratta e origin_m nella scena",
+    ),
+    (
+        "{n} of {all} triangles have no area and are left out: what is left is hardly the terrain; does the file have too few digits?",
+        "{n} triangoli su {all} sono senza area e tralasciati: ciò che resta è a stento il terreno; il file ha troppo poche cifre?",
+    ),
+    (
+        "{file}: properties that are not used: {names}; zones have {known}",
+        "{file}: proprietà che non sono usate: {names}; le zone hanno {known}",
+    ),
+    (
+        "{a} % of the places drawn for {n} releases have no ground or no room for the rock (a hole, a tree, the edge of the terrain; {b} % on ground so steep that no height is clear of it): such a place is drawn again",
+        "{a} % dei luoghi estratti per {n} distacchi non ha suolo o spazio per il masso (un buco, un albero, il bordo del terreno; {b} % su suolo così ripido che nessuna altezza ne è libera): un tale luogo è estratto di nuovo",
+    ),
+    (
+        "[[barriers]] \"{name}\" height_m = {a} is higher than any net; is it in cm? write {b}",
+        "[[barriers]] \"{name}\" height_m = {a} è più alto di ogni rete; in cm? scrivere {b}",
+    ),
+    (
+        "[[barriers]] \"{name}\" height_m = {a} is higher than any net; the tallest in use have about 10 m",
+        "[[barriers]] \"{name}\" height_m = {a} è più alto di ogni rete; le più alte in uso hanno circa 10 m",
+    ),
 ];
