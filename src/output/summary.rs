@@ -50,7 +50,7 @@ const DEFINITIONS: [(&str, &str); 13] = [
     ),
     (
         "maps",
-        "one value per rock and cell, its largest there; 95th percentiles from classes of ratio 1.05: within 2.5 % of the ranked value; heights are taken at three places of a flight in the cell; intensity_class by the 95th percentile of energy, counted: weak below 30 kJ, strong from 300 kJ on; open_on_maps = rocks that ended on the map and would have gone on: further on they are missing, and probabilities and percentiles may be too low",
+        "one value per rock and cell, its largest there; 95th percentiles from classes of ratio 1.05: within 2.5 % of the ranked value; heights are the largest along the way; intensity_class by the 95th percentile of energy, counted: weak below 30 kJ, strong from 300 kJ on; open_on_maps = rocks that ended on the map and would have gone on: further on they are missing, and probabilities and percentiles may be too low",
     ),
     ("max_height_m", "vertical, from the ground below to the lowest point of the rock"),
     (

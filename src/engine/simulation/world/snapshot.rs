@@ -81,8 +81,7 @@ impl BodyWorld<'_> {
 
     /// Goes back to a moment that was kept.
     ///
-    /// Rocks that have left since then do not come back: nothing of theirs was kept, as they were
-    /// gone already.
+    /// Rocks that had left before then stay gone: nothing of theirs was kept.
     pub(super) fn go_back(&mut self, snapshot: &Snapshot) {
         for (body, kept) in self.bodies.iter_mut().zip(&snapshot.bodies) {
             if let (Some(body), Some(kept)) = (body, kept) {

@@ -316,8 +316,8 @@ impl<const C: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, 
         put(&mut rates.y, W, &dw);
     }
 
-    /// A spring that nothing presses on any more holds nothing: how it relaxes does not matter.
-    /// Norm of an error: way and stretches times `ω`, spin times `R`, all in m/s.
+    /// Norm of an error: way and shear stretches times `ω`, spin times `R`, all in m/s. A spring that nothing presses on any more holds nothing: how
+    /// it relaxes does not matter.
     #[inline]
     fn size2(&self, off: &[f64; N]) -> f64 {
         let (omega, allowed) = self.scale;
