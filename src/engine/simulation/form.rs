@@ -263,8 +263,10 @@ mod tests {
         let half = time_share([&from, &to], 0.5);
         assert!((half - (1.0 - 0.5_f64.sqrt())).abs() < 1e-11, "{half}");
         assert!((between(&from, &to, half).velocity_m_s.x - 4.5_f64.sqrt()).abs() < 1e-10);
-        assert_eq!([0.0, 1.0].map(|share| time_share([&from, &to], share)), [0.0, 1.0]);
-        assert_eq!(time_share([&from, &from], 0.3), 0.3);
+        for share in [0.0, 1.0] {
+            assert!((time_share([&from, &to], share) - share).abs() < 1e-15);
+        }
+        assert!((time_share([&from, &from], 0.3) - 0.3).abs() < 1e-15);
     }
 
     #[test]
