@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that has no rock has failed")]
 
 use crate::common;
+use crate::stem_loads::panel;
 use common::together::{Sphere, WORLD, World, space};
 use common::{G, GROUND, terrain};
 use rockfall::ground::Ground;
@@ -17,14 +18,10 @@ const ELASTIC: Ground = Ground { restitution: Some(1.0), friction_angle_rad: 0.0
 
 /// A plate that ends in a cliff, and a floor.
 fn ledge() -> Terrain {
-    let quad = |corners: [[f64; 3]; 4]| {
-        let [a, b, c, d] = corners.map(Vec3::from);
-        vec![[a, b, c], [a, c, d]]
-    };
     let w = 40.0;
-    let plate = quad([[-20., -w, 0.], [0., -w, 0.], [0., w, 0.], [-20., w, 0.]]);
-    let cliff = quad([[0., -w, 0.], [0., -w, -30.], [0., w, -30.], [0., w, 0.]]);
-    let floor = quad([[0., -w, -30.], [20., -w, -30.], [20., w, -30.], [0., w, -30.]]);
+    let plate = panel([[-20., -w, 0.], [0., -w, 0.], [0., w, 0.], [-20., w, 0.]]);
+    let cliff = panel([[0., -w, 0.], [0., -w, -30.], [0., w, -30.], [0., w, 0.]]);
+    let floor = panel([[0., -w, -30.], [20., -w, -30.], [20., w, -30.], [0., w, -30.]]);
     terrain([plate, cliff, floor].concat())
 }
 

@@ -113,7 +113,7 @@ pub struct ContactState {
     pub(crate) facets: RoughFacets,
     /// What it has done to the stems.
     pub(crate) stem_load: StemLoad,
-    /// Whether what is touched may give way: it is asked step by step.
+    /// Whether what is touched may give way, or several trees are: it is asked step by step.
     pub may_yield: bool,
     /// Whether the current blow has been announced (`rigid`).
     pub(crate) is_struck: bool,

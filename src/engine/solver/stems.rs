@@ -47,7 +47,7 @@ impl ContactState {
         // what each of several takes is known between steps
         let mut may_yield = self.stem_load.pressed.are_several();
         let mut longest_s =
-            if may_yield { APART_RAD / self.stiffest(world) } else { f64::INFINITY };
+            if may_yield { APART_RAD / self.stiffest_rad_s(world) } else { f64::INFINITY };
         for stem in self.stem_load.pressed.iter().filter_map(|tree| tree.stem) {
             // all of the rock's motion would not break another: no step need be limited
             if self.stem_load.may_yield(stems, stem, motion_j) {
@@ -86,12 +86,6 @@ impl ContactState {
             self.fell(stems, stem);
         }
         !giving_way.is_empty()
-    }
-
-    /// Stiffest contact (rad/s).
-    fn stiffest(&self, world: &ContactEnvironment) -> f64 {
-        let omegas = self.histories.iter().map(|history| world.springs_of(history).omega_rad_s());
-        omegas.fold(0.0, f64::max)
     }
 
     /// Direction of the push of all contacts with a stem, by their forces if these are known.

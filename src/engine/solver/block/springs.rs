@@ -142,7 +142,7 @@ impl Springs {
     }
 
     /// Stiffest contact (rad/s).
-    fn stiffest(&self, world: &ContactEnvironment) -> f64 {
+    pub(super) fn stiffest(&self, world: &ContactEnvironment) -> f64 {
         let of = |laws: &mut dyn Iterator<Item = f64>| laws.fold(0.0, f64::max);
         let known = of(&mut self.histories.iter().map(|history| history.law.omega_rad_s()));
         if known > 0.0 { known } else { of(&mut world.laws.iter().map(Law::omega_rad_s)) }

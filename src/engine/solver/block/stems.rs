@@ -196,8 +196,7 @@ impl Footing {
         if !self.pressed_by_springs(world, stems, (block, moving)).are_several() {
             return f64::INFINITY;
         }
-        let omegas = self.springs.histories.iter().map(|history| history.law.omega_rad_s());
-        APART_RAD / omegas.fold(0.0, f64::max)
+        APART_RAD / self.springs.stiffest(world)
     }
 
     /// The trees that springs press, with what these hold and the power of their dashpots and of friction.
