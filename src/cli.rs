@@ -228,6 +228,7 @@ fn run(args: &RunArgs) -> Result<ExitCode> {
             if !args.quiet {
                 let mut warnings = barrier_warnings(&results.summary.barriers);
                 warnings.extend(report::untouched_trees(&results));
+                warnings.extend(report::untouched_ground(&results));
                 let warnings = warnings.iter().map(|warning| format!("warning: {warning}"));
                 let said = report::headline(&results.hazard).into_iter().chain(warnings);
                 say(format!("\n{}\n", said.collect::<Vec<_>>().join("\n")));

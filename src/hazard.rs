@@ -30,7 +30,7 @@ mod totals;
 pub use annual::{
     Above, Annual, AnnualBarrier, AnnualFigures, AnnualPlace, AnnualRequest, ExceedancePoint,
     Matrix, Object, ReturnEnergy, Risk, RiskKind, Saved, UnseenPoint, Vehicles, YearMap, YearSums,
-    annual, year_maps,
+    annual, file_above, file_of_period, year_maps,
 };
 pub use arrival::Arrival;
 pub use barriers::{
@@ -39,7 +39,10 @@ pub use barriers::{
 };
 pub use design::{Design, Rule};
 pub use difference::{Difference, Reading, Values, WeightedCount};
-pub use lines::{CrossingRow, Line, LineFloor, LineInfo, LineQuantity, LineSummary, by_rock};
+pub use lines::{
+    ClassReach, CrossingRow, Line, LineFloor, LineInfo, LineQuantity, LineSummary, by_rock,
+    classes_without_arrival,
+};
 pub use maps::{INTENSITY_J, Layer, MapFrame, MapState, Maps};
 pub use observed::{
     Agreement, EndDistances, EndSpread, KOLMOGOROV_95, ObservedPath, Weighted, distances,

@@ -14,6 +14,7 @@ mod merge;
 mod opened;
 mod progress;
 mod read;
+mod releases;
 mod removal;
 mod rows;
 mod site;
@@ -40,12 +41,12 @@ use crate::error::{Error, Result};
 use crate::frequency::Weights;
 use crate::hazard::{
     self, Annual, AnnualRequest, Barrier, CrossingRow, Hazard, Line, LineInfo, MapFrame, Maps,
-    ObservedPath, Row, YearSums,
+    ObservedPath, YearSums,
 };
 use crate::plan::PlanEntry;
 use crate::rock::Vec3;
 use crate::scene::Language;
-use crate::simulation::{ShapeOf, Trajectory};
+use crate::simulation::Trajectory;
 use opened::{open, open_maps};
 use progress::{PROGRESS, Progress};
 use std::collections::BTreeMap;
@@ -125,6 +126,8 @@ pub struct Output {
     dir: PathBuf,
     info: RunInfo,
     releases: CsvTable,
+    /// Whether its rows tell the class of a rock.
+    tells_class: bool,
     paths: Option<CsvTable>,
     impacts: Option<CsvTable>,
     crossings: Option<CsvTable>,
@@ -164,8 +167,7 @@ impl Output {
             [plain, if info.has_blocks { more } else { &[] }].concat()
         };
         let scars = |names: &'static [&'static str]| if info.has_scars { names } else { &[] };
-        let of_release = columns(&Row::COLUMNS, &Row::SHAPE_COLUMNS);
-        let of_release = [&of_release, scars(&Row::SOIL_COLUMNS)].concat();
+        let of_release = releases::columns(dir, &info, bytes.is_some())?;
         let of_impact = [&ImpactRow::COLUMNS, scars(&ImpactRow::SOIL_COLUMNS)].concat();
         let releases = open(dir, RELEASES, &of_release, bytes)?;
         let of_path = columns(&PathRow::COLUMNS, &PathRow::SHAPE_COLUMNS);
@@ -201,6 +203,7 @@ impl Output {
             dir,
             info,
             releases,
+            tells_class: of_release.ends_with(&releases::CLASS_COLUMNS),
             paths,
             impacts,
             crossings,
@@ -241,12 +244,7 @@ impl Output {
     pub fn write(&mut self, falls: &[Trajectory]) -> Result<()> {
         for fall in falls {
             assert_eq!(fall.index, self.remaining().start, "journeys must be written in order");
-            let mut row = Row::of(fall, self.info.origin_m);
-            if self.info.has_blocks {
-                row.shape.get_or_insert(ShapeOf::SPHERE);
-            }
-            row.soil_j = self.info.has_scars.then_some(fall.ledger.soil_j);
-            self.releases.write(&row)?;
+            let row = self.write_release(fall)?;
             self.write_path(fall)?;
             self.write_impacts(fall)?;
             self.write_crossings(fall)?;

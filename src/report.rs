@@ -50,7 +50,7 @@ pub mod view;
 pub mod words;
 
 pub use answers::answers;
-pub use from_results::first::untouched_trees;
+pub use from_results::first::{untouched_ground, untouched_trees};
 
 use crate::body::Shape;
 use crate::error::{Error, Result};
@@ -78,10 +78,11 @@ pub fn draw_run(
     terrain: &Terrain,
     shape_of: impl Fn(usize) -> Option<Shape>,
 ) -> Result<()> {
-    let ground = GroundRaster::from_terrain(terrain, GROUND_CELLS);
+    let ground = GroundRaster::as_used(terrain);
     ground.write(&results.dir)?;
     let epsg = results.summary.maps.as_ref().and_then(|maps| maps.epsg);
-    GroundRaster::as_used(terrain).write_tif(&results.dir, epsg)?;
+    ground.write_tif(&results.dir, epsg)?;
+    let ground = ground.coarser(GROUND_CELLS);
     if results.summary.maps.is_some() {
         output::write_terrain(&results.dir, terrain, results.summary.site.mesh_origin_m)?;
     }
@@ -100,6 +101,7 @@ pub fn draw_merged(results: &Results, shards: &[PathBuf]) -> Result<()> {
     if let Some(ground) = &ground {
         ground.write(&results.dir)?;
     }
+    let ground = ground.map(|ground| ground.coarser(GROUND_CELLS));
     output::copy_used(shard, &results.dir)?;
     // what the run at once would have written beside its maps
     let terrain = "maps/terrain.vtk";
@@ -120,7 +122,7 @@ pub fn draw_merged(results: &Results, shards: &[PathBuf]) -> Result<()> {
 pub fn draw_again(dir: &Path) -> Result<()> {
     let results = output::read(dir)?;
     let _lock = FolderLock::on(dir)?;
-    let ground = GroundRaster::read(dir)?;
+    let ground = GroundRaster::read(dir)?.map(|ground| ground.coarser(GROUND_CELLS));
     if let Some((mesh, hulls)) = view::kept_in(&[dir])? {
         view::write(&results, mesh, |release| hulls.hull(release).cloned(), ground.as_ref())?;
     }

@@ -25,6 +25,7 @@ pub mod patches;
 pub mod section;
 pub mod seen;
 pub mod standing;
+mod stem_pieces;
 pub mod stems;
 pub mod stl;
 pub mod walls;

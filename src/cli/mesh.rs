@@ -117,12 +117,15 @@ fn stems((list, slope): (&Path, &Path), out: &Path, origin_m: Option<&[f64]>) ->
     };
     let trees = make::read_list(list)?;
     let (terrain, _) = Terrain::read(&[slope_source(slope)], map_origin_m, None)?;
-    let mut facets = make::plant(list, &trees, &terrain)?;
-    for corner in facets.iter_mut().flatten() {
+    let mut planted = make::plant(list, &trees, &terrain)?;
+    for corner in planted.facets.iter_mut().flatten() {
         *corner -= map_origin_m;
     }
-    write_binary(out, &facets)?;
-    Ok(format!("{}, {} triangles written to {}", trees.stems(), facets.len(), out.display()))
+    write_binary(out, &planted.facets)?;
+    let (stems, triangles) = (planted.stems(), planted.facets.len());
+    let warning = planted.left_out.map(|text| format!("\nwarning: {}: {text}", list.display()));
+    let warning = warning.unwrap_or_default();
+    Ok(format!("{stems}, {triangles} triangles written to {}{warning}", out.display()))
 }
 
 /// A mesh file as it stands.

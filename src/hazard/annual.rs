@@ -13,7 +13,7 @@ mod risk;
 mod strata;
 
 pub use barriers::AnnualBarrier;
-pub use cells::{YearMap, year_maps};
+pub use cells::{YearMap, file_above, file_of_period, year_maps};
 pub use curve::{ExceedancePoint, ReturnEnergy, UnseenPoint};
 pub use places::{Above, Annual, AnnualFigures, AnnualPlace, Saved, YearSums, annual};
 pub use risk::{Object, Risk, RiskKind, Vehicles};

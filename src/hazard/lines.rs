@@ -1,5 +1,9 @@
 //! What all rocks say at one evaluation line.
 
+mod by_class;
+
+pub use by_class::{ClassReach, classes_without_arrival};
+
 use super::proportion::Proportion;
 use super::rate::{share_if_any, share_up_to};
 use super::sample::Sample;
@@ -257,6 +261,9 @@ pub struct LineSummary {
     pub crossing_again: usize,
     /// Statistics by quantity, over first crossings.
     pub statistics: BTreeMap<String, Statistic>,
+    /// How many rocks of each class come; none where all are of one.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub by_class: Vec<ClassReach>,
 }
 
 impl Line {
@@ -354,6 +361,7 @@ impl Line {
             may_still_come: self.may_still_come(released),
             crossing_again: self.repeated,
             statistics: LineQuantity::ALL.into_iter().map(of).collect(),
+            by_class: Vec::new(),
         }
     }
 }

@@ -3,6 +3,7 @@
 use super::atomic_file::{RESTORE, length};
 use super::lock::FolderLock;
 use super::progress::{Identity, PROGRESS, Progress};
+use super::releases::CLASS_COLUMNS;
 use super::rows::{ImpactRow, PathRow};
 use super::summary::{SUMMARY, Summary};
 use super::vector;
@@ -318,8 +319,11 @@ pub(super) fn check_lengths(dir: &Path, written: &BTreeMap<String, u64>) -> Resu
 }
 
 fn releases(dir: &Path) -> Result<impl Iterator<Item = Result<Row>> + use<>> {
-    table::rows(dir.join(RELEASES), (&Row::COLUMNS, &[&Row::SHAPE_COLUMNS, &Row::SOIL_COLUMNS]))
+    table::rows(dir.join(RELEASES), (&Row::COLUMNS, RELEASE_GROUPS))
 }
+
+/// Columns of releases that some scenes have. A row of statistics has no place for the last ones: what a class is stands in the summary.
+const RELEASE_GROUPS: &[&[&str]] = &[&Row::SHAPE_COLUMNS, &Row::SOIL_COLUMNS, &CLASS_COLUMNS];
 
 const CROSSING_COLUMNS: table::Columns = (&CrossingRow::COLUMNS, &[&CrossingRow::SHAPE_COLUMNS]);
 

@@ -166,12 +166,17 @@ pub struct RunTimes {
 impl Summary {
     /// The summary of a finished run that took so long.
     pub(super) fn new(info: RunInfo, (hazard, lines): (&Hazard, &[Line]), seconds: f64) -> Self {
+        let frequency = info.asked.frequency.as_ref();
+        let of_line = |line: &Line| {
+            let by_class = line.by_class(frequency);
+            LineSummary { by_class, ..line.summary(hazard.released()) }
+        };
         Self {
             title: info.title,
             stops: by_stop(|stop| hazard.ended(stop).count),
             stop_shares: by_stop(|stop| hazard.ended(stop)),
             statistics: statistics(hazard),
-            lines: lines.iter().map(|line| line.summary(hazard.released())).collect(),
+            lines: lines.iter().map(of_line).collect(),
             barriers: Vec::new(),
             asked: info.asked,
             annual: None,

@@ -148,9 +148,7 @@ fn next_row<R: DeserializeOwned>(
 fn filled(record: &csv::StringRecord, gaps: &[usize]) -> csv::StringRecord {
     let mut all = csv::StringRecord::new();
     for (index, field) in record.iter().enumerate() {
-        if gaps.contains(&index) {
-            all.push_field("");
-        }
+        gaps.iter().filter(|gap| **gap == index).for_each(|_| all.push_field(""));
         all.push_field(field);
     }
     all

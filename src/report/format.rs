@@ -1,7 +1,7 @@
 //! Numbers and text as a reader expects them: thin-space thousands, a true minus, raised powers.
 
 use super::bound::Is;
-pub use crate::count::counted;
+pub use crate::count::{counted, shortest};
 use crate::math;
 
 /// Stands between groups of three digits.
@@ -32,8 +32,9 @@ pub fn decimal(value: f64, decimals: usize) -> String {
     text + rest
 }
 
-/// A round number as it is, with no more decimals than it has: `2.5`, `10`, `0.025`.
+/// A round number as it is, with no more decimals than it has: `2.5`, `10`, `0.025`; what a change of its unit leaves is none of them.
 pub fn plain(value: f64) -> String {
+    let value = shortest(value);
     let text = value.abs().to_string();
     decimal(value, text.split_once('.').map_or(0, |(_, decimals)| decimals.len()))
 }

@@ -358,6 +358,7 @@ fn text_of(results: &Results, words: &Words) -> Text {
             &fast_warnings(results)[..],
             &hazard::barrier_warnings(&summary.barriers)[..],
             first::untouched_trees(results).as_slice(),
+            first::untouched_ground(results).as_slice(),
             &results.hazard.warnings(),
         ]
         .concat()

@@ -1,18 +1,21 @@
 //! One evaluation line: where rocks pass, how high with how much energy, and how much is exceeded how often.
 
+mod marks;
+
 use super::axis::Axis;
 use super::by_frequency;
 use super::canvas::{Canvas, Label, NORMAL, Pen, SMALL, fitted_among, paint, text_width};
-use super::colour::{BLUE, DARK_GREEN, GREEN, GREY, INK, SKY, VERMILLION};
+use super::colour::{BLUE, DARK_GREEN, GREEN, GREY, INK, SKY};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
 use super::histogram::EqualBins;
 use super::model::{BandPoint, Estimate, ReportLine, energy_unit};
 use super::panel::MANY;
 use super::panel::{FOOT_PX, Panel, align};
-use super::svg::path::{PaperFrame, Spot, clipped};
+use super::svg::path::{PaperFrame, Spot};
 use super::words::{Words, fill};
 use crate::hazard::INTENSITY_J;
+use marks::{name, percentiles};
 
 const TOP_PX: f64 = 26.0;
 const ALONG_PX: f64 = 84.0;
@@ -26,8 +29,6 @@ const RIGHT_PX: f64 = WIDTH_PX - 20.0;
 /// Heights up to here at least are shown (m), or up to the radius of the smallest rock: rocks that only roll are not drawn as if they
 /// leapt.
 const LEAST_M: f64 = 0.1;
-/// Marked percentiles, the second one dashed.
-const MARKED: [f64; 2] = [0.50, 0.95];
 
 /// What there is to say of a line that no rock crosses; none where one does.
 pub(super) fn nobody(words: &Words, line: &ReportLine) -> Option<String> {
@@ -201,62 +202,9 @@ fn draw_cloud(canvas: &Canvas<'_>, panel: &Panel, (line, size): (&ReportLine, f6
     panel.axes(canvas);
 }
 
-/// Marked percentiles of energy and height, each with its name where no other one runs through it.
-fn percentiles(canvas: &Canvas<'_>, panel: &Panel, line: &ReportLine, size: f64) {
-    let of = |list: &[super::model::Quantile], probability: f64| {
-        let found = list.iter().find(|q| (q.probability - probability).abs() < 1e-9);
-        found.map(|q| q.at.value).filter(|value| value.is_finite())
-    };
-    let upright = |energy: f64| panel.at(energy / size, panel.y.high).0;
-    let level = |height: f64| panel.at(panel.x.high, height.max(0.0)).1;
-    let energies = MARKED.map(|p| (p, of(&line.energy_quantiles, p)));
-    let heights = MARKED.map(|p| (p, of(&line.height_quantiles, p)));
-    let lines: Vec<Vec<Spot>> = (energies.iter().filter_map(|(_, e)| e.map(upright)))
-        .map(|x| vec![(x, panel.frame.top), (x, panel.frame.bottom)])
-        .chain(
-            heights
-                .iter()
-                .filter_map(|(_, h)| h.map(level))
-                .map(|y| vec![(panel.frame.left, y), (panel.frame.right, y)]),
-        )
-        .collect();
-    let pen = |probability: f64| {
-        let pen = Pen::full(VERMILLION, 1.2);
-        if probability < 0.9 { pen } else { pen.dashed() }
-    };
-    let words = |probability: f64| format!("P{:.0}", 100.0 * probability);
-    for (p, energy) in energies {
-        let Some(energy) = energy else { continue };
-        panel.upright(canvas, energy / size, pen(p));
-        let (x, y) = (upright(energy), panel.frame.top + 9.0);
-        name(canvas, panel, (&words(p), &[(x + 3.0, y), (x - 24.0, y)]), &lines);
-    }
-    for (p, height) in heights {
-        let Some(height) = height else { continue };
-        panel.line(canvas, &[(panel.x.low, height), (panel.x.high, height)], pen(p));
-        let (x, y) = (panel.frame.right - 26.0, level(height));
-        name(canvas, panel, (&words(p), &[(x, y - 8.0), (x, y + 9.0)]), &lines);
-    }
-}
-
 /// A height without what a rock presses into the ground; NaN where there is no ground.
 fn above(height_m: f64) -> f64 {
     if height_m < 0.0 { 0.0 } else { height_m }
-}
-
-/// Writes a word at the first place where no text stands and none of some lines runs.
-fn name(canvas: &Canvas<'_>, panel: &Panel, (words, places): (&str, &[Spot]), lines: &[Vec<Spot>]) {
-    let labels = places.iter().map(|&at| Label::new(words, at).coloured(INK));
-    // its white rim would cover them
-    let is_clear =
-        |room: PaperFrame| lines.iter().all(|line| clipped(line, &room.grown(1.8)).is_empty());
-    let is_free = |label: &Label| {
-        let room = label.frame();
-        panel.frame.contains(&room) && canvas.is_free(&room) && is_clear(room)
-    };
-    if let Some(label) = labels.into_iter().find(is_free) {
-        canvas.text_on_rim(&label);
-    }
 }
 
 /// A curve with its band, and the one behind barriers over it.

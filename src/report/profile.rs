@@ -34,7 +34,11 @@ pub(super) fn draw(report: &Report, view: &ProfileView) -> Drawing {
     let panels = panels(view, shown, words);
     let size = (WIDTH_PX, panels[1].frame.bottom + FOOT_PX);
     let svg = paint("profile", size, words.profile_title, |canvas| {
-        key(canvas, panels[0].frame.left, words);
+        let has_p95 = view
+            .stretches
+            .iter()
+            .any(|at| shown.iter().any(|(of, _)| of(at).p95.value.is_finite()));
+        key(canvas, panels[0].frame.left, (words, has_p95));
         for (panel, (of, _)) in panels.iter().zip(shown) {
             draw_panel(canvas, panel, view, of);
         }
@@ -109,9 +113,11 @@ fn steps(view: &ProfileView, of: impl Fn(&ProfileStretch) -> f64) -> Vec<(f64, f
 }
 
 /// What the lines are, above all names.
-fn key(canvas: &Canvas<'_>, mut left: f64, words: &Words) {
+fn key(canvas: &Canvas<'_>, mut left: f64, (words, has_p95): (&Words, bool)) {
     let y = TOP_PX - 30.0;
-    for (name, pen) in [(words.median, MEDIAN), ("P95", P95), (words.maximum, MAXIMUM)] {
+    let p95 = has_p95.then_some(("P95", P95));
+    let first = std::iter::once((words.median, MEDIAN)).chain(p95);
+    for (name, pen) in first.chain([(words.maximum, MAXIMUM)]) {
         canvas.line(&[(left, y), (left + 18.0, y)], pen);
         canvas.text(&Label::new(name, (left + 23.0, y)).coloured(GREY));
         left += 23.0 + text_width(name, SMALL) + 18.0;

@@ -38,7 +38,7 @@ struct BoundingBox {
 }
 
 impl GroundRaster {
-    /// The ground of a terrain in cells about as fine as its triangles, for a GIS.
+    /// The ground of a terrain in cells about as fine as its triangles, for a GIS: what `maps/ground.asc` and `maps/ground.tif` both hold.
     pub fn as_used(terrain: &Terrain) -> Self {
         // two triangles a cell of a square model
         let across = (terrain.triangles.len() as f64 / 2.0).sqrt() as usize;
@@ -66,6 +66,31 @@ impl GroundRaster {
         }
         raster.trees = cover.with_holes_filled();
         raster
+    }
+
+    /// The same in cells of as many of its own as leave at most so many along the longer side: heights are means of what is known of half a cell
+    /// or more, and a tree stands in a cell where it stands in a part of it.
+    #[must_use]
+    pub fn coarser(self, cells: usize) -> Self {
+        let (columns, rows) = (self.columns, self.rows());
+        let times = columns.max(rows).div_ceil(cells.max(1));
+        if times < 2 {
+            return self;
+        }
+        let (wide, tall) = (columns.div_ceil(times), rows.div_ceil(times));
+        let (mut height_m, mut trees) = (Vec::new(), Vec::new());
+        for (row, column) in (0..tall).flat_map(|row| (0..wide).map(move |column| (row, column))) {
+            let of_row = row * times..rows.min((row + 1) * times);
+            let of_column = column * times..columns.min((column + 1) * times);
+            let own = of_row.flat_map(|r| of_column.clone().map(move |c| r * columns + c));
+            let known = own.clone().map(|cell| self.height_m[cell]).filter(|z| z.is_finite());
+            let (count, sum) = known.fold((0, 0.0), |(count, sum), z| (count + 1, sum + z));
+            let is_known = 2 * count >= times * times;
+            height_m.push(if is_known { sum / f64::from(count as u32) } else { f64::NAN });
+            trees.push(own.into_iter().any(|cell| self.trees[cell]));
+        }
+        let cell_m = self.cell_m * times as f64;
+        Self { cell_m, columns: wide, height_m, trees, ..self }
     }
 
     fn empty_over(bounds: Option<BoundingBox>, cells: usize) -> Self {

@@ -195,6 +195,12 @@ fn whisker(canvas: &Canvas<'_>, (low, high): (f64, f64), y: f64) {
     }
 }
 
+/// Places along the frame at which values are tried between its corners.
+const PLACES: u32 = 12;
+
+/// Room beside values that no mark runs through (px).
+const RIM_PX: f64 = 4.0;
+
 /// Values and intervals, one line each, in the free corner.
 fn values(canvas: &Canvas<'_>, panel: &Panel, report: &Report, quantiles: &[Quantile]) {
     let line_px = SMALL + 5.0;
@@ -207,22 +213,24 @@ fn values(canvas: &Canvas<'_>, panel: &Panel, report: &Report, quantiles: &[Quan
     };
     let widest = lines(0.0, 0.0).iter().map(Label::width_px).fold(0.0, f64::max);
     let (frame, tall) = (panel.frame, line_px * quantiles.len() as f64);
-    let corners = [
-        (frame.right - widest - 12.0, frame.top + 14.0),
-        (frame.left + 12.0, frame.bottom - tall),
-        (frame.left + 12.0, frame.top + 14.0),
-        (frame.right - widest - 12.0, frame.bottom - tall),
-    ];
-    // the corner that the curve leaves free and no other text stands in
+    let (left, right) = (frame.left + 12.0, frame.right - widest - 12.0);
+    let (top, bottom) = (frame.top + 14.0, frame.bottom - tall);
+    let between = (1..PLACES).map(|k| left + (right - left) * f64::from(k) / f64::from(PLACES));
+    let places = [(right, top), (left, bottom), (left, top), (right, bottom)].into_iter();
+    let places = places.chain(between.flat_map(|x| [(x, top), (x, bottom)]));
+    let marked: Vec<f64> = quantiles.iter().map(|q| panel.at(q.at.value, 1.0).0).collect();
+    // the corner that the curve leaves free, no other text stands in and no mark runs through; else a place between them
     let crowd = |(left, top): (f64, f64)| {
         let room =
             PaperFrame { left, top: top - line_px, right: left + widest, bottom: top + tall };
         let on_curve =
             report.runout_exceedance.iter().filter(|p| room.holds(panel.at(p.x, p.y.value)));
         let taken = lines(left, top).iter().filter(|label| !canvas.is_free(&label.frame())).count();
-        on_curve.count() + 1000 * taken
+        let rim = (left - RIM_PX)..=(left + widest + RIM_PX);
+        let crossed = marked.iter().filter(|x| rim.contains(*x)).count();
+        on_curve.count() + 1000 * (taken + crossed)
     };
-    let best = corners.into_iter().min_by_key(|&corner| crowd(corner));
+    let best = places.min_by_key(|&place| crowd(place));
     for label in best.map_or(Vec::new(), |(left, top)| lines(left, top)) {
         canvas.text_on_rim(&label);
     }

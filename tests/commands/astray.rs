@@ -128,3 +128,62 @@ fn places_on_a_wall_are_said_to_be_too_steep() {
     assert!((1.5..5.0).contains(&share), "{said}");
     assert!(said.contains("% on ground so steep that no height is clear of it)"), "{said}");
 }
+
+/// A slope whose heights have lost their sign is a slope as well, with its valleys as ridges: its facets face down below 0. Releases at their own heights then
+/// start far above it, and where none comes to it that is said too.
+#[test]
+fn a_slope_with_negated_heights_is_said() {
+    let dir = Folder::new();
+    dir.slope();
+    let said = run(&dir, &scene(SLOPE, ""));
+    assert!(
+        !said.contains("face down and its heights") && !said.contains("touched the ground"),
+        "{said}"
+    );
+    let facets = read(&dir.path("dem.stl")).unwrap().facets;
+    let mirrored: Vec<Facet> =
+        facets.iter().map(|facet| facet.map(|at| Vec3::new(at.x, at.y, -200.0 - at.z))).collect();
+    write_ascii(&dir.path("dem.stl"), "slope", &mirrored).unwrap();
+    let text = scene(SLOPE, "");
+    let line = "line_m = [[2600010.5, 1200090.25], [2600050.5, 1200090.25]]";
+    let point = "points_m = [[2600020.5, 1200090.25, 60.0]]";
+    let text = text.replace(line, point).replace("height_m = 0.5\n", "");
+    let said = dir.plan(&text);
+    assert!(said.contains("dem.stl: its facets face down and its heights are -2"), "{said}");
+    assert!(
+        said.contains(
+            "1000 of 1000 releases tried out start more than 100 m above the ground, up to 3"
+        ),
+        "{said}"
+    );
+    assert!(!said.contains("touched the ground"), "{said}");
+    let said = run(&dir, &text.replace("longest_s = 20.0", "longest_s = 0.5"));
+    assert!(said.contains("warning: none of 40 rocks touched the ground"), "{said}");
+    let page = std::fs::read_to_string(dir.path("out/report.html")).unwrap();
+    assert!(
+        page.contains("none of 40 rocks touched the ground") || page.contains("None of 40 rocks")
+    );
+}
+
+/// The same as of STL: a text PLY of six digits on the map is refused.
+#[test]
+fn a_ply_of_few_digits_is_refused() {
+    let dir = Folder::new();
+    dir.slope();
+    let facets = read(&dir.path("dem.stl")).unwrap().facets;
+    let count = facets.len();
+    let mut text = format!(
+        "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\nelement face {count}\nproperty list uchar int vertex_indices\nend_header\n",
+        3 * count
+    );
+    for corner in facets.iter().flatten() {
+        let [x, y] = [2_600_000.0 + corner.x, 1_200_000.0 + corner.y];
+        writeln!(text, "{x:.5e} {y:.5e} {:.2}", corner.z).unwrap();
+    }
+    for face in 0..count {
+        writeln!(text, "3 {} {} {}", 3 * face, 3 * face + 1, 3 * face + 2).unwrap();
+    }
+    dir.put("few.ply", text);
+    let said = dir.refusal(&scene("file = \"few.ply\"", "").replace(ORIGIN, ""));
+    assert!(said.contains("written in steps of 10, ") && said.contains("three decimals"), "{said}");
+}

@@ -99,12 +99,49 @@ fn a_scene_stands_trees_on_its_slope() {
     assert_ne!(hash(), before);
 }
 
+/// Trees beside the slope as it is cropped are left out, with a word on how many and which is the first; those that stand are what they were. The same for
+/// drawn points, and for `mesh stems`.
+#[test]
+fn trees_over_no_ground_are_left_out() {
+    let dir = Folder::new();
+    dir.slope();
+    let far = |text: String| text.replace("2600020.5", "2700020.5");
+    dir.put("trees.csv", far(table()));
+    dir.put("trees.geojson", far(drawing("")));
+    let all = table();
+    let one = all.lines().filter(|line| !line.contains("2600020.5")).collect::<Vec<_>>();
+    dir.put("one.csv", one.join("\n"));
+    let slope = "file = \"dem.tif\"";
+    let facets = |list: &str| {
+        let text = with_trees(slope, &format!("file = \"{list}\""));
+        let terrain = Scene::read(&dir.put("scene.toml", text)).unwrap().read_terrain().unwrap().0;
+        (terrain.vertices_m.clone(), terrain.triangles)
+    };
+    let standing = facets("one.csv");
+    for (list, first) in [("trees.csv", "in line 2"), ("trees.geojson", "as feature 1")] {
+        assert!(facets(list) == standing, "{list}");
+        let plan = dir.plan(&with_trees(slope, &format!("file = \"{list}\"")));
+        let said = format!(
+            "{list}: 1 of 2 stems are left out, as no ground lies below them, the first {first} at (2700020.5, 1200060.5)"
+        );
+        assert!(plan.contains(&said) && plan.contains("1 stem, stood on the slope"), "{plan}");
+    }
+    let [list, slope, out] = ["trees.csv", "dem.stl", "stems.stl"].map(|name| dir.path(name));
+    let [list, slope, out] = [&list, &slope, &out].map(|path| path.to_str().unwrap());
+    let said = rockfall(&["mesh", "stems", list, slope, out, "--origin-m", "2600000,1200000,0"]);
+    let said = String::from_utf8(said.stdout).unwrap();
+    assert!(
+        said.starts_with("1 stem, 28 triangles") && said.contains("1 of 2 stems are left out"),
+        "{said}"
+    );
+}
+
 #[test]
 fn lists_that_do_not_fit_are_refused() {
     let dir = Folder::new();
     dir.slope();
     dir.put("trees.csv", table());
-    dir.put("far.csv", table().replace("2600020.5", "2700020.5"));
+    dir.put("far.csv", table().replace("26000", "27000"));
     dir.put("flat.csv", "x,y,dbh_m,height_m\n2600020.5,1200060.5,0,18\n");
     dir.put("centimetres.csv", table().replace("0.4", "40"));
     dir.put("centimetres.geojson", drawing("").replace("0.4", "40"));
@@ -118,7 +155,10 @@ fn lists_that_do_not_fit_are_refused() {
     dir.put("sizeless.geojson", drawing("").replace("dbh_m", "dbh"));
     let slope = "file = \"dem.tif\"";
     for (text, parts) in [
-        (with_trees(slope, "file = \"far.csv\""), ["line 2", "found no slope at (2700020.5"]),
+        (
+            with_trees(slope, "file = \"far.csv\""),
+            ["line 2", "found no slope at (2700020.5, 1200060.5), nor below any other of 2 stems"],
+        ),
         (with_trees(slope, "file = \"flat.csv\""), ["line 2", "found dbh_m = 0"]),
         (
             with_trees(slope, "file = \"centimetres.csv\""),

@@ -32,6 +32,10 @@ pub fn parse(bytes: &[u8], file: &Path) -> Result<GisLayer> {
         if json["geometry"].is_null() || has_no_place(&json["geometry"]["coordinates"]) {
             return Err(without_shape(file, format!("feature {number}")));
         }
+        if let Some(found) = mixed(&json["geometry"]) {
+            let remedy = "draw points, lines and polygons as features of their own: one feature has one kind of geometry";
+            return Err(Error::input(file, format!("feature {number}"), found, remedy));
+        }
         let shape = shape(&json["geometry"]).map_err(wrong)?;
         features.push(GisFeature {
             number,
@@ -81,6 +85,14 @@ fn shape(geometry: &Json) -> std::result::Result<Geometry, String> {
         }
         _ => Err(format!("found a geometry of type {}", geometry["type"])),
     }
+}
+
+/// What a collection of geometries holds; none of another geometry.
+fn mixed(geometry: &Json) -> Option<String> {
+    let parts = geometry["geometries"].as_array()?;
+    let mut kinds: Vec<&str> = parts.iter().filter_map(|part| part["type"].as_str()).collect();
+    kinds.dedup();
+    Some(format!("found a GeometryCollection of {}", kinds.join(", ")))
 }
 
 /// Whether coordinates are lists without any number.

@@ -12,7 +12,7 @@ mod stems;
 mod tests;
 mod valley;
 
-pub use forest::{TreeList, plant, read_list};
+pub use forest::{Planted, TreeList, plant, read_list};
 pub(super) use forest::{begins_like_list, is_list};
 pub use shapes::{containers, jittered_plane, ridge, stairs, tetrahedron, v_groove};
 pub use slopes::{Slope, natural_slope, paper_slope, quick_slope};

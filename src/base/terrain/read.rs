@@ -159,9 +159,13 @@ fn stand(
     let slope = Terrain::new(weld(&ground, map_origin_m, None)?, sheets);
     drop(ground);
     for (number, list) in lists {
-        let mut facets = make::plant(&sources[*number].sheet.path, list, &slope)?;
+        let planted = make::plant(&sources[*number].sheet.path, list, &slope)?;
+        let soup = &mut soups[*number];
+        soup.notes.push(format!("{}, stood on the slope", planted.stems()));
+        soup.warnings.extend(planted.left_out);
+        let mut facets = planted.facets;
         facets.iter_mut().flatten().for_each(|corner| *corner -= map_origin_m);
-        soups[*number].facets = facets.into();
+        soup.facets = facets.into();
     }
     Ok(())
 }

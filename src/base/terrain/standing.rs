@@ -1,14 +1,14 @@
 //! Whether trees given as meshes stand on the slope: what a program exports in other heights or at another place is met by no rock.
 
 use super::Terrain;
-use super::groups::Groups;
+use super::stem_pieces::stem_groups;
 use crate::rock::Vec3;
 use std::path::PathBuf;
 
 /// A stem whose foot is higher above the slope than this (m) does not stand on it.
 const FOOT_ABOVE_M: f64 = 0.5;
 
-/// How the stems of one file meet the slope. What hangs together by common corners is one stem.
+/// How the stems of one file meet the slope. What hangs together by common corners is one stem, and what stands on it or in it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct StandingStems {
     /// The file.
@@ -112,11 +112,7 @@ impl Terrain {
         }
         let trees: Vec<u32> =
             (0..self.triangles.len() as u32).filter(|&t| self.is_tree(t)).collect();
-        let mut groups = Groups::of(self.vertices_m.len());
-        for [a, b, c] in trees.iter().map(|&t| self.triangles[t as usize]) {
-            groups.join(a, b);
-            groups.join(a, c);
-        }
+        let mut groups = stem_groups(self, &trees);
         let (mut number_of, mut boxes) = (vec![u32::MAX; self.vertices_m.len()], Vec::new());
         for &t in &trees {
             let corners = self.corners_m(t);

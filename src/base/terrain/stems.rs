@@ -1,7 +1,7 @@
 //! Stems that give way: which triangles of the trees belong to one stem, and how much it can take.
 
 use super::Terrain;
-use super::groups::Groups;
+use super::stem_pieces::stem_groups;
 use crate::random::Distribution;
 use crate::rock::Vec3;
 
@@ -20,8 +20,8 @@ pub struct Stems {
 }
 
 impl Stems {
-    /// Finds the stems of the trees whose ground has a limit: what hangs together by common vertices is one. None if
-    /// there are none.
+    /// Finds the stems of the trees whose ground has a limit: what hangs together by common vertices is one, with what stands on it or
+    /// in it. None if there are none.
     ///
     /// # Errors
     /// Where such a stem shares a vertex with something that stays (m, local): its end would leave a hole in that.
@@ -36,14 +36,12 @@ impl Stems {
         if !(0..count).any(breaks) {
             return Ok(None);
         }
-        let mut groups = Groups::of(terrain.vertices_m.len());
+        let breaking: Vec<u32> =
+            (0..count).filter(|&t| breaks(t)).map(|triangle| triangle as u32).collect();
+        let mut groups = stem_groups(terrain, &breaking);
         let mut in_stem = vec![false; terrain.vertices_m.len()];
-        for [a, b, c] in (0..count).filter(|&t| breaks(t)).map(|t| terrain.triangles[t]) {
-            groups.join(a, b);
-            groups.join(a, c);
-            for vertex in [a, b, c] {
-                in_stem[vertex as usize] = true;
-            }
+        for vertex in breaking.iter().flat_map(|&t| terrain.triangles[t as usize]) {
+            in_stem[vertex as usize] = true;
         }
         let staying = (0..count).filter(|&t| !breaks(t)).flat_map(|t| terrain.triangles[t]);
         if let Some(shared) = staying.into_iter().find(|&vertex| in_stem[vertex as usize]) {

@@ -12,6 +12,9 @@ const FEWEST_OF_SOURCE: usize = 20;
 /// A rock that is lifted by less than this, over its radius, starts where the scene says (–).
 const LIFT_SAID: f64 = 0.1;
 
+/// A centre higher above the ground than this (m) is in other heights than the slope, or beside a cliff.
+const FAR_ABOVE_M: f64 = 100.0;
+
 /// What the first releases showed.
 #[derive(Debug)]
 pub struct TriedReleases {
@@ -52,6 +55,7 @@ impl Releases {
         }
         self.check_sources(&of_source)?;
         warnings.extend(self.lost_places((places, in_slope), made.len()));
+        warnings.extend(far_above(&made, terrain));
         let largest_m = lifts_m.iter().copied().reduce(f64::max);
         let lifted = largest_m.map(|largest_m| {
             format!(
@@ -108,4 +112,21 @@ impl Releases {
         }
         warnings
     }
+}
+
+/// What to say of releases of which most start far above the ground: a slope in other heights, or with negated ones, is met by no rock as it should be.
+fn far_above(made: &[Release], terrain: &Terrain) -> Option<String> {
+    let above_m = |release: &Release| {
+        let centre = release.motion.position_m;
+        Some(centre.z - terrain.ground_under(centre.x, centre.y, centre.z)?)
+    };
+    let far = made.iter().filter_map(above_m).filter(|height_m| *height_m > FAR_ABOVE_M);
+    let (count, most_m) =
+        far.fold((0, 0.0), |(count, most): (usize, f64), height_m| (count + 1, most.max(height_m)));
+    (2 * count > made.len()).then(|| {
+        format!(
+            "{count} of {} releases tried out start more than {FAR_ABOVE_M:.0} m above the ground, up to {most_m:.0} m: do the heights of the releases and of the slope belong together, with their sign?",
+            made.len()
+        )
+    })
 }

@@ -176,8 +176,11 @@ impl FrequencyTable {
         if let Some(index) = draws.iter().position(|one| *one != draws[0]) {
             let remedy = "write per_year alone in all sources, or volumes in all";
             let about = Complaint::about("name", remedy);
-            let found =
-                "found a source with volumes of its own beside one that takes [rocks] radius_m";
+            let [has, lacks] = if draws[0] { [0, index] } else { [index, 0] };
+            let found = format!(
+                "found volumes in source {:?} and none in source {:?}, which takes [rocks] radius_m",
+                self.sources[has].name, self.sources[lacks].name
+            );
             return Err(about.finding(found).in_entry(index).inside("sources"));
         }
         Ok(())

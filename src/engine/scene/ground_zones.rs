@@ -49,8 +49,9 @@ impl GroundZones {
         let mut patches = Vec::new();
         for feature in gis::read(file)?.features {
             let Geometry::Polygons(polygons) = &feature.shape else {
-                let found = format!("found {}", feature.shape.name());
-                return Err(feature.wrong(file, found, "write polygons").into());
+                let found = format!("found {} under [[ground_zones]]", feature.shape.name());
+                let remedy = "draw the zone as a polygon, or leave the feature out of the file: only areas have a ground";
+                return Err(feature.wrong(file, found, remedy).into());
             };
             let name = match (&self.ground, &self.ground_from) {
                 (Some(name), _) => name.clone(),

@@ -125,9 +125,14 @@ impl Zones {
         match other {
             None => Ok(sources),
             Some(zone) => {
-                let found = "found a zone with volumes beside one that takes [rocks] radius_m";
-                let remedy = "write volumes for all zones or for none";
-                Err(refused(&self.list()[zone], Flaw::new(found, remedy)))
+                let [first, other] = [0, zone].map(|number| &self.list()[number]);
+                let (has, lacks) = if draws(&sources[0]) { (first, other) } else { (other, first) };
+                let found = format!(
+                    "found volumes in feature {} and none in feature {}, which takes [rocks] radius_m",
+                    has.feature, lacks.feature
+                );
+                let remedy = "write volume_m3, or volume_min_m3 and volume_max_m3, for every zone (volume_m3 = [smallest, largest] in [frequency] stands for those without), or for none: then all rocks have [rocks] radius_m";
+                Err(refused(other, Flaw::new(found, remedy)))
             }
         }
     }

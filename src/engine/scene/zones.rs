@@ -129,6 +129,22 @@ impl Zone {
         }
     }
 
+    /// What it is drawn as, in the plural.
+    fn kind(&self) -> &'static str {
+        match self.place {
+            ZonePlace::Points(_) => "points",
+            ZonePlace::Lines(_) => "lines",
+            ZonePlace::Areas(_) => "polygons",
+        }
+    }
+
+    /// What it is drawn as, and the property that says how much it releases.
+    fn said(&self) -> String {
+        let rate = self.frequency_per_year.map(|_| "frequency_per_year");
+        let rate = rate.or(self.per_year_at_1m3.map(|_| "per_year_at_1m3"));
+        format!("{} with {}", self.kind(), rate.unwrap_or("neither weight nor frequency"))
+    }
+
     /// Number of points, length (m) or area (m²).
     pub fn size(&self) -> f64 {
         match &self.place {
@@ -250,8 +266,7 @@ fn check_parts(list: &[Zone], file: &Path) -> Result<()> {
 
 /// Whether some zones are points, others lines or areas.
 fn has_kinds(list: &[Zone]) -> bool {
-    let kind = |zone: &Zone| std::mem::discriminant(&zone.place);
-    list.iter().any(|zone| kind(zone) != kind(&list[0]))
+    list.iter().any(|zone| zone.kind() != list[0].kind())
 }
 
 /// By what the releases are shared: weights, or the size of the zones, or their rates where sizes have no common measure.
@@ -260,18 +275,15 @@ fn sizes(list: &[Zone], file: &Path) -> Result<Vec<f64>> {
     if weights.len() == list.len() {
         return Ok(weights);
     }
-    let refused = |zone: &Zone, found: &str, remedy: &str| {
+    let refused = |zone: &Zone, found: String, remedy: &str| {
         Err(Error::input(file, format!("feature {}", zone.feature), found, remedy))
     };
     let without = list.iter().find(|zone| zone.weight.is_none());
-    if let (Some(zone), false) = (without, weights.is_empty()) {
-        return refused(
-            zone,
-            "found no weight, but others have one",
-            "write the property weight for all zones or for none",
-        );
+    let weighed = list.iter().find(|zone| zone.weight.is_some());
+    if let (Some(zone), Some(other)) = (without, weighed) {
+        let found = format!("found no weight, which feature {} has", other.feature);
+        return refused(zone, found, "write the property weight for all zones or for none");
     }
-    let kind = |zone: &Zone| std::mem::discriminant(&zone.place);
     // what says how often it releases rocks has a measure in common with others that say the same
     for often in [|zone: &Zone| zone.frequency_per_year, |zone: &Zone| zone.per_year_at_1m3] {
         let rates: Vec<f64> = list.iter().filter_map(often).collect();
@@ -279,13 +291,20 @@ fn sizes(list: &[Zone], file: &Path) -> Result<Vec<f64>> {
             return Ok(rates);
         }
     }
-    if let Some(other) = list.iter().find(|zone| kind(zone) != kind(&list[0])) {
-        let remedy = "write the property weight for every zone, or frequency_per_year: points, metres and square metres cannot be compared";
-        return refused(
-            other,
-            "found another kind of geometry than before, without weight",
-            remedy,
+    if let Some(other) = list.iter().find(|zone| zone.kind() != list[0].kind()) {
+        let says_how_often = list.iter().all(Zone::says_how_often);
+        let remedy = if says_how_often {
+            "write weight for every zone, or the same one of frequency_per_year and per_year_at_1m3 for all: rocks of all sizes and those of 1 m³ or more cannot be compared, nor can points, metres and square metres"
+        } else {
+            "write weight, or frequency_per_year, for every zone, or one file for each kind of geometry: by points, metres and square metres alone releases cannot be shared"
+        };
+        let found = format!(
+            "found {} where feature {} has {}",
+            other.said(),
+            list[0].feature,
+            list[0].said()
         );
+        return refused(other, found, remedy);
     }
     Ok(list.iter().map(Zone::size).collect())
 }

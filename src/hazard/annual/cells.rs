@@ -5,6 +5,7 @@ use super::super::rate::{Limits, Running, Sums};
 use super::curve::{Ceilings, curve, resolved, return_energy};
 use super::energies::EnergyClass;
 use super::{AnnualRequest, Matrix};
+use crate::count::shortest;
 use crate::frequency::{Frequency, Stratum, Weights};
 
 /// A map of something a year, where rocks came.
@@ -97,6 +98,16 @@ fn level(matrix: &Matrix, (maps, cell): (&Maps, &MapCell), running: &mut Running
     })
 }
 
+/// File name without ending of the map of passages a year with an energy (J) or more.
+pub fn file_above(energy_j: f64) -> String {
+    format!("frequency_above_{}kj_per_year", shortest(energy_j / 1e3))
+}
+
+/// File name without ending of the map of the energy of a return period (years).
+pub fn file_of_period(years: f64) -> String {
+    format!("energy_T{}_j", shortest(years))
+}
+
 /// All layers but that of levels, in the order in which their values come.
 struct Layers(Vec<YearMap>);
 
@@ -113,15 +124,15 @@ impl Layers {
         };
         let slopes: Vec<_> = by_exponent.into_iter().collect();
         add("frequency_per_year", "Passages a year", "1/year", &slopes);
-        for kj in frequency.energies_j().iter().map(|joule| joule / 1e3) {
-            let name = format!("Passages a year with {kj} kJ or more");
-            add(&format!("frequency_above_{kj}kj_per_year"), &name, "1/year", &slopes);
+        for joule in frequency.energies_j() {
+            let name = format!("Passages a year with {} kJ or more", shortest(joule / 1e3));
+            add(&file_above(*joule), &name, "1/year", &slopes);
         }
         let by_rate = ("_by_log_rate", "change with the logarithm of all rates");
         let slopes: Vec<_> = [by_rate].into_iter().chain(by_exponent).collect();
         for years in frequency.return_periods_years() {
-            let name = format!("Total energy of return period {years} years");
-            add(&format!("energy_T{years}_j"), &name, "J", &slopes);
+            let name = format!("Total energy of return period {} years", shortest(*years));
+            add(&file_of_period(*years), &name, "J", &slopes);
         }
         Self(layers)
     }
@@ -191,6 +202,14 @@ mod tests {
         // and so does the share that is conditional on release
         let share = maps.values(Layer::ExceedsWeak, &weights).next().unwrap().1;
         assert!((0.04 * share - value("frequency_above_30kj_per_year").unwrap()).abs() < 1e-15);
+    }
+
+    /// What division by a thousand leaves behind the digits of an energy is in no name of a file.
+    #[test]
+    fn names_of_files_are_as_short_as_the_numbers() {
+        assert_eq!(file_above(30_000.4), "frequency_above_30.0004kj_per_year");
+        assert_eq!(file_above(30e3), "frequency_above_30kj_per_year");
+        assert_eq!([300.0, 33.3].map(file_of_period), ["energy_T300_j", "energy_T33.3_j"]);
     }
 
     /// A rock of 30.2 kJ comes once in 50 years: more often than 100 years, and above 30 kJ though its class of energies begins below.

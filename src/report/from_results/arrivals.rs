@@ -6,8 +6,12 @@ use super::super::words::{Words, fill};
 use super::design::{design as of_rule, has_design, with_design_if_any};
 use super::lines::{of_share, shown};
 use super::{energy_unit_of, of_percentile, percentile_of};
-use crate::hazard::{BarrierSummary, LineQuantity, Residual, Statistic};
+use crate::hazard::{
+    BarrierSummary, ClassReach, LineQuantity, Proportion, Residual, Statistic,
+    classes_without_arrival,
+};
 use crate::output::Results;
+use crate::report::format::significant;
 
 /// The percentile of the headline (–).
 const P: f64 = 0.95;
@@ -54,6 +58,7 @@ fn lines(results: &Results, words: &Words, order: &[String]) -> Option<EstimateT
         ];
         rows.push((name, cells));
         rows.extend(residual.map(|at| behind(at, words, size)));
+        rows.extend(silent(line, results, words));
     }
     let needs = results.hazard.weights().map_or("", |_| words.year().weighed_needs);
     let columns = [
@@ -71,6 +76,30 @@ fn lines(results: &Results, words: &Words, order: &[String]) -> Option<EstimateT
         rows,
         ..EstimateTable::default()
     })
+}
+
+/// A row for each class of which no rock comes to a line: its share is 0 of so many, and the other numbers know nothing of it.
+fn silent(
+    line: &crate::hazard::Line,
+    results: &Results,
+    words: &Words,
+) -> Vec<(String, Vec<Option<Estimate>>)> {
+    let classes = line.by_class(results.summary.asked.frequency.as_ref());
+    // where no rock comes at all, the row of the line says so
+    if classes.iter().all(|class| class.reached == 0) {
+        return Vec::new();
+    }
+    let row = |class: ClassReach| {
+        let share = of_share(&Proportion::new(0, class.released));
+        let volumes = class.volume_m3.map_or(String::new(), |[low, high]| {
+            let [low, high] = [low, high].map(|volume| significant(volume, 2));
+            if low == high { format!(", {low} m³") } else { format!(", {low}–{high} m³") }
+        });
+        let (name, n, source) = (&line.info.name, class.released, class.source);
+        let name = words.say(&format!("{name}: 0 of {n} rocks of {source}{volumes}"));
+        (name, vec![Some(percent(share)), None, None, None, None])
+    };
+    classes_without_arrival(&classes).into_iter().map(row).collect()
 }
 
 fn behind(at: &Residual, words: &Words, size: f64) -> (String, Vec<Option<Estimate>>) {

@@ -51,3 +51,15 @@ pub fn untouched_trees(results: &Results) -> Option<String> {
         format!("trees: none of {released} rocks touched one; do they stand where the rocks come?")
     })
 }
+
+/// Says that no rock touched the ground: then releases and slope do not belong together, whatever the numbers say.
+pub fn untouched_ground(results: &Results) -> Option<String> {
+    let released = results.hazard.released();
+    let struck = results.hazard.values(Quantity::Impacts).iter().any(|count| *count > 0.0);
+    let totals = &results.hazard.totals.ledger;
+    let rubbed = [&totals.friction_j, &totals.damping_j, &totals.rolling_j, &totals.soil_j];
+    let rubbed = rubbed.iter().any(|sum| sum.value() > 0.0);
+    (released > 0 && !struck && !rubbed).then(|| {
+        format!("none of {released} rocks touched the ground: do the places and heights of the releases belong to this slope?")
+    })
+}

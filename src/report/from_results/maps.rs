@@ -3,7 +3,7 @@
 use super::super::model::{CellMap, LevelCells, YearCells};
 use super::super::profile::NEEDS;
 use crate::error::Result;
-use crate::hazard::{Layer, Matrix};
+use crate::hazard::{Layer, Matrix, file_above, file_of_period};
 use crate::math;
 use crate::output::Results;
 use crate::terrain::grid::Grid;
@@ -65,7 +65,7 @@ pub(super) fn of_year(results: &Results) -> Result<Option<YearCells>> {
     let above_0 = |cells: Vec<(u32, f64)>| -> Vec<(u32, f64)> {
         cells.into_iter().filter(|(_, value)| *value > 0.0).collect()
     };
-    let above = format!("frequency_above_{}kj_per_year", energy_j / 1e3);
+    let above = file_above(energy_j);
     let Some(frequencies) = read(&above)?.map(above_0) else { return Ok(None) };
     let slopes = read(&format!("{above}_by_exponent"))?;
     let levels = match &asked.matrix {
@@ -83,7 +83,7 @@ pub(super) fn of_year(results: &Results) -> Result<Option<YearCells>> {
         frequencies,
         return_periods_years: periods.to_vec(),
         years,
-        energies_j: read(&format!("energy_T{years}_j"))?.map(above_0).unwrap_or_default(),
+        energies_j: read(&file_of_period(years))?.map(above_0).unwrap_or_default(),
         levels,
     }))
 }

@@ -1,5 +1,6 @@
 //! Evaluation lines and barriers on the ground.
 
+use crate::count::shortest;
 use crate::hazard::{BarrierSummary, LineSummary, Proportion};
 use crate::math;
 use crate::output::Results;
@@ -45,7 +46,8 @@ fn wall(
         format!("{} of {} rocks cross", line.reach.count, line.reach.of)
     };
     let words = barrier.map_or(reached, |one| {
-        let (height_m, capacity_kj) = (one.barrier.height_m, one.barrier.capacity_j / 1e3);
+        let (height_m, capacity_kj) =
+            (one.barrier.height_m, shortest(one.barrier.capacity_j / 1e3));
         if is_weighted {
             let stopped = percent(&one.stopped);
             let found: [(&str, &dyn Display); 3] =

@@ -5,6 +5,8 @@
 use super::slope;
 use rockfall::report::raster::GroundRaster;
 use rockfall::rock::Vec3;
+use rockfall::terrain::geotiff;
+use rockfall::terrain::grid::Grid;
 
 /// On a mesh of 1 m a bilinear raster can be off by the curvature over a triangle and a cell: the made slope bends by less than
 /// 0.5·0.31² + 0.25·1.3 = 0.37 /m (away from the kink at the cliff), so by 0.37·(1² + 0.35²)/4 = 0.11 m.
@@ -65,6 +67,36 @@ fn a_raster_read_back_is_the_same_raster() {
         (raster.west_m, raster.south_m, raster.cell_m)
     );
     assert!(GroundRaster::read(&dir.path().join("nowhere")).unwrap().is_none());
+}
+
+/// `ground.asc` and `ground.tif` are one grid, also where the triangles are finer than what figures show: the same corner, cells and values, which figures
+/// are drawn from in means of whole cells.
+#[test]
+fn both_files_of_the_ground_are_one_grid() {
+    let dir = tempfile::tempdir().unwrap();
+    let terrain = slope::terrain(0.25, Vec3::new(2_600_000.0, 1_200_000.0, 800.0));
+    let raster = GroundRaster::as_used(&terrain);
+    raster.write(dir.path()).unwrap();
+    raster.write_tif(dir.path(), Some(2056)).unwrap();
+    let [text, image] =
+        ["asc", "tif"].map(|ending| dir.path().join(format!("maps/ground.{ending}")));
+    let text = Grid::parse(&std::fs::read_to_string(text).unwrap(), "ground.asc".as_ref()).unwrap();
+    let image = geotiff::read(&image, None, None).unwrap().grid;
+    assert!(text.columns.max(text.rows) > 400, "{} x {}", text.columns, text.rows);
+    assert_eq!((text.columns, text.rows), (image.columns, image.rows));
+    assert_eq!((text.corner_m, text.cell_m), (image.corner_m, image.cell_m));
+    // a GeoTIFF holds 32 bits of a height
+    let is_same = |(a, b): (&Option<f64>, &Option<f64>)| match (a, b) {
+        (Some(a), Some(b)) => (a - b).abs() < 1e-4,
+        (None, None) => true,
+        _ => false,
+    };
+    assert!(text.values.iter().zip(&image.values).all(is_same));
+    let coarse = raster.clone().coarser(400);
+    assert!(coarse.columns.max(coarse.rows()) <= 400 && coarse.cell_m > raster.cell_m);
+    let (x, y) = (2_600_070.0, 1_200_080.0);
+    assert!((coarse.height_at(x, y) - raster.height_at(x, y)).abs() < 0.1);
+    assert_eq!(coarse.trees.iter().any(|tree| *tree), raster.trees.iter().any(|tree| *tree));
 }
 
 #[test]

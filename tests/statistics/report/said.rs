@@ -1,7 +1,9 @@
 //! What captions and keys say where few or none are there: only what is drawn, with the numbers and forms that hold.
 
-use super::{places, slope};
-use rockfall::report::model::{MapMark, Report};
+use super::{places, slope, svg};
+use rockfall::report::model::{
+    Estimate, MapMark, ProfileStretch, ProfileView, Report, ReportQuantity, ReportStretch,
+};
 use rockfall::report::{self, html};
 use rockfall::scene::Language;
 
@@ -106,4 +108,57 @@ fn the_only_path_is_called_so() {
     assert!(one.contains("the only stored path") && !one.contains("median runout"), "{one}");
     let three = said(3).expect("three paths are drawn");
     assert!(three.contains("median runout") && !three.contains("only"), "{three}");
+}
+
+/// Of fewer rocks than bound it no P95 is drawn along the way, and the key has none; of more it has.
+#[test]
+fn a_key_without_p95_where_none_is_drawn() {
+    let with = |value: f64| {
+        let found = ReportStretch { median: 1.0, p95: Estimate::plain(value), largest: 3.0 };
+        let stretch = |from_m: f64| ProfileStretch { from_m, height_m: found, speed_m_s: found };
+        let stretches = [0.0, 5.0, 10.0].map(stretch).to_vec();
+        let profile = Some(ProfileView { step_m: 5.0, stretches, marks: Vec::new() });
+        let report = Report { profile, ..slope::report(60, 0) };
+        let (_, svg) = figure(&report, "profile.svg").expect("it is drawn");
+        svg.contains(">P95</text>")
+    };
+    assert_eq!([with(2.0), with(f64::NAN)], [true, false]);
+}
+
+/// Values of percentiles stand where none of their dotted lines runs, wherever these fall.
+#[test]
+fn no_mark_runs_through_the_values_of_runout() {
+    let mut report = slope::report(400, 0);
+    let longest = report.releases.iter().map(|fall| fall.runout_m).fold(0.0, f64::max);
+    let quantiles = report.quantiles.get_mut(&ReportQuantity::Runout).expect("runout is known");
+    // one in each corner, none at rest between them
+    let parts = [0.02, 0.12, 0.9, 0.97, 0.98];
+    for (quantile, part) in quantiles.iter_mut().zip(parts) {
+        quantile.at = Estimate::new(part * longest, 0.99 * part * longest, 1.01 * part * longest);
+    }
+    let (_, drawn) = figure(&report, "runout.svg").expect("it is drawn");
+    let of_text = |tag: &str| svg::attribute(tag, "x").and_then(|x| x.parse::<f64>().ok());
+    let texts = drawn.split("<text").skip(1).filter(|text| text.contains("\u{2009}m<"));
+    let ends: Vec<(f64, f64)> = texts
+        .filter_map(|text| {
+            let words = text.split('>').nth(1)?.split('<').next()?;
+            // tenths of a pixel; letters are half as wide as high, at least
+            Some((of_text(text)?, of_text(text)? + 50.0 * words.chars().count() as f64))
+        })
+        .collect();
+    assert!(ends.len() >= parts.len(), "{}", ends.len());
+    let dotted = drawn.split("stroke-dasharray=\"12 18\">").skip(1);
+    let uprights: Vec<f64> = dotted
+        .filter_map(|rest| rest.split("</g>").next())
+        .flat_map(|group| group.split('<').skip(1))
+        .flat_map(svg::points)
+        .map(|(x, _)| x)
+        .collect();
+    assert!(!uprights.is_empty());
+    for (left, right) in ends {
+        assert!(
+            uprights.iter().all(|x| *x < left || *x > right),
+            "{left} to {right}: {uprights:?}"
+        );
+    }
 }

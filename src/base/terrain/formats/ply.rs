@@ -183,10 +183,11 @@ fn vertices(element: &PlyElement, numbers: &mut PlyNumbers, soup: &mut Soup) -> 
     let mut corners = Vec::new();
     for number in 1..=element.count {
         let mut corner = Vec3::zeros();
-        numbers.row(element, |property, value| {
+        numbers.row(element, |property, (value, word)| {
             for (axis, place) in [x, y, z].into_iter().enumerate() {
                 if property == place {
                     corner[axis] = value;
+                    soup.last_digits.see(axis, word);
                 }
             }
         })?;
@@ -217,7 +218,7 @@ fn faces(
     let mut around = Vec::new();
     for number in 1..=element.count {
         around.clear();
-        numbers.row(element, |property, value| {
+        numbers.row(element, |property, (value, _)| {
             if property == ring {
                 around.push(value);
             }
@@ -243,13 +244,20 @@ struct PlyNumbers<'a> {
     file: &'a Path,
 }
 
-impl PlyNumbers<'_> {
+/// A value, and the word that a text has for it; of bytes an empty one.
+type Written<'a> = (f64, &'a [u8]);
+
+impl<'a> PlyNumbers<'a> {
     /// One row of an element; `take` gets the number of the property and the value, list entries one by one.
-    fn row(&mut self, element: &PlyElement, mut take: impl FnMut(usize, f64)) -> Result<()> {
+    fn row(
+        &mut self,
+        element: &PlyElement,
+        mut take: impl FnMut(usize, Written<'a>),
+    ) -> Result<()> {
         for (number, property) in element.properties.iter().enumerate() {
             let count = match property.count {
                 None => 1.0,
-                Some(kind) => self.next(kind, element)?,
+                Some(kind) => self.next(kind, element)?.0,
             };
             // a negative or enormous count ends with the bytes
             for _ in 0..count as u64 {
@@ -259,13 +267,13 @@ impl PlyNumbers<'_> {
         Ok(())
     }
 
-    fn next(&mut self, kind: NumberKind, element: &PlyElement) -> Result<f64> {
+    fn next(&mut self, kind: NumberKind, element: &PlyElement) -> Result<Written<'a>> {
         let cut_off = || {
             let place = format!("element {}", element.name);
             wrong(self.file, place, "found the end of the file", CUT_OFF)
         };
         if self.coding == Coding::Text {
-            let rest = &self.bytes[self.at..];
+            let rest: &'a [u8] = &self.bytes[self.at..];
             let start =
                 rest.iter().position(|byte| !byte.is_ascii_whitespace()).ok_or_else(cut_off)?;
             let length = rest[start..]
@@ -274,7 +282,7 @@ impl PlyNumbers<'_> {
                 .unwrap_or(rest.len() - start);
             let word = &rest[start..start + length];
             self.at += start + length;
-            return parsed(word).ok_or_else(|| {
+            let value = parsed(word).ok_or_else(|| {
                 let found = format!("`{}` is no number", String::from_utf8_lossy(word));
                 wrong(
                     self.file,
@@ -282,7 +290,8 @@ impl PlyNumbers<'_> {
                     found,
                     "write numbers like 1063.95",
                 )
-            });
+            })?;
+            return Ok((value, word));
         }
         let taken = self.bytes.get(self.at..self.at + kind.bytes()).ok_or_else(cut_off)?;
         let mut little = [0; 8];
@@ -291,6 +300,6 @@ impl PlyNumbers<'_> {
             little[..taken.len()].reverse();
         }
         self.at += kind.bytes();
-        Ok(kind.number(little))
+        Ok((kind.number(little), b""))
     }
 }

@@ -125,7 +125,6 @@ impl Loaded {
             Self::Trees(trees) => {
                 let mut soup = Soup::of_format(Format::Trees);
                 soup.epsg = trees.epsg;
-                soup.notes.push(format!("{}, stood on the slope", trees.stems()));
                 Ok(soup)
             }
             Self::Grid(heights) => heights.into_soup(file, facets),

@@ -2,6 +2,7 @@
 #![allow(clippy::float_cmp)]
 
 use super::*;
+use crate::terrain::stl::{CoarseText, LastDigits};
 use proptest::prelude::*;
 use std::fmt::Write as _;
 
@@ -95,6 +96,50 @@ fn a_refused_ply_says_where_and_what() {
         let said = ply(text.as_bytes()).expect_err(part).to_string();
         assert!(said.starts_with("m.ply: ") && said.contains(part), "{said}");
     }
+}
+
+/// Cells of half a metre at an easting of 2 725 300 as text: seven digits are steps of a metre, in which they fall together; millimetres keep them. So in
+/// every text, and not in numbers of 64 bits.
+#[test]
+fn few_digits_of_a_text_are_told() {
+    let side = 30;
+    let corners = |digits: &dyn Fn(f64) -> String| -> Vec<String> {
+        let all = (0..side * side).map(|at| [at % side, at / side].map(f64::from));
+        let words = |[i, j]: [f64; 2]| {
+            let place =
+                [2_725_300.0 + 0.5 * i, 1_192_600.0 + 0.5 * j, 1300.0 + 0.3 * i + (i * j).sin()];
+            place.map(digits).join(" ")
+        };
+        all.map(words).collect()
+    };
+    let cells: Vec<[i32; 4]> = (0..(side - 1) * side)
+        .filter(|at| at % side < side - 1)
+        .map(|at| [at, at + 1, at + side + 1, at + side])
+        .collect();
+    let of_ply = |digits: &dyn Fn(f64) -> String| {
+        let faces: Vec<String> =
+            cells.iter().map(|[a, b, c, d]| format!("4 {a} {b} {c} {d}")).collect();
+        let (vertices, count) = (side * side, faces.len());
+        let head = format!(
+            "ply\nformat ascii 1.0\nelement vertex {vertices}\nproperty float x\nproperty float y\nproperty float z\nelement face {count}\nproperty list uchar int vertex_indices\nend_header\n"
+        );
+        ply((head + &corners(digits).join("\n") + "\n" + &faces.join("\n") + "\n").as_bytes())
+            .unwrap()
+    };
+    let of_obj = |digits: &dyn Fn(f64) -> String| {
+        let vertices: Vec<String> =
+            corners(digits).iter().map(|place| format!("v {place}")).collect();
+        let faces = cells.iter().map(|cell| {
+            let [a, b, c, d] = cell.map(|at| at + 1);
+            format!("f {a} {b} {c} {d}")
+        });
+        obj(&(vertices.join("\n") + "\n" + &faces.collect::<Vec<_>>().join("\n") + "\n")).unwrap()
+    };
+    let spoils = |soup: &Soup| CoarseText::of(soup, [0, 1]).map(|found| found.spoils());
+    let (seven, fine) = (|x: f64| format!("{x:.6e}"), |x: f64| format!("{x:.3}"));
+    assert_eq!([spoils(&of_ply(&seven)), spoils(&of_obj(&seven))], [Some(true); 2]);
+    assert_eq!([spoils(&of_ply(&fine)), spoils(&of_obj(&fine))], [None; 2]);
+    assert_eq!(ply(&ply_binary(false, false)).unwrap().last_digits, LastDigits::default());
 }
 
 fn obj(text: &str) -> Result<Soup> {

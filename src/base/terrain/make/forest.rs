@@ -42,14 +42,6 @@ pub struct TreeList {
     pub epsg: Option<u32>,
 }
 
-impl TreeList {
-    /// How many trees it holds, in words.
-    pub fn stems(&self) -> String {
-        let count = self.trees.len();
-        format!("{count} {}", counted(count, "stem", "stems"))
-    }
-}
-
 /// Whether a file that begins so can be a list of trees: a drawing, or a table with the column `dbh_m`.
 pub(in crate::terrain) fn begins_like_list(head: &[u8]) -> bool {
     let line = head.split(|&byte| byte == b'\n').next().unwrap_or_default();
@@ -144,36 +136,84 @@ pub fn read_list(path: &Path) -> Result<TreeList> {
     Ok(TreeList { trees, counted: "line", epsg: None })
 }
 
+/// Stems that stand on a slope, and those of their list that do not.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Planted {
+    /// Their facets, in map coordinates (m).
+    pub facets: Vec<Facet>,
+    /// How many stand.
+    pub standing: usize,
+    /// What to say of those that are left out, as no ground lies below them; none where all stand.
+    pub left_out: Option<String>,
+}
+
+impl Planted {
+    /// How many stand, in words.
+    pub fn stems(&self) -> String {
+        format!("{} {}", self.standing, counted(self.standing, "stem", "stems"))
+    }
+}
+
 /// Eight-sided stems on a slope; everything in the map coordinates of `terrain`.
 ///
 /// A stem's top is its height above the ground at its axis; its foot stays below the lowest ground round it, so that
-/// no gap opens on the lower side.
+/// no gap opens on the lower side. A tree with no slope below its axis is left out: lists reach beyond a crop, and terrains have holes.
 ///
 /// # Errors
-/// A tree with no slope below its axis; `file` is for the message.
-pub fn plant(file: &Path, list: &TreeList, terrain: &Terrain) -> Result<Vec<Facet>> {
+/// No tree with slope below its axis: then the list is not in the coordinates of the slope. `file` is for the message.
+pub fn plant(file: &Path, list: &TreeList, terrain: &Terrain) -> Result<Planted> {
     let origin_m = terrain.origin_m;
     let ground_m =
         |x: f64, y: f64| Some(terrain.ground_below(x - origin_m.x, y - origin_m.y)? + origin_m.z);
-    let mut facets = Vec::new();
-    for (number, tree) in &list.trees {
-        let Some(axis_m) = ground_m(tree.x_m, tree.y_m) else {
-            let (low, high) = terrain.index.bounds();
-            let (low, high) = (low + origin_m, high + origin_m);
-            let found = format!("found no slope at ({}, {})", tree.x_m, tree.y_m);
-            let remedy = format!(
-                "write a place on the slope, its box is {}..{} east, {}..{} north, in map coordinates; a slope file with coordinates of its own needs origin_m in the scene (`mesh stems`: --origin-m)",
-                low.x, high.x, low.y, high.y
-            );
-            let place = format!("{} {number}", list.counted);
-            return Err(Error::input(file, place, found, remedy));
+    let (mut facets, mut astray) = (Vec::new(), Vec::new());
+    for tree in &list.trees {
+        let Stem { x_m, y_m, dbh_m, height_m } = tree.1;
+        let Some(axis_m) = ground_m(x_m, y_m) else {
+            astray.push(tree);
+            continue;
         };
-        let half_m = 0.5 * tree.dbh_m;
+        let half_m = 0.5 * dbh_m;
         let around = ring().into_iter();
         let lowest_m = around
-            .filter_map(|[x, y]| ground_m(tree.x_m + half_m * x, tree.y_m + half_m * y))
+            .filter_map(|[x, y]| ground_m(x_m + half_m * x, y_m + half_m * y))
             .fold(axis_m, f64::min);
-        facets.extend(prism(tree, [lowest_m - FOOT_M, axis_m + tree.height_m], &ring()));
+        facets.extend(prism(&tree.1, [lowest_m - FOOT_M, axis_m + height_m], &ring()));
     }
-    Ok(facets)
+    let standing = list.trees.len() - astray.len();
+    match astray[..] {
+        [first, ..] if standing == 0 => Err(list.beside((file, first), terrain)),
+        _ => Ok(Planted { facets, standing, left_out: list.left_out(&astray) }),
+    }
+}
+
+impl TreeList {
+    /// What to say of trees without ground; none of none.
+    fn left_out(&self, astray: &[&(u64, Stem)]) -> Option<String> {
+        let (number, first) = astray.first()?;
+        Some(format!(
+            "{} of {} stems are left out, as no ground lies below them, the first {} {} {number} at ({}, {}): beside the slope as it is cropped, or over a hole. Where they should stand, look at crop, at the coordinates of the list and at holes of the slope",
+            astray.len(),
+            self.trees.len(),
+            if self.counted == "line" { "in" } else { "as" },
+            self.counted,
+            first.x_m,
+            first.y_m
+        ))
+    }
+
+    /// Why a list is refused of which no tree stands on the slope.
+    fn beside(&self, (file, (number, first)): (&Path, &(u64, Stem)), terrain: &Terrain) -> Error {
+        let (low, high) = terrain.index.bounds();
+        let (low, high) = (low + terrain.origin_m, high + terrain.origin_m);
+        let nor = match self.trees.len() {
+            1 => String::new(),
+            all => format!(", nor below any other of {all} stems"),
+        };
+        let found = format!("found no slope at ({}, {}){nor}", first.x_m, first.y_m);
+        let remedy = format!(
+            "write a place on the slope, its box is {}..{} east, {}..{} north, in map coordinates; a slope file with coordinates of its own needs origin_m in the scene (`mesh stems`: --origin-m)",
+            low.x, high.x, low.y, high.y
+        );
+        Error::input(file, format!("{} {number}", self.counted), found, remedy)
+    }
 }

@@ -142,12 +142,6 @@ fn stems_are_closed_and_have_the_volume_of_their_prism() {
 /// One tree is one stem.
 #[test]
 fn stems_are_counted_in_words() {
-    let dir = tempfile::tempdir().unwrap();
-    let list = dir.path().join("trees.csv");
-    let said = |rows: &str| {
-        std::fs::write(&list, format!("x,y,dbh_m,height_m\n{rows}")).unwrap();
-        read_list(&list).unwrap().stems()
-    };
-    assert_eq!(said("1,2,0.3,20\n"), "1 stem");
-    assert_eq!(said("1,2,0.3,20\n5,2,0.3,20\n"), "2 stems");
+    let said = |standing| Planted { facets: Vec::new(), standing, left_out: None }.stems();
+    assert_eq!([said(1), said(2)], ["1 stem", "2 stems"]);
 }

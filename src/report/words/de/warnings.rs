@@ -94,4 +94,25 @@ pub(super) const WARNINGS: &[(&str, &str)] = &[
         "[[barriers]] \"{name}\" height_m = {a} is higher than any net; the tallest in use have about 10 m",
         "[[barriers]] \"{name}\" height_m = {a} ist höher als jedes Netz; die höchsten im Einsatz haben etwa 10 m",
     ),
+    (
+        "{file}: {n} of {of} stems are left out, as no ground lies below them, the first in line {row} at ({x}, {y}): beside the slope as it is cropped, or over a hole. Where they should stand, look at crop, at the coordinates of the list and at holes of the slope",
+        "{file}: {n} von {of} Stämmen sind weggelassen, weil unter ihnen kein Boden liegt, der erste in Zeile {row} bei ({x}, {y}): neben dem zugeschnittenen Hang oder über einem Loch. Wo sie stehen sollten, crop, die Koordinaten der Liste und Löcher des Hangs prüfen",
+    ),
+    (
+        "{file}: {n} of {of} stems are left out, as no ground lies below them, the first as feature {row} at ({x}, {y}): beside the slope as it is cropped, or over a hole. Where they should stand, look at crop, at the coordinates of the list and at holes of the slope",
+        "{file}: {n} von {of} Stämmen sind weggelassen, weil unter ihnen kein Boden liegt, der erste als Objekt {row} bei ({x}, {y}): neben dem zugeschnittenen Hang oder über einem Loch. Wo sie stehen sollten, crop, die Koordinaten der Liste und Löcher des Hangs prüfen",
+    ),
+    (
+        "{file}: its facets face down and its heights are {a} to {b} m: a slope whose heights have lost or changed their sign looks so, with its valleys as ridges. Compare them with the map; if they are right, nothing is to be done, as winding plays no part",
+        "{file}: die Dreiecke zeigen nach unten, und die Höhen sind {a} bis {b} m: so sieht ein Hang aus, dessen Höhen das Vorzeichen verloren oder gewechselt haben, mit Tälern als Rücken. Mit der Karte vergleichen; stimmen sie, ist nichts zu tun, denn der Umlaufsinn spielt keine Rolle",
+    ),
+    (
+        "{n} of {m} releases tried out start more than 100 m above the ground, up to {h} m: do the heights of the releases and of the slope belong together, with their sign?",
+        "{n} von {m} versuchten Ablösungen beginnen mehr als 100 m über dem Boden, bis zu {h} m: gehören die Höhen der Ablösungen und des Hangs zusammen, mit ihrem Vorzeichen?",
+    ),
+    (
+        "none of {n} rocks touched the ground: do the places and heights of the releases belong to this slope?",
+        "keiner von {n} Blöcken hat den Boden berührt: gehören Orte und Höhen der Ablösungen zu diesem Hang?",
+    ),
+    ("{line}: 0 of {n} rocks of {class}", "{line}: 0 von {n} Blöcken von {class}"),
 ];

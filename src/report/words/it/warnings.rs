@@ -94,4 +94,25 @@ pub(super) const WARNINGS: &[(&str, &str)] = &[
         "[[barriers]] \"{name}\" height_m = {a} is higher than any net; the tallest in use have about 10 m",
         "[[barriers]] \"{name}\" height_m = {a} è più alto di ogni rete; le più alte in uso hanno circa 10 m",
     ),
+    (
+        "{file}: {n} of {of} stems are left out, as no ground lies below them, the first in line {row} at ({x}, {y}): beside the slope as it is cropped, or over a hole. Where they should stand, look at crop, at the coordinates of the list and at holes of the slope",
+        "{file}: {n} fusti su {of} sono tralasciati, perché sotto di essi non c’è suolo, il primo alla riga {row} in ({x}, {y}): a lato del pendio così come è ritagliato, o sopra un buco. Dove dovrebbero stare, rivedere crop, le coordinate della lista e i buchi del pendio",
+    ),
+    (
+        "{file}: {n} of {of} stems are left out, as no ground lies below them, the first as feature {row} at ({x}, {y}): beside the slope as it is cropped, or over a hole. Where they should stand, look at crop, at the coordinates of the list and at holes of the slope",
+        "{file}: {n} fusti su {of} sono tralasciati, perché sotto di essi non c’è suolo, il primo come oggetto {row} in ({x}, {y}): a lato del pendio così come è ritagliato, o sopra un buco. Dove dovrebbero stare, rivedere crop, le coordinate della lista e i buchi del pendio",
+    ),
+    (
+        "{file}: its facets face down and its heights are {a} to {b} m: a slope whose heights have lost or changed their sign looks so, with its valleys as ridges. Compare them with the map; if they are right, nothing is to be done, as winding plays no part",
+        "{file}: le sue facce guardano in basso e le sue quote vanno da {a} a {b} m: così appare un pendio le cui quote hanno perso o cambiato il segno, con le valli come creste. Confrontarle con la carta; se sono giuste non c’è nulla da fare, perché il verso di percorrenza non conta",
+    ),
+    (
+        "{n} of {m} releases tried out start more than 100 m above the ground, up to {h} m: do the heights of the releases and of the slope belong together, with their sign?",
+        "{n} distacchi provati su {m} iniziano a più di 100 m sopra il suolo, fino a {h} m: le quote dei distacchi e del pendio stanno insieme, con il loro segno?",
+    ),
+    (
+        "none of {n} rocks touched the ground: do the places and heights of the releases belong to this slope?",
+        "nessuno dei {n} massi ha toccato il suolo: i luoghi e le quote dei distacchi appartengono a questo pendio?",
+    ),
+    ("{line}: 0 of {n} rocks of {class}", "{line}: 0 massi su {n} di {class}"),
 ];
