@@ -151,8 +151,7 @@ fn impact(
     let thrown = throw(&world.body, &frozen(world, touches, &v), (&v, &w), IMPACT);
     (state.v, state.w) = (thrown.velocity_m_s, thrown.spin_rad_s);
     for (loss, touch) in thrown.loss.iter().zip(touches) {
-        done.loss.add(&loss.on(world, touch.triangle), 1.0);
-        state.stem_load.strike(world.terrain, touch.triangle, loss.sum());
+        state.stem_load.book((world, touch.triangle), loss, &mut done.loss);
     }
     done.steps = u64::from(thrown.effort.steps).max(1);
     done.rejected = u64::from(thrown.effort.rejected);
