@@ -49,7 +49,7 @@ pub(super) fn step(
     // without any impulse the rock is free, and the next leap takes over
     let pushed = tried.contacts.iter().any(|contact| contact.normal_force > 0.0);
     push_out(world, state);
-    remember(world, state, |_| pushed);
+    remember(world, state, pushed);
 }
 
 /// What the rock meets at this instant, too slow to rebound, holds it from now on: impulses that take no time.
