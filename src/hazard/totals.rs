@@ -198,7 +198,34 @@ const UNSETTLED: f64 = 1e-3;
 const RISE: f64 = 1e-6;
 
 impl LedgerSums {
-    /// Every field is named, so that a new entry does not compile until it is summed.
+    /// The sums; every field is named, so that a new entry does not compile until it is summed.
+    fn sums(&mut self) -> [&mut Sum; 9] {
+        let Self {
+            friction_j,
+            damping_j,
+            rolling_j,
+            trees_j,
+            soil_j,
+            others_j,
+            passed_on_j,
+            springs_j,
+            remainder_j,
+            rise_j: _,
+        } = self;
+        [
+            friction_j,
+            damping_j,
+            rolling_j,
+            trees_j,
+            soil_j,
+            others_j,
+            passed_on_j,
+            springs_j,
+            remainder_j,
+        ]
+    }
+
+    /// The entries in the order of [`Self::sums`].
     fn add(&mut self, one: &Ledger) {
         let Ledger {
             friction_j,
@@ -212,20 +239,7 @@ impl LedgerSums {
             remainder_j,
             rise_j,
         } = *one;
-        self.friction_j.add(friction_j);
-        self.damping_j.add(damping_j);
-        self.rolling_j.add(rolling_j);
-        self.trees_j.add(trees_j);
-        self.soil_j.add(soil_j);
-        self.others_j.add(others_j);
-        self.passed_on_j.add(passed_on_j);
-        self.springs_j.add(springs_j);
-        self.remainder_j.add(remainder_j);
-        self.rise_j = self.rise_j.max(rise_j);
-    }
-
-    fn join(&mut self, other: &Self) {
-        let Self {
+        let entries = [
             friction_j,
             damping_j,
             rolling_j,
@@ -235,32 +249,24 @@ impl LedgerSums {
             passed_on_j,
             springs_j,
             remainder_j,
-            rise_j,
-        } = other;
-        self.friction_j.join(friction_j);
-        self.damping_j.join(damping_j);
-        self.rolling_j.join(rolling_j);
-        self.trees_j.join(trees_j);
-        self.soil_j.join(soil_j);
-        self.others_j.join(others_j);
-        self.passed_on_j.join(passed_on_j);
-        self.springs_j.join(springs_j);
-        self.remainder_j.join(remainder_j);
-        self.rise_j = self.rise_j.max(*rise_j);
+        ];
+        for (sum, entry) in self.sums().into_iter().zip(entries) {
+            sum.add(entry);
+        }
+        self.rise_j = self.rise_j.max(rise_j);
+    }
+
+    fn join(&mut self, other: &Self) {
+        let mut other = other.clone();
+        self.rise_j = self.rise_j.max(other.rise_j);
+        for (sum, more) in self.sums().into_iter().zip(other.sums()) {
+            sum.join(more);
+        }
     }
 
     fn rounded(&self) -> Self {
-        Self {
-            friction_j: self.friction_j.rounded(),
-            damping_j: self.damping_j.rounded(),
-            rolling_j: self.rolling_j.rounded(),
-            trees_j: self.trees_j.rounded(),
-            soil_j: self.soil_j.rounded(),
-            others_j: self.others_j.rounded(),
-            passed_on_j: self.passed_on_j.rounded(),
-            springs_j: self.springs_j.rounded(),
-            remainder_j: self.remainder_j.rounded(),
-            rise_j: self.rise_j,
-        }
+        let mut rounded = self.clone();
+        rounded.sums().into_iter().for_each(|sum| *sum = sum.rounded());
+        rounded
     }
 }

@@ -1,7 +1,7 @@
 //! Several stems that are struck at once: each takes what goes into its own contacts, however stiff it is and whenever it is met.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use crate::stem_loads::{falls_among, panel, shot, weak};
+use crate::stem_loads::{falls_among, panel, shot, shot_j, weak};
 use rockfall::simulation::Trajectory;
 
 /// A rock comes with two speeds (m/s) into a corner of two stems without friction, and meets the one across y when it is `later_m` before the one across x. The
@@ -74,5 +74,22 @@ fn a_grazed_stem_stands() {
         let fall = into_corner(scheme, [10.0, 1.0], 0.0, ([10.0, 0.02], 1.0));
         let v = fall.end.velocity_m_s;
         assert!((v.x + 2.0).abs() < 0.02 && (v.y + 0.2).abs() < 0.01, "{scheme}: {v:?}");
+    }
+}
+
+/// Stems that stand close behind each other and break within a millisecond are struck one after the other: an impact and a row each, with
+/// what each has taken.
+#[test]
+fn stems_broken_within_a_millisecond_are_an_impact_each() {
+    let wall = |x: f64| panel([[x, -2.0, 0.5], [x, 2.0, 0.5], [x, 2.0, 9.0], [x, -2.0, 9.0]]);
+    let walls = [wall(10.0), wall(10.003)].concat();
+    for scheme in ["adaptive", "reference", "rigid"] {
+        let shot = shot(scheme, "[record]\nimpacts = true\n");
+        let fall = falls_among(&[(&walls, &weak(0.1, 0.2))], &shot).remove(0);
+        let on_stems: Vec<f64> =
+            fall.impacts.iter().filter(|one| one.sheet == 1).map(|one| one.energy_lost_j).collect();
+        assert_eq!((fall.tree_impact_count, on_stems.len()), (2, 2), "{scheme}: {on_stems:?}");
+        let (taken_j, exact_j) = (on_stems.iter().sum::<f64>(), 0.2 * shot_j());
+        assert!((taken_j / exact_j - 1.0).abs() < 1e-3, "{scheme}: {on_stems:?}");
     }
 }

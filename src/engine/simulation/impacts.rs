@@ -44,14 +44,22 @@ impl MeshEnergy {
     }
 }
 
+/// What of the mesh a patch is on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct PatchOwner {
+    pub(super) sheet: u16,
+    pub(super) is_tree: bool,
+    /// Which stem, where trees may break: two that stand side by side are struck one after the other.
+    pub(super) stem: Option<u32>,
+}
+
 /// An impact under way, or one that is just over.
 /// Those just over stay for `SAME_IMPACT_S`, so that a patch that closes again finds its row.
 #[derive(Debug, Clone, Copy)]
 struct InHand {
     /// Which of the rock's impacts it is, from 1.
     number: u32,
-    sheet: u16,
-    is_tree: bool,
+    owner: PatchOwner,
     normal: Vec3,
     /// Its share of what is lost while it lasts (m²/s²).
     weight: f64,
@@ -128,11 +136,11 @@ impl Impacts {
         self.hand.list.iter().flatten().filter(|impact| impact.over_s.is_none())
     }
 
-    /// Begins one on a sheet at `now_s` (s) and `speed_m_s`, to end at `until_s` at the latest, or goes on with that of the same patch;
+    /// Begins one at `now_s` (s) and `speed_m_s`, to end at `until_s` at the latest, or goes on with that of the same patch;
     /// `lost_j` is what has gone into contacts with the mesh so far, and what of it into soil. Returns its number, and whether it is a new one.
     pub(super) fn begin(
         &mut self,
-        (struck, sheet, is_tree): (&Struck, u16, bool),
+        (struck, owner): (&Struck, PatchOwner),
         (now_s, until_s): (f64, f64),
         speed_m_s: f64,
         lost_j: (MeshEnergy, f64),
@@ -142,11 +150,11 @@ impl Impacts {
         }
         // a speed of 0 must not leave a group without any share
         let weight = struck.approach_m_s.powi(2).max(f64::MIN_POSITIVE);
-        // the same sheet and nearly the same normal: a rock that rolls over a seam strikes no
+        // of the same mesh and with nearly the same normal: a rock that rolls over a seam strikes no
         // second patch
         let is_same = |impact: &&mut InHand| {
             impact.over_s.is_some_and(|over_s| now_s - over_s <= SAME_IMPACT_S)
-                && impact.sheet == sheet
+                && impact.owner == owner
                 && impact.normal.dot(&struck.normal) > SAME_GRIP
         };
         if let Some(impact) = self.hand.list.iter_mut().flatten().find(is_same) {
@@ -157,14 +165,14 @@ impl Impacts {
         self.count += 1;
         let number = self.count;
         let normal = struck.normal;
-        let impact = InHand { number, sheet, is_tree, normal, weight, until_s, over_s: None };
+        let impact = InHand { number, owner, normal, weight, until_s, over_s: None };
         *self.hand.place() = Some(impact);
         if self.keeps_rows {
             self.rows.push(Impact {
                 time_s: now_s,
                 point_m: struck.point_m,
                 feature: struck.feature,
-                sheet,
+                sheet: owner.sheet,
                 speed_in_m_s: speed_m_s,
                 speed_out_m_s: speed_m_s,
                 energy_lost_j: 0.0,
@@ -205,7 +213,7 @@ impl Impacts {
 
     /// Shares what trees, or the slope, took among the impacts on them; what a patch took that was not struck is in no row.
     fn share(&mut self, is_tree: bool, taken_j: f64, soil_j: f64) {
-        let own = |impact: &&mut InHand| impact.is_tree == is_tree;
+        let own = |impact: &&mut InHand| impact.owner.is_tree == is_tree;
         let weights = self.hand.list.iter_mut().flatten().filter(own);
         let whole: f64 = weights.map(|impact| impact.weight).sum();
         if whole <= 0.0 {

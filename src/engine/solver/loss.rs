@@ -80,10 +80,11 @@ impl Loss {
 /// Shares what is known to be lost as the steps have summed it up.
 /// The total is exact, from energies; the parts are sums along the steps and only share it.
 pub(super) fn shared(lost: f64, parts: &mut [f64]) {
-    let sum: f64 = parts.iter().sum();
-    if sum > 0.0 {
+    let share = lost / parts.iter().sum::<f64>();
+    // sums below what a division can take tell nothing
+    if share.is_finite() {
         for part in parts {
-            *part *= lost / sum;
+            *part *= share;
         }
     } else {
         parts[1] = lost;
@@ -134,5 +135,17 @@ mod tests {
         assert_eq!(Loss::sharing([0.1, 0.2, 0.3]), Loss::on_slope([0.1, 0.2, 0.3]));
         // a gain stays one, to be seen
         assert_eq!(Loss::sharing([-0.2, 0.1, 0.0]), Loss::on_slope([-0.2, 0.1, 0.0]));
+    }
+
+    #[test]
+    fn what_is_lost_is_a_number_however_little_was_summed() {
+        for summed in [[0.0; 4], [1e-320, 0.0, 3e-322, 0.0], [5e-324; 4]] {
+            for lost in [0.0, 1e-9, 1e3, 1e9] {
+                let mut parts = summed;
+                shared(lost, &mut parts);
+                let sum: f64 = parts.iter().sum();
+                assert!((sum - lost).abs() <= 1e-12 * lost + 1e-300, "{summed:?}: {parts:?}");
+            }
+        }
     }
 }

@@ -151,20 +151,15 @@ fn impact(
     let thrown = throw(&world.body, &frozen(world, touches, &v), (&v, &w), IMPACT);
     (state.v, state.w) = (thrown.velocity_m_s, thrown.spin_rad_s);
     for (loss, touch) in thrown.loss.iter().zip(touches) {
-        done.loss.add(&loss.on(world, touch.triangle), 1.0);
-        state.stem_load.strike(world.terrain, touch.triangle, loss.sum());
+        state.stem_load.book((world, touch.triangle), loss, &mut done.loss);
     }
     done.steps = u64::from(thrown.effort.steps).max(1);
     done.rejected = u64::from(thrown.effort.rejected);
-    remember(world, state, |_| true);
+    remember(world, state, true);
 }
 
-/// Keeps a memory for every touch that still holds the rock, so that impacts are counted and rest is seen.
-pub(crate) fn remember(
-    world: &ContactEnvironment,
-    state: &mut ContactState,
-    holds: impl Fn(&Vec3) -> bool,
-) {
+/// Keeps a memory for every touch that still `holds` the rock, so that impacts are counted and rest is seen.
+pub(crate) fn remember(world: &ContactEnvironment, state: &mut ContactState, holds: bool) {
     let (c, v) = (state.c, state.v);
     state.look_ahead_again(world, &c);
     let touches = state.touches.nearer(world.body.radius * (1.0 + HELD));
@@ -179,7 +174,7 @@ pub(crate) fn remember(
         (history.feature, history.n) = (touch.feature, touch.normal);
         (history.triangle, history.springs_of) = (touch.triangle, touch.triangle);
         // A touch that separates faster than the capture speed lets go.
-        history.closed = holds(&v) && touch.normal.dot(&v) < capture_m_s(world.law(touch.triangle));
+        history.closed = holds && touch.normal.dot(&v) < capture_m_s(world.law(touch.triangle));
         history.slides = world.body.slip(&history.n, &v, &state.w).norm() > 1e-6 * (1.0 + v.norm());
     }
     state.histories.retain(|history| history.closed);

@@ -1,5 +1,7 @@
 //! What one rock has done to the stems.
 
+use super::environment::ContactEnvironment;
+use super::loss::Loss;
 use crate::contact::MOST;
 use crate::random::{Purpose, RandomStream, beside};
 use crate::terrain::Terrain;
@@ -131,6 +133,17 @@ impl StemLoad {
             Some((_, taken)) => *taken += joule,
             None => self.taken.push((stem, joule)),
         }
+    }
+
+    /// Books what a contact with a triangle has taken, for the `step` and for the stem.
+    pub(super) fn book(
+        &mut self,
+        (world, triangle): (&ContactEnvironment, u32),
+        taken: &Loss,
+        step: &mut Loss,
+    ) {
+        step.add(&taken.on(world, triangle), 1.0);
+        self.strike(world.terrain, triangle, taken.sum());
     }
 
     /// A blow on a triangle has taken so much (J): if that is of a tree, it has its share of what trees have taken since the last step.

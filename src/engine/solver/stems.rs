@@ -203,6 +203,10 @@ impl ContactState {
     ) {
         let Some(stems) = world.terrain.stems.as_ref() else { return };
         let c = self.c;
+        self.look_ahead_again(world, &c);
+        if !self.touches.iter().any(|touch| world.terrain.is_tree(touch.triangle)) {
+            return;
+        }
         self.look(world, &c, world.body.radius * (1.0 + STRUCK_TOGETHER));
         self.touches.keep_struck(world.body.radius, &self.v, STRUCK_TOGETHER);
         while let Some(broken) = self.broken_by(world, (&self.v, &self.w)) {

@@ -3,7 +3,7 @@
 use super::Recorder;
 use crate::rock::Vec3;
 use crate::simulation::Ledger;
-use crate::simulation::impacts::MeshEnergy;
+use crate::simulation::impacts::{MeshEnergy, PatchOwner};
 use crate::solver::loss::Loss;
 use crate::solver::struck::Struck;
 
@@ -23,7 +23,8 @@ impl Recorder<'_> {
         let speed_m_s = self.now.velocity_m_s.norm();
         let sheet = self.terrain.sheet_of[struck.triangle as usize];
         let is_tree = self.terrain.sheets[usize::from(sheet)].is_tree;
-        let on = (struck, sheet, is_tree);
+        let stem = self.terrain.stems.as_ref().and_then(|stems| stems.of_triangle(struck.triangle));
+        let on = (struck, PatchOwner { sheet, is_tree, stem });
         let (number, is_new) = self.impacts.begin(on, times_s, speed_m_s, lost_j);
         self.tree_impact_count += u32::from(is_new && is_tree);
         number

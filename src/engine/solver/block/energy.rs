@@ -239,7 +239,7 @@ impl Footing {
             (taken.map(|joule| joule.max(0.0)), contact.triangle)
         };
         let sum: f64 = self.contacts.iter().flat_map(|contact| part(contact).0).sum();
-        let share = if sum > 0.0 { lost_j.max(0.0) / sum } else { 0.0 };
+        let share = Some(lost_j.max(0.0) / sum).filter(|share| share.is_finite()).unwrap_or(0.0);
         let mut loss = Loss::default();
         for (taken, triangle) in self.contacts.iter().map(part) {
             loss.add(&Loss::on_slope(taken).on(world, triangle), share);

@@ -254,7 +254,7 @@ impl IslandBody {
         let Self { state, body, laws, .. } = self;
         let world = ContactEnvironment { terrain, body: *body, laws };
         (state.c, state.v, state.w) = (ball.c, ball.v, ball.w);
-        remember(&world, state, |_| ball.pushed);
+        remember(&world, state, ball.pushed);
         state.is_struck = false;
     }
 }

@@ -173,7 +173,7 @@ impl ContactState {
         done.loss.add(&end.loss.on(world, triangle), 1.0);
         done.dt = dt;
         push_out(world, self);
-        remember(world, self, |_| true);
+        remember(world, self, true);
     }
 
     /// The plane of the ground that alone holds the rock, by the last look.

@@ -49,7 +49,7 @@ pub(super) fn step(
     // without any impulse the rock is free, and the next leap takes over
     let pushed = tried.contacts.iter().any(|contact| contact.normal_force > 0.0);
     push_out(world, state);
-    remember(world, state, |_| pushed);
+    remember(world, state, pushed);
 }
 
 /// What the rock meets at this instant, too slow to rebound, holds it from now on: impulses that take no time.
@@ -76,9 +76,8 @@ fn book(
 ) -> Twist {
     let mean = (0.5 * (before.0 + after.0), 0.5 * (before.1 + after.1));
     for contact in contacts {
-        let loss = contact.loss(&world.body, &mean).on(world, contact.triangle);
-        done.loss.add(&loss, 1.0);
-        state.stem_load.strike(world.terrain, contact.triangle, loss.sum());
+        let loss = contact.loss(&world.body, &mean);
+        state.stem_load.book((world, contact.triangle), &loss, &mut done.loss);
     }
     mean
 }

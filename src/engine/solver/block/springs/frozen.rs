@@ -28,7 +28,7 @@ use crate::solver::explicit_impact::{FIRST, LONGEST_RAD, SHORTEST_RAD, judge};
 use crate::solver::impact::dormand_prince::{Attempt, Flow, Rates, Stages, put, sum_up, three};
 use crate::solver::impact::{LOCAL, NOTHING};
 use crate::solver::law::capture_m_s;
-use crate::solver::loss::Loss;
+use crate::solver::loss::{Loss, shared};
 use standstill::Standstill;
 
 /// Where velocity, angular momentum and the stretch of the rolling spring begin among the numbers that change; penetration and
@@ -324,12 +324,11 @@ impl FrozenFlow<'_, '_> {
         } else {
             end.hold_energy(self.block, (start, &Vec3::zeros()), &along);
         }
-        let [friction, damping, rolling, trees] = sums.map(|sum| sum.max(0.0));
-        let summed = Loss { friction, damping, rolling, trees };
-        let lost_j = (before_j - end.motion_j(self.block) - holds_j).max(0.0);
+        let mut taken = sums.map(|sum| sum.max(0.0));
+        shared((before_j - end.motion_j(self.block) - holds_j).max(0.0), &mut taken);
+        let [friction, damping, rolling, trees] = taken;
+        let mut loss = Loss { friction, damping, rolling, trees };
         let stored_j = holds_j - self.held_j;
-        let mut loss = Loss::default();
-        loss.add(&summed, lost_j / summed.sum().max(f64::MIN_POSITIVE));
         // an episode takes out of the losses what springs hold at its end
         loss.damping += stored_j;
         (end, loss)

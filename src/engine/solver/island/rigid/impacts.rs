@@ -231,8 +231,7 @@ impl RigidIsland {
         let ContactState { touches, stem_load, .. } = state;
         let how = (ball.blows >= LIVELY, tolerance);
         let mut note = |other: &ContactPoint, loss: &Loss, approach_m_s: Option<f64>| {
-            self.losses[k].add(loss, 1.0);
-            stem_load.strike(scene.terrain, other.triangle, loss.sum());
+            stem_load.book((&world, other.triangle), loss, &mut self.losses[k]);
             let hit = |approach_m_s| hit_of(k, other, (at, body.radius), approach_m_s);
             self.hits.extend(approach_m_s.map(hit));
         };
@@ -260,8 +259,7 @@ impl RigidIsland {
         let comes = |touch: &&ContactPoint| is_fast(&world, touch, &ball.v);
         let Some(touch) = touches.iter().find(comes).copied() else { return };
         let mut note = |other: &ContactPoint, loss: &Loss, _: Option<f64>| {
-            self.losses[k].add(loss, 1.0);
-            stem_load.strike(scene.terrain, other.triangle, loss.sum());
+            stem_load.book((&world, other.triangle), loss, &mut self.losses[k]);
         };
         let motion = (&ball.v, &ball.w);
         (ball.v, ball.w) =
@@ -290,7 +288,7 @@ fn throw_off(
     for (loss, other) in thrown.loss.iter().zip(touches) {
         let is_struck = other.feature == touch.feature || is_fast(world, other, &met);
         let approach_m_s = is_struck.then(|| -other.normal.dot(&met));
-        note(other, &loss.on(world, other.triangle), approach_m_s);
+        note(other, loss, approach_m_s);
     }
     (turn * thrown.velocity_m_s, turn * thrown.spin_rad_s)
 }

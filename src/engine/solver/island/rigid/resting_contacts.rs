@@ -181,10 +181,9 @@ impl RigidIsland {
             let world = ContactEnvironment { terrain, body: *body, laws };
             // the work of an impulse is that at the mean velocity, exactly
             let motion = mean(ball);
-            let triangle = ground_contact.triangle;
-            let loss = ground_contact.loss(&world.body, &motion).on(&world, triangle);
-            self.losses[ground_contact.rock].add(&loss, 1.0);
-            state.stem_load.strike(terrain, triangle, loss.sum());
+            let loss = ground_contact.loss(&world.body, &motion);
+            let losses = &mut self.losses[ground_contact.rock];
+            state.stem_load.book((&world, ground_contact.triangle), &loss, losses);
             self.taken_j -= ground_contact.normal_force * ground_contact.n().dot(&motion.0);
         }
         for ball_contact in
