@@ -129,17 +129,14 @@ fn places_on_a_wall_are_said_to_be_too_steep() {
     assert!(said.contains("% on ground so steep that no height is clear of it)"), "{said}");
 }
 
-/// A slope whose heights have lost their sign is a slope as well, with its valleys as ridges: its facets face down below 0. Releases at their own heights then
-/// start far above it, and where none comes to it that is said too.
+/// A slope whose heights have lost their sign is a slope as well, with its valleys as ridges. Releases at their own heights then start far above
+/// it, and where none comes to it that is said too.
 #[test]
 fn a_slope_with_negated_heights_is_said() {
     let dir = Folder::new();
     dir.slope();
     let said = run(&dir, &scene(SLOPE, ""));
-    assert!(
-        !said.contains("face down and its heights") && !said.contains("touched the ground"),
-        "{said}"
-    );
+    assert!(!said.contains("touched the ground"), "{said}");
     let facets = read(&dir.path("dem.stl")).unwrap().facets;
     let mirrored: Vec<Facet> =
         facets.iter().map(|facet| facet.map(|at| Vec3::new(at.x, at.y, -200.0 - at.z))).collect();
@@ -149,7 +146,6 @@ fn a_slope_with_negated_heights_is_said() {
     let point = "points_m = [[2600020.5, 1200090.25, 60.0]]";
     let text = text.replace(line, point).replace("height_m = 0.5\n", "");
     let said = dir.plan(&text);
-    assert!(said.contains("dem.stl: its facets face down and its heights are -2"), "{said}");
     assert!(
         said.contains(
             "1000 of 1000 releases tried out start more than 100 m above the ground, up to 3"

@@ -56,4 +56,5 @@ mod view;
 mod weights;
 mod year;
 mod year_extremes;
+mod zone_kinds;
 mod zone_sources;

@@ -2,7 +2,6 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use crate::drawn;
-use crate::program::rockfall;
 use crate::site;
 
 use drawn::{column, rings, shapefile, zones};
@@ -15,7 +14,7 @@ use std::fs;
 use std::path::Path;
 
 /// A scene over two zones of some properties; `year` stands in `[frequency]`.
-fn over_zones(dir: &Folder, properties: [&str; 2], year: &str) -> String {
+pub(crate) fn over_zones(dir: &Folder, properties: [&str; 2], year: &str) -> String {
     dir.slope();
     dir.put("zones.geojson", zones(properties));
     let road =
@@ -24,7 +23,7 @@ fn over_zones(dir: &Folder, properties: [&str; 2], year: &str) -> String {
 }
 
 /// The same where the sources have volumes.
-fn without_radius(scene: &str) -> String {
+pub(crate) fn without_radius(scene: &str) -> String {
     scene.replace("radius_m = 0.3\n", "")
 }
 
@@ -32,7 +31,7 @@ fn sources(dir: &Folder, scene: &str) -> Frequency {
     Scene::read(&dir.put("scene.toml", scene)).unwrap().sources().unwrap()
 }
 
-fn summary(out: &Path) -> Value {
+pub(crate) fn summary(out: &Path) -> Value {
     serde_json::from_str(&fs::read_to_string(out.join("summary.json")).unwrap()).unwrap()
 }
 
@@ -197,95 +196,6 @@ fn what_is_no_law_is_refused() {
     assert!(dir.plan(&without_radius(&text)).contains("each a source of its own"));
     let text = over_zones(&dir, [often, often], "");
     assert!(dir.refusal(&without_radius(&text)).contains("[rocks] radius_m"));
-}
-
-/// Points, lines and polygons have no common measure, and laws of other kinds neither: the message says what each of two zones is, and what would do.
-#[test]
-fn zones_that_cannot_be_compared_are_told_apart() {
-    let dir = Folder::new();
-    let line =
-        "{\"type\":\"LineString\",\"coordinates\":[[2600040.25,1200070.5],[2600048.25,1200070.5]]}";
-    let mixed = |properties: [&str; 2], second: &str| {
-        let text = over_zones(&dir, properties, "");
-        let drawn = zones(properties);
-        let (first, other) = drawn.rsplit_once("\"geometry\":").unwrap();
-        assert!(other.starts_with("{\"type\":\"Polygon\""));
-        dir.put("zones.geojson", format!("{first}\"geometry\":{second}}}]}}"));
-        dir.refusal(&text)
-    };
-    let (often, events) = ("\"frequency_per_year\":0.3", "\"per_year_at_1m3\":0.3");
-    for (properties, parts) in [
-        (
-            ["", ""],
-            [
-                "feature 2: found lines with neither weight nor frequency where feature 1 has polygons",
-                "for every zone, or one file",
-            ],
-        ),
-        (
-            [often, events],
-            [
-                "feature 2: found lines with per_year_at_1m3 where feature 1 has polygons with frequency_per_year",
-                "the same one of",
-            ],
-        ),
-        (
-            ["\"weight\":2", ""],
-            ["feature 2: found no weight, which feature 1 has", "for all zones or for none"],
-        ),
-    ] {
-        let said = mixed(properties, line);
-        assert!(parts.iter().all(|part| said.contains(part)), "{parts:?}\n{said}");
-    }
-    let collection = format!(
-        "{{\"type\":\"GeometryCollection\",\"geometries\":[{line},{{\"type\":\"Point\",\"coordinates\":[2600040.25,1200070.5]}}]}}"
-    );
-    let said = mixed([often, often], &collection);
-    assert!(
-        said.contains("feature 2: found a GeometryCollection of LineString, Point; draw"),
-        "{said}"
-    );
-}
-
-/// Every release tells its source and class, and what all rocks of the class stand for; a class of which nothing comes to a line has a row in the first table
-/// of the page, and all are counted in the summary. A scene of one class has neither.
-#[test]
-fn classes_are_told() {
-    let dir = Folder::new();
-    // small rocks in the west; large ones start below the road
-    let text = over_zones(
-        &dir,
-        [
-            "\"name\":\"west\",\"frequency_per_year\":0.3,\"volume_m3\":0.25",
-            "\"name\":\"east, low\",\"frequency_per_year\":0.1,\"volume_min_m3\":0.5,\"volume_max_m3\":2.0",
-        ],
-        "",
-    );
-    let text = without_radius(&text).replace("[2600060.0, 1200040.5]", "[2600030.0, 1200040.5]");
-    let out = dir.run("classes", &text);
-    let mut rows = csv::Reader::from_path(out.join("releases.csv")).unwrap();
-    let header = rows.headers().unwrap().clone();
-    let classes = ["source", "class_from_m3", "class_to_m3", "class_per_year"];
-    assert_eq!(header.iter().skip(header.len() - 4).collect::<Vec<_>>(), classes);
-    for (index, row) in rows.records().enumerate() {
-        let row = row.unwrap();
-        let told: Vec<&str> = row.iter().skip(header.len() - 4).collect();
-        let west = ["west", "0.25", "0.25", "0.3"];
-        assert_eq!(told, if index % 2 == 0 { west } else { ["east, low", "0.5", "2.0", "0.1"] });
-    }
-    let by_class = &summary(&out)["lines"][0]["by_class"];
-    assert_eq!((&by_class[0]["source"], &by_class[0]["released"]), (&"west".into(), &20.into()));
-    assert!(by_class[0]["reached"].as_u64().unwrap() > 0, "{by_class}");
-    assert_eq!((&by_class[1]["released"], &by_class[1]["reached"]), (&20.into(), &0.into()));
-    let page = fs::read_to_string(out.join("report.html")).unwrap();
-    assert!(page.contains("road: 0 of 20 rocks of east, low, 0.50–2.0 m³"), "no row of the class");
-    // what is read back of it draws the same page
-    let [file, folder] = [dir.path("classes.toml"), out.clone()];
-    assert!(file.exists());
-    assert!(rockfall(&["draw", folder.to_str().unwrap()]).status.success());
-    assert!(fs::read_to_string(out.join("report.html")).unwrap() == page);
-    let one = dir.run("one", &scene("file = \"dem.tif\"", ""));
-    assert!(!fs::read_to_string(one.join("releases.csv")).unwrap().contains("class_per_year"));
 }
 
 /// Frequencies that nobody asks for, and weights that nobody uses, are said in the plan.

@@ -35,14 +35,12 @@ pub(super) fn file(piece: &Piece, map_origin_m: Vec3) -> FileHealth {
     warnings.extend(coarse.filter(|coarse| !coarse.spoils()).map(|coarse| {
         format!("{coarse}: where they were rounded, slopes are wrong; {MORE_DIGITS}")
     }));
-    let facing_down = down as f64 / soup.facets.len().max(1) as f64;
-    warnings.extend(upside_down(piece, facing_down, map_origin_m));
     FileHealth {
         file: piece.file.display().to_string(),
         format: soup.format,
         solids: soup.solids.len(),
         facets: soup.facets.len(),
-        facing_down,
+        facing_down: down as f64 / soup.facets.len().max(1) as f64,
         normals_off,
         spacing: soup.is_single.then(|| Spacing::of(&soup.facets)),
         coarse,
@@ -50,23 +48,6 @@ pub(super) fn file(piece: &Piece, map_origin_m: Vec3) -> FileHealth {
         notes: soup.notes.clone(),
         warnings,
     }
-}
-
-/// Share of facets that face down from which on all of a slope does (–): overhangs of one that faces up are fewer.
-const ALL_DOWN: f64 = 0.99;
-
-/// What to say of a slope that faces down as a whole and has no height above 0: its winding plays no part, but negated heights turn it so.
-fn upside_down(piece: &Piece, facing_down: f64, map_origin_m: Vec3) -> Option<String> {
-    if facing_down < ALL_DOWN {
-        return None;
-    }
-    let corners = piece.soup.facets.iter().flatten();
-    let heights_m = corners.map(|corner| (piece.placed(corner) + map_origin_m).z);
-    let (low_m, high_m) = heights_m
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), z| (low.min(z), high.max(z)));
-    (high_m <= 0.0 && low_m < high_m).then(|| {
-        format!("its facets face down and its heights are {low_m:.1} to {high_m:.1} m: a slope whose heights have lost or changed their sign looks so, with its valleys as ridges. Compare them with the map; if they are right, nothing is to be done, as winding plays no part")
-    })
 }
 
 /// Lowest and highest map coordinates (m).

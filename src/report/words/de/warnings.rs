@@ -103,10 +103,6 @@ pub(super) const WARNINGS: &[(&str, &str)] = &[
         "{file}: {n} von {of} Stämmen sind weggelassen, weil unter ihnen kein Boden liegt, der erste als Objekt {row} bei ({x}, {y}): neben dem zugeschnittenen Hang oder über einem Loch. Wo sie stehen sollten, crop, die Koordinaten der Liste und Löcher des Hangs prüfen",
     ),
     (
-        "{file}: its facets face down and its heights are {a} to {b} m: a slope whose heights have lost or changed their sign looks so, with its valleys as ridges. Compare them with the map; if they are right, nothing is to be done, as winding plays no part",
-        "{file}: die Dreiecke zeigen nach unten, und die Höhen sind {a} bis {b} m: so sieht ein Hang aus, dessen Höhen das Vorzeichen verloren oder gewechselt haben, mit Tälern als Rücken. Mit der Karte vergleichen; stimmen sie, ist nichts zu tun, denn der Umlaufsinn spielt keine Rolle",
-    ),
-    (
         "{n} of {m} releases tried out start more than 100 m above the ground, up to {h} m: do the heights of the releases and of the slope belong together, with their sign?",
         "{n} von {m} versuchten Ablösungen beginnen mehr als 100 m über dem Boden, bis zu {h} m: gehören die Höhen der Ablösungen und des Hangs zusammen, mit ihrem Vorzeichen?",
     ),

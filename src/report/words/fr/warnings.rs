@@ -103,10 +103,6 @@ pub(super) const WARNINGS: &[(&str, &str)] = &[
         "{file}\u{a0}: {n} tiges sur {of} sont laissées de côté, car il n’y a pas de sol sous elles, la première étant l’objet {row} en ({x}, {y})\u{a0}: à côté de la pente telle qu’elle est découpée, ou sur un trou. Là où elles devraient se dresser, revoir crop, les coordonnées de la liste et les trous de la pente",
     ),
     (
-        "{file}: its facets face down and its heights are {a} to {b} m: a slope whose heights have lost or changed their sign looks so, with its valleys as ridges. Compare them with the map; if they are right, nothing is to be done, as winding plays no part",
-        "{file}\u{a0}: ses facettes regardent vers le bas et ses altitudes vont de {a} à {b} m\u{a0}: c’est l’aspect d’une pente dont les altitudes ont perdu ou changé leur signe, avec ses vallées en crêtes. Les comparer avec la carte\u{a0}; si elles sont justes, il n’y a rien à faire, le sens de parcours ne jouant aucun rôle",
-    ),
-    (
         "{n} of {m} releases tried out start more than 100 m above the ground, up to {h} m: do the heights of the releases and of the slope belong together, with their sign?",
         "{n} départs sur {m} essayés commencent à plus de 100 m au-dessus du sol, jusqu’à {h} m\u{a0}: les altitudes des départs et de la pente vont-elles ensemble, avec leur signe\u{a0}?",
     ),

@@ -103,10 +103,6 @@ pub(super) const WARNINGS: &[(&str, &str)] = &[
         "{file}: {n} fusti su {of} sono tralasciati, perché sotto di essi non c’è suolo, il primo come oggetto {row} in ({x}, {y}): a lato del pendio così come è ritagliato, o sopra un buco. Dove dovrebbero stare, rivedere crop, le coordinate della lista e i buchi del pendio",
     ),
     (
-        "{file}: its facets face down and its heights are {a} to {b} m: a slope whose heights have lost or changed their sign looks so, with its valleys as ridges. Compare them with the map; if they are right, nothing is to be done, as winding plays no part",
-        "{file}: le sue facce guardano in basso e le sue quote vanno da {a} a {b} m: così appare un pendio le cui quote hanno perso o cambiato il segno, con le valli come creste. Confrontarle con la carta; se sono giuste non c’è nulla da fare, perché il verso di percorrenza non conta",
-    ),
-    (
         "{n} of {m} releases tried out start more than 100 m above the ground, up to {h} m: do the heights of the releases and of the slope belong together, with their sign?",
         "{n} distacchi provati su {m} iniziano a più di 100 m sopra il suolo, fino a {h} m: le quote dei distacchi e del pendio stanno insieme, con il loro segno?",
     ),
