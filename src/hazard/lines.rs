@@ -9,7 +9,7 @@ use super::rate::{share_if_any, share_up_to};
 use super::sample::Sample;
 use super::totals::Largest;
 use super::{Statistic, statistic};
-use crate::frequency::Weights;
+use crate::frequency::{Frequency, Weights};
 use crate::rock::{Rock, Vec3};
 use crate::simulation::Crossing;
 use serde::{Deserialize, Serialize};
@@ -352,8 +352,8 @@ impl Line {
         statistic(&self.sample(quantity), self.largest[quantity as usize])
     }
 
-    /// All of it, among so many rocks released.
-    pub fn summary(&self, released: usize) -> LineSummary {
+    /// All of it, among so many rocks released, of the classes of a frequency if there is one.
+    pub fn summary(&self, released: usize, frequency: Option<&Frequency>) -> LineSummary {
         let of = |quantity: LineQuantity| (quantity.column().to_owned(), self.statistic(quantity));
         LineSummary {
             info: self.info.clone(),
@@ -361,7 +361,7 @@ impl Line {
             may_still_come: self.may_still_come(released),
             crossing_again: self.repeated,
             statistics: LineQuantity::ALL.into_iter().map(of).collect(),
-            by_class: Vec::new(),
+            by_class: self.by_class(frequency),
         }
     }
 }

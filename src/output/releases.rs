@@ -35,15 +35,21 @@ impl<'a> ClassCells<'a> {
 /// The columns of a run's table; one that goes on keeps those that it has.
 pub(super) fn columns(dir: &Path, info: &RunInfo, goes_on: bool) -> Result<Vec<&'static str>> {
     let mut columns = Row::COLUMNS.to_vec();
-    columns.extend(info.has_blocks.then_some(&Row::SHAPE_COLUMNS[..]).into_iter().flatten());
-    columns.extend(info.has_scars.then_some(&Row::SOIL_COLUMNS[..]).into_iter().flatten());
+    if info.has_blocks {
+        columns.extend(Row::SHAPE_COLUMNS);
+    }
+    if info.has_scars {
+        columns.extend(Row::SOIL_COLUMNS);
+    }
     let classes = info.asked.frequency.as_ref().map_or(0, |frequency| frequency.strata().len());
     let tells_class = if goes_on {
         table::has_columns(&dir.join(RELEASES), &CLASS_COLUMNS)?
     } else {
         classes > 1
     };
-    columns.extend(tells_class.then_some(&CLASS_COLUMNS[..]).into_iter().flatten());
+    if tells_class {
+        columns.extend(CLASS_COLUMNS);
+    }
     Ok(columns)
 }
 

@@ -167,10 +167,7 @@ impl Summary {
     /// The summary of a finished run that took so long.
     pub(super) fn new(info: RunInfo, (hazard, lines): (&Hazard, &[Line]), seconds: f64) -> Self {
         let frequency = info.asked.frequency.as_ref();
-        let of_line = |line: &Line| {
-            let by_class = line.by_class(frequency);
-            LineSummary { by_class, ..line.summary(hazard.released()) }
-        };
+        let of_line = |line: &Line| line.summary(hazard.released(), frequency);
         Self {
             title: info.title,
             stops: by_stop(|stop| hazard.ended(stop).count),

@@ -197,7 +197,7 @@ mod tests {
                 of_barrier: false,
                 floor: None,
             };
-            let found = crate::hazard::Line::new(info).summary(100);
+            let found = crate::hazard::Line::new(info).summary(100, None);
             line(&found, is_object)
         };
         assert!(said("path", false).starts_with("line \"path\": no rock crosses it"));

@@ -357,7 +357,7 @@ fn a_line_by_hand() {
     let mut line = Line::new(info);
     // the order of rocks does not matter
     (1..=100).map(|k| row((k * 37) % 101)).for_each(|row| line.add(&row));
-    let found = line.summary(400);
+    let found = line.summary(400, None);
     assert_eq!(found.reach, Proportion::new(100, 400));
     assert_eq!(found.crossing_again, 3);
     let scales = [

@@ -80,15 +80,16 @@ impl Loss {
 /// Shares what is known to be lost as the steps have summed it up.
 /// The total is exact, from energies; the parts are sums along the steps and only share it.
 pub(super) fn shared(lost: f64, parts: &mut [f64]) {
-    let share = lost / parts.iter().sum::<f64>();
-    // sums below what a division can take tell nothing
-    if share.is_finite() {
-        for part in parts {
-            *part *= share;
-        }
-    } else {
-        parts[1] = lost;
+    match share_of(lost, parts.iter().sum()) {
+        Some(share) => parts.iter_mut().for_each(|part| *part *= share),
+        None => parts[1] = lost,
     }
+}
+
+/// What parts with this sum are multiplied by to be together what is `lost`; none where they tell nothing, as sums below what a division can take.
+pub(super) fn share_of(lost: f64, sum: f64) -> Option<f64> {
+    let share = lost / sum;
+    (sum > 0.0 && share.is_finite()).then_some(share)
 }
 
 /// Energy that a rock gives away through its contacts with other rocks (J), or power (W).

@@ -7,7 +7,7 @@ use super::design::{design as of_rule, has_design, with_design_if_any};
 use super::lines::{of_share, shown};
 use super::{energy_unit_of, of_percentile, percentile_of};
 use crate::hazard::{
-    BarrierSummary, ClassReach, LineQuantity, Proportion, Residual, Statistic,
+    BarrierSummary, ClassReach, Line, LineQuantity, Proportion, Residual, Statistic,
     classes_without_arrival,
 };
 use crate::output::Results;
@@ -37,7 +37,7 @@ fn lines(results: &Results, words: &Words, order: &[String]) -> Option<EstimateT
         |name: &str| results.summary.barriers.iter().any(|one| one.barrier.name == name);
     let mut own: Vec<_> = shown(results).filter(|(_, line)| !is_barrier(&line.info.name)).collect();
     own.sort_by_key(|(_, line)| order.iter().position(|name| *name == line.info.name));
-    let p95 = |line: &crate::hazard::Line, of| percentile_of(&line.sample(of), P, None);
+    let p95 = |line: &Line, of| percentile_of(&line.sample(of), P, None);
     let energies = own.iter().filter_map(|(_, line)| p95(line, LineQuantity::Total));
     let (unit, size) = energy_unit_of(energies.map(|at| at.value));
     let mut rows = Vec::new();
@@ -79,11 +79,7 @@ fn lines(results: &Results, words: &Words, order: &[String]) -> Option<EstimateT
 }
 
 /// A row for each class of which no rock comes to a line: its share is 0 of so many, and the other numbers know nothing of it.
-fn silent(
-    line: &crate::hazard::Line,
-    results: &Results,
-    words: &Words,
-) -> Vec<(String, Vec<Option<Estimate>>)> {
+fn silent(line: &Line, results: &Results, words: &Words) -> Vec<(String, Vec<Option<Estimate>>)> {
     let classes = line.by_class(results.summary.asked.frequency.as_ref());
     // where no rock comes at all, the row of the line says so
     if classes.iter().all(|class| class.reached == 0) {
