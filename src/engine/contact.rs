@@ -26,12 +26,12 @@ use crate::terrain::Terrain;
 use arrayvec::ArrayVec;
 use serde::{Deserialize, Serialize};
 
-/// Most contacts one rock keeps at a time, the deepest first.
+/// Most contacts one rock keeps at a time.
 ///
 /// Three contacts hold a sphere; more press at the same instant only in hollows with many walls.
-/// Should a mesh offer more than fit, those that press least are left out: they carry the least of
-/// the load.
-pub const MOST: usize = 8;
+/// Should a mesh offer more than fit, those that press least are joined with what presses beside
+/// them, with all their energy and force ([`ContactPoints::add`]).
+pub const MOST: usize = 16;
 /// A gap this small is a touch (–, relative to R): rounding of the leap.
 ///
 /// Looser than what sums of positions and times are rounded by, far tighter than any penetration
@@ -140,6 +140,52 @@ impl ContactPoint {
     }
 }
 
+/// What a patch presses: sums over its parts from which the point contact that acts like it follows.
+#[derive(Debug, Clone, Copy)]
+struct Pressed {
+    /// `Σ w pen²` (m²): the patch holds `U = p_N square/2`.
+    square: f64,
+    /// `Σ w pen n` (m): its force is `−∇U = p_N slope`.
+    slope: Vec3,
+}
+
+impl Pressed {
+    /// Squared length of `a` below which a patch presses nowhere (–): opposite walls of one patch cancel.
+    ///
+    /// A ball wedged between two parallel walls has `a = 0`: the forces cancel and there is no normal
+    /// to speak of.
+    const BALANCED: f64 = 1e-12;
+
+    /// What `touch` presses into a ball of `radius` (m).
+    fn of(touch: &ContactPoint, radius: f64) -> Self {
+        let slope = touch.gain2 * (radius - touch.distance_m);
+        Self { square: slope * (radius - touch.distance_m), slope: touch.normal * slope }
+    }
+
+    fn add(&mut self, other: &Self) {
+        self.square += other.square;
+        self.slope += other.slope;
+    }
+
+    /// The point contact that acts like it, found again by its `nearest` point; `None` where it does not press.
+    fn touch(&self, nearest: &ContactPoint, radius: f64) -> Option<ContactPoint> {
+        let slope2 = self.slope.norm_squared();
+        // U ≤ 0 can only be rounding of a sum that cancels; a force without direction is left out,
+        // too
+        if self.square <= 0.0 || slope2 <= Self::BALANCED * self.square {
+            return None;
+        }
+        let slope = slope2.sqrt();
+        // p = √square, a = slope/p: pressed in by p/|a| = square/slope.
+        Some(ContactPoint {
+            normal: self.slope / slope,
+            distance_m: radius - self.square / slope,
+            gain2: slope2 / self.square,
+            ..*nearest
+        })
+    }
+}
+
 /// The touches of one rock, without allocation: the list is made anew at every stage of every step.
 #[derive(Debug, Clone, Default)]
 pub struct ContactPoints(ArrayVec<ContactPoint, MOST>);
@@ -194,20 +240,43 @@ impl ContactPoints {
         self.0.retain(|touch| wanted(touch));
     }
 
-    /// Adds one; when full, it takes the place of the shallowest if it is deeper.
+    /// Adds one of a ball of `radius` (m). When full, what is farthest away is left out if it is not pressed; else the two
+    /// whose normals are nearest to each other become one, as parts of a patch do.
     ///
-    /// O(1) until it is full, O(`MOST`) after. Which one gives way depends on distances alone, not
-    /// on the order of the search.
+    /// Energy and force of the whole are what they are with room for all: none comes or goes with the number. Normals
+    /// tell which, as they turn slowly while depths pass one another. O(1) until it is full, O(`MOST`²) after.
     #[inline]
-    pub fn add(&mut self, touch: ContactPoint) {
-        if self.0.try_push(touch).is_ok() {
+    pub fn add(&mut self, touch: ContactPoint, radius: f64) {
+        if let Err(full) = self.0.try_push(touch) {
+            self.make_room(full.element(), radius);
+        }
+    }
+
+    #[cold]
+    fn make_room(&mut self, touch: ContactPoint, radius: f64) {
+        let farthest = self.0.iter_mut().max_by(|a, b| a.distance_m.total_cmp(&b.distance_m));
+        if let Some(place) = farthest.filter(|place| place.distance_m >= radius) {
+            if touch.distance_m < place.distance_m {
+                *place = touch;
+            }
             return;
         }
-        // the largest distance from the centre is the least penetration
-        let shallowest = self.0.iter_mut().max_by(|a, b| a.distance_m.total_cmp(&b.distance_m));
-        if let Some(place) = shallowest.filter(|place| place.distance_m > touch.distance_m) {
-            *place = touch;
+        if touch.distance_m >= radius {
+            return;
         }
+        let pairs = (0..MOST).flat_map(|one| (one + 1..=MOST).map(move |other| (one, other)));
+        let of = |place: usize| *self.0.get(place).unwrap_or(&touch);
+        let apart = |&(one, other): &(usize, usize)| -of(one).normal.dot(&of(other).normal);
+        let Some((one, other)) = pairs.min_by(|a, b| apart(a).total_cmp(&apart(b))) else { return };
+        let (kept, gone) = (of(one), of(other));
+        let mut both = Pressed::of(&kept, radius);
+        both.add(&Pressed::of(&gone, radius));
+        // not that of the deeper one: two alike would be each other's heirs at every look
+        let known = if kept.feature <= gone.feature { kept } else { gone };
+        if let Some(last) = self.0.get_mut(other) {
+            *last = touch;
+        }
+        self.0[one] = both.touch(&known, radius).unwrap_or(known);
     }
 }
 
@@ -216,5 +285,38 @@ impl std::ops::Deref for ContactPoints {
     #[inline]
     fn deref(&self) -> &[ContactPoint] {
         &self.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn energy_and_force_are_whole_however_many_press() {
+        let radius = 2.0;
+        let mut touches = ContactPoints::default();
+        let mut all = Pressed { square: 0.0, slope: Vec3::zeros() };
+        for k in 0..3 * MOST {
+            // on a spiral over the lower half, some of them not pressed
+            let (turn, down) = (2.4 * k as f64, 0.3 + 0.2 * k as f64 / MOST as f64);
+            let side = (1.0f64 - down * down).sqrt();
+            let normal = Vec3::new(side * turn.cos(), side * turn.sin(), down);
+            let pen = 0.1 * (1.3 * k as f64).sin();
+            let feature = Feature { kind: FeatureKind::Face, id: k as u32 };
+            let touch =
+                ContactPoint { feature, normal, distance_m: radius - pen, ..ContactPoint::NONE };
+            touches.add(touch, radius);
+            if pen > 0.0 {
+                all.add(&Pressed::of(&touch, radius));
+            }
+        }
+        let mut kept = Pressed { square: 0.0, slope: Vec3::zeros() };
+        for touch in touches.iter().filter(|touch| touch.distance_m < radius) {
+            kept.add(&Pressed::of(touch, radius));
+        }
+        assert_eq!(touches.len(), MOST);
+        assert!((kept.square - all.square).abs() < 1e-14, "{} {}", kept.square, all.square);
+        assert!((kept.slope - all.slope).norm() < 1e-14, "{} {}", kept.slope, all.slope);
     }
 }

@@ -329,7 +329,7 @@ impl Neighbours {
     #[inline]
     fn merge(&self, touch: ContactPoint, centre: &Vec3, touches: &mut ContactPoints) {
         if touches.is_empty() {
-            touches.add(touch);
+            touches.add(touch, self.radius);
             return;
         }
         let near2 = (SAME * self.radius).powi(2);
@@ -339,7 +339,7 @@ impl Neighbours {
                 && (centre - other.normal * other.distance_m - nearest).norm_squared() <= near2
         });
         if !known {
-            touches.add(touch);
+            touches.add(touch, self.radius);
         }
     }
 }

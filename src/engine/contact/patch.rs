@@ -28,16 +28,10 @@
 //! (`has_saddle`); most steps never come here.
 
 use super::closest::{TrianglePart, closest_part};
-use super::{ContactPoint, Feature, FeatureKind};
+use super::{ContactPoint, Feature, FeatureKind, Pressed};
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
 use crate::terrain::edges::ends;
-
-/// Squared length of `a` below which a patch presses nowhere (–): opposite walls of one patch cancel.
-///
-/// A ball wedged between two parallel walls has `a = 0`: the forces cancel and there is no normal
-/// to speak of.
-const BALANCED: f64 = 1e-12;
 
 /// One triangle inside the ball, and the sums of the patch that it stands for.
 #[derive(Debug, Clone, Copy)]
@@ -45,12 +39,8 @@ struct PressedTriangle {
     triangle: u32,
     /// Another one of the same patch, or itself.
     parent: u32,
-    /// `Σ w pen²` (m²) and `Σ w pen n` (m).
-    ///
-    /// `U = p_N square/2` and `−∇U = p_N slope` of the whole patch, once its parts are joined: kept
-    /// at the root.
-    square: f64,
-    slope: Vec3,
+    /// What the whole patch presses, once its parts are joined: kept at the root.
+    sums: Pressed,
     /// Nearest point of the patch.
     nearest: ContactPoint,
 }
@@ -111,7 +101,7 @@ impl PatchScratch {
             // only roots of the union–find stand for a patch
             let patch = &self.pressed[k];
             if patch.parent as usize == k
-                && let Some(touch) = patch.touch(radius)
+                && let Some(touch) = patch.sums.touch(&patch.nearest, radius)
             {
                 found(touch, &patch.nearest);
             }
@@ -169,10 +159,9 @@ impl PatchScratch {
             _ => (distance2.sqrt(), off / distance2.sqrt()),
         };
         let place = self.pressed.len() as u32;
-        let penetration = radius - distance_m;
         let nearest = ContactPoint { feature, triangle: t, normal, distance_m, gain2: 1.0 };
-        let (square, slope) = (penetration * penetration, normal * penetration);
-        self.pressed.push(PressedTriangle { triangle: t, parent: place, square, slope, nearest });
+        let sums = Pressed::of(&nearest, radius);
+        self.pressed.push(PressedTriangle { triangle: t, parent: place, sums, nearest });
         // Every side and corner inside the ball is put down once for each of its triangles: that is
         // what joins triangles to patches. An edge inside the ball has all its triangles inside it
         // too, as none is farther than its edge: no copy is missing.
@@ -222,9 +211,9 @@ impl PatchScratch {
             // the copies differ by rounding at most; the first stands for all
             let penetration = radius - first.distance_m;
             let root = self.root(first.place);
-            let patch = &mut self.pressed[root as usize];
-            patch.square += weight * penetration * penetration;
-            patch.slope += first.normal * (weight * penetration);
+            let sums = &mut self.pressed[root as usize].sums;
+            sums.square += weight * penetration * penetration;
+            sums.slope += first.normal * (weight * penetration);
             start += same;
         }
     }
@@ -250,31 +239,9 @@ impl PatchScratch {
         let from = self.pressed[gone];
         self.pressed[gone].parent = kept as u32;
         let patch = &mut self.pressed[kept];
-        patch.square += from.square;
-        patch.slope += from.slope;
+        patch.sums.add(&from.sums);
         if from.nearest.distance_m < patch.nearest.distance_m {
             patch.nearest = from.nearest;
         }
-    }
-}
-
-impl PressedTriangle {
-    /// The point contact that acts like the patch; `None` where it does not press.
-    fn touch(&self, radius: f64) -> Option<ContactPoint> {
-        let slope2 = self.slope.norm_squared();
-        // U ≤ 0 can only be rounding of a sum that cancels; a force without direction is left out,
-        // too
-        if self.square <= 0.0 || slope2 <= BALANCED * self.square {
-            return None;
-        }
-        let slope = slope2.sqrt();
-        // p = √square, a = slope/p: pressed in by p/|a| = square/slope.
-        Some(ContactPoint {
-            normal: self.slope / slope,
-            distance_m: radius - self.square / slope,
-            gain2: slope2 / self.square,
-            triangle: self.nearest.triangle,
-            feature: self.nearest.feature,
-        })
     }
 }
