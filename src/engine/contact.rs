@@ -142,14 +142,14 @@ impl ContactPoint {
 
 /// What a patch presses: sums over its parts from which the point contact that acts like it follows.
 #[derive(Debug, Clone, Copy)]
-struct Pressed {
+struct PatchSums {
     /// `Σ w pen²` (m²): the patch holds `U = p_N square/2`.
     square: f64,
     /// `Σ w pen n` (m): its force is `−∇U = p_N slope`.
     slope: Vec3,
 }
 
-impl Pressed {
+impl PatchSums {
     /// Squared length of `a` below which a patch presses nowhere (–): opposite walls of one patch cancel.
     ///
     /// A ball wedged between two parallel walls has `a = 0`: the forces cancel and there is no normal
@@ -269,8 +269,8 @@ impl ContactPoints {
         let apart = |&(one, other): &(usize, usize)| -of(one).normal.dot(&of(other).normal);
         let Some((one, other)) = pairs.min_by(|a, b| apart(a).total_cmp(&apart(b))) else { return };
         let (kept, gone) = (of(one), of(other));
-        let mut both = Pressed::of(&kept, radius);
-        both.add(&Pressed::of(&gone, radius));
+        let mut both = PatchSums::of(&kept, radius);
+        both.add(&PatchSums::of(&gone, radius));
         // not that of the deeper one: two alike would be each other's heirs at every look
         let known = if kept.feature <= gone.feature { kept } else { gone };
         if let Some(last) = self.0.get_mut(other) {
@@ -296,7 +296,7 @@ mod tests {
     fn energy_and_force_are_whole_however_many_press() {
         let radius = 2.0;
         let mut touches = ContactPoints::default();
-        let mut all = Pressed { square: 0.0, slope: Vec3::zeros() };
+        let mut all = PatchSums { square: 0.0, slope: Vec3::zeros() };
         for k in 0..3 * MOST {
             // on a spiral over the lower half, some of them not pressed
             let (turn, down) = (2.4 * k as f64, 0.3 + 0.2 * k as f64 / MOST as f64);
@@ -308,12 +308,12 @@ mod tests {
                 ContactPoint { feature, normal, distance_m: radius - pen, ..ContactPoint::NONE };
             touches.add(touch, radius);
             if pen > 0.0 {
-                all.add(&Pressed::of(&touch, radius));
+                all.add(&PatchSums::of(&touch, radius));
             }
         }
-        let mut kept = Pressed { square: 0.0, slope: Vec3::zeros() };
+        let mut kept = PatchSums { square: 0.0, slope: Vec3::zeros() };
         for touch in touches.iter().filter(|touch| touch.distance_m < radius) {
-            kept.add(&Pressed::of(touch, radius));
+            kept.add(&PatchSums::of(touch, radius));
         }
         assert_eq!(touches.len(), MOST);
         assert!((kept.square - all.square).abs() < 1e-14, "{} {}", kept.square, all.square);

@@ -42,6 +42,7 @@ mod soil;
 mod spins_on;
 mod stem_loads;
 mod stems;
+mod stems_in_a_row;
 mod stems_struck_again;
 mod stems_together;
 mod struck_through;

@@ -28,7 +28,7 @@
 //! (`has_saddle`); most steps never come here.
 
 use super::closest::{TrianglePart, closest_part};
-use super::{ContactPoint, Feature, FeatureKind, Pressed};
+use super::{ContactPoint, Feature, FeatureKind, PatchSums};
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
 use crate::terrain::edges::ends;
@@ -40,7 +40,7 @@ struct PressedTriangle {
     /// Another one of the same patch, or itself.
     parent: u32,
     /// What the whole patch presses, once its parts are joined: kept at the root.
-    sums: Pressed,
+    sums: PatchSums,
     /// Nearest point of the patch.
     nearest: ContactPoint,
 }
@@ -160,7 +160,7 @@ impl PatchScratch {
         };
         let place = self.pressed.len() as u32;
         let nearest = ContactPoint { feature, triangle: t, normal, distance_m, gain2: 1.0 };
-        let sums = Pressed::of(&nearest, radius);
+        let sums = PatchSums::of(&nearest, radius);
         self.pressed.push(PressedTriangle { triangle: t, parent: place, sums, nearest });
         // Every side and corner inside the ball is put down once for each of its triangles: that is
         // what joins triangles to patches. An edge inside the ball has all its triangles inside it

@@ -10,12 +10,13 @@
 //! lost. So stems that are struck at once share a blow as their springs hold it, and what a stem takes acts through all its contacts. A stem
 //! that has taken all it can is gone, with what its springs held, and the blow goes on against what stands until nothing presses.
 //!
-//! Spheres and blocks, alone and in worlds. What strikes one contact alone has a law of its own: `yielding`, and that of blocks.
+//! Spheres and blocks, alone and in worlds, where rocks that touch each other take part, with equal and opposite forces at both ends of a contact.
+//! What strikes one contact alone has a law of its own: `yielding`, and that of blocks.
 
-use super::body::Twist;
+use super::body::{Body, STILL, Twist};
+use super::impact::{BODIES, CONTACTS, FrozenCollision};
 use super::loss::Loss;
 use super::yielding::{BISECTIONS, COMES_OFF, STEP};
-use crate::contact::block::MOST_TOUCHES;
 use crate::ground::Law;
 use crate::math;
 use crate::rock::Vec3;
@@ -28,10 +29,12 @@ const JOINT_STEPS: u32 = 40_000;
 /// One contact of such a blow.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct JointContact {
-    /// Unit normal from the mesh into the rock.
+    /// Unit normal into the rock, from the mesh or from another rock.
     pub(crate) n: Vec3,
-    /// From the centre of mass to the contact point (m).
-    pub(crate) lever: Vec3,
+    /// The rock.
+    pub(crate) end: JointEnd,
+    /// The other rock, if it is not the mesh.
+    pub(crate) other: Option<JointEnd>,
     /// Its law, with its share of dashpots.
     pub(crate) law: Law,
     /// Whether it comes in too slowly to rebound.
@@ -41,24 +44,37 @@ pub(crate) struct JointContact {
 }
 
 /// The contacts of one blow.
-pub(crate) type JointContacts = ArrayVec<JointContact, MOST_TOUCHES>;
+pub(crate) type JointContacts = ArrayVec<JointContact, CONTACTS>;
 
-/// Mass (kg) and inverse of the inertia tensor (1/(kg m²)) of what strikes.
+/// Where a contact acts on a rock.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct JointEnd {
+    /// Place of the rock.
+    pub(crate) rock: usize,
+    /// From its centre of mass to the contact point (m).
+    pub(crate) lever: Vec3,
+}
+
+/// A rock before the blow.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct JointBody {
     pub(crate) mass_kg: f64,
+    /// Inverse of the inertia tensor (1/(kg m²)).
     pub(crate) inverse: Matrix3<f64>,
+    /// Velocity (m/s) and spin (rad/s).
+    pub(crate) motion: Twist,
 }
+
+/// A stem, and the rock to which it gives way: for another it stands.
+pub(crate) type StemOfRock = (usize, u32);
 
 /// A blow that has broken a stem, or several.
 #[derive(Debug, Clone)]
-pub(crate) struct JointEnd {
-    /// Velocity (m/s) and spin (rad/s) with which the rock goes on.
-    pub(crate) motion: Twist,
-    /// What each contact has taken, in their order.
-    pub(crate) taken: ArrayVec<Loss, MOST_TOUCHES>,
+pub(crate) struct Breakage {
+    /// Motions with which the rocks go on, and what each contact has taken, in their order.
+    pub(crate) after: FrozenCollision,
     /// The stems that are gone.
-    pub(crate) broken: ArrayVec<u32, MOST_TOUCHES>,
+    pub(crate) stems: ArrayVec<StemOfRock, CONTACTS>,
 }
 
 /// How one contact is pressed, and what it has taken (J): by friction, in all but rolling, and by rolling.
@@ -68,49 +84,60 @@ struct Pressed {
     shear: Vec3,
     roll: Vec3,
     taken_j: [f64; 3],
+    /// Fastest approach while it stood (m/s).
+    fastest_m_s: f64,
 }
 
-/// The rock at an instant of the blow.
+/// The rocks at an instant of the blow.
 #[derive(Debug, Clone)]
 struct Instant {
-    v: Vec3,
-    w: Vec3,
-    pressed: ArrayVec<Pressed, MOST_TOUCHES>,
+    motions: ArrayVec<Twist, BODIES>,
+    pressed: ArrayVec<Pressed, CONTACTS>,
 }
 
-/// What a contact does to the rock.
+/// What a contact does to the rock, and with the opposite force at the same point to the other.
 #[derive(Debug, Clone, Copy)]
 struct Answer {
     force: Vec3,
-    moment: Vec3,
+    /// Rolling moment; the rock feels its opposite.
+    rolling: Vec3,
     /// Shear force, and rates of stretch of the shear and of the rolling spring.
     shear_force: Vec3,
     shear_rate: Vec3,
     roll_rate: Vec3,
+    approach_m_s: f64,
     pushes: bool,
 }
 
 /// The blow being followed.
 struct JointBlow<'a> {
-    body: &'a JointBody,
+    bodies: &'a [JointBody],
     contacts: &'a [JointContact],
-    broken: ArrayVec<u32, MOST_TOUCHES>,
+    broken: ArrayVec<StemOfRock, CONTACTS>,
 }
 
-/// Follows a body with this velocity (m/s) and spin (rad/s) through a blow on all `contacts`; `None` where no stem gives way of
-/// which `left_j` tells what it can still take (J).
+/// Follows up to [`BODIES`] rocks through a blow on all `contacts`; `None` where no stem gives way of which `left_j` tells what it
+/// can still take (J).
 pub(crate) fn joint_blow(
-    body: &JointBody,
+    bodies: &[JointBody],
     contacts: &[JointContact],
-    (v, w): Twist,
-    left_j: impl Fn(u32) -> f64,
-) -> Option<JointEnd> {
-    let none =
-        Pressed { depth_m: 0.0, shear: Vec3::zeros(), roll: Vec3::zeros(), taken_j: [0.0; 3] };
-    let mut now = Instant { v, w, pressed: contacts.iter().map(|_| none).collect() };
-    let mut blow = JointBlow { body, contacts, broken: ArrayVec::new() };
+    left_j: impl Fn(StemOfRock) -> f64,
+) -> Option<Breakage> {
+    let none = Pressed {
+        depth_m: 0.0,
+        shear: Vec3::zeros(),
+        roll: Vec3::zeros(),
+        taken_j: [0.0; 3],
+        fastest_m_s: 0.0,
+    };
+    let mut now = Instant {
+        motions: bodies.iter().map(|body| body.motion).collect(),
+        pressed: contacts.iter().map(|_| none).collect(),
+    };
+    let mut blow = JointBlow { bodies, contacts, broken: ArrayVec::new() };
     let omegas = contacts.iter().map(|contact| contact.law.omega_rad_s());
-    let mut left_s = COMES_OFF / omegas.fold(f64::INFINITY, f64::min);
+    // through a row it runs from rock to rock
+    let mut left_s = bodies.len() as f64 * COMES_OFF / omegas.fold(f64::INFINITY, f64::min);
     for _ in 0..JOINT_STEPS {
         if left_s <= 0.0 || !blow.presses(&now) {
             break;
@@ -127,18 +154,27 @@ pub(crate) fn joint_blow(
         now = blow.after(&now, yields);
         blow.broken.extend(blow.next_to_break(&now, &left_j));
     }
-    let taken = now.pressed.iter().map(|one| Loss::sharing(one.taken_j)).collect();
-    (!blow.broken.is_empty()).then_some(JointEnd {
-        motion: (now.v, now.w),
-        taken,
-        broken: blow.broken,
-    })
+    (!blow.broken.is_empty()).then(|| Breakage { after: now.after(), stems: blow.broken })
+}
+
+impl Body {
+    /// A sphere as a rock of a blow, with its motion (m/s, rad/s).
+    pub(crate) fn joint(&self, motion: Twist) -> JointBody {
+        JointBody { mass_kg: self.mass, inverse: Matrix3::identity() / self.inertia, motion }
+    }
+}
+
+impl JointContact {
+    /// Its stem, as the rock that it gives way to.
+    fn stem_of_rock(&self) -> Option<StemOfRock> {
+        self.stem.map(|stem| (self.end.rock, stem))
+    }
 }
 
 impl JointBlow<'_> {
     /// Whether a contact stands.
     fn stands(&self, contact: &JointContact) -> bool {
-        contact.stem.is_none_or(|stem| !self.broken.contains(&stem))
+        contact.stem_of_rock().is_none_or(|stem| !self.broken.contains(&stem))
     }
 
     /// The stiffest contact that touches (rad/s).
@@ -159,11 +195,15 @@ impl JointBlow<'_> {
     }
 
     /// The stem that has taken all it can, if one has.
-    fn next_to_break(&self, at: &Instant, left_j: impl Fn(u32) -> f64) -> Option<u32> {
+    fn next_to_break(
+        &self,
+        at: &Instant,
+        left_j: impl Fn(StemOfRock) -> f64,
+    ) -> Option<StemOfRock> {
         let standing = self.contacts.iter().filter(|contact| self.stands(contact));
-        standing.filter_map(|contact| contact.stem).find(|&stem| {
+        standing.filter_map(JointContact::stem_of_rock).find(|&stem| {
             let parts = self.contacts.iter().zip(&at.pressed);
-            let own = parts.filter(|(contact, _)| contact.stem == Some(stem));
+            let own = parts.filter(|(contact, _)| contact.stem_of_rock() == Some(stem));
             own.flat_map(|(_, pressed)| pressed.taken_j).sum::<f64>() >= left_j(stem)
         })
     }
@@ -177,14 +217,15 @@ impl JointBlow<'_> {
         let normal = law.normal(contact.captured);
         let push = if is_in { normal.force(pressed.depth_m, up) } else { 0.0 };
         let shear = law.shear.at_rate(pressed.shear, u - n * up, law.shear.cap(push));
-        let rolling = law.rolling.at_rate(pressed.roll, at.w, law.rolling.cap(push));
-        let force = n * push - shear.force;
+        let spin = at.motions[contact.end.rock].1;
+        let rolling = law.rolling.at_rate(pressed.roll, spin, law.rolling.cap(push));
         Answer {
-            force,
-            moment: contact.lever.cross(&force) - rolling.force,
+            force: n * push - shear.force,
+            rolling: rolling.force,
             shear_force: shear.force,
             shear_rate: shear.stretch_rate,
             roll_rate: rolling.stretch_rate,
+            approach_m_s: if is_in { -up } else { 0.0 },
             pushes: is_in && (up < 0.0 || push > 0.0),
         }
     }
@@ -202,18 +243,20 @@ impl JointBlow<'_> {
 
     /// Gone on for `h` (s) at the rates of `there`.
     fn moved(&self, from: &Instant, there: &Instant, h: f64) -> Instant {
-        let answers: ArrayVec<Answer, MOST_TOUCHES> =
+        let answers: ArrayVec<Answer, CONTACTS> =
             (0..self.contacts.len()).map(|k| self.answer(k, there)).collect();
-        let force: Vec3 = answers.iter().map(|answer| answer.force).sum();
-        let moment: Vec3 = answers.iter().map(|answer| answer.moment).sum();
         let mut next = from.clone();
-        next.v += force * (h / self.body.mass_kg);
-        next.w += self.body.inverse * moment * h;
-        let mean = Instant {
-            v: (from.v + next.v) * 0.5,
-            w: (from.w + next.w) * 0.5,
-            pressed: ArrayVec::new(),
-        };
+        for (contact, answer) in self.contacts.iter().zip(&answers) {
+            let JointEnd { rock, lever } = contact.end;
+            let moment = lever.cross(&answer.force) - answer.rolling;
+            self.push(&mut next, rock, (answer.force * h, moment * h));
+            if let Some(JointEnd { rock, lever }) = contact.other {
+                self.push(&mut next, rock, (-answer.force * h, -lever.cross(&answer.force) * h));
+            }
+        }
+        let means = from.motions.iter().zip(&next.motions);
+        let motions = means.map(|(a, b)| ((a.0 + b.0) * 0.5, (a.1 + b.1) * 0.5)).collect();
+        let mean = Instant { motions, pressed: ArrayVec::new() };
         for ((contact, answer), pressed) in
             self.contacts.iter().zip(&answers).zip(&mut next.pressed)
         {
@@ -221,21 +264,48 @@ impl JointBlow<'_> {
             pressed.depth_m -= contact.n.dot(&there.point_m_s(contact)) * h;
             pressed.shear += answer.shear_rate * h;
             pressed.roll += answer.roll_rate * h;
+            pressed.fastest_m_s = pressed.fastest_m_s.max(answer.approach_m_s);
             let slips = u - contact.n * contact.n.dot(&u) - answer.shear_rate;
             let friction_j = answer.shear_force.dot(&slips) * h;
-            let rolling_j = (contact.lever.cross(&answer.force) - answer.moment).dot(&mean.w) * h;
             pressed.taken_j[0] += friction_j;
             pressed.taken_j[1] -= answer.force.dot(&u) * h + friction_j;
-            pressed.taken_j[2] += rolling_j;
+            pressed.taken_j[2] += answer.rolling.dot(&mean.motions[contact.end.rock].1) * h;
         }
         next
+    }
+
+    /// An impulse (N s) and its moment (N m s) on a rock.
+    fn push(&self, at: &mut Instant, rock: usize, (impulse, moment): (Vec3, Vec3)) {
+        let JointBody { mass_kg, inverse, .. } = &self.bodies[rock];
+        let (v, w) = &mut at.motions[rock];
+        *v += impulse / *mass_kg;
+        *w += inverse * moment;
     }
 }
 
 impl Instant {
-    /// Velocity of the point of a contact (m/s).
+    /// Velocity of the point of a contact (m/s), relative to the other rock if there is one.
     fn point_m_s(&self, contact: &JointContact) -> Vec3 {
-        self.v + self.w.cross(&contact.lever)
+        let of = |JointEnd { rock, lever }: JointEnd| {
+            let (v, w) = &self.motions[rock];
+            v + w.cross(&lever)
+        };
+        of(contact.end) - contact.other.map_or_else(Vec3::zeros, of)
+    }
+
+    /// The motions, and what the contacts have taken.
+    fn after(&self) -> FrozenCollision {
+        let mut after = FrozenCollision {
+            motions: [STILL; BODIES],
+            loss: [Loss::default(); CONTACTS],
+            fastest_m_s: [0.0; CONTACTS],
+        };
+        after.motions[..self.motions.len()].copy_from_slice(&self.motions);
+        for (k, pressed) in self.pressed.iter().enumerate() {
+            after.loss[k] = Loss::sharing(pressed.taken_j);
+            after.fastest_m_s[k] = pressed.fastest_m_s;
+        }
+        after
     }
 }
 

@@ -14,7 +14,7 @@
 
 use super::body::Twist;
 use super::contact_state::{ContactEnvironment, ContactState};
-use super::joint_blow::{JointBody, JointContact, JointContacts, joint_blow};
+use super::joint_blow::{Breakage, JointContact, JointContacts, JointEnd, joint_blow};
 use super::loss::Loss;
 use super::rigid::STRUCK_TOGETHER;
 use super::stem_load::{APART_RAD, PressedTrees};
@@ -24,7 +24,6 @@ use crate::contact::{ContactPoint, MOST};
 use crate::rock::Vec3;
 use crate::terrain::stems::Stems;
 use arrayvec::ArrayVec;
-use nalgebra::Matrix3;
 
 /// How stems give way to a blow in the rigid limit.
 #[derive(Debug, Clone)]
@@ -156,22 +155,20 @@ impl ContactState {
         let stems = world.terrain.stems.as_ref()?;
         let contact = |(k, touch): (usize, &ContactPoint)| JointContact {
             n: touch.normal,
-            lever: touch.normal * -world.body.radius,
+            end: JointEnd { rock: 0, lever: touch.normal * -world.body.radius },
+            other: None,
             law: world.law(touch.triangle).of_patch(touch.gain2, world.dashpot_share(touches, k)),
             captured: world.captures(touch, &v),
             stem: stems.of_triangle(touch.triangle),
         };
         let contacts: JointContacts = touches.iter().enumerate().map(contact).collect();
-        let body = JointBody {
-            mass_kg: world.body.mass,
-            inverse: Matrix3::identity() / world.body.inertia,
-        };
-        let left_j = |stem| self.stem_load.left_j(stems, stem);
-        let end = joint_blow(&body, &contacts, (v, w), left_j)?;
-        let taken = touches.iter().zip(&end.taken);
+        let body = world.body.joint((v, w));
+        let left_j = |(_, stem)| self.stem_load.left_j(stems, stem);
+        let Breakage { after, stems } = joint_blow(&[body], &contacts, left_j)?;
+        let taken = touches.iter().zip(&after.loss);
         Some(Broken {
-            stems: end.broken.into_iter().collect(),
-            motion: end.motion,
+            stems: stems.into_iter().map(|(_, stem)| stem).collect(),
+            motion: after.motions[0],
             struck: taken.map(|(touch, loss)| (*touch, loss.on(world, touch.triangle))).collect(),
         })
     }
@@ -179,15 +176,26 @@ impl ContactState {
     /// Stems are gone within a step whose losses hold what they took.
     pub(crate) fn fell_broken(&mut self, world: &ContactEnvironment, broken: &Broken) {
         let Some(stems) = world.terrain.stems.as_ref() else { return };
-        for (touch, loss) in &broken.struck {
-            self.stem_load.broken_j += loss.trees;
+        let struck = broken.struck.iter().map(|(touch, loss)| (touch.triangle, loss.trees));
+        self.fell_with(stems, struck, broken.stems.iter().copied());
+    }
+
+    /// The same with what each triangle has taken that was `struck` as part of a tree (J), and the stems that are gone.
+    pub(crate) fn fell_with(
+        &mut self,
+        stems: &Stems,
+        struck: impl Iterator<Item = (u32, f64)>,
+        gone: impl Iterator<Item = u32> + Clone,
+    ) {
+        for (triangle, joule) in struck {
+            self.stem_load.broken_j += joule;
             // what stands after the same blow has taken its part too
-            let stands = stems.of_triangle(touch.triangle);
-            if let Some(stem) = stands.filter(|stem| !broken.stems.contains(stem)) {
-                self.stem_load.take(stem, loss.trees);
+            let stands = stems.of_triangle(triangle);
+            if let Some(stem) = stands.filter(|stem| !gone.clone().any(|other| other == *stem)) {
+                self.stem_load.take(stem, joule);
             }
         }
-        for &stem in &broken.stems {
+        for stem in gone {
             self.fell(stems, stem);
         }
     }

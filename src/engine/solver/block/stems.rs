@@ -12,7 +12,9 @@ use crate::contact::block::BlockTouch;
 use crate::flight::top::momentum_of;
 use crate::rock::Vec3;
 use crate::solver::environment::ContactEnvironment;
-use crate::solver::joint_blow::{JointBody, JointContact, JointContacts, joint_blow};
+use crate::solver::joint_blow::{
+    Breakage, JointBody, JointContact, JointContacts, JointEnd, joint_blow,
+};
 use crate::solver::law::capture_m_s;
 use crate::solver::loss::Loss;
 use crate::solver::stem_load::{APART_RAD, PressedTree, PressedTrees};
@@ -107,28 +109,30 @@ impl Footing {
             law.rub_with(self.slip.friction(ground, world.law(touch.triangle), 0.0));
             JointContact {
                 n: touch.normal,
-                lever: touch.lever,
+                end: JointEnd { rock: 0, lever: touch.lever },
+                other: None,
                 captured: approach_m_s < capture_m_s(&law),
                 law,
                 stem: stems.of_triangle(touch.triangle),
             }
         };
         let contacts: JointContacts = self.aside.iter().map(contact).collect();
-        let body = JointBody { mass_kg: mass.mass, inverse: mass.inverse };
-        let left_j = |stem| self.stem_load.left_j(stems, stem);
-        let end = joint_blow(&body, &contacts, (moving.v, moving.spin(block)), left_j)?;
-        let (v, w) = end.motion;
+        let motion = (moving.v, moving.spin(block));
+        let body = JointBody { mass_kg: mass.mass, inverse: mass.inverse, motion };
+        let left_j = |(_, stem)| self.stem_load.left_j(stems, stem);
+        let Breakage { after, stems: broken } = joint_blow(&[body], &contacts, left_j)?;
+        let (v, w) = after.motions[0];
         moving.v = v;
         moving.momentum = momentum_of(block.inertia_kg_m2, &moving.pose.attitude, &w);
         let mut lost = Loss::default();
-        for ((contact, touch), loss) in contacts.iter().zip(&self.aside).zip(&end.taken) {
+        for ((contact, touch), loss) in contacts.iter().zip(&self.aside).zip(&after.loss) {
             lost.add(&loss.on(world, touch.triangle), 1.0);
             // what stands after the same blow has taken its part too
-            if let Some(stem) = contact.stem.filter(|stem| !end.broken.contains(stem)) {
+            if let Some(stem) = contact.stem.filter(|&stem| !broken.contains(&(0, stem))) {
                 self.stem_load.take(stem, loss.sum());
             }
         }
-        end.broken.iter().for_each(|&stem| self.fell(stem));
+        broken.iter().for_each(|&(_, stem)| self.fell(stem));
         Some(lost)
     }
 

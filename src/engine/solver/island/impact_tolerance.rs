@@ -11,6 +11,8 @@
 use super::assembly::Island;
 use super::body::IslandBody;
 use super::pair_contact::PairContact;
+use crate::contact::history::ContactHistory;
+use crate::rock::Vec3;
 use crate::solver::Settings;
 use crate::solver::impact::LOCAL;
 use crate::solver::step_control::{Control, lasting_m_s};
@@ -22,6 +24,9 @@ const IMPACT: (f64, f64) = (1.0, 2e-4);
 /// The same where the rock that is struck, or what strikes it, touches others as well, in units of that (–): at the usual tolerance
 /// 1 % of the speed of the blow.
 const IN_A_HEAP: f64 = 150.0;
+
+/// Cosine between two contacts of a rock from which a blow on the one runs on through the other (–).
+const RUNS_ON: f64 = 0.1;
 
 /// The same of two that are bonded, of the speed (–) from which their springs would pull as hard as the bond bears: what is off by it is off by as
 /// much of the strength.
@@ -67,36 +72,43 @@ impl Island<'_> {
             let begun_m_s = if tried { state.met_m_s() } else { 0.0 };
             let known_m_s = if state.is_rebounding() { state.impact.speed_m_s } else { 0.0 };
             member.struck_m_s = known_m_s.max(begun_m_s);
-            member.touching = u32::from(!state.histories.is_empty());
-            member.crowd = 0;
+            (member.touching, member.crowd) = (0, 0);
         }
         let Self { members, pair_histories, pairs, .. } = self;
         let held = pair_histories.iter().filter(|pair_history| pair_history.is_held());
         let held = held.map(|pair_history| {
             let ends = [pair_history.a as usize, pair_history.b as usize];
-            (ends, pair_history.impact.speed_m_s)
+            (ends, pair_history.n, pair_history.impact.speed_m_s)
         });
         let is_new = |pair: &&PairContact| {
             pair.normal_force > 0.0 && !pair_histories[pair.pair_history].is_held()
         };
         let met = pairs.iter().filter(|_| tried).filter(is_new);
-        let touching = held.chain(met.map(|pair| (pair.ends, pair.impact.speed_m_s)));
-        for (ends, speed_m_s) in touching.clone() {
+        let touching = held.chain(met.map(|pair| (pair.ends, pair.n, pair.impact.speed_m_s)));
+        for (ends, _, speed_m_s) in touching.clone() {
             for end in ends {
                 members[end].struck_m_s = members[end].struck_m_s.max(speed_m_s);
                 members[end].touching += 1;
             }
         }
-        for (ends, _) in touching {
-            let most = members[ends[0]].touching.max(members[ends[1]].touching);
+        for (ends, n, _) in touching {
+            let [first, second] = ends.map(|end| &members[end]);
+            let through = [first.touching_through(&n), second.touching_through(&-n)];
             for end in ends {
-                members[end].crowd = members[end].crowd.max(most);
+                members[end].crowd = members[end].crowd.max(through[0].max(through[1]));
             }
         }
     }
 }
 
 impl IslandBody {
+    /// How many others it touches, with the mesh if the contact along `n`, which points at its centre, presses it on that: a blow along the
+    /// ground does not run through the ground.
+    fn touching_through(&self, n: &Vec3) -> u32 {
+        let presses = |history: &ContactHistory| history.n.dot(n) < -RUNS_ON;
+        self.touching + u32::from(self.state.histories.iter().any(presses))
+    }
+
     /// Whether it, or one that it touches, touches more than one.
     fn is_in_heap(&self) -> bool {
         self.crowd > 1

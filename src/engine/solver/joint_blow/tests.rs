@@ -1,12 +1,12 @@
 //! What a blow of several contacts must obey.
 
-use super::{JointBody, JointContact, JointEnd, joint_blow};
+use super::{Breakage, JointContact, JointEnd, joint_blow};
 use crate::ground::{Capture, Damping, Ground, Law};
 use crate::rock::{Rock, Vec3};
 use crate::solver::body::{Body, Twist};
 use crate::solver::loss::Loss;
 use crate::solver::yielding::yielding_impact;
-use nalgebra::{Matrix3, Rotation3, Unit};
+use nalgebra::{Rotation3, Unit};
 use proptest::prelude::*;
 
 /// A sphere and its law on trees of a friction angle (rad) and a restitution.
@@ -21,7 +21,8 @@ fn case(friction_rad: f64, restitution: f64) -> (Body, Law) {
 /// Contact `stem` of a sphere with this normal.
 fn contact(body: &Body, law: &Law, (n, stem): (Vec3, u32)) -> JointContact {
     let lever = n * -body.radius;
-    JointContact { n, lever, law: *law, captured: false, stem: Some(stem) }
+    let end = JointEnd { rock: 0, lever };
+    JointContact { n, end, other: None, law: *law, captured: false, stem: Some(stem) }
 }
 
 fn blow(
@@ -29,10 +30,8 @@ fn blow(
     contacts: &[JointContact],
     motion: Twist,
     left_j: [f64; 3],
-) -> Option<JointEnd> {
-    let inverse = Matrix3::identity() / body.inertia;
-    let of = JointBody { mass_kg: body.mass, inverse };
-    joint_blow(&of, contacts, motion, |stem| left_j[stem as usize])
+) -> Option<Breakage> {
+    joint_blow(&[body.joint(motion)], contacts, |(_, stem)| left_j[stem as usize])
 }
 
 fn motion_j(body: &Body, (v, w): Twist) -> f64 {
@@ -56,7 +55,7 @@ proptest! {
         let contacts = [contact(&body, &law, (Vec3::x(), 0))];
         let end = blow(&body, &contacts, (v, w), [limit_j; 3]).unwrap();
         // both follow it in steps of the same length
-        let off = (end.motion.0 - alone.0).norm() + (end.motion.1 - alone.1).norm() * body.radius;
+        let off = (end.after.motions[0].0 - alone.0).norm() + (end.after.motions[0].1 - alone.1).norm() * body.radius;
         prop_assert!(off < 1e-9 * v.norm() + 1e-9 * w.norm(), "{off:e}");
     }
 
@@ -74,13 +73,13 @@ proptest! {
         let before_j = motion_j(&body, (v, w));
         let left_j = limits.map(|share| share * before_j);
         let Some(end) = blow(&body, &contacts, (v, w), left_j) else { return Ok(()) };
-        let taken_j: f64 = end.taken.iter().map(Loss::sum).sum();
-        let lost_j = before_j - motion_j(&body, end.motion);
+        let taken_j: f64 = end.after.loss.iter().map(Loss::sum).sum();
+        let lost_j = before_j - motion_j(&body, end.after.motions[0]);
         prop_assert!((lost_j - taken_j).abs() < 1e-9 * before_j, "{lost_j} {taken_j}");
         for stem in [0, 1] {
-            let own = end.taken.iter().zip(stems).filter(|(_, of)| *of == stem);
+            let own = end.after.loss.iter().zip(stems).filter(|(_, of)| *of == stem);
             let own_j: f64 = own.map(|(loss, _)| loss.sum()).sum();
-            if end.broken.contains(&stem) {
+            if end.stems.contains(&(0, stem)) {
                 prop_assert!((own_j - left_j[stem as usize]).abs() < 1e-9 * before_j);
             } else {
                 prop_assert!(own_j < left_j[stem as usize]);
@@ -100,8 +99,8 @@ proptest! {
         let all_j = 0.5 * body.mass * 100.0;
         let end = blow(&body, &contacts, (Vec3::x() * 10.0, Vec3::zeros()), [share * all_j; 3]).unwrap();
         let left = 10.0 * (1.0 - 2.0 * share).sqrt();
-        prop_assert!((end.motion.0 - Vec3::x() * left).norm() < 1e-6, "{:?}", end.motion);
-        prop_assert!(end.broken.len() == 2);
+        prop_assert!((end.after.motions[0].0 - Vec3::x() * left).norm() < 1e-6, "{:?}", end.after.motions[0]);
+        prop_assert!(end.stems.len() == 2);
     }
 
     /// However it is turned as a whole, a blow is the same.
@@ -114,7 +113,7 @@ proptest! {
         let limit_j = 0.2 * body.mass * v.norm_squared();
         let end = |turn: Rotation3<f64>| {
             let contacts = [(Vec3::x(), 0), (Vec3::y(), 1)].map(|(n, stem)| contact(&body, &law, (turn * n, stem)));
-            blow(&body, &contacts, (turn * v, Vec3::zeros()), [limit_j; 3]).map(|end| turn.inverse() * end.motion.0)
+            blow(&body, &contacts, (turn * v, Vec3::zeros()), [limit_j; 3]).map(|end| turn.inverse() * end.after.motions[0].0)
         };
         let [plain, turned] = [Rotation3::identity(), turn].map(end);
         prop_assert!(plain.is_some() == turned.is_some());
@@ -138,7 +137,7 @@ fn a_stiff_stem_that_breaks_leaves_the_blow_of_a_soft_one() {
         let v = Vec3::new(-10.0, -10.0, 0.0);
         let end = blow(&body, &contacts, (v, Vec3::zeros()), [1000.0, 1e9, 1e9]).unwrap();
         let left = (100.0 - 2.0 * 1000.0 / body.mass).sqrt();
-        let off = (end.motion.0 - Vec3::new(-left, 8.0, 0.0)).norm();
-        assert!(off < 1e-3, "{stiffer:e} times stiffer: {:?}", end.motion.0);
+        let off = (end.after.motions[0].0 - Vec3::new(-left, 8.0, 0.0)).norm();
+        assert!(off < 1e-3, "{stiffer:e} times stiffer: {:?}", end.after.motions[0].0);
     }
 }

@@ -7,6 +7,7 @@
 //! stone is answered by the ground below it there too.
 
 use super::RigidIsland;
+use super::broken_stems::TakenByTree;
 use super::contacts::{ImpactScene, LIVELY, StepBody, hit_of};
 use crate::contact::ContactPoint;
 use crate::contact::pair::between;
@@ -16,6 +17,7 @@ use crate::solver::impact::{
     BODIES, CONTACTS, ContactEnds, FrozenBody, FrozenCollision, FrozenContact, collide,
 };
 use crate::solver::island::body::IslandBody;
+use crate::solver::joint_blow::Breakage;
 use crate::solver::law::capture_m_s;
 use crate::solver::rigid::HELD;
 use arrayvec::ArrayVec;
@@ -124,28 +126,31 @@ impl RigidIsland {
             FrozenBody { body: ball.body, motion: (at.v, ball.w) }
         };
         let bodies: ArrayVec<_, BODIES> = touching.rocks.iter().zip(rocks).map(frozen).collect();
-        let Some(after) = collide(&bodies, &contacts, self.impact_tolerance()) else {
-            return false;
+        let broken = scene.broken_by(&touching.rocks, &bodies, &contacts);
+        let (after, stems) = match broken {
+            Some(Breakage { after, stems }) => (after, stems),
+            None => match collide(&bodies, &contacts, self.impact_tolerance()) {
+                Some(after) => (after, ArrayVec::new()),
+                None => return false,
+            },
         };
-        let (taken_j, on_trees) = self.book(scene, &struck, &contacts, &after);
+        let (taken_j, by_trees) = self.book(scene, &struck, &contacts, &after);
         drop(contacts);
-        for (rock, triangle, joule) in on_trees {
-            scene.members[rock].state.stem_load.strike(scene.terrain, triangle, joule);
-        }
+        scene.load_stems(&touching.rocks, &by_trees, &stems);
         self.go_on_from(&struck, &after, (taken_j, s));
         true
     }
 
-    /// Books what the contacts of a blow took; what each rock lost in its contacts (J), and what trees took: which rock, on which triangle, and how much (J).
+    /// Books what the contacts of a blow took; what each rock lost in its contacts (J), and what trees took.
     fn book(
         &mut self,
         scene: &ImpactScene,
         StruckRocks { touching, rocks }: &StruckRocks,
         contacts: &[FrozenContact],
         after: &FrozenCollision,
-    ) -> ([f64; BODIES], ArrayVec<(usize, u32, f64), CONTACTS>) {
+    ) -> ([f64; BODIES], ArrayVec<TakenByTree, CONTACTS>) {
         let mut taken_j = [0.0; BODIES];
-        let mut on_trees = ArrayVec::new();
+        let mut by_trees = ArrayVec::new();
         let (pairs, meshes) = contacts.split_at(touching.pairs.len());
         for ((contact, loss), pair) in pairs.iter().zip(&after.loss).zip(&touching.pairs) {
             let ContactEnds { first, second, .. } = contact.ends;
@@ -165,14 +170,14 @@ impl RigidIsland {
             taken_j[contact.ends.first] += loss.sum();
             self.losses[rock].add(&loss.on(&world, at.triangle), 1.0);
             if scene.terrain.is_tree(at.triangle) {
-                on_trees.push((rock, at.triangle, loss.sum()));
+                by_trees.push((rock, *at, *loss));
             }
             if approach_m_s >= capture_m_s(contact.law) {
                 let centre = (&rocks[contact.ends.first].c, body.radius);
                 self.hits.push(hit_of(rock, at, centre, approach_m_s));
             }
         }
-        (taken_j, on_trees)
+        (taken_j, by_trees)
     }
 
     /// Lets the rocks go on from a blow, `s` (s) before the end of the step. What none of their contacts took has been handed on.

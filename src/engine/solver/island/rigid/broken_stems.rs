@@ -1,0 +1,117 @@
+//! Stems that give way in a blow of several rocks.
+//!
+//! A rock that leans on a stem is pressed against it by all that strikes it. The stem gives way within that blow, and what has not yet run
+//! through the row by then finds it gone: the blow is followed with all its rocks until the stem has taken all it can, and goes on from there.
+
+use super::contacts::ImpactScene;
+use crate::contact::ContactPoint;
+use crate::solver::contact_state::ContactEnvironment;
+use crate::solver::impact::{BODIES, FrozenBody, FrozenContact};
+use crate::solver::island::body::IslandBody;
+use crate::solver::joint_blow::{
+    Breakage, JointBody, JointContact, JointContacts, JointEnd, StemOfRock, joint_blow,
+};
+use crate::solver::loss::Loss;
+use arrayvec::ArrayVec;
+
+/// What a contact of a rock with a tree took in a blow: which rock, by its place in the island, and where.
+pub(super) type TakenByTree = (usize, ContactPoint, Loss);
+
+impl ImpactScene<'_> {
+    /// How stems give way to a blow of these `rocks` on all `contacts`, pairs before those with the mesh, if one does.
+    pub(super) fn broken_by(
+        &self,
+        rocks: &[usize],
+        bodies: &[FrozenBody],
+        contacts: &[FrozenContact],
+    ) -> Option<Breakage> {
+        let stems = self.terrain.stems.as_ref()?;
+        let motion_j: f64 = bodies.iter().map(FrozenBody::motion_j).sum();
+        let may_break = |&rock: &usize| {
+            let state = &self.members[rock].state;
+            let yields =
+                |at: &ContactPoint| state.stem_load.may_yield_at(stems, at.triangle, motion_j);
+            state.touches.iter().any(yields)
+        };
+        if !rocks.iter().any(may_break) {
+            return None;
+        }
+        let joint: ArrayVec<JointBody, BODIES> =
+            bodies.iter().map(|body| body.body.joint(body.motion)).collect();
+        let left_j = |(rock, stem): StemOfRock| {
+            self.members[rocks[rock]].state.stem_load.left_j(stems, stem)
+        };
+        joint_blow(&joint, &self.jointly(rocks, bodies, contacts), left_j)
+    }
+
+    /// The contacts of a blow with their levers, shares of dashpots and stems.
+    fn jointly(
+        &self,
+        rocks: &[usize],
+        bodies: &[FrozenBody],
+        contacts: &[FrozenContact],
+    ) -> JointContacts {
+        let of_pair = |contact: &&FrozenContact| contact.ends.second.is_some();
+        let pairs = contacts.iter().take_while(of_pair).map(|contact| JointContact {
+            law: contact.law.without_rolling(),
+            ..frozen_jointly(bodies, contact)
+        });
+        let first = pairs.clone().count();
+        let mut joint: JointContacts = pairs.collect();
+        let mut from = first;
+        while let Some(contact) = contacts.get(from) {
+            let own = contact.ends.first;
+            let IslandBody { state, body, laws, .. } = &*self.members[rocks[own]];
+            let world = ContactEnvironment { terrain: self.terrain, body: *body, laws };
+            for (k, at) in state.touches.iter().enumerate() {
+                let share = world.dashpot_share(&state.touches, k);
+                joint.push(JointContact {
+                    law: world.law(at.triangle).of_patch(at.gain2, share),
+                    stem: self.terrain.stems.as_ref().and_then(|all| all.of_triangle(at.triangle)),
+                    ..frozen_jointly(bodies, &contacts[from + k])
+                });
+            }
+            from += state.touches.len().max(1);
+        }
+        joint
+    }
+
+    /// Notes what trees took in a blow of these `rocks`, and that these stems have given way to it.
+    pub(super) fn load_stems(
+        &mut self,
+        rocks: &[usize],
+        taken: &[TakenByTree],
+        broken: &[StemOfRock],
+    ) {
+        let terrain = self.terrain;
+        let Some(stems) = terrain.stems.as_ref() else { return };
+        for (place, &rock) in rocks.iter().enumerate() {
+            let own = taken.iter().filter(|(of, ..)| *of == rock);
+            let gone = broken.iter().filter(|(of, _)| *of == place).map(|(_, stem)| *stem);
+            let state = &mut self.members[rock].state;
+            if gone.clone().next().is_none() {
+                for (_, at, loss) in own {
+                    state.stem_load.strike(terrain, at.triangle, loss.sum());
+                }
+                continue;
+            }
+            let struck = own.map(|(_, at, loss)| (at.triangle, loss.sum()));
+            state.fell_with(stems, struck, gone);
+        }
+    }
+}
+
+/// A contact of a blow, on no stem and alone.
+fn frozen_jointly(bodies: &[FrozenBody], contact: &FrozenContact) -> JointContact {
+    let (n, levers) = (contact.normal, contact.ends.levers);
+    let end =
+        |rock: usize, share: f64| JointEnd { rock, lever: n * (share * bodies[rock].body.radius) };
+    JointContact {
+        n,
+        end: end(contact.ends.first, -levers[0]),
+        other: contact.ends.second.map(|second| end(second, levers[1])),
+        law: *contact.law,
+        captured: contact.captured,
+        stem: None,
+    }
+}
