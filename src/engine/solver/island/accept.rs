@@ -29,8 +29,9 @@ impl Island<'_> {
             let end = member.end;
             let IslandBody { state, body, laws, .. } = &mut **member;
             let world = ContactEnvironment { terrain: self.terrain, body: *body, laws };
-            step_control::accept(&world, tableau, state, (&end, dt), &mut loss);
+            // what has begun as the step ends has all its time before it
             state.impact.pass(omegas_dt);
+            step_control::accept(&world, tableau, state, (&end, dt), &mut loss);
             // a merged contact acts otherwise than its rates say
             self.fresh &= state.fresh;
             done.losses.push(loss);
@@ -77,10 +78,12 @@ impl Island<'_> {
             pair_history.captured = pair.captured;
             pair_history.closed =
                 pair.normal_force > 0.0 || distance < a.body.radius + b.body.radius;
-            pair_history.impact = if pair_history.closed {
-                pair.impact.after(pair_history.law.omega_rad_s() * dt)
-            } else {
-                PairImpact::default()
+            let gone_rad = pair_history.law.omega_rad_s() * dt;
+            pair_history.impact = match (pair_history.closed, pair.waits) {
+                // it has begun as the step ends
+                (true, true) => pair.impact,
+                (true, false) => pair.impact.after(gone_rad),
+                (false, _) => PairImpact::default(),
             };
             // a contact that opens forgets its stretch, a bond does not
             pair_history.shear = if pair_history.closed || pair_history.bond.is_some() {
