@@ -116,6 +116,19 @@ pub struct Ledger {
     pub rise_j: f64,
 }
 
+impl Ledger {
+    /// The same with no loss below 0: friction that turns round within a step may seem to work, and springs to give back more than they
+    /// took, which is the numerics' gain and stands in the remainder.
+    fn without_gains(mut self) -> Self {
+        let Self { friction_j, damping_j, rolling_j, trees_j, remainder_j, .. } = &mut self;
+        for loss_j in [friction_j, damping_j, rolling_j, trees_j] {
+            *remainder_j += loss_j.min(0.0);
+            *loss_j = loss_j.max(0.0);
+        }
+        self
+    }
+}
+
 /// What a kept path records of one instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PathPoint {

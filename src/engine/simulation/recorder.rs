@@ -310,7 +310,7 @@ impl<'a> Recorder<'a> {
             crossings: self.crossings.into_found(),
             passages: self.passages.found.into_found(),
             stretches: self.stretches.found.into_found(),
-            ledger: self.ledger,
+            ledger: self.ledger.without_gains(),
             released_j: weight_n * fallen_m + kinetic_j,
             effort: self.effort,
         }

@@ -382,13 +382,6 @@ impl<'a> WorldBody<'a> {
         if !self.member.flying {
             self.end_episode(settings);
         }
-        // Friction that turns round within a step may seem to work: that is an error of the steps.
-        let ledger = &mut self.recorder.ledger;
-        // booked where it belongs: an entry below 0 is no loss but the numerics' gain
-        for entry in [&mut ledger.friction_j, &mut ledger.damping_j, &mut ledger.rolling_j] {
-            ledger.remainder_j += entry.min(0.0);
-            *entry = entry.max(0.0);
-        }
         self.recorder.effort.triangles += self.member.state.near.tested;
         let weight_n = self.member.body.mass * settings.gravity_m_s2;
         let energies = (weight_n, release.motion.kinetic_j(&release.rock));
