@@ -18,6 +18,10 @@ pub(super) const APART_RAD: f64 = 0.1;
 /// The tenth on top is for what weight may add within the contact.
 const WITHSTANDS: f64 = 1.1;
 
+/// What each of several trees takes matters to none of them while it has more than this times the motion left (–): a rock that stands between
+/// stems is not followed in the time of its springs.
+const UNNOTICED: f64 = 1e4;
+
 /// A tree that is pressed.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PressedTree {
@@ -50,7 +54,7 @@ impl PressedTrees {
     }
 
     /// Whether there are several, so that it matters what each takes.
-    pub(super) fn are_several(&self) -> bool {
+    fn are_several(&self) -> bool {
         self.0.len() > 1
     }
 
@@ -120,6 +124,14 @@ impl StemLoad {
     /// Whether all of this motion (J) might break a stem.
     pub(super) fn may_yield(&self, stems: &Stems, stem: u32, motion_j: f64) -> bool {
         self.left_j(stems, stem) <= WITHSTANDS * motion_j
+    }
+
+    /// Whether it matters what each of these trees takes of this motion (J) and of what springs on them hold.
+    pub(super) fn tells_apart(&self, stems: &Stems, pressed: &PressedTrees, motion_j: f64) -> bool {
+        let held_j: f64 = pressed.iter().map(|tree| tree.held_j).sum();
+        let moved_j = UNNOTICED * (motion_j + held_j);
+        let mut stems_pressed = pressed.iter().filter_map(|tree| tree.stem);
+        pressed.are_several() && stems_pressed.any(|stem| self.left_j(stems, stem) <= moved_j)
     }
 
     /// The same of the stem that a triangle belongs to, if it does to one.

@@ -44,7 +44,7 @@ impl ContactState {
         self.stem_load.pressed = self.pressed_trees(world);
         let motion_j = self.motion_j(&world.body);
         // what each of several takes is known between steps
-        let mut may_yield = self.stem_load.pressed.are_several();
+        let mut may_yield = self.stem_load.tells_apart(stems, &self.stem_load.pressed, motion_j);
         let mut longest_s =
             if may_yield { APART_RAD / self.stiffest_rad_s(world) } else { f64::INFINITY };
         for stem in self.stem_load.pressed.iter().filter_map(|tree| tree.stem) {

@@ -197,7 +197,8 @@ impl Footing {
         (block, moving): (&Block, &Moving),
     ) -> f64 {
         let Some(stems) = world.terrain.stems.as_ref() else { return f64::INFINITY };
-        if !self.pressed_by_springs(world, stems, (block, moving)).are_several() {
+        let pressed = self.pressed_by_springs(world, stems, (block, moving));
+        if !self.stem_load.tells_apart(stems, &pressed, moving.motion_j(block)) {
             return f64::INFINITY;
         }
         APART_RAD / self.springs.stiffest(world)
