@@ -1,6 +1,6 @@
 //! What a blow of several contacts must obey.
 
-use super::{Breakage, JointContact, JointEnd, joint_blow};
+use super::{Breakage, JointBody, JointContact, JointEnd, joint_blow};
 use crate::ground::{Capture, Damping, Ground, Law};
 use crate::rock::{Rock, Vec3};
 use crate::solver::body::{Body, Twist};
@@ -32,6 +32,11 @@ fn blow(
     left_j: [f64; 3],
 ) -> Option<Breakage> {
     joint_blow(&[body.joint(motion)], contacts, |(_, stem)| left_j[stem as usize])
+}
+
+/// From the centre of the second of two rocks to where they touch (m).
+fn other_lever(n: &Vec3, body: &Body) -> Vec3 {
+    n * body.radius
 }
 
 fn motion_j(body: &Body, (v, w): Twist) -> f64 {
@@ -85,6 +90,38 @@ proptest! {
                 prop_assert!(own_j < left_j[stem as usize]);
             }
         }
+    }
+
+    /// Two rocks of unlike masses that touch, the first of them a stem too: what contacts take is what both lose, and momenta about a point are
+    /// kept but for what the stem has pushed.
+    #[test]
+    fn a_blow_of_two_rocks_makes_neither_energy_nor_momentum(
+        n in prop::array::uniform2(vector(1.0)), v in prop::array::uniform2(vector(10.0)),
+        w in vector(10.0), (friction, e) in (0.0..0.8f64, 0.1..0.9f64), share in 1e-9..0.5f64, heavier in 0.1..10.0f64,
+    ) {
+        prop_assume!(n.iter().all(|n| n.norm() > 0.1));
+        let (body, law) = case(friction, e);
+        let [of_stem, of_pair] = n.map(|n| n.normalize());
+        let bodies = [body.joint((v[0], w)), JointBody { mass_kg: heavier * body.mass, ..body.joint((v[1], Vec3::zeros())) }];
+        let [end, other] = [(0, -1.0), (1, 1.0)].map(|(rock, side)| JointEnd { rock, lever: of_pair * (side * body.radius) });
+        let law_of_pair = law.without_rolling();
+        let contacts = [
+            contact(&body, &law, (of_stem, 0)),
+            JointContact { n: of_pair, end, other: Some(other), law: law_of_pair, captured: false, stem: None },
+        ];
+        let energy_j = |k: usize, (v, w): Twist| 0.5 * (bodies[k].mass_kg * v.norm_squared() + body.inertia * w.norm_squared());
+        let before_j: f64 = (0..2).map(|k| energy_j(k, bodies[k].motion)).sum();
+        let Some(end) = joint_blow(&bodies, &contacts, |_| share * before_j) else { return Ok(()) };
+        let after = end.after.motions;
+        let lost_j = before_j - (0..2).map(|k| energy_j(k, after[k])).sum::<f64>();
+        let taken_j: f64 = end.after.loss.iter().map(Loss::sum).sum();
+        prop_assert!((lost_j - taken_j).abs() < 1e-9 * before_j, "{lost_j} {taken_j}");
+        prop_assert!((end.after.loss[0].sum() - share * before_j).abs() < 1e-9 * before_j, "{} {}", end.after.loss[0].sum(), share * before_j);
+        // about the centre of the first rock, where the pair touches at one point
+        let change = |k: usize| (after[k].0 - bodies[k].motion.0, after[k].1 - bodies[k].motion.1);
+        let impulse = change(1).0 * bodies[1].mass_kg;
+        let turned = change(1).1 * body.inertia - other_lever(&of_pair, &body).cross(&impulse);
+        prop_assert!(turned.norm() < 1e-9 * (1.0 + impulse.norm() * body.radius), "{turned:?}");
     }
 
     /// Mirrored normals and equal limits: the rock goes straight on, with what both have left, however steeply it strikes them and however elastic they are.
