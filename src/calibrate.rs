@@ -21,6 +21,7 @@ mod worth;
 
 pub use finalists::CalibrationStage;
 pub use fitted::fitted_scene;
+pub(crate) use own::{OwnPlaces, ThrownFrom, place_of};
 pub use told::Told;
 pub use worth::SiteMeasure;
 

@@ -40,8 +40,8 @@ pub use barriers::{
 pub use design::{Design, Rule};
 pub use difference::{Difference, Reading, Values, WeightedCount};
 pub use lines::{
-    ClassReach, CrossingRow, Line, LineFloor, LineInfo, LineQuantity, LineSummary, by_rock,
-    classes_without_arrival,
+    ClassReach, CrossingRow, Line, LineFloor, LineInfo, LineQuantity, LineSummary, SilentClasses,
+    by_rock,
 };
 pub use maps::{INTENSITY_J, Layer, MapFrame, MapState, Maps};
 pub use observed::{
@@ -249,9 +249,18 @@ impl Hazard {
 
     /// Rocks that ended so, as a share of all releases.
     pub fn ended(&self, stop: StopKind) -> Proportion {
+        self.ended_among(stop, |_| true)
+    }
+
+    /// The same as a share of the rocks that were released, as shares at lines and on maps are.
+    pub fn ended_of_released(&self, stop: StopKind) -> Proportion {
+        self.ended_among(stop, StopKind::is_released)
+    }
+
+    fn ended_among(&self, stop: StopKind, is_one: impl Fn(StopKind) -> bool + Copy) -> Proportion {
         let count = self.stops.get(&stop).map_or(0, EndCounts::count);
-        match self.weights_among(|_| true).filter(|weights| !weights.are_equal()) {
-            None => Proportion::new(count, self.rocks()),
+        match self.weights_among(is_one).filter(|weights| !weights.are_equal()) {
+            None => Proportion::new(count, self.by_stratum(is_one).iter().sum()),
             Some(weights) => {
                 let strata = self.stops.get(&stop).map_or(&[][..], |ended| &ended.0);
                 let each = strata.iter().enumerate().map(|(at, count)| (at as u16, *count));

@@ -8,10 +8,10 @@ use crate::math;
 const SAME_PLACE_M: f64 = 0.1;
 
 /// A place of release (m), and the block that was thrown from it, if it is known.
-pub(super) type ThrownFrom<'a> = ([f64; 2], Option<&'a str>);
+pub(crate) type ThrownFrom<'a> = ([f64; 2], Option<&'a str>);
 
 /// Places of release that measured ends and releases have in common.
-pub(super) struct OwnPlaces {
+pub(crate) struct OwnPlaces {
     /// Place of each measured end.
     pub(super) of_end: Vec<usize>,
     /// Place of each release, in turn; none where nothing was measured.
@@ -21,14 +21,13 @@ pub(super) struct OwnPlaces {
 impl OwnPlaces {
     /// None unless every measured end was released from one of the places. Where both sides name their blocks, a place is
     /// common to throws of one block only: blocks roll unlike.
-    pub(super) fn of(
+    pub(crate) fn of(
         measured: &[ObservedPath],
         blocks: &[String],
         places: &[ThrownFrom],
     ) -> Option<Self> {
         let is_same = |(one, its): &ThrownFrom, (other, others): &ThrownFrom| {
-            let is_near = math::hypot(one[0] - other[0], one[1] - other[1]) <= SAME_PLACE_M;
-            is_near && (its.is_none() || others.is_none() || its == others)
+            is_near(one, other) && (its.is_none() || others.is_none() || its == others)
         };
         let ends = measured.iter().enumerate();
         let ends: Vec<ThrownFrom> =
@@ -46,10 +45,37 @@ impl OwnPlaces {
         self.of_release[index % self.of_release.len()]
     }
 
+    /// What computed ways weigh beside some rows of the measured ends, each with its place and what it stands for: those from the place of
+    /// one weigh as much as it, all together, and those from other places nothing.
+    pub(crate) fn weights(&self, rows: &[usize], computed: &[(Option<usize>, f64)]) -> Vec<f64> {
+        let mut counts = vec![[0.0, 0.0]; self.of_end.len()];
+        for &row in rows {
+            counts[self.of_end[row]][0] += 1.0;
+        }
+        for (place, weight) in computed {
+            if let Some(place) = place {
+                counts[*place][1] += weight;
+            }
+        }
+        let weight = |(place, weight): &(Option<usize>, f64)| {
+            place.map_or(0.0, |place| weight * counts[place][0] / counts[place][1])
+        };
+        computed.iter().map(weight).collect()
+    }
+
     /// How many places the releases take in turn.
     pub(super) fn in_turn(&self) -> usize {
         self.of_release.len()
     }
+}
+
+/// The place of the measured ends that a way from there (m) shares, if it does one.
+pub(crate) fn place_of(measured: &[ObservedPath], start_m: &[f64; 2]) -> Option<usize> {
+    measured.iter().position(|end| is_near(&end.start_m, start_m))
+}
+
+fn is_near(one: &[f64; 2], other: &[f64; 2]) -> bool {
+    math::hypot(one[0] - other[0], one[1] - other[1]) <= SAME_PLACE_M
 }
 
 #[cfg(test)]

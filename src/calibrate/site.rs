@@ -236,16 +236,10 @@ impl CalibrationSite {
         let Some(own) = &self.own else {
             return computed.ways.iter().map(|(_, way)| (*way, 1.0)).collect();
         };
-        let mut counts = vec![[0.0, 0.0]; self.measured.len()];
-        for &row in rows {
-            counts[own.of_end[row]][0] += 1.0;
-        }
-        let places = || computed.ways.iter().map(|(index, _)| own.of_release(*index));
-        places().flatten().for_each(|place| counts[place][1] += 1.0);
-        let weight =
-            |place: Option<usize>| place.map_or(0.0, |place| counts[place][0] / counts[place][1]);
-        let ways = computed.ways.iter().zip(places());
-        ways.map(|((_, way), place)| (*way, weight(place))).collect()
+        let places: Vec<_> =
+            computed.ways.iter().map(|(index, _)| (own.of_release(*index), 1.0)).collect();
+        let ways = computed.ways.iter().map(|(_, way)| *way);
+        ways.zip(own.weights(rows, &places)).collect()
     }
 
     /// Distance of some measured ends from the computed ones, times their number: the energy distance (m), or that of

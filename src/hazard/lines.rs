@@ -2,7 +2,7 @@
 
 mod by_class;
 
-pub use by_class::{ClassReach, classes_without_arrival};
+pub use by_class::{ClassReach, SilentClasses};
 
 use super::proportion::Proportion;
 use super::rate::{share_if_any, share_up_to};

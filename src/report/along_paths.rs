@@ -37,7 +37,7 @@ struct Chosen<'a> {
     path: &'a Path,
 }
 
-/// Of the rocks with a stored path: the one of median runout, the one with most energy, the one that came farthest.
+/// Of the rocks with a stored path: the one whose runout is nearest to the median of all rocks, the one with most energy, the one that came farthest.
 fn chosen(report: &Report) -> Vec<Chosen<'_>> {
     let with_path = report.paths.iter().filter(|path| path.points.len() > 2);
     let mut rocks: Vec<(&ReleaseEnd, &Path)> =
@@ -46,7 +46,14 @@ fn chosen(report: &Report) -> Vec<Chosen<'_>> {
         fall.runout_m.is_finite() && fall.max_speed_m_s > 0.0 && fall.max_total_j.is_finite()
     });
     rocks.sort_by(|a, b| a.0.runout_m.total_cmp(&b.0.runout_m));
-    let middle = rocks.get(rocks.len() / 2).copied();
+    let mut runouts = report.quantiles.get(&ReportQuantity::Runout).into_iter().flatten();
+    let middle = match runouts.find(|one| (one.probability - 0.5).abs() < 1e-9) {
+        Some(median) => {
+            let off = |rock: &(&ReleaseEnd, &Path)| (rock.0.runout_m - median.at.value).abs();
+            rocks.iter().copied().min_by(|a, b| off(a).total_cmp(&off(b)))
+        }
+        None => rocks.get(rocks.len() / 2).copied(),
+    };
     let strongest =
         rocks.iter().copied().max_by(|a, b| a.0.max_total_j.total_cmp(&b.0.max_total_j));
     let words = report.words();

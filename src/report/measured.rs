@@ -21,6 +21,9 @@ const LEFT_PX: f64 = 66.0;
 /// What is said more where computed rocks weigh what they stand for.
 const WEIGHED: &str = "Computed rocks weigh what they stand for, measured ones all the same; the limit is that of as many \
     computed rocks of equal weight as would know as much.";
+/// What is said more where they are those from the places of the measured ends.
+const OWN_PLACES: &str = "Each measured end is compared with the computed rocks from its own place of release: those of a place weigh as much together as the ends \
+    measured there.";
 /// What is said more where computed rocks are not compared.
 const NOT_COMPARED: &str = "{n} computed rocks are not compared: their runout is less than least_runout_m of [calibrate], and a \
     list of throws holds none that stayed where it was set down.";
@@ -113,7 +116,8 @@ pub(super) fn worth(observed: &Observed, words: &Words) -> String {
 
 /// What caption and table say more where computed rocks weigh what they stand for; else nothing.
 pub(super) fn weighing(observed: &Observed, words: &Words) -> String {
-    let said = observed.weights.as_ref().map(|_| format!(" {}", words.say(WEIGHED)));
+    let weighed = if observed.from_own_places { OWN_PLACES } else { WEIGHED };
+    let said = observed.weights.as_ref().map(|_| format!(" {}", words.say(weighed)));
     said.unwrap_or_default()
 }
 

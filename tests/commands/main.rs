@@ -42,6 +42,7 @@ mod full_disk;
 mod kill;
 mod language;
 mod library;
+mod own_places;
 mod pages;
 mod rust_version;
 mod table_sizes;

@@ -6,10 +6,7 @@ use super::super::words::{Words, fill};
 use super::design::{design as of_rule, has_design, with_design_if_any};
 use super::lines::{of_share, shown};
 use super::{energy_unit_of, of_percentile, percentile_of};
-use crate::hazard::{
-    BarrierSummary, ClassReach, Line, LineQuantity, Proportion, Residual, Statistic,
-    classes_without_arrival,
-};
+use crate::hazard::{BarrierSummary, Line, LineQuantity, Residual, SilentClasses, Statistic};
 use crate::output::Results;
 use crate::report::format::significant;
 
@@ -80,22 +77,17 @@ fn lines(results: &Results, words: &Words, order: &[String]) -> Option<EstimateT
 
 /// A row for each class of which no rock comes to a line: its share is 0 of so many, and the other numbers know nothing of it.
 fn silent(line: &Line, results: &Results, words: &Words) -> Vec<(String, Vec<Option<Estimate>>)> {
-    let classes = line.by_class(results.summary.asked.frequency.as_ref());
-    // where no rock comes at all, the row of the line says so
-    if classes.iter().all(|class| class.reached == 0) {
-        return Vec::new();
-    }
-    let row = |class: ClassReach| {
-        let share = of_share(&Proportion::new(0, class.released));
-        let volumes = class.volume_m3.map_or(String::new(), |[low, high]| {
+    let row = |classes: SilentClasses| {
+        let volumes = classes.volume_m3.map_or(String::new(), |[low, high]| {
             let [low, high] = [low, high].map(|volume| significant(volume, 2));
             if low == high { format!(", {low} m³") } else { format!(", {low}–{high} m³") }
         });
-        let (name, n, source) = (&line.info.name, class.released, class.source);
+        let (name, n, source) = (&line.info.name, classes.reach.of, classes.source);
         let name = words.say(&format!("{name}: 0 of {n} rocks of {source}{volumes}"));
-        (name, vec![Some(percent(share)), None, None, None, None])
+        (name, vec![Some(percent(of_share(&classes.reach))), None, None, None, None])
     };
-    classes_without_arrival(&classes).into_iter().map(row).collect()
+    let silent = line.silent(results.summary.asked.frequency.as_ref());
+    silent.into_iter().map(row).collect()
 }
 
 fn behind(at: &Residual, words: &Words, size: f64) -> (String, Vec<Option<Estimate>>) {

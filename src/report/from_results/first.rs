@@ -17,7 +17,7 @@ pub(in crate::report) fn warnings_first(hazard: &Hazard, words: &Words) -> Vec<S
     let weighted = hazard.weights().map(|_| words.say(by_frequency::SHARE));
     let some_rocks = weighted.unwrap_or_else(|| own.some_rocks.to_owned());
     let said = |(kind, what, remedy): (StopKind, &str, &str)| {
-        let share = hazard.ended(kind);
+        let share = hazard.ended_of_released(kind);
         let count = |n: usize| format::decimal(n as f64, 0);
         let percent = format::percent_of_part(share.share, usize::from(share.share < 0.1));
         let (n, of) = (count(share.count), count(share.of));

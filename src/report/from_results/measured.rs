@@ -5,11 +5,13 @@ use super::super::measured::{mean_of, not_compared, weighing, worth};
 use super::super::model::{About, Estimate, EstimateTable, Observed};
 use super::super::words::{Words, fill};
 use super::estimate;
-use crate::calibrate::{Calibration, CalibrationTrial, SiteMeasure, Told};
+use crate::calibrate::{
+    Calibration, CalibrationTrial, OwnPlaces, SiteMeasure, ThrownFrom, Told, place_of,
+};
 use crate::error::Result;
 use crate::hazard::{Agreement, EndSpread, ObservedPath};
 use crate::math;
-use crate::output::{Results, read_calibration};
+use crate::output::{ReleaseZone, Results, read_calibration};
 
 /// Columns of both tables.
 fn columns(words: &Words) -> Vec<String> {
@@ -45,7 +47,9 @@ pub(super) fn observed(results: &Results) -> Result<Option<Observed>> {
             weights.extend(standing.as_ref().map(|all| all.of_release(row.index)));
         }
     }
-    let weights = standing.is_some().then_some(weights);
+    let own = own_weights(results, (&measured, &computed), &weights);
+    let from_own_places = own.is_some();
+    let weights = own.or(standing.is_some().then_some(weights));
     let agreement = match &weights {
         None => Agreement::of(&measured, &computed),
         Some(weights) => {
@@ -56,8 +60,29 @@ pub(super) fn observed(results: &Results) -> Result<Option<Observed>> {
     Ok(agreement.map(|found| {
         let worth = results.summary.observed_worth.unwrap_or(measured.len() as f64);
         let agreement = Agreement { stayed, ks_limit: found.ks_limit_worth(worth), ..found };
-        Observed { measured, computed, weights, worth, agreement }
+        Observed { measured, computed, weights, from_own_places, worth, agreement }
     }))
+}
+
+/// What computed ways weigh beside the measured ones where every one of these was released from a place of the scene: as in a calibration each is compared with
+/// the rocks from its own place. None where the scene releases elsewhere; `standing` is what rocks stand for, if they do not all weigh the same.
+fn own_weights(
+    results: &Results,
+    (measured, computed): (&[ObservedPath], &[ObservedPath]),
+    standing: &[f64],
+) -> Option<Vec<f64>> {
+    let mut places: Vec<ThrownFrom> = Vec::new();
+    for zone in results.summary.site.zones() {
+        let ReleaseZone::Points(points) = zone else { return None };
+        places.extend(points.iter().map(|point| (*point, None)));
+    }
+    let own = OwnPlaces::of(measured, &[], &places)?;
+    let weight = |k: usize| standing.get(k).copied().unwrap_or(1.0);
+    let ways = computed.iter().enumerate();
+    let of_places: Vec<_> =
+        ways.map(|(k, way)| (place_of(measured, &way.start_m), weight(k))).collect();
+    let rows: Vec<usize> = (0..measured.len()).collect();
+    Some(own.weights(&rows, &of_places))
 }
 
 /// What must be known before anything else where the computed ends are not those that were measured.

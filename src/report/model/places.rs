@@ -247,6 +247,8 @@ pub struct Observed {
     pub computed: Vec<ObservedPath>,
     /// What each of these stands for (–); none where all weigh the same.
     pub weights: Option<Vec<f64>>,
+    /// Whether they weigh as many as were measured at their own places of release.
+    pub from_own_places: bool,
     /// Independent ends that the measured ones are worth (–).
     pub worth: f64,
     /// How well they agree; the limit is that of so many ends.

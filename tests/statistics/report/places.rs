@@ -149,7 +149,7 @@ fn observed() -> Observed {
         ((0..40).map(way).collect(), (5..300).map(way).collect());
     let agreement = Agreement::of(&measured, &computed).expect("neither is empty");
     let worth = measured.len() as f64;
-    Observed { measured, computed, weights: None, worth, agreement }
+    Observed { measured, computed, weights: None, from_own_places: false, worth, agreement }
 }
 
 /// A site with all of it.

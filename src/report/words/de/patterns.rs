@@ -96,6 +96,10 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "Computed rocks weigh what they stand for, measured ones all the same; the limit is that of as many computed rocks of equal weight as would know as much.",
         "Gerechnete Blöcke wiegen, wofür sie stehen, gemessene alle gleich viel; die Grenze ist die von so vielen gerechneten Blöcken gleichen Gewichts, wie gleich viel wüssten.",
     ),
+    (
+        "Each measured end is compared with the computed rocks from its own place of release: those of a place weigh as much together as the ends measured there.",
+        "Jeder gemessene Endpunkt ist mit den gerechneten Blöcken von seinem eigenen Abgangsort verglichen: jene eines Ortes wiegen zusammen so viel wie die dort gemessenen Endpunkte.",
+    ),
     // Of rocks that weigh what they stand for
     (
         "{share} of the rocks by frequency ({n} of {of} computed)",

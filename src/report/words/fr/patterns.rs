@@ -96,6 +96,10 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "Computed rocks weigh what they stand for, measured ones all the same; the limit is that of as many computed rocks of equal weight as would know as much.",
         "Les blocs calculés pèsent ce qu’ils représentent, les mesurés tous autant\u{a0}; la limite est celle d’autant de blocs calculés de même poids qu’il en faudrait pour en savoir autant.",
     ),
+    (
+        "Each measured end is compared with the computed rocks from its own place of release: those of a place weigh as much together as the ends measured there.",
+        "Chaque arrêt mesuré est comparé aux blocs calculés depuis son propre lieu de départ\u{a0}: ceux d’un lieu pèsent ensemble autant que les arrêts qui y ont été mesurés.",
+    ),
     // Of rocks that weigh what they stand for
     (
         "{share} of the rocks by frequency ({n} of {of} computed)",

@@ -96,6 +96,10 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "Computed rocks weigh what they stand for, measured ones all the same; the limit is that of as many computed rocks of equal weight as would know as much.",
         "I massi calcolati pesano ciò che rappresentano, quelli misurati tutti uguale; il limite è quello di tanti massi calcolati di ugual peso quanti ne saprebbero altrettanto.",
     ),
+    (
+        "Each measured end is compared with the computed rocks from its own place of release: those of a place weigh as much together as the ends measured there.",
+        "Ogni arresto misurato è confrontato con i massi calcolati dal proprio luogo di partenza: quelli di un luogo pesano insieme quanto gli arresti lì misurati.",
+    ),
     // Of rocks that weigh what they stand for
     (
         "{share} of the rocks by frequency ({n} of {of} computed)",
