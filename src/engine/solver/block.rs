@@ -40,6 +40,7 @@ use nalgebra::{Matrix3, Rotation3};
 use rolling::Turning;
 use slip::slip_m_s;
 use solve::{BlockContact, Mass, SWEEPS, rigid_turning, solve};
+pub(crate) use springs::BlockHistory;
 use springs::{Clamp, Springs};
 
 /// Gaps no wider than this touch (–, relative to the radius of the sphere of equal volume).
