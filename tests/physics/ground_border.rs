@@ -120,7 +120,7 @@ fn a_valley_between_two_grounds_keeps_speed_along_and_energy() {
 
 /// Blocks in a blunt valley of a soft and a hard side: where a corner's patches on both meet or part, they have the springs of the one on which it was
 /// pressed first, as those of spheres have, and elastic blocks keep what they had. A patch that was born pressed in took the springs of its own
-/// side: up to twice the energy of the fall came out of nothing.
+/// side: up to three times the energy of the fall came out of nothing.
 #[test]
 fn blocks_keep_their_energy_in_a_fold_of_two_grounds() {
     let side = |slope: f64, far: f64| {

@@ -164,7 +164,9 @@ fn plate(scheme: &str, (stiffness, ratio): (&str, f64)) -> (Vec3, String) {
             "velocity_m_s = [2.0, -1.0, 0.0]\nspin_rad_s = [1.0, -0.5, 0.7]",
         );
     let fall = |longest_s: f64| {
-        let text = format!("{text}[solver]\nscheme = \"{scheme}\"\nlongest_s = {longest_s}\n");
+        let text = format!(
+            "{text}[solver]\nscheme = \"{scheme}\"\nlongest_s = {longest_s}\n[record]\nimpacts = true\n"
+        );
         let scene = Scene::parse(&text, Path::new("tests/bad/scene.toml")).unwrap();
         let plan = Plan::compile(&scene, plane()).unwrap();
         let said = plan.entries_for(1).into_iter().find(|entry| entry.name == "impacts of blocks");
@@ -189,5 +191,5 @@ fn the_ratio_decides_in_the_rigid_limit_of_a_block_too() {
         assert!(said.contains("by the ratio of shear to normal stiffness"), "{said}");
         one.z
     });
-    assert!(found[1] - found[0] > 0.3 && found[2] - found[1] > 0.3, "{found:?}");
+    assert!(found[1] - found[0] > 0.2 && found[2] - found[1] > 0.5, "{found:?}");
 }

@@ -66,7 +66,7 @@ impl Roll<'_> {
             self.begin_impact(*k, to_facet_m_s, (until_s, &held_j));
         }
         if to_facet_m_s.is_some() || !fastest.captured {
-            let facet = facet.map(|(turn, _)| (turn, fastest));
+            let facet = facet.map(|(turn, _)| (turn, &fastest));
             self.dig_and_break(&blows, (&begun, facet), until_s);
         }
         self.footing.blows = blows;
@@ -100,7 +100,7 @@ impl Roll<'_> {
     }
 
     /// Gives the contacts that have begun the dashpots of the speed that soil has left them, and of the facet that the fastest of them meets.
-    fn strike_anew(&mut self, begun: &[usize], facet: Option<(Rotation3<f64>, BlockHistory)>) {
+    fn strike_anew(&mut self, begun: &[usize], facet: Option<(Rotation3<f64>, &BlockHistory)>) {
         let to_facet_m_s = facet
             .map(|(turn, one)| self.meeting(one.triangle, &one.n, &one.point).approach_m_s(&turn));
         for k in begun {
@@ -117,7 +117,7 @@ impl Roll<'_> {
     fn dig_and_break(
         &mut self,
         blows: &[GroundBlow],
-        (begun, facet): (&[usize], Option<(Rotation3<f64>, BlockHistory)>),
+        (begun, facet): (&[usize], Option<(Rotation3<f64>, &BlockHistory)>),
         until_s: f64,
     ) {
         self.dig(blows);
