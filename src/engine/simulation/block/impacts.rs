@@ -61,7 +61,9 @@ impl Roll<'_> {
             blows.push(self.blow_on((one.triangle, one.n), one.approach_m_s));
         }
         let histories = &self.footing.springs.histories;
-        let begun: Vec<usize> = (0..histories.len()).filter(|k| !histories[*k].announced).collect();
+        let mut begun = std::mem::take(&mut self.footing.begun);
+        begun.clear();
+        begun.extend((0..histories.len()).filter(|k| !histories[*k].announced));
         for k in &begun {
             self.begin_impact(*k, to_facet_m_s, (until_s, &held_j));
         }
@@ -69,7 +71,7 @@ impl Roll<'_> {
             let facet = facet.map(|(turn, _)| (turn, &fastest));
             self.dig_and_break(&blows, (&begun, facet), until_s);
         }
-        self.footing.blows = blows;
+        (self.footing.blows, self.footing.begun) = (blows, begun);
         // what is captured is turned too: the facet takes what it takes
         if let Some((turn, _)) = facet {
             self.footing.turn_against(self.block, &mut self.moving, (turn, until_s));
