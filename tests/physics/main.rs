@@ -36,6 +36,7 @@ mod restitution_of_impacts;
 mod rigid_blows;
 mod rigid_heap;
 mod roughness;
+mod scar_leap;
 mod schemes_agree;
 mod sheets;
 mod soil;

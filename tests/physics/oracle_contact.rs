@@ -37,9 +37,8 @@ fn minima(terrain: &Terrain, c: &Vec3, reach: f64) -> Vec<(f64, Vec3)> {
     found
 }
 
-/// `Σ max(0, Σ_σ w pen²)` over the connected parts of the mesh inside a ball, by the formula and nothing else, and how many
-/// parts there are. Parts are found by spreading from triangle to triangle over corners that both have.
-fn patches(terrain: &Terrain, c: &Vec3, radius: f64) -> (f64, usize) {
+/// `Σ max(0, Σ_σ w pen²)` over the connected parts of the mesh inside a ball, by the formula and nothing else. Parts are found by spreading from triangle to triangle over corners that both have.
+fn patches(terrain: &Terrain, c: &Vec3, radius: f64) -> f64 {
     let pen2 = |p: Vec3| (radius - (c - p).norm()).max(0.0).powi(2);
     let on_segment = |a: Vec3, b: Vec3| {
         let s = (c - a).dot(&(b - a)) / (b - a).norm_squared();
@@ -99,7 +98,7 @@ fn patches(terrain: &Terrain, c: &Vec3, radius: f64) -> (f64, usize) {
             }
         }
     }
-    (sums.values().map(|sum| sum.max(0.0)).sum(), sums.len())
+    sums.values().map(|sum| sum.max(0.0)).sum()
 }
 
 /// Every touch is a minimum and every minimum a touch, wherever within the margin the features were collected.
@@ -131,19 +130,17 @@ fn touches_are_the_local_minima_of_the_distance() {
                 if touches.iter().any(|touch| touch.gain2 != 1.0)
                     || touches.len() < right.len().min(MOST)
                 {
-                    // pressed into a fold: every connected part of the mesh in the ball counts once
+                    // pressed into a fold: every connected part of the mesh in the ball counts once, however many they are
                     merged += 1;
-                    let (energy, patches) = patches(&terrain, &centre, radius);
-                    if patches <= MOST {
-                        let found: f64 = touches
-                            .iter()
-                            .map(|touch| touch.gain2 * (radius - touch.distance_m).powi(2))
-                            .sum();
-                        assert!(
-                            (found - energy).abs() <= 1e-9 * radius * radius,
-                            "{name}: {found:e} {energy:e}"
-                        );
-                    }
+                    let energy = patches(&terrain, &centre, radius);
+                    let found: f64 = touches
+                        .iter()
+                        .map(|touch| touch.gain2 * (radius - touch.distance_m).powi(2))
+                        .sum();
+                    assert!(
+                        (found - energy).abs() <= 1e-9 * radius * radius,
+                        "{name}: {found:e} {energy:e}"
+                    );
                     continue;
                 }
                 assert_eq!(touches.len(), right.len().min(MOST), "{name}: {touches:?} {right:?}");
@@ -157,7 +154,7 @@ fn touches_are_the_local_minima_of_the_distance() {
             }
         }
     }
-    assert!(asked > 9000 && most > MOST && merged > 500, "{asked} {most} {merged}");
+    assert!(asked > 9000 && most > 12 && merged > 500, "{asked} {most} {merged}");
 }
 
 /// A sphere over one plane, wherever it stands on it: exactly above vertices, edges and their middles it has one contact,

@@ -1,13 +1,19 @@
 //! The tangential answer of a ground: its key, and what it makes of the slip of an impact that sticks.
-#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test fails by panicking and prints its table"
+)]
 
 use crate::common;
 
 use common::{Case, ROWS, terrain};
 use rockfall::ground::{Damping, Ground, tangential_restitution};
+use rockfall::plan::Plan;
 use rockfall::release::Releases;
 use rockfall::rock::Vec3;
 use rockfall::scene::Scene;
+use rockfall::simulation::{Scratch, simulate_release};
 use rockfall::terrain::Terrain;
 use std::path::Path;
 
@@ -127,4 +133,63 @@ fn the_ratio_gives_the_shear_spring() {
     let fixed = SCENE.replace("{ uniform = [1e8, 2e9] }", "1e8");
     let old = fixed.replace("tangential_ratio = 0.4", "shear_stiffness_n_m = 4e7");
     assert_eq!(grounds(&read(&fixed)), grounds(&read(&old)));
+}
+
+/// A plate of 5:4:1 after its first touch, a corner's: its fall up to a millisecond later, and what the plan says of impacts of blocks.
+fn plate(scheme: &str, (stiffness, ratio): (&str, f64)) -> (Vec3, String) {
+    let plane = || {
+        terrain(vec![[
+            Vec3::new(-50.0, -50.0, 0.0),
+            Vec3::new(50.0, -50.0, 0.0),
+            Vec3::new(0.0, 80.0, 0.0),
+        ]])
+    };
+    let shape = "[[rocks.shapes]]\nkind = \"box\"\naxes = [5.0, 4.0, 1.0]\ncorner_radius = 0.02\n";
+    let text = SCENE
+        .replace("{ uniform = [1e8, 2e9] }", stiffness)
+        .replace("tangential_ratio = 0.4", &format!("tangential_ratio = {ratio}"))
+        .replace(
+            "friction_angle_deg = 30.0\nrestitution = 0.4",
+            "friction_angle_deg = 45.0\nrestitution = 0.9",
+        )
+        .replace(
+            "[release]\ncount = 10\n",
+            &format!(
+                "{shape}[release]\ncount = 1\norientation = [0.8825, 0.4263, 0.1789, 0.0864]\n"
+            ),
+        )
+        .replace("[[5.0, 5.0]]", "[[0.0, 0.0]]")
+        .replace(
+            "velocity_m_s = [0.0, 0.0, 0.0]\nspin_rad_s = [0.0, 0.0, 0.0]",
+            "velocity_m_s = [2.0, -1.0, 0.0]\nspin_rad_s = [1.0, -0.5, 0.7]",
+        );
+    let fall = |longest_s: f64| {
+        let text = format!(
+            "{text}[solver]\nscheme = \"{scheme}\"\nlongest_s = {longest_s}\n[record]\nimpacts = true\n"
+        );
+        let scene = Scene::parse(&text, Path::new("tests/bad/scene.toml")).unwrap();
+        let plan = Plan::compile(&scene, plane()).unwrap();
+        let said = plan.entries_for(1).into_iter().find(|entry| entry.name == "impacts of blocks");
+        (simulate_release(&plan, 0, None, &mut Scratch::default()).unwrap(), said.unwrap().said)
+    };
+    let first_s = fall(1.0).0.impacts[0].time_s;
+    let (run, said) = fall(first_s + 1e-3);
+    (run.end.velocity_m_s, said)
+}
+
+/// A corner of a block that sticks is thrown back as its springs have it: with `rigid`, their limit, the ratio of shear to normal stiffness decides as with
+/// springs, and how stiff they are does not. The plan said that stiffness plays no part and nothing is given back along the surface.
+#[test]
+fn the_ratio_decides_in_the_rigid_limit_of_a_block_too() {
+    let found = [0.01, 0.25, 5.0].map(|ratio| {
+        let [(one, said), (other, _)] =
+            ["1e12", "1e13"].map(|stiffness| plate("rigid", (stiffness, ratio)));
+        let (springs, _) = plate("reference", ("1e13", ratio));
+        println!("ratio {ratio}: {one:?} springs {springs:?}");
+        assert!((one - other).norm() < 1e-9, "ratio {ratio}: {one:?} {other:?}");
+        assert!((one - springs).norm() < 0.03, "ratio {ratio}: {one:?} {springs:?}");
+        assert!(said.contains("by the ratio of shear to normal stiffness"), "{said}");
+        one.z
+    });
+    assert!(found[1] - found[0] > 0.2 && found[2] - found[1] > 0.5, "{found:?}");
 }

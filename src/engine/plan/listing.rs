@@ -256,7 +256,7 @@ impl PlanList {
         self.line("impacts of blocks", if step.scheme.has_springs() {
             "contact by contact, each with springs of its own: its restitution is that of the ground for the mass that it moves"
         } else {
-            "contact by contact: restitution along the normal, none along the surface; normal and shear stiffness play no part"
+            "contact by contact, as springs have it in the limit of great stiffness: restitution along the normal for the mass that a contact moves, and along the surface by the ratio of shear to normal stiffness; how stiff they are plays no part"
         });
         if let Some(text) = settings::block_impacts(step, rolls) {
             self.line("explicit stages", text);

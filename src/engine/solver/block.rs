@@ -40,6 +40,7 @@ use nalgebra::{Matrix3, Rotation3};
 use rolling::Turning;
 use slip::slip_m_s;
 use solve::{BlockContact, Mass, SWEEPS, rigid_turning, solve};
+pub(crate) use springs::BlockHistory;
 use springs::{Clamp, Springs};
 
 /// Gaps no wider than this touch (–, relative to the radius of the sphere of equal volume).
@@ -87,8 +88,9 @@ pub(crate) struct Footing {
     wanted: Vec<(BlockContact, f64)>,
     /// Touches set aside for a moment.
     pub(crate) aside: Vec<BlockTouch>,
-    /// What strikes grounds at one instant.
+    /// What strikes grounds at one instant, and contacts on springs that begin then, by their memories.
     pub(crate) blows: Vec<GroundBlow>,
+    pub(crate) begun: Vec<usize>,
     /// Springs of its contacts, in the schemes that have them, and which belongs to each of the last look.
     pub(crate) springs: Springs,
     of_touch: Vec<Option<usize>>,

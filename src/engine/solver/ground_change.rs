@@ -16,12 +16,28 @@ use crate::contact::TOUCH;
 use crate::contact::history::{ContactHistory, SAME_GRIP};
 use crate::rock::Vec3;
 
-/// A contact that is so deep when it comes up is part of one that was there, as patches part (–, relative to R).
+/// A contact that is so deep when it comes up is part of one that was there, as patches part (–, relative to the radius of the ball).
 const PRESSED_AT_BIRTH: f64 = 1e-5;
 
 /// What lasting contact loses to softer springs at most, of motion and of the weight lifted by the radius (–): what weight presses in is less. A contact that
 /// is pressed harder, as in a slow impact, waits until it is let out.
 const LOSES: f64 = 1e-3;
+
+/// Whether a patch of a ball of this radius (m) that comes up so deep (m) is part of one that was there.
+pub(super) fn comes_up_pressed(pressed_m: f64, radius_m: f64) -> bool {
+    pressed_m > PRESSED_AT_BIRTH * radius_m
+}
+
+/// The springs, by a triangle of their ground, of the patch that one with this normal parts from or meets at a blunt fold: of those that are pressed,
+/// told by normal and springs, the one on the likest side, if it is one patch with it.
+pub(super) fn springs_parted_from(
+    normal: &Vec3,
+    pressed: impl Iterator<Item = (Vec3, u32)>,
+) -> Option<u32> {
+    let along = |(n, _): &(Vec3, u32)| n.dot(normal);
+    let nearest = pressed.max_by(|one, other| along(one).total_cmp(&along(other)));
+    nearest.filter(|one| along(one) > SAME_GRIP).map(|(_, springs_of)| springs_of)
+}
 
 /// What a rock does that comes on stiffer springs under the load of its softer ones.
 struct Rise {
@@ -108,21 +124,19 @@ impl ContactState {
     /// one on a like side: at a blunt fold their patches meet, and only of equal springs does the energy stay what it was.
     pub(super) fn part_springs(&mut self, world: &ContactEnvironment, place: usize, k: usize) {
         let touch = &self.touches[k];
-        let pressed_m = world.body.radius - touch.distance_m;
-        let is_parted = pressed_m > PRESSED_AT_BIRTH * world.body.radius;
-        let rebounds = self.is_rebounding();
-        if world.laws.len() == 1 || !(is_parted || rebounds) {
+        let (radius_m, rebounds) = (world.body.radius, self.is_rebounding());
+        let pressed_m = radius_m - touch.distance_m;
+        if world.laws.len() == 1 || !(rebounds || comes_up_pressed(pressed_m, radius_m)) {
             return;
         }
-        let along = |history: &&ContactHistory| history.n.dot(&touch.normal);
         let is_tree = world.terrain.is_tree(touch.triangle);
         let pressed = self.histories[..place]
             .iter()
             .filter(|one| one.closed || rebounds)
-            .filter(|one| world.terrain.is_tree(one.triangle) == is_tree);
-        let nearest = pressed.max_by(|a, b| along(a).total_cmp(&along(b)));
-        if let Some(one) = nearest.filter(|one| along(one) > SAME_GRIP) {
-            self.histories[place].springs_of = one.springs_of;
+            .filter(|one| world.terrain.is_tree(one.triangle) == is_tree)
+            .map(|one| (one.n, one.springs_of));
+        if let Some(springs_of) = springs_parted_from(&touch.normal, pressed) {
+            self.histories[place].springs_of = springs_of;
         }
     }
 

@@ -7,9 +7,9 @@
 //!
 //! - at the touch: the way in, straight along the velocity from the surface to the depth `d`;
 //! - while contact lasts: the way along the plane, at the depth `d`, half of that of each step before it and the rest after it;
-//! - when contact ends: the way out, straight again, and the scar is left; or, where the speed along the normal is too small to rise
-//!   through the soil against gravity, nothing yet: the scar goes on;
-//! - at the end of a flight in a scar: the way flown, as deep below the surface as gravity lets a hop of so long rise over its chord.
+//! - when contact ends: the way out, straight again, and the scar is left; or, where what is left of the speed along the normal is too small to
+//!   rise through the soil against gravity, the way up to where it is used up: the scar goes on;
+//! - at the end of a flight in a scar: the rest of the way flown, as deep below the surface as gravity lets a hop of so long rise over its chord.
 //!
 //! The scar is in the soil on which the rock stands: on another soil it is as deep as the same impact digs there, and on hard ground it ends.
 //!
@@ -20,9 +20,11 @@
 //! `d` goes to 0 with the normal speed, and with it all drag: a rock that comes to lie or to roll on gently is in no scar. A further impact in
 //! a scar counts where it digs deeper.
 
+mod way_out;
+
 use super::body::Body;
 use super::environment::ContactEnvironment;
-use crate::ground::{Ground, Scar, cut_area_m2, over_unit, swept_m3};
+use crate::ground::{Ground, Scar, cut_area_m2, swept_m3};
 use crate::math;
 use crate::rock::Vec3;
 
@@ -48,8 +50,8 @@ struct Furrow {
     per_m: f64,
     /// Normal of the plane.
     normal: Vec3,
-    /// Way (m) along the plane that has been dragged and was not ploughed after all: it counts for the way flown next.
-    paid_m: f64,
+    /// What has been dragged ahead of the way flown next (–), as the logarithm of the speed: what was not ploughed after all, and the way out.
+    paid: f64,
 }
 
 impl Furrow {
@@ -216,7 +218,7 @@ impl Scars {
         let depth_m = scar.depth_m(body.mass, approach_m_s);
         let drag_per_m3 = scar.drag_per_m3(body.mass);
         let per_m = drag_per_m3 * cut_area_m2(body.radius, depth_m, 0.0);
-        Some(Furrow { approach_m_s, ground, depth_m, drag_per_m3, per_m, normal, paid_m: 0.0 })
+        Some(Furrow { approach_m_s, ground, depth_m, drag_per_m3, per_m, normal, paid: 0.0 })
     }
 
     /// The scar goes on where the rock now stands, or ends.
@@ -299,50 +301,6 @@ impl Scars {
         let share = ends.map_or(1.0, |_| self.pace.share_of_last(self.has_springs));
         let kept = math::exp(-now.per_m * self.pace.end_step(way_m, share));
         ends.map_or(kept, |v| kept * self.leave(body, &(v * kept)))
-    }
-
-    /// The rock's contact ends at a velocity: what it keeps of it on its way out (–). One that is too slow along the normal to climb
-    /// `d` against gravity stays in its scar.
-    pub(crate) fn leave(&mut self, body: &Body, v: &Vec3) -> f64 {
-        let paid_m = std::mem::take(&mut self.pace).paid_m;
-        let Some(now) = &mut self.now else { return 1.0 };
-        now.paid_m = paid_m;
-        let (speed, up) = (v.norm(), now.normal.dot(v));
-        if up <= 0.0 {
-            return 1.0;
-        }
-        let swept = swept_m3(body.radius, now.depth_m, (up / speed).min(1.0));
-        let kept = math::exp((now.per_m * paid_m - now.drag_per_m3 * swept).min(0.0));
-        if (up * kept).powi(2) < 2.0 * now.pull(body) * now.depth_m {
-            return 1.0;
-        }
-        self.now = None;
-        kept
-    }
-
-    /// A flight of so long (s) that ends at a velocity: what the rock keeps of it (–), of the soil that it has flown through. Out of
-    /// the scar, if it has risen over the soil meanwhile.
-    ///
-    /// Over the chord of a flight of `T` it is `g_n t (T − t)/2` high, whatever its speed and wherever it lands.
-    pub(crate) fn fly(&mut self, body: &Body, v: &Vec3, flight_s: f64) -> f64 {
-        let Some(now) = self.now else { return 1.0 };
-        let pull = now.pull(body);
-        let rises_out = flight_s * flight_s - 8.0 * now.depth_m / pull;
-        let is_out = pull <= 0.0 || rises_out > 0.0;
-        // in soil until it is out; the way in again is that of the next impact
-        let until_s = if is_out { 0.5 * (flight_s - rises_out.max(0.0).sqrt()) } else { flight_s };
-        let along = v - body.gravity * (0.5 * flight_s);
-        let cut = |x: f64| {
-            let t = x * until_s;
-            let risen_m = 0.5 * pull * t * (flight_s - t);
-            cut_area_m2(body.radius, now.depth_m - risen_m, 0.0)
-        };
-        let swept = along.norm() * until_s * over_unit(cut);
-        if is_out {
-            self.now = None;
-        }
-        // the end of the contact may be followed by another without a flight
-        math::exp((now.per_m * now.paid_m - now.drag_per_m3 * swept).min(0.0))
     }
 
     /// Longest step along the plane (s) at a speed (m/s): drag acts between steps.

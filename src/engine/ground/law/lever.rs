@@ -28,6 +28,17 @@ impl Law {
         law
     }
 
+    /// The law of a contact that moves so much mass along the surface (kg) of all (kg), with the dashpots of an impact at another normal speed (m/s)
+    /// than it began with: soil has slowed the rock, or it has met a facet. Springs stay.
+    pub(crate) fn struck_anew(&self, approach_m_s: f64, [across, mass_kg]: [f64; 2]) -> Self {
+        let mut law = *self;
+        if let Some(ratio) = law.ratio_at(approach_m_s) {
+            law.damp(ratio);
+            law.shear.c *= (Rock::SLIP_LIGHTNESS * across / mass_kg).sqrt();
+        }
+        law
+    }
+
     /// What an implicit stage of length `h` (s) leaves of a fast motion along the normal (–), of the mass `m_n` that the contact moves:
     /// `1/(1 + h (p_N h + c_N)/m_n)`.
     pub(crate) fn left_by_stage(&self, captured: bool, h: f64) -> f64 {

@@ -5,6 +5,8 @@ use super::super::impacts::MeshEnergy;
 use super::super::rock_in_contact::IMPACT_TIMES;
 use super::{Roll, turned};
 use crate::rock::Vec3;
+use crate::solver::block::BlockHistory;
+use crate::solver::law::capture_m_s;
 use crate::solver::loss::Loss;
 use crate::solver::roughness::Meeting;
 use crate::solver::scar::GroundBlow;
@@ -58,13 +60,18 @@ impl Roll<'_> {
         for one in begin.filter(|history| to_facet_m_s.is_some() || !history.captured) {
             blows.push(self.blow_on((one.triangle, one.n), one.approach_m_s));
         }
-        for k in 0..self.footing.springs.histories.len() {
-            self.begin_impact(k, to_facet_m_s, (until_s, &held_j));
+        let histories = &self.footing.springs.histories;
+        let mut begun = std::mem::take(&mut self.footing.begun);
+        begun.clear();
+        begun.extend((0..histories.len()).filter(|k| !histories[*k].announced));
+        for k in &begun {
+            self.begin_impact(*k, to_facet_m_s, (until_s, &held_j));
         }
         if to_facet_m_s.is_some() || !fastest.captured {
-            self.dig_and_break(&blows, until_s);
+            let facet = facet.map(|(turn, _)| (turn, &fastest));
+            self.dig_and_break(&blows, (&begun, facet), until_s);
         }
-        self.footing.blows = blows;
+        (self.footing.blows, self.footing.begun) = (blows, begun);
         // what is captured is turned too: the facet takes what it takes
         if let Some((turn, _)) = facet {
             self.footing.turn_against(self.block, &mut self.moving, (turn, until_s));
@@ -79,22 +86,47 @@ impl Roll<'_> {
         n: &Vec3,
         point: &Vec3,
     ) -> Option<(Rotation3<f64>, f64)> {
-        let at = |roll: &Self| {
-            let c = roll.moving.pose.centre;
-            Meeting { n: *n, triangle, c, v: roll.moving.at(roll.block, &(point - c)) }
-        };
-        if !self.footing.facets.meet_next(&self.world, &at(self)) {
+        if !self.footing.facets.meet_next(&self.world, &self.meeting(triangle, n, point)) {
             return None;
         }
         self.turn_back();
-        let at = at(self);
+        let at = self.meeting(triangle, n, point);
         let turn = self.footing.facets.struck(&self.world, &at)?;
         Some((turn, at.approach_m_s(&turn)))
     }
 
-    /// What impacts that rebound do to the grounds and to stems.
-    fn dig_and_break(&mut self, blows: &[GroundBlow], until_s: f64) {
+    /// The block as it meets a surface with normal `n` at `point`.
+    fn meeting(&self, triangle: u32, n: &Vec3, point: &Vec3) -> Meeting {
+        let c = self.moving.pose.centre;
+        Meeting { n: *n, triangle, c, v: self.moving.at(self.block, &(point - c)) }
+    }
+
+    /// Gives the contacts that have begun the dashpots of the speed that soil has left them, and of the facet that the fastest of them meets.
+    fn strike_anew(&mut self, begun: &[usize], facet: Option<(Rotation3<f64>, &BlockHistory)>) {
+        let to_facet_m_s = facet
+            .map(|(turn, one)| self.meeting(one.triangle, &one.n, &one.point).approach_m_s(&turn));
+        for k in begun {
+            let one = self.footing.springs.histories[*k];
+            let own_m_s = -one.n.dot(&self.meeting(one.triangle, &one.n, &one.point).v);
+            let approach_m_s = to_facet_m_s.map_or(own_m_s, |facet| facet.max(own_m_s));
+            if !one.captured && approach_m_s >= capture_m_s(&one.law) {
+                self.footing.strike_anew(*k, (self.block, &self.moving), approach_m_s);
+            }
+        }
+    }
+
+    /// What impacts that rebound do to the grounds and to stems; those of contacts that have begun, and the facet that the fastest of them meets.
+    fn dig_and_break(
+        &mut self,
+        blows: &[GroundBlow],
+        (begun, facet): (&[usize], Option<(Rotation3<f64>, &BlockHistory)>),
+        until_s: f64,
+    ) {
         self.dig(blows);
+        // where nothing has changed a contact keeps what it began with
+        if facet.is_some() || self.scars.are_any() {
+            self.strike_anew(begun, facet);
+        }
         if self.break_stems() {
             self.footing.springs.refresh();
         }

@@ -225,8 +225,8 @@ pub(super) const PLAN: &[(&str, &str)] = &[
         "Kontakt für Kontakt, jeder mit eigenen Federn: sein Rückprall ist der des Bodens für die Masse, die er bewegt",
     ),
     (
-        "contact by contact: restitution along the normal, none along the surface; normal and shear stiffness play no part",
-        "Kontakt für Kontakt: Rückprall entlang der Normalen, keiner entlang der Oberfläche; Normal- und Schersteifigkeit spielen keine Rolle",
+        "contact by contact, as springs have it in the limit of great stiffness: restitution along the normal for the mass that a contact moves, and along the surface by the ratio of shear to normal stiffness; how stiff they are plays no part",
+        "Kontakt für Kontakt, wie Federn im Grenzfall hoher Steifigkeit: Rückprall entlang der Normalen für die Masse, die ein Kontakt bewegt, und entlang der Oberfläche nach dem Verhältnis von Scher- zu Normalsteifigkeit; wie steif die Federn sind, spielt keine Rolle",
     ),
     (
         "a block is followed corner by corner and edge by edge: time grows with their number",

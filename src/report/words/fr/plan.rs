@@ -228,8 +228,8 @@ pub(super) const PLAN: &[(&str, &str)] = &[
         "contact par contact, chacun avec ses propres ressorts\u{a0}: sa restitution est celle du sol pour la masse qu’il met en mouvement",
     ),
     (
-        "contact by contact: restitution along the normal, none along the surface; normal and shear stiffness play no part",
-        "contact par contact\u{a0}: restitution selon la normale, aucune le long de la surface\u{a0}; les raideurs normale et de cisaillement n’interviennent pas",
+        "contact by contact, as springs have it in the limit of great stiffness: restitution along the normal for the mass that a contact moves, and along the surface by the ratio of shear to normal stiffness; how stiff they are plays no part",
+        "contact par contact, comme des ressorts à la limite des grandes raideurs\u{a0}: restitution selon la normale pour la masse que déplace un contact, et le long de la surface selon le rapport des raideurs de cisaillement et normale\u{a0}; la grandeur de ces raideurs n’intervient pas",
     ),
     (
         "a block is followed corner by corner and edge by edge: time grows with their number",

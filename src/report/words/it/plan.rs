@@ -225,8 +225,8 @@ pub(super) const PLAN: &[(&str, &str)] = &[
         "contatto per contatto, ciascuno con molle proprie: la sua restituzione è quella del terreno per la massa che muove",
     ),
     (
-        "contact by contact: restitution along the normal, none along the surface; normal and shear stiffness play no part",
-        "contatto per contatto: restituzione lungo la normale, nessuna lungo la superficie; le rigidezze normale e di taglio non intervengono",
+        "contact by contact, as springs have it in the limit of great stiffness: restitution along the normal for the mass that a contact moves, and along the surface by the ratio of shear to normal stiffness; how stiff they are plays no part",
+        "contatto per contatto, come molle al limite di rigidezza elevata: restituzione lungo la normale per la massa mossa da un contatto, e lungo la superficie secondo il rapporto tra rigidezza di taglio e normale; quanto siano rigide le molle non conta",
     ),
     (
         "a block is followed corner by corner and edge by edge: time grows with their number",

@@ -9,6 +9,7 @@ use crate::ground::Law;
 use crate::rock::Vec3;
 use crate::solver::block::solve::Mass;
 use crate::solver::environment::ContactEnvironment;
+use crate::solver::ground_change::{comes_up_pressed, springs_parted_from};
 use crate::solver::law::capture_m_s;
 
 /// What other contacts take off the answer of one at most (–): where they push each other up, its mass would grow without bound.
@@ -21,8 +22,9 @@ pub(crate) struct BlockHistory {
     /// What of the block and of the mesh touch.
     part: u16,
     pub(crate) feature: Feature,
-    /// Triangle whose ground answers.
+    /// Triangle whose ground is touched, and that whose springs answer (`solver::ground_change`).
     pub(crate) triangle: u32,
+    springs_of: u32,
     /// Its law: damping is that of the mass that it moved at its first touch.
     pub(crate) law: Law,
     /// Normal to which `shear` is tangent, and where it was (m).
@@ -102,12 +104,36 @@ impl Footing {
         touch: &BlockTouch,
         (approach_m_s, all): (f64, impl Iterator<Item = &'t BlockTouch>),
     ) -> Law {
-        let mut law = *world.law(touch.triangle);
+        Self::law_on(world.law(touch.triangle), mass, touch, (approach_m_s, all))
+    }
+
+    /// The same on a ground with this law.
+    fn law_on<'t>(
+        ground: &Law,
+        mass: &Mass,
+        touch: &BlockTouch,
+        (approach_m_s, all): (f64, impl Iterator<Item = &'t BlockTouch>),
+    ) -> Law {
+        let mut law = *ground;
         if approach_m_s >= capture_m_s(&law) {
             law.struck_at(approach_m_s);
         }
         let [along, across] = mass.moved_by((&touch.normal, &touch.lever));
         law.for_masses([along * share_of(mass, touch, all), across], mass.mass)
+    }
+
+    /// Gives contact `k` the dashpots of an impact at another speed (m/s) than it began with, as soil or a facet has it.
+    pub(crate) fn strike_anew(
+        &mut self,
+        k: usize,
+        (block, moving): (&Block, &Moving),
+        approach_m_s: f64,
+    ) {
+        let (mass, history) = (moving.mass(block), &mut self.springs.histories[k]);
+        let lever = history.point - moving.pose.centre;
+        let across = mass.moved_by((&history.n, &lever))[1];
+        history.law = history.law.struck_anew(approach_m_s, [across, mass.mass]);
+        self.springs.refresh();
     }
 
     /// Gives contacts that have come to another ground its friction; springs and dashpots stay those on which they were pressed, as
@@ -178,6 +204,27 @@ impl Footing {
         self.springs.nearest(touch, (&point, block.ball_m), is_taken)
     }
 
+    /// The springs, by a triangle, of the patch of the same corner from which a new one parts, or which it meets in an impact: they are one at
+    /// a blunt fold, as those of a sphere are (`solver::ground_change`).
+    fn springs_parted_from(
+        &self,
+        world: &ContactEnvironment,
+        touch: &BlockTouch,
+        block: &Block,
+    ) -> Option<u32> {
+        let rebounds = self.springs.is_rebounding();
+        let is_parted = rebounds || comes_up_pressed(-touch.gap_m, block.ball_m);
+        if world.laws.len() == 1 || !block.core.is_corner(touch.part) || !is_parted {
+            return None;
+        }
+        let is_tree = world.terrain.is_tree(touch.triangle);
+        let same = self.springs.histories.iter().filter(|one| one.part == touch.part);
+        let pressed = same
+            .filter(|one| one.closed || rebounds)
+            .filter(|one| world.terrain.is_tree(one.triangle) == is_tree);
+        springs_parted_from(&touch.normal, pressed.map(|one| (one.n, one.springs_of)))
+    }
+
     /// A new memory.
     fn begin(
         &self,
@@ -190,11 +237,22 @@ impl Footing {
         // what is born while an impact rebounds belongs to it, however slow it is
         let rebounds = self.springs.is_rebounding();
         let captured = approach_m_s < capture_m_s(world.law(touch.triangle)) && !rebounds;
+        let law = Self::law_of_touch(world, mass, touch, (approach_m_s, self.touching(block)));
+        let springs_of = self.springs_parted_from(world, touch, block).unwrap_or(touch.triangle);
+        let on_springs = || {
+            let began = (approach_m_s, self.touching(block));
+            Self::law_on(world.law(springs_of), mass, touch, began)
+        };
         BlockHistory {
             part: touch.part,
             feature: touch.feature,
             triangle: touch.triangle,
-            law: Self::law_of_touch(world, mass, touch, (approach_m_s, self.touching(block))),
+            springs_of,
+            law: if springs_of == touch.triangle {
+                law
+            } else {
+                on_springs().with_friction_of(&law)
+            },
             n: touch.normal,
             point: moving.pose.centre + touch.lever,
             shear: Vec3::zeros(),

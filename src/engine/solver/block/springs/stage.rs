@@ -133,7 +133,7 @@ impl Footing {
     /// Penetration (m) at which the spring of a contact begins to press: none, but where a contact of an edge or a face of the block
     /// begins in this step, or goes on to another feature, that was pressed in further at the step's start than the spring was. What a
     /// feature finds when it comes to own a contact stores nothing, so that no change of features can gain energy. The patches of
-    /// a corner's ball hand over without a jump by themselves.
+    /// a corner's ball hand over without a jump by themselves, as they have the same springs (`springs_parted_from`).
     fn offset_m(
         &self,
         (start, guess): (&Moving, &Moving),
