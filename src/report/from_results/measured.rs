@@ -14,7 +14,7 @@ use crate::math;
 use crate::output::{ReleaseZone, Results, read_calibration};
 
 /// Weights that differ by no more (–) are alike.
-const ROUNDING: f64 = 1e-12;
+const SAME_WEIGHT: f64 = 1e-12;
 
 /// Columns of both tables.
 fn columns(words: &Words) -> Vec<String> {
@@ -89,7 +89,7 @@ fn own_weights(
     // as many ends as rocks everywhere: then rocks compare as they are
     let is_as_before = |(k, own): (usize, &f64)| (own / weights[0] - weight(k) / weight(0)).abs();
     let off = weights.iter().enumerate().map(is_as_before).fold(0.0, f64::max);
-    (off > ROUNDING || off.is_nan()).then_some(weights)
+    (off > SAME_WEIGHT || off.is_nan()).then_some(weights)
 }
 
 /// What must be known before anything else where the computed ends are not those that were measured.
