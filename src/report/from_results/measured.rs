@@ -256,6 +256,14 @@ fn known(observed: &Observed) -> Vec<Option<Estimate>> {
     };
     let computed = match &observed.weights {
         None => side(&observed.computed, of.computed_side_m, of.computed as f64),
+        // of rocks from their own places that weigh nearly alike, by as many as know as much
+        Some(weights) if observed.from_own_places => {
+            let each = observed.computed.iter().zip(weights);
+            let beside: Vec<ObservedPath> =
+                each.filter(|(_, weight)| **weight > 0.0).map(|(way, _)| *way).collect();
+            let sum = |power: i32| weights.iter().map(|weight| weight.powi(power)).sum::<f64>();
+            side(&beside, of.computed_side_m, sum(1).powi(2) / sum(2))
+        }
         Some(_) => rounded(of.computed_side_m),
     };
     let [measured_mean, computed_mean] = mean_of(observed);
