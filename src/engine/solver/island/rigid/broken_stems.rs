@@ -5,6 +5,7 @@
 
 use super::contacts::ImpactScene;
 use crate::contact::ContactPoint;
+use crate::ground::Law;
 use crate::solver::contact_state::ContactEnvironment;
 use crate::solver::impact::{BODIES, FrozenBody, FrozenContact};
 use crate::solver::island::body::IslandBody;
@@ -51,29 +52,29 @@ impl ImpactScene<'_> {
         bodies: &[FrozenBody],
         contacts: &[FrozenContact],
     ) -> JointContacts {
-        let of_pair = |contact: &&FrozenContact| contact.ends.second.is_some();
-        let pairs = contacts.iter().take_while(of_pair).map(|contact| JointContact {
+        let are_pairs = |contact: &&FrozenContact| contact.ends.second.is_some();
+        let (pairs, meshes) = contacts.split_at(contacts.iter().take_while(are_pairs).count());
+        let of_pair = |contact: &FrozenContact| JointContact {
             law: contact.law.without_rolling(),
             ..frozen_jointly(bodies, contact)
-        });
-        let first = pairs.clone().count();
-        let mut joint: JointContacts = pairs.collect();
-        let mut from = first;
-        while let Some(contact) = contacts.get(from) {
-            let own = contact.ends.first;
-            let IslandBody { state, body, laws, .. } = &*self.members[rocks[own]];
+        };
+        // rock by rock, as they stand among the contacts
+        let touches = rocks.iter().flat_map(|rock| {
+            let IslandBody { state, body, laws, .. } = &*self.members[*rock];
             let world = ContactEnvironment { terrain: self.terrain, body: *body, laws };
-            for (k, at) in state.touches.iter().enumerate() {
+            let law_of = move |(k, at): (usize, &ContactPoint)| {
                 let share = world.dashpot_share(&state.touches, k);
-                joint.push(JointContact {
-                    law: world.law(at.triangle).of_patch(at.gain2, share),
-                    stem: self.terrain.stems.as_ref().and_then(|all| all.of_triangle(at.triangle)),
-                    ..frozen_jointly(bodies, &contacts[from + k])
-                });
-            }
-            from += state.touches.len().max(1);
-        }
-        joint
+                (world.law(at.triangle).of_patch(at.gain2, share), at.triangle)
+            };
+            state.touches.iter().enumerate().map(law_of)
+        });
+        let stems = self.terrain.stems.as_ref();
+        let of_mesh = |(contact, (law, triangle)): (&FrozenContact, (Law, u32))| JointContact {
+            law,
+            stem: stems.and_then(|all| all.of_triangle(triangle)),
+            ..frozen_jointly(bodies, contact)
+        };
+        pairs.iter().map(of_pair).chain(meshes.iter().zip(touches).map(of_mesh)).collect()
     }
 
     /// Notes what trees took in a blow of these `rocks`, and that these stems have given way to it.
