@@ -29,8 +29,8 @@ use serde::{Deserialize, Serialize};
 /// Most contacts one rock keeps at a time.
 ///
 /// Three contacts hold a sphere; more press at the same instant only in hollows with many walls.
-/// Should a mesh offer more than fit, those that press least are joined with what presses beside
-/// them, with all their energy and force ([`ContactPoints::add`]).
+/// Should a mesh offer more than fit, those that press on nearly the same side are joined, with all
+/// their energy and force ([`ContactPoints::add`]).
 pub const MOST: usize = 16;
 /// A gap this small is a touch (–, relative to R): rounding of the leap.
 ///

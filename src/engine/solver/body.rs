@@ -33,6 +33,12 @@ pub struct Body {
 }
 
 impl Body {
+    /// Energy of motion (J) with a velocity (m/s) and a spin (rad/s).
+    #[inline]
+    pub(crate) fn motion_j(&self, (v, w): (&Vec3, &Vec3)) -> f64 {
+        0.5 * (self.mass * v.norm_squared() + self.inertia * w.norm_squared())
+    }
+
     /// The body of a rock under gravity `g_m_s2` along −z.
     pub fn new(rock: &Rock, g_m_s2: f64) -> Self {
         let gravity = Vec3::new(0.0, 0.0, -g_m_s2);

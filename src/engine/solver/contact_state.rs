@@ -372,7 +372,7 @@ impl ContactState {
 
     /// Energy in motion (J): `m v²/2 + I w²/2`.
     pub fn motion_j(&self, body: &Body) -> f64 {
-        0.5 * (body.mass * self.v.norm_squared() + body.inertia * self.w.norm_squared())
+        body.motion_j((&self.v, &self.w))
     }
 }
 

@@ -13,7 +13,7 @@
 //! Spheres and blocks, alone and in worlds, where rocks that touch each other take part, with equal and opposite forces at both ends of a contact.
 //! What strikes one contact alone has a law of its own: `yielding`, and that of blocks.
 
-use super::body::{Body, STILL, Twist};
+use super::body::{Body, Twist};
 use super::impact::{BODIES, CONTACTS, FrozenCollision};
 use super::loss::Loss;
 use super::yielding::{BISECTIONS, COMES_OFF, STEP};
@@ -195,8 +195,8 @@ impl JointBlow<'_> {
         parts.any(|(contact, begins)| begins && contact.stem.is_some() && self.stands(contact))
     }
 
-    /// The next step (s): that of the stiffest contact that touches, up to where a stiffer one begins, or one with a stem: a dashpot is there at once. What is gone or has let go sets none: a soft
-    /// contact would not be over after as many steps of a stiff stem as are taken at most.
+    /// The next step (s): that of the stiffest contact that touches, up to where a stiffer one begins, or one with a stem: a dashpot is
+    /// there at once. What is gone or has let go sets none: a soft contact would not be over after as many steps of a stiff stem as are taken at most.
     fn step_s(&self, now: &Instant) -> f64 {
         let stiffest = self.stiffest(now);
         let step = if self.bodies.len() > 1 { OF_SEVERAL * STEP } else { STEP } / stiffest;
@@ -308,11 +308,7 @@ impl Instant {
 
     /// The motions, and what the contacts have taken.
     fn after(&self) -> FrozenCollision {
-        let mut after = FrozenCollision {
-            motions: [STILL; BODIES],
-            loss: [Loss::default(); CONTACTS],
-            fastest_m_s: [0.0; CONTACTS],
-        };
+        let mut after = FrozenCollision::STILL;
         after.motions[..self.motions.len()].copy_from_slice(&self.motions);
         for (k, pressed) in self.pressed.iter().enumerate() {
             after.loss[k] = Loss::sharing(pressed.taken_j);

@@ -105,8 +105,7 @@ impl ContactState {
         (v, w): (&Vec3, &Vec3),
     ) -> Option<Broken> {
         let stems = world.terrain.stems.as_ref()?;
-        let body = &world.body;
-        let motion_j = 0.5 * (body.mass * v.norm_squared() + body.inertia * w.norm_squared());
+        let motion_j = world.body.motion_j((v, w));
         let stands =
             |touch: &&ContactPoint| !world.terrain.is_gone(touch.triangle, &self.near.gone);
         let standing: ArrayVec<ContactPoint, MOST> =

@@ -255,7 +255,7 @@ fn gains(world: &ContactEnvironment, state: &ContactState, end: &End, hh: f64) -
 
 /// Motion, height over the step's start and springs of a rock (J), at the start of a step and at its end.
 pub(crate) fn energies_j(body: &Body, state: &ContactState, (end, hh): (&End, f64)) -> [f64; 2] {
-    let motion = 0.5 * (body.mass * end.v.norm_squared() + body.inertia * end.w.norm_squared());
+    let motion = body.motion_j((&end.v, &end.w));
     // height relative to the start of the step: absolute heights would cost digits
     let lifted = -body.mass * body.gravity.dot(&(end.c - state.c));
     [state.motion_j(body) + state.stored, motion + lifted + pressed_j(state, end, hh)]

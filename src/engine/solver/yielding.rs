@@ -60,7 +60,7 @@ impl Pressing {
     }
 
     fn motion_j(&self, body: &Body) -> f64 {
-        0.5 * (body.mass * self.v.norm_squared() + body.inertia * self.w.norm_squared())
+        body.motion_j((&self.v, &self.w))
     }
 }
 

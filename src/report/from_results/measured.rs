@@ -87,8 +87,8 @@ fn own_weights(
     let rows: Vec<usize> = (0..measured.len()).collect();
     let weights = own.weights(&rows, &of_places);
     // as many ends as rocks everywhere: then rocks compare as they are
-    let is_as_before = |(k, own): (usize, &f64)| (own / weights[0] - weight(k) / weight(0)).abs();
-    let off = weights.iter().enumerate().map(is_as_before).fold(0.0, f64::max);
+    let change = |(k, own): (usize, &f64)| (own / weights[0] - weight(k) / weight(0)).abs();
+    let off = weights.iter().enumerate().map(change).fold(0.0, f64::max);
     (off > SAME_WEIGHT || off.is_nan()).then_some(weights)
 }
 

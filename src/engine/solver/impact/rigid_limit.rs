@@ -85,12 +85,6 @@ pub(crate) struct FrozenBody {
 }
 
 impl FrozenBody {
-    /// Energy of its motion (J).
-    pub(crate) fn motion_j(&self) -> f64 {
-        let (v, w) = &self.motion;
-        0.5 * (self.body.mass * v.norm_squared() + self.body.inertia * w.norm_squared())
-    }
-
     /// Its velocity, and its spin times its radius, in units of `speed` (m/s).
     fn in_units(&self, speed: f64) -> Twist {
         (self.motion.0 / speed, self.motion.1 * (self.body.radius / speed))

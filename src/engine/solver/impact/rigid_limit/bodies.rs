@@ -29,6 +29,15 @@ pub(crate) struct FrozenCollision {
     pub(crate) fastest_m_s: [f64; CONTACTS],
 }
 
+impl FrozenCollision {
+    /// Bodies that stand still, and contacts that have taken nothing.
+    pub(crate) const STILL: Self = Self {
+        motions: [STILL; BODIES],
+        loss: [Loss::on_slope([0.0; 3]); CONTACTS],
+        fastest_m_s: [0.0; CONTACTS],
+    };
+}
+
 /// Follows up to [`BODIES`] bodies through an impact on up to [`CONTACTS`] contacts at once, each of them at penetration zero;
 /// `None` if nothing comes nearer, or where there are too many of them or their frequencies lie too far apart. `tolerance` is relative
 /// to the fastest motion at a contact (–).
@@ -66,11 +75,7 @@ fn followed<const B: usize, const K: usize, const N: usize, const Q: usize, cons
     let AfterImpact { motions: together, plastic } = contacts.part_or_stay(run.motions(), nothing);
     let (motions, lost) = contacts.balanced((&start, &together), plastic.iter().sum());
     let loss_j = run.loss_j(lost.max(0.0) * unit_j, plastic);
-    let mut end = FrozenCollision {
-        motions: [STILL; BODIES],
-        loss: [Loss::default(); CONTACTS],
-        fastest_m_s: [0.0; CONTACTS],
-    };
+    let mut end = FrozenCollision::STILL;
     for (k, body) in bodies.iter().enumerate() {
         end.motions[k] = body.out_of_units(motions[k], speed);
     }

@@ -12,11 +12,10 @@ use crate::solver::island::body::IslandBody;
 use crate::solver::joint_blow::{
     Breakage, JointBody, JointContact, JointContacts, JointEnd, StemOfRock, joint_blow,
 };
-use crate::solver::loss::Loss;
 use arrayvec::ArrayVec;
 
-/// What a contact of a rock with a tree took in a blow: which rock, by its place in the island, and where.
-pub(super) type TakenByTree = (usize, ContactPoint, Loss);
+/// What a contact with a tree took in a blow: of which rock, by its place in the island, on which triangle, and how much (J).
+pub(super) type TakenByTree = (usize, u32, f64);
 
 impl ImpactScene<'_> {
     /// How stems give way to a blow of these `rocks` on all `contacts`, pairs before those with the mesh, if one does.
@@ -27,7 +26,8 @@ impl ImpactScene<'_> {
         contacts: &[FrozenContact],
     ) -> Option<Breakage> {
         let stems = self.terrain.stems.as_ref()?;
-        let motion_j: f64 = bodies.iter().map(FrozenBody::motion_j).sum();
+        let own_j = |one: &FrozenBody| one.body.motion_j((&one.motion.0, &one.motion.1));
+        let motion_j: f64 = bodies.iter().map(own_j).sum();
         let may_break = |&rock: &usize| {
             let state = &self.members[rock].state;
             let yields =
@@ -91,12 +91,12 @@ impl ImpactScene<'_> {
             let gone = broken.iter().filter(|(of, _)| *of == place).map(|(_, stem)| *stem);
             let state = &mut self.members[rock].state;
             if gone.clone().next().is_none() {
-                for (_, at, loss) in own {
-                    state.stem_load.strike(terrain, at.triangle, loss.sum());
+                for (_, triangle, joule) in own {
+                    state.stem_load.strike(terrain, *triangle, *joule);
                 }
                 continue;
             }
-            let struck = own.map(|(_, at, loss)| (at.triangle, loss.sum()));
+            let struck = own.map(|(_, triangle, joule)| (*triangle, *joule));
             state.fell_with(stems, struck, gone);
         }
     }

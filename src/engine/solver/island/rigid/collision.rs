@@ -170,7 +170,7 @@ impl RigidIsland {
             taken_j[contact.ends.first] += loss.sum();
             self.losses[rock].add(&loss.on(&world, at.triangle), 1.0);
             if scene.terrain.is_tree(at.triangle) {
-                by_trees.push((rock, *at, *loss));
+                by_trees.push((rock, at.triangle, loss.sum()));
             }
             if approach_m_s >= capture_m_s(contact.law) {
                 let centre = (&rocks[contact.ends.first].c, body.radius);
@@ -323,6 +323,6 @@ impl StruckRocks {
 impl StepBody {
     /// Energy of motion (J) with a velocity (m/s) and a spin (rad/s).
     pub(super) fn energy_j(&self, (v, w): (&Vec3, &Vec3)) -> f64 {
-        0.5 * (self.body.mass * v.norm_squared() + self.body.inertia * w.norm_squared())
+        self.body.motion_j((v, w))
     }
 }
