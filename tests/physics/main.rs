@@ -6,6 +6,7 @@
 mod common;
 
 mod blocks;
+mod bonds;
 mod chant_sura;
 mod contact;
 mod damped_folds;

@@ -5,7 +5,6 @@ use crate::common;
 
 use common::GROUND;
 use common::together::{self, Sphere, World, plane, space};
-use rockfall::contact::pair::Strength;
 use rockfall::ground::Ground;
 use rockfall::rock::{Rock, Vec3};
 use rockfall::simulation::{Stop, Trajectory};
@@ -35,7 +34,7 @@ fn kinetic_j(falls: &[Trajectory], at_end: bool) -> f64 {
 
 /// Linear and angular momentum before and after differ by rounding: 1e-12 of the largest single momentum, after some
 /// hundred steps.
-fn momentum_is_kept(falls: &[Trajectory]) {
+pub(crate) fn momentum_is_kept(falls: &[Trajectory]) {
     let (p0, l0) = momentum(falls, false);
     let (p1, l1) = momentum(falls, true);
     let largest = |of: &dyn Fn(&Trajectory) -> f64| falls.iter().map(of).fold(0.0, f64::max);
@@ -208,116 +207,6 @@ fn a_sphere_rests_on_three_others() {
     }
     let energy: f64 = falls.iter().map(|fall| fall.ledger.rise_j).fold(0.0, f64::max);
     assert!(energy < 1e-6 * weight * r, "{energy:e}");
-}
-
-/// Two bonded spheres pulled apart by their own speeds: the largest pull of the undamped spring is `Δv √(p_N m/2)`, so a
-/// bond just stronger holds and one just weaker breaks.
-#[test]
-fn a_bond_in_tension_breaks_at_its_strength() {
-    let rock = Rock { radius_m: 0.5, density_kg_m3: 2700.0 };
-    let (v, m) = (0.2, rock.mass_kg());
-    // relative speed 2v on the reduced mass m/2: F = 2v √(p_N m/2)
-    let pull = 2.0 * v * (GROUND.normal_stiffness_n_m * 0.5 * m).sqrt();
-    let area = std::f64::consts::PI * 0.25;
-    for (share, holds) in [(1.03, true), (0.97, false)] {
-        let strength = Strength { tensile_pa: share * pull / area, cohesion_pa: 1e12 };
-        let world = World { restitution: 1.0, tolerance_m_s: 1e-5, strength, ..WORLD };
-        let spheres = [free(-0.5, 0.0, [-v, 0.0, 0.0]), free(0.5, 0.0, [v, 0.0, 0.0])];
-        let falls = world.falls(&space(), &spheres, 1.0);
-        let apart = falls[1].end.position_m.x - falls[0].end.position_m.x;
-        assert_eq!(apart < 1.01, holds, "{share}: {apart}");
-        momentum_is_kept(&falls);
-    }
-}
-
-/// Two bonded spheres that spin about each other in flight load their bond at once with `m ω² R`, and its damped spring swings to `1 + e` times that, as
-/// half-swings shrink by `e`. A bond that bears less breaks, at the usual local error too, whatever its stiffness: steps that were long against the
-/// swing let it bear a quarter more than it can.
-#[test]
-fn a_bond_loaded_at_once_bears_what_its_spring_swings_to() {
-    let rock = Rock { radius_m: 0.5, density_kg_m3: 2700.0 };
-    let (spin, area) = (6.0, std::f64::consts::PI * 0.25);
-    for (stiffness_n_m, restitution) in
-        [(1e8, 0.5), (1e9, 0.5), (1e11, 0.5), (1e9, 0.01), (1e9, 1.0)]
-    {
-        let pull = (1.0 + restitution) * rock.mass_kg() * spin * spin * rock.radius_m;
-        for (share, holds) in [(1.03, true), (0.95, false)] {
-            let strength = Strength { tensile_pa: share * pull / area, cohesion_pa: 1e9 };
-            let usual = World { tolerance_m_s: 0.05, strength, ..WORLD };
-            let world = World { restitution, stiffness_n_m, ..usual };
-            let sphere =
-                |x: f64| (0.5, 2700.0, [x, 0.0, 20.0], [0.0, spin * x, 0.0], [0.0, 0.0, spin]);
-            let falls = world.falls(&space(), &[sphere(-0.5), sphere(0.5)], 0.3);
-            let apart = (falls[1].end.position_m - falls[0].end.position_m).norm();
-            assert_eq!(
-                apart < 1.01,
-                holds,
-                "{stiffness_n_m:e} N/m, e = {restitution}, {share}: {apart}"
-            );
-            momentum_is_kept(&falls);
-        }
-    }
-}
-
-/// A bond has the section of the smaller rock: spheres of 0.25 and 0.5 m pulled apart by their own speeds, with no momentum in sum, load it by
-/// `u √(p_N m)` with their relative speed and their reduced mass, and it holds `σ π 0.25²`.
-#[test]
-fn a_bond_of_unequal_rocks_has_the_section_of_the_smaller() {
-    let (radii_m, density_kg_m3, u) = ([0.25, 0.5], 2700.0, 0.4);
-    let [light, heavy] = radii_m.map(|radius_m| Rock { radius_m, density_kg_m3 }.mass_kg());
-    let pull = u * (GROUND.normal_stiffness_n_m * light * heavy / (light + heavy)).sqrt();
-    let area = std::f64::consts::PI * 0.25_f64.powi(2);
-    for (share, holds) in [(1.03, true), (0.97, false)] {
-        let strength = Strength { tensile_pa: share * pull / area, cohesion_pa: 1e12 };
-        let world = World { restitution: 1.0, tolerance_m_s: 1e-5, strength, ..WORLD };
-        let sphere = |k: usize, x: f64, v: f64| {
-            (radii_m[k], density_kg_m3, [x, 0.0, 20.0], [v, 0.0, 0.0], [0.0; 3])
-        };
-        let (slow, fast) = (u * light / (light + heavy), u * heavy / (light + heavy));
-        let falls = world.falls(&space(), &[sphere(0, -0.25, -fast), sphere(1, 0.5, slow)], 1.0);
-        let apart = falls[1].end.position_m.x - falls[0].end.position_m.x;
-        assert_eq!(apart < 0.76, holds, "{share}: {apart}");
-        momentum_is_kept(&falls);
-    }
-}
-
-/// Two bonded spheres slide past each other without normal force: shear breaks the bond at `c A`.
-#[test]
-fn a_bond_in_shear_breaks_at_its_cohesion() {
-    for (cohesion_pa, holds) in [(1e9, true), (1e3, false)] {
-        let strength = Strength { tensile_pa: 1e9, cohesion_pa };
-        let world = World { tolerance_m_s: 1e-5, strength, ..WORLD };
-        let spheres = [free(-0.5, 0.0, [0.0, -0.1, 0.0]), free(0.5, 0.0, [0.0, 0.1, 0.0])];
-        let falls = world.falls(&space(), &spheres, 4.0);
-        let apart = (falls[1].end.position_m - falls[0].end.position_m).norm();
-        assert_eq!(apart < 1.01, holds, "{cohesion_pa}: {apart}");
-        momentum_is_kept(&falls);
-    }
-}
-
-/// Bonded spheres that fly over the border of the terrain leave it as loose ones do. What was bonded did not fly, fell on below until its time
-/// was up, and that fall counted.
-#[test]
-fn bonded_spheres_leave_the_terrain_at_its_border() {
-    let strength = Strength { tensile_pa: 1e12, cohesion_pa: 1e12 };
-    let world =
-        World { scheme: Scheme::Adaptive, tolerance_m_s: 0.01, gravity_m_s2: 9.81, ..WORLD };
-    let spheres = [free(-0.5, 25.0, [0.0, 8.0, 0.0]), free(0.5, 25.0, [0.0, 8.0, 0.0])];
-    let falls = World { strength, ..world }.falls(&plane(), &spheres, 30.0);
-    for fall in &falls {
-        assert_eq!(fall.stop, Stop::LeftTerrain);
-        let end = fall.end.position_m;
-        assert!((40.0..42.0).contains(&end.y) && end.z > 0.0, "{end:?}");
-    }
-}
-
-/// No strength at all is the plain contact, bit for bit: no bond is made.
-#[test]
-fn a_bond_without_strength_is_a_plain_contact() {
-    let spheres = [free(-0.5, 0.0, [0.3, 0.1, 0.0]), free(0.5, 0.0, [0.0; 3])];
-    let plain = WORLD.falls(&space(), &spheres, 1.0);
-    let nothing = World { strength: Strength { tensile_pa: 0.0, cohesion_pa: 0.0 }, ..WORLD };
-    assert_eq!(plain, nothing.falls(&space(), &spheres, 1.0));
 }
 
 /// The same bytes on one thread and on four.

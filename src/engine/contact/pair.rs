@@ -194,6 +194,13 @@ impl PairHistory {
         Some(self.law.pressed_m(least_n) * self.law.omega_rad_s())
     }
 
+    /// Speed (m/s) of their vibration against each other, of rocks that move apart with `apart` (m/s) and have `inv_m` (1/kg) as the sum of one over
+    /// their masses: what they move with, or what their spring would move them with.
+    pub(crate) fn vibrates_m_s(&self, apart: &Vec3, inv_m: f64) -> f64 {
+        let drawn_m_s = self.normal_force.abs() * inv_m / self.law.omega_rad_s();
+        drawn_m_s.max(apart.dot(&self.n).abs())
+    }
+
     /// Lets a contact rebound that came up too slowly for it and is pressed together at a speed (m/s) now, if it is struck through;
     /// whether it is. A bond has no rebound.
     pub(crate) fn release(&mut self, approach_m_s: f64) -> bool {

@@ -226,15 +226,16 @@ impl<'a> Island<'a> {
         let tableau = control.tableau;
         for i in 1..tableau.stages {
             self.stage(tableau, i, dt)?;
-        }
-        if self.tears_badly() {
-            return None;
+            if self.tears_badly() {
+                return None;
+            }
         }
         self.note_impacts(true);
         Some(dt * self.error(control))
     }
 
-    /// Whether a bond is loaded far beyond its strength, which a shorter step would have found out.
+    /// Whether a bond is loaded far beyond its strength in the present stage, which a shorter step would have found out: its largest pull may
+    /// lie within a step.
     fn tears_badly(&self) -> bool {
         self.h * self.omega() > 1e-6
             && self.pairs.iter().any(|pair| {

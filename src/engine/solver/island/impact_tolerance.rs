@@ -5,6 +5,8 @@
 //! Lasting contact knows `√(g R)`, the speed of a rock that tips over an edge. The stages of an impact are those of order four:
 //! at such errors they are the cheaper ones.
 //!
+//! What a bond holds together vibrates after a blow, with the stages of order four as well: those of order two damp a vibration that nothing damps.
+//!
 //! Two bodies that strike each other and touch nothing else are as accurate as a rock alone. Where a blow runs through several
 //! contacts at once, as in a heap, its outcome hangs on gaps far smaller than any that is known: a larger share is enough there.
 
@@ -28,11 +30,13 @@ const IN_A_HEAP: f64 = 150.0;
 /// Cosine between two contacts of a rock from which a blow on the one runs on through the other (–).
 const RUNS_ON: f64 = 0.1;
 
-/// The same of two that are bonded, of the speed (–) from which their springs would pull as hard as the bond bears: what is off by it is off by as
-/// much of the strength.
-const BONDED: f64 = 0.01;
-/// That of bonds so weak that any load breaks them, of the local error in lasting contact, at least (–).
+/// Local error allowed to two that are bonded, of the speed (–) from which their springs would pull as hard as the bond bears, and of that of
+/// their vibration: a blow ends in a vibration, and whether the bond bears it is decided swings later, by all errors until then together.
+const BONDED: f64 = 1e-3;
+/// That of bonds so weak that any load breaks them, of the local error in lasting contact, at least (–) …
 const WEAKEST: f64 = 1e-3;
+/// … and of a vibration so slow that it is none.
+const SLOWEST: f64 = 0.02;
 
 impl Island<'_> {
     /// The control of the next step: what the rocks may be wrong by, and by which method.
@@ -45,15 +49,7 @@ impl Island<'_> {
             member.lasting_m_s = lasting_m_s(settings, &member.body);
             is_struck |= member.struck_m_s > 0.0 && !member.is_in_heap();
         }
-        for pair_history in &self.pair_histories {
-            let Some(breaks_m_s) = pair_history.breaks_m_s() else { continue };
-            for end in [pair_history.a as usize, pair_history.b as usize] {
-                let member = &mut *self.members[end];
-                let least_m_s = WEAKEST * lasting_m_s(settings, &member.body);
-                let bonded_m_s = (BONDED * breaks_m_s).max(least_m_s);
-                member.lasting_m_s = member.lasting_m_s.min(bonded_m_s);
-            }
-        }
+        is_struck |= self.hold_bonds(settings);
         let allowed = self.members.iter().map(|member| member.allowed_m_s(relative));
         self.tolerance = allowed.fold(f64::INFINITY, f64::min);
         Control {
@@ -62,6 +58,28 @@ impl Island<'_> {
             impact: relative,
             impact_kernels: false,
         }
+    }
+
+    /// Holds the error of bonded rocks to what their bonds notice; whether that is less than lasting contact asks for.
+    fn hold_bonds(&mut self, settings: &Settings) -> bool {
+        let mut is_held = false;
+        for pair_history in &self.pair_histories {
+            let Some(breaks_m_s) = pair_history.breaks_m_s() else { continue };
+            let ends = [pair_history.a, pair_history.b].map(|end| end as usize);
+            let [a, b] = ends.map(|end| &self.members[end]);
+            let inv_m = 1.0 / a.body.mass + 1.0 / b.body.mass;
+            let vibrates_m_s = pair_history.vibrates_m_s(&(a.state.v - b.state.v), inv_m);
+            for end in ends {
+                let member = &mut *self.members[end];
+                let usual_m_s = lasting_m_s(settings, &member.body);
+                let of_strength_m_s = (BONDED * breaks_m_s).max(WEAKEST * usual_m_s);
+                let of_vibration_m_s = (BONDED * vibrates_m_s).max(SLOWEST * usual_m_s);
+                let bonded_m_s = of_strength_m_s.min(of_vibration_m_s);
+                is_held |= bonded_m_s < usual_m_s;
+                member.lasting_m_s = member.lasting_m_s.min(bonded_m_s);
+            }
+        }
+        is_held
     }
 
     /// Notes how fast each rock is struck (m/s) and whether it touches others that touch more, also by what it has only met in
