@@ -9,7 +9,7 @@ mod entries;
 mod normal;
 mod written;
 
-pub use distribution::{Distribution, LARGEST};
+pub use distribution::{Distribution, LARGEST, LEAST};
 pub use entries::{Entries, entries};
 
 use chacha20::ChaCha8Rng;

@@ -169,6 +169,7 @@ fn in_file(path: &Path, columns: &[&str], why: csv::Error) -> Error {
         csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
             Error::input(path, line, format!("{len} values instead of {expected_len}"), remedy)
         }
+        csv::ErrorKind::Utf8 { .. } => Error::input(path, line, "bytes that are no text", remedy),
         other => Error::input(path, line, format!("{other:?}"), remedy),
     }
 }

@@ -10,6 +10,8 @@ use crate::math;
 /// Largest number that a scene may hold, in whatever unit: what is computed from greater ones may overflow, and nothing on
 /// a slope comes near it.
 pub const LARGEST: f64 = 1e18;
+/// Smallest size of a number that is not 0: a smaller one has no decimal power that it could be divided by.
+pub const LEAST: f64 = 1e-100;
 
 /// A number, or how it is distributed; valid by construction. In the unit of the key it stands for.
 ///

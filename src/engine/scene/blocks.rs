@@ -138,11 +138,11 @@ impl BlockColumns {
         let number = |column: usize| {
             let text = row.get(column).unwrap_or_default();
             let number = text.parse().ok().filter(|number: &f64| number.is_finite());
-            number.ok_or_else(|| format!("found `{text}`"))
+            number.ok_or_else(|| format!("found `{text}` in column {}", column + 1))
         };
         let size = |column: usize| match number(column)? {
             size if size > 0.0 => Ok(size),
-            size => Err(format!("found {size}")),
+            size => Err(format!("found {size} in column {}", column + 1)),
         };
         let of_mass = |mass: f64| crate::math::cbrt(mass / (density_kg_m3 * 4.0 / 3.0 * PI));
         let radius_m = match (self.radius, self.mass, size_from) {

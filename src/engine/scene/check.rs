@@ -1,7 +1,7 @@
 //! What a number may be, and complaints about the one that was found.
 
 use crate::error::Flaw;
-use crate::random::{Distribution, LARGEST};
+use crate::random::{Distribution, LARGEST, LEAST};
 
 /// One step from the top of a scene towards a value.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -112,8 +112,13 @@ pub(super) fn optional(key: &str, value: Option<f64>, allowed: Allowed, hint: &s
 }
 
 fn within(key: &str, (low, high): (f64, f64), allowed: Allowed, hint: &str) -> Checked {
+    let is_too_small = |end: &f64| *end != 0.0 && end.abs() < LEAST;
     if allowed.holds(low, high) {
-        return Ok(());
+        if ![low, high].iter().any(is_too_small) {
+            return Ok(());
+        }
+        let or_none = if allowed.holds(0.0, 0.0) { "write 0, or" } else { "write" };
+        return Err(Complaint::about(key, format!("{or_none} a number of at least {LEAST:e}")));
     }
     let bounds = match (low < high, (high - low).is_finite()) {
         (false, _) => "",

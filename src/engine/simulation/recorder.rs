@@ -71,6 +71,9 @@ pub(super) struct RecorderMark {
     next_point_s: f64,
 }
 
+/// Difference of two times that is rounding of their sums (–).
+const CLOCK_ROUNDING: f64 = 1e-9;
+
 impl<'a> Recorder<'a> {
     pub(super) fn new(
         terrain: &'a Terrain,
@@ -324,6 +327,9 @@ impl<'a> Recorder<'a> {
         {
             let state = self.path.last().map_or(PathState::Flight, |last| last.state);
             let now = self.instant();
+            // one that was due as the rock ends, but for rounding of the clock, is this one
+            let end_s = now.motion.time_s;
+            self.path.pop_if(|last| end_s - last.motion.time_s < CLOCK_ROUNDING * end_s);
             self.point(&now, state);
         }
     }

@@ -10,7 +10,7 @@ mod parts;
 use super::Shown;
 use super::hulls::BlockHull;
 use super::mesh::ViewMesh;
-use super::paths::ViewPath;
+use super::paths::{PathInstant, ViewPath};
 use parts::{Bin, ball, colour_of};
 use serde_json::{Value, json};
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
@@ -157,10 +157,9 @@ impl GltfScene<'_> {
         let hulls: Vec<usize> = shown.hulls.hulls.iter().map(|hull| self.hull(hull)).collect();
         for way in &shown.ways.ways {
             let Some(mesh) = way.hull.map(|hull| hulls[hull]).or(ball) else { continue };
-            let places: Vec<_> =
-                way.instants.iter().map(|instant| self.local(instant.place_m)).collect();
-            let times: Vec<f32> =
-                way.instants.iter().map(|instant| instant.time_s as f32).collect();
+            let (times, places): (Vec<f32>, Vec<_>) = rising(&way.instants)
+                .map(|(time, instant)| (time, self.local(instant.place_m)))
+                .unzip();
             let (input, output) = (self.bin.times(&times), self.bin.samples(&places));
             self.channel("translation", (input, output));
             let mut node = json!({
@@ -247,6 +246,17 @@ impl GltfScene<'_> {
         let numbers = bin.close(&mut put);
         parts::file(&head, numbers)
     }
+}
+
+/// Instants with their times in 32 bits, which must rise: the last of those that become one.
+fn rising(instants: &[PathInstant]) -> impl Iterator<Item = (f32, &PathInstant)> {
+    let time = |instant: &PathInstant| instant.time_s as f32;
+    let later = instants.iter().skip(1).map(Some).chain([None]);
+    instants
+        .iter()
+        .zip(later)
+        .filter(move |(one, next)| next.is_none_or(|next| time(next) > time(one)))
+        .map(move |(one, _)| (time(one), one))
 }
 
 /// Times and attitudes (x, y, z, w) between which a block turns by [`MOST_TURN_RAD`] at most; neighbours are on the same side,

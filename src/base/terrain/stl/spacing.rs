@@ -70,8 +70,8 @@ impl Spacing {
 
     /// More than 1 % of the median edge: the facets point elsewhere than the terrain.
     pub fn spoils(&self) -> bool {
-        // Beyond the range of f32 the share is no number.
-        self.share() > SPOILS || self.share().is_nan()
+        // Beyond the range of f32 the share is no number; facets without any edge are another fault
+        self.median_edge > 0.0 && (self.share() > SPOILS || self.share().is_nan())
     }
 }
 
