@@ -139,8 +139,9 @@ impl Comparison {
 
     /// The differences that matter most, line by line for a terminal, and what makes them look surer than they are.
     pub fn headline(&self) -> Vec<String> {
-        let of_worlds = self.notes.iter().filter(|note| weighing::is_of_worlds(note));
-        table::headline(&self.groups).into_iter().chain(of_worlds.cloned()).collect()
+        let misleads = |note: &&String| weighing::is_of_worlds(note) || inputs::is_of_moved(note);
+        let notes = self.notes.iter().filter(misleads);
+        table::headline(&self.groups).into_iter().chain(notes.cloned()).collect()
     }
 
     /// Largest difference of any statistic, in its own unit, and the widest interval: both 0 for a run beside itself.

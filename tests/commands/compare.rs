@@ -208,6 +208,8 @@ fn what_differs_is_named_and_what_changes_is_shown() {
     let comparison = Comparison::of(&with, &without).unwrap();
     let (largest, width) = comparison.largest();
     assert!(largest > 0.0 && width > 0.0);
+    // a terminal says too what makes a difference no difference
+    assert!(comparison.headline().join("\n").contains("in both runs: meadow."));
     let out = dir.path().join("out");
     comparison.write(&out).unwrap();
     let page = std::fs::read_to_string(out.join("compare.html")).unwrap();

@@ -131,9 +131,9 @@ fn a_path_whose_end_is_due_has_one_end() {
     glb::check(&std::fs::read(out.join(GLB)).unwrap());
     let results = output::read(&out).unwrap();
     let rows: Vec<_> = results.paths().unwrap().map(|row| row.unwrap()).collect();
-    assert!(rows.iter().any(|row| row.time_s == 5.0), "no rock ran out of time");
+    assert!(rows.iter().any(|row| row.time_s >= 5.0), "no rock ran out of time");
     for pair in rows.windows(2).filter(|pair| pair[0].index == pair[1].index) {
-        assert!(pair[1].time_s - pair[0].time_s > 1e-9, "{:?}", pair);
+        assert!(pair[1].time_s - pair[0].time_s > 1e-9, "{pair:?}");
     }
 }
 

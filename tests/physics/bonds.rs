@@ -166,7 +166,7 @@ fn a_bond_that_falls_bears_what_it_swings_to() {
             ..GROUND
         };
         let (stiffness_n_m, gravity_m_s2) = (1e8, 9.81);
-        let of_pair = World { stiffness_n_m, restitution, ground, gravity_m_s2, ..WORLD };
+        let of_pair = World { gravity_m_s2, restitution, stiffness_n_m, ground, ..WORLD };
         let world = World { tolerance_m_s: 0.05, friction_angle_rad: 0.0, ..of_pair };
         let (pull_n, rebound_m_s) = falls_bonded(&world, radii_m, (speed_m_s, longest_s));
         let section_m2 = std::f64::consts::PI * radii_m[0].min(radii_m[1]).powi(2);

@@ -112,6 +112,14 @@ fn place(corners_m: &[[f64; 2]]) -> String {
     }
 }
 
+/// How a note on what has moved begins.
+const MOVED: &str = "Not at the same place in both runs: ";
+
+/// Whether a note is such a one.
+pub(super) fn is_of_moved(note: &str) -> bool {
+    note.starts_with(MOVED)
+}
+
 /// A note on what has one name in both runs and stands at two places; nothing where there is none.
 pub(super) fn moved(runs: &[Results; 2]) -> Option<String> {
     let [a, b] = runs;
@@ -121,7 +129,7 @@ pub(super) fn moved(runs: &[Results; 2]) -> Option<String> {
     let names: Vec<String> = lines(a).filter(has_moved).map(|line| line.name.clone()).collect();
     (!names.is_empty()).then(|| {
         let names = names.join(", ");
-        format!("Not at the same place in both runs: {names}. What differs there may come from the place alone.")
+        format!("{MOVED}{names}. What differs there may come from the place alone.")
     })
 }
 
