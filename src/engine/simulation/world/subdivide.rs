@@ -90,7 +90,7 @@ impl IslandWindow<'_> {
             let dt = length / f64::from(cuts);
             let mut meetings = self.meetings(&self.places(dt), (dt, stiffest));
             let largest = meetings.islands.sizes().into_iter().max().unwrap_or(0);
-            if 4 * largest as usize <= 3 * count {
+            if 4 * largest <= 3 * count {
                 return Some(cuts);
             }
             cuts *= CUTS;
