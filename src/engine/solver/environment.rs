@@ -23,10 +23,10 @@ pub struct ContactEnvironment<'a> {
     pub laws: &'a [Law],
 }
 
-impl ContactEnvironment<'_> {
+impl<'a> ContactEnvironment<'a> {
     /// The law of a triangle's ground.
     #[inline]
-    pub fn law(&self, triangle: u32) -> &Law {
+    pub fn law(&self, triangle: u32) -> &'a Law {
         &self.laws[self.ground_of(triangle) as usize]
     }
 

@@ -169,7 +169,7 @@ impl ContactState {
         let mut stages = Stages::<N, Q, P>::NONE;
         flow.rates(0, &flow.begin::<N>(), stages.first());
         // what the present place touches is met whatever becomes of the tries
-        flow.state.accept_meetings(world.least_impact_m_s());
+        flow.state.accept_meetings(world);
         loop {
             let Some(accepted) = step_among(&mut flow, &mut stages, &bounds, done)? else {
                 return Ok(done.steps > 0);
@@ -215,7 +215,7 @@ impl ContactState {
         self.impact.mixes |= self.is_on_several_grounds(world);
         self.merge_lost(world);
         self.histories.retain(|history| history.closed);
-        self.accept_meetings(world.least_impact_m_s());
+        self.accept_meetings(world);
         self.fresh = false;
         done.dt += accepted.dt + self.let_go(world, bounds, bounds.h_max - accepted.dt);
         // what rebounds no more goes on with other steps, also while something else still presses

@@ -361,7 +361,7 @@ pub(crate) fn accept(
         }
     }
     state.histories.retain(|history| history.closed);
-    state.accept_meetings(world.least_impact_m_s());
+    state.accept_meetings(world);
     (state.c, state.v, state.w) = (end.c, end.v, end.w);
     state.follow_grounds(world);
 }

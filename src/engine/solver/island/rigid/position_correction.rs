@@ -9,8 +9,6 @@ use super::contacts::{ImpactScene, StepBody};
 use crate::contact::TOUCH;
 use crate::contact::pair::{PairHistory, between};
 use crate::rock::Vec3;
-use crate::solver::contact_state::ContactEnvironment;
-use crate::solver::island::body::IslandBody;
 use crate::solver::loss::Given;
 
 /// Overlap of two rocks that is left alone: what their weight presses springs in, within bounds (–, relative to the smaller
@@ -130,21 +128,20 @@ impl RigidIsland {
     /// Moves a rock out of the mesh; whether it was in it.
     fn push_out(&mut self, scene: &mut ImpactScene, k: usize, sweep: u32) -> bool {
         let ball = &mut self.balls[k];
-        let IslandBody { state, body, laws, .. } = &mut *scene.members[k];
-        let world = ContactEnvironment { terrain: scene.terrain, body: *body, laws };
-        let off = state.look_ahead_near(&world, &ball.c, FLAT * body.radius);
+        let (world, state) = scene.members[k].with_environment(scene.terrain);
+        let off = state.look_ahead_near(&world, &ball.c, FLAT * world.body.radius);
         if state.touches.is_empty() {
             return false;
         }
         let out = state.touches.iter().fold(Vec3::zeros(), |sum, touch| {
-            let missing = body.radius - touch.distance_m - (sum + off).dot(&touch.normal);
+            let missing = world.body.radius - touch.distance_m - (sum + off).dot(&touch.normal);
             sum + touch.normal * missing.max(0.0)
         });
         ball.c += out;
         if out != Vec3::zeros() {
             ball.shifted = sweep;
         }
-        out.norm_squared() > (TOUCH * body.radius).powi(2)
+        out.norm_squared() > (TOUCH * world.body.radius).powi(2)
     }
 
     /// Pays for the height that rocks gain, first with what normal impulses took of them in this step: what sinks in by the
