@@ -208,7 +208,7 @@ impl ContactState {
     ) {
         let (body, end, loss) = (&world.body, &accepted.end, &accepted.loss);
         let before = self.motion_j(body);
-        let lifted = -body.mass * body.gravity.dot(&(end.c - self.c));
+        let lifted = body.lifted_j(&(end.c - self.c));
         (self.c, self.v, self.w) = (end.c, end.v, end.w);
         // what the springs store is counted among the losses until they give it back
         self.impact.gained += self.motion_j(body) + lifted + loss.sum() - before;

@@ -166,8 +166,7 @@ impl<'a> WorldBody<'a> {
     pub(super) fn total_j(&self, settings: &RunSettings) -> f64 {
         let now = &self.recorder.now;
         let body = &self.member.body;
-        0.5 * (body.mass * now.velocity_m_s.norm_squared()
-            + body.inertia * now.spin_rad_s.norm_squared())
+        body.motion_j((&now.velocity_m_s, &now.spin_rad_s))
             + body.mass * settings.gravity_m_s2 * now.position_m.z
     }
 

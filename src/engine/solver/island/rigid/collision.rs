@@ -8,7 +8,7 @@
 
 use super::RigidIsland;
 use super::broken_stems::TakenByTree;
-use super::contacts::{ImpactScene, LIVELY, StepBody, hit_of};
+use super::contacts::{ImpactScene, LIVELY, hit_of};
 use crate::contact::ContactPoint;
 use crate::contact::pair::between;
 use crate::rock::Vec3;
@@ -193,7 +193,8 @@ impl RigidIsland {
         for (k, (&rock, from)) in touching.rocks.iter().zip(rocks).enumerate() {
             let ball = &mut self.balls[rock];
             let (v, w) = after.motions[k];
-            let lost_j = ball.energy_j((&from.v, &ball.w)) - ball.energy_j((&v, &w));
+            let body = &ball.body;
+            let lost_j = body.motion_j((&from.v, &ball.w)) - body.motion_j((&v, &w));
             self.given[rock].passed_on += lost_j - taken_j[k];
             // what weight and contacts add in the rest of the step stays
             ball.v += v - from.v;
@@ -314,12 +315,5 @@ impl StruckRocks {
             }
             at.on_mesh = !state.touches.is_empty();
         }
-    }
-}
-
-impl StepBody {
-    /// Energy of motion (J) with a velocity (m/s) and a spin (rad/s).
-    pub(super) fn energy_j(&self, (v, w): (&Vec3, &Vec3)) -> f64 {
-        self.body.motion_j((v, w))
     }
 }
