@@ -328,6 +328,17 @@ fn meetings_by_gaps(
     Meetings { pairs, islands, allowed }
 }
 
+/// For each of `count` rocks the island of these that it is in and its place there; `usize::MAX` where it is in none.
+pub(super) fn places_in(islands: &[Vec<u32>], count: usize) -> Vec<(usize, u32)> {
+    let mut places = vec![(usize::MAX, 0); count];
+    for (number, island) in islands.iter().enumerate() {
+        for (&k, place) in island.iter().zip(0..) {
+            places[k as usize] = (number, place);
+        }
+    }
+    places
+}
+
 /// Whether anything of an island moves other than along a parabola that goes on beyond `end_s`.
 ///
 /// A rock alone whose flight outlasts the window needs no work at all: its recorder goes along the
