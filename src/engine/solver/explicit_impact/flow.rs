@@ -286,7 +286,8 @@ impl<const C: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, 
                 continue;
             }
             let (n, memory) = (touch.normal, &state.histories[place]);
-            let law = world.law_touched(memory, touch.triangle);
+            let mut own = None;
+            let law = world.law_touched(memory, touch.triangle, &mut own);
             // a patch of stiffness |a|² has its dashpot times |a|; parallel patches share theirs
             let share = world.dashpot_share_beside(&state.touches, k, changes.gone());
             let normal = law.normal(memory.captured).of_patch(touch.gain2, share);
@@ -300,7 +301,7 @@ impl<const C: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, 
                     Vec3::zeros()
                 },
             };
-            let action = Action::of(body, &law, &normal, &at, (&v, &w));
+            let action = Action::of(body, law, &normal, &at, (&v, &w));
             let Action { normal: [normal_force, pulls], shear, rolling, slip } = action;
             dv += (n * normal_force - shear.force) * by_mass;
             dw += (n.cross(&shear.force) * body.radius - rolling.force) * by_inertia;
