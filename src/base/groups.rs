@@ -66,24 +66,30 @@ impl Groups {
 
     /// Number of members of every group, by its lowest member.
     pub fn sizes(&mut self) -> Vec<usize> {
-        let mut sizes = vec![0; self.parent.len()];
-        for thing in 0..self.parent.len() as u32 {
-            sizes[self.lowest(thing) as usize] += 1;
-        }
+        let mut sizes = self.counts();
         sizes.retain(|&size| size > 0);
         sizes
     }
 
+    /// The same at the place of that member; 0 elsewhere.
+    fn counts(&mut self) -> Vec<usize> {
+        let mut counts = vec![0; self.parent.len()];
+        for thing in 0..self.parent.len() as u32 {
+            counts[self.lowest(thing) as usize] += 1;
+        }
+        counts
+    }
+
     /// Members of every group in ascending order, by its lowest.
     pub fn lists(&mut self) -> Vec<Vec<u32>> {
-        let (mut number, mut lists) = (vec![0; self.parent.len()], Vec::new());
-        for thing in 0..self.parent.len() as u32 {
-            let lowest = self.lowest(thing);
-            if lowest == thing {
-                number[thing as usize] = lists.len();
-                lists.push(Vec::new());
-            }
-            lists[number[lowest as usize]].push(thing);
+        let counts = self.counts();
+        let (mut number, mut lists) = (vec![0; counts.len()], Vec::new());
+        for (thing, &count) in counts.iter().enumerate().filter(|(_, count)| **count > 0) {
+            number[thing] = lists.len();
+            lists.push(Vec::with_capacity(count));
+        }
+        for thing in 0..counts.len() as u32 {
+            lists[number[self.lowest(thing) as usize]].push(thing);
         }
         lists
     }
