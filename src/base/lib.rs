@@ -10,6 +10,7 @@ pub mod math;
 pub mod file;
 pub mod stopwatch;
 pub mod parallel;
+pub mod groups;
 pub mod random;
 pub mod rock;
 pub mod frequency;

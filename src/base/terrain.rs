@@ -14,7 +14,6 @@ mod ground;
 pub mod formats;
 pub mod geotiff;
 pub mod grid;
-mod groups;
 pub mod health;
 pub mod index;
 pub mod make;

@@ -6,7 +6,7 @@
 
 // words and terrain
 pub use rockfall_base::{
-    count, error, file, frequency, gis, math, parallel, random, rock, stopwatch, terrain,
+    count, error, file, frequency, gis, groups, math, parallel, random, rock, stopwatch, terrain,
 };
 
 // bodies and grounds

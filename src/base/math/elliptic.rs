@@ -136,11 +136,6 @@ impl Elliptic {
         Self { mc, quarter: rf(0.0, mc, 1.0) }
     }
 
-    /// `K(m)`, a quarter of the period of sn and cn.
-    pub fn quarter_period(&self) -> f64 {
-        self.quarter
-    }
-
     /// The functions of `u`.
     pub fn functions(&self, u: f64) -> Jacobi {
         let halves = (0.5 * u / self.quarter).round();
@@ -214,7 +209,7 @@ mod tests {
         close(rc(0.0, 0.25), std::f64::consts::PI);
         close(rj(0.0, 1.0, 2.0, 3.0), 0.776_886_237_785_823_3);
         close(rj(2.0, 3.0, 4.0, 5.0), 0.142_975_796_671_567_5);
-        close(Elliptic::of_complement(0.5).quarter_period(), 1.854_074_677_301_371_9);
+        close(Elliptic::of_complement(0.5).quarter, 1.854_074_677_301_371_9);
     }
 
     /// Against forty digits (by another program), for arguments near and far from each other.
@@ -243,9 +238,9 @@ mod tests {
         for mc in [1.0, 0.9, 0.5, 0.03, 1e-4, 7.5e-9, 1e-16, 1e-30, 1e-200, f64::MIN_POSITIVE] {
             let of = Elliptic::of_complement(mc);
             for k in -40..=40 {
-                let u = 0.0491 * f64::from(k) * of.quarter_period();
+                let u = 0.0491 * f64::from(k) * of.quarter;
                 let Jacobi { halves, sn, cn } = of.functions(u);
-                let back = 2.0 * halves * of.quarter_period() + of.first_kind((sn, cn));
+                let back = 2.0 * halves * of.quarter + of.first_kind((sn, cn));
                 let allowed = 2e-15 * (1.0 + u.abs());
                 assert!((back - u).abs() < allowed, "{mc} {u} {back}");
                 assert!((sn * sn + cn * cn - 1.0).abs() < 1e-15 && cn >= 0.0);
@@ -279,9 +274,9 @@ mod tests {
                 let cosh = 0.5 * (crate::math::exp(u) + crate::math::exp(-u));
                 assert!((of.functions(u).cn * cosh - 1.0).abs() < 1e-13, "{mc} {u}");
                 let sinh = 0.5 * (crate::math::exp(u) - crate::math::exp(-u));
-                let late = of.functions(of.quarter_period() - u).cn / (mc.sqrt() * sinh);
+                let late = of.functions(of.quarter - u).cn / (mc.sqrt() * sinh);
                 // the time itself is known to its rounding
-                assert!((late - 1.0).abs() < 1e-15 * of.quarter_period() / u.min(1.0) + 1e-13);
+                assert!((late - 1.0).abs() < 1e-15 * of.quarter / u.min(1.0) + 1e-13);
             }
         }
     }

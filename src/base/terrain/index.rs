@@ -20,9 +20,6 @@ const LEAF_BIT: u32 = 1 << 31;
 const COUNT_SHIFT: u32 = 28;
 const START_MASK: u32 = (1 << COUNT_SHIFT) - 1;
 
-/// Most triangles an index can hold.
-pub const MAX_TRIANGLES: usize = START_MASK as usize;
-
 /// Children of a node.
 const WIDE: usize = 4;
 

@@ -19,9 +19,7 @@ pub use slopes::{Slope, natural_slope, paper_slope, quick_slope};
 pub use stems::{Stem, square_stem, stem};
 pub use valley::valley_slope;
 
-use crate::error::{Error, Result};
-use crate::terrain::stl::{Facet, write_binary};
-use std::path::Path;
+use crate::terrain::stl::Facet;
 
 /// Names of the made slopes and shapes, those of the files in `terrain/` without their ending.
 pub const KINDS: [&str; 10] = [
@@ -58,16 +56,4 @@ pub fn made(kind: &str) -> Option<Vec<Facet>> {
 pub fn shipped() -> Vec<(String, Vec<Facet>)> {
     let file = |kind| Some((format!("{kind}.stl"), made(kind)?));
     KINDS.into_iter().filter_map(file).collect()
-}
-
-/// Writes the made files of `terrain/` into a directory.
-///
-/// # Errors
-/// A file that cannot be written.
-pub fn write_shipped(dir: &Path) -> Result<()> {
-    std::fs::create_dir_all(dir).map_err(Error::file("create", dir))?;
-    for (name, facets) in shipped() {
-        write_binary(&dir.join(name), &facets)?;
-    }
-    Ok(())
 }

@@ -1,7 +1,7 @@
 //! Which triangles of trees are one stem: what hangs together by common corners, and pieces that stand on each other or in each other.
 
 use super::Terrain;
-use super::groups::Groups;
+use crate::groups::Groups;
 use crate::rock::Vec3;
 
 /// Pieces with a wider gap of height between them (m) are stems of their own: trunk and crown leave less open.

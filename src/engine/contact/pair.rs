@@ -7,6 +7,7 @@
 //! but does not resist bending or twist.
 
 use crate::ground::{Law, within};
+use crate::groups::Groups;
 use crate::rock::Vec3;
 use std::f64::consts::PI;
 
@@ -249,6 +250,12 @@ impl PairHistory {
     pub fn is_held(&self) -> bool {
         self.closed || self.bond.is_some()
     }
+}
+
+/// `count` rocks, joined where they hold each other.
+pub fn held_groups(count: usize, pair_histories: &[PairHistory]) -> Groups {
+    let held = pair_histories.iter().filter(|pair_history| pair_history.is_held());
+    Groups::of_pairs(count, held.map(|pair_history| (pair_history.a, pair_history.b)))
 }
 
 #[cfg(test)]

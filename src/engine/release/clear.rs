@@ -3,9 +3,9 @@
 use super::{Release, Releases, TYPED_DEPTH, release_name};
 use crate::error::{Error, Result};
 use crate::flight::{FlightEnd, Parabola, time_of_impact};
+use crate::groups::Groups;
 use crate::math;
 use crate::rock::{Motion, Vec3};
-use crate::solver::island::partition::Partition;
 use crate::terrain::Terrain;
 use std::f64::consts::TAU;
 
@@ -83,7 +83,7 @@ pub(super) fn is_inside_tree(terrain: &Terrain, point: &Vec3) -> bool {
     terrain.index.near(point, INSIDE_TREE_M, |start, count| {
         near.extend((start..start + count).filter(|&t| terrain.is_tree(t)));
     });
-    let mut parts = Partition::alone(near.len());
+    let mut parts = Groups::of(near.len());
     let mut first_at = std::collections::BTreeMap::new();
     for (k, &t) in near.iter().enumerate() {
         for vertex in terrain.triangles[t as usize] {

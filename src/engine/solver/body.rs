@@ -39,6 +39,22 @@ impl Body {
         0.5 * (self.mass * v.norm_squared() + self.inertia * w.norm_squared())
     }
 
+    /// Energy that its height gains on a way (J).
+    #[inline]
+    pub(crate) fn lifted_j(&self, way: &Vec3) -> f64 {
+        -self.mass * self.gravity.dot(way)
+    }
+
+    /// Takes energy (J) out of its motion, as much as it has at most: velocity and spin keep their directions and their ratio.
+    pub(crate) fn slow_down(&self, (v, w): (&mut Vec3, &mut Vec3), lost_j: f64) {
+        let motion_j = self.motion_j((v, w));
+        if motion_j > 0.0 && lost_j > 0.0 {
+            let kept = ((motion_j - lost_j) / motion_j).max(0.0).sqrt();
+            *v *= kept;
+            *w *= kept;
+        }
+    }
+
     /// The body of a rock under gravity `g_m_s2` along −z.
     pub fn new(rock: &Rock, g_m_s2: f64) -> Self {
         let gravity = Vec3::new(0.0, 0.0, -g_m_s2);

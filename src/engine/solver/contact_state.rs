@@ -330,9 +330,9 @@ impl ContactState {
         pressed.map(|contact| self.histories[contact.history].met_m_s).fold(0.0, f64::max)
     }
 
-    /// The contacts that have come up belong to the impact from now on; `slowest` is the speed from which on it is followed in
-    /// its own time (m/s).
-    pub(super) fn accept_meetings(&mut self, slowest: f64) {
+    /// The contacts that have come up belong to the impact from now on.
+    pub(super) fn accept_meetings(&mut self, world: &ContactEnvironment) {
+        let slowest = world.least_impact_m_s();
         for history in self.histories.iter_mut() {
             self.impact.meet(history.met_m_s, slowest);
             history.met_m_s = 0.0;

@@ -6,7 +6,6 @@ use crate::contact::{ContactPoint, TOUCH};
 use crate::ground::Law;
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
-use std::borrow::Cow;
 
 /// An approach slower than this is no impact (–, relative to `√(g R)`).
 const LEAST_IMPACT: f64 = 1e-3;
@@ -23,10 +22,10 @@ pub struct ContactEnvironment<'a> {
     pub laws: &'a [Law],
 }
 
-impl ContactEnvironment<'_> {
+impl<'a> ContactEnvironment<'a> {
     /// The law of a triangle's ground.
     #[inline]
-    pub fn law(&self, triangle: u32) -> &Law {
+    pub fn law(&self, triangle: u32) -> &'a Law {
         &self.laws[self.ground_of(triangle) as usize]
     }
 
@@ -60,26 +59,31 @@ impl ContactEnvironment<'_> {
     }
 
     /// The law of a contact with `triangle`: springs and dashpots of the ground on which it was pressed, friction of the one that it touches. An impact
-    /// on ground whose restitution falls with its speed has dashpots of its own.
+    /// on ground whose restitution falls with its speed has dashpots of its own. What is of no ground alone stands in `own`.
     #[inline]
-    pub(crate) fn law_touched(&self, history: &ContactHistory, triangle: u32) -> Cow<'_, Law> {
+    pub(crate) fn law_touched<'l>(
+        &self,
+        history: &ContactHistory,
+        triangle: u32,
+        own: &'l mut Option<Law>,
+    ) -> &'l Law
+    where
+        'a: 'l,
+    {
         let (pressed, touched) = (history.springs_of, self.law(triangle));
-        let law = if self.are_alike(pressed, triangle) {
-            Cow::Borrowed(touched)
-        } else {
-            Cow::Owned(self.law(pressed).with_friction_of(touched))
-        };
-        if history.damping_ratio > 0.0 {
-            Cow::Owned(law.damped(history.damping_ratio))
-        } else {
-            law
+        if !self.are_alike(pressed, triangle) {
+            *own = Some(self.law(pressed).with_friction_of(touched));
         }
+        if history.damping_ratio > 0.0 {
+            *own = Some(own.as_ref().unwrap_or(touched).damped(history.damping_ratio));
+        }
+        own.as_ref().unwrap_or(touched)
     }
 
     /// The same with the triangle that it touched last.
     #[inline]
-    pub(crate) fn springs_of(&self, history: &ContactHistory) -> Cow<'_, Law> {
-        self.law_touched(history, history.triangle)
+    pub(crate) fn springs_of(&self, history: &ContactHistory) -> Law {
+        *self.law_touched(history, history.triangle, &mut None)
     }
 
     /// The same for touch `k` among others of the same instant, whose memory this is.
@@ -88,7 +92,7 @@ impl ContactEnvironment<'_> {
     pub fn law_of(&self, history: &ContactHistory, touches: &[ContactPoint], k: usize) -> Law {
         let touch = &touches[k];
         let share = self.dashpot_share(touches, k);
-        self.law_touched(history, touch.triangle).of_patch(touch.gain2, share)
+        self.law_touched(history, touch.triangle, &mut None).of_patch(touch.gain2, share)
     }
 
     /// What the dashpot of touch `k` among others of the same instant takes of its own damping (–).

@@ -169,7 +169,7 @@ impl ContactState {
         let mut stages = Stages::<N, Q, P>::NONE;
         flow.rates(0, &flow.begin::<N>(), stages.first());
         // what the present place touches is met whatever becomes of the tries
-        flow.state.accept_meetings(world.least_impact_m_s());
+        flow.state.accept_meetings(world);
         loop {
             let Some(accepted) = step_among(&mut flow, &mut stages, &bounds, done)? else {
                 return Ok(done.steps > 0);
@@ -208,14 +208,14 @@ impl ContactState {
     ) {
         let (body, end, loss) = (&world.body, &accepted.end, &accepted.loss);
         let before = self.motion_j(body);
-        let lifted = -body.mass * body.gravity.dot(&(end.c - self.c));
+        let lifted = body.lifted_j(&(end.c - self.c));
         (self.c, self.v, self.w) = (end.c, end.v, end.w);
         // what the springs store is counted among the losses until they give it back
         self.impact.gained += self.motion_j(body) + lifted + loss.sum() - before;
         self.impact.mixes |= self.is_on_several_grounds(world);
         self.merge_lost(world);
         self.histories.retain(|history| history.closed);
-        self.accept_meetings(world.least_impact_m_s());
+        self.accept_meetings(world);
         self.fresh = false;
         done.dt += accepted.dt + self.let_go(world, bounds, bounds.h_max - accepted.dt);
         // what rebounds no more goes on with other steps, also while something else still presses

@@ -105,7 +105,7 @@ impl ContactState {
         let [normal, shear, roll] = stiff.shares_of(&soft);
         (after.shear, after.roll) = (before.shear * shear, before.roll * roll);
         let way = before.n * (pressed_m * (1.0 - normal));
-        let lifted_j = -world.body.mass * world.body.gravity.dot(&way);
+        let lifted_j = world.body.lifted_j(&way);
         let freed_j =
             soft.stored_j(pressed_m, 0.0, 0.0) - stiff.stored_j(pressed_m * normal, 0.0, 0.0);
         let rises = lifted_j > 0.0 && freed_j > 0.0;

@@ -19,7 +19,6 @@ mod contact_queue;
 mod dda_step;
 pub mod broad_phase;
 mod assembly;
-pub mod partition;
 mod newton_step;
 mod body;
 mod impact_tolerance;

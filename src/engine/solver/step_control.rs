@@ -257,7 +257,7 @@ fn gains(world: &ContactEnvironment, state: &ContactState, end: &End, hh: f64) -
 pub(crate) fn energies_j(body: &Body, state: &ContactState, (end, hh): (&End, f64)) -> [f64; 2] {
     let motion = body.motion_j((&end.v, &end.w));
     // height relative to the start of the step: absolute heights would cost digits
-    let lifted = -body.mass * body.gravity.dot(&(end.c - state.c));
+    let lifted = body.lifted_j(&(end.c - state.c));
     [state.motion_j(body) + state.stored, motion + lifted + pressed_j(state, end, hh)]
 }
 
@@ -361,7 +361,7 @@ pub(crate) fn accept(
         }
     }
     state.histories.retain(|history| history.closed);
-    state.accept_meetings(world.least_impact_m_s());
+    state.accept_meetings(world);
     (state.c, state.v, state.w) = (end.c, end.v, end.w);
     state.follow_grounds(world);
 }

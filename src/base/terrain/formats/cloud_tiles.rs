@@ -2,7 +2,7 @@
 
 use super::Loaded;
 use crate::error::{Error, Result};
-use crate::terrain::groups::Groups;
+use crate::groups::Groups;
 use crate::terrain::options::MeshSource;
 
 /// Joins the clouds that touch into the first of them.

@@ -2,9 +2,9 @@
 
 use super::LEAST_FLAT;
 use super::near::PlanCells;
+use crate::groups::Groups;
 use crate::parallel;
 use crate::rock::Vec3;
-use crate::terrain::groups::Groups;
 use crate::terrain::stl::area_vector;
 use crate::terrain::weld::Welded;
 use crate::terrain::weld::parts::Parts;
@@ -188,11 +188,7 @@ fn groups(facing: &[(BorderSpot, Facing)], spacing_m: f64) -> Vec<Vec<u32>> {
             }
         }
     }
-    let mut members: Vec<(u32, u32)> =
-        (0..facing.len() as u32).map(|k| (groups.lowest(k), k)).collect();
-    members.sort_unstable();
-    let same = members.chunk_by(|a, b| a.0 == b.0);
-    same.map(|group| group.iter().map(|&(_, k)| k).collect()).collect()
+    groups.lists()
 }
 
 /// What a group of points makes; nothing where it is short.

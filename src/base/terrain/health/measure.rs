@@ -1,9 +1,9 @@
 //! The measurements behind [`Health`](super::Health).
 
 use super::{FileHealth, MORE_DIGITS};
+use crate::groups::Groups;
 use crate::parallel;
 use crate::rock::Vec3;
-use crate::terrain::groups::Groups;
 use crate::terrain::stl::{CoarseText, Spacing, area_vector};
 use crate::terrain::weld::{Piece, Tally, Up, Welded};
 

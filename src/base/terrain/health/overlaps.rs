@@ -5,13 +5,12 @@
 //! lies wholly on a sheet is apart from it by more over much of its area, or has much more surface than the sheet below.
 
 use super::LEAST_FLAT;
+use crate::groups::Groups;
 use crate::parallel;
 use crate::rock::Vec3;
-use crate::terrain::groups::Groups;
 use crate::terrain::stl::area_vector;
 use crate::terrain::weld::Welded;
 use crate::terrain::weld::parts::Parts;
-use std::collections::BTreeMap;
 
 /// Sheets farther apart than this (m), or than a cell, are two surfaces: no rock of usual size presses on both.
 const FARTHEST_M: f64 = 1.0;
@@ -277,11 +276,8 @@ fn patches(pairs: &[SheetPair]) -> Vec<Vec<SheetPair>> {
             }
         }
     }
-    let mut patches: BTreeMap<u32, Vec<SheetPair>> = BTreeMap::new();
-    for (k, pair) in (0u32..).zip(pairs) {
-        patches.entry(groups.lowest(k)).or_default().push(*pair);
-    }
-    patches.into_values().collect()
+    let patch = |list: Vec<u32>| list.into_iter().map(|k| pairs[k as usize]).collect();
+    groups.lists().into_iter().map(patch).collect()
 }
 
 /// What a patch makes; nothing where it is small or one of the parts an object.

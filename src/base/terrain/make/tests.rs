@@ -4,6 +4,7 @@ use crate::terrain::health::Health;
 use crate::terrain::stl::{Soup, area_vector, binary_bytes};
 use crate::terrain::weld::{Piece, Up, weld};
 use std::f64::consts::FRAC_PI_4;
+use std::path::Path;
 
 fn health(facets: Vec<Facet>) -> Health {
     let soup = Soup::from(facets);
@@ -31,7 +32,7 @@ fn the_shipped_files_are_what_the_generator_makes() {
         let file = std::fs::read(folder.join(&name)).unwrap();
         assert!(
             file == binary_bytes(&facets),
-            "terrain/{name} differs from what make::write_shipped writes"
+            "terrain/{name} differs from what `rockfall mesh make` writes"
         );
     }
 }

@@ -1,8 +1,8 @@
 //! Which part of the mesh a triangle belongs to: what shares edges hangs together.
 
 use super::Welded;
+use crate::groups::Groups;
 use crate::parallel;
-use crate::terrain::groups::Groups;
 
 /// The parts, numbered from 0, the largest first.
 #[derive(Debug, Clone, PartialEq)]

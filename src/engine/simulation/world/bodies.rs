@@ -8,7 +8,7 @@
 
 use super::cached_pairs::CachedPairs;
 use super::prediction::{
-    Meetings, PredictedRock, is_busy, meetings_in_passing, meetings_of_islands, place_of,
+    Meetings, PredictedRock, is_busy, meetings_in_passing, meetings_of_islands, place_of, places_in,
 };
 use super::window::IslandWindow;
 use super::{BodyState, PairMaterial, TOUCHING, WorldBody, WorldStats, law_between};
@@ -308,13 +308,7 @@ impl<'a> BodyWorld<'a> {
         // an island in which nothing moves, lands or meets is left as it is: its rocks sleep or fly through
         let mut lists = meetings.islands.lists();
         lists.retain(|list| is_busy(list.iter().map(|&k| self.body(present[k as usize])), end_s));
-        // for each rock: the island it is in, and its place there
-        let mut part = vec![(usize::MAX, 0); present.len()];
-        for (number, list) in lists.iter().enumerate() {
-            for (&k, place) in list.iter().zip(0..) {
-                part[k as usize] = (number, place);
-            }
-        }
+        let part = places_in(&lists, present.len());
         let mut counts = vec![0; lists.len()];
         for &(a, _) in &meetings.pairs {
             if let Some(count) = counts.get_mut(part[a as usize].0) {

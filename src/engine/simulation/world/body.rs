@@ -13,8 +13,7 @@ use crate::simulation::rest::RestCriterion;
 use crate::simulation::rock_in_contact::RockInContact;
 use crate::simulation::settings::RunSettings;
 use crate::simulation::{PathState, Stop, Trajectory};
-use crate::solver::contact_state::ContactEnvironment;
-use crate::solver::island::{BlowInStep, Hit, IslandBody};
+use crate::solver::island::{BlowInStep, Hit};
 use crate::solver::loss::{Given, Loss};
 use crate::solver::step_control::ONSET;
 
@@ -146,8 +145,7 @@ impl<'a> WorldBody<'a> {
     pub(super) fn land(&mut self, settings: &RunSettings) {
         self.begin(settings);
         let Motion { position_m: c, velocity_m_s: v, spin_rad_s: w, .. } = self.recorder.now;
-        let IslandBody { state, body, laws, .. } = &mut *self.member;
-        let world = ContactEnvironment { terrain: settings.terrain, body: *body, laws };
+        let (world, state) = self.member.with_environment(settings.terrain);
         // looks for the contacts of this place; what was remembered of the episode before is gone
         state.begin(&world, c, v, w);
         // A rock that is pressed in from the start has the energy of its springs, too.
@@ -168,8 +166,7 @@ impl<'a> WorldBody<'a> {
     pub(super) fn total_j(&self, settings: &RunSettings) -> f64 {
         let now = &self.recorder.now;
         let body = &self.member.body;
-        0.5 * (body.mass * now.velocity_m_s.norm_squared()
-            + body.inertia * now.spin_rad_s.norm_squared())
+        body.motion_j((&now.velocity_m_s, &now.spin_rad_s))
             + body.mass * settings.gravity_m_s2 * now.position_m.z
     }
 
@@ -321,8 +318,7 @@ impl<'a> WorldBody<'a> {
     /// Largest rise of energy over the contact episode that ends now.
     pub(super) fn end_episode(&mut self, settings: &RunSettings) {
         let given_j = self.given_j() - self.began_j.1;
-        let IslandBody { state, body, laws, .. } = &mut *self.member;
-        let world = ContactEnvironment { terrain: settings.terrain, body: *body, laws };
+        let (world, state) = self.member.with_environment(settings.terrain);
         // The rigid limit has no springs, whatever the depth that rounding leaves.
         let is_rigid = !settings.step.scheme.has_springs();
         let stored = if is_rigid { Loss::default() } else { state.springs_j(&world) };
@@ -348,8 +344,7 @@ impl<'a> WorldBody<'a> {
         &'r mut self,
         settings: &RunSettings<'r>,
     ) -> RockInContact<'r, 'a> {
-        let IslandBody { state, body, laws, .. } = &mut *self.member;
-        let world = ContactEnvironment { terrain: settings.terrain, body: *body, laws };
+        let (world, state) = self.member.with_environment(settings.terrain);
         let has_springs = settings.step.scheme.has_springs();
         RockInContact { world, state, recorder: &mut self.recorder, has_springs }
     }

@@ -10,10 +10,9 @@
 use super::bodies::BodyWorld;
 use super::window::IslandWindow;
 use super::{PairMaterial, WorldBody};
-use crate::contact::pair::{PairHistory, between};
+use crate::contact::pair::{PairHistory, between, held_groups};
 use crate::rock::Motion;
 use crate::simulation::settings::RunSettings;
-use crate::solver::island::partition::Partition;
 use crate::solver::island::unload_pair;
 use crate::solver::loss::Given;
 use crate::solver::{MOST_WITH_SPRINGS, Settings};
@@ -53,7 +52,7 @@ impl<'a> BodyWorld<'a> {
 
 /// How many rocks of an island of `count` hold each other, directly or through others, at most.
 fn largest_touching(count: usize, pairs: &[PairHistory]) -> usize {
-    Partition::held(count, pairs).sizes().into_iter().max().unwrap_or(0) as usize
+    held_groups(count, pairs).sizes().into_iter().max().unwrap_or(0)
 }
 
 impl IslandWindow<'_> {

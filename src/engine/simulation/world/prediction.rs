@@ -9,10 +9,10 @@
 
 use super::{BodyState, WorldBody};
 use crate::contact::pair::PairHistory;
+use crate::groups::Groups;
 use crate::rock::Vec3;
 use crate::simulation::settings::RunSettings;
 use crate::solver::island::broad_phase::Ball;
-use crate::solver::island::partition::Partition;
 
 /// Passes in which islands grow by the reach of those that may be hit.
 ///
@@ -116,7 +116,7 @@ pub(super) struct Ahead {
 pub(super) struct Meetings {
     /// In ascending order.
     pub(super) pairs: Vec<(u32, u32)>,
-    pub(super) islands: Partition,
+    pub(super) islands: Groups,
     /// Change of each rock's velocity that was allowed for (m/s).
     allowed: Vec<f64>,
 }
@@ -179,7 +179,7 @@ pub(super) fn meetings_of_islands(
     mut near: impl FnMut(&[f64]) -> Vec<(u32, u32)>,
 ) -> Meetings {
     let mut fastest: Vec<f64> = places.iter().map(|place| KICK * place.speed()).collect();
-    let (mut pairs, mut islands) = (Vec::new(), Partition::alone(places.len()));
+    let (mut pairs, mut islands) = (Vec::new(), Groups::of(places.len()));
     let mut allowed = Vec::new();
     for _ in 0..PASSES {
         // what its velocity may change by, beyond the speed it has
@@ -192,15 +192,15 @@ pub(super) fn meetings_of_islands(
             place.radius * (1.0 + REACH_ROUNDING) + (place.velocity.norm() + deviated) * dt
         };
         pairs = near(&places.iter().zip(&allowed).map(reach).collect::<Vec<_>>());
-        islands = Partition::joined(places.len(), pairs.iter().copied());
+        islands = Groups::of_pairs(places.len(), pairs.iter().copied());
         // the fastest of every island, then handed back to all of its rocks
         let mut most = vec![0.0f64; places.len()];
         for (place, k) in places.iter().zip(0..) {
-            let root = islands.of(k) as usize;
+            let root = islands.lowest(k) as usize;
             most[root] = most[root].max(KICK * place.speed());
         }
         for (speed, k) in fastest.iter_mut().zip(0..) {
-            *speed = most[islands.of(k) as usize];
+            *speed = most[islands.lowest(k) as usize];
         }
     }
     Meetings { pairs, islands, allowed }
@@ -324,8 +324,19 @@ fn meetings_by_gaps(
     }
     let pairs: Vec<_> =
         known.filter(|&(pair, gap)| meets(&allowed, pair, gap)).map(|(pair, _)| pair).collect();
-    let islands = Partition::joined(places.len(), pairs.iter().copied());
+    let islands = Groups::of_pairs(places.len(), pairs.iter().copied());
     Meetings { pairs, islands, allowed }
+}
+
+/// For each of `count` rocks the island of these that it is in and its place there; `usize::MAX` where it is in none.
+pub(super) fn places_in(islands: &[Vec<u32>], count: usize) -> Vec<(usize, u32)> {
+    let mut places = vec![(usize::MAX, 0); count];
+    for (number, island) in islands.iter().enumerate() {
+        for (&k, place) in island.iter().zip(0..) {
+            places[k as usize] = (number, place);
+        }
+    }
+    places
 }
 
 /// Whether anything of an island moves other than along a parabola that goes on beyond `end_s`.

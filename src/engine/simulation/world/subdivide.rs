@@ -8,7 +8,7 @@
 
 use super::WorldBody;
 use super::prediction::{
-    Ahead, HitSpread, Meetings, PredictedRock, is_busy, meeting_ties, place_of,
+    Ahead, HitSpread, Meetings, PredictedRock, is_busy, meeting_ties, place_of, places_in,
 };
 use super::snapshot::Kept;
 use super::window::IslandWindow;
@@ -90,7 +90,7 @@ impl IslandWindow<'_> {
             let dt = length / f64::from(cuts);
             let mut meetings = self.meetings(&self.places(dt), (dt, stiffest));
             let largest = meetings.islands.sizes().into_iter().max().unwrap_or(0);
-            if 4 * largest as usize <= 3 * count {
+            if 4 * largest <= 3 * count {
                 return Some(cuts);
             }
             cuts *= CUTS;
@@ -177,12 +177,7 @@ impl<'a> IslandWindow<'a> {
     ) -> Vec<Self> {
         let mut lists = meetings.islands.lists();
         lists.retain(|list| is_busy(list.iter().map(|&k| &*self.bodies[k as usize]), self.end_s));
-        let mut part = vec![(u32::MAX, 0); self.bodies.len()];
-        for (list, number) in lists.iter().zip(0..) {
-            for (&k, place) in list.iter().zip(0..) {
-                part[k as usize] = (number, place);
-            }
-        }
+        let part = places_in(&lists, self.bodies.len());
         let mut pair_histories: Vec<Vec<PairHistory>> = lists.iter().map(|_| Vec::new()).collect();
         let mut pairs = meetings.pairs.iter().peekable();
         // a pair goes with its part if both ends are in it; pairs between parts wait with the
@@ -190,9 +185,9 @@ impl<'a> IslandWindow<'a> {
         self.pair_histories.retain(|pair_history| {
             let (number, a) = part[pair_history.a as usize];
             let meets = pairs.next_if(|pair| **pair == (pair_history.a, pair_history.b)).is_some();
-            let goes = meets && number != u32::MAX;
+            let goes = meets && number != usize::MAX;
             if goes {
-                pair_histories[number as usize].push(PairHistory {
+                pair_histories[number].push(PairHistory {
                     a,
                     b: part[pair_history.b as usize].1,
                     ..*pair_history

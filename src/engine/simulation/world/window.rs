@@ -212,23 +212,9 @@ impl<'a> IslandWindow<'a> {
             // no step passes the next event, the end of the window, or the end of a facet of rough ground
             let room = (until_s - self.now_s).min(self.before_step(&mut island));
             let spent = (island.sweeps, island.jumps);
-            let step = self.settings.step;
-            // three drivers of one system: error control, the fixed step of the paper, velocity stepping without
-            // springs
-            let tried = if step.scheme.controls_error() {
-                island.advance(step, room)
-            } else if step.scheme.has_springs() {
-                island.advance_fixed(step, room)
-            } else {
-                island.advance_rigid(step.step_s, room)
-            };
-            let done = match tried {
-                Ok(done) => done,
-                Err(stuck) => {
-                    self.fail(stuck);
-                    goes_on = false;
-                    break;
-                }
+            let Some(done) = self.advance(&mut island, room) else {
+                goes_on = false;
+                break;
             };
             let left_s = until_s - self.now_s;
             // the last step ends exactly at the event: a remainder of rounding would make an empty step of its own
@@ -248,6 +234,26 @@ impl<'a> IslandWindow<'a> {
             self.begin_contacts();
         }
         goes_on
+    }
+
+    /// One step of at most `room` (s); none where it fails: it is that of all rocks of the island, and none may go on from a guess.
+    fn advance(&mut self, island: &mut Island<'a>, room: f64) -> Option<Done> {
+        let step = self.settings.step;
+        // three drivers of one system: error control, the fixed step of the paper, velocity stepping without
+        // springs
+        let tried = if step.scheme.controls_error() {
+            island.advance(step, room)
+        } else if step.scheme.has_springs() {
+            island.advance_fixed(step, room)
+        } else {
+            island.advance_rigid(step.step_s, room)
+        };
+        let failed = |stuck: StepError| {
+            for body in &mut self.bodies {
+                body.leave(Stop::Failed(stuck.to_string()));
+            }
+        };
+        tried.map_err(failed).ok()
     }
 
     /// Makes the rocks of the island ready for a step in contact; returns the longest that it may be (s).
@@ -353,12 +359,5 @@ impl<'a> IslandWindow<'a> {
             std::mem::swap(&mut body.member, &mut island.members[k]);
         }
         island.members.iter().all(|member| member.flying)
-    }
-
-    /// Ends all rocks of the island: the step that failed is that of all, and no rock may go on from a guess.
-    fn fail(&mut self, stuck: StepError) {
-        for body in &mut self.bodies {
-            body.leave(Stop::Failed(stuck.to_string()));
-        }
     }
 }

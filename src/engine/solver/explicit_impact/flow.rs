@@ -59,6 +59,31 @@ pub(in crate::solver) struct HeldEnergy {
 
 impl HeldEnergy {
     pub(in crate::solver) const NONE: Self = Self { stored_j: 0.0, gives_back: true };
+
+    /// Of a normal element that is pressed in so deep (m) by so much (N); the mass is that of the rock (kg).
+    pub(in crate::solver) fn of(
+        normal: &NormalElement,
+        (depth_m, force_n): (f64, f64),
+        mass_kg: f64,
+    ) -> Self {
+        let gives_back = force_n > 0.0 || !normal.is_damped(mass_kg);
+        Self { stored_j: normal.stored_j(depth_m), gives_back }
+    }
+
+    /// What the spring has taken up until the step's `end` (J), of which the sums over the step say `summed_j`.
+    ///
+    /// Known from the two ends where it pushes at both, whatever came and went between them: the energy of a place is continuous. A spring
+    /// whose dashpot has let it go has not given back what it held: there the sums tell, which cancel against what the dashpot takes there. Not
+    /// so where contacts hand `over` to each other what they hold: that jumps, and only all of them together, each by its place, are continuous.
+    pub(in crate::solver) fn taken_until(
+        &self,
+        end: &Self,
+        over: impl FnOnce() -> bool,
+        summed_j: f64,
+    ) -> f64 {
+        let is_known = (self.gives_back && end.gives_back) || over();
+        if is_known { end.stored_j - self.stored_j } else { summed_j }
+    }
 }
 
 /// A rock with up to `C` contacts; a contact keeps the place of its memory.
@@ -85,8 +110,7 @@ pub(super) struct Among<'a, 'w, const C: usize> {
 impl PressedContact {
     /// What its normal spring holds; the mass is that of the rock (kg).
     fn held(&self, mass: f64) -> HeldEnergy {
-        let gives_back = self.normal_force > 0.0 || !self.normal.is_damped(mass);
-        HeldEnergy { stored_j: self.normal.stored_j(self.at.penetration), gives_back }
+        HeldEnergy::of(&self.normal, (self.at.penetration, self.normal_force), mass)
     }
 }
 
@@ -170,12 +194,8 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
         }
     }
 
-    /// What the normal springs have taken up since the step's start (J), at its end, the state last asked for.
-    ///
-    /// Known from the two ends where they push at both, whatever patches came and went between them: the energy of a place is
-    /// continuous. What was absorbed by a patch holds nothing by itself. A spring whose dashpot has let it go has not given back what it
-    /// held: there the sums over the step tell, which cancel against what the dashpot takes there. Not so where patches meet or part:
-    /// what one of them holds then jumps, and only all of them together, each by its place, are continuous.
+    /// What the normal springs have taken up since the step's start (J), at its end, the state last asked for. What was absorbed by a patch holds
+    /// nothing by itself, and where patches meet or part they hand over what they hold.
     pub(super) fn taken_up<const Q: usize>(&self, sums: &[f64; Q]) -> Loss {
         let jumps = self.changes.exchange.is_some();
         let mut taken = Loss::default();
@@ -190,10 +210,7 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
                 },
                 |contact| contact.held(self.world.body.mass),
             );
-            let began = self.began[place];
-            let is_known = jumps || (began.gives_back && ended.gives_back);
-            let by_place_j = ended.stored_j - began.stored_j;
-            let damping = if is_known { by_place_j } else { sums[LOSSES + place] };
+            let damping = self.began[place].taken_until(&ended, || jumps, sums[LOSSES + place]);
             let triangle = end.map_or(history.triangle, |contact| contact.touch.triangle);
             taken.add(&Loss { damping, ..Loss::default() }.on(self.world, triangle), 1.0);
         }
@@ -269,7 +286,8 @@ impl<const C: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, 
                 continue;
             }
             let (n, memory) = (touch.normal, &state.histories[place]);
-            let law = world.law_touched(memory, touch.triangle);
+            let mut own = None;
+            let law = world.law_touched(memory, touch.triangle, &mut own);
             // a patch of stiffness |a|² has its dashpot times |a|; parallel patches share theirs
             let share = world.dashpot_share_beside(&state.touches, k, changes.gone());
             let normal = law.normal(memory.captured).of_patch(touch.gain2, share);
@@ -283,7 +301,7 @@ impl<const C: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, 
                     Vec3::zeros()
                 },
             };
-            let action = Action::of(body, &law, &normal, &at, (&v, &w));
+            let action = Action::of(body, law, &normal, &at, (&v, &w));
             let Action { normal: [normal_force, pulls], shear, rolling, slip } = action;
             dv += (n * normal_force - shear.force) * by_mass;
             dw += (n.cross(&shear.force) * body.radius - rolling.force) * by_inertia;

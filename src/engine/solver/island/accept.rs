@@ -6,13 +6,12 @@
 //! friction, with its stretch cut back to Coulomb's cone, so that nothing it held becomes motion.
 
 use super::assembly::Island;
-use super::body::{IslandBody, note_flights};
+use super::body::note_flights;
 use super::outcome::Done;
 use crate::contact::history::carry;
 use crate::contact::pair::{PairHistory, PairImpact, between};
 use crate::math;
 use crate::rock::Vec3;
-use crate::solver::contact_state::ContactEnvironment;
 use crate::solver::loss::{Given, Loss};
 use crate::solver::step_control;
 use crate::solver::tableau::Tableau;
@@ -27,8 +26,7 @@ impl Island<'_> {
             let mut loss = Loss::default();
             let omegas_dt = member.omega(self.terrain) * dt;
             let end = member.end;
-            let IslandBody { state, body, laws, .. } = &mut **member;
-            let world = ContactEnvironment { terrain: self.terrain, body: *body, laws };
+            let (world, state) = member.with_environment(self.terrain);
             // what has begun as the step ends has all its time before it
             state.impact.pass(omegas_dt);
             step_control::accept(&world, tableau, state, (&end, dt), &mut loss);

@@ -14,7 +14,7 @@ use crate::ground::Law;
 use crate::rock::Vec3;
 use crate::solver::Settings;
 use crate::solver::body::Twist;
-use crate::solver::contact_state::{ContactEnvironment, Onset};
+use crate::solver::contact_state::Onset;
 use crate::solver::dda::DdaPairs;
 use crate::solver::step_control::{self, Control, ONSET, StepError};
 use crate::solver::tableau::{STAGES, TR_BDF2};
@@ -200,8 +200,7 @@ impl<'a> Island<'a> {
     pub(super) fn travel_limit(&mut self, travel: f64) -> f64 {
         let mut limit = f64::INFINITY;
         for member in self.members.iter_mut().filter(|member| !member.flying) {
-            let IslandBody { state, body, laws, .. } = &mut **member;
-            let world = ContactEnvironment { terrain: self.terrain, body: *body, laws };
+            let (world, state) = member.with_environment(self.terrain);
             limit = limit.min(state.longest_step(&world, travel));
         }
         for pair_history in &self.pair_histories {

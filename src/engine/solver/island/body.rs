@@ -183,8 +183,7 @@ impl IslandBody {
     ) -> Result<Done, StepError> {
         self.flew = self.flying;
         self.kept.clear();
-        let Self { state, body, laws, .. } = self;
-        let world = ContactEnvironment { terrain, body: *body, laws };
+        let (world, state) = self.with_environment(terrain);
         let done = advance(&world, state)?;
         self.flying = self.state.is_free();
         Ok(Done {
@@ -197,6 +196,21 @@ impl IslandBody {
         })
     }
 
+    /// What it meets on a terrain.
+    #[inline]
+    pub(crate) fn environment<'w>(&'w self, terrain: &'w Terrain) -> ContactEnvironment<'w> {
+        ContactEnvironment { terrain, body: self.body, laws: &self.laws }
+    }
+
+    /// The same, and its state to be changed.
+    #[inline]
+    pub(crate) fn with_environment<'w>(
+        &'w mut self,
+        terrain: &'w Terrain,
+    ) -> (ContactEnvironment<'w>, &'w mut ContactState) {
+        (ContactEnvironment { terrain, body: self.body, laws: &self.laws }, &mut self.state)
+    }
+
     pub(super) fn contacts(&self) -> &[StageContact] {
         &self.state.contacts[..self.state.contact_count]
     }
@@ -206,7 +220,7 @@ impl IslandBody {
     /// A spring of frequency `ω` that holds `F` has stored `F²/(2 m ω²)`: let go, it gives `m` the
     /// speed `F/(m ω)`.
     pub fn pressed_m_s(&self, terrain: &Terrain) -> f64 {
-        let world = ContactEnvironment { terrain, body: self.body, laws: &self.laws };
+        let world = self.environment(terrain);
         let histories = self.state.histories.iter();
         histories
             .map(|history| {
@@ -225,17 +239,16 @@ impl IslandBody {
 
     /// Stiffest contact with the mesh (rad/s), 0 if there is none.
     pub fn omega(&self, terrain: &Terrain) -> f64 {
-        let world = ContactEnvironment { terrain, body: self.body, laws: &self.laws };
-        self.state.stiffest_rad_s(&world)
+        self.state.stiffest_rad_s(&self.environment(terrain))
     }
 }
 
 impl IslandBody {
     /// Looks for what the guess of the stage's end touches.
     pub(super) fn look(&mut self, terrain: &Terrain) {
-        let world = ContactEnvironment { terrain, body: self.body, laws: &self.laws };
         let guess = self.guess;
-        self.state.look_ahead(&world, &guess);
+        let (world, state) = self.with_environment(terrain);
+        state.look_ahead(&world, &guess);
     }
 
     /// Makes the touches of the guess into contacts of stage `i`; forces begin with those of the

@@ -1,10 +1,9 @@
 //! Scheme `dda` for an island: the paper's step at a fixed time step for all of its rocks, see `dda`.
 
 use super::assembly::Island;
-use super::body::{IslandBody, note_flights};
+use super::body::note_flights;
 use super::outcome::Done;
 use crate::solver::Settings;
-use crate::solver::contact_state::ContactEnvironment;
 use crate::solver::dda::{DdaBody, DdaStep, TRAVEL};
 use crate::solver::step_control::StepError;
 
@@ -20,8 +19,8 @@ impl Island<'_> {
         let Self { terrain, members, pair_histories, dda_pairs: pairs, .. } = self;
         let mut bodies = Vec::with_capacity(members.len());
         for member in members.iter_mut() {
-            let IslandBody { state, body, laws, .. } = &mut **member;
-            bodies.push(DdaBody::looking(ContactEnvironment { terrain, body: *body, laws }, state));
+            let (world, state) = member.with_environment(terrain);
+            bodies.push(DdaBody::looking(world, state));
         }
         let bodies = &mut bodies;
         let done =

@@ -8,7 +8,6 @@
 use super::assembly::Island;
 use super::body::IslandBody;
 use crate::contact::pair::{PairHistory, between};
-use crate::solver::contact_state::ContactEnvironment;
 use crate::terrain::Terrain;
 
 impl Island<'_> {
@@ -37,8 +36,7 @@ impl Island<'_> {
 impl IslandBody {
     /// The same of its contacts with the mesh.
     fn release_ground(&mut self, terrain: &Terrain) -> bool {
-        let Self { state, body, laws, .. } = self;
-        let world = ContactEnvironment { terrain, body: *body, laws };
+        let (world, state) = self.with_environment(terrain);
         let mut is_any = false;
         for history in state.histories.iter_mut().filter(|one| one.captured && one.closed) {
             let approach_m_s = -history.n.dot(&state.v);

@@ -28,7 +28,6 @@ use super::outcome::{BlowInStep, Done, Hit};
 use crate::contact::pair::{PairHistory, between};
 use crate::rock::Vec3;
 use crate::solver::body::are_finite;
-use crate::solver::contact_state::ContactEnvironment;
 use crate::solver::impact::BlowTable;
 use crate::solver::law::capture_m_s;
 use crate::solver::loss::Given;
@@ -252,8 +251,7 @@ impl IslandBody {
     fn land_on(&mut self, terrain: &Terrain, ball: &StepBody) {
         self.flew = self.flying;
         self.was_touched = ball.pushed || ball.moved;
-        let Self { state, body, laws, .. } = self;
-        let world = ContactEnvironment { terrain, body: *body, laws };
+        let (world, state) = self.with_environment(terrain);
         (state.c, state.v, state.w) = (ball.c, ball.v, ball.w);
         remember(&world, state, ball.pushed);
         state.is_struck = false;

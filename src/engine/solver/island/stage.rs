@@ -9,12 +9,10 @@
 //! act on two of them with opposite sign, and that all must agree before any goes on.
 
 use super::assembly::Island;
-use super::body::IslandBody;
 use super::pair_contact::PairContact;
 use super::pair_contact::TOUCH;
 use crate::contact::history::carry;
 use crate::rock::Vec3;
-use crate::solver::contact_state::ContactEnvironment;
 use crate::solver::loss::Given;
 use crate::solver::stage::{AGREED, PASSES};
 use crate::solver::tableau::{STAGES, Tableau};
@@ -161,8 +159,7 @@ impl Island<'_> {
     /// (`act_now`).
     pub(super) fn rates_now(&mut self) {
         for member in &mut self.members {
-            let IslandBody { state, body, laws, .. } = &mut **member;
-            let world = ContactEnvironment { terrain: self.terrain, body: *body, laws };
+            let (world, state) = member.with_environment(self.terrain);
             state.rates_now(&world);
             member.given[0] = Given::default();
         }

@@ -8,7 +8,7 @@ use super::assembly::Island;
 use super::body::IslandBody;
 use super::pair_contact::PairContact;
 use crate::contact::pair::{PairHistory, between};
-use crate::solver::contact_state::{ContactEnvironment, Onset};
+use crate::solver::contact_state::Onset;
 use crate::solver::law::StageContact;
 use crate::solver::step_control::{
     self, Begun, Control, ONSET, OnsetSearch, StepError, TRAVEL, TrialStep, TryOutcome,
@@ -177,9 +177,8 @@ impl Island<'_> {
     /// What the present place touches is met whatever becomes of the tries.
     pub(super) fn accept_meetings(&mut self) {
         for member in self.members.iter_mut().map(|slot| &mut **slot) {
-            let world =
-                ContactEnvironment { terrain: self.terrain, body: member.body, laws: &member.laws };
-            member.state.accept_meetings(world.least_impact_m_s());
+            let (world, state) = member.with_environment(self.terrain);
+            state.accept_meetings(&world);
         }
     }
 

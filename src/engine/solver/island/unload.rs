@@ -7,7 +7,6 @@
 use super::body::IslandBody;
 use crate::contact::pair::{PairHistory, between};
 use crate::rock::Vec3;
-use crate::solver::contact_state::ContactEnvironment;
 use crate::solver::loss::{Given, Loss};
 use crate::terrain::Terrain;
 
@@ -21,12 +20,11 @@ fn impulse(mass: f64, speed: f64, energy_j: f64) -> f64 {
 impl IslandBody {
     /// Unloads its contacts with the mesh; what that takes (J) is negative.
     pub fn unload(&mut self, terrain: &Terrain) -> Loss {
-        let Self { state, body, laws, .. } = self;
-        let world = ContactEnvironment { terrain, body: *body, laws };
+        let (world, state) = self.with_environment(terrain);
         let mut loss = Loss::default();
         let pressed = state.pressed_in_impacts(&world);
         for (n, triangle, energy_j) in pressed {
-            state.v += n * (impulse(body.mass, n.dot(&state.v), energy_j) / body.mass);
+            state.v += n * (impulse(world.body.mass, n.dot(&state.v), energy_j) / world.body.mass);
             loss.add(&Loss::on_slope([0.0, -energy_j, 0.0]).on(&world, triangle), 1.0);
         }
         self.forget_springs();

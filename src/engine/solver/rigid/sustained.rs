@@ -142,6 +142,15 @@ fn meets_s(world: &ContactEnvironment, state: &ContactState, tried: &HeldStep) -
     met_s.reduce(f64::min)
 }
 
+/// Way (m) that takes a rock of a radius (m) out of all that it touches, which is `off` (m) from where it was looked for.
+pub(in crate::solver) fn way_out(touches: &[ContactPoint], radius_m: f64, off: &Vec3) -> Vec3 {
+    // each normal adds what the ones before it have not moved out already
+    touches.iter().fold(Vec3::zeros(), |sum, touch| {
+        let missing_m = radius_m - touch.distance_m - (sum + off).dot(&touch.normal);
+        sum + touch.normal * missing_m.max(0.0)
+    })
+}
+
 /// Moves a rock that got into the mesh out along the normals; the height it gains is paid by its motion.
 ///
 /// The depth is the error of the step. Lifting the rock out for nothing would create energy at
@@ -151,21 +160,12 @@ pub(super) fn push_out(world: &ContactEnvironment, state: &mut ContactState) {
     for _ in 0..4 {
         let c = state.c;
         state.look_ahead_again(world, &c);
-        // each normal adds what the ones before it have not moved out already
-        let out = state.touches.iter().fold(Vec3::zeros(), |sum, touch| {
-            let missing = r - touch.distance_m - sum.dot(&touch.normal);
-            sum + touch.normal * missing.max(0.0)
-        });
+        let out = way_out(&state.touches, r, &Vec3::zeros());
         if out.norm() <= TOUCH * r {
             break;
         }
         state.c += out;
     }
-    let lifted = -world.body.mass * world.body.gravity.dot(&(state.c - before));
-    let motion = state.motion_j(&world.body);
-    if lifted > 0.0 && motion > 0.0 {
-        let kept = ((motion - lifted) / motion).max(0.0).sqrt();
-        state.v *= kept;
-        state.w *= kept;
-    }
+    let lifted_j = world.body.lifted_j(&(state.c - before));
+    world.body.slow_down((&mut state.v, &mut state.w), lifted_j);
 }

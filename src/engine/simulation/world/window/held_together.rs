@@ -2,15 +2,15 @@
 
 use super::super::{BodyState, WorldBody};
 use super::IslandWindow;
+use crate::contact::pair::held_groups;
 use crate::flight::{FlightEnd, Parabola, time_of_impact_past};
 use crate::rock::Vec3;
 use crate::simulation::Stop;
-use crate::solver::island::partition::Partition;
 
 impl IslandWindow<'_> {
     /// The rocks that hold each other, by their places in the island.
     fn held_together(&self) -> Vec<Vec<u32>> {
-        Partition::held(self.bodies.len(), &self.pair_histories).lists()
+        held_groups(self.bodies.len(), &self.pair_histories).lists()
     }
 
     /// Puts to sleep what has been quiet for long enough together with all that it touches.

@@ -23,13 +23,7 @@ impl IslandWindow<'_> {
         while self.now_s < self.end_s {
             let room = self.end_s - self.now_s;
             let spent = (island.sweeps, island.jumps);
-            let done = match island.advance_rigid(settings.step.step_s, room) {
-                Ok(done) => done,
-                Err(stuck) => {
-                    self.fail(stuck);
-                    break;
-                }
-            };
+            let Some(done) = self.advance(&mut island, room) else { break };
             // a step that takes all the room ends exactly at the window's end
             self.now_s = if done.dt >= room { self.end_s } else { self.now_s + done.dt };
             self.note(&mut island, &done, (spent, WorldBody::stride));

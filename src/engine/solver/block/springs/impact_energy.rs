@@ -29,8 +29,7 @@ pub(super) fn gained_j(
     (start, end): (&Moving, &Moving),
 ) -> f64 {
     let lifted_m = end.pose.centre - start.pose.centre;
-    let lifted_j = -block.mass_kg * world.body.gravity.dot(&lifted_m);
-    end.motion_j(block) + lifted_j - start.motion_j(block)
+    end.motion_j(block) + world.body.lifted_j(&lifted_m) - start.motion_j(block)
 }
 
 impl SpringContact {

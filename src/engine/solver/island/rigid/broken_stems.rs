@@ -6,9 +6,7 @@
 use super::contacts::ImpactScene;
 use crate::contact::ContactPoint;
 use crate::ground::Law;
-use crate::solver::contact_state::ContactEnvironment;
 use crate::solver::impact::{BODIES, FrozenBody, FrozenContact};
-use crate::solver::island::body::IslandBody;
 use crate::solver::joint_blow::{
     Breakage, JointBody, JointContact, JointContacts, JointEnd, StemOfRock, joint_blow,
 };
@@ -60,8 +58,8 @@ impl ImpactScene<'_> {
         };
         // rock by rock, as they stand among the contacts
         let touches = rocks.iter().flat_map(|rock| {
-            let IslandBody { state, body, laws, .. } = &*self.members[*rock];
-            let world = ContactEnvironment { terrain: self.terrain, body: *body, laws };
+            let world = self.members[*rock].environment(self.terrain);
+            let state = &self.members[*rock].state;
             let law_of = move |(k, at): (usize, &ContactPoint)| {
                 let share = world.dashpot_share(&state.touches, k);
                 (world.law(at.triangle).of_patch(at.gain2, share), at.triangle)

@@ -8,11 +8,10 @@
 
 use super::RigidIsland;
 use super::broken_stems::TakenByTree;
-use super::contacts::{ImpactScene, LIVELY, StepBody, hit_of};
+use super::contacts::{ImpactScene, LIVELY, hit_of};
 use crate::contact::ContactPoint;
 use crate::contact::pair::between;
 use crate::rock::Vec3;
-use crate::solver::contact_state::ContactEnvironment;
 use crate::solver::impact::{
     BODIES, CONTACTS, ContactEnds, FrozenBody, FrozenCollision, FrozenContact, collide,
 };
@@ -165,15 +164,14 @@ impl RigidIsland {
             .flat_map(|(rock, _)| scene.members[*rock].state.touches.iter().map(|at| (*rock, at)));
         for ((k, contact), (rock, at)) in (pairs.len()..).zip(meshes).zip(touches) {
             let (loss, approach_m_s) = (&after.loss[k], after.fastest_m_s[k]);
-            let IslandBody { body, laws, .. } = &*scene.members[rock];
-            let world = ContactEnvironment { terrain: scene.terrain, body: *body, laws };
+            let world = scene.members[rock].environment(scene.terrain);
             taken_j[contact.ends.first] += loss.sum();
             self.losses[rock].add(&loss.on(&world, at.triangle), 1.0);
             if scene.terrain.is_tree(at.triangle) {
                 by_trees.push((rock, at.triangle, loss.sum()));
             }
             if approach_m_s >= capture_m_s(contact.law) {
-                let centre = (&rocks[contact.ends.first].c, body.radius);
+                let centre = (&rocks[contact.ends.first].c, world.body.radius);
                 self.hits.push(hit_of(rock, at, centre, approach_m_s));
             }
         }
@@ -195,7 +193,8 @@ impl RigidIsland {
         for (k, (&rock, from)) in touching.rocks.iter().zip(rocks).enumerate() {
             let ball = &mut self.balls[rock];
             let (v, w) = after.motions[k];
-            let lost_j = ball.energy_j((&from.v, &ball.w)) - ball.energy_j((&v, &w));
+            let body = &ball.body;
+            let lost_j = body.motion_j((&from.v, &ball.w)) - body.motion_j((&v, &w));
             self.given[rock].passed_on += lost_j - taken_j[k];
             // what weight and contacts add in the rest of the step stays
             ball.v += v - from.v;
@@ -285,8 +284,8 @@ impl RigidIsland {
             add(FrozenContact { normal, law: &pair_history.law, ends, ..FrozenContact::none() })?;
         }
         for (first, rock) in touching.rocks.iter().enumerate().filter(|(k, _)| rocks[*k].on_mesh) {
-            let IslandBody { state, body, laws, .. } = &*scene.members[*rock];
-            let world = ContactEnvironment { terrain: scene.terrain, body: *body, laws };
+            let world = scene.members[*rock].environment(scene.terrain);
+            let state = &scene.members[*rock].state;
             let is_turned = blow.turn.is_some() && first == 0;
             for touch in state.touches.iter() {
                 add(FrozenContact {
@@ -294,7 +293,7 @@ impl RigidIsland {
                         .turn
                         .filter(|_| is_turned)
                         .map_or(touch.normal, |turn| turn * touch.normal),
-                    law: &laws[usize::from(world.ground_of(touch.triangle))],
+                    law: world.law(touch.triangle),
                     stiffness_scale: touch.gain2,
                     ends: ContactEnds { first, ..ContactEnds::MESH },
                     ..FrozenContact::none()
@@ -309,20 +308,12 @@ impl StruckRocks {
     /// Looks for what the rocks touch of the mesh. Of one that comes to it the touches are known.
     fn look(&mut self, scene: &mut ImpactScene, blow: &BlowStart) {
         for (k, (&rock, at)) in self.touching.rocks.iter().zip(&mut self.rocks).enumerate() {
-            let IslandBody { state, body, laws, .. } = &mut *scene.members[rock];
-            let world = ContactEnvironment { terrain: scene.terrain, body: *body, laws };
+            let (world, state) = scene.members[rock].with_environment(scene.terrain);
             let is_known = blow.pair.is_none() && k == 0;
             if !is_known {
-                state.look(&world, &at.c, body.radius * (1.0 + HELD));
+                state.look(&world, &at.c, world.body.radius * (1.0 + HELD));
             }
             at.on_mesh = !state.touches.is_empty();
         }
-    }
-}
-
-impl StepBody {
-    /// Energy of motion (J) with a velocity (m/s) and a spin (rad/s).
-    pub(super) fn energy_j(&self, (v, w): (&Vec3, &Vec3)) -> f64 {
-        self.body.motion_j((v, w))
     }
 }

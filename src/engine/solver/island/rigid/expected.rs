@@ -10,7 +10,6 @@ use crate::contact::pair::between;
 use crate::flight::{FlightEnd, Parabola, time_of_impact_past};
 use crate::rock::Vec3;
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
-use crate::solver::island::body::IslandBody;
 use crate::solver::island::pair_contact::TOUCH;
 use crate::solver::law::capture_m_s;
 use crate::solver::rigid::{HELD, is_fast};
@@ -35,8 +34,7 @@ impl RigidIsland {
     /// Notes the blow of a rock on the mesh, if one is due.
     pub(super) fn expect_ground(&mut self, scene: &mut ImpactScene, k: usize) {
         let ball = &mut self.balls[k];
-        let IslandBody { state, body, laws, .. } = &mut *scene.members[k];
-        let world = ContactEnvironment { terrain: scene.terrain, body: *body, laws };
+        let (world, state) = scene.members[k].with_environment(scene.terrain);
         let flies = ball.on_mesh != OnMesh::Held;
         let exact = if flies { first_touch(&world, state, ball) } else { None };
         // what is slow is met, and more may be struck where the step ends

@@ -17,7 +17,6 @@ use crate::rock::Vec3;
 use crate::solver::body::Twist;
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
 use crate::solver::impact::throw;
-use crate::solver::island::body::IslandBody;
 use crate::solver::island::outcome::BlowInStep;
 use crate::solver::loss::{Given, Loss};
 use crate::solver::rigid::{HELD, IMPACT, frozen, is_fast};
@@ -173,10 +172,9 @@ impl RigidIsland {
 
     fn blow_ground(&mut self, scene: &mut ImpactScene, k: usize, s: f64) {
         let ball = &mut self.balls[k];
-        let IslandBody { state, body, laws, .. } = &mut *scene.members[k];
-        let world = ContactEnvironment { terrain: scene.terrain, body: *body, laws };
+        let (world, state) = scene.members[k].with_environment(scene.terrain);
         let (at, v) = ball.before_end(s);
-        let reach = body.radius * (1.0 + NEAR);
+        let reach = world.body.radius * (1.0 + NEAR);
         state.look(&world, &at, reach);
         // a rock that the mesh holds is not on the parabola on which it is looked for
         if state.touches.iter().all(|touch| touch.normal.dot(&v) >= 0.0) {
@@ -189,7 +187,9 @@ impl RigidIsland {
             .copied();
         let Some(touch) = hit else { return ball.is_struck(s) };
         // how near something is at that instant is known as well as the parabola is the way of the rock
-        state.touches.keep_nearer(touch.distance_m.max(body.radius) + HELD * body.radius);
+        state
+            .touches
+            .keep_nearer(touch.distance_m.max(world.body.radius) + HELD * world.body.radius);
         if let Some(broken) = state.broken_by(&world, (&v, &ball.w)) {
             let (after, spin) = broken.motion;
             ball.v += after - v;
@@ -199,7 +199,7 @@ impl RigidIsland {
                 self.losses[k].add(loss, 1.0);
                 let approach_m_s = -touch.normal.dot(&v);
                 if is_fast(&world, touch, &v) {
-                    self.hits.push(hit_of(k, touch, (&at, body.radius), approach_m_s));
+                    self.hits.push(hit_of(k, touch, (&at, world.body.radius), approach_m_s));
                 }
             }
             state.fell_broken(&world, &broken);
@@ -217,8 +217,7 @@ impl RigidIsland {
         s: f64,
     ) {
         let tolerance = self.impact_tolerance();
-        let IslandBody { state, body, laws, .. } = &mut *scene.members[k];
-        let world = ContactEnvironment { terrain: scene.terrain, body: *body, laws };
+        let (world, state) = scene.members[k].with_environment(scene.terrain);
         let meeting = Meeting { n: touch.normal, triangle: touch.triangle, c: *at, v: *v };
         let turn = state.facets.struck(&world, &meeting);
         let approach_m_s = -touch.normal.dot(v);
@@ -226,18 +225,17 @@ impl RigidIsland {
             return;
         }
         let ball = &mut self.balls[k];
-        let IslandBody { state, body, laws, .. } = &mut *scene.members[k];
-        let world = ContactEnvironment { terrain: scene.terrain, body: *body, laws };
+        let (world, state) = scene.members[k].with_environment(scene.terrain);
         let ContactState { touches, stem_load, .. } = state;
         let how = (ball.blows >= LIVELY, tolerance);
         let mut note = |other: &ContactPoint, loss: &Loss, approach_m_s: Option<f64>| {
             stem_load.book((&world, other.triangle), loss, &mut self.losses[k]);
-            let hit = |approach_m_s| hit_of(k, other, (at, body.radius), approach_m_s);
+            let hit = |approach_m_s| hit_of(k, other, (at, world.body.radius), approach_m_s);
             self.hits.extend(approach_m_s.map(hit));
         };
         let motion = (v, &ball.w);
         let after = throw_off((&world, touches), (touch, turn), motion, how, &mut note);
-        let load = ((after.0 - v) * body.mass, (after.1 - ball.w) * body.inertia);
+        let load = ((after.0 - v) * world.body.mass, (after.1 - ball.w) * world.body.inertia);
         ball.take_late(&load, s);
         ball.is_struck(s);
     }
@@ -252,9 +250,8 @@ impl RigidIsland {
         if ball.on_mesh != OnMesh::Settles {
             return;
         }
-        let IslandBody { state, body, laws, .. } = &mut *scene.members[k];
-        let world = ContactEnvironment { terrain: scene.terrain, body: *body, laws };
-        state.look(&world, &ball.c, body.radius * (1.0 + HELD));
+        let (world, state) = scene.members[k].with_environment(scene.terrain);
+        state.look(&world, &ball.c, world.body.radius * (1.0 + HELD));
         let ContactState { touches, stem_load, .. } = state;
         let comes = |touch: &&ContactPoint| is_fast(&world, touch, &ball.v);
         let Some(touch) = touches.iter().find(comes).copied() else { return };

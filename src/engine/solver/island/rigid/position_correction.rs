@@ -9,9 +9,8 @@ use super::contacts::{ImpactScene, StepBody};
 use crate::contact::TOUCH;
 use crate::contact::pair::{PairHistory, between};
 use crate::rock::Vec3;
-use crate::solver::contact_state::ContactEnvironment;
-use crate::solver::island::body::IslandBody;
 use crate::solver::loss::Given;
+use crate::solver::rigid::way_out;
 
 /// Overlap of two rocks that is left alone: what their weight presses springs in, within bounds (–, relative to the smaller
 /// radius).
@@ -130,21 +129,17 @@ impl RigidIsland {
     /// Moves a rock out of the mesh; whether it was in it.
     fn push_out(&mut self, scene: &mut ImpactScene, k: usize, sweep: u32) -> bool {
         let ball = &mut self.balls[k];
-        let IslandBody { state, body, laws, .. } = &mut *scene.members[k];
-        let world = ContactEnvironment { terrain: scene.terrain, body: *body, laws };
-        let off = state.look_ahead_near(&world, &ball.c, FLAT * body.radius);
+        let (world, state) = scene.members[k].with_environment(scene.terrain);
+        let off = state.look_ahead_near(&world, &ball.c, FLAT * world.body.radius);
         if state.touches.is_empty() {
             return false;
         }
-        let out = state.touches.iter().fold(Vec3::zeros(), |sum, touch| {
-            let missing = body.radius - touch.distance_m - (sum + off).dot(&touch.normal);
-            sum + touch.normal * missing.max(0.0)
-        });
+        let out = way_out(&state.touches, world.body.radius, &off);
         ball.c += out;
         if out != Vec3::zeros() {
             ball.shifted = sweep;
         }
-        out.norm_squared() > (TOUCH * body.radius).powi(2)
+        out.norm_squared() > (TOUCH * world.body.radius).powi(2)
     }
 
     /// Pays for the height that rocks gain, first with what normal impulses took of them in this step: what sinks in by the
@@ -217,7 +212,7 @@ impl RigidIsland {
         for (ball, given) in self.balls.iter_mut().zip(&mut self.given) {
             if takes_part(ball) {
                 let own_j = share * ball.motion_j();
-                ball.slow_down(own_j);
+                ball.body.slow_down((&mut ball.v, &mut ball.w), own_j);
                 given.passed_on += own_j;
             }
         }
@@ -234,21 +229,11 @@ impl StepBody {
 
     /// Energy in motion (J).
     fn motion_j(&self) -> f64 {
-        self.energy_j((&self.v, &self.w))
+        self.body.motion_j((&self.v, &self.w))
     }
 
     /// Energy that its height has gained from a place (J).
     fn lifted_j(&self, from: &Vec3) -> f64 {
-        -self.body.mass * self.body.gravity.dot(&(self.c - from))
-    }
-
-    /// Loses energy (J) of its motion, as much as it has at most.
-    fn slow_down(&mut self, lost_j: f64) {
-        let motion_j = self.motion_j();
-        if motion_j > 0.0 && lost_j > 0.0 {
-            let kept = ((motion_j - lost_j) / motion_j).max(0.0).sqrt();
-            self.v *= kept;
-            self.w *= kept;
-        }
+        self.body.lifted_j(&(self.c - from))
     }
 }

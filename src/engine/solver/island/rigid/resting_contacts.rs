@@ -14,7 +14,7 @@ use super::contacts::{BallContact, OnMesh, StepBody};
 use crate::contact::pair::{PairHistory, between};
 use crate::rock::Vec3;
 use crate::solver::contact_state::ContactEnvironment;
-use crate::solver::island::body::{BodySlot, IslandBody};
+use crate::solver::island::body::BodySlot;
 use crate::solver::law::capture_m_s;
 use crate::solver::loss::Given;
 use crate::solver::rigid::{GroundContact, settle, sustained_m_s};
@@ -177,8 +177,7 @@ impl RigidIsland {
             self.ground_contacts.iter().filter(|ground_contact| ground_contact.normal_force > 0.0)
         {
             let ball = &self.balls[ground_contact.rock];
-            let IslandBody { state, body, laws, .. } = &mut *members[ground_contact.rock];
-            let world = ContactEnvironment { terrain, body: *body, laws };
+            let (world, state) = members[ground_contact.rock].with_environment(terrain);
             // the work of an impulse is that at the mean velocity, exactly
             let motion = mean(ball);
             let loss = ground_contact.loss(&world.body, &motion);

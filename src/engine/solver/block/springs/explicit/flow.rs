@@ -140,28 +140,21 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
     /// What the normal spring of a contact holds.
     fn held(&self, contact: &SpringContact) -> HeldEnergy {
         let normal = contact.law.normal(contact.captured);
-        HeldEnergy {
-            stored_j: normal.stored_j(contact.penetration.max(0.0)),
-            gives_back: contact.normal_force > 0.0 || !normal.is_damped(self.block.mass_kg),
-        }
+        let pressed = (contact.penetration.max(0.0), contact.normal_force);
+        HeldEnergy::of(&normal, pressed, self.block.mass_kg)
     }
 
-    /// What the step has taken, from its sums, at its end, the state last asked for.
-    ///
-    /// What a normal spring has taken up is known from both ends of the step where it pushes at both, whatever features came and went between
-    /// them. One whose dashpot has let it go has not given back what it held: there the sum tells, which cancels against what the dashpot takes there. Not
-    /// so at a part of the block that presses with a patch: contacts that come into it hand over what they hold, and take it with them where it parts.
+    /// What the step has taken, from its sums, at its end, the state last asked for. At a part of the block that presses with a patch contacts that
+    /// come into it hand over what they hold, and take it with them where it parts.
     pub(super) fn taken<const Q: usize>(&self, sums: &[f64; Q]) -> Loss {
         let mut taken = Loss { friction: sums[0], damping: sums[1], trees: sums[2], rolling: 0.0 };
         let springs = &self.footing.springs;
         for (place, history) in springs.histories.iter().enumerate().take(C) {
             let end = springs.contacts.iter().find(|contact| contact.history == place);
             let gone = HeldEnergy { stored_j: 0.0, gives_back: !self.damped[place] };
-            let (began, ended) =
-                (self.began[place], end.map_or(gone, |contact| self.held(contact)));
-            let is_known = began.gives_back && ended.gives_back || self.has_patch(history.pair().0);
-            let by_place_j = ended.stored_j - began.stored_j;
-            let damping = if is_known { by_place_j } else { sums[LOSSES + place] };
+            let ended = end.map_or(gone, |contact| self.held(contact));
+            let over = || self.has_patch(history.pair().0);
+            let damping = self.began[place].taken_until(&ended, over, sums[LOSSES + place]);
             let triangle = end.map_or(history.triangle, |contact| contact.triangle);
             taken.add(&Loss { damping, ..Loss::default() }.on(self.world, triangle), 1.0);
         }

@@ -7,21 +7,25 @@ const SHARE: u32 = 1 << 18;
 
 /// Things 0..n in groups that grow together (union–find with path halving; the lowest member stands for its group).
 #[derive(Debug)]
-pub(super) struct Groups {
+pub struct Groups {
     parent: Vec<u32>,
 }
 
 impl Groups {
     /// Every thing alone.
-    pub(super) fn of(count: usize) -> Self {
+    pub fn of(count: usize) -> Self {
         Self { parent: (0..count as u32).collect() }
     }
 
+    /// Things that are joined by pairs.
+    pub fn of_pairs(count: usize, pairs: impl IntoIterator<Item = (u32, u32)>) -> Self {
+        let mut groups = Self::of(count);
+        pairs.into_iter().for_each(|(a, b)| groups.join(a, b));
+        groups
+    }
+
     /// Things that are joined with those beside them; shares of near numbers are joined on all threads.
-    pub(super) fn joined<I: Iterator<Item = u32>>(
-        count: usize,
-        beside: impl Fn(u32) -> I + Sync,
-    ) -> Self {
+    pub fn joined<I: Iterator<Item = u32>>(count: usize, beside: impl Fn(u32) -> I + Sync) -> Self {
         let mut groups = Self::of(count);
         let share_of = |thing: u32| thing / SHARE;
         parallel::update_shares(&mut groups.parent, SHARE as usize, |first, parents| {
@@ -45,7 +49,7 @@ impl Groups {
     }
 
     /// The lowest member of a thing's group.
-    pub(super) fn lowest(&mut self, mut thing: u32) -> u32 {
+    pub fn lowest(&mut self, mut thing: u32) -> u32 {
         while self.parent[thing as usize] != thing {
             let above = self.parent[self.parent[thing as usize] as usize];
             self.parent[thing as usize] = above;
@@ -55,19 +59,39 @@ impl Groups {
     }
 
     /// Joins the groups of two things.
-    pub(super) fn join(&mut self, a: u32, b: u32) {
+    pub fn join(&mut self, a: u32, b: u32) {
         let (a, b) = (self.lowest(a), self.lowest(b));
         self.parent[a.max(b) as usize] = a.min(b);
     }
 
     /// Number of members of every group, by its lowest member.
-    pub(super) fn sizes(&mut self) -> Vec<usize> {
-        let mut sizes = vec![0; self.parent.len()];
-        for thing in 0..self.parent.len() as u32 {
-            sizes[self.lowest(thing) as usize] += 1;
-        }
+    pub fn sizes(&mut self) -> Vec<usize> {
+        let mut sizes = self.counts();
         sizes.retain(|&size| size > 0);
         sizes
+    }
+
+    /// The same at the place of that member; 0 elsewhere.
+    fn counts(&mut self) -> Vec<usize> {
+        let mut counts = vec![0; self.parent.len()];
+        for thing in 0..self.parent.len() as u32 {
+            counts[self.lowest(thing) as usize] += 1;
+        }
+        counts
+    }
+
+    /// Members of every group in ascending order, by its lowest.
+    pub fn lists(&mut self) -> Vec<Vec<u32>> {
+        let counts = self.counts();
+        let (mut number, mut lists) = (vec![0; counts.len()], Vec::new());
+        for (thing, &count) in counts.iter().enumerate().filter(|(_, count)| **count > 0) {
+            number[thing] = lists.len();
+            lists.push(Vec::with_capacity(count));
+        }
+        for thing in 0..counts.len() as u32 {
+            lists[number[self.lowest(thing) as usize]].push(thing);
+        }
+        lists
     }
 }
 
@@ -90,5 +114,11 @@ mod tests {
         assert!((0..count as u32).all(|t| joined.lowest(t) == one_by_one.lowest(t)));
         let sizes = joined.sizes();
         assert!(sizes == one_by_one.sizes() && sizes.len() > 1000 && sizes.iter().any(|&n| n > 7));
+    }
+
+    #[test]
+    fn joined_things_share_a_group_whatever_the_order() {
+        let mut groups = Groups::of_pairs(6, [(5, 3), (1, 0), (3, 1)]);
+        assert_eq!(groups.lists(), [vec![0, 1, 3, 5], vec![2], vec![4]]);
     }
 }
