@@ -31,6 +31,7 @@ mod pair_law;
 mod pairs;
 mod paper;
 mod patch;
+mod pinch;
 mod pyramid;
 mod question;
 mod restitution_of_impacts;

@@ -41,6 +41,8 @@ pub(crate) struct JointContact {
     pub(crate) law: Law,
     /// Whether it comes in too slowly to rebound.
     pub(crate) captured: bool,
+    /// Gap that is left (m), 0 or more.
+    pub(crate) gap_m: f64,
     /// The stem that is touched, if it can break.
     pub(crate) stem: Option<u32>,
 }
@@ -125,8 +127,8 @@ pub(crate) fn joint_blow(
     contacts: &[JointContact],
     left_j: impl Fn(StemOfRock) -> f64,
 ) -> Option<Breakage> {
-    let none = Pressed {
-        depth_m: 0.0,
+    let apart = |contact: &JointContact| Pressed {
+        depth_m: -contact.gap_m,
         shear: Vec3::zeros(),
         roll: Vec3::zeros(),
         taken_j: [0.0; 3],
@@ -134,7 +136,7 @@ pub(crate) fn joint_blow(
     };
     let mut now = Instant {
         motions: bodies.iter().map(|body| body.motion).collect(),
-        pressed: contacts.iter().map(|_| none).collect(),
+        pressed: contacts.iter().map(apart).collect(),
     };
     let mut blow = JointBlow { bodies, contacts, broken: ArrayVec::new() };
     let omegas = contacts.iter().map(|contact| contact.law.omega_rad_s());

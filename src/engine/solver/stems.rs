@@ -156,6 +156,7 @@ impl ContactState {
             n: touch.normal,
             end: JointEnd { rock: 0, lever: touch.normal * -world.body.radius },
             other: None,
+            gap_m: 0.0,
             law: world.law(touch.triangle).of_patch(touch.gain2, world.dashpot_share(touches, k)),
             captured: world.captures(touch, &v),
             stem: stems.of_triangle(touch.triangle),

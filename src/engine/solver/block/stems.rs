@@ -112,6 +112,7 @@ impl Footing {
                 end: JointEnd { rock: 0, lever: touch.lever },
                 other: None,
                 captured: approach_m_s < capture_m_s(&law),
+                gap_m: 0.0,
                 law,
                 stem: stems.of_triangle(touch.triangle),
             }

@@ -41,6 +41,8 @@ pub(crate) struct FrozenContact<'a> {
     pub(crate) stiffness_scale: f64,
     /// Whether it gives nothing back.
     pub(crate) captured: bool,
+    /// Gap (m) that is left when the impact begins, 0 or more: springs that are pressed for long enough close it. Of several bodies only.
+    pub(crate) gap_m: f64,
     /// What it joins.
     pub(crate) ends: ContactEnds,
 }
@@ -104,6 +106,7 @@ impl FrozenContact<'_> {
             law: &Law::NONE,
             stiffness_scale: 1.0,
             captured: true,
+            gap_m: 0.0,
             ends: ContactEnds::MESH,
         }
     }
@@ -254,7 +257,7 @@ impl<const B: usize, const K: usize, const N: usize, const Q: usize, const P: us
     ) -> Self {
         let motion = |k: usize| bodies.get(k).map_or(STILL, |body| body.in_units(speed));
         Self {
-            flow: ContactRates::new(bodies, contacts, LOCAL * tolerance),
+            flow: ContactRates::new((bodies, contacts), speed, LOCAL * tolerance),
             y: rates::begun(&std::array::from_fn::<_, B, _>(motion)),
             sums: [0.0; Q],
             effort: ImpactEffort::default(),

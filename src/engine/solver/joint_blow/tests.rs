@@ -22,7 +22,7 @@ fn case(friction_rad: f64, restitution: f64) -> (Body, Law) {
 fn contact(body: &Body, law: &Law, (n, stem): (Vec3, u32)) -> JointContact {
     let lever = n * -body.radius;
     let end = JointEnd { rock: 0, lever };
-    JointContact { n, end, other: None, law: *law, captured: false, stem: Some(stem) }
+    JointContact { n, end, other: None, law: *law, captured: false, gap_m: 0.0, stem: Some(stem) }
 }
 
 fn blow(
@@ -107,7 +107,7 @@ proptest! {
         let law_of_pair = law.without_rolling();
         let contacts = [
             contact(&body, &law, (of_stem, 0)),
-            JointContact { n: of_pair, end, other: Some(other), law: law_of_pair, captured: false, stem: None },
+            JointContact { n: of_pair, end, other: Some(other), law: law_of_pair, captured: false, gap_m: 0.0, stem: None },
         ];
         let energy_j = |k: usize, (v, w): Twist| 0.5 * (bodies[k].mass_kg * v.norm_squared() + body.inertia * w.norm_squared());
         let before_j: f64 = (0..2).map(|k| energy_j(k, bodies[k].motion)).sum();

@@ -38,7 +38,7 @@ impl FrozenCollision {
     };
 }
 
-/// Follows up to [`BODIES`] bodies through an impact on up to [`CONTACTS`] contacts at once, each of them at penetration zero;
+/// Follows up to [`BODIES`] bodies through an impact on up to [`CONTACTS`] contacts at once, each of them at penetration zero or at its gap;
 /// `None` if nothing comes nearer, or where there are too many of them or their frequencies lie too far apart. `tolerance` is relative
 /// to the fastest motion at a contact (–).
 ///
@@ -72,7 +72,10 @@ fn followed<const B: usize, const K: usize, const N: usize, const Q: usize, cons
     run.follow(tolerance);
     let nothing = run.flow.nothing();
     let contacts = &run.flow.contacts;
-    let AfterImpact { motions: together, plastic } = contacts.part_or_stay(run.motions(), nothing);
+    let meets: [bool; K] =
+        std::array::from_fn(|k| k < contacts.list().len() && !run.flow.is_apart(k, &run.y));
+    let AfterImpact { motions: together, plastic } =
+        contacts.part_or_stay((run.motions(), meets), nothing);
     let (motions, lost) = contacts.balanced((&start, &together), plastic.iter().sum());
     let loss_j = run.loss_j(lost.max(0.0) * unit_j, plastic);
     let mut end = FrozenCollision::STILL;
@@ -102,29 +105,32 @@ impl<const B: usize, const K: usize> Contacts<B, K> {
     /// Brings to rest what gives nothing back, and every approach that is left: the closest motions in which no contact comes nearer, and
     /// those that hold do not part either. Closest in the sense of energy, which is the one that loses least.
     ///
-    /// Projected Gauss–Seidel over the normal impulses.
-    fn part_or_stay(&self, mut motions: [Twist; B], nothing: f64) -> AfterImpact<B, K> {
+    /// Projected Gauss–Seidel over the normal impulses of what `meets`.
+    fn part_or_stay(
+        &self,
+        (mut motions, meets): ([Twist; B], [bool; K]),
+        nothing: f64,
+    ) -> AfterImpact<B, K> {
         let parting = |motions: &[Twist; B], k: usize| self.parting(k, |k| motions[k].0);
-        let held: [bool; K] = std::array::from_fn(|k| {
-            k < self.list().len() && self.holds(k, parting(&motions, k), nothing)
-        });
+        let held: [bool; K] =
+            std::array::from_fn(|k| meets[k] && self.holds(k, parting(&motions, k), nothing));
         let speeds: [f64; K] = std::array::from_fn(|k| {
-            let speed = if k < self.list().len() { parting(&motions, k) } else { 0.0 };
+            let speed = if meets[k] { parting(&motions, k) } else { 0.0 };
             if speed < 0.0 || held[k] { speed } else { 0.0 }
         });
         let before = self.energies(&motions);
-        self.sweep(&mut motions, held);
+        self.sweep(&mut motions, (meets, held));
         let mut plastic = [0.0; K];
         Self::share_plastic(before - self.energies(&motions), speeds, &mut plastic);
         AfterImpact { motions, plastic }
     }
 
     /// Impulses along the normals until no contact comes nearer, and those that are held do not part either.
-    fn sweep(&self, motions: &mut [Twist; B], held: [bool; K]) {
+    fn sweep(&self, motions: &mut [Twist; B], (meets, held): ([bool; K], [bool; K])) {
         let mut impulses = [0.0; K];
         for _ in 0..ROUNDS {
             let mut worst = 0.0f64;
-            for (k, contact) in self.list().iter().enumerate() {
+            for (k, contact) in self.list().iter().enumerate().filter(|(k, _)| meets[*k]) {
                 let ContactEnds { first, second, .. } = contact.ends;
                 let lightness = |end: usize| self.bodies[end].lightness;
                 let (one, other) = (lightness(first), second.map_or(0.0, lightness));

@@ -26,6 +26,8 @@ pub(super) struct ImpactContact {
     pub(super) damping: f64,
     pub(super) shear: SliderElement,
     pub(super) rolling: SliderElement,
+    /// Gap at the start.
+    pub(super) gap: f64,
     captured: bool,
     /// Approach below which it gives nothing back, whether it is captured or not.
     slowest: f64,
@@ -76,7 +78,7 @@ pub(super) struct AfterImpact<const B: usize, const K: usize> {
 }
 
 impl<const B: usize, const K: usize> Contacts<B, K> {
-    pub(super) fn new(bodies: &[FrozenBody], struck: &[FrozenContact]) -> Self {
+    pub(super) fn new(bodies: &[FrozenBody], struck: &[FrozenContact], speed: f64) -> Self {
         let normal = |struck: &FrozenContact| struck.law.normal(struck.captured);
         let stiffness =
             |struck: &FrozenContact| normal(struck).stiffness_n_m(struck.stiffness_scale);
@@ -84,6 +86,7 @@ impl<const B: usize, const K: usize> Contacts<B, K> {
         let stiffest = struck.iter().map(stiffness).fold(0.0, f64::max);
         let mass_kg = struck.iter().map(moved).fold(f64::INFINITY, f64::min);
         let momentum = (stiffest * mass_kg).sqrt();
+        let way_m = speed * (mass_kg / stiffest).sqrt();
         let contact = |struck: &FrozenContact| {
             let law = struck.law;
             let damping = normal(struck).damping_over(struck.stiffness_scale, momentum);
@@ -98,6 +101,7 @@ impl<const B: usize, const K: usize> Contacts<B, K> {
                 damping: if damping > NONE { damping } else { 0.0 },
                 shear: SliderElement::shear(&unit, law, stiffest),
                 rolling: if rolls { rolling } else { SliderElement::NONE },
+                gap: if struck.gap_m > 0.0 { struck.gap_m / way_m } else { 0.0 },
                 captured: struck.captured,
                 slowest: 0.0,
                 kept: restitution(normal(struck).damping_ratio(moved(struck))),

@@ -55,8 +55,13 @@ impl<const B: usize, const K: usize> ContactRates<B, K> {
     /// Where the springs begin: shear of all `K` contacts, then rolling of all, each with three numbers.
     const SPRINGS: usize = 9 * B;
 
-    pub(super) fn new(bodies: &[FrozenBody], struck: &[FrozenContact], allowed: f64) -> Self {
-        let contacts = Contacts::new(bodies, struck);
+    /// `speed` (m/s) is the unit of speed.
+    pub(super) fn new(
+        (bodies, struck): (&[FrozenBody], &[FrozenContact]),
+        speed: f64,
+        allowed: f64,
+    ) -> Self {
+        let contacts = Contacts::new(bodies, struck, speed);
         let fastest =
             contacts.list().iter().fold(1.0f64, |rate, contact| rate.max(contact.damping));
         Self {
@@ -76,10 +81,20 @@ impl<const B: usize, const K: usize> ContactRates<B, K> {
     }
 
     /// Penetration of contact `k` and its rate.
-    /// `x = −n·way`, `x' = −n·v`: at the touch the way is 0.
+    /// `x = −n·way − gap`, `x' = −n·v`: at the touch the way is 0.
     fn depth<const N: usize>(&self, k: usize, y: &[f64; N]) -> [f64; 2] {
         let way = |k: usize| three(y, WAY + 3 * k);
-        [-self.contacts.parting(k, way), -self.contacts.parting(k, |k| speed_of::<B, N>(y, k))]
+        let gap = if B > 1 { self.contacts.list()[k].gap } else { 0.0 };
+        [
+            -self.contacts.parting(k, way) - gap,
+            -self.contacts.parting(k, |k| speed_of::<B, N>(y, k)),
+        ]
+    }
+
+    /// Whether contact `k` had a gap, and has one: what comes nearer there does so beyond this impact.
+    pub(super) fn is_apart<const N: usize>(&self, k: usize, y: &[f64; N]) -> bool {
+        let has_gap = B > 1 && self.contacts.list()[k].gap > 0.0;
+        has_gap && self.depth(k, y)[0] < -self.nothing()
     }
 
     /// Finds which contacts are pressed and shares the dashpots among them; springs of those that have opened are at rest.
@@ -144,15 +159,16 @@ impl<const B: usize, const K: usize> ContactRates<B, K> {
         })
     }
 
-    /// Time until a rock that nothing pushes touches again, if it does.
+    /// Time until a rock that nothing pushes touches again, if it does; where there was a gap the impact is over before that.
     /// Without weight a free rock moves straight: `−x/x'`.
     pub(super) fn next_touch<const N: usize>(&self, y: &[f64; N]) -> Option<f64> {
         let nothing = self.nothing();
         let waits = (0..self.contacts.list().len()).filter_map(|k| {
             let [x, rate] = self.depth(k, y);
-            (rate > nothing).then(|| (-x / rate).max(0.0))
+            (rate > nothing).then(|| ((-x / rate).max(0.0), k))
         });
-        waits.min_by(f64::total_cmp)
+        let (wait, k) = waits.min_by(|one, other| one.0.total_cmp(&other.0))?;
+        (!self.is_apart(k, y)).then_some(wait)
     }
 
     /// Lets a free rock fly on for `wait`.

@@ -111,6 +111,7 @@ fn frozen_jointly(bodies: &[FrozenBody], contact: &FrozenContact) -> JointContac
         other: contact.ends.second.map(|second| end(second, levers[1])),
         law: *contact.law,
         captured: contact.captured,
+        gap_m: contact.gap_m,
         stem: None,
     }
 }

@@ -11,6 +11,7 @@ use super::broken_stems::TakenByTree;
 use super::contacts::{ImpactScene, LIVELY, hit_of};
 use crate::contact::ContactPoint;
 use crate::contact::pair::between;
+use crate::ground::Law;
 use crate::rock::Vec3;
 use crate::solver::impact::{
     BODIES, CONTACTS, ContactEnds, FrozenBody, FrozenCollision, FrozenContact, collide,
@@ -21,11 +22,14 @@ use crate::solver::law::capture_m_s;
 use crate::solver::rigid::HELD;
 use arrayvec::ArrayVec;
 use nalgebra::Rotation3;
+use std::f64::consts::PI;
 
 /// Most rocks that a blow is followed with in an island of more than [`BODIES`]: a light one on the mesh, and a heavy one that strikes it.
 const TOGETHER_IN_HEAP: usize = 2;
 /// By how much the heavy one is heavier (–): taken by itself it would be stopped by blow after blow, and lose nearly all to the light one.
 const MUCH_LIGHTER: f64 = 2.0;
+/// Widest gap that closes within a blow (–, relative to R of the smaller rock): beyond it normals would turn while it lasts.
+const WIDEST: f64 = 0.05;
 /// A rock that is no farther from the mesh at the end of the step (–, relative to R) may have touched it at a blow …
 const BESIDE_MESH: f64 = 0.02;
 /// … which presses it there if it pushes it against the normal, by this cosine.
@@ -52,8 +56,23 @@ pub(super) struct BlowStart {
     pub(super) pair: Option<usize>,
     /// Turn of the facet of rough ground that is struck, if there is one.
     pub(super) turn: Option<Rotation3<f64>>,
-    /// How fast its ends come at each other (m/s).
+    /// How fast its ends come at each other (m/s) …
     pub(super) approach_m_s: f64,
+    /// … and how long its springs are pressed (s): gaps that close meanwhile are none.
+    pub(super) lasts_s: f64,
+}
+
+impl BlowStart {
+    /// How long springs of a law are pressed in one blow (s).
+    pub(super) fn lasting_s(law: &Law) -> f64 {
+        PI / law.omega_rad_s()
+    }
+
+    /// Widest gap (m) beside a rock of this radius (m) that closes while the blow lasts, at `closing_m_s` (m/s) and what the blow gives.
+    fn closes_m(&self, closing_m_s: f64, radius_m: f64) -> f64 {
+        let way_m = (closing_m_s.max(0.0) + self.approach_m_s) * self.lasts_s;
+        way_m.min(WIDEST * radius_m)
+    }
 }
 
 /// Rocks that touch each other, as places in the island, and their pairs.
@@ -249,9 +268,11 @@ impl RigidIsland {
                 let pair = self.of_rocks.at(place);
                 let ends = [scene.pair_histories[pair].a, scene.pair_histories[pair].b];
                 let [a, b] = ends.map(|k| &self.balls[k as usize]);
-                let apart = a.before_end(s).0 - b.before_end(s).0;
-                let touch = a.body.radius + b.body.radius + HELD * a.body.radius.min(b.body.radius);
-                let is_touch = apart.norm_squared() <= touch * touch;
+                let (at, from) = (a.before_end(s), b.before_end(s));
+                let (n, distance) = between(&at.0, &from.0);
+                let least = a.body.radius.min(b.body.radius);
+                let room = blow.closes_m(-n.dot(&(at.1 - from.1)), least).max(HELD * least);
+                let is_touch = distance <= a.body.radius + b.body.radius + room;
                 if is_touch && touching.add(pair, ends, reach).is_none() && !reach.or_nearest {
                     return None;
                 }
@@ -279,13 +300,15 @@ impl RigidIsland {
             let (normal, distance) = between(&rocks[first].c, &rocks[second].c);
             let radius = |k: usize| self.balls[touching.rocks[k]].body.radius;
             // one common point, as in every contact of two rocks
-            let lever = distance / (radius(first) + radius(second));
-            let ends = ContactEnds { first, second: Some(second), levers: [lever; 2] };
-            add(FrozenContact { normal, law: &pair_history.law, ends, ..FrozenContact::none() })?;
+            let reach = radius(first) + radius(second);
+            let ends = ContactEnds { first, second: Some(second), levers: [distance / reach; 2] };
+            let gap_m = left(distance, reach, radius(first).min(radius(second)));
+            let law = &pair_history.law;
+            add(FrozenContact { normal, law, ends, gap_m, ..FrozenContact::none() })?;
         }
         for (first, rock) in touching.rocks.iter().enumerate().filter(|(k, _)| rocks[*k].on_mesh) {
             let world = scene.members[*rock].environment(scene.terrain);
-            let state = &scene.members[*rock].state;
+            let (state, radius) = (&scene.members[*rock].state, world.body.radius);
             let is_turned = blow.turn.is_some() && first == 0;
             for touch in state.touches.iter() {
                 add(FrozenContact {
@@ -295,6 +318,7 @@ impl RigidIsland {
                         .map_or(touch.normal, |turn| turn * touch.normal),
                     law: world.law(touch.triangle),
                     stiffness_scale: touch.gain2,
+                    gap_m: left(touch.distance_m, radius, radius),
                     ends: ContactEnds { first, ..ContactEnds::MESH },
                     ..FrozenContact::none()
                 })?;
@@ -311,9 +335,20 @@ impl StruckRocks {
             let (world, state) = scene.members[rock].with_environment(scene.terrain);
             let is_known = blow.pair.is_none() && k == 0;
             if !is_known {
-                state.look(&world, &at.c, world.body.radius * (1.0 + HELD));
+                let radius = world.body.radius;
+                state.look(&world, &at.c, radius * (1.0 + WIDEST));
+                state.touches.retain(|touch| {
+                    let room = blow.closes_m(-touch.normal.dot(&at.v), radius).max(HELD * radius);
+                    touch.distance_m <= radius + room
+                });
             }
             at.on_mesh = !state.touches.is_empty();
         }
     }
+}
+
+/// The gap (m) between what is `distance_m` apart and touches at `reach_m` (m); of a rock of this radius (m) rounding leaves none.
+fn left(distance_m: f64, reach_m: f64, radius_m: f64) -> f64 {
+    let gap_m = distance_m - reach_m;
+    if gap_m > HELD * radius_m { gap_m } else { 0.0 }
 }

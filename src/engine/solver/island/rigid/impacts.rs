@@ -140,8 +140,9 @@ impl RigidIsland {
         let [a, b] = ends.map(|k| &self.balls[k]);
         let ((at, v), (other, w)) = (a.before_end(s), b.before_end(s));
         let approach_m_s = -between(&at, &other).0.dot(&(v - w));
-        if self.blow_together(scene, &BlowStart { pair: Some(place), turn: None, approach_m_s }, s)
-        {
+        let lasts_s = BlowStart::lasting_s(&pair_history.law);
+        let blow = BlowStart { pair: Some(place), turn: None, approach_m_s, lasts_s };
+        if self.blow_together(scene, &blow, s) {
             return;
         }
         let tolerance = self.impact_tolerance();
@@ -221,7 +222,8 @@ impl RigidIsland {
         let meeting = Meeting { n: touch.normal, triangle: touch.triangle, c: *at, v: *v };
         let turn = state.facets.struck(&world, &meeting);
         let approach_m_s = -touch.normal.dot(v);
-        if self.blow_together(scene, &BlowStart { pair: None, turn, approach_m_s }, s) {
+        let lasts_s = BlowStart::lasting_s(world.law(touch.triangle));
+        if self.blow_together(scene, &BlowStart { pair: None, turn, approach_m_s, lasts_s }, s) {
             return;
         }
         let ball = &mut self.balls[k];
