@@ -96,7 +96,9 @@ impl GroundTable {
         if let Some(soil) = &self.scar {
             let density = ("soil_density_kg_m3", soil.soil_density_kg_m3);
             number("strength_kn_m2", soil.strength_kn_m2, STRENGTH, STRENGTHS)
-                .and_then(|()| number("drag", soil.drag, Allowed::NotNegative, ""))
+                .and_then(|()| {
+                    number("drag", soil.drag, Allowed::Between(0.0, 1e3), "2.5 is usual")
+                })
                 .and_then(|()| number(density.0, density.1, Allowed::Between(0.0, 5000.0), ""))
                 .map_err(|complaint| complaint.inside("scar"))?;
         }

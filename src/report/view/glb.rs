@@ -28,6 +28,8 @@ const PATH: usize = 5;
 /// Most that a block turns between two keyframes (rad): well below the half round where the short way would be the wrong one,
 /// and so little that a program which mixes quaternions number by number is 1° off at most.
 const MOST_TURN_RAD: f64 = 0.5 * PI;
+/// Most attitudes between two instants of a path: a block that spins still faster is a blur whatever is drawn.
+const MOST_PIECES: f64 = 256.0;
 
 /// The scene being put together.
 struct GltfScene<'a> {
@@ -276,7 +278,7 @@ fn keyframes(way: &ViewPath) -> (Vec<f32>, Vec<[f32; 4]>) {
     let first = &way.instants[0];
     add(first.time_s, first.attitude);
     for (two, turn) in way.instants.windows(2).zip(way.turns()) {
-        let pieces = (turn.angle_rad().abs() / MOST_TURN_RAD).ceil().max(1.0) as u32;
+        let pieces = (turn.angle_rad().abs() / MOST_TURN_RAD).ceil().clamp(1.0, MOST_PIECES) as u32;
         for piece in 1..pieces {
             let share = f64::from(piece) / f64::from(pieces);
             let time_s = two[0].time_s + share * (two[1].time_s - two[0].time_s);

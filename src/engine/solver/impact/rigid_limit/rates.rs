@@ -10,6 +10,7 @@ use crate::math;
 use crate::rock::Vec3;
 use crate::solver::body::Twist;
 use crate::solver::impact::dormand_prince::{Flow, Rates, put, three};
+use std::f64::consts::PI;
 
 /// Where the ways of the centres begin among the numbers that change, body by body; velocities, spins times radius and the springs
 /// follow.
@@ -159,7 +160,8 @@ impl<const B: usize, const K: usize> ContactRates<B, K> {
         })
     }
 
-    /// Time until a rock that nothing pushes touches again, if it does; where there was a gap the impact is over before that.
+    /// Time until a rock that nothing pushes touches again, if it does; beside a gap that stays open for longer than the softest spring is pressed the impact
+    /// is over before that.
     /// Without weight a free rock moves straight: `−x/x'`.
     pub(super) fn next_touch<const N: usize>(&self, y: &[f64; N]) -> Option<f64> {
         let nothing = self.nothing();
@@ -168,7 +170,7 @@ impl<const B: usize, const K: usize> ContactRates<B, K> {
             (rate > nothing).then(|| ((-x / rate).max(0.0), k))
         });
         let (wait, k) = waits.min_by(|one, other| one.0.total_cmp(&other.0))?;
-        (!self.is_apart(k, y)).then_some(wait)
+        (!self.is_apart(k, y) || wait <= PI / self.contacts.softest).then_some(wait)
     }
 
     /// Lets a free rock fly on for `wait`.

@@ -1,5 +1,9 @@
 //! One blow of several rocks: all that touch each other at its instant take part, and so does the mesh that they touch.
 //!
+//! In the limit springs are pressed for no time. Those of a scene are pressed for some tenths of a millisecond, in which what is struck goes some
+//! millimetres: gaps that close meanwhile are followed as open contacts of the blow, for what a boulder that rides over a stone is thrown up with hangs on
+//! them, and the limit would be on the unsafe side.
+//!
 //! A ball that falls on one that lies on the ground is answered by the ground, and a blow on a row of rocks in touch runs through it:
 //! taken pair by pair that would be another law than that of springs. In islands of more rocks than one impact is followed with, in
 //! heaps, small blows are taken pair by pair: each of them would run through all that lie there. A rock that strikes hard does so through
@@ -63,9 +67,9 @@ pub(super) struct BlowStart {
 }
 
 impl BlowStart {
-    /// How long springs of a law are pressed in one blow (s).
+    /// How long springs of a law are pressed in one blow, and as long behind it (s).
     pub(super) fn lasting_s(law: &Law) -> f64 {
-        PI / law.omega_rad_s()
+        2.0 * PI / law.omega_rad_s()
     }
 
     /// Widest gap (m) beside a rock of this radius (m) that closes while the blow lasts, at `closing_m_s` (m/s) and what the blow gives.
@@ -116,14 +120,21 @@ struct StruckRocks {
 }
 
 impl RigidIsland {
-    /// Takes a blow `s` (s) before the end of the step together with the rocks that touch; whether more take part than its own ends
-    /// and not too many.
+    /// Takes a blow `s` (s) before the end of the step together with the rocks that touch, or come to touch while it lasts; whether more take
+    /// part than its own ends and not too many.
     pub(super) fn blow_together(
         &mut self,
         scene: &mut ImpactScene,
         blow: &BlowStart,
         s: f64,
     ) -> bool {
+        // where no gap closes the blow is that of what touches, to the last digit
+        let in_touch = BlowStart { lasts_s: 0.0, ..*blow };
+        [blow, &in_touch].into_iter().any(|blow| self.strike_together(scene, blow, s))
+    }
+
+    /// The same with all whose gaps are no wider than may close; false too if none of them does.
+    fn strike_together(&mut self, scene: &mut ImpactScene, blow: &BlowStart, s: f64) -> bool {
         let Some(reach) = self.reach(scene, blow) else { return false };
         let Some(touching) = self.touching(scene, blow, (s, reach)) else { return false };
         let at_blow = |rock: &usize| {
@@ -134,6 +145,10 @@ impl RigidIsland {
         let mut struck = StruckRocks { touching, rocks };
         struck.look(scene, blow);
         let Some(contacts) = self.contacts(scene, &struck, blow) else { return false };
+        let has_gaps = contacts.iter().any(|contact| contact.gap_m > 0.0);
+        if !has_gaps && blow.lasts_s > 0.0 {
+            return false;
+        }
         let StruckRocks { touching, rocks } = &struck;
         let own = if blow.pair.is_some() { 2 } else { 1 };
         if touching.rocks.len() <= own && (blow.pair.is_none() || contacts.len() == 1) {
@@ -152,6 +167,10 @@ impl RigidIsland {
                 None => return false,
             },
         };
+        let closes = |(contact, m_s): (&FrozenContact, &f64)| contact.gap_m > 0.0 && *m_s > 0.0;
+        if has_gaps && !contacts.iter().zip(&after.fastest_m_s).any(closes) {
+            return false;
+        }
         let (taken_j, by_trees) = self.book(scene, &struck, &contacts, &after);
         drop(contacts);
         scene.load_stems(&touching.rocks, &by_trees, &stems);
@@ -304,7 +323,7 @@ impl RigidIsland {
             let ends = ContactEnds { first, second: Some(second), levers: [distance / reach; 2] };
             let gap_m = left(distance, reach, radius(first).min(radius(second)));
             let law = &pair_history.law;
-            add(FrozenContact { normal, law, ends, gap_m, ..FrozenContact::none() })?;
+            add(FrozenContact { normal, law, gap_m, ends, ..FrozenContact::none() })?;
         }
         for (first, rock) in touching.rocks.iter().enumerate().filter(|(k, _)| rocks[*k].on_mesh) {
             let world = scene.members[*rock].environment(scene.terrain);
