@@ -93,7 +93,6 @@ impl RecordTable {
 
 impl MapsTable {
     pub(super) fn check(&self) -> Checked {
-        number("cell_m", self.cell_m, Allowed::Positive, "")?;
         number("cell_m", self.cell_m, Allowed::Between(1e-6, 1e5), "")
     }
 }
