@@ -3,11 +3,11 @@
 use super::pairs::{free, momentum_is_kept};
 use crate::common;
 
-use common::GROUND;
 use common::together::{self, World, plane, space};
+use common::{GROUND, terrain};
 use rockfall::contact::pair::Strength;
 use rockfall::ground::{Ground, damping_ratio};
-use rockfall::rock::Rock;
+use rockfall::rock::{Rock, Vec3};
 use rockfall::simulation::Stop;
 use rockfall::solver::Scheme;
 
@@ -115,6 +115,32 @@ fn bonded_spheres_leave_the_terrain_at_its_border() {
     }
 }
 
+/// Bonded spheres that fall beside the border of a plate far below, with no ground under them, are still above the terrain while one of them strikes that:
+/// of equal masses, and of a heavy one and a light one that turns round it, whose centre of mass falls straight.
+#[test]
+fn bonded_spheres_strike_a_border_that_lies_ahead_of_them() {
+    let strength = Strength { tensile_pa: 1e12, cohesion_pa: 1e12 };
+    let world =
+        World { scheme: Scheme::Adaptive, tolerance_m_s: 0.01, gravity_m_s2: 9.81, ..WORLD };
+    let at = |x: f64, y: f64| Vec3::new(x, y, -10.0);
+    let plate = [at(0.2, -20.0), at(40.0, -20.0), at(40.0, 20.0), at(0.2, 20.0)];
+    let ground = terrain(vec![[plate[0], plate[1], plate[2]], [plate[0], plate[2], plate[3]]]);
+    for (density, turns_m_s) in [(2700.0, 0.0), (270.0, 3.0)] {
+        let share = density / 2700.0;
+        let spin = [0.0, 0.0, turns_m_s * (1.0 + share)];
+        let spheres = [
+            (0.5, 2700.0, [0.0, -0.5, 0.0], [turns_m_s * share, 0.0, 0.0], spin),
+            (0.5, density, [0.0, 0.5, 0.0], [-turns_m_s, 0.0, 0.0], spin),
+        ];
+        let falls = World { strength, ..world }.falls(&ground, &spheres, 30.0);
+        for fall in &falls {
+            assert_eq!(fall.stop, Stop::LeftTerrain);
+            let fallen_m = fall.start.position_m.z - fall.end.position_m.z;
+            assert!(fallen_m > 8.0, "{density}: {:?}", fall.end);
+        }
+    }
+}
+
 /// No strength at all is the plain contact, bit for bit: no bond is made.
 #[test]
 fn a_bond_without_strength_is_a_plain_contact() {
@@ -208,4 +234,46 @@ fn an_undamped_bond_vibrates_on() {
     let in_springs_j: f64 = falls.iter().map(|fall| fall.ledger.springs_j).sum();
     let share = (kept_j + in_springs_j) / released_j;
     assert!((0.9..1.0 + 1e-3).contains(&share), "{share}");
+}
+
+/// Velocity (m/s) after a time (s) of the second of two bonded spheres that turn about their line, x, with `Ω` (rad/s), and part along y with a velocity
+/// `v` each and spins that leave no angular momentum across the line. Their spring turns with them, and their line with the way `d` between them:
+/// `ξ' = s + Ω x×ξ`, `s = d' + p − Ω x×d`, `d'' = −2 f/m`, `p' = −5 f/m` by the spins across the line, `f = p_s ξ + c s` with a critical dashpot.
+fn turning_m_s(world: &World, mass_kg: f64, (about, v, time_s): (f64, f64, f64)) -> Vec3 {
+    let k = 0.25 * world.stiffness_n_m;
+    let c = 2.0 * (k * mass_kg / 7.0).sqrt();
+    let turned = |x: &Vec3| (Vec3::x() * about).cross(x);
+    let rates = |[stretch, apart, by_spin, way]: &[Vec3; 4]| {
+        let slip = apart + by_spin - turned(way);
+        let pulled = (stretch * k + slip * c) / mass_kg;
+        [slip + turned(stretch), pulled * -2.0, pulled * -5.0, *apart]
+    };
+    let along = |now: &[Vec3; 4], rates: [Vec3; 4], dt: f64| {
+        std::array::from_fn::<_, 4, _>(|k| now[k] + rates[k] * dt)
+    };
+    let mut now = [Vec3::zeros(), Vec3::y() * (2.0 * v), Vec3::y() * (5.0 * v), Vec3::zeros()];
+    let dt = time_s / 1000.0;
+    for _ in 0..1000 {
+        let middle = along(&now, rates(&now), 0.5 * dt);
+        now = along(&now, rates(&middle), dt);
+    }
+    now[1] * 0.5
+}
+
+/// A bond between rocks that turn about their line holds them along the surface with a spring that turns with them, so that they slip aside.
+#[test]
+fn the_spring_of_a_bond_turns_with_its_rocks_about_their_line() {
+    let strength = Strength { tensile_pa: 1e9, cohesion_pa: 1e9 };
+    let world = World { tolerance_m_s: 1e-6, restitution: 1.0, strength, ..WORLD };
+    let mass_kg = Rock { radius_m: 0.5, density_kg_m3: 2700.0 }.mass_kg();
+    let omega = (7.0 * 0.25 * world.stiffness_n_m / mass_kg).sqrt();
+    let (about, v, time_s) = (0.3 * omega, 0.003, 2.0 / omega);
+    let sphere = |side: f64| -> together::Sphere {
+        let spin = [about, 0.0, -2.5 * v / 0.5];
+        (0.5, 2700.0, [0.5 * side, 0.0, 20.0], [0.0, v * side, 0.0], spin)
+    };
+    let falls = world.falls(&space(), &[sphere(-1.0), sphere(1.0)], time_s);
+    let exact = turning_m_s(&world, mass_kg, (about, v, time_s));
+    let off = (falls[1].end.velocity_m_s - exact).norm();
+    assert!(exact.z < -0.02 * v && off < 1e-3 * v, "{:?} {exact:?}", falls[1].end);
 }

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a closed form without an answer has failed")]
 
+use crate::common::uneven_cells;
 use rockfall::ground::{Ground, damping_ratio, normal_impact};
 use rockfall::rock::Vec3;
 use rockfall::simulation::Scratch;
@@ -77,5 +78,27 @@ fn a_sliding_rock_that_strikes_a_wall_neither_gains_nor_loses_by_steps() {
             let name = format!("{speed} m/s, {gap_m} m, {tolerance}: {booked:e}, {back}");
             assert!(booked.abs() < 5e-4 && (back - 1.0).abs() < 2e-3, "{name}");
         }
+    }
+}
+
+/// A rock that slides in the rigid limit over uneven ground without friction gets into it step by step and is lifted out: its motion pays for the height, so
+/// that nothing is left of the ledger but rounding.
+#[test]
+fn what_lifts_a_rock_out_of_the_ground_is_paid_by_its_motion() {
+    let ground = Ground { friction_angle_rad: 0.0, ..GROUND };
+    for (unevenness_m, speed) in [(0.02, 0.5), (0.02, 2.0), (0.1, 0.5), (0.1, 2.0)] {
+        let cells = uneven_cells(80, 0.25, unevenness_m);
+        let site = terrain(cells.flat_map(|(_, facets)| facets).collect());
+        let setup = Setup {
+            ground,
+            centre_m: Vec3::new(0.0, 0.1, SETUP.rock.radius_m + 0.1),
+            velocity_m_s: Vec3::new(speed, 0.0, 0.0),
+            longest_s: 2.5,
+            ..SETUP
+        };
+        let step = settings(Scheme::Rigid, 0.05, None);
+        let journey = setup.follow(&site, &step, &mut Scratch::default());
+        let left = journey.ledger.remainder_j / (0.5 * SETUP.rock.mass_kg() * speed.powi(2));
+        assert!(left.abs() < 1e-9, "{unevenness_m} m, {speed} m/s: {left:e}");
     }
 }

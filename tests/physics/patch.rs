@@ -3,6 +3,7 @@
 use crate::common;
 use common::*;
 use rockfall::contact::ContactPoints;
+use rockfall::contact::closest::closest_on;
 use rockfall::contact::neighbours::Neighbours;
 use rockfall::rock::{Rock, Vec3};
 use rockfall::solver::Scheme;
@@ -64,6 +65,24 @@ fn energies_are_those_of_the_sum_over_all_simplices() {
         several += usize::from(2.0 * energy * 1.000_001 < force.norm_squared());
     }
     assert!(several > 20, "{several}");
+}
+
+/// On both sides of a blunt valley a ball presses on one patch, which is told by the triangle in it that is nearest: by that its ground is told.
+#[test]
+fn a_patch_is_told_by_its_nearest_triangle() {
+    let (terrain, radius) = (fold(0.1), 0.5);
+    let (mut near, mut touches) = (Neighbours::default(), ContactPoints::default());
+    for x in [-0.05, -0.02, 0.02, 0.05] {
+        for y in [-1.7, -0.4, 0.3, 1.1] {
+            let centre = Vec3::new(x, y, 0.45) - terrain.origin_m;
+            near.collect(&terrain, &centre, radius, 0.1 * radius, 0.1 * radius);
+            near.touches(&terrain, &centre, radius, &mut touches);
+            let far = |t: u32| (closest_on(&terrain.corners_m(t), &centre) - centre).norm();
+            let nearest = (0..4).map(far).fold(f64::INFINITY, f64::min);
+            let [touch] = touches[..] else { panic!("{} touches", touches.len()) };
+            assert!(far(touch.triangle) < nearest + 1e-12, "{x} {y}: {}", touch.triangle);
+        }
+    }
 }
 
 /// One elastic impact without friction: energy after over before, height included.

@@ -8,6 +8,7 @@ use crate::stems::stand_on;
 use common::GROUND;
 use common::together::{Sphere, WORLD, World};
 use rockfall::ground::{Ground, damping_ratio};
+use rockfall::rock::Vec3;
 use rockfall::solver::Scheme;
 use std::f64::consts::PI;
 
@@ -108,5 +109,70 @@ fn a_stem_gives_way_to_a_blow_that_runs_through_a_row() {
                 assert!(taken_j <= share * energy_j * (1.0 + 1e-6), "{scheme:?}: {taken_j} J");
             }
         }
+    }
+}
+
+/// A rock strikes another, which leans on a stem that gives way, at an angle and with spin. All that turns them are the impulses at the points
+/// where they touch: `I Δω = Σ a × J`, with the impulses that their velocities tell.
+#[test]
+fn a_blow_through_a_row_turns_rocks_by_its_impulses() {
+    let limit_j = 0.05 * 0.5 * MASS_KG * SPEED_M_S * SPEED_M_S;
+    let terrain = stand_on(-50.0, 1, Some(limit_j));
+    let side = Vec3::new(-0.8, 0.6, 0.0);
+    let front = Vec3::new(-0.5 - RADIUS_M - 1e-9, 0.0, 0.0);
+    let back = front + side * (2.0 * RADIUS_M + 1e-9);
+    let way = Vec3::new(0.0, 0.0, 1.5) - side * SPEED_M_S;
+    let (still, spin) = ([0.0; 3], [6.0, -9.0, 12.0]);
+    let rocks: [Sphere; 2] = [
+        (RADIUS_M, 2700.0, front.into(), still, still),
+        (RADIUS_M, 2700.0, back.into(), way.into(), spin),
+    ];
+    for order in [[0, 1], [1, 0]] {
+        let falls = World { grounds: 2, ..WORLD }.falls(&terrain, &order.map(|k| rocks[k]), 0.02);
+        // of the rocks as they stand above
+        let [of_front, of_back] = order.map(|k| {
+            let (end, (.., v, w)) = (&falls[k].end, rocks[order[k]]);
+            (end.velocity_m_s - Vec3::from(v), end.spin_rad_s - Vec3::from(w))
+        });
+        let pushed = of_back.0 * MASS_KG;
+        let by_stem = of_front.0 * MASS_KG + pushed;
+        let lever = side * RADIUS_M;
+        let turned = [
+            lever.cross(&-pushed) + (Vec3::x() * RADIUS_M).cross(&by_stem),
+            (-lever).cross(&pushed),
+        ];
+        let taken_j: f64 = falls.iter().map(|fall| fall.ledger.trees_j).sum();
+        assert!((taken_j / limit_j - 1.0).abs() < 1e-6, "{order:?}: {taken_j} J of {limit_j} J");
+        let inertia = 0.4 * MASS_KG * RADIUS_M * RADIUS_M;
+        for ((_, dw), turned) in [of_front, of_back].iter().zip(turned) {
+            assert!(turned.norm() > 1.0, "{order:?}: {turned:?}");
+            let off = (dw * inertia - turned).norm();
+            assert!(off < 1e-6 * turned.norm(), "{order:?}: {off} of {turned:?}");
+        }
+    }
+}
+
+/// A rock that leans on a stem is struck by one that does not break the stem, and by a faster one behind: the stem breaks when both blows together have
+/// reached its limit, whichever of the rocks comes first.
+#[test]
+fn a_stem_in_a_row_remembers_the_blow_that_it_bore() {
+    let ground = Ground { restitution: Some(0.0), ..GROUND };
+    let rock = |gap_m: f64, speed_m_s: f64| -> Sphere {
+        let x = -0.5 - RADIUS_M - gap_m;
+        (RADIUS_M, 2700.0, [x, 0.0, 0.0], [speed_m_s, 0.0, 0.0], [0.0; 3])
+    };
+    let rocks = [rock(1e-9, 0.0), rock(2.0 * RADIUS_M + 1e-9, 2.0), rock(3.0, 8.0)];
+    for order in [[0, 1, 2], [2, 1, 0]] {
+        let taken_j = |limit_j: f64, count: usize| {
+            let terrain = stand_on(-50.0, 1, Some(limit_j));
+            let own: Vec<_> = order.iter().filter(|k| **k < count).map(|k| rocks[*k]).collect();
+            let falls = World { ground, grounds: 2, ..WORLD }.falls(&terrain, &own, 1.0);
+            // those behind it find the stem standing
+            falls[if order[0] == 0 { 0 } else { count - 1 }].ledger.trees_j
+        };
+        let limit_j = 2.0 * MASS_KG;
+        let (first_j, both_j) = (taken_j(limit_j, 2), taken_j(limit_j, 3));
+        assert!(first_j > 0.1 * limit_j && first_j < 0.5 * limit_j, "{first_j} J");
+        assert!((both_j / limit_j - 1.0).abs() < 1e-6, "{both_j} J of {limit_j} J");
     }
 }

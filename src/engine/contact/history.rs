@@ -239,3 +239,46 @@ impl std::ops::DerefMut for ContactHistories {
         &mut self.0
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::FeatureKind;
+
+    /// A contact with face `id`, along a normal.
+    fn on_face(id: u32, normal: Vec3) -> ContactHistory {
+        let feature = Feature { kind: FeatureKind::Face, id };
+        ContactHistory::new(&ContactPoint { feature, normal, ..ContactPoint::NONE }, false)
+    }
+
+    /// What the contact with face 0 remembers after that with face 1, whose normal is another, has merged into it; the springs of both are alike or not.
+    fn merged(stretches: [Vec3; 2], rolls: [Vec3; 2], are_alike: bool) -> (ContactHistory, bool) {
+        let normals = [Vec3::z(), Vec3::new(0.6, 0.0, 0.8)];
+        let mut both = [0, 1].map(|k| on_face(k, normals[k as usize]));
+        for (one, (shear, roll)) in both.iter_mut().zip(stretches.into_iter().zip(rolls)) {
+            (one.shear, one.roll) = (shear, roll);
+        }
+        both[0].closed = true;
+        let mut all = ContactHistories::default();
+        all.restore(&both);
+        let heir = |feature: Feature| (feature == both[1].feature).then_some(both[0].feature);
+        let is_merged = all.merge_lost(heir, |_, _| are_alike);
+        (all[0], is_merged)
+    }
+
+    /// Springs that pull the same way merge with the energy of both, `ξ² = ξ_A² + ξ_B²`, and those that pull against each other with what is
+    /// left; the stretch of the one that is gone lies along the other's surface, as long as it was. Other springs take nothing over.
+    #[test]
+    fn merged_springs_hold_no_more_than_both_did() {
+        // up the side of the other normal, which the shortest turn lays on x
+        let (along, up) = (Vec3::x(), Vec3::new(0.8, 0.0, -0.6));
+        let none = [Vec3::zeros(); 2];
+        let (one, is_merged) = merged([along * 3.0, up * 4.0], [up * 5.0, up * 12.0], true);
+        assert!(is_merged && (one.shear - along * 5.0).norm() < 1e-12, "{:?}", one.shear);
+        assert!((one.roll - up * 13.0).norm() < 1e-12, "{:?}", one.roll);
+        let (one, _) = merged([along * -3.0, up * 4.0], none, true);
+        assert!((one.shear - along).norm() < 1e-12, "{:?}", one.shear);
+        let (one, is_merged) = merged([along * 3.0, up * 4.0], none, false);
+        assert!(!is_merged && (one.shear - along * 3.0).norm() < 1e-12, "{:?}", one.shear);
+    }
+}

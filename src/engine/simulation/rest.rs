@@ -171,4 +171,33 @@ mod tests {
         assert_eq!(rests_after(|t| 0.03 - 0.061 * t), None);
         assert!(rests_after(|t| (0.03 - 0.061 * t).max(0.0)).unwrap() < 0.8);
     }
+
+    /// A ball that slows down by 0.02 m/s² and gets faster as much the other way, never faster than a quarter of the rule's speed, does not rest;
+    /// one that does so by half of that does, as on 0.1°.
+    #[test]
+    fn a_slow_turn_is_told_by_its_deceleration() {
+        assert_eq!(rests_after(|t| 0.02 * (0.15 - t)), None);
+        assert!((rests_after(|t| 0.01 * (0.15 - t)).unwrap() - 0.3).abs() < 2e-3);
+    }
+
+    /// A rock that spins ever faster on its place, slower than the rule's speed on its rim, does not rest; one that spins on as fast does.
+    #[test]
+    fn what_spins_ever_faster_on_its_place_does_not_rest() {
+        let rests = |spin: fn(f64) -> f64| {
+            let still = Vec3::zeros();
+            let mut calm = RestCriterion::from(still);
+            let at = |time_s: f64| Motion {
+                time_s,
+                position_m: still,
+                velocity_m_s: still,
+                spin_rad_s: Vec3::z() * spin(time_s),
+            };
+            (0..1000).map(|k| 1e-3 * f64::from(k)).any(|time_s| {
+                calm.note(1e-3, [&at(time_s), &at(time_s + 1e-3)], 0.5, &RULE);
+                calm.rests()
+            })
+        };
+        assert!(rests(|_| 0.03) && rests(|t| 0.03 - 0.02 * t));
+        assert!(!rests(|t| 0.03 * t));
+    }
 }

@@ -155,3 +155,22 @@ impl ContactState {
         others.iter().any(|other| !world.are_alike(first.springs_of, other.springs_of))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A patch has the springs of the likest of those that it may part from, and its own where a fold between them is too sharp for one patch.
+    #[test]
+    fn a_patch_parts_from_the_likest_side_of_a_blunt_fold() {
+        let tilted = |angle: f64| Vec3::new(angle.sin(), 0.0, angle.cos());
+        let parted = |sides: &[(f64, u32)]| {
+            let pressed = sides.iter().map(|(angle, springs_of)| (tilted(*angle), *springs_of));
+            springs_parted_from(&Vec3::z(), pressed)
+        };
+        let sharp = SAME_GRIP.acos() + 0.01;
+        assert_eq!(parted(&[(-0.3, 4), (0.2, 7), (0.5, 9)]), Some(7));
+        assert_eq!(parted(&[(sharp - 0.02, 4), (sharp, 7)]), Some(4));
+        assert_eq!(parted(&[(sharp, 4), (-1.5, 7)]), None);
+    }
+}

@@ -1,7 +1,7 @@
 //! What a blow of several contacts must obey.
 
 use super::{Breakage, JointBody, JointContact, JointEnd, joint_blow};
-use crate::ground::{Capture, Damping, Ground, Law};
+use crate::ground::{CAPTURE_DAMPING_RATIO, Capture, Damping, Ground, Law};
 use crate::rock::{Rock, Vec3};
 use crate::solver::body::{Body, Twist};
 use crate::solver::loss::Loss;
@@ -177,4 +177,55 @@ fn a_stiff_stem_that_breaks_leaves_the_blow_of_a_soft_one() {
         let off = (end.after.motions[0].0 - Vec3::new(-left, 8.0, 0.0)).norm();
         assert!(off < 1e-3, "{stiffer:e} times stiffer: {:?}", end.after.motions[0].0);
     }
+}
+
+/// Of two contacts at a right angle without friction neither knows of the other: a stem breaks, and the ground stops what comes too slowly to
+/// rebound, by its dashpot of damping ratio `ζ`, to `exp(−ζ/s ln((ζ + s)/(ζ − s)))` of its speed, `s² = ζ² − 1`. Each was met as fast as the
+/// rock came along it, to half a step.
+#[test]
+fn a_contact_too_slow_to_rebound_is_damped_beside_a_stem_that_breaks() {
+    let (body, law) = case(0.0, 0.8);
+    let ground =
+        JointContact { captured: true, stem: None, ..contact(&body, &law, (Vec3::y(), 1)) };
+    let contacts = [contact(&body, &law, (Vec3::x(), 0)), ground];
+    let v = Vec3::new(-10.0, -3.0, 0.0);
+    let end = blow(&body, &contacts, (v, Vec3::zeros()), [1000.0; 3]).unwrap();
+    let ratio = CAPTURE_DAMPING_RATIO;
+    let root = (ratio * ratio - 1.0).sqrt();
+    let back = (-ratio / root * ((ratio + root) / (ratio - root)).ln()).exp();
+    let left = (100.0 - 2.0 * 1000.0 / body.mass).sqrt();
+    let off = (end.after.motions[0].0 - Vec3::new(-left, 3.0 * back, 0.0)).norm();
+    assert!(off < 1e-3, "{:?} for {left} {}", end.after.motions[0].0, 3.0 * back);
+    let [across, along, ..] = end.after.fastest_m_s;
+    assert!((across - 10.0).abs() < 0.1 && (along - 3.0).abs() < 0.05, "{across} {along}");
+}
+
+/// A rock that sticks to a stem until that breaks rubs nothing off: what it loses along the surface is the dashpot's.
+#[test]
+fn what_sticks_to_a_stem_that_breaks_loses_nothing_by_friction() {
+    let (body, law) = case(1.5, 0.3);
+    let v = Vec3::new(-10.0, 6.0, 0.0);
+    let limit_j = 0.3 * motion_j(&body, (v, Vec3::zeros()));
+    let contacts = [contact(&body, &law, (Vec3::x(), 0))];
+    let end = blow(&body, &contacts, (v, Vec3::zeros()), [limit_j; 3]).unwrap();
+    let [friction_j, damping_j, ..] = end.after.loss[0].parts();
+    assert!(friction_j.abs() < 1e-5 * limit_j, "{friction_j} J of {limit_j} J");
+    assert!((damping_j / limit_j - 1.0).abs() < 1e-5, "{damping_j} J of {limit_j} J");
+}
+
+/// What rolling friction takes of a spinning rock counts against the stem, which breaks when it has taken its limit of all that the motion has lost.
+#[test]
+fn rolling_friction_on_a_stem_is_a_part_of_what_it_takes() {
+    let rock = Rock { radius_m: 0.5, density_kg_m3: 2700.0 };
+    let ground = Ground::smooth([1e9, 0.25e9], 0.5, Some(0.3));
+    let ground = Ground { rolling_friction: 0.2, ..ground };
+    let capture = Capture { own_m_s: None, tolerance_m_s: 0.0, gravity_m_s2: 9.8 };
+    let law = Law::new(&ground, &Damping::of(ground.restitution), &rock, &capture);
+    let body = Body::new(&rock, 9.8);
+    let motion = (Vec3::new(-10.0, 2.0, 0.0), Vec3::new(30.0, -10.0, 20.0));
+    let limit_j = 0.3 * motion_j(&body, motion);
+    let end = blow(&body, &[contact(&body, &law, (Vec3::x(), 0))], motion, [limit_j; 3]).unwrap();
+    let lost_j = motion_j(&body, motion) - motion_j(&body, end.after.motions[0]);
+    assert!((lost_j / limit_j - 1.0).abs() < 1e-9, "{lost_j} J of {limit_j} J");
+    assert!(end.after.loss[0].parts()[2] > 0.01 * limit_j, "{:?}", end.after.loss[0]);
 }

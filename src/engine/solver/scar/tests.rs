@@ -231,3 +231,42 @@ fn more_drag_never_makes_a_higher_leap() {
     }
     assert!(rims >= 6, "{rims}");
 }
+
+/// All of the ball is cut on its way up, so that a hop of which soil over a way `p` is paid rises to `h = u²/2g exp(−2 k (h − p))`, and freely where
+/// that is no more than `p`. When it has come down again nothing is paid, and the next hop is one of its own.
+#[test]
+fn soil_that_is_paid_for_is_paid_once() {
+    let (body, mut scars, per_m) = deep(20.0, 9.81);
+    scars.enter(&body, &[square(6.0)], (6.0, false));
+    let up = Vec3::z() * 4.0;
+    let free_m = 0.5 * 16.0 / 9.81;
+    scars.now = Some(Furrow { depth_m: free_m + 2.0 * body.radius, ..scars.now.unwrap() });
+    let dug = scars.now;
+    for paid_m in [0.0, 0.3 * free_m, 2.0 * free_m] {
+        scars.now = dug.map(|now| Furrow { paid: per_m * paid_m, ..now });
+        let rise_m = free_m * scars.leave(&body, &up).powi(2);
+        let unpaid_m = (rise_m - paid_m).max(0.0);
+        let exact_m = free_m * math::exp(-2.0 * per_m * unpaid_m);
+        assert!((rise_m / exact_m - 1.0).abs() < 1e-9, "{paid_m}: {rise_m} {exact_m}");
+    }
+    scars.now = dug;
+    let first = scars.leave(&body, &up);
+    scars.fly(&body, &(-up * first), 2.0 * 4.0 * first / 9.81);
+    let second = scars.leave(&body, &up);
+    assert!((second / first - 1.0).abs() < 1e-9, "{first}, then {second}");
+}
+
+/// A hop of a fraction of a micrometre is centimetres long where a ball skims over soil, and is dragged over all of them: up to
+/// `h = h₀ exp(−2 k A h/c)` with the area `A` that is cut at the bottom and the cosine `c` of the way to the normal.
+#[test]
+fn a_skimming_ball_is_dragged_along_its_way_and_not_its_rise() {
+    let (body, mut scars, _) = deep(3000.0, 9.81);
+    scars.enter(&body, &[square(10.0)], (10.0, false));
+    let (now, v) = (scars.now.unwrap(), Vec3::new(200.0, 0.0, 2e-3));
+    let (free_m, cosine) = (0.5 * v.z * v.z / 9.81, v.z / v.norm());
+    assert!(free_m < 1e-6 * now.depth_m);
+    let kept = scars.leave(&body, &v);
+    let area_m2 = cut_area_m2(body.radius, now.depth_m, cosine);
+    let drag = now.drag_per_m3 * area_m2 * kept * kept * free_m / cosine;
+    assert!(drag > 1e-3 && (kept / math::exp(-drag) - 1.0).abs() < 1e-9, "{kept} {drag}");
+}

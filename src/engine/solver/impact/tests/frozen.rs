@@ -118,6 +118,22 @@ fn several_contacts_are_the_law_as_printed() {
     }
 }
 
+/// A patch that is struck alone has a stiffer normal spring than a point, and the same along the surface: friction takes another part of the blow.
+#[test]
+fn a_patch_alone_is_the_law_as_printed() {
+    let (v, w) = (Vec3::new(1.0, 1.0, -5.0), Vec3::new(3.0, -2.0, 4.0));
+    let (body, law) = case(&ground(1e9, 0.5, 0.1), 0.5, 0.0);
+    let [patch, point] = [1.6, 1.0].map(|stiffness_scale| {
+        let contact = [FrozenContact { stiffness_scale, ..slope([0.0, 0.0, 1.0], &law) }];
+        let out = throw(&body, &contact, (&v, &w), 1e-10);
+        let (slow, _) = oracle::follow(&body, &contact, (v, w), 4000.0);
+        let off = apart(&body, after(&out), [slow.v, slow.w], v.norm());
+        assert!(off < 2e-8, "{stiffness_scale}: {off:e}");
+        out
+    });
+    assert!(apart(&body, after(&patch), after(&point), v.norm()) > 1e-3);
+}
+
 /// A smooth right angle between two walls: each throws back its own part of the speed, whatever the other does.
 #[test]
 fn walls_at_right_angles_do_not_know_of_each_other() {
