@@ -62,12 +62,12 @@ pub(super) struct BlowStart {
     pub(super) turn: Option<Rotation3<f64>>,
     /// How fast its ends come at each other (m/s) …
     pub(super) approach_m_s: f64,
-    /// … and how long its springs are pressed (s): gaps that close meanwhile are none.
+    /// … and how long they stay near each other (s): gaps that close meanwhile belong to the blow.
     pub(super) lasts_s: f64,
 }
 
 impl BlowStart {
-    /// How long springs of a law are pressed in one blow, and as long behind it (s).
+    /// How long springs of a law are pressed in one blow, and as long again (s): what has just let go is still near.
     pub(super) fn lasting_s(law: &Law) -> f64 {
         2.0 * PI / law.omega_rad_s()
     }
