@@ -192,14 +192,17 @@ impl PairHistory {
         let bond = self.bond.as_ref()?;
         let strengths = [bond.pull_n, bond.shear_n].into_iter().filter(|most| *most > 0.0);
         let least_n = strengths.reduce(f64::min)?;
-        Some(self.law.pressed_m(least_n) * self.law.omega_rad_s())
+        Some(self.gives_m_s(least_n))
     }
 
-    /// Speed (m/s) of their vibration against each other, of rocks that move apart with `apart` (m/s) and have `inv_m` (1/kg) as the sum of one over
-    /// their masses: what they move with, or what their spring would move them with.
-    pub(crate) fn vibrates_m_s(&self, apart: &Vec3, inv_m: f64) -> f64 {
-        let drawn_m_s = self.normal_force.abs() * inv_m / self.law.omega_rad_s();
-        drawn_m_s.max(apart.dot(&self.n).abs())
+    /// Speed (m/s) that its spring, pressed or drawn by so much (N), gives its rocks against each other.
+    fn gives_m_s(&self, force_n: f64) -> f64 {
+        self.law.pressed_m(force_n) * self.law.omega_rad_s()
+    }
+
+    /// Speed (m/s) of the vibration of rocks that move apart with `apart` (m/s): what they move with, or what their spring would give them.
+    pub(crate) fn vibrates_m_s(&self, apart: &Vec3) -> f64 {
+        self.gives_m_s(self.normal_force.abs()).max(apart.dot(&self.n).abs())
     }
 
     /// Lets a contact rebound that came up too slowly for it and is pressed together at a speed (m/s) now, if it is struck through;

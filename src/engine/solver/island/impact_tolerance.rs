@@ -67,8 +67,7 @@ impl Island<'_> {
             let Some(breaks_m_s) = pair_history.breaks_m_s() else { continue };
             let ends = [pair_history.a, pair_history.b].map(|end| end as usize);
             let [a, b] = ends.map(|end| &self.members[end]);
-            let inv_m = 1.0 / a.body.mass + 1.0 / b.body.mass;
-            let vibrates_m_s = pair_history.vibrates_m_s(&(a.state.v - b.state.v), inv_m);
+            let vibrates_m_s = pair_history.vibrates_m_s(&(a.state.v - b.state.v));
             for end in ends {
                 let member = &mut *self.members[end];
                 let usual_m_s = lasting_m_s(settings, &member.body);

@@ -146,9 +146,6 @@ impl RigidIsland {
         struck.look(scene, blow);
         let Some(contacts) = self.contacts(scene, &struck, blow) else { return false };
         let has_gaps = contacts.iter().any(|contact| contact.gap_m > 0.0);
-        if !has_gaps && blow.lasts_s > 0.0 {
-            return false;
-        }
         let StruckRocks { touching, rocks } = &struck;
         let own = if blow.pair.is_some() { 2 } else { 1 };
         if touching.rocks.len() <= own && (blow.pair.is_none() || contacts.len() == 1) {
@@ -328,16 +325,17 @@ impl RigidIsland {
         for (first, rock) in touching.rocks.iter().enumerate().filter(|(k, _)| rocks[*k].on_mesh) {
             let world = scene.members[*rock].environment(scene.terrain);
             let (state, radius) = (&scene.members[*rock].state, world.body.radius);
-            let is_turned = blow.turn.is_some() && first == 0;
+            // what comes to the mesh has come there, and with it all that was seen so near
+            let is_known = blow.pair.is_none() && first == 0;
             for touch in state.touches.iter() {
                 add(FrozenContact {
                     normal: blow
                         .turn
-                        .filter(|_| is_turned)
+                        .filter(|_| is_known)
                         .map_or(touch.normal, |turn| turn * touch.normal),
                     law: world.law(touch.triangle),
                     stiffness_scale: touch.gain2,
-                    gap_m: left(touch.distance_m, radius, radius),
+                    gap_m: if is_known { 0.0 } else { left(touch.distance_m, radius, radius) },
                     ends: ContactEnds { first, ..ContactEnds::MESH },
                     ..FrozenContact::none()
                 })?;
