@@ -41,6 +41,7 @@ mod roughness;
 mod scar_leap;
 mod schemes_agree;
 mod sheets;
+mod slap;
 mod soil;
 mod spins_on;
 mod stem_loads;

@@ -48,6 +48,7 @@ impl Roll<'_> {
         let new = springs.histories.iter().filter(|history| !history.announced);
         let fastest = new.max_by(|one, other| one.approach_m_s.total_cmp(&other.approach_m_s));
         let Some(fastest) = fastest.copied() else { return };
+        self.footing.damp_together(&self.world, (self.block, &self.moving));
         let facet = self.next_facet(fastest.triangle, &fastest.n, &fastest.point);
         let until_s = self.recorder.now.time_s + IMPACT_TIMES * PI / self.footing.springs.slowest();
         let held_j = self.held_j();

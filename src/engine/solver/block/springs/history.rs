@@ -114,12 +114,36 @@ impl Footing {
         touch: &BlockTouch,
         (approach_m_s, all): (f64, impl Iterator<Item = &'t BlockTouch>),
     ) -> Law {
-        let mut law = *ground;
-        if approach_m_s >= capture_m_s(&law) {
-            law.struck_at(approach_m_s);
+        let others = all.filter(|other| *other != touch);
+        let others = others.map(|other| (other.normal, other.lever));
+        law_at(ground, mass, (touch.normal, touch.lever), (approach_m_s, others))
+    }
+
+    /// Where an impact begins, what presses gets the dashpots of the masses that all of it moves together, as the limit of stiff springs has them:
+    /// corners that come down at once have come up one by one in the looks of a step, and what lasts may have begun long ago, as a block that
+    /// tips about an edge lay flat. Of an impact that goes on nothing is changed.
+    pub(crate) fn damp_together(
+        &mut self,
+        world: &ContactEnvironment,
+        (block, moving): (&Block, &Moving),
+    ) {
+        let histories = &mut self.springs.histories;
+        let rebounds = |one: &BlockHistory| !one.captured && one.closed;
+        let goes_on = histories.iter().any(|one| one.announced && rebounds(one));
+        let mass = moving.mass(block);
+        for k in 0..histories.len() {
+            let one = histories[k];
+            if one.announced && goes_on {
+                continue;
+            }
+            let at = |one: &BlockHistory| (one.n, one.point - moving.pose.centre);
+            let others = histories.iter().enumerate().filter(|(j, _)| *j != k);
+            let others = others.map(|(_, other)| at(other));
+            let approach_m_s = if one.captured { 0.0 } else { one.approach_m_s };
+            let law = law_at(world.law(one.springs_of), &mass, at(&one), (approach_m_s, others));
+            histories[k].law = law.with_friction_of(&one.law);
         }
-        let [along, across] = mass.moved_by((&touch.normal, &touch.lever));
-        law.for_masses([along * share_of(mass, touch, all), across], mass.mass)
+        self.springs.refresh();
     }
 
     /// Gives contact `k` the dashpots of an impact at another speed (m/s) than it began with, as soil or a facet has it.
@@ -279,15 +303,29 @@ fn goes_on(block: &Block, new: &BlockTouch, before: &BlockTouch) -> bool {
     !block.core.is_corner(new.part) && before.hands_on(new.part, new.feature)
 }
 
+/// The law of a contact with a normal and a lever beside `others`, which begins at a speed of approach (m/s).
+fn law_at(
+    ground: &Law,
+    mass: &Mass,
+    at: (Vec3, Vec3),
+    (approach_m_s, others): (f64, impl Iterator<Item = (Vec3, Vec3)>),
+) -> Law {
+    let mut law = *ground;
+    if approach_m_s >= capture_m_s(&law) {
+        law.struck_at(approach_m_s);
+    }
+    let [along, across] = mass.moved_by((&at.0, &at.1));
+    law.for_masses([along * share_of(mass, at, others), across], mass.mass)
+}
+
 /// The share of the mass that a contact moves among those that touch with it (–): `G_ii/Σ_j G_ij` along the normals.
-fn share_of<'t>(mass: &Mass, touch: &BlockTouch, all: impl Iterator<Item = &'t BlockTouch>) -> f64 {
-    let along = |one: &BlockTouch, other: &BlockTouch| {
-        let arms = [one, other].map(|touch| touch.lever.cross(&touch.normal));
-        one.normal.dot(&other.normal) / mass.mass + arms[0].dot(&(mass.inverse * arms[1]))
+fn share_of(mass: &Mass, one: (Vec3, Vec3), others: impl Iterator<Item = (Vec3, Vec3)>) -> f64 {
+    let along = |other: (Vec3, Vec3)| {
+        let arms = [one, other].map(|(n, lever)| lever.cross(&n));
+        one.0.dot(&other.0) / mass.mass + arms[0].dot(&(mass.inverse * arms[1]))
     };
-    let own = along(touch, touch);
-    let others = all.filter(|other| *other != touch);
-    let all = own + others.map(|other| along(touch, other)).sum::<f64>();
+    let own = along(one);
+    let all = own + others.map(along).sum::<f64>();
     own / all.max(LEAST_SHARED * own)
 }
 
