@@ -54,7 +54,8 @@ pub(super) use plane::LOCAL;
 pub(crate) use plane::{BlowTable, NormalPassage, Plane, PressedIn, Rebound, blow_along_a_line};
 pub(super) use rigid_limit::NOTHING;
 pub(crate) use rigid_limit::{
-    BODIES, CONTACTS, ContactEnds, FrozenBody, FrozenCollision, FrozenContact, collide, throw,
+    BODIES, CONTACTS, ContactEnds, FrozenBody, FrozenCollision, FrozenContact, LONGEST_WAIT,
+    collide, throw,
 };
 
 /// What following an impact has cost.

@@ -14,7 +14,7 @@
 //! What strikes one contact alone has a law of its own: `yielding`, and that of blocks.
 
 use super::body::{Body, Twist};
-use super::impact::{BODIES, CONTACTS, FrozenCollision};
+use super::impact::{BODIES, CONTACTS, FrozenCollision, LONGEST_WAIT};
 use super::loss::Loss;
 use super::yielding::{BISECTIONS, COMES_OFF, STEP};
 use crate::ground::Law;
@@ -139,12 +139,16 @@ pub(crate) fn joint_blow(
         pressed: contacts.iter().map(apart).collect(),
     };
     let mut blow = JointBlow { bodies, contacts, broken: ArrayVec::new() };
-    let omegas = contacts.iter().map(|contact| contact.law.omega_rad_s());
     // through a row it runs from rock to rock
-    let mut left_s = bodies.len() as f64 * COMES_OFF / omegas.fold(f64::INFINITY, f64::min);
+    let mut left_s = bodies.len() as f64 * COMES_OFF / blow.softest();
     for _ in 0..JOINT_STEPS {
-        if left_s <= 0.0 || !blow.presses(&now) {
+        if left_s <= 0.0 {
             break;
+        }
+        if !blow.presses(&now) {
+            let Some(next) = blow.next_touch_s(&now) else { break };
+            blow.drift(&mut now, next);
+            continue;
         }
         let step = blow.step_s(&now);
         left_s -= step;
@@ -187,6 +191,36 @@ impl JointBlow<'_> {
         let touching =
             parts.filter(|(contact, pressed)| pressed.depth_m >= 0.0 && self.stands(contact));
         touching.map(|(contact, _)| contact.law.omega_rad_s()).fold(0.0, f64::max)
+    }
+
+    /// The softest contact (rad/s).
+    fn softest(&self) -> f64 {
+        let omegas = self.contacts.iter().map(|contact| contact.law.omega_rad_s());
+        omegas.fold(f64::INFINITY, f64::min)
+    }
+
+    /// When (s) rocks that nothing pushes touch again, and at which contact; beside a gap that stays open for longer than the softest spring is pressed the
+    /// blow is over before that, as it is in [`collide`](super::impact::collide).
+    fn next_touch_s(&self, at: &Instant) -> Option<(f64, usize)> {
+        let waits = (0..self.contacts.len()).filter_map(|k| {
+            let (contact, depth_m) = (&self.contacts[k], at.pressed[k].depth_m);
+            let comes_m_s = -contact.n.dot(&at.point_m_s(contact));
+            let comes = self.stands(contact) && depth_m < 0.0 && comes_m_s > 0.0;
+            comes.then(|| (-depth_m / comes_m_s, k))
+        });
+        let next = waits.min_by(|one, other| one.0.total_cmp(&other.0))?;
+        (next.0 <= LONGEST_WAIT / self.softest()).then_some(next)
+    }
+
+    /// Lets rocks that nothing pushes go on until contact `k` is touched: springs are at rest then.
+    fn drift(&self, at: &mut Instant, (wait_s, k): (f64, usize)) {
+        let parts_m_s: ArrayVec<f64, CONTACTS> =
+            self.contacts.iter().map(|one| one.n.dot(&at.point_m_s(one))).collect();
+        for (pressed, parts_m_s) in at.pressed.iter_mut().zip(parts_m_s) {
+            pressed.depth_m -= parts_m_s * wait_s;
+            (pressed.shear, pressed.roll) = (Vec3::zeros(), Vec3::zeros());
+        }
+        at.pressed[k].depth_m = 0.0;
     }
 
     /// Whether a stem is touched that was not `before`.

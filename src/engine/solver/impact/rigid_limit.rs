@@ -137,8 +137,11 @@ const LONGEST_STEP: f64 = 0.9;
 const SHORTEST_CUT: f64 = 1e-9;
 /// An approach slower than this share of the error allowed is none (–).
 pub(in crate::solver) const NOTHING: f64 = 1e-3;
-/// Radians of the softest contact, flights between touches apart, after which an impact is ended: rattling between walls has no other end.
+/// Radians of the slowest swing, of the heaviest body on the softest contact, flights between touches apart, after which an impact is ended: rattling
+/// between walls has no other end.
 const MOST_TIME: f64 = 300.0;
+/// Longest flight to a gap that closes within an impact, in radians of the softest contact: what has let go is still near for as long again as it was pressed.
+pub(crate) const LONGEST_WAIT: f64 = TAU;
 /// A rock whose motion changes by no more than so many errors allowed over a swing of the softest contact is jammed (–).
 const QUIET: f64 = 3.0;
 /// Steps after which it is ended.
@@ -270,7 +273,7 @@ impl<const B: usize, const K: usize, const N: usize, const Q: usize, const P: us
     fn follow(&mut self, tolerance: f64) -> Settled {
         let (mut step, mut time) = (StepLength::new(OPENING * math::pow(tolerance, 0.2)), 0.0);
         let softest = self.flow.contacts.softest;
-        let (most, mut quiet) = (MOST_TIME / softest, Quiet::<B>::NONE);
+        let (most, mut quiet) = (MOST_TIME / self.flow.contacts.slowest_swing(), Quiet::<B>::NONE);
         // Whether the contacts have been changed without a step: once is enough.
         let mut turned = false;
         self.flow.press(&mut self.y);

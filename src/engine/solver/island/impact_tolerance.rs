@@ -26,6 +26,8 @@ const IMPACT: (f64, f64) = (1.0, 2e-4);
 /// The same where the rock that is struck, or what strikes it, touches others as well, in units of that (–): at the usual tolerance
 /// 1 % of the speed of the blow.
 const IN_A_HEAP: f64 = 150.0;
+/// The same where the blow runs through one contact more and no farther: its outcome hangs on that one gap.
+const THROUGH_ONE: f64 = 30.0;
 
 /// Cosine between two contacts of a rock from which a blow on the one runs on through the other (–).
 const RUNS_ON: f64 = 0.1;
@@ -133,7 +135,12 @@ impl IslandBody {
 
     /// Local error allowed to it in an impact (–, relative to its speed), where `relative` is that of two bodies alone.
     pub(super) fn allowed_share(&self, relative: f64) -> f64 {
-        if self.is_in_heap() { IN_A_HEAP * relative } else { relative }
+        let times = match self.crowd {
+            0..=1 => 1.0,
+            2 => THROUGH_ONE,
+            _ => IN_A_HEAP,
+        };
+        times * relative
     }
 
     /// Local error allowed to it (m/s), `relative` to the speed of an impact (–).

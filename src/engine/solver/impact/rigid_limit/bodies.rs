@@ -13,8 +13,8 @@ use crate::solver::loss::Loss;
 /// Most bodies and contacts of one impact.
 pub(crate) const BODIES: usize = 16;
 pub(crate) const CONTACTS: usize = 48;
-/// Slowest frequency of a contact over the fastest (–): in a light rock between heavy ones springs swing thousands of times in one blow.
-const SLOWEST: f64 = 1e-2;
+/// Slowest frequency of a contact over the fastest (–): beyond it the stiff spring swings more often than steps are taken.
+const SLOWEST: f64 = 1e-3;
 /// Rounds over the contacts in which what gives nothing back is brought to rest, at most.
 const ROUNDS: usize = 1000;
 

@@ -128,6 +128,11 @@ impl<const B: usize, const K: usize> Contacts<B, K> {
         &self.list[..self.len]
     }
 
+    /// Frequency of the heaviest body on the softest contact: that of a boulder on a stone is far below the stone's.
+    pub(super) fn slowest_swing(&self) -> f64 {
+        self.softest * self.bodies.iter().fold(1.0, |least, one| one.lightness.min(least)).sqrt()
+    }
+
     /// Energy of motion of a body.
     /// `(v² m/m₀ + (Rω)²/(m₀ R²/I))/2`, the unit of energy being `m₀ |v|²`.
     pub(super) fn energy(&self, body: usize, (v, w): Twist) -> f64 {

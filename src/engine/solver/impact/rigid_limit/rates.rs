@@ -5,12 +5,11 @@
 //! between.
 
 use super::contacts::{Contacts, ImpactContact, SwitchTime};
-use super::{ContactEnds, FrozenBody, FrozenContact, LONGEST_STEP, NOTHING};
+use super::{ContactEnds, FrozenBody, FrozenContact, LONGEST_STEP, LONGEST_WAIT, NOTHING};
 use crate::math;
 use crate::rock::Vec3;
 use crate::solver::body::Twist;
 use crate::solver::impact::dormand_prince::{Flow, Rates, put, three};
-use std::f64::consts::PI;
 
 /// Where the ways of the centres begin among the numbers that change, body by body; velocities, spins times radius and the springs
 /// follow.
@@ -170,7 +169,7 @@ impl<const B: usize, const K: usize> ContactRates<B, K> {
             (rate > nothing).then(|| ((-x / rate).max(0.0), k))
         });
         let (wait, k) = waits.min_by(|one, other| one.0.total_cmp(&other.0))?;
-        (!self.is_apart(k, y) || wait <= PI / self.contacts.softest).then_some(wait)
+        (!self.is_apart(k, y) || wait <= LONGEST_WAIT / self.contacts.softest).then_some(wait)
     }
 
     /// Lets a free rock fly on for `wait`.

@@ -34,6 +34,8 @@ const TOGETHER_IN_HEAP: usize = 2;
 const MUCH_LIGHTER: f64 = 2.0;
 /// Widest gap that closes within a blow (–, relative to R of the smaller rock): beyond it normals would turn while it lasts.
 const WIDEST: f64 = 0.05;
+/// A gap that is rounding of places (–, relative to R of the smaller rock).
+const NO_GAP: f64 = 1e-8;
 /// A rock that is no farther from the mesh at the end of the step (–, relative to R) may have touched it at a blow …
 const BESIDE_MESH: f64 = 0.02;
 /// … which presses it there if it pushes it against the normal, by this cosine.
@@ -56,10 +58,12 @@ impl Reach {
 
 /// What a blow begins with.
 pub(super) struct BlowStart {
-    /// The pair of rocks, or none where one comes to the mesh: its touches are those of its last look.
+    /// The pair of rocks, or none where one comes to the mesh.
     pub(super) pair: Option<usize>,
     /// Turn of the facet of rough ground that is struck, if there is one.
     pub(super) turn: Option<Rotation3<f64>>,
+    /// Distance of its centre (m) at which a rock that comes to the mesh touches it: its radius, but for rounding.
+    pub(super) touches_m: f64,
     /// How fast its ends come at each other (m/s) …
     pub(super) approach_m_s: f64,
     /// … and how long they stay near each other (s): gaps that close meanwhile belong to the blow.
@@ -72,10 +76,28 @@ impl BlowStart {
         2.0 * PI / law.omega_rad_s()
     }
 
-    /// Widest gap (m) beside a rock of this radius (m) that closes while the blow lasts, at `closing_m_s` (m/s) and what the blow gives.
+    /// Widest gap (m) beside a rock of this radius (m) that closes while the blow lasts, at `closing_m_s` (m/s) and what the blow gives: up to twice
+    /// the approach, to a light rock that a heavy one strikes.
     fn closes_m(&self, closing_m_s: f64, radius_m: f64) -> f64 {
-        let way_m = (closing_m_s.max(0.0) + self.approach_m_s) * self.lasts_s;
+        let way_m = (closing_m_s.max(0.0) + 2.0 * self.approach_m_s) * self.lasts_s;
         way_m.min(WIDEST * radius_m)
+    }
+
+    /// The gap (m) beside a rock of this radius (m) where so much is left. What is held is held though it is moved a little apart, and where no gap closes all is in touch that
+    /// is as near; else rounding alone leaves none.
+    fn gap_m(&self, left_m: f64, radius_m: f64, is_held: bool) -> f64 {
+        let none = if is_held || self.lasts_s <= 0.0 { HELD } else { NO_GAP };
+        if left_m > none * radius_m { left_m } else { 0.0 }
+    }
+
+    /// Whether rock `k` of the blow is the one that comes to the mesh.
+    fn is_struck(&self, k: usize) -> bool {
+        self.pair.is_none() && k == 0
+    }
+
+    /// Distance (m) at which rock `k` of the blow, of this radius (m), touches the mesh.
+    fn reach_m(&self, k: usize, radius_m: f64) -> f64 {
+        if self.is_struck(k) { self.touches_m } else { radius_m }
     }
 }
 
@@ -318,24 +340,29 @@ impl RigidIsland {
             // one common point, as in every contact of two rocks
             let reach = radius(first) + radius(second);
             let ends = ContactEnds { first, second: Some(second), levers: [distance / reach; 2] };
-            let gap_m = left(distance, reach, radius(first).min(radius(second)));
+            let gap_m = blow.gap_m(
+                distance - reach,
+                radius(first).min(radius(second)),
+                pair_history.closed,
+            );
             let law = &pair_history.law;
             add(FrozenContact { normal, law, gap_m, ends, ..FrozenContact::none() })?;
         }
         for (first, rock) in touching.rocks.iter().enumerate().filter(|(k, _)| rocks[*k].on_mesh) {
             let world = scene.members[*rock].environment(scene.terrain);
             let (state, radius) = (&scene.members[*rock].state, world.body.radius);
-            // what comes to the mesh has come there, and with it all that was seen so near
-            let is_known = blow.pair.is_none() && first == 0;
             for touch in state.touches.iter() {
+                let is_held =
+                    scene.members[*rock].kept.iter().any(|(held, ..)| *held == touch.feature);
+                let gap_m =
+                    blow.gap_m(touch.distance_m - blow.reach_m(first, radius), radius, is_held);
+                // the facet is that of what is struck
+                let turn = blow.turn.filter(|_| blow.is_struck(first) && gap_m <= 0.0);
                 add(FrozenContact {
-                    normal: blow
-                        .turn
-                        .filter(|_| is_known)
-                        .map_or(touch.normal, |turn| turn * touch.normal),
+                    normal: turn.map_or(touch.normal, |turn| turn * touch.normal),
                     law: world.law(touch.triangle),
                     stiffness_scale: touch.gain2,
-                    gap_m: if is_known { 0.0 } else { left(touch.distance_m, radius, radius) },
+                    gap_m,
                     ends: ContactEnds { first, ..ContactEnds::MESH },
                     ..FrozenContact::none()
                 })?;
@@ -346,26 +373,18 @@ impl RigidIsland {
 }
 
 impl StruckRocks {
-    /// Looks for what the rocks touch of the mesh. Of one that comes to it the touches are known.
+    /// Looks for what the rocks touch of the mesh.
     fn look(&mut self, scene: &mut ImpactScene, blow: &BlowStart) {
         for (k, (&rock, at)) in self.touching.rocks.iter().zip(&mut self.rocks).enumerate() {
             let (world, state) = scene.members[rock].with_environment(scene.terrain);
-            let is_known = blow.pair.is_none() && k == 0;
-            if !is_known {
-                let radius = world.body.radius;
-                state.look(&world, &at.c, radius * (1.0 + WIDEST));
-                state.touches.retain(|touch| {
-                    let room = blow.closes_m(-touch.normal.dot(&at.v), radius).max(HELD * radius);
-                    touch.distance_m <= radius + room
-                });
-            }
+            let radius = world.body.radius;
+            let reach = blow.reach_m(k, radius);
+            state.look(&world, &at.c, reach + WIDEST * radius);
+            state.touches.retain(|touch| {
+                let room = blow.closes_m(-touch.normal.dot(&at.v), radius).max(HELD * radius);
+                touch.distance_m <= reach + room
+            });
             at.on_mesh = !state.touches.is_empty();
         }
     }
-}
-
-/// The gap (m) between what is `distance_m` apart and touches at `reach_m` (m); of a rock of this radius (m) rounding leaves none.
-fn left(distance_m: f64, reach_m: f64, radius_m: f64) -> f64 {
-    let gap_m = distance_m - reach_m;
-    if gap_m > HELD * radius_m { gap_m } else { 0.0 }
 }

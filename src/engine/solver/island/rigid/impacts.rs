@@ -141,7 +141,8 @@ impl RigidIsland {
         let ((at, v), (other, w)) = (a.before_end(s), b.before_end(s));
         let approach_m_s = -between(&at, &other).0.dot(&(v - w));
         let lasts_s = BlowStart::lasting_s(&pair_history.law);
-        let blow = BlowStart { pair: Some(place), turn: None, approach_m_s, lasts_s };
+        let blow =
+            BlowStart { pair: Some(place), turn: None, touches_m: 0.0, approach_m_s, lasts_s };
         if self.blow_together(scene, &blow, s) {
             return;
         }
@@ -188,9 +189,8 @@ impl RigidIsland {
             .copied();
         let Some(touch) = hit else { return ball.is_struck(s) };
         // how near something is at that instant is known as well as the parabola is the way of the rock
-        state
-            .touches
-            .keep_nearer(touch.distance_m.max(world.body.radius) + HELD * world.body.radius);
+        let touches_m = touch.distance_m.max(world.body.radius);
+        state.touches.keep_nearer(touches_m + HELD * world.body.radius);
         if let Some(broken) = state.broken_by(&world, (&v, &ball.w)) {
             let (after, spin) = broken.motion;
             ball.v += after - v;
@@ -206,26 +206,27 @@ impl RigidIsland {
             state.fell_broken(&world, &broken);
             return ball.is_struck(s);
         }
-        self.rebound(scene, (k, &touch), (&at, &v), s);
+        let lasts_s = BlowStart::lasting_s(world.law(touch.triangle));
+        let meeting = Meeting { n: touch.normal, triangle: touch.triangle, c: at, v };
+        let turn = state.facets.struck(&world, &meeting);
+        let approach_m_s = -touch.normal.dot(&v);
+        let found = state.touches.clone();
+        let blow = BlowStart { pair: None, turn, touches_m, approach_m_s, lasts_s };
+        if !self.blow_together(scene, &blow, s) {
+            scene.members[k].state.touches = found;
+            self.rebound(scene, (k, &touch), (&at, &v), (turn, s));
+        }
     }
 
-    /// Throws rock `k`, which comes to `touch` with its centre at `at` and a velocity `v` (m/s), off all that it touches.
+    /// Throws rock `k`, which comes alone to `touch` with its centre at `at` and a velocity `v` (m/s), off all that it touches.
     fn rebound(
         &mut self,
         scene: &mut ImpactScene,
         (k, touch): (usize, &ContactPoint),
         (at, v): (&Vec3, &Vec3),
-        s: f64,
+        (turn, s): (Option<Rotation3<f64>>, f64),
     ) {
         let tolerance = self.impact_tolerance();
-        let (world, state) = scene.members[k].with_environment(scene.terrain);
-        let meeting = Meeting { n: touch.normal, triangle: touch.triangle, c: *at, v: *v };
-        let turn = state.facets.struck(&world, &meeting);
-        let approach_m_s = -touch.normal.dot(v);
-        let lasts_s = BlowStart::lasting_s(world.law(touch.triangle));
-        if self.blow_together(scene, &BlowStart { pair: None, turn, approach_m_s, lasts_s }, s) {
-            return;
-        }
         let ball = &mut self.balls[k];
         let (world, state) = scene.members[k].with_environment(scene.terrain);
         let ContactState { touches, stem_load, .. } = state;
