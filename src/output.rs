@@ -6,10 +6,12 @@
 
 mod annual;
 mod calibration;
+mod checksum;
 mod lock;
 mod folder;
 mod journeys;
 mod maps;
+mod mark;
 mod merge;
 mod opened;
 mod progress;
@@ -26,6 +28,7 @@ mod atomic_file;
 
 pub use crate::file::write_atomic;
 pub use calibration::{read_calibration, write_calibration};
+pub use checksum::add_checksums;
 pub use folder::{Mode, announce_figures, check_folder, check_writable, releases_in};
 pub use lock::FolderLock;
 pub use merge::merge;
@@ -48,8 +51,7 @@ use crate::rock::Vec3;
 use crate::scene::Language;
 use crate::simulation::Trajectory;
 use opened::{open, open_maps};
-use progress::{PROGRESS, Progress};
-use std::collections::BTreeMap;
+use progress::PROGRESS;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -161,22 +163,22 @@ impl Output {
         folder::look(dir, &info, mode)?;
         let mut lock = FolderLock::on(dir)?;
         let found = folder::prepare(dir, (&info, mode), &mut lock)?;
-        found.as_ref().map_or(Ok(()), |found| read::check_lengths(dir, &found.finished))?;
-        let bytes = found.as_ref().map(|found| &found.bytes);
+        let found = mark::unchanged(dir, found)?;
+        let before = found.as_ref();
         let columns = |plain: &[&'static str], more: &[&'static str]| {
             [plain, if info.has_blocks { more } else { &[] }].concat()
         };
         let scars = |names: &'static [&'static str]| if info.has_scars { names } else { &[] };
-        let of_release = releases::columns(dir, &info, bytes.is_some())?;
+        let of_release = releases::columns(dir, &info, before.is_some())?;
         let of_impact = [&ImpactRow::COLUMNS, scars(&ImpactRow::SOIL_COLUMNS)].concat();
-        let releases = open(dir, RELEASES, &of_release, bytes)?;
+        let releases = open(dir, RELEASES, &of_release, before)?;
         let of_path = columns(&PathRow::COLUMNS, &PathRow::SHAPE_COLUMNS);
-        let paths = info.keeps_paths.then(|| open(dir, PATHS, &of_path, bytes)).transpose()?;
+        let paths = info.keeps_paths.then(|| open(dir, PATHS, &of_path, before)).transpose()?;
         let impacts =
-            info.keeps_impacts.then(|| open(dir, IMPACTS, &of_impact, bytes)).transpose()?;
+            info.keeps_impacts.then(|| open(dir, IMPACTS, &of_impact, before)).transpose()?;
         let of_crossing = columns(&CrossingRow::COLUMNS, &CrossingRow::SHAPE_COLUMNS);
         let crossings = (!info.lines.is_empty())
-            .then(|| open(dir, CROSSINGS, &of_crossing, bytes))
+            .then(|| open(dir, CROSSINGS, &of_crossing, before))
             .transpose()?;
         let mut lines = read::lines(&info.lines, &info.asked, info.identity.releases);
         let is_part = info.is_shard || info.identity.is_part();
@@ -307,7 +309,7 @@ impl Output {
         let seconds = self.seconds();
         let is_part = self.info.is_shard || self.info.identity.is_part();
         self.lock.keep();
-        let bytes = self.lengths()?;
+        let (bytes, mut sums) = self.ends()?;
         let year_weights = self.hazard.year_weights();
         let (nets, lines) = (&self.info.barriers, &self.info.lines);
         let open = read::tell_lines(&self.dir, &self.hazard, &mut self.lines, (lines, nets))?;
@@ -328,7 +330,9 @@ impl Output {
         let mut summary = Summary::new(self.info, (&self.hazard, &self.lines), seconds);
         (summary.barriers, summary.residual, summary.annual) = (barriers, residual, annual);
         (summary.bytes, summary.map_bytes) = (bytes, maps::lengths(&self.dir));
+        checksum::add(&self.dir, &mut sums, summary.map_bytes.keys().map(String::as_str))?;
         summary.write(&self.dir)?;
+        checksum::write(&self.dir, &sums)?;
         self.hazard.totals = summary.totals.clone();
         let results = Results {
             dir: self.dir,
@@ -355,44 +359,5 @@ impl Output {
         let annual = self.year.as_ref().zip(weights).map(|(year, weights)| year.said(weights));
         annual.as_ref().map_or(Ok(()), |annual| annual::write(&self.dir, annual))?;
         Ok(annual)
-    }
-
-    /// The tables that are written, with their names.
-    fn tables(&mut self) -> impl Iterator<Item = (&'static str, &mut CsvTable)> {
-        let Self { releases, paths, impacts, crossings, .. } = self;
-        let kept = [(PATHS, paths), (IMPACTS, impacts), (CROSSINGS, crossings)].into_iter();
-        let kept = kept.filter_map(|(name, table)| Some((name, table.as_mut()?)));
-        std::iter::once((RELEASES, releases)).chain(kept)
-    }
-
-    /// Puts all rows on the disk; the lengths of the tables (bytes).
-    fn lengths(&mut self) -> Result<BTreeMap<String, u64>> {
-        let length = |(name, table): (&str, &mut CsvTable)| Ok((name.to_owned(), table.sync()?));
-        self.tables().map(length).collect()
-    }
-
-    /// Puts all rows on the disk, and then says that they are there.
-    fn mark(&mut self) -> Result<()> {
-        let bytes = self.lengths()?;
-        let done = self.hazard.rocks();
-        if let Some(maps) = &self.maps {
-            maps::write_state(&self.dir, maps, done)?;
-        }
-        let progress = Progress {
-            title: self.info.title.clone(),
-            identity: self.info.identity.clone(),
-            done,
-            bytes,
-            totals: self.hazard.totals.clone(),
-            seconds: self.seconds(),
-            finished: BTreeMap::new(),
-        };
-        progress.write(&self.dir)?;
-        // The state before is of use until the progress says otherwise.
-        self.maps.as_ref().map_or(Ok(()), |_| maps::keep_state(&self.dir, Some(done)))
-    }
-
-    fn seconds(&self) -> f64 {
-        self.seconds_before + self.begun.elapsed().as_secs_f64()
     }
 }

@@ -79,7 +79,7 @@ pub fn draw_run(
     shape_of: impl Fn(usize) -> Option<Shape>,
 ) -> Result<()> {
     let ground = GroundRaster::as_used(terrain);
-    ground.write(&results.dir)?;
+    ground.write_with_checksums(&results.dir)?;
     let epsg = results.summary.maps.as_ref().and_then(|maps| maps.epsg);
     ground.write_tif(&results.dir, epsg)?;
     let ground = ground.coarser(GROUND_CELLS);
@@ -99,7 +99,7 @@ pub fn draw_merged(results: &Results, shards: &[PathBuf]) -> Result<()> {
     let shard = shards[0].as_path();
     let ground = GroundRaster::read(shard)?;
     if let Some(ground) = &ground {
-        ground.write(&results.dir)?;
+        ground.write_with_checksums(&results.dir)?;
     }
     let ground = ground.map(|ground| ground.coarser(GROUND_CELLS));
     output::copy_used(shard, &results.dir)?;

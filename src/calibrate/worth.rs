@@ -224,15 +224,21 @@ impl fmt::Display for SiteMeasure {
     }
 }
 
-/// A number with two decimals, without a sign before nothing.
+/// A number with two decimals, with a true minus, without a sign before nothing.
 fn plain(value: f64) -> String {
     let said = format!("{value:.2}");
-    if said == "-0.00" { "0.00".to_owned() } else { said }
+    if said == "-0.00" { "0.00".to_owned() } else { said.replace('-', "\u{2212}") }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// As in all other texts.
+    #[test]
+    fn a_negative_number_has_a_true_minus() {
+        assert_eq!([-0.45, 0.45, -0.001].map(plain), ["−0.45", "0.45", "0.00"]);
+    }
 
     /// By hand: 5 (4 to 8) less 3 (2.25 to 7) is 2, from √(1² + 4²) below to √(3² + 0.75²) above.
     #[test]

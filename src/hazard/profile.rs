@@ -53,6 +53,10 @@ pub struct ProfilePoint {
     pub height_m: StretchStatistic,
 }
 
+/// The last stretch that is kept, counted from 0: the plan parts the longest way over a terrain into no more. A rock far larger than its terrain
+/// pivots on over the rim, where there is no ground to be high above, and each metre of it was a stretch.
+const LAST_STRETCH: u32 = 1000;
+
 impl Profile {
     /// Whether no rock has been noted.
     pub fn is_empty(&self) -> bool {
@@ -64,10 +68,10 @@ impl Profile {
         self.step_m
     }
 
-    /// Adds a rock of a stratum; `step_m` is the length of its stretches.
+    /// Adds a rock of a stratum as far as there is terrain; `step_m` is the length of its stretches.
     pub fn add(&mut self, step_m: f64, stratum: u16, passed: &[simulation::Stretch]) {
         self.step_m = step_m;
-        for one in passed {
+        for one in passed.iter().filter(|one| one.number <= LAST_STRETCH) {
             let stretch = self.at(one.number as usize);
             stretch.fastest_m_s = stretch.fastest_m_s.max(one.speed_m_s);
             stretch.highest_m = stretch.highest_m.max(one.height_m);
@@ -157,6 +161,16 @@ mod tests {
         assert!(near(median.value, 50.0) && near(p95.value, 95.0), "{points:?}");
         assert!(near(p95.low_95.unwrap(), 92.0) && near(p95.high_95.unwrap(), 98.0), "{p95:?}");
         assert!((largest - 100.0).abs() < 1e-12 && (points[3].from_m - 15.0).abs() < 1e-12);
+    }
+
+    /// Two hundred million stretches beyond the terrain take no room.
+    #[test]
+    fn what_lies_beyond_any_terrain_is_left_out() {
+        let far = |number| simulation::Stretch { number, speed_m_s: 3.0, height_m: 0.5 };
+        let mut profile = Profile::default();
+        profile.add(0.05, 0, &[0, 1000, 1001, 200_000_000].map(far));
+        assert_eq!(profile.stretches.len(), 1001);
+        assert!((profile.points(&Weights::equal(1))[1].from_m - 50.0).abs() < 1e-9);
     }
 
     /// Parts in any order give the bits of the whole, also by way of a file.

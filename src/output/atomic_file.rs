@@ -1,5 +1,6 @@
 //! JSON files that are either whole or not there.
 
+use super::checksum::{self, RESTORE};
 use crate::error::{Error, Result};
 use crate::file::{PART, write_atomic};
 use serde::Serialize;
@@ -7,10 +8,6 @@ use serde::de::DeserializeOwned;
 use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
-
-/// What to do about a file of a run that is not what the run has written.
-pub(super) const RESTORE: &str =
-    "restore the file as it was written, or run again with --overwrite";
 
 /// The path without the ending of a file that is not yet whole.
 pub(super) fn final_path(path: &Path) -> PathBuf {
@@ -21,15 +18,14 @@ pub(super) fn final_path(path: &Path) -> PathBuf {
     }
 }
 
-/// Writes a value as indented JSON, whole.
+/// Writes an object as indented JSON, whole, with its checksum at the end.
 pub(super) fn write_json(path: &Path, value: &impl Serialize) -> Result<()> {
-    let mut text = serde_json::to_vec_pretty(value)
+    let text = serde_json::to_string_pretty(value)
         .map_err(|why| Error::file("write", path)(std::io::Error::other(why)))?;
-    text.push(b'\n');
-    write_atomic(path, &text)
+    write_atomic(path, checksum::sealed(text).as_bytes())
 }
 
-/// Reads a JSON file; none when there is no such file.
+/// Reads a JSON file; none when there is no such file. One that ends with a checksum must have it.
 pub(super) fn read_json<T: DeserializeOwned>(path: &Path) -> Result<Option<T>> {
     let text = match fs::read(path) {
         Ok(text) => text,
@@ -38,9 +34,11 @@ pub(super) fn read_json<T: DeserializeOwned>(path: &Path) -> Result<Option<T>> {
         }
         Err(why) => return Err(Error::file("read", path)(why)),
     };
-    serde_json::from_slice(&text)
-        .map(Some)
-        .map_err(|why| Error::input(path, format!("line {}", why.line()), why.to_string(), RESTORE))
+    let value = serde_json::from_slice(&text).map_err(|why| {
+        Error::input(path, format!("line {}", why.line()), why.to_string(), RESTORE)
+    })?;
+    checksum::check_sealed(path, &text)?;
+    Ok(Some(value))
 }
 
 /// Length of a file that a run has written (bytes).

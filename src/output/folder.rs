@@ -2,6 +2,7 @@
 
 use super::annual::FREQUENCY;
 use super::atomic_file::final_path;
+use super::checksum::{FileSums, SUMS};
 use super::lock::FolderLock;
 use super::progress::{Identity, PROGRESS, Progress};
 use super::removal::{remove, remove_all};
@@ -31,7 +32,7 @@ pub enum Mode {
 }
 
 /// Result files besides `progress.json`.
-const FILES: [&str; 9] = [
+const FILES: [&str; 10] = [
     RELEASES,
     PATHS,
     IMPACTS,
@@ -41,6 +42,7 @@ const FILES: [&str; 9] = [
     "view.html",
     "view.glb",
     SUMMARY,
+    SUMS,
 ];
 /// Folder of the figures.
 const FIGURES: &str = "figures";
@@ -182,7 +184,8 @@ fn finished_run(dir: &Path, summary: Summary) -> Progress {
     let length = |name: &str| Some((name.to_owned(), fs::metadata(dir.join(name)).ok()?.len()));
     let bytes = TABLES.into_iter().filter_map(length).collect();
     let (done, seconds) = (identity.releases, run.seconds);
-    Progress { title, identity, done, bytes, totals, seconds, finished }
+    let sums = FileSums::new();
+    Progress { title, identity, done, bytes, sums, totals, seconds, finished }
 }
 
 /// A folder that says nothing of its results must hold none.

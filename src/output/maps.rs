@@ -1,11 +1,14 @@
 //! Rasters in plan view: ESRI ASCII grids for every editor, GeoTIFF for every GIS.
 
 use super::atomic_file::final_path;
+use super::checksum::{self, FileSums};
+use super::progress::Progress;
 use crate::error::{Error, Result};
 use crate::file::write_atomic;
 use crate::frequency::Weights;
 use crate::hazard::{AnnualRequest, Layer, MapFrame, MapState, Maps, Matrix, year_maps};
 use crate::terrain::geotiff::{Image, NO_DATA, encode};
+use flate2::Crc;
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::fmt::Write as _;
@@ -135,17 +138,30 @@ fn is_layer(path: &Path) -> bool {
 
 /// Where the maps after so many rocks wait for a resumed run.
 pub(super) fn state_path(dir: &Path, done: usize) -> PathBuf {
-    dir.join(FOLDER).join(format!("{done}.{STATE}"))
+    dir.join(state_name(done))
 }
 
-/// Puts what a resumed run needs on the disk.
-pub(super) fn write_state(dir: &Path, maps: &Maps, done: usize) -> Result<()> {
+/// Name of that file in the folder of the results.
+fn state_name(done: usize) -> String {
+    format!("{FOLDER}/{done}.{STATE}")
+}
+
+/// Puts what a resumed run needs on the disk; its name and checksum go into `sums`.
+pub(super) fn write_state(
+    dir: &Path,
+    (maps, done): (&Maps, usize),
+    sums: &mut FileSums,
+) -> Result<()> {
     let path = state_path(dir, done);
     let folder = dir.join(FOLDER);
     fs::create_dir_all(&folder).map_err(Error::file("create", &folder))?;
     let text = serde_json::to_vec(&maps.state())
         .map_err(|why| Error::file("write", &path)(std::io::Error::other(why)))?;
-    write_atomic(&path, &text)
+    write_atomic(&path, &text)?;
+    let mut crc = Crc::new();
+    crc.update(&text);
+    sums.insert(state_name(done), crc.sum());
+    Ok(())
 }
 
 /// Whether it is there: a finished run has removed it.
@@ -154,10 +170,12 @@ pub(super) fn has_state(dir: &Path, done: usize) -> bool {
 }
 
 /// Reads it back.
-pub(super) fn read_state(dir: &Path, done: usize) -> Result<MapState> {
-    let path = state_path(dir, done);
-    super::atomic_file::read_json(&path)?
-        .ok_or_else(|| Error::input(&path, "file", "found nothing", super::atomic_file::RESTORE))
+pub(super) fn read_state(dir: &Path, progress: &Progress) -> Result<MapState> {
+    let path = state_path(dir, progress.done);
+    let state = super::atomic_file::read_json(&path)?
+        .ok_or_else(|| Error::input(&path, "file", "found nothing", super::checksum::RESTORE))?;
+    checksum::check(&path, progress.sums.get(&state_name(progress.done)).copied())?;
+    Ok(state)
 }
 
 /// Whether a file in the folder of the maps, whole or not, has a name that a run writes: it may hold others, a terrain

@@ -44,6 +44,7 @@ impl Shard {
         };
         match (Progress::read(dir)?, Summary::read(dir)?) {
             (Some(progress), Some(summary)) if progress.is_complete() => {
+                read::check_files(dir, &summary.bytes)?;
                 Ok(Self { dir: dir.to_owned(), progress, summary })
             }
             (Some(progress), _) => {
@@ -190,7 +191,7 @@ impl Output {
         }
         read::recall_lines(&shard.dir, &mut self.lines, self.year.as_mut())?;
         if let Some(all) = &mut self.maps {
-            all.join(maps::read_state(&shard.dir, *done)?);
+            all.join(maps::read_state(&shard.dir, &shard.progress)?);
         }
         self.mark()
     }

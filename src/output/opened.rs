@@ -5,7 +5,6 @@ use super::table::CsvTable;
 use super::{RunInfo, maps};
 use crate::error::{Error, Result};
 use crate::hazard::{MapState, Maps};
-use std::collections::BTreeMap;
 use std::path::Path;
 
 /// The maps so far; none when they are not asked for or complete.
@@ -22,7 +21,7 @@ pub(super) fn open_maps(
         {
             return Ok(None);
         }
-        Some(found) => maps::read_state(dir, found.done)?,
+        Some(found) => maps::read_state(dir, found)?,
     };
     Ok(Some(Maps::new(frame, &info.asked.counted_j(), state)))
 }
@@ -32,17 +31,17 @@ pub(super) fn open(
     dir: &Path,
     name: &str,
     columns: &[&str],
-    bytes: Option<&BTreeMap<String, u64>>,
+    found: Option<&Progress>,
 ) -> Result<CsvTable> {
     let path = dir.join(name);
-    match bytes.map(|bytes| bytes.get(name)) {
-        None => CsvTable::create(path, columns),
-        Some(Some(&bytes)) => CsvTable::go_on(path, bytes),
-        Some(None) => Err(Error::input(
+    let Some(found) = found else { return CsvTable::create(path, columns) };
+    match found.bytes.get(name) {
+        Some(&bytes) => CsvTable::go_on(path, bytes, found.sums.get(name).copied()),
+        None => Err(Error::input(
             &dir.join(PROGRESS),
             "bytes",
             format!("no length of {name}"),
-            super::atomic_file::RESTORE,
+            super::checksum::RESTORE,
         )),
     }
 }

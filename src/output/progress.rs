@@ -2,6 +2,7 @@
 
 use super::RunInfo;
 use super::atomic_file::{read_json, write_json};
+use super::checksum::FileSums;
 use crate::error::Result;
 use crate::hazard::Totals;
 use serde::{Deserialize, Serialize};
@@ -76,6 +77,9 @@ pub(super) struct Progress {
     pub(super) done: usize,
     /// Length of each table up to there (bytes).
     pub(super) bytes: BTreeMap<String, u64>,
+    /// CRC-32 of each of them up to there, and of the maps so far; empty in results of before.
+    #[serde(default)]
+    pub(super) sums: FileSums,
     pub(super) totals: Totals,
     /// Time spent so far (s).
     pub(super) seconds: f64,
@@ -92,6 +96,7 @@ impl Progress {
             identity: info.identity.clone(),
             done: 0,
             bytes: BTreeMap::new(),
+            sums: FileSums::new(),
             totals: Totals::default(),
             seconds: 0.0,
             finished: BTreeMap::new(),

@@ -1,6 +1,7 @@
 //! Results read back: what figures and pages are drawn from.
 
-use super::atomic_file::{RESTORE, length};
+use super::atomic_file::length;
+use super::checksum::{self, RESTORE};
 use super::lock::FolderLock;
 use super::progress::{Identity, PROGRESS, Progress};
 use super::releases::CLASS_COLUMNS;
@@ -74,7 +75,7 @@ pub fn read(dir: &Path) -> Result<Results> {
     recall_lines(dir, &mut lines, None)?;
     let nets: Vec<Barrier> = summary.barriers.iter().map(|one| one.barrier.clone()).collect();
     let open = tell_lines(dir, &hazard, &mut lines, (&infos, &nets))?;
-    check_lengths(dir, &summary.bytes)?;
+    check_files(dir, &summary.bytes)?;
     Ok(Results { dir: dir.to_owned(), summary, hazard, lines, open, lock: None })
 }
 
@@ -166,9 +167,11 @@ impl Results {
     ///
     /// # Errors
     ///
-    /// As [`Self::rows`].
+    /// As [`Self::rows`]; each row also if it holds no finite number, or is not in this order.
     pub fn paths(&self) -> Result<impl Iterator<Item = Result<PathRow>>> {
-        if_there(self.dir.join(PATHS), (&PathRow::COLUMNS, &[&PathRow::SHAPE_COLUMNS]))
+        let path = self.dir.join(PATHS);
+        let rows = if_there(path.clone(), (&PathRow::COLUMNS, &[&PathRow::SHAPE_COLUMNS]))?;
+        Ok(PathRow::checked(path, rows))
     }
 
     /// How many rows `paths.csv` has at most: its lines. Quickly counted, where nothing of them need be known.
@@ -301,8 +304,14 @@ pub(super) fn recall(
     }
 }
 
+/// Every file must be as it was when the run was finished: tables have their lengths, and all that have checksums those.
+pub(super) fn check_files(dir: &Path, written: &BTreeMap<String, u64>) -> Result<()> {
+    check_lengths(dir, written)?;
+    checksum::check_all(dir)
+}
+
 /// Every table must be as long as when the run was finished.
-pub(super) fn check_lengths(dir: &Path, written: &BTreeMap<String, u64>) -> Result<()> {
+fn check_lengths(dir: &Path, written: &BTreeMap<String, u64>) -> Result<()> {
     for (name, written) in written {
         let path = dir.join(name);
         let found = length(&path)?;

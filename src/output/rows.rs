@@ -1,9 +1,12 @@
 //! Rows of `paths.csv` and `impacts.csv`; positions in map coordinates.
 
+use super::checksum::RESTORE;
+use crate::error::{Error, Result};
 use crate::rock::Vec3;
 use crate::simulation::{FeatureKind, Impact, PathPoint, PathState};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
+use std::path::PathBuf;
 
 /// One instant of a kept path.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -60,6 +63,69 @@ impl PathRow {
             state: point.state,
             attitude: point.attitude,
         }
+    }
+
+    /// Whether all numbers are finite. A clearance may be NaN.
+    fn is_finite(&self) -> bool {
+        let all = |numbers: &[f64]| numbers.iter().all(|number| number.is_finite());
+        all(&[self.time_s])
+            && all(&self.position_m)
+            && all(&self.velocity_m_s)
+            && all(&self.spin_rad_s)
+            && !self.clearance_m.is_infinite()
+            && self.attitude.is_none_or(|attitude| all(&attitude))
+    }
+
+    /// The first number that is none where it should be, with the name of its column.
+    fn not_finite(&self) -> Option<(&'static str, f64)> {
+        // rows are read by the million, and all of a run are finite
+        if self.is_finite() {
+            return None;
+        }
+        let motion = [&self.position_m, &self.velocity_m_s, &self.spin_rad_s].into_iter().flatten();
+        let clearance_m = if self.clearance_m.is_nan() { 0.0 } else { self.clearance_m };
+        let plain = [&self.time_s].into_iter().chain(motion).chain([&clearance_m]).copied();
+        let plain = Self::COLUMNS.into_iter().skip(1).zip(plain);
+        let turned = Self::SHAPE_COLUMNS.into_iter().zip(self.attitude.into_iter().flatten());
+        plain.chain(turned).find(|(_, value)| !value.is_finite())
+    }
+
+    /// What is wrong with a row behind one of another release or time, as place and found.
+    fn flaw(&self, (index, time_s): (usize, f64)) -> Option<(&'static str, String)> {
+        if let Some((column, value)) = self.not_finite() {
+            return Some((column, format!("found {value}, which is no finite number")));
+        }
+        if self.index < index {
+            return Some(("index", format!("found {} behind {index}", self.index)));
+        }
+        let falls = self.index == index && self.time_s < time_s;
+        let found = || format!("found {} behind {time_s} of the same release", self.time_s);
+        falls.then(|| ("time_s", found()))
+    }
+
+    /// The rows of a file as a run writes them: finite, release after release, and of each in the order of time.
+    pub(super) fn checked(
+        path: PathBuf,
+        rows: impl Iterator<Item = Result<Self>>,
+    ) -> impl Iterator<Item = Result<Self>> {
+        let (mut before, mut line) = ((0, f64::NEG_INFINITY), 1);
+        rows.map(move |row| {
+            let row = row?;
+            // the first line names the columns
+            line += 1;
+            match row.flaw(before) {
+                None => before = (row.index, row.time_s),
+                Some((column, found)) => {
+                    return Err(Error::input(
+                        &path,
+                        format!("line {line}, {column}"),
+                        found,
+                        RESTORE,
+                    ));
+                }
+            }
+            Ok(row)
+        })
     }
 }
 

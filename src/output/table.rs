@@ -1,5 +1,6 @@
 //! CSV files that grow row by row and can be cut back to a length that is known to be good.
 
+use super::checksum::SummedFile;
 use crate::count::number_of;
 use crate::error::{Error, Result};
 use serde::Serialize;
@@ -19,20 +20,21 @@ const BUFFER: usize = 1 << 17;
 #[derive(Debug)]
 pub(super) struct CsvTable {
     path: PathBuf,
-    writer: csv::Writer<File>,
+    writer: csv::Writer<SummedFile>,
 }
 
 impl CsvTable {
     /// Creates the file, or empties it, and writes the names of the columns.
     pub(super) fn create(path: PathBuf, columns: &[&str]) -> Result<Self> {
         let file = File::create(&path).map_err(Error::file("create", &path))?;
-        let mut table = Self::over(path, file);
+        let mut table = Self::over(path, SummedFile::empty(file));
         table.writer.write_record(columns).map_err(|why| in_file(&table.path, columns, why))?;
         Ok(table)
     }
 
-    /// Goes on behind the first `bytes` of the file and drops the rest: rows torn by a crash.
-    pub(super) fn go_on(path: PathBuf, bytes: u64) -> Result<Self> {
+    /// Goes on behind the first `bytes` of the file and drops the rest: rows torn by a crash. What stays must have the
+    /// checksum, where it is known.
+    pub(super) fn go_on(path: PathBuf, bytes: u64, sum: Option<u32>) -> Result<Self> {
         let found = super::atomic_file::length(&path)?;
         let mut file =
             OpenOptions::new().write(true).open(&path).map_err(Error::file("open", &path))?;
@@ -44,16 +46,17 @@ impl CsvTable {
                     "{} where the interrupted run had written {bytes}",
                     number_of(found, "byte")
                 ),
-                super::atomic_file::RESTORE,
+                super::checksum::RESTORE,
             ));
         }
         file.set_len(bytes)
             .and_then(|()| file.seek(SeekFrom::Start(bytes)))
             .map_err(Error::file("cut", &path))?;
+        let file = SummedFile::behind(file, (&path, bytes), sum)?;
         Ok(Self::over(path, file))
     }
 
-    fn over(path: PathBuf, file: File) -> Self {
+    fn over(path: PathBuf, file: SummedFile) -> Self {
         let writer =
             csv::WriterBuilder::new().has_headers(false).buffer_capacity(BUFFER).from_writer(file);
         Self { path, writer }
@@ -73,7 +76,7 @@ impl CsvTable {
                 other,
                 "length",
                 format!("{} where the run had written {bytes}", number_of(found, "byte")),
-                super::atomic_file::RESTORE,
+                super::checksum::RESTORE,
             ));
         }
         let mut rows = BufReader::with_capacity(BUFFER, file);
@@ -87,12 +90,17 @@ impl CsvTable {
     /// Puts all rows on the disk and gives the length of the file (bytes).
     pub(super) fn sync(&mut self) -> Result<u64> {
         let flushed = self.writer.flush();
-        let file = self.writer.get_ref();
+        let file = &self.writer.get_ref().file;
         flushed
             .and_then(|()| file.sync_data())
             .and_then(|()| file.metadata())
             .map(|about| about.len())
             .map_err(Error::file("write", &self.path))
+    }
+
+    /// CRC-32 of the rows that are on the disk.
+    pub(super) fn sum(&self) -> u32 {
+        self.writer.get_ref().sum()
     }
 }
 
@@ -112,7 +120,7 @@ pub(super) fn rows<R: DeserializeOwned>(
             &path,
             "line 1",
             header::flaw(&found, (columns, groups)),
-            super::atomic_file::RESTORE,
+            super::checksum::RESTORE,
         ));
     };
     let all: Vec<String> = found.iter().map(|&column| column.to_owned()).collect();

@@ -183,7 +183,7 @@ mod tests {
         assert_eq!(said(940_000, 1_000_000), "94.00 % (93.95 % to 94.05 %)");
         assert_eq!(said(940, 1000), "94.0 % (92.3 % to 95.4 %)");
         assert_eq!(said(0, 1_000_000), "0 % (0 % to 0.00030 %)");
-        assert_eq!(said(3, 3_000), "0.10 % (0.02 % to 0.29 %)");
+        assert_eq!(said(3, 3_000), "0.10 % (0.02 % to 0.30 %)");
     }
 
     /// An object is hit, a line crossed: both stand below each other.

@@ -1,8 +1,13 @@
 //! Numbers and text as a reader expects them: thin-space thousands, a true minus, raised powers.
 
+mod outward;
+
 use super::bound::Is;
 pub use crate::count::{counted, shortest};
 use crate::math;
+pub(super) use outward::Toward;
+pub use outward::percent_at_most;
+use outward::{EACH, within_reach};
 
 /// Stands between groups of three digits.
 const THIN_SPACE: char = '\u{2009}';
@@ -117,34 +122,26 @@ pub fn percent_of_part(share: f64, decimals: usize) -> String {
     with((0..=usize::from(MOST_MORE)).find(|more| !is_part || is_told(more)).unwrap_or(0))
 }
 
-/// The upper end of a share (0..1) in per cent, to two digits and never below it: none of 10 000 bounds a share by 0.030 %,
-/// and not by 0.0 %.
-pub fn percent_at_most(share: f64) -> String {
-    let percent = 100.0 * share;
-    let written = format!("{percent:e}");
-    let exponent = written.split_once('e').and_then(|(_, e)| e.parse::<i32>().ok()).unwrap_or(0);
-    let place: f64 = format!("1e{}", exponent - 1).parse().unwrap_or(1.0);
-    // what is a number of two digits already stays what it is, whatever its last bits
-    let up = place * (percent / place - 1e-9).ceil();
-    format!("{}{THIN_SPACE}%", significant(up, 2))
-}
-
 /// Digits that a number may get beyond its own before its interval is seen: a share of 10⁻⁸ still is.
 const MOST_MORE: u8 = 6;
 
 /// A number and the ends of its interval, as `write` writes each with so many digits more: none, but where rounding makes all three
 /// the same and the ends differ, as many as tell them apart.
-fn told_apart(all: [f64; 3], write: impl Fn(f64, u8) -> String) -> [String; 3] {
-    let with = |more: u8| all.map(|number| write(number, more));
+fn told_apart(all: [f64; 3], write: impl Fn(f64, Toward, u8) -> String) -> [String; 3] {
+    let with = |toward: [Toward; 3], more: u8| [0, 1, 2].map(|k| write(all[k], toward[k], more));
     let [_, low, high] = all;
     let most = if low < high { MOST_MORE } else { 0 };
-    let is_seen = |[value, low, high]: &[String; 3]| value != low || low != high;
-    (0..=most).map(with).find(is_seen).unwrap_or_else(|| with(0))
+    // rounded outward the ends would stand apart with any digits
+    let is_seen = |more: &u8| {
+        let [value, low, high] = with([Toward::Nearest; 3], *more);
+        value != low || low != high
+    };
+    with(EACH, (0..=most).find(is_seen).unwrap_or(0))
 }
 
-/// A number and the ends of its interval, where they are known, with as many digits as the interval leaves meaningful.
+/// A number and the ends of its interval, where they are known, with as many digits as the interval leaves meaningful; ends outward.
 pub(super) fn with_interval(all: [f64; 3]) -> [String; 3] {
-    let [value, low, high] = all;
+    let all @ [value, low, high] = within_reach(all);
     let width = match (low.is_finite(), high.is_finite()) {
         (true, false) => (value - low).abs(),
         (false, true) => (high - value).abs(),
@@ -163,7 +160,13 @@ pub(super) fn with_interval(all: [f64; 3]) -> [String; 3] {
         }
         // alone: a maximum is read as it is, a small derivative or a bound only for its size
         let digits = if value.abs() >= 0.1 { 4 } else { 3 };
-        return told_apart(all, |number, more| like(value, digits + usize::from(more))(number));
+        return told_apart(all, |number, toward, more| {
+            let digits = digits + usize::from(more);
+            // beside no value an end is all that is known; an interval without width has no outside
+            let is_alone = value.is_nan();
+            let number = if is_alone { toward.to_digits(number, digits) } else { number };
+            like(value, digits)(number)
+        });
     }
     if all.iter().all(|number| !number.is_finite() || is_as_written(*number)) {
         return all.map(|number| decimal(number, 0));
@@ -171,7 +174,9 @@ pub(super) fn with_interval(all: [f64; 3]) -> [String; 3] {
     let place = last_place(value, width);
     // ends stand to the place of the value, where that is one of its own
     let least = if digits_to(value, place) >= 2 { 1 } else { 2 };
-    told_apart(all, |number, more| to_place(number, place - i32::from(more), least))
+    told_apart(all, |number, toward, more| {
+        to_place((number, toward), place - i32::from(more), least)
+    })
 }
 
 /// The place of the last digit (power of ten) that an interval of that width leaves to a value: it is at most a fifth of the interval,
@@ -200,7 +205,7 @@ fn digits_to(number: f64, place: i32) -> i32 {
 }
 
 /// A number to a place; one that has fewer digits there than it needs, as beside an interval far wider than it is, has two of its own.
-fn to_place(number: f64, place: i32, least: usize) -> String {
+fn to_place((number, toward): (f64, Toward), place: i32, least: usize) -> String {
     if number == 0.0 {
         return "0".to_owned();
     }
@@ -209,8 +214,8 @@ fn to_place(number: f64, place: i32, least: usize) -> String {
         return significant(number, 2);
     }
     match usize::try_from(digits_to(number, place)) {
-        Ok(digits) if digits >= least => like(number, digits)(number),
-        _ => significant(math::rounded(number, 2), 2),
+        Ok(digits) if digits >= least => like(number, digits)(toward.at_place(number, place)),
+        _ => significant(math::rounded(toward.to_digits(number, 2), 2), 2),
     }
 }
 
@@ -330,7 +335,7 @@ mod tests {
         assert_eq!(said([0.9400, 0.9396, 0.9404]), written("94.00% 93.96% 94.04%"));
         assert_eq!(said([0.94, 0.93, 0.95]), written("94% 93% 95%"));
         assert_eq!(said([0.0, 0.0, 0.0003]), written("0% 0% 0.030%"));
-        assert_eq!(said([0.000_443, 0.000_04, 0.010_056]), written("0.044% 0.0040% 1.0%"));
+        assert_eq!(said([0.000_443, 0.000_04, 0.010_056]), written("0.044% 0.0040% 1.1%"));
         assert_eq!(said([0.0, 0.0, 0.0]), written("0.0% 0.0% 0.0%"));
         assert_eq!(said([1.0, 1.0, 1.0]), written("100% 100% 100%"));
         assert_eq!(said([0.5, f64::NAN, f64::NAN]), written("50% – –"));
@@ -341,16 +346,16 @@ mod tests {
     fn an_interval_says_how_many_digits_are_told() {
         let said = |all: [f64; 3]| with_interval(all).join(" ").replace('\u{2009}', " ");
         assert_eq!(said([73.32, 70.41, 75.68]), "73.3 70.4 75.7");
-        assert_eq!(said([108.2, 104.9, 113.6]), "108 105 114");
-        assert_eq!(said([4.2, 3.53, 7.34]), "4.2 3.5 7.3");
+        assert_eq!(said([108.2, 104.9, 113.6]), "108 104 114");
+        assert_eq!(said([4.2, 3.53, 7.34]), "4.2 3.5 7.4");
         assert_eq!(said([104.2, 43.0, 330.0]), "100 40 330");
-        assert_eq!(said([2.6, 0.49, 4.7]), "2.6 0.5 4.7");
+        assert_eq!(said([2.6, 0.49, 4.7]), "2.6 0.4 4.7");
         // counts stay counts
         assert_eq!(said([5.0, 4.0, 6.0]), "5 4 6");
         assert_eq!(said([0.000_98, 0.000_002_2, 0.975_166]), "0.00098 2.2×10⁻⁶ 0.98");
-        assert_eq!(said([41_500.0, 41.8, 28_972_000.0]), "42 000 42 29 000 000");
+        assert_eq!(said([41_500.0, 41.8, 28_972_000.0]), "42 000 41 29 000 000");
         assert_eq!(said([0.005, 0.0, 2.3641]), "0.0050 0 2.4");
-        assert_eq!(said([518.6, 423.6, f64::NAN]), "519 424 –");
+        assert_eq!(said([518.6, 423.6, f64::NAN]), "519 423 –");
     }
 
     /// A bound that is rounded down is none: none of 2000 leaves up to 0.15 %, which in binary is a little less.

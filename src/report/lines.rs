@@ -3,6 +3,7 @@
 mod marks;
 
 use super::axis::Axis;
+use super::bound::Is;
 use super::by_frequency;
 use super::canvas::{Canvas, Label, NORMAL, Pen, SMALL, fitted_among, paint, text_width};
 use super::colour::{BLUE, DARK_GREEN, GREEN, GREY, INK, SKY};
@@ -34,7 +35,9 @@ const LEAST_M: f64 = 0.1;
 pub(super) fn nobody(words: &Words, line: &ReportLine) -> Option<String> {
     let what = if line.is_barrier { words.the_line_of_barrier } else { words.the_line };
     let below = format::percent_at_most(line.reach.high);
-    let nobody = if line.reach.high >= 1.0 {
+    let nobody = if line.reach.high >= 1.0 && line.reach.is == Is::AtLeast {
+        words.drawn().nobody_open.to_owned()
+    } else if line.reach.high >= 1.0 {
         words.drawn().nobody_untold.to_owned()
     } else if line.is_weighted {
         words.say(by_frequency::NOBODY)

@@ -33,6 +33,7 @@ mod calibrate_doubts;
 mod calibrate_selection;
 mod catalogue;
 mod compare;
+mod damaged;
 mod data_in;
 mod edges;
 mod first_steps;

@@ -120,7 +120,7 @@ fn parts_that_do_not_fit_are_refused() {
     assert!(!out.exists());
     fs::write(b.join("impacts.csv"), "index\n").unwrap();
     let said = merge(&[a, b, c]);
-    assert!(said.contains("impacts.csv: length: 6 bytes where"), "{said}");
+    assert!(said.contains("impacts.csv: length: found 6 bytes where"), "{said}");
 }
 
 /// The same through the program, with real rocks: five shards, one of them by another number of threads, figures

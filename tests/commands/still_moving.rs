@@ -11,6 +11,7 @@ use std::fs;
 #[test]
 fn rocks_that_may_still_come_are_said_beside_maps_and_lines() {
     let places = "[[lines]]\nname = \"road\"\npoints_m = [[3.0, -5.0], [3.0, 5.0]]\n\
+        [[lines]]\nname = \"far\"\npoints_m = [[4.5, -5.0], [4.5, 5.0]]\n\
         [[barriers]]\nname = \"net\"\npoints_m = [[2.0, -5.0], [2.0, 5.0]]\nheight_m = 0.1\ncapacity_j = 1.0\n[maps]\ncell_m = 1.0";
     let place = "count = 60\nheight_m = 0.1\nline_m = [[-2.0, -1.0], [2.5, 1.0]]";
     let velocity = [4.0, 0.0, 0.0];
@@ -34,6 +35,9 @@ fn rocks_that_may_still_come_are_said_beside_maps_and_lines() {
         let page = fs::read_to_string(dir.path().join("out/report.html")).unwrap();
         let on_maps = "Rocks that ended on the map and would have gone on: 60 (100";
         assert_eq!(page.matches(on_maps).count(), if lacks { 3 } else { 0 });
+        // of a line to which all may still come it is not said that they are few
+        assert_eq!(page.contains("its reach probability may be up to 100"), lacks);
+        assert!(!page.contains("of so few"));
         let at_line = "Rocks that may still come here, with any energy and height: ";
         // road and net have a table each, the net one of what arrives besides
         assert_eq!(page.matches(at_line).count(), if lacks { 3 } else { 0 });

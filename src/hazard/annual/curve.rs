@@ -240,9 +240,10 @@ pub(super) fn return_energy(
     let at = |of: &dyn Fn(&ExceedancePoint) -> f64| found(smooth, of).map(inside);
     let slope = |moved: &dyn Fn(&ExceedancePoint, f64) -> f64, step: f64| {
         let [less, more] = [-step, step].map(|step| at(&|p| moved(p, step)));
-        // where rarer rocks have no such energy, the other side tells
-        let beside = less.or_else(|| at(&|p| p.per_year))?;
-        Some((more? - beside) / if less.is_some() { 2.0 * step } else { step })
+        // where rarer rocks have no such energy, the other side tells: rates that fall, exponents that rise
+        let sides = [less, more].into_iter().flatten().count();
+        let here = || at(&|p| p.per_year).filter(|_| sides > 0);
+        Some((more.or_else(here)? - less.or_else(here)?) / (sides as f64 * step))
     };
     ReturnEnergy {
         years,
@@ -273,4 +274,26 @@ fn reached(
         above = here;
     }
     None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Where the exponents rise, rare large rocks get rarer, and none has the energy of the return period any more: the other side tells the slope.
+    /// By hand: λ reaches 1 a year at the lower end of its class, with 1.05 for it at half of the last class, `100 √RATIO`.
+    #[test]
+    fn an_energy_that_rising_exponents_leave_without_rocks_has_a_slope() {
+        let step = |energy_j, per_year, by_exponent| {
+            let point =
+                ExceedancePoint { energy_j, per_year, low_95: 0.0, high_95: 2.0, by_exponent };
+            Step { point, class: class_of(energy_j), width: RATIO }
+        };
+        let steps = [step(200.0, 0.95, 0.0), step(100.0, 1.0, -1.0)];
+        let ceilings = Ceilings { limits: Vec::new(), unseen: Vec::new() };
+        let found = return_energy((&steps, &steps), &ceilings, 1.0, true);
+        assert!((found.energy_j.unwrap() - 100.0).abs() < 1e-9);
+        let slope = -100.0 * (RATIO.sqrt() - 1.0) / EXPONENT_STEP;
+        assert!((found.by_exponent.unwrap() / slope - 1.0).abs() < 1e-9, "{found:?}");
+    }
 }

@@ -5,7 +5,7 @@ use super::populations::{ComparedQuantity, CountedShare, Population};
 use crate::hazard::{Difference, Reading, Values};
 use crate::math;
 use crate::report::bound::Is;
-use crate::report::format::{self, sign};
+use crate::report::format::{self, Toward, sign};
 use crate::report::words::Words;
 use crate::scene::Language;
 use std::fmt::Write as _;
@@ -254,14 +254,19 @@ pub(super) fn in_words(row: &ComparedStatistic, words: &Words) -> [String; 4] {
     };
     // what is clear is not told with an end at zero, as far as two digits more tell it
     let nearest = interval.map_or(0.0, |(low, high)| low.abs().min(high.abs()));
-    let is_told = !row.difference.is_clear() || nearest >= 0.5 * math::pow(10.0, last);
+    let is_told = !row.difference.is_clear() || nearest >= math::pow(10.0, last);
     let last = if is_told { last } else { math::log10(nearest).floor().max(last - 2.0) };
-    let number_of = |v: f64| signed(v, format::rounded_at(v, last.max(FINEST_PLACE)));
-    let end = |v: f64| if v.is_finite() { number_of(v) } else { format::NO_NUMBER.to_owned() };
+    let last = last.max(FINEST_PLACE);
+    let number_of = |v: f64| signed(v, format::rounded_at(v, last));
+    let end = |v: f64, toward: Toward| match v.is_finite() {
+        true if finest > 0.0 => number_of(toward.at_place(v, last as i32)),
+        true => number_of(v),
+        false => format::NO_NUMBER.to_owned(),
+    };
     let interval = match interval {
         None => words.no_interval.to_owned(),
         Some((low, high)) if low.is_infinite() && high.is_infinite() => words.say(LEFT_OPEN),
-        Some((low, high)) => words.interval(&end(low), &end(high)),
+        Some((low, high)) => words.interval(&end(low, Toward::Below), &end(high, Toward::Above)),
     };
     let change = sign(bounds::of_difference(row.bounds)).to_owned() + &number_of(value);
     [number(a, row.bounds[0]), number(b, row.bounds[1]), change, interval]
@@ -289,6 +294,6 @@ mod tests {
         let found = said([769_450.0, 0.0148, -969_630.4, -602_087.1]);
         assert_eq!(found, "-770 000 (-970 000 to -600 000)");
         assert_eq!(said([100.0, 103.2, -1.4, 8.1]), "+3.2 (-1.4 to +8.1)");
-        assert_eq!(said([5000.0, 5321.0, 210.0, 432.0]), "+320 (+210 to +430)");
+        assert_eq!(said([5000.0, 5321.0, 210.0, 432.0]), "+320 (+210 to +440)");
     }
 }

@@ -1,7 +1,7 @@
 //! Tables of estimates: numbers with as many digits as their intervals leave meaningful.
 
 use super::{escape, note};
-use crate::report::format;
+use crate::report::format::{self, Toward};
 use crate::report::model::{Estimate, EstimateRow, EstimateTable, Is, energy_unit};
 use crate::report::words::{Words, fill};
 use std::fmt::Write as _;
@@ -95,18 +95,19 @@ fn in_words(estimate: &Estimate, words: &Words) -> (String, String) {
     let width = estimate.high - estimate.low;
     if estimate.value == 0.0 && estimate.high > 0.0 {
         // none seen: what matters is how many there may be
-        return (format!("{sign}0"), one_sided(estimate, words, |v| format::significant(v, 2)));
+        return (format!("{sign}0"), one_sided(estimate, words, 2));
     }
     if width.is_nan() && format::is_as_written(estimate.value) {
         let value = format!("{sign}{}", format::decimal(estimate.value, 0));
-        return (value, one_sided(estimate, words, |v| format::significant(v, 4)));
+        return (value, one_sided(estimate, words, 4));
     }
     let [value, low, high] = format::with_interval([estimate.value, estimate.low, estimate.high]);
     (format!("{sign}{value}"), words.interval(&low, &high))
 }
 
-fn one_sided(estimate: &Estimate, words: &Words, bound: impl Fn(f64) -> String) -> String {
-    words.interval(&bound(estimate.low), &bound(estimate.high))
+fn one_sided(estimate: &Estimate, words: &Words, digits: usize) -> String {
+    let end = |v: f64, toward: Toward| format::significant(toward.to_digits(v, digits), digits);
+    words.interval(&end(estimate.low, Toward::Below), &end(estimate.high, Toward::Above))
 }
 
 /// Rows up to which a table stays on one printed page.

@@ -2,7 +2,7 @@
 
 use super::GroundRaster;
 use crate::error::{Error, Result};
-use crate::output::{write_atomic, write_ground};
+use crate::output::{add_checksums, write_atomic, write_ground};
 use crate::terrain::geotiff::{Image, NO_DATA};
 use std::fmt::Write as _;
 use std::fs;
@@ -26,6 +26,15 @@ impl GroundRaster {
         let tree = |i: usize| f64::from(u8::from(self.trees[i]));
         self.write_grid(&dir.join(GROUND), height)?;
         self.write_grid(&dir.join(TREES), tree)
+    }
+
+    /// The same beside finished results, whose checksums then hold both grids.
+    ///
+    /// # Errors
+    /// When a file or the folder cannot be written.
+    pub fn write_with_checksums(&self, dir: &Path) -> Result<()> {
+        self.write(dir)?;
+        add_checksums(dir, &[GROUND, TREES])
     }
 
     /// Writes `maps/ground.tif`.

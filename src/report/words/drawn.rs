@@ -5,7 +5,7 @@ use super::year::words_of;
 words_of! {
     DrawnWords:
     key_object, per_square, aside, sources, reach_open, profile_marks, beyond, ends_worth,
-    ends_no_test, nobody_untold, outside, plan_no_paths, not_judged, not_judged_why,
+    ends_no_test, nobody_untold, nobody_open, outside, plan_no_paths, not_judged, not_judged_why,
     quantile_lines, swiss_limits, weaker, runout_no_curve, rough, topography, simulation,
     block_volume, plain_zero,
 }
@@ -21,6 +21,7 @@ const EN: DrawnWords = DrawnWords {
     ends_worth: " The limit is that of {worth} independent ends: throws of one block are alike, and the {ends} measured ends are worth no more.",
     ends_no_test: " Where values of the scene were fitted to these same ends, it is no test of them.",
     nobody_untold: "No rock of {n} crosses {what} {name}; of so few its reach probability cannot be told: it may be up to {share}.",
+    nobody_open: "No rock of {n} crosses {what} {name} yet: rocks that would have gone on may still come to it, and its reach probability may be up to {share}.",
     outside: " Outside the frame: {names}.",
     plan_no_paths: "Plan view in map coordinates, at equal scale. No path of the {releases} {releases|release|releases} is stored.",
     not_judged: "not judged",
@@ -47,6 +48,7 @@ const DE: DrawnWords = DrawnWords {
     ends_worth: " Die Grenze gilt für {worth} unabhängige Endpunkte: Würfe desselben Blocks gleichen sich, und die {ends} gemessenen Endpunkte sind nicht mehr wert.",
     ends_no_test: " Wo Werte der Szene an eben diese Endpunkte angepasst wurden, prüft sie diese nicht.",
     nobody_untold: "Keiner von {n} Blöcken überquert {what} {name}; bei so wenigen ist die Erreichenswahrscheinlichkeit nicht bestimmt: bis {share} ist möglich.",
+    nobody_open: "Noch keiner von {n} Blöcken überquert {what} {name}: Blöcke, die weitergelaufen wären, können sie noch erreichen; bis {share} ist als Erreichenswahrscheinlichkeit möglich.",
     outside: " Außerhalb des Ausschnitts: {names}.",
     plan_no_paths: "Lageplan in Landeskoordinaten, maßstäblich. Von den {releases} Ablösungen ist keine Bahn gespeichert.",
     not_judged: "nicht beurteilt",
@@ -73,6 +75,7 @@ const FR: DrawnWords = DrawnWords {
     ends_worth: " La limite vaut pour {worth} points d’arrêt indépendants\u{a0}: les jets d’un même bloc se ressemblent, et les {ends} points mesurés n’en valent pas plus.",
     ends_no_test: " Là où des valeurs de la scène ont été ajustées à ces mêmes points, elle n’en est pas un test.",
     nobody_untold: "Aucun bloc sur {n} ne franchit {what} {name}\u{a0}; avec si peu de blocs la probabilité d’atteinte reste indéterminée, jusqu’à {share}.",
+    nobody_open: "Aucun bloc sur {n} ne franchit encore {what} {name}\u{a0}: des blocs qui auraient continué peuvent encore y arriver\u{a0}; la probabilité d’atteinte peut aller jusqu’à {share}.",
     outside: " Hors du cadre\u{a0}: {names}.",
     plan_no_paths: "Vue en plan en coordonnées de carte, à l’échelle. Aucune trajectoire des {releases} départs n’est enregistrée.",
     not_judged: "non jugé",
@@ -99,6 +102,7 @@ const IT: DrawnWords = DrawnWords {
     ends_worth: " Il limite vale per {worth} punti di arresto indipendenti: i lanci dello stesso masso si somigliano, e i {ends} punti misurati non valgono di più.",
     ends_no_test: " Dove valori della scena sono stati adattati a questi stessi punti, non ne è una verifica.",
     nobody_untold: "Nessuno di {n} massi attraversa {what} {name}; con così pochi la probabilità di raggiungimento resta indeterminata, fino a {share}.",
+    nobody_open: "Nessuno di {n} massi attraversa ancora {what} {name}: massi che avrebbero proseguito possono ancora arrivarci; la probabilità di raggiungimento può essere fino a {share}.",
     outside: " Fuori dal riquadro: {names}.",
     plan_no_paths: "Planimetria in coordinate cartografiche, in scala. Nessuna traiettoria dei {releases} distacchi è salvata.",
     not_judged: "non giudicato",

@@ -384,6 +384,6 @@ fn a_number_is_written_alike_in_figures_and_tables() {
     let drawn = rockfall::report::drawings(&report);
     let (_, runout) =
         drawn.into_iter().find(|(heading, _)| heading.file == "runout.svg").expect("is drawn");
-    assert!(runout.svg.contains("266\u{2009}m") && runout.svg.contains("262 to 269"));
+    assert!(runout.svg.contains("266\u{2009}m") && runout.svg.contains("261 to 270"));
     assert!(!runout.svg.contains("265.5"));
 }
