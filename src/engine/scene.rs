@@ -189,6 +189,9 @@ impl Scene {
             .take_from_catalogue()
             .and_then(|()| scene.check())
             .map_err(|wrong| Lookup::of(file, text).refuse(wrong))?;
+        if source::EMPTY.iter().any(|empty| text.contains(empty)) {
+            Lookup::of(file, text).check_paths()?;
+        }
         scene.rocks.take_sizes(scene.sources().as_ref());
         scene.settle_paths(file.parent().unwrap_or(Path::new("")));
         file.clone_into(&mut scene.file);

@@ -3,7 +3,7 @@
 
 use super::check::{Complaint, TrailStep};
 use super::wording::{self, Said};
-use crate::error::Error;
+use crate::error::{Error, Result};
 use std::ops::Range;
 use std::path::Path;
 use toml::Spanned;
@@ -46,6 +46,9 @@ const FILES: [&str; 11] = [
     "calibrate.deposits",
 ];
 
+/// How an empty text is written.
+pub(super) const EMPTY: [&str; 2] = ["\"\"", "''"];
+
 /// Tables of which a scene may have several.
 const LISTS: [&str; 6] = ["terrain", "trees", "lines", "barriers", "objects", "ground_zones"];
 
@@ -83,13 +86,20 @@ impl<'a> Lookup<'a> {
 
     /// Where paths of files stand.
     pub(super) fn paths(&self) -> impl Iterator<Item = Range<usize>> {
-        self.values(|trail| {
-            let keys = trail.iter().filter_map(|step| match step {
-                TrailStep::Key(key) => Some(key.as_str()),
-                TrailStep::Entry(_) => None,
-            });
-            FILES.iter().any(|file| file.split('.').eq(keys.clone()))
-        })
+        self.values(names_a_file)
+    }
+
+    /// Refuses an empty path: it would be looked for as the folder of the scene.
+    pub(super) fn check_paths(&self) -> Result<()> {
+        let is_empty = |node: &&SourceNode| EMPTY.contains(&&self.text[node.value.clone()]);
+        match self.nodes.iter().filter(|node| names_a_file(&node.trail)).find(is_empty) {
+            Some(node) => {
+                let remedy =
+                    "write the path of the file as seen from the scene file, or leave the key out";
+                Err(Error::input(self.file, self.place(&node.trail), "found \"\"", remedy))
+            }
+            None => Ok(()),
+        }
     }
 
     /// Where the values stand whose trails are wanted.
@@ -235,6 +245,15 @@ fn keys(trail: &[TrailStep]) -> String {
     });
     let text: String = in_words.collect();
     text.trim_start_matches(['.', ',', ' ']).to_owned()
+}
+
+/// Whether a file is named at the end of a trail.
+fn names_a_file(trail: &[TrailStep]) -> bool {
+    let keys = trail.iter().filter_map(|step| match step {
+        TrailStep::Key(key) => Some(key.as_str()),
+        TrailStep::Entry(_) => None,
+    });
+    FILES.iter().any(|file| file.split('.').eq(keys.clone()))
 }
 
 fn collect_table(
