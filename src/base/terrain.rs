@@ -85,6 +85,8 @@ pub struct Terrain {
     pub epsg: Option<u32>,
     /// What zones of ground have done to the triangles; none without zones.
     pub patched: Option<patches::Patched>,
+    /// Whether trees of a list were stood on the slope.
+    pub has_tree_list: bool,
 }
 
 impl Terrain {
@@ -118,6 +120,7 @@ impl Terrain {
             stems: None,
             epsg: None,
             patched: None,
+            has_tree_list: false,
         }
     }
 

@@ -3,6 +3,7 @@
 mod annual;
 mod apart;
 mod cost;
+mod disk;
 mod grounds;
 mod inputs;
 mod listing;
@@ -15,6 +16,7 @@ mod recorders;
 
 pub use annual::YearPlan;
 pub use cost::{Cost, MOST_SHOWN_POINTS};
+pub use disk::DiskUse;
 pub use inputs::VERSION;
 pub use listing::PlanEntry;
 pub use recorders::{EvaluationLine, Footprint, LinePiece, MapGrid, Recorders};

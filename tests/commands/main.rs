@@ -35,6 +35,7 @@ mod catalogue;
 mod compare;
 mod damaged;
 mod data_in;
+mod disk;
 mod edges;
 mod first_steps;
 mod fitted;

@@ -96,7 +96,8 @@ impl Terrain {
                 *sheet = other;
             }
         }
-        Ok((Self { epsg, patched, ..Self::new(welded, sheets) }, health))
+        let has_tree_list = !lists.is_empty();
+        Ok((Self { epsg, patched, has_tree_list, ..Self::new(welded, sheets) }, health))
     }
 }
 

@@ -29,6 +29,13 @@ pub struct YearPlan {
     pub largest_m: Vec<f64>,
 }
 
+impl YearPlan {
+    /// Layers of maps that it brings.
+    pub(super) fn map_layers(&self) -> f64 {
+        (1 + self.frequency.energies_j().len() + self.frequency.return_periods_years().len()) as f64
+    }
+}
+
 /// The sources; none where the scene has none.
 ///
 /// # Errors

@@ -1,8 +1,9 @@
 //! What a run may take of memory and disk, estimated before it begins.
 
-use super::Plan;
+use super::{DiskUse, Plan};
 use crate::count::counted;
 use crate::error::{Error, Result};
+use crate::terrain::MANY_TRIANGLES;
 use std::fmt;
 
 /// Memory that a run may take unasked (bytes).
@@ -10,16 +11,16 @@ const MOST_MEMORY: f64 = 2e9;
 /// Disk that a run may take unasked (bytes).
 const MOST_DISK: f64 = 10e9;
 
-/// A row of `releases.csv` (bytes).
-const ROW_DISK: f64 = 450.0;
 /// What the statistics keep of a release (bytes).
 const ROW_MEMORY: f64 = 220.0;
-/// A point of a path in `paths.csv`, GeoJSON and VTK together (bytes).
-const POINT_DISK: f64 = 350.0;
 /// The program itself, and what its figures need (bytes).
 const PROGRAM_MEMORY: f64 = 25e6;
 /// A triangle as it is read and laid into the index (bytes).
 const TRIANGLE_MEMORY: f64 = 130.0;
+/// What the faces and smaller leaves of a smaller terrain take on top (bytes).
+const FACES_MEMORY: f64 = 160.0;
+/// What a triangle takes more where a list of trees is stood on the slope before all is welded (bytes): it is there twice.
+const STOOD_ON_MEMORY: f64 = 100.0;
 /// Most points of all paths together that the view in three dimensions shows.
 pub const MOST_SHOWN_POINTS: usize = 400_000;
 /// One of them while it is drawn (bytes), and a path (bytes).
@@ -29,8 +30,6 @@ const PATH_MEMORY: f64 = 2e4;
 const FALLING_POINT_MEMORY: f64 = 104.0;
 /// Rocks that fall or wait for the disk at a time, at least.
 const IN_HAND: f64 = 64.0;
-/// A cell in all layers of the maps (bytes).
-const CELL_DISK: f64 = 100.0;
 /// A cell while a layer is written or read (bytes).
 const CELL_MEMORY: f64 = 60.0;
 /// A cell that rocks have passed (bytes).
@@ -41,8 +40,8 @@ const CELL_ENERGIES: f64 = 2048.0;
 /// A rock in a world with others (bytes).
 const TOGETHER_MEMORY: f64 = 6000.0;
 
-/// The most that a run may take; impacts, of which no one knows the number, are left out.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// What a run may take: of memory the most, of disk about so much, as no one knows the number of impacts before.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Cost {
     /// Rows of `releases.csv`.
     pub releases: f64,
@@ -50,12 +49,14 @@ pub struct Cost {
     pub path_points: f64,
     /// Cells of the maps.
     pub cells: f64,
-    /// Results on the disk (bytes).
-    pub disk_bytes: f64,
+    /// Results on the disk.
+    pub disk: DiskUse,
     /// Memory of the program and its meshes, as if they stood there alone (bytes) …
     pub mesh_bytes: f64,
     /// … and of results (bytes).
     pub memory_bytes: f64,
+    /// Memory while the meshes are read, before there are results (bytes).
+    pub reading_bytes: f64,
 }
 
 impl Plan {
@@ -73,12 +74,17 @@ impl Plan {
         let passages = map.map_or(0.0, |[columns, rows]| 4.0 * releases * (columns + rows));
         let passed = cells.min(passages);
         let energies = if self.year.is_kept() { passages.min(CELL_ENERGIES * passed) } else { 0.0 };
+        let triangles = self.terrain.triangles.len();
+        let faces = if triangles > MANY_TRIANGLES { 0.0 } else { FACES_MEMORY };
+        let stood_on = if self.terrain.has_tree_list { STOOD_ON_MEMORY } else { 0.0 };
+        let of_triangles = |bytes: f64| PROGRAM_MEMORY + bytes * triangles as f64;
         Cost {
             releases,
             path_points,
             cells,
-            disk_bytes: ROW_DISK * releases + POINT_DISK * path_points + CELL_DISK * cells,
-            mesh_bytes: PROGRAM_MEMORY + TRIANGLE_MEMORY * self.terrain.triangles.len() as f64,
+            disk: self.disk_use(releases),
+            mesh_bytes: of_triangles(TRIANGLE_MEMORY + faces),
+            reading_bytes: of_triangles(TRIANGLE_MEMORY + faces + stood_on),
             memory_bytes: (ROW_MEMORY + together) * releases
                 + POINT_MEMORY * path_points.min(MOST_SHOWN_POINTS as f64)
                 + PATH_MEMORY * paths
@@ -91,9 +97,14 @@ impl Plan {
 }
 
 impl Cost {
+    /// The most memory that a run takes at a time (bytes).
+    pub fn most_memory_bytes(&self) -> f64 {
+        self.reading_bytes.max(self.mesh_bytes + self.memory_bytes)
+    }
+
     /// Whether a run may take it unasked.
     pub fn is_modest(&self) -> bool {
-        self.memory_bytes <= MOST_MEMORY && self.disk_bytes <= MOST_DISK
+        self.memory_bytes <= MOST_MEMORY && self.disk.most() <= MOST_DISK
     }
 
     /// Refuses what is beyond the limits.
@@ -114,13 +125,14 @@ impl Cost {
 
 impl fmt::Display for Cost {
     fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { releases, path_points, cells, disk_bytes, mesh_bytes, memory_bytes } = *self;
-        let what = counted(releases as usize, "release", "releases");
+        let Self { releases, path_points, cells, disk, .. } = self;
+        let what = counted(*releases as usize, "release", "releases");
         write!(
             to,
-            "{} of memory and {} of disk: {releases} {what}, up to {path_points:.0} points of paths, {cells} cells of maps",
-            size(mesh_bytes + memory_bytes),
-            size(disk_bytes)
+            "{} of memory, and about {} of disk ({}): {releases} {what}, up to {path_points:.0} points of paths, {cells} cells of maps",
+            size(self.most_memory_bytes()),
+            size(disk.about()),
+            disk.largest(size)
         )
     }
 }

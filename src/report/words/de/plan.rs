@@ -375,12 +375,12 @@ pub(super) const PLAN: &[(&str, &str)] = &[
         "Geschwindigkeit und Höhe alle {x} m ab der Ablösung, über alle Blöcke",
     ),
     (
-        "{a} {kind_a} of memory and {b} {kind_b} of disk: {n} releases, up to {p} points of paths, {c} cells of maps; runs with --yes only",
-        "{a} {kind_a} Speicher und {b} {kind_b} Platte: {n} Ablösungen, bis {p} Bahnpunkte, {c} Kartenzellen; läuft nur mit --yes",
+        "{a} {kind_a} of memory, and about {b} {kind_b} of disk ({files}): {n} releases, up to {p} points of paths, {c} cells of maps; runs with --yes only",
+        "{a} {kind_a} Speicher, und etwa {b} {kind_b} Platte ({files}): {n} Ablösungen, bis {p} Bahnpunkte, {c} Kartenzellen; läuft nur mit --yes",
     ),
     (
-        "{a} {kind_a} of memory and {b} {kind_b} of disk: {n} releases, up to {p} points of paths, {c} cells of maps",
-        "{a} {kind_a} Speicher und {b} {kind_b} Platte: {n} Ablösungen, bis {p} Bahnpunkte, {c} Kartenzellen",
+        "{a} {kind_a} of memory, and about {b} {kind_b} of disk ({files}): {n} releases, up to {p} points of paths, {c} cells of maps",
+        "{a} {kind_a} Speicher, und etwa {b} {kind_b} Platte ({files}): {n} Ablösungen, bis {p} Bahnpunkte, {c} Kartenzellen",
     ),
     ("measured ends in {file}", "gemessene Endpunkte in {file}"),
     (

@@ -23,8 +23,8 @@ pub(super) const SAMPLES: &[(&str, &str)] = &[
         "[[objects]] ohne [frequency]: wie viele Ablösungen sie treffen, wird gerechnet, wie oft im Jahr und mit welchem Risiko nicht",
     ),
     (
-        "{a} {kind_a} of memory and {b} {kind_b} of disk: {n} release, up to {p} points of paths, {c} cells of maps",
-        "{a} {kind_a} Speicher und {b} {kind_b} Platte: {n} Ablösung, bis {p} Bahnpunkte, {c} Kartenzellen",
+        "{a} {kind_a} of memory, and about {b} {kind_b} of disk ({files}): {n} release, up to {p} points of paths, {c} cells of maps",
+        "{a} {kind_a} Speicher, und etwa {b} {kind_b} Platte ({files}): {n} Ablösung, bis {p} Bahnpunkte, {c} Kartenzellen",
     ),
     ("kept for {k} of {n} release, every {t} s", "behalten für {k} von {n} Ablösung, alle {t} s"),
     ("from one point", "von einem Punkt"),

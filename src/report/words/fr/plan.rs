@@ -381,12 +381,12 @@ pub(super) const PLAN: &[(&str, &str)] = &[
         "vitesse et hauteur tous les {x} m depuis le départ, sur tous les blocs",
     ),
     (
-        "{a} {kind_a} of memory and {b} {kind_b} of disk: {n} releases, up to {p} points of paths, {c} cells of maps; runs with --yes only",
-        "{a} {kind_a} de mémoire et {b} {kind_b} de disque\u{a0}: {n} départs, jusqu’à {p} points de trajectoires, {c} mailles de cartes\u{a0}; seulement avec --yes",
+        "{a} {kind_a} of memory, and about {b} {kind_b} of disk ({files}): {n} releases, up to {p} points of paths, {c} cells of maps; runs with --yes only",
+        "{a} {kind_a} de mémoire, et environ {b} {kind_b} de disque ({files})\u{a0}: {n} départs, jusqu’à {p} points de trajectoires, {c} mailles de cartes\u{a0}; seulement avec --yes",
     ),
     (
-        "{a} {kind_a} of memory and {b} {kind_b} of disk: {n} releases, up to {p} points of paths, {c} cells of maps",
-        "{a} {kind_a} de mémoire et {b} {kind_b} de disque\u{a0}: {n} départs, jusqu’à {p} points de trajectoires, {c} mailles de cartes",
+        "{a} {kind_a} of memory, and about {b} {kind_b} of disk ({files}): {n} releases, up to {p} points of paths, {c} cells of maps",
+        "{a} {kind_a} de mémoire, et environ {b} {kind_b} de disque ({files})\u{a0}: {n} départs, jusqu’à {p} points de trajectoires, {c} mailles de cartes",
     ),
     ("measured ends in {file}", "arrêts mesurés dans {file}"),
     (

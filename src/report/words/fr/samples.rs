@@ -23,8 +23,8 @@ pub(super) const SAMPLES: &[(&str, &str)] = &[
         "[[objects]] sans [frequency]\u{a0}: combien de départs les touchent est calculé, combien de fois par an et avec quel risque ne l’est pas",
     ),
     (
-        "{a} {kind_a} of memory and {b} {kind_b} of disk: {n} release, up to {p} points of paths, {c} cells of maps",
-        "{a} {kind_a} de mémoire et {b} {kind_b} de disque\u{a0}: {n} départ, jusqu’à {p} points de trajectoires, {c} mailles de cartes",
+        "{a} {kind_a} of memory, and about {b} {kind_b} of disk ({files}): {n} release, up to {p} points of paths, {c} cells of maps",
+        "{a} {kind_a} de mémoire, et environ {b} {kind_b} de disque ({files})\u{a0}: {n} départ, jusqu’à {p} points de trajectoires, {c} mailles de cartes",
     ),
     (
         "kept for {k} of {n} release, every {t} s",

@@ -369,12 +369,12 @@ pub(super) const PLAN: &[(&str, &str)] = &[
         "velocità e altezza ogni {x} m dal distacco, su tutti i massi",
     ),
     (
-        "{a} {kind_a} of memory and {b} {kind_b} of disk: {n} releases, up to {p} points of paths, {c} cells of maps; runs with --yes only",
-        "{a} {kind_a} di memoria e {b} {kind_b} di disco: {n} distacchi, fino a {p} punti di traiettorie, {c} celle di mappe; solo con --yes",
+        "{a} {kind_a} of memory, and about {b} {kind_b} of disk ({files}): {n} releases, up to {p} points of paths, {c} cells of maps; runs with --yes only",
+        "{a} {kind_a} di memoria, e circa {b} {kind_b} di disco ({files}): {n} distacchi, fino a {p} punti di traiettorie, {c} celle di mappe; solo con --yes",
     ),
     (
-        "{a} {kind_a} of memory and {b} {kind_b} of disk: {n} releases, up to {p} points of paths, {c} cells of maps",
-        "{a} {kind_a} di memoria e {b} {kind_b} di disco: {n} distacchi, fino a {p} punti di traiettorie, {c} celle di mappe",
+        "{a} {kind_a} of memory, and about {b} {kind_b} of disk ({files}): {n} releases, up to {p} points of paths, {c} cells of maps",
+        "{a} {kind_a} di memoria, e circa {b} {kind_b} di disco ({files}): {n} distacchi, fino a {p} punti di traiettorie, {c} celle di mappe",
     ),
     ("measured ends in {file}", "arresti misurati in {file}"),
     (

@@ -23,8 +23,8 @@ pub(super) const SAMPLES: &[(&str, &str)] = &[
         "[[objects]] senza [frequency]: quanti distacchi li colpiscono è calcolato, quante volte all’anno e con quale rischio no",
     ),
     (
-        "{a} {kind_a} of memory and {b} {kind_b} of disk: {n} release, up to {p} points of paths, {c} cells of maps",
-        "{a} {kind_a} di memoria e {b} {kind_b} di disco: {n} distacco, fino a {p} punti di traiettorie, {c} celle di mappe",
+        "{a} {kind_a} of memory, and about {b} {kind_b} of disk ({files}): {n} release, up to {p} points of paths, {c} cells of maps",
+        "{a} {kind_a} di memoria, e circa {b} {kind_b} di disco ({files}): {n} distacco, fino a {p} punti di traiettorie, {c} celle di mappe",
     ),
     (
         "kept for {k} of {n} release, every {t} s",
