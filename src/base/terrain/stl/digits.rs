@@ -68,7 +68,9 @@ pub struct CoarseText {
 impl CoarseText {
     /// Of the facets of a text with these axes in plan view; none where its digits do, or where all cells are alike, as those of an elevation model on whole metres.
     pub(in crate::terrain) fn of(soup: &Soup, axes: [usize; 2]) -> Option<Self> {
-        let step = soup.last_digits.step(axes)?;
+        let digit = soup.last_digits.step(axes)?;
+        let of_axis = |axis| single_step(&soup.facets, axis, digit);
+        let step = axes.into_iter().filter_map(of_axis).fold(digit, f64::max);
         let spacing = Spacing { spacing: step, ..Spacing::of(&soup.facets) };
         if spacing.largest_coordinate < LEAST_STEPS * step || !spacing.spoils() {
             return None;
@@ -98,6 +100,24 @@ impl fmt::Display for CoarseText {
         }
         Ok(())
     }
+}
+
+/// The step of 32-bit numbers, where all coordinates of an axis are such numbers to the last `digit` that is written, and not all of
+/// them on a lattice of wider steps, as those of an elevation model are; none elsewhere.
+fn single_step(facets: &Facets, axis: usize, digit: f64) -> Option<f64> {
+    let numbers = || facets.iter().flatten().map(|corner| corner[axis]);
+    let largest = numbers().fold(0.0, |most: f64, x| most.max(x.abs())) as f32;
+    let step = f64::from(largest.next_up()) - f64::from(largest);
+    if step.is_nan() || step <= 2.0 * digit {
+        return None;
+    }
+    let off = |x: f64, from: f64, step: f64| {
+        ((x - from) / step - ((x - from) / step).round()).abs() * step
+    };
+    let is_single = |x: f64| off(x, 0.0, step) <= 0.51 * digit;
+    let first = numbers().next()?;
+    let is_lattice = |x: f64| off(x, first, 2.0 * step) <= 1.02 * digit;
+    (numbers().all(is_single) && !numbers().all(is_lattice)).then_some(step)
 }
 
 fn has_no_area(facet: &Facet) -> bool {
@@ -158,6 +178,17 @@ mod tests {
         });
         let text = format!("solid s\n{}endsolid s\n", facets.collect::<String>());
         crate::terrain::stl::parse(text.into_bytes(), Path::new("s.stl")).unwrap()
+    }
+
+    /// Numbers that have been 32-bit ones are no finer for being written with three decimals: 0.25 m at an easting of 2 725 300. Cells of
+    /// half a metre on such numbers are what they are.
+    #[test]
+    fn steps_of_single_precision_are_told_whatever_is_written() {
+        let single = |x: f64| format!("{:.3}", f64::from(x as f32));
+        let found = |cell_m: f64| CoarseText::of(&slope(cell_m, single), MAP);
+        assert_eq!(found(1.1).map(|found| (found.step, found.spoils())), Some((0.25, false)));
+        assert_eq!([found(0.5), found(2.0)], [None; 2]);
+        assert_eq!(CoarseText::of(&slope(1.1, |x| format!("{x:.3}")), MAP), None);
     }
 
     /// Seven digits are steps of a metre at an easting of 2 725 300: cells of half a metre fall together, those of 2.5 m become 2 and 3 m.
