@@ -75,7 +75,9 @@ impl Line {
 fn without_arrival(classes: &[(ClassReach, usize)]) -> Vec<SilentClasses> {
     let is_silent = |(class, _): &(ClassReach, usize)| class.released > 0 && class.reached == 0;
     let goes_on = |one: &(ClassReach, usize), next: &(ClassReach, usize)| {
-        is_silent(one) == is_silent(next) && one.0.source == next.0.source
+        is_silent(one) == is_silent(next)
+            && one.0.source == next.0.source
+            && are_neighbours([one.0.volume_m3, next.0.volume_m3])
     };
     let whole = |run: &[(ClassReach, usize)]| {
         let volumes = |(class, _): &(ClassReach, usize)| class.volume_m3;
@@ -88,6 +90,12 @@ fn without_arrival(classes: &[(ClassReach, usize)]) -> Vec<SilentClasses> {
     };
     let runs = classes.chunk_by(goes_on);
     runs.filter(|run| is_silent(&run[0])).map(whole).collect()
+}
+
+/// Whether one class of size ends where the next begins: between others there are volumes that neither has.
+fn are_neighbours(classes: [Option<[f64; 2]>; 2]) -> bool {
+    let [Some([_, end]), Some([begin, _])] = classes else { return classes == [None; 2] };
+    (end - begin).abs() <= 1e-9 * end
 }
 
 /// Share that comes of the events of silent classes, each with how many of its rocks may still come.
@@ -152,6 +160,21 @@ mod tests {
         assert!((silent[0].reach.high_95 - open(0.25)).abs() < 1e-12, "{:?}", silent[0].reach);
         assert_eq!(line.by_class(None), []);
         assert_eq!(line.silent(None), []);
+    }
+
+    /// Classes that do not follow each other in size are said one by one: of 8 m³ and of 0.5 to 2 m³ nothing goes "from 8 to 2".
+    #[test]
+    fn classes_with_other_sizes_between_them_are_apart() {
+        let class = |volume_m3: [f64; 2]| ClassReach {
+            source: "pillar".to_owned(),
+            volume_m3: Some(volume_m3),
+            per_year: 0.1,
+            released: 40,
+            reached: 0,
+        };
+        let run = [[8.0, 8.0], [0.5, 2.0], [2.0, 4.0]].map(|volumes| (class(volumes), 0));
+        let said: Vec<_> = without_arrival(&run).iter().map(|one| one.volume_m3).collect();
+        assert_eq!(said, [Some([8.0, 8.0]), Some([0.5, 4.0])]);
     }
 
     /// A class that stands for nearly all events and has few rocks tells little, however many rocks the others have; and rocks that may still come are
