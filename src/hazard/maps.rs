@@ -149,7 +149,8 @@ impl Layer {
             Self::EnergyP95 => {
                 // of whole classes: with and without a frequency the maps of equal rocks are the same
                 let classes = cell.totals_j.by_class();
-                classes.percentile(0.95, weights).min(cell.largest_j)
+                let found = classes.percentile(0.95, weights).min(cell.largest_j);
+                within_class(found, cell.intensity(weights))
             }
             Self::HeightMax => cell.largest_m,
             Self::HeightP95 => cell.heights_m.percentile(0.95, weights).min(cell.largest_m),
@@ -157,6 +158,16 @@ impl Layer {
             Self::ExceedsWeak => cell.above[0].share(weights),
             Self::ExceedsMedium => cell.above[1].share(weights),
         }
+    }
+}
+
+/// An energy read from classes of values (J), moved into the class of intensity that counting has found: the rock whose energy it stands for is there.
+fn within_class(energy_j: f64, intensity: f64) -> f64 {
+    let [weak_j, medium_j] = INTENSITY_J;
+    match intensity {
+        class if class < 2.0 => energy_j.min(weak_j.next_down()),
+        class if class < 3.0 => energy_j.clamp(weak_j, medium_j.next_down()),
+        _ => energy_j.max(medium_j),
     }
 }
 
