@@ -221,6 +221,7 @@ impl Scene {
             self.rocks.check().map_err(wrong)?;
         }
         self.release.blocks = blocks;
+        self.check_table_sizes()?;
         self.match_blocks()
     }
 

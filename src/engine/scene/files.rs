@@ -101,9 +101,21 @@ impl Scene {
         one_system(&gis::read(file)?, self.epsg, "the scene").map_err(Into::into)
     }
 
+    /// Sizes that neither the scene has nor its table, once that is read.
+    pub(super) fn check_table_sizes(&self) -> Result<()> {
+        match &self.release.table {
+            Some(table) if self.rocks.radius_m.is_none() => {
+                let remedy = "write a column radius_m or mass_kg, or [rocks] radius_m in the scene";
+                Err(Error::input(table, "radius_m or mass_kg", "found neither", remedy))
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// Refuses drawings in another system than the terrain's, and drawings of which nothing lies on it: those that name no
     /// system, or name it in words alone.
     pub(crate) fn check_drawings(&self, terrain: &Terrain) -> Result<()> {
+        self.check_table_sizes()?;
         let (low, high) = terrain.index.bounds();
         let [low, high] = [low, high].map(|corner| corner + terrain.origin_m);
         let epsg = self.epsg.or(terrain.epsg);

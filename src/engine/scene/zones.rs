@@ -291,8 +291,13 @@ fn sizes(list: &[Zone], file: &Path) -> Result<Vec<f64>> {
             return Ok(rates);
         }
     }
-    if let Some(other) = list.iter().find(|zone| zone.kind() != list[0].kind()) {
-        let says_how_often = list.iter().all(Zone::says_how_often);
+    // where each has one of two measures, it is these that cannot be compared
+    let says_how_often = list.iter().all(Zone::says_how_often);
+    let is_unlike = |zone: &&Zone| match says_how_often {
+        true => zone.frequency_per_year.is_some() != list[0].frequency_per_year.is_some(),
+        false => zone.kind() != list[0].kind(),
+    };
+    if let Some(other) = list.iter().find(is_unlike).filter(|_| has_kinds(list)) {
         let remedy = if says_how_often {
             "write weight for every zone, or the same one of frequency_per_year and per_year_at_1m3 for all: rocks of all sizes and those of 1 m³ or more cannot be compared, nor can points, metres and square metres"
         } else {
