@@ -226,11 +226,14 @@ fn run(args: &RunArgs) -> Result<ExitCode> {
         RunEnd::Complete(results) => {
             bar.finish();
             if !args.quiet {
+                let at_holes = report::LeftAtHoles::of(&results)?;
                 let mut warnings = barrier_warnings(&results.summary.barriers);
                 warnings.extend(report::untouched_trees(&results));
                 warnings.extend(report::untouched_ground(&results));
                 let warnings = warnings.iter().map(|warning| format!("warning: {warning}"));
-                let said = report::headline(&results.hazard).into_iter().chain(warnings);
+                let said = report::headline(&results.hazard, at_holes.as_ref())
+                    .into_iter()
+                    .chain(warnings);
                 say(format!("\n{}\n", said.collect::<Vec<_>>().join("\n")));
                 say(last_words(&results));
             }

@@ -50,7 +50,7 @@ pub mod view;
 pub mod words;
 
 pub use answers::answers;
-pub use from_results::first::{untouched_ground, untouched_trees};
+pub use from_results::first::{LeftAtHoles, untouched_ground, untouched_trees};
 
 use crate::body::Shape;
 use crate::error::{Error, Result};
@@ -136,9 +136,10 @@ fn draw_all(results: &Results, ground: Option<GroundRaster>) -> Result<()> {
 }
 
 /// The main statistics with their 95 % intervals, one line of text each, and the warnings of the computation.
-pub fn headline(hazard: &Hazard) -> Vec<String> {
+pub fn headline(hazard: &Hazard, at_holes: Option<&LeftAtHoles>) -> Vec<String> {
     let words = Words::of(Language::En);
-    let warnings = [from_results::first::warnings_first(hazard, words), hazard.warnings()].concat();
+    let warnings =
+        [from_results::first::warnings_first(hazard, at_holes, words), hazard.warnings()].concat();
     let mut lines = html::plain_headline(&from_results::headline(hazard, words), words);
     lines.extend(warnings.iter().map(|warning| format!("warning: {warning}")));
     lines

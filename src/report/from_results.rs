@@ -12,6 +12,7 @@ mod method;
 mod profile;
 mod shapes;
 
+use self::first::LeftAtHoles;
 use super::by_frequency;
 use super::model::{
     BandPoint, Check, Estimate, EstimateRow, EstimateTable, Is, Path, Plausibility, Quantile,
@@ -101,7 +102,10 @@ pub fn gather(results: &Results, ground: Option<GroundRaster>) -> Result<Report>
     let failed = report.checks.iter().filter(|check| check.verdict == Plausibility::Off);
     let failed: Vec<String> = failed.map(said).collect();
     let off = report.observed.as_ref().and_then(|found| measured::off(found, words));
-    let before_all = off.into_iter().chain(first::warnings_first(hazard, words)).collect();
+    let before_all = off
+        .into_iter()
+        .chain(first::warnings_first(hazard, LeftAtHoles::of(results)?.as_ref(), words))
+        .collect();
     report.text.warnings = [before_all, report.text.warnings, failed].concat();
     Ok(report)
 }

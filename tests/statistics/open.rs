@@ -63,7 +63,9 @@ fn a_source_that_releases_nothing_is_said() {
     }
     let missing = hazard.missing_events();
     assert!(missing.len() == 1 && missing[0].contains("“steep”"), "{missing:?}");
-    assert!(rockfall::report::headline(&hazard).iter().any(|line| line.contains(&missing[0])));
+    assert!(
+        rockfall::report::headline(&hazard, None).iter().any(|line| line.contains(&missing[0]))
+    );
 }
 
 /// By hand, with a line across the way to the south at y = 0: what has not crossed it may still come when its time was up, and

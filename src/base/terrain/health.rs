@@ -1,17 +1,23 @@
 //! What is wrong with the meshes of a scene, counted and located, and what is done about it.
 
+mod found;
 mod gaps;
+mod holes;
 mod measure;
 mod near;
 mod overlaps;
+mod spikes;
 mod table;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]
 mod seam_tests;
 
+pub use found::Found;
 pub use gaps::Gap;
-pub use overlaps::Overlap;
+pub use holes::Hole;
+pub use overlaps::{HangingSheet, Overlap};
+pub use spikes::Spike;
 
 use crate::error::{Error, Result};
 use crate::rock::Vec3;
@@ -110,6 +116,18 @@ pub struct Health {
     /// Where borders of the slope face each other across a small distance: the longest first, up to fifty.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub gaps: Vec<Gap>,
+    /// A weld tolerance that closes the gaps of tiles that nearly meet (m); none where there are none, or where it would spoil the mesh.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub closing_tolerance_m: Option<f64>,
+    /// Places in the slope without ground.
+    #[serde(skip_serializing_if = "Found::is_empty")]
+    pub holes: Found<Hole>,
+    /// Single corners of meshes far above or below all around them.
+    #[serde(skip_serializing_if = "Found::is_empty")]
+    pub spikes: Found<Spike>,
+    /// Sheets that hang above another part of the slope.
+    #[serde(skip_serializing_if = "Found::is_empty")]
+    pub hanging: Found<HangingSheet>,
     /// Where two parts of the slope lie over each other, a rock's radius or less apart: the largest first, up to fifty.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub overlaps: Vec<Overlap>,
@@ -140,10 +158,17 @@ impl Health {
         let parts = welded.parts();
         let mut gaps = gaps::gaps(welded, parts, is_slope);
         gaps.truncate(MOST_NAMED);
-        let mut overlaps = overlaps::overlaps(welded, parts, is_slope);
+        let (mut overlaps, hanging) = overlaps::overlaps(welded, parts, is_slope);
         overlaps.truncate(MOST_NAMED);
         let odd = measure::odd_edges(welded);
         let [low_m, high_m] = measure::box_m(welded);
+        let edge_quantiles_m = measure::edge_quantiles_m(welded);
+        // cells of an elevation model have been looked at as it was read
+        let is_mesh = |t: u32| {
+            let file = files.get(usize::from(welded.sheet_of[t as usize]));
+            is_slope(t) && file.is_none_or(|file| file.format.is_mesh())
+        };
+        let spikes = spikes::spikes(welded, &is_mesh);
         Self {
             files,
             origin_m: welded.origin_m.into(),
@@ -165,12 +190,16 @@ impl Health {
             t_junctions_left: welded.splits.left.clone(),
             flipped_edges: odd.flipped,
             parts: parts.sizes.clone(),
+            closing_tolerance_m: gaps::closing_m(&gaps, edge_quantiles_m[1]),
             gaps,
+            holes: holes::holes(welded, is_slope),
+            spikes,
+            hanging,
             overlaps,
             low_m,
             high_m,
             area_m2: measure::area_m2(welded),
-            edge_quantiles_m: measure::edge_quantiles_m(welded),
+            edge_quantiles_m,
         }
     }
 
@@ -180,7 +209,23 @@ impl Health {
             let named = |warning: &String| format!("{}: {warning}", file.file);
             file.warnings.iter().map(named).collect::<Vec<_>>()
         };
-        self.files.iter().flat_map(of_file).chain(self.mostly_flat())
+        self.files.iter().flat_map(of_file).chain(self.mostly_flat()).chain(self.odd_places())
+    }
+
+    /// What to say of holes, spikes and sheets that hang in the air.
+    fn odd_places(&self) -> impl Iterator<Item = String> + use<> {
+        let place = |[x, y, _]: [f64; 3]| format!("({x:.1}, {y:.1})");
+        let (holes, spikes, hanging) = (&self.holes, &self.spikes, &self.hanging);
+        let hole = holes.largest.first().map(|of| {
+            format!("holes in the slope: {}, the largest of {:.1} m² near {}; rocks that come there leave the terrain: fill them", holes.count, of.area_m2, place(of.at_m))
+        });
+        let spike = spikes.largest.first().map(|of| {
+            format!("single corners far above or below all around them: {}, the farthest by {:.1} m at {}; errors of measurement, or trees and masts? rocks meet them as ground", spikes.count, of.height_m.abs(), place(of.at_m))
+        });
+        let sheet = hanging.largest.first().map(|of| {
+            format!("sheets that hang above another part of the slope: {}, the largest of {:.1} m², {:.1} m above it near {}; rocks meet them as ground: leave them out if they are none", hanging.count, of.area_m2, of.height_m, place(of.at_m))
+        });
+        [hole, spike, sheet].into_iter().flatten()
     }
 
     /// Says that most triangles have no area, if so.

@@ -50,6 +50,11 @@ pub enum Format {
 }
 
 impl Format {
+    /// Whether it holds triangles or points, and not the cells of an elevation model or trees.
+    pub(in crate::terrain) fn is_mesh(self) -> bool {
+        !matches!(self, Self::GeoTiff | Self::AsciiGrid | Self::Trees)
+    }
+
     /// Its name.
     pub fn name(self) -> &'static str {
         match self {

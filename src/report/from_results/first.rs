@@ -2,14 +2,81 @@
 
 use super::super::words::{Words, fill};
 use super::super::{by_frequency, format};
+use crate::error::Result;
 use crate::hazard::{Hazard, Quantity, StopKind};
 use crate::output::Results;
+use crate::terrain::health::{Found, Hole};
+
+/// What the end of a rock may lie beside the border of the hole that it has come to (m).
+const AT_BORDER_M: f64 = 0.05;
+
+/// Rocks that left the terrain at holes in it, and not at its outer border.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LeftAtHoles {
+    /// How many.
+    rocks: usize,
+    /// The hole at which most of them left.
+    hole: Hole,
+}
+
+impl LeftAtHoles {
+    /// Of the holes that the health of the meshes knows.
+    ///
+    /// # Errors
+    /// When the rows of the releases cannot be read.
+    pub fn of(results: &Results) -> Result<Option<Self>> {
+        let found = results.summary.mesh_health.get("holes").cloned();
+        let holes: Option<Found<Hole>> = found.and_then(|holes| serde_json::from_value(holes).ok());
+        let holes = holes.map_or_else(Vec::new, |holes| holes.largest);
+        if holes.is_empty() || results.hazard.ended(StopKind::LeftTerrain).count == 0 {
+            return Ok(None);
+        }
+        let mut rocks = vec![0; holes.len()];
+        for row in results.rows()? {
+            let row = row?;
+            let is_there =
+                |hole: &Hole| row.stop == StopKind::LeftTerrain && holds(hole, row.end_m);
+            if let Some(at) = holes.iter().position(is_there) {
+                rocks[at] += 1;
+            }
+        }
+        let all = rocks.iter().sum();
+        let most = (0..holes.len()).max_by_key(|k| (rocks[*k], std::cmp::Reverse(*k)));
+        let most = most.filter(|_| all > 0);
+        Ok(most.map(|most| Self { rocks: all, hole: holes[most].clone() }))
+    }
+
+    fn remedy(&self, words: &Words) -> String {
+        let [x, y, _] = self.hole.at_m.map(|m| format!("{m:.1}"));
+        let found: [(&str, &dyn std::fmt::Display); 3] =
+            [("n", &format::decimal(self.rocks as f64, 0)), ("x", &x), ("y", &y)];
+        fill(words.open().remedy_holes, &found)
+    }
+}
+
+fn holds(hole: &Hole, [x, y, _]: [f64; 3]) -> bool {
+    let [west, south, east, north] = hole.box_m;
+    (west - AT_BORDER_M..=east + AT_BORDER_M).contains(&x)
+        && (south - AT_BORDER_M..=north + AT_BORDER_M).contains(&y)
+}
 
 /// What sources without a rock and rocks that left the terrain do to the numbers, before anything else.
-pub(in crate::report) fn warnings_first(hazard: &Hazard, words: &Words) -> Vec<String> {
+pub(in crate::report) fn warnings_first(
+    hazard: &Hazard,
+    at_holes: Option<&LeftAtHoles>,
+    words: &Words,
+) -> Vec<String> {
     let own = words.open();
+    let has_left = hazard.ended(StopKind::LeftTerrain).count;
+    let remedy_left = at_holes.map_or_else(
+        || own.remedy_left.to_owned(),
+        |left| match left.remedy(words) {
+            all if left.rocks >= has_left => all,
+            some => format!("{some} {}", own.remedy_left),
+        },
+    );
     let kinds = [
-        (StopKind::LeftTerrain, own.have_left, own.remedy_left),
+        (StopKind::LeftTerrain, own.have_left, remedy_left.as_str()),
         (StopKind::TimeUp, own.have_no_time, own.remedy_time),
         (StopKind::OverBudget, own.have_no_budget, own.remedy_budget),
         (StopKind::Failed, own.have_failed, own.remedy_budget),

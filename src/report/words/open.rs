@@ -6,7 +6,7 @@ use crate::hazard::Proportion;
 
 words_of! {
     OpenWords:
-    some_rocks, censored, largest_left, largest_open, have_left, remedy_left, have_no_time, remedy_time, have_failed, have_no_budget,
+    some_rocks, censored, largest_left, largest_open, have_left, remedy_left, remedy_holes, have_no_time, remedy_time, have_failed, have_no_budget,
     remedy_budget, at_line, on_maps, median, no_sampling,
 }
 
@@ -26,6 +26,7 @@ const EN: OpenWords = OpenWords {
     largest_open: "Their largest energies, speeds and heights and their impacts are lower bounds too.",
     have_left: "left the terrain",
     remedy_left: "Give terrain that reaches farther if they matter.",
+    remedy_holes: "At holes in the mesh {n} of them left, most near ({x}, {y}): fill the holes.",
     have_no_time: "{n|was still moving when its|were still moving when their} time was up",
     remedy_time: "Give a longer [solver] longest_s.",
     have_failed: "failed",
@@ -44,6 +45,7 @@ const DE: OpenWords = OpenWords {
     largest_open: "Auch ihre größten Energien, Geschwindigkeiten und Höhen und ihre Aufpralle sind untere Schranken.",
     have_left: "{n|hat|haben} das Gelände verlassen",
     remedy_left: "Weiter reichendes Gelände angeben, falls sie zählen.",
+    remedy_holes: "An Löchern im Netz {n|verließ|verließen} {n} von ihnen das Gelände, die meisten bei ({x}, {y}): die Löcher füllen.",
     have_no_time: "{n|bewegte sich noch, als seine|bewegten sich noch, als ihre} Zeit abgelaufen war",
     remedy_time: "Ein längeres [solver] longest_s angeben.",
     have_failed: "{n|ist|sind} fehlgeschlagen",
@@ -62,6 +64,7 @@ const FR: OpenWords = OpenWords {
     largest_open: "Leurs énergies, vitesses et hauteurs maximales et leurs impacts sont aussi des bornes inférieures.",
     have_left: "{n|est sorti|sont sortis} du terrain",
     remedy_left: "Donner un terrain plus étendu s’ils importent.",
+    remedy_holes: "Aux trous du maillage, {n} d’entre eux {n|est sorti|sont sortis}, la plupart près de ({x}, {y})\u{a0}: combler les trous.",
     have_no_time: "{n|bougeait encore à la fin de son|bougeaient encore à la fin de leur} temps",
     remedy_time: "Donner un [solver] longest_s plus long.",
     have_failed: "{n|a|ont} échoué",
@@ -80,6 +83,7 @@ const IT: OpenWords = OpenWords {
     largest_open: "Anche le loro energie, velocità e altezze massime e i loro impatti sono limiti inferiori.",
     have_left: "{n|è uscito|sono usciti} dal terreno",
     remedy_left: "Fornire un terreno più esteso se contano.",
+    remedy_holes: "Ai buchi della maglia {n} di essi {n|è uscito|sono usciti}, la maggior parte presso ({x}, {y}): chiudere i buchi.",
     have_no_time: "{n|era|erano} ancora in moto allo scadere del tempo",
     remedy_time: "Dare un [solver] longest_s più lungo.",
     have_failed: "{n|è fallito|sono falliti}",

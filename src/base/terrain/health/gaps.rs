@@ -3,6 +3,7 @@
 use super::LEAST_FLAT;
 use super::near::PlanCells;
 use crate::groups::Groups;
+use crate::math;
 use crate::parallel;
 use crate::rock::Vec3;
 use crate::terrain::stl::area_vector;
@@ -18,7 +19,7 @@ const FACING: f64 = 0.5;
 /// Borders of tiles that meet are known to this share of the median length of border edges (–).
 const ABOVE: f64 = 0.05;
 /// More border edges than this are those of a mesh in shreds, not of gaps.
-const MOST_BORDERS: usize = 400_000;
+pub(super) const MOST_BORDERS: usize = 400_000;
 /// How many points long borders are cut into, all together.
 const MOST_POINTS: f64 = 1e6;
 
@@ -35,6 +36,18 @@ pub struct Gap {
     pub widest_m: f64,
     /// A place near its middle (m).
     pub at_m: [f64; 3],
+}
+
+/// Tolerance over the width of the widest gap that it closes (–).
+const CLOSING: f64 = 1.25;
+/// Largest tolerance that is proposed, over the edges that 5 % are shorter than (–): corners of one triangle must stay apart.
+const LARGEST_TOLERANCE: f64 = 0.1;
+
+/// The tolerance, of two digits, that welds the borders of all gaps which are narrow beside the edges.
+pub(super) fn closing_m(gaps: &[Gap], short_edge_m: f64) -> Option<f64> {
+    let most_m = LARGEST_TOLERANCE * short_edge_m;
+    let fitting = gaps.iter().map(|gap| CLOSING * gap.widest_m).filter(|m| *m <= most_m);
+    fitting.reduce(f64::max).map(|m| math::rounded_up(m))
 }
 
 /// A border edge of the slope.
@@ -146,31 +159,39 @@ fn all_facing(borders: &[Border], spacing_m: f64) -> Vec<(BorderSpot, Facing)> {
     let cells = PlanCells::of(&places, reach_m + spacing_m);
     parallel::filter_map(spots.len(), |k| {
         let (spot, own) = (&spots[k], &borders[spots[k].border as usize]);
-        let faced = cells.near(&spot.at_m).filter_map(|other| {
+        let to_others = cells.near(&spot.at_m).filter_map(|other| {
             let border = &borders[spots[other as usize].border as usize];
-            let to = border.nearest(&spot.at_m);
-            let width_m = (to - spot.at_m).norm();
-            let is_gap = width_m > 0.0
-                && width_m <= reach_m
-                && faces(own, border, (to - spot.at_m, spacing_m));
-            let facing = || Facing {
-                width_m,
-                middle_m: 0.5 * (to + spot.at_m),
-                parts: [own.part.min(border.part), own.part.max(border.part)],
-            };
-            is_gap.then(facing)
+            let way = border.nearest(&spot.at_m) - spot.at_m;
+            let is_near = (f64::MIN_POSITIVE..=reach_m).contains(&way.norm());
+            (is_near && looks_at(own, border, (way, spacing_m))).then_some((border, way))
         });
-        faced.min_by(|a, b| a.width_m.total_cmp(&b.width_m)).map(|facing| (spot.clone(), facing))
+        // the nearest of all: one that is farther on may look across where the nearest lies beside it
+        let (border, way) =
+            to_others.min_by(|a, b| a.1.norm_squared().total_cmp(&b.1.norm_squared()))?;
+        let facing = || Facing {
+            width_m: way.norm(),
+            middle_m: spot.at_m + 0.5 * way,
+            parts: [own.part.min(border.part), own.part.max(border.part)],
+        };
+        is_across(own, border, (way, spacing_m)).then(|| (spot.clone(), facing()))
     })
 }
 
-/// Whether two borders look at each other across a way. On a slope the shortest way between borders of unlike height goes
-/// along them too.
-fn faces(own: &Border, other: &Border, (way, spacing_m): (Vec3, f64)) -> bool {
-    let ahead = own.out.dot(&way).min(-other.out.dot(&way));
-    own.out.dot(&other.out) < -FACING
-        && ahead >= -ABOVE * spacing_m
-        && FACING * way.xy().norm() <= ahead.max(0.0) + way.z.abs()
+/// Whether two borders look at each other, or overlap by no more than tiles do that meet.
+fn looks_at(own: &Border, other: &Border, (way, spacing_m): (Vec3, f64)) -> bool {
+    own.out.dot(&other.out) < -FACING && ahead_m(own, other, way) >= -ABOVE * spacing_m
+}
+
+/// How far the way between two borders goes to where both look (m); less than 0 where they overlap.
+fn ahead_m(own: &Border, other: &Border, way: Vec3) -> f64 {
+    own.out.dot(&way).min(-other.out.dot(&way))
+}
+
+/// Whether a way leads across, and not along two borders, of which one ends. On a slope the shortest way between borders of unlike height
+/// goes along them too, and between tiles that meet it goes anywhere.
+fn is_across(own: &Border, other: &Border, (way, spacing_m): (Vec3, f64)) -> bool {
+    let ahead_m = ahead_m(own, other, way).max(0.0);
+    way.norm() <= ABOVE * spacing_m || FACING * way.xy().norm() <= ahead_m + way.z.abs()
 }
 
 /// Points that follow each other along the same two parts.

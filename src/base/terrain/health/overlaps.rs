@@ -4,7 +4,7 @@
 //! slope are no sheets: closed bodies have no border; walls and stems have little area in plan view; a dam or a block that
 //! lies wholly on a sheet is apart from it by more over much of its area, or has much more surface than the sheet below.
 
-use super::LEAST_FLAT;
+use super::{Found, LEAST_FLAT};
 use crate::groups::Groups;
 use crate::parallel;
 use crate::rock::Vec3;
@@ -46,6 +46,19 @@ pub struct Overlap {
     pub at_m: [f64; 3],
 }
 
+/// A sheet that hangs wholly above another part and touches none. Places are map coordinates (m).
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct HangingSheet {
+    /// Numbers of itself and of the part below, from 1 on, the largest part first.
+    pub parts: [usize; 2],
+    /// Area in plan view (m²).
+    pub area_m2: f64,
+    /// Height above that part: median (m).
+    pub height_m: f64,
+    /// A place near its middle (m).
+    pub at_m: [f64; 3],
+}
+
 /// What is known of a part in plan view.
 #[derive(Debug, Clone, Default)]
 struct PartForm {
@@ -80,6 +93,8 @@ struct SheetPair {
     apart_m: f64,
     /// Of both parts.
     flat: [f64; 2],
+    /// Which of them is the upper one.
+    upper: usize,
 }
 
 /// The cells that the slope is sampled at: one place in each, at another share of it in every row, so that a narrow
@@ -100,33 +115,40 @@ impl SampleGrid {
     fn x_m(&self, row: i64, column: i64) -> f64 {
         (column as f64 + Self::shift(row)) * self.cell_m
     }
+
+    /// Where a pair lies, on the lower sheet.
+    fn place(&self, pair: &SheetPair) -> Vec3 {
+        let [row, column] = pair.cell;
+        Vec3::new(self.x_m(row, column), self.y_m(row), pair.low_m)
+    }
 }
 
-/// The overlaps of the slope, the largest first.
+/// The overlaps of the slope, the largest first, and the sheets that hang above it.
 pub(super) fn overlaps(
     welded: &Welded,
     parts: &Parts,
     is_slope: &(dyn Fn(u32) -> bool + Sync),
-) -> Vec<Overlap> {
+) -> (Vec<Overlap>, Found<HangingSheet>) {
+    let mut found = (Vec::new(), Found::default());
     if parts.sizes.len() < 2 {
-        return Vec::new();
+        return found;
     }
     let forms = forms(welded, parts, is_slope);
     let is_used = |t: u32| is_slope(t) && forms[parts.of[t as usize] as usize].is_sheet();
     let used = parallel::filter(welded.triangles.len(), is_used);
     let doubtful = of_several_parts(welded, parts, &used);
     if doubtful.is_empty() {
-        return Vec::new();
+        return found;
     }
     let plan_m2: f64 = forms.iter().filter(|form| form.is_sheet()).map(|form| form.plan_m2).sum();
     // the side of a cell of a lattice of two triangles each
     let lattice = SampleGrid { cell_m: (2.0 * plan_m2 / used.len() as f64).sqrt() };
     let pairs = pairs(samples(welded, parts, &doubtful, &lattice));
-    let mut found: Vec<Overlap> = patches(&pairs)
-        .into_iter()
-        .filter_map(|patch| overlap(welded, &forms, &lattice, &patch))
-        .collect();
-    found.sort_by(|a, b| b.area_m2.total_cmp(&a.area_m2));
+    let patches = patches(&pairs);
+    found.0 = patches.iter().filter_map(|patch| overlap(welded, &forms, &lattice, patch)).collect();
+    found.0.sort_by(|a, b| b.area_m2.total_cmp(&a.area_m2));
+    let hanging = patches.iter().filter_map(|patch| hanging(welded, &forms, &lattice, patch));
+    found.1 = Found::largest(hanging.collect(), |sheet| sheet.area_m2);
     found
 }
 
@@ -253,6 +275,7 @@ fn pairs(samples: Vec<SheetSample>) -> Vec<SheetPair> {
             low_m: low.z_m,
             apart_m: high.z_m - low.z_m,
             flat: [a.flat, b.flat],
+            upper: usize::from(high.part > low.part),
         })
     };
     let mut found: Vec<SheetPair> = samples.windows(2).filter_map(pair).collect();
@@ -301,19 +324,48 @@ fn overlap(
     let mut apart: Vec<f64> = near.iter().map(|pair| pair.apart_m).collect();
     apart.sort_by(f64::total_cmp);
     let at_share = |share: f64| apart[(share * (apart.len() - 1) as f64).round() as usize];
-    let place = |pair: &SheetPair| {
-        let [row, column] = pair.cell;
-        Vec3::new(lattice.x_m(row, column), lattice.y_m(row), pair.low_m)
-    };
-    let middle = near.iter().map(|pair| place(pair)).sum::<Vec3>() / near.len() as f64;
-    let off = |pair: &SheetPair| (place(pair) - middle).norm_squared();
-    let at = near.iter().min_by(|a, b| off(a).total_cmp(&off(b)))?;
+    let at = middle_of(lattice, &near)?;
     Some(Overlap {
         parts: at.parts.map(|part| part as usize + 1),
         area_m2: near.len() as f64 * lattice.cell_m * lattice.cell_m,
         apart_low_m: at_share(0.05),
         apart_high_m: at_share(0.95),
-        at_m: welded.on_map(place(at)).into(),
+        at_m: welded.on_map(lattice.place(at)).into(),
+    })
+}
+
+/// The pair nearest to the middle of some.
+fn middle_of<'a>(lattice: &SampleGrid, pairs: &[&'a SheetPair]) -> Option<&'a SheetPair> {
+    let place = |pair: &&SheetPair| lattice.place(pair);
+    let middle = pairs.iter().map(place).sum::<Vec3>() / pairs.len() as f64;
+    let off = |pair: &&SheetPair| (lattice.place(pair) - middle).norm_squared();
+    pairs.iter().copied().min_by(|a, b| off(a).total_cmp(&off(b)))
+}
+
+/// What a patch makes whose upper part is nowhere near the lower one and is there with nearly all its area; none of others.
+fn hanging(
+    welded: &Welded,
+    forms: &[PartForm],
+    lattice: &SampleGrid,
+    patch: &[SheetPair],
+) -> Option<HangingSheet> {
+    let first = patch.first()?;
+    let upper = first.upper;
+    let is_apart = |pair: &SheetPair| pair.upper == upper && pair.apart_m > FARTHEST_M;
+    let own_m2 = forms[first.parts[upper] as usize].plan_m2;
+    let area_m2 = patch.len() as f64 * lattice.cell_m * lattice.cell_m;
+    if patch.len() < FEWEST_CELLS || area_m2 < LEAST_NEAR * own_m2 || !patch.iter().all(is_apart) {
+        return None;
+    }
+    let mut apart: Vec<f64> = patch.iter().map(|pair| pair.apart_m).collect();
+    apart.sort_by(f64::total_cmp);
+    let at = middle_of(lattice, &patch.iter().collect::<Vec<_>>())?;
+    let number = |k: usize| at.parts[k] as usize + 1;
+    Some(HangingSheet {
+        parts: [number(upper), number(1 - upper)],
+        area_m2: own_m2,
+        height_m: apart[apart.len() / 2],
+        at_m: welded.on_map(lattice.place(at) + Vec3::new(0.0, 0.0, at.apart_m)).into(),
     })
 }
 

@@ -1,6 +1,6 @@
 //! The health of a mesh as a table for people.
 
-use super::{FileHealth, Gap, Health, MORE_DIGITS, Overlap};
+use super::{FileHealth, Found, Gap, HangingSheet, Health, Hole, MORE_DIGITS, Overlap, Spike};
 use crate::count::counted;
 use crate::terrain::stl::{CoarseText, Format, Spacing};
 use crate::terrain::weld::Tally;
@@ -30,6 +30,20 @@ impl fmt::Display for Health {
             ("gaps", "kept: wide rocks press on both borders, smaller ones fall in"),
             &self.gaps,
         )?;
+        if let Some(closing_m) = self.closing_tolerance_m {
+            writeln!(
+                f,
+                "    [mesh] weld_tolerance_m = {closing_m} closes those that are no wider"
+            )?;
+        }
+        let out = "kept: rocks that come there leave the terrain; fill them";
+        found(f, ("inner holes", out), &self.holes)?;
+        found(
+            f,
+            ("spikes", "kept as ground; single corners far from all around them"),
+            &self.spikes,
+        )?;
+        found(f, ("hanging sheets", "kept: rocks meet them as ground"), &self.hanging)?;
         named(f, ("overlaps", "kept: rocks touch both sheets"), &self.overlaps)
     }
 }
@@ -47,9 +61,61 @@ fn named(
     for one in found.iter().take(MOST_SAID) {
         writeln!(f, "    {one}")?;
     }
-    match found.len().saturating_sub(MOST_SAID) {
+    smaller(f, found.len())
+}
+
+/// How many more there are than are said.
+fn smaller(f: &mut fmt::Formatter<'_>, count: usize) -> fmt::Result {
+    match count.saturating_sub(MOST_SAID) {
         0 => Ok(()),
         more => writeln!(f, "    and {more} smaller ones"),
+    }
+}
+
+/// The same of what may be there very often.
+fn found(
+    f: &mut fmt::Formatter<'_>,
+    (name, handled): (&str, &str),
+    found: &Found<impl fmt::Display>,
+) -> fmt::Result {
+    if found.is_empty() {
+        return Ok(());
+    }
+    writeln!(f, "{name:<22}{:>12}  {handled}", grouped(found.count))?;
+    for one in found.largest.iter().take(MOST_SAID) {
+        writeln!(f, "    {one}")?;
+    }
+    smaller(f, found.count)
+}
+
+impl fmt::Display for Hole {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let ([x, y, z], [west, south, east, north]) = (self.at_m, self.box_m);
+        let [area, wide, deep] = [self.area_m2, east - west, north - south].map(metres);
+        write!(
+            f,
+            "{area} m², {wide} m from west to east and {deep} m from south to north, around ({x:.1}, {y:.1}, {z:.1})"
+        )
+    }
+}
+
+impl fmt::Display for Spike {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [x, y, z] = self.at_m;
+        let side = if self.height_m > 0.0 { "above" } else { "below" };
+        let height = metres(self.height_m.abs());
+        write!(f, "{height} m {side} all around it, at ({x:.1}, {y:.1}, {z:.1})")
+    }
+}
+
+impl fmt::Display for HangingSheet {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let ([x, y, z], [own, below]) = (self.at_m, self.parts);
+        let [area, height] = [self.area_m2, self.height_m].map(metres);
+        write!(
+            f,
+            "part {own} of {area} m² hangs {height} m above part {below}, near ({x:.1}, {y:.1}, {z:.1})"
+        )
     }
 }
 
