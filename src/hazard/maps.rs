@@ -304,6 +304,31 @@ mod tests {
         assert_eq!(value(Layer::ExceedsMedium), Some(0.0));
     }
 
+    /// Energies are read from classes of a ratio of 1.05, intensity is counted: near a limit the energy of a cell lies on the side that was counted.
+    #[test]
+    fn energy_and_intensity_of_a_cell_agree() {
+        let frame =
+            MapFrame { west_m: 0.0, south_m: 0.0, cell_m: 1.0, columns: 1, rows: 1, epsg: None };
+        for total_j in
+            (0..200).flat_map(|k| [30e3, 300e3].map(|limit| limit * (0.96 + 4e-4 * f64::from(k))))
+        {
+            let mut maps = Maps::new(frame, &[], MapState::default());
+            for k in 0..40 {
+                let total_j = if k < 39 { total_j } else { 1e6 };
+                let passage = CellPassage { cell: 0, total_j, height_m: 0.0 };
+                maps.add(0, &[passage], (StopKind::LeftTerrain, [9.0; 3]));
+            }
+            let weights = Weights::equal(40);
+            let [p95_j, class] = [Layer::EnergyP95, Layer::Intensity]
+                .map(|layer| maps.values(layer, &weights).next().map_or(f64::NAN, |(_, v)| v));
+            let of_p95 = 1.0 + INTENSITY_J.iter().filter(|limit| p95_j >= **limit).count() as f64;
+            assert!(
+                of_p95 == class && (p95_j / total_j - 1.0).abs() < 0.03,
+                "{total_j} {p95_j} {class}"
+            );
+        }
+    }
+
     /// A rock that lies on the border of the terrain has its centre beyond it, and still counts where it lies.
     #[test]
     fn a_rock_at_rest_on_the_border_counts_in_its_cell() {

@@ -161,6 +161,9 @@ pub struct RunTimes {
     pub releases_per_second: f64,
     /// Worker threads of the last session.
     pub threads: usize,
+    /// The most memory that its process held at a time (bytes); none where the system does not say.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub memory_bytes: Option<u64>,
 }
 
 impl Summary {
@@ -202,6 +205,7 @@ impl Summary {
                 seconds,
                 releases_per_second: info.identity.releases as f64 / seconds,
                 threads: info.threads,
+                memory_bytes: most_memory_bytes(),
             },
             identity: info.identity,
         }
@@ -216,6 +220,14 @@ impl Summary {
     pub(super) fn write(&self, dir: &Path) -> Result<()> {
         write_json(&dir.join(SUMMARY), self)
     }
+}
+
+/// What Linux says of this process; none on other systems.
+fn most_memory_bytes() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let kilobytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some(1024 * kilobytes)
 }
 
 fn by_stop<T>(value: impl Fn(StopKind) -> T) -> BTreeMap<String, T> {

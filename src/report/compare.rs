@@ -86,7 +86,12 @@ impl Comparison {
         notes.extend(inputs::moved(&runs));
         notes.extend(weighing::of_worlds(&runs));
         notes.extend(unpaired(paired, one_seed).map(str::to_owned));
-        let groups = populations.iter().map(|pair| table::group(pair, paired, same_run)).collect();
+        // where every way is the same nothing is left to chance: only barriers or what is asked for differ
+        let is_same = |[one, other]: &[Population; 2]| one.is_like(other);
+        let same_ways = paired && is_same(&populations[0]);
+        let of_one_run = |pair: &[Population; 2]| same_run || same_ways && is_same(pair);
+        let groups =
+            populations.iter().map(|pair| table::group(pair, paired, of_one_run(pair))).collect();
         Ok(Self {
             names: [(a, &runs[0]), (b, &runs[1])]
                 .map(|(dir, run)| (dir.display().to_string(), run.summary.title.clone())),

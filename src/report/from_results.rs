@@ -373,7 +373,7 @@ fn text_of(results: &Results, words: &Words) -> Text {
         seed: summary.identity.seed,
         version: summary.identity.version.clone(),
         scene_hash: summary.identity.scene_hash.clone(),
-        rate_per_s: Some(summary.run.releases_per_second),
+        took: Some(summary.run),
         energy_remainder: summary.largest_energy_balance_error.map(|largest| largest.value),
     }
 }

@@ -14,6 +14,7 @@ use super::figure::{Drawing, Heading};
 use super::format;
 use super::model::{Check, Plausibility, Report};
 use super::words::{Words, fill};
+use crate::output::RunTimes;
 use crate::simulation::Stop;
 use std::cell::Cell;
 use std::fmt::Write as _;
@@ -256,18 +257,28 @@ fn glossary(report: &Report) -> String {
     format!("<dl>\n{entries}</dl>\n")
 }
 
+/// How long the computation took, on how many threads, in how much memory.
+fn run_time(took: &RunTimes, words: &Words) -> String {
+    let number = |value: f64| format::significant(value, 3);
+    let (seconds, rate) = (number(took.seconds), number(took.releases_per_second));
+    let found: [(&str, &dyn std::fmt::Display); 3] =
+        [("t", &seconds), ("k", &took.threads), ("n", &rate)];
+    let memory = took.memory_bytes.map_or(String::new(), |bytes| {
+        format!(" · {}", fill(words.memory_used, &[("m", &number(1e-6 * bytes as f64))]))
+    });
+    format!(" · {}{memory}", fill(words.rate, &found))
+}
+
 fn footer(report: &Report) -> String {
     let text = &report.text;
     let words = report.words();
-    let rate = text.rate_per_s.filter(|r| r.is_finite()).map_or(String::new(), |rate| {
-        format!(" · {}", fill(words.rate, &[("n", &format::significant(rate, 3))]))
-    });
+    let took = text.took.map_or(String::new(), |took| run_time(&took, words));
     let remainder = text.energy_remainder.map_or(String::new(), |share| {
         let share = format::significant(share, 2);
         format!(" · {}", fill(words.numerical_remainder, &[("share", &share)]))
     });
     format!(
-        "<footer>rockfall {} · {} {} · {} <code>{}</code>{rate}{remainder}</footer>\n",
+        "<footer>rockfall {} · {} {} · {} <code>{}</code>{took}{remainder}</footer>\n",
         escape(&text.version),
         words.seed,
         text.seed,

@@ -11,6 +11,7 @@ pub use places::{
 pub use super::bound::Is;
 use super::raster::GroundRaster;
 use super::words::Words;
+use crate::output::RunTimes;
 use crate::scene::Language;
 use crate::simulation::{PathState, Stop};
 use std::collections::BTreeMap;
@@ -116,8 +117,8 @@ pub struct Text {
     pub version: String,
     /// Hash of scene and meshes.
     pub scene_hash: String,
-    /// Rocks per second with all files written; `None` where no clock ran.
-    pub rate_per_s: Option<f64>,
+    /// Run time with all files written; `None` where no clock ran.
+    pub took: Option<RunTimes>,
     /// Largest share of the released energy of one rock that neither motion nor friction nor damping accounts for (–).
     pub energy_remainder: Option<f64>,
 }

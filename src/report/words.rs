@@ -69,7 +69,7 @@ words! {
     error_study_caption, figures, plan_of, error_head, error_axis, error_time, error_own, error_sampling,
     error_steps, error_mesh, plausible, at_limit, look_here, plausibility, mesh_health, quality, not_recorded,
     remainder, not_stated, terrain, ground_values, releases, lost_rocks, lost_rocks_are,
-    not_accounted, seed_row, version, rate, numerical_remainder, scene,
+    not_accounted, seed_row, version, rate, memory_used, numerical_remainder, scene,
     in_english, all_rocks, value, interval_head, unit, headline_note, percentile_of,
     all_statistics, all_statistics_note, order_statistics, woodruff, mean, maximum, runout,
     reach_angle, max_speed, max_translational, max_rotational, max_total, max_height, impacts,

@@ -71,3 +71,26 @@ fn a_scene_says_which_size_counts() {
     let said = message(Scene::read(&scene(dir.path(), &no_column, "size_from = \"mass_kg\"")));
     assert!(said.contains("found no column mass_kg"), "{said}");
 }
+
+/// A column of radii or masses stands for `[rocks] radius_m`, which then need not be written; where neither is there, the table is named.
+#[test]
+fn a_column_of_sizes_stands_for_the_radius() {
+    let dir = tempfile::tempdir().unwrap();
+    let without = |table: &str| {
+        let file = scene(dir.path(), table, "");
+        let text = fs::read_to_string(&file).unwrap();
+        let is_other = |line: &&str| !line.starts_with("radius_m");
+        let kept: Vec<&str> = text.lines().filter(is_other).collect();
+        assert!(kept.len() + 1 == text.lines().count(), "{text}");
+        fs::write(&file, kept.join("\n")).unwrap();
+        file
+    };
+    let file = without("x_m,y_m,mass_kg\n5,5,90.478\n");
+    let plan = Plan::of_scene(&Scene::read(&file).unwrap()).unwrap();
+    assert!((plan.release(0).unwrap().rock.radius_m - 0.2).abs() < 1e-6);
+    let said = Scene::read(&without("x_m,y_m\n5,5\n")).unwrap_err().to_string();
+    assert!(
+        said.contains("blocks.csv") && said.contains("radius_m or mass_kg: found neither"),
+        "{said}"
+    );
+}

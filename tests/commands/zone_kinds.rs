@@ -45,6 +45,17 @@ fn zones_that_cannot_be_compared_are_told_apart() {
         let said = mixed(properties, line);
         assert!(parts.iter().all(|part| said.contains(part)), "{parts:?}\n{said}");
     }
+    // of three, the one with another measure is named, and not the one with another geometry
+    let three = over_zones(&dir, [often, often], "");
+    let drawn = zones([often, often]);
+    let (first, _) = drawn.rsplit_once("\"geometry\":").unwrap();
+    let other = format!(
+        "{{\"type\":\"Feature\",\"properties\":{{\"name\":\"c\",{events}}},\"geometry\":{line}}}"
+    );
+    dir.put("zones.geojson", format!("{first}\"geometry\":{line}}},{other}]}}"));
+    let said = dir.refusal(&three);
+    let found = "feature 3: found lines with per_year_at_1m3 where feature 1 has polygons with frequency_per_year";
+    assert!(said.contains(found), "{said}");
     let collection = format!(
         "{{\"type\":\"GeometryCollection\",\"geometries\":[{line},{{\"type\":\"Point\",\"coordinates\":[2600040.25,1200070.5]}}]}}"
     );

@@ -111,13 +111,16 @@ fn table(group: &Group, comparison: &Comparison) -> String {
     for row in &group.rows {
         let _ = writeln!(rows, "{}", table_row(row, words));
     }
+    let note = group.of_fewer().map_or(String::new(), |note| {
+        format!("<p class=\"note\">{}</p>\n", escape(&words.say(&note)))
+    });
     // beside shares by frequency nobody shall divide counts
     let counts = if comparison.is_weighted() { "Rocks computed" } else { "Rocks" };
     let heads = [counts, "A", "B", "B − A", "95 % interval", "of A"];
     let heads = heads.map(|head| format!("<th class=\"number\">{}</th>", escape(&words.say(head))));
     format!(
         "<div class=\"wide\"><table class=\"dense\">\n<thead><tr><th></th>{}<th></th></tr></thead>\n\
-         <tbody>\n{rows}</tbody>\n</table></div>\n",
+         <tbody>\n{rows}</tbody>\n</table></div>\n{note}",
         heads.concat()
     )
 }

@@ -59,7 +59,26 @@ impl CountedShare {
     }
 }
 
+/// Ends the heading of rocks that barriers have let through.
+const BEHIND: &str = ", behind the barriers of each run";
+
 impl Population {
+    /// Whether it is what the barriers of a run have let through.
+    pub(super) fn is_behind_barriers(&self) -> bool {
+        self.name.ends_with(BEHIND)
+    }
+
+    /// Whether it is that of another run rock by rock, and no barrier has a part in it.
+    pub(super) fn is_like(&self, other: &Self) -> bool {
+        let share = |one: &CountedShare| (one.releases.clone(), one.open.clone());
+        let are_alike = self.shares.iter().map(share).eq(other.shares.iter().map(share));
+        are_alike
+            && !self.is_behind_barriers()
+            && self.among == other.among
+            && self.values == other.values
+            && self.open == other.open
+    }
+
     pub(super) fn mean(&self, values: &Values) -> Option<Reading> {
         match &self.among.standing {
             None => Reading::mean(values),
@@ -339,7 +358,7 @@ fn arriving(
         arrived.iter().map(|rock| (rock.release, of(rock))).collect()
     };
     Population {
-        name: format!("“{name}”, behind the barriers of each run"),
+        name: format!("“{name}”{BEHIND}"),
         among: Arc::clone(among.0),
         shares,
         open: Vec::new(),

@@ -6,7 +6,7 @@ use crate::hazard::{Difference, Reading, Values};
 use crate::math;
 use crate::report::bound::Is;
 use crate::report::format::{self, Toward, sign};
-use crate::report::words::Words;
+use crate::report::words::{Words, fill};
 use crate::scene::Language;
 use std::fmt::Write as _;
 
@@ -24,6 +24,21 @@ pub(super) struct Group {
     /// Heading.
     pub(super) name: String,
     pub(super) rows: Vec<ComparedStatistic>,
+    /// Whether it is of what the barriers of each run have let through.
+    is_behind: bool,
+}
+
+/// Stands beside percentiles of what barriers have let through.
+const OF_FEWER: &str = "Energies and heights are of the {a} rocks of A and the {b} of B that arrive: barriers let the strongest through, so that percentiles may rise while fewer rocks come.";
+
+impl Group {
+    /// That its percentiles are of fewer rocks, where a run has barriers that let fewer through.
+    pub(super) fn of_fewer(&self) -> Option<String> {
+        let row = self.rows.iter().find(|row| row.is_of_arriving())?;
+        let [a, b] = row.rocks;
+        let counts = [("a", &a as &dyn std::fmt::Display), ("b", &b)];
+        (self.is_behind && a != b).then(|| fill(OF_FEWER, &counts))
+    }
 }
 
 /// One statistic.
@@ -52,6 +67,11 @@ impl ComparedStatistic {
         let [a, b] = [(a, is_lacking[0]), (b, is_lacking[1])]
             .map(|(value, is_lacking)| if is_lacking { f64::NAN } else { value });
         Self { difference: Difference { a, b, value: f64::NAN, interval: None }, ..self }
+    }
+
+    /// Whether it is of the rocks that come, and not of how many do.
+    fn is_of_arriving(&self) -> bool {
+        !["%", "1/year"].contains(&self.unit)
     }
 
     /// Its name in another language: what, and which statistic of it.
@@ -99,7 +119,7 @@ pub(super) fn group([a, b]: &[Population; 2], paired: bool, same_run: bool) -> G
     }
     // what neither run has seen is no news
     rows.retain(|row| row.rocks != [0, 0]);
-    Group { name: a.name.clone(), rows }
+    Group { name: a.name.clone(), rows, is_behind: a.is_behind_barriers() }
 }
 
 /// How a share changes (–).
@@ -200,10 +220,13 @@ pub(super) fn headline(groups: &[Group]) -> Vec<String> {
         for row in rows {
             let english = Words::of(Language::En);
             let [a, b, change, interval] = in_words(row, english);
-            let mark = if row.difference.is_clear() { "  clear" } else { "" };
+            let clear = if row.difference.is_clear() { "  clear" } else { "" };
+            let [few, many] = [row.rocks[1], row.rocks[0]];
+            let is_other = group.is_behind && row.is_of_arriving() && few != many;
+            let of = if is_other { format!(", of {few} rocks for {many}") } else { String::new() };
             let gap = if row.unit.is_empty() { "" } else { " " };
             lines.push(format!(
-                "  {:<width$}  {a} → {b}{gap}{}, {change} ({interval}){mark}",
+                "  {:<width$}  {a} → {b}{gap}{}, {change} ({interval}){clear}{of}",
                 row.name, row.unit
             ));
         }

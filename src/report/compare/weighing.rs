@@ -9,7 +9,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 /// What the releases of a run stand for.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub(super) struct RunWeights {
     pub(super) weights: Weights,
     /// Whether they stand for events a year, and not only for parts of all events.
@@ -17,7 +17,7 @@ pub(super) struct RunWeights {
 }
 
 /// Releases of a run that something is counted among, by rising number, and what they stand for.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct CountedReleases {
     pub(super) releases: Vec<usize>,
     /// None where all of both runs weigh the same.

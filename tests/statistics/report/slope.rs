@@ -304,7 +304,12 @@ fn text() -> Text {
         seed: 2017,
         version: "0.1.0".to_owned(),
         scene_hash: "5f1c9a77e0".to_owned(),
-        rate_per_s: Some(1234.0),
+        took: Some(rockfall::output::RunTimes {
+            seconds: 2.5,
+            releases_per_second: 1234.0,
+            threads: 2,
+            memory_bytes: Some(51_000_000),
+        }),
         energy_remainder: Some(3.2e-7),
     }
 }

@@ -8,10 +8,14 @@ use crate::terrain::weld::{Up, weld};
 use std::path::Path;
 
 fn health_of(tiles: &[Vec<Facet>]) -> Health {
+    health_with(tiles, None)
+}
+
+fn health_with(tiles: &[Vec<Facet>], tolerance_m: Option<f64>) -> Health {
     let soups: Vec<Soup> = tiles.iter().map(|tile| Soup::from(tile.clone())).collect();
     let piece = |soup| Piece { file: Path::new("t.stl"), soup, up: Up::Z, scale: 1.0, sheet: 0 };
     let pieces: Vec<Piece> = soups.iter().map(piece).collect();
-    Health::of(&weld(&pieces, Vec3::new(1000.0, 0.0, 0.0), None).unwrap(), &pieces)
+    Health::of(&weld(&pieces, Vec3::new(1000.0, 0.0, 0.0), tolerance_m).unwrap(), &pieces)
 }
 
 /// A rough slope of cells, over columns and rows, with other corners than a tile of another `cell_m`.
@@ -157,4 +161,83 @@ fn a_sound_mesh_has_neither() {
     let found = health_of(&[jittered_plane(50.0, 10, 0.5)]);
     let said = found.to_string() + &serde_json::to_string(&found).unwrap();
     assert!(!said.contains("gaps") && !said.contains("overlaps"), "{said}");
+}
+
+/// Tiles on slopes of 0 to 70° that overlap by 4 mm, or are 4 mm or 9 mm aside: the gap is as wide as that, not as the edges up and down the
+/// border are apart, and the tolerance that is proposed closes it.
+#[test]
+fn a_seam_of_millimetres_is_as_wide_as_it_is() {
+    for slope in [0.0, 0.7, 2.7] {
+        for [east, north] in [[-4e-3, 0.0], [4e-3, 0.0], [-4e-3, 9e-3]] {
+            let left = tile([0.0, 20.0], [0.0, 30.0], 1.0, |_, y| slope * y);
+            let mut right = tile([20.0, 40.0], [0.0, 30.0], 1.0, |_, y| slope * y);
+            for corner in right.iter_mut().flatten() {
+                *corner += Vec3::new(east, north, 0.0);
+            }
+            let tiles = [left, right];
+            let found = health_of(&tiles);
+            assert_eq!(found.gaps.len(), 1, "{slope} {east} {north} {found}");
+            let gap = &found.gaps[0];
+            let most = east.hypot(north) + 1e-6;
+            assert!(gap.width_m > 3e-3 && gap.widest_m < most * (1.0 + slope), "{slope} {gap}");
+            let closing_m = found.closing_tolerance_m.unwrap();
+            assert!(closing_m < 0.05, "{closing_m}");
+            let closed = health_with(&tiles, Some(closing_m));
+            assert!(closed.gaps.is_empty() && closed.parts.len() == 1, "{closed}");
+        }
+    }
+    // a gap of 0.4 m beside edges of 1 m is closed by none
+    let apart = [0.0, 20.4].map(|x| tile([x, x + 20.0], [0.0, 30.0], 1.0, |_, _| 0.0));
+    assert_eq!(health_of(&apart).closing_tolerance_m, None);
+}
+
+/// A hole of 8 by 3 m across a slope: its area and place, whichever way triangles are wound; none where a patch of its own fills it.
+#[test]
+fn an_inner_hole_is_found_where_it_is() {
+    let mut all = tile([0.0, 30.0], [0.0, 20.0], 1.0, hill);
+    for facet in all.iter_mut().step_by(3) {
+        facet.swap(1, 2);
+    }
+    let is_out = |facet: &Facet| {
+        let middle = (facet[0] + facet[1] + facet[2]) / 3.0;
+        (10.0..18.0).contains(&middle.x) && (7.0..10.0).contains(&middle.y)
+    };
+    let (patch, ground): (Vec<Facet>, Vec<Facet>) = all.iter().partition(|facet| is_out(facet));
+    assert_eq!(health_of(&[all]).holes.count, 0);
+    let found = health_of(&[ground.clone()]);
+    assert_eq!(found.holes.count, 1, "{found}");
+    let hole = &found.holes.largest[0];
+    assert!((hole.area_m2 - 24.0).abs() < 1e-9, "{hole}");
+    assert_eq!(hole.box_m, [1010.0, 7.0, 1018.0, 10.0]);
+    assert!((hole.at_m[0] - 1014.0).abs() < 0.3 && (hole.at_m[1] - 8.5).abs() < 0.3, "{hole}");
+    assert!(found.to_string().contains("inner holes                      1"), "{found}");
+    assert!(found.warnings().any(|said| said.starts_with("holes in the slope: 1")));
+    let filled: Vec<Facet> =
+        patch.iter().map(|facet| facet.map(|corner| corner + Vec3::new(4e-3, 0.0, 0.0))).collect();
+    assert_eq!(health_of(&[ground, filled]).holes.count, 0);
+}
+
+/// Two corners 12 m above and 8 m below all around them, and a sheet of 5 by 6 m that hangs 3 m above the slope.
+#[test]
+fn spikes_and_hanging_sheets_are_found() {
+    let mut ground = tile([0.0, 30.0], [0.0, 20.0], 1.0, |_, y| 2.0 * y);
+    let sheet = tile([5.2, 10.2], [4.3, 10.3], 1.0, |_, y| 2.0 * y + 3.0);
+    let sound = health_of(&[ground.clone()]);
+    assert!(sound.spikes.is_empty() && sound.hanging.is_empty(), "{sound}");
+    for corner in ground.iter_mut().flatten() {
+        match (corner.x, corner.y) {
+            (20.0, 5.0) => corner.z += 14.0,
+            (25.0, 15.0) => corner.z -= 10.0,
+            _ => {}
+        }
+    }
+    let found = health_of(&[ground, sheet]);
+    assert_eq!((found.spikes.count, found.hanging.count), (2, 1), "{found}");
+    let heights: Vec<f64> = found.spikes.largest.iter().map(|spike| spike.height_m).collect();
+    assert_eq!(heights, [12.0, -8.0]);
+    assert_eq!(found.spikes.largest[0].at_m, [1020.0, 5.0, 24.0]);
+    let hanging = &found.hanging.largest[0];
+    assert!((hanging.height_m - 3.0).abs() < 1e-9 && hanging.parts == [2, 1], "{hanging}");
+    assert!((hanging.area_m2 - 30.0).abs() < 1e-9, "{hanging}");
+    assert_eq!(found.warnings().count(), 2);
 }

@@ -2,6 +2,10 @@
 
 /// By patterns, as for the plan.
 pub(super) const COMPARED: &[(&str, &str)] = &[
+    (
+        "Energies and heights are of the {a} rocks of A and the {b} of B that arrive: barriers let the strongest through, so that percentiles may rise while fewer rocks come.",
+        "Energien und Höhen sind die der {a} Blöcke von A und der {b} von B, die ankommen: Barrieren lassen die stärksten durch, so dass Perzentile steigen können, während weniger Blöcke kommen.",
+    ),
     ("Two runs compared", "Zwei Läufe im Vergleich"),
     ("Read this first", "Zuerst lesen"),
     ("Inputs that differ", "Eingaben, die sich unterscheiden"),

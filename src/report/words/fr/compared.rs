@@ -2,6 +2,10 @@
 
 /// By patterns, as for the plan.
 pub(super) const COMPARED: &[(&str, &str)] = &[
+    (
+        "Energies and heights are of the {a} rocks of A and the {b} of B that arrive: barriers let the strongest through, so that percentiles may rise while fewer rocks come.",
+        "Énergies et hauteurs sont celles des {a} blocs de A et des {b} de B qui arrivent\u{a0}: les barrières laissent passer les plus forts, et les centiles peuvent monter alors que moins de blocs arrivent.",
+    ),
     ("Two runs compared", "Deux calculs comparés"),
     ("Read this first", "À lire d’abord"),
     ("Inputs that differ", "Entrées qui diffèrent"),

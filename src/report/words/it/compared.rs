@@ -2,6 +2,10 @@
 
 /// By patterns, as for the plan.
 pub(super) const COMPARED: &[(&str, &str)] = &[
+    (
+        "Energies and heights are of the {a} rocks of A and the {b} of B that arrive: barriers let the strongest through, so that percentiles may rise while fewer rocks come.",
+        "Energie e altezze sono quelle dei {a} massi di A e dei {b} di B che arrivano: le barriere lasciano passare i più forti, e i percentili possono salire mentre arrivano meno massi.",
+    ),
     ("Two runs compared", "Due calcoli a confronto"),
     ("Read this first", "Da leggere prima"),
     ("Inputs that differ", "Dati che differiscono"),
