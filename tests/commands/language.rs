@@ -36,7 +36,7 @@ const ENGLISH: [&str; 30] = [
     "no ground has",
     "friction angle",
     "in nine of ten",
-    "of memory and",
+    "of memory, and about",
     "are sampled by importance",
     // the page of a comparison
     "within chance",
