@@ -34,6 +34,7 @@ mod calibrate_selection;
 mod catalogue;
 mod compare;
 mod damaged;
+mod compare_barriers;
 mod data_in;
 mod disk;
 mod edges;

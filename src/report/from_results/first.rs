@@ -46,6 +46,7 @@ impl LeftAtHoles {
         Ok(most.map(|most| Self { rocks: all, hole: holes[most].clone() }))
     }
 
+    /// What to do about rocks that left at holes, and not at the outer border.
     fn remedy(&self, words: &Words) -> String {
         let [x, y, _] = self.hole.at_m.map(|m| format!("{m:.1}"));
         let found: [(&str, &dyn std::fmt::Display); 3] =
@@ -67,14 +68,7 @@ pub(in crate::report) fn warnings_first(
     words: &Words,
 ) -> Vec<String> {
     let own = words.open();
-    let has_left = hazard.ended(StopKind::LeftTerrain).count;
-    let remedy_left = at_holes.map_or_else(
-        || own.remedy_left.to_owned(),
-        |left| match left.remedy(words) {
-            all if left.rocks >= has_left => all,
-            some => format!("{some} {}", own.remedy_left),
-        },
-    );
+    let remedy_left = remedy_left(hazard, at_holes, words);
     let kinds = [
         (StopKind::LeftTerrain, own.have_left, remedy_left.as_str()),
         (StopKind::TimeUp, own.have_no_time, own.remedy_time),
@@ -105,6 +99,18 @@ pub(in crate::report) fn warnings_first(
     let missing = hazard.missing_events();
     let missing = missing.iter().map(|warning| words.say(warning));
     missing.chain(kinds.into_iter().filter_map(said)).collect()
+}
+
+/// What to do about rocks that left the terrain.
+fn remedy_left(hazard: &Hazard, at_holes: Option<&LeftAtHoles>, words: &Words) -> String {
+    let farther = words.open().remedy_left;
+    let Some(left) = at_holes else { return farther.to_owned() };
+    let remedy = left.remedy(words);
+    if left.rocks >= hazard.ended(StopKind::LeftTerrain).count {
+        remedy
+    } else {
+        format!("{remedy} {farther}")
+    }
 }
 
 /// Says that no rock touched a tree, where there are both: trees beside the ways of rocks are usual, a forest of which none is met rather

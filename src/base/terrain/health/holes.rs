@@ -24,7 +24,7 @@ pub struct Hole {
 
 /// A border edge in plan view, with the way out of its triangle, as long as it is.
 #[derive(Debug, Clone, Copy)]
-struct Rim {
+struct HoleEdge {
     ends: [u32; 2],
     middle_m: Vec3,
     out_m: Vec3,
@@ -37,7 +37,7 @@ pub(super) fn holes(welded: &Welded, is_slope: &(dyn Fn(u32) -> bool + Sync)) ->
     if sides.is_empty() || sides.len() > MOST_BORDERS {
         return Found::default();
     }
-    let rims: Vec<Rim> = sides.into_iter().map(|side| rim(welded, side)).collect();
+    let rims: Vec<HoleEdge> = sides.into_iter().map(|side| rim(welded, side)).collect();
     let loops = loops(&rims);
     let open: Vec<(Hole, Vec<Vec3>)> = loops.iter().filter_map(|one| hole(welded, one)).collect();
     let covered = covered(welded, &open, is_slope);
@@ -46,17 +46,17 @@ pub(super) fn holes(welded: &Welded, is_slope: &(dyn Fn(u32) -> bool + Sync)) ->
     Found::largest(found.collect(), |hole| hole.area_m2)
 }
 
-fn rim(welded: &Welded, side: u32) -> Rim {
+fn rim(welded: &Welded, side: u32) -> HoleEdge {
     let (triangle, k) = (side as usize / 3, side as usize % 3);
     let at = |k: usize| welded.triangles[triangle][k % 3];
     let [a, b, c] = [k, k + 1, k + 2].map(|k| welded.vertices_m[at(k) as usize]);
     let across = Vec3::new(b.y - a.y, a.x - b.x, 0.0);
     let out_m = if across.dot(&(a - c)) < 0.0 { -across } else { across };
-    Rim { ends: [at(k), at(k + 1)], middle_m: 0.5 * (a + b), out_m }
+    HoleEdge { ends: [at(k), at(k + 1)], middle_m: 0.5 * (a + b), out_m }
 }
 
 /// Edges that hang together.
-fn loops(rims: &[Rim]) -> Vec<Vec<Rim>> {
+fn loops(rims: &[HoleEdge]) -> Vec<Vec<HoleEdge>> {
     let mut corners: Vec<u32> = rims.iter().flat_map(|rim| rim.ends).collect();
     corners.sort_unstable();
     corners.dedup();
@@ -65,7 +65,7 @@ fn loops(rims: &[Rim]) -> Vec<Vec<Rim>> {
     for rim in rims {
         groups.join(place(rim.ends[0]), place(rim.ends[1]));
     }
-    let mut all: Vec<(u32, Rim)> =
+    let mut all: Vec<(u32, HoleEdge)> =
         rims.iter().map(|rim| (groups.lowest(place(rim.ends[0])), *rim)).collect();
     all.sort_by_key(|(group, _)| *group);
     all.chunk_by(|a, b| a.0 == b.0).map(|one| one.iter().map(|(_, rim)| *rim).collect()).collect()
@@ -74,7 +74,7 @@ fn loops(rims: &[Rim]) -> Vec<Vec<Rim>> {
 /// A loop as a hole, with places behind its border; none where the slope lies inside.
 ///
 /// `2 A = ∮ x · n dl`, with `n` out of the slope: of a hole it comes out negative, whichever way triangles are wound.
-fn hole(welded: &Welded, rims: &[Rim]) -> Option<(Hole, Vec<Vec3>)> {
+fn hole(welded: &Welded, rims: &[HoleEdge]) -> Option<(Hole, Vec<Vec3>)> {
     let start = rims.first()?.middle_m;
     let around = rims.iter().map(|rim| (rim.middle_m - start).dot(&rim.out_m)).sum::<f64>();
     let length_m: f64 = rims.iter().map(|rim| rim.out_m.norm()).sum();

@@ -21,7 +21,7 @@ pub struct Spike {
 
 /// What is known of a corner.
 #[derive(Debug, Clone, Copy)]
-struct Around {
+struct AroundCorner {
     low_m: f64,
     high_m: f64,
     /// Longest edge in plan view (m), squared.
@@ -31,7 +31,8 @@ struct Around {
 
 /// The spikes of triangles for which `is_looked_at` holds, the largest first.
 pub(super) fn spikes(welded: &Welded, is_looked_at: &dyn Fn(u32) -> bool) -> Found<Spike> {
-    let none = Around { low_m: f64::INFINITY, high_m: f64::NEG_INFINITY, far_m2: 0.0, edges: 0 };
+    let none =
+        AroundCorner { low_m: f64::INFINITY, high_m: f64::NEG_INFINITY, far_m2: 0.0, edges: 0 };
     let mut around = vec![none; welded.vertices_m.len()];
     for (_, corners) in (0u32..).zip(&welded.triangles).filter(|&(t, _)| is_looked_at(t)) {
         for k in 0..3 {
@@ -41,7 +42,7 @@ pub(super) fn spikes(welded: &Welded, is_looked_at: &dyn Fn(u32) -> bool) -> Fou
             }
         }
     }
-    let spike = |(at, around): (&Vec3, &Around)| {
+    let spike = |(at, around): (&Vec3, &AroundCorner)| {
         let [above, below] = [at.z - around.high_m, around.low_m - at.z];
         let limit_m = FAR_OUT.0.max(FAR_OUT.1 * around.far_m2.sqrt());
         let is_out = around.edges >= 2 * FEWEST_EDGES && above.max(below) > limit_m;
@@ -52,7 +53,7 @@ pub(super) fn spikes(welded: &Welded, is_looked_at: &dyn Fn(u32) -> bool) -> Fou
     Found::largest(found, |spike: &Spike| spike.height_m.abs())
 }
 
-fn look(around: &mut Around, welded: &Welded, [own, other]: [u32; 2]) {
+fn look(around: &mut AroundCorner, welded: &Welded, [own, other]: [u32; 2]) {
     let [own, other] = [own, other].map(|k| welded.vertices_m[k as usize]);
     around.low_m = around.low_m.min(other.z);
     around.high_m = around.high_m.max(other.z);
