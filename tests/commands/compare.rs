@@ -132,15 +132,10 @@ fn common_chance_narrows_the_interval() {
 }
 
 /// The quick example, some of it changed, run in a folder of its own.
-pub(crate) fn run(
-    dir: &Path,
-    name: &str,
-    releases: &str,
-    change: impl Fn(String) -> String,
-) -> PathBuf {
+pub(super) fn run(dir: &Path, name: &str, count: &str, edit: impl Fn(String) -> String) -> PathBuf {
     let folder = std::fs::canonicalize("terrain").unwrap();
     let scene = std::fs::read_to_string("examples/quick.toml").unwrap();
-    let scene = change(scene.replace("../terrain", folder.to_str().unwrap()));
+    let scene = edit(scene.replace("../terrain", folder.to_str().unwrap()));
     let path = dir.join(format!("{name}.toml"));
     std::fs::write(&path, scene).unwrap();
     let out = dir.join(name);
@@ -149,7 +144,7 @@ pub(crate) fn run(
         path.to_str().unwrap(),
         "--quiet",
         "--releases",
-        releases,
+        count,
         "--out",
         out.to_str().unwrap(),
     ];

@@ -2,18 +2,6 @@
 
 /// By patterns, as for the plan.
 pub(super) const WARNINGS: &[(&str, &str)] = &[
-    (
-        "holes in the slope: {n}, the largest of {a} m² near ({x}, {y}); rocks that come there leave the terrain: fill them",
-        "Löcher im Hang: {n}, das größte von {a} m² bei ({x}, {y}); Blöcke, die dorthin kommen, verlassen das Gelände: füllen",
-    ),
-    (
-        "single corners far above or below all around them: {n}, the farthest by {a} m at ({x}, {y}); errors of measurement, or trees and masts? rocks meet them as ground",
-        "einzelne Ecken weit über oder unter allen um sie: {n}, die fernste um {a} m bei ({x}, {y}); Messfehler, oder Bäume und Masten? Blöcke treffen sie als Boden",
-    ),
-    (
-        "sheets that hang above another part of the slope: {n}, the largest of {a} m², {b} m above it near ({x}, {y}); rocks meet them as ground: leave them out if they are none",
-        "Flächen, die über einem anderen Teil des Hangs hängen: {n}, die größte von {a} m², {b} m darüber bei ({x}, {y}); Blöcke treffen sie als Boden: weglassen, wenn sie keiner sind",
-    ),
     ("[grounds.{name}] lies under no mesh", "[grounds.{name}] liegt unter keinem Dreiecksnetz"),
     (
         "[grounds.{name}] has breaks_above_j, but no tree: only trees give way",
@@ -123,4 +111,16 @@ pub(super) const WARNINGS: &[(&str, &str)] = &[
         "keiner von {n} Blöcken hat den Boden berührt: gehören Orte und Höhen der Ablösungen zu diesem Hang?",
     ),
     ("{line}: 0 of {n} rocks of {class}", "{line}: 0 von {n} Blöcken von {class}"),
+    (
+        "holes in the slope: {n}, the largest of {a} m² near ({x}, {y}); rocks that come there leave the terrain: fill them",
+        "Löcher im Hang: {n}, das größte von {a} m² bei ({x}, {y}); Blöcke, die dorthin kommen, verlassen das Gelände: füllen",
+    ),
+    (
+        "single corners far above or below all around them: {n}, the farthest by {a} m at ({x}, {y}); errors of measurement, or trees and masts? rocks meet them as ground",
+        "einzelne Ecken weit über oder unter allen um sie: {n}, die fernste um {a} m bei ({x}, {y}); Messfehler, oder Bäume und Masten? Blöcke treffen sie als Boden",
+    ),
+    (
+        "sheets that hang above another part of the slope: {n}, the largest of {a} m², {b} m above it near ({x}, {y}); rocks meet them as ground: leave them out if they are none",
+        "Flächen, die über einem anderen Teil des Hangs hängen: {n}, die größte von {a} m², {b} m darüber bei ({x}, {y}); Blöcke treffen sie als Boden: weglassen, wenn sie keiner sind",
+    ),
 ];

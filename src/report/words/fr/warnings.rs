@@ -2,18 +2,6 @@
 
 /// By patterns, as for the plan.
 pub(super) const WARNINGS: &[(&str, &str)] = &[
-    (
-        "holes in the slope: {n}, the largest of {a} m² near ({x}, {y}); rocks that come there leave the terrain: fill them",
-        "trous dans la pente\u{a0}: {n}, le plus grand de {a} m² près de ({x}, {y})\u{a0}; les blocs qui y arrivent sortent du terrain\u{a0}: les combler",
-    ),
-    (
-        "single corners far above or below all around them: {n}, the farthest by {a} m at ({x}, {y}); errors of measurement, or trees and masts? rocks meet them as ground",
-        "sommets isolés loin au-dessus ou au-dessous de tout ce qui les entoure\u{a0}: {n}, le plus éloigné de {a} m en ({x}, {y})\u{a0}; erreurs de mesure, ou arbres et mâts\u{a0}? les blocs les touchent comme du sol",
-    ),
-    (
-        "sheets that hang above another part of the slope: {n}, the largest of {a} m², {b} m above it near ({x}, {y}); rocks meet them as ground: leave them out if they are none",
-        "nappes suspendues au-dessus d’une autre partie de la pente\u{a0}: {n}, la plus grande de {a} m², {b} m au-dessus près de ({x}, {y})\u{a0}; les blocs les touchent comme du sol\u{a0}: les ôter si elles n’en sont pas",
-    ),
     ("[grounds.{name}] lies under no mesh", "[grounds.{name}] n’est sous aucun maillage"),
     (
         "[grounds.{name}] has breaks_above_j, but no tree: only trees give way",
@@ -123,4 +111,16 @@ pub(super) const WARNINGS: &[(&str, &str)] = &[
         "aucun des {n} blocs n’a touché le sol\u{a0}: les lieux et altitudes des départs appartiennent-ils à cette pente\u{a0}?",
     ),
     ("{line}: 0 of {n} rocks of {class}", "{line}\u{a0}: 0 bloc sur {n} de {class}"),
+    (
+        "holes in the slope: {n}, the largest of {a} m² near ({x}, {y}); rocks that come there leave the terrain: fill them",
+        "trous dans la pente\u{a0}: {n}, le plus grand de {a} m² près de ({x}, {y})\u{a0}; les blocs qui y arrivent sortent du terrain\u{a0}: les combler",
+    ),
+    (
+        "single corners far above or below all around them: {n}, the farthest by {a} m at ({x}, {y}); errors of measurement, or trees and masts? rocks meet them as ground",
+        "sommets isolés loin au-dessus ou au-dessous de tout ce qui les entoure\u{a0}: {n}, le plus éloigné de {a} m en ({x}, {y})\u{a0}; erreurs de mesure, ou arbres et mâts\u{a0}? les blocs les touchent comme du sol",
+    ),
+    (
+        "sheets that hang above another part of the slope: {n}, the largest of {a} m², {b} m above it near ({x}, {y}); rocks meet them as ground: leave them out if they are none",
+        "nappes suspendues au-dessus d’une autre partie de la pente\u{a0}: {n}, la plus grande de {a} m², {b} m au-dessus près de ({x}, {y})\u{a0}; les blocs les touchent comme du sol\u{a0}: les ôter si elles n’en sont pas",
+    ),
 ];

@@ -2,18 +2,6 @@
 
 /// By patterns, as for the plan.
 pub(super) const WARNINGS: &[(&str, &str)] = &[
-    (
-        "holes in the slope: {n}, the largest of {a} m² near ({x}, {y}); rocks that come there leave the terrain: fill them",
-        "buchi nel pendio: {n}, il più grande di {a} m² presso ({x}, {y}); i massi che vi arrivano escono dal terreno: chiuderli",
-    ),
-    (
-        "single corners far above or below all around them: {n}, the farthest by {a} m at ({x}, {y}); errors of measurement, or trees and masts? rocks meet them as ground",
-        "vertici isolati molto sopra o sotto tutto ciò che li circonda: {n}, il più lontano di {a} m in ({x}, {y}); errori di misura, o alberi e pali? i massi li toccano come suolo",
-    ),
-    (
-        "sheets that hang above another part of the slope: {n}, the largest of {a} m², {b} m above it near ({x}, {y}); rocks meet them as ground: leave them out if they are none",
-        "superfici sospese sopra un’altra parte del pendio: {n}, la più grande di {a} m², {b} m più in alto presso ({x}, {y}); i massi le toccano come suolo: toglierle se non lo sono",
-    ),
     ("[grounds.{name}] lies under no mesh", "[grounds.{name}] non è sotto nessuna mesh"),
     (
         "[grounds.{name}] has breaks_above_j, but no tree: only trees give way",
@@ -123,4 +111,16 @@ pub(super) const WARNINGS: &[(&str, &str)] = &[
         "nessuno dei {n} massi ha toccato il suolo: i luoghi e le quote dei distacchi appartengono a questo pendio?",
     ),
     ("{line}: 0 of {n} rocks of {class}", "{line}: 0 massi su {n} di {class}"),
+    (
+        "holes in the slope: {n}, the largest of {a} m² near ({x}, {y}); rocks that come there leave the terrain: fill them",
+        "buchi nel pendio: {n}, il più grande di {a} m² presso ({x}, {y}); i massi che vi arrivano escono dal terreno: chiuderli",
+    ),
+    (
+        "single corners far above or below all around them: {n}, the farthest by {a} m at ({x}, {y}); errors of measurement, or trees and masts? rocks meet them as ground",
+        "vertici isolati molto sopra o sotto tutto ciò che li circonda: {n}, il più lontano di {a} m in ({x}, {y}); errori di misura, o alberi e pali? i massi li toccano come suolo",
+    ),
+    (
+        "sheets that hang above another part of the slope: {n}, the largest of {a} m², {b} m above it near ({x}, {y}); rocks meet them as ground: leave them out if they are none",
+        "superfici sospese sopra un’altra parte del pendio: {n}, la più grande di {a} m², {b} m più in alto presso ({x}, {y}); i massi le toccano come suolo: toglierle se non lo sono",
+    ),
 ];
