@@ -36,18 +36,21 @@ pub struct Gap {
     pub widest_m: f64,
     /// A place near its middle (m).
     pub at_m: [f64; 3],
+    /// The farthest that a corner of one border is from all of the edge of the other that lies before it (m).
+    #[serde(skip)]
+    corners_m: f64,
 }
 
-/// Tolerance over the width of the widest gap that it closes (–).
-const CLOSING: f64 = 1.25;
+/// Tolerance over the distance of the corners that it welds (–).
+const CLOSING: f64 = 1.02;
 /// Largest tolerance that is proposed, over the edges that 5 % are shorter than (–): corners of one triangle must stay apart.
 const LARGEST_TOLERANCE: f64 = 0.1;
 
-/// The tolerance, of two digits, that welds the borders of all gaps which are narrow beside the edges.
+/// The tolerance, of two digits, that welds the corners of all gaps whose corners lie before each other, near beside the edges.
 pub(super) fn closing_m(gaps: &[Gap], short_edge_m: f64) -> Option<f64> {
     let most_m = LARGEST_TOLERANCE * short_edge_m;
-    let fitting = gaps.iter().map(|gap| CLOSING * gap.widest_m).filter(|m| *m <= most_m);
-    fitting.reduce(f64::max).map(|m| math::rounded_up(m))
+    let fitting = gaps.iter().map(|gap| CLOSING * gap.corners_m).filter(|m| *m <= most_m);
+    fitting.reduce(f64::max).map(math::rounded_up)
 }
 
 /// A border edge of the slope.
@@ -75,6 +78,8 @@ struct Facing {
     /// Middle of the way across (m).
     middle_m: Vec3,
     parts: [u32; 2],
+    /// The border.
+    border: u32,
 }
 
 /// The gaps of the slope, the longest first.
@@ -130,6 +135,15 @@ impl Border {
         (self.ends_m[1] - self.ends_m[0]).norm()
     }
 
+    /// How far its ends are from the nearest of another one at most (m).
+    fn corners_apart_m(&self, other: &Self) -> f64 {
+        let [a, b] = self.ends_m.map(|end| {
+            let [c, d] = other.ends_m.map(|at| (at - end).norm());
+            c.min(d)
+        });
+        a.max(b)
+    }
+
     fn nearest(&self, place: &Vec3) -> Vec3 {
         let [a, b] = self.ends_m;
         let along = b - a;
@@ -160,18 +174,21 @@ fn all_facing(borders: &[Border], spacing_m: f64) -> Vec<(BorderSpot, Facing)> {
     parallel::filter_map(spots.len(), |k| {
         let (spot, own) = (&spots[k], &borders[spots[k].border as usize]);
         let to_others = cells.near(&spot.at_m).filter_map(|other| {
-            let border = &borders[spots[other as usize].border as usize];
+            let number = spots[other as usize].border;
+            let border = &borders[number as usize];
             let way = border.nearest(&spot.at_m) - spot.at_m;
             let is_near = (f64::MIN_POSITIVE..=reach_m).contains(&way.norm());
-            (is_near && looks_at(own, border, (way, spacing_m))).then_some((border, way))
+            (is_near && looks_at(own, border, (way, spacing_m))).then_some((number, way))
         });
         // the nearest of all: one that is farther on may look across where the nearest lies beside it
-        let (border, way) =
+        let (number, way) =
             to_others.min_by(|a, b| a.1.norm_squared().total_cmp(&b.1.norm_squared()))?;
+        let border = &borders[number as usize];
         let facing = || Facing {
             width_m: way.norm(),
             middle_m: spot.at_m + 0.5 * way,
             parts: [own.part.min(border.part), own.part.max(border.part)],
+            border: number,
         };
         is_across(own, border, (way, spacing_m)).then(|| (spot.clone(), facing()))
     })
@@ -240,7 +257,11 @@ fn gap(
     let middle = sum / group.len() as f64;
     let off = |facing: &Facing| (facing.middle_m - middle).norm_squared();
     let at = members().map(|(_, facing)| facing).min_by(|a, b| off(a).total_cmp(&off(b)))?;
+    let corners = members().map(|(spot, facing)| {
+        borders[spot.border as usize].corners_apart_m(&borders[facing.border as usize])
+    });
+    let corners_m = corners.fold(0.0, f64::max);
     let parts = parts.map(|part| part as usize + 1);
     let at_m = welded.on_map(at.middle_m).into();
-    Some(Gap { parts, length_m, width_m, widest_m, at_m })
+    Some(Gap { parts, length_m, width_m, widest_m, at_m, corners_m })
 }

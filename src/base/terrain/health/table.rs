@@ -33,7 +33,7 @@ impl fmt::Display for Health {
         if let Some(closing_m) = self.closing_tolerance_m {
             writeln!(
                 f,
-                "    [mesh] weld_tolerance_m = {closing_m} closes those that are no wider"
+                "    [mesh] weld_tolerance_m = {closing_m} closes those whose corners are so near"
             )?;
         }
         let out = "kept: rocks that come there leave the terrain; fill them";
