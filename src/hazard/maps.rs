@@ -323,7 +323,7 @@ mod tests {
                 .map(|layer| maps.values(layer, &weights).next().map_or(f64::NAN, |(_, v)| v));
             let of_p95 = 1.0 + INTENSITY_J.iter().filter(|limit| p95_j >= **limit).count() as f64;
             assert!(
-                of_p95 == class && (p95_j / total_j - 1.0).abs() < 0.03,
+                (of_p95 - class).abs() < 0.5 && (p95_j / total_j - 1.0).abs() < 0.03,
                 "{total_j} {p95_j} {class}"
             );
         }

@@ -293,9 +293,12 @@ fn sizes(list: &[Zone], file: &Path) -> Result<Vec<f64>> {
     }
     // where each has one of two measures, it is these that cannot be compared
     let says_how_often = list.iter().all(Zone::says_how_often);
-    let is_unlike = |zone: &&Zone| match says_how_often {
-        true => zone.frequency_per_year.is_some() != list[0].frequency_per_year.is_some(),
-        false => zone.kind() != list[0].kind(),
+    let is_unlike = |zone: &&Zone| {
+        if says_how_often {
+            zone.frequency_per_year.is_some() != list[0].frequency_per_year.is_some()
+        } else {
+            zone.kind() != list[0].kind()
+        }
     };
     if let Some(other) = list.iter().find(is_unlike).filter(|_| has_kinds(list)) {
         let remedy = if says_how_often {

@@ -204,11 +204,11 @@ fn an_inner_hole_is_found_where_it_is() {
     };
     let (patch, ground): (Vec<Facet>, Vec<Facet>) = all.iter().partition(|facet| is_out(facet));
     assert_eq!(health_of(&[all]).holes.count, 0);
-    let found = health_of(&[ground.clone()]);
+    let found = health_of(std::slice::from_ref(&ground));
     assert_eq!(found.holes.count, 1, "{found}");
     let hole = &found.holes.largest[0];
     assert!((hole.area_m2 - 24.0).abs() < 1e-9, "{hole}");
-    assert_eq!(hole.box_m, [1010.0, 7.0, 1018.0, 10.0]);
+    assert_eq!(format!("{:?}", hole.box_m), "[1010.0, 7.0, 1018.0, 10.0]");
     assert!((hole.at_m[0] - 1014.0).abs() < 0.3 && (hole.at_m[1] - 8.5).abs() < 0.3, "{hole}");
     assert!(found.to_string().contains("inner holes                      1"), "{found}");
     assert!(found.warnings().any(|said| said.starts_with("holes in the slope: 1")));
@@ -222,7 +222,7 @@ fn an_inner_hole_is_found_where_it_is() {
 fn spikes_and_hanging_sheets_are_found() {
     let mut ground = tile([0.0, 30.0], [0.0, 20.0], 1.0, |_, y| 2.0 * y);
     let sheet = tile([5.2, 10.2], [4.3, 10.3], 1.0, |_, y| 2.0 * y + 3.0);
-    let sound = health_of(&[ground.clone()]);
+    let sound = health_of(std::slice::from_ref(&ground));
     assert!(sound.spikes.is_empty() && sound.hanging.is_empty(), "{sound}");
     for corner in ground.iter_mut().flatten() {
         match (corner.x, corner.y) {
@@ -235,7 +235,7 @@ fn spikes_and_hanging_sheets_are_found() {
     assert_eq!((found.spikes.count, found.hanging.count), (2, 1), "{found}");
     let heights: Vec<f64> = found.spikes.largest.iter().map(|spike| spike.height_m).collect();
     assert_eq!(heights, [12.0, -8.0]);
-    assert_eq!(found.spikes.largest[0].at_m, [1020.0, 5.0, 24.0]);
+    assert_eq!(format!("{:?}", found.spikes.largest[0].at_m), "[1020.0, 5.0, 24.0]");
     let hanging = &found.hanging.largest[0];
     assert!((hanging.height_m - 3.0).abs() < 1e-9 && hanging.parts == [2, 1], "{hanging}");
     assert!((hanging.area_m2 - 30.0).abs() < 1e-9, "{hanging}");
