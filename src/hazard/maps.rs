@@ -164,9 +164,11 @@ impl Layer {
 /// An energy read from classes of values (J), moved into the class of intensity that counting has found: the rock whose energy it stands for is there.
 fn within_class(energy_j: f64, intensity: f64) -> f64 {
     let [weak_j, medium_j] = INTENSITY_J;
+    // rasters hold 32-bit numbers, which are to lie below a limit too
+    let below = |limit_j: f64| f64::from((limit_j as f32).next_down());
     match intensity {
-        class if class < 2.0 => energy_j.min(weak_j.next_down()),
-        class if class < 3.0 => energy_j.clamp(weak_j, medium_j.next_down()),
+        class if class < 2.0 => energy_j.min(below(weak_j)),
+        class if class < 3.0 => energy_j.clamp(weak_j, below(medium_j)),
         _ => energy_j.max(medium_j),
     }
 }
@@ -321,7 +323,8 @@ mod tests {
             let weights = Weights::equal(40);
             let [p95_j, class] = [Layer::EnergyP95, Layer::Intensity]
                 .map(|layer| maps.values(layer, &weights).next().map_or(f64::NAN, |(_, v)| v));
-            let of_p95 = 1.0 + INTENSITY_J.iter().filter(|limit| p95_j >= **limit).count() as f64;
+            let of_p95 = 1.0
+                + INTENSITY_J.iter().filter(|limit| p95_j as f32 >= **limit as f32).count() as f64;
             assert!(
                 (of_p95 - class).abs() < 0.5 && (p95_j / total_j - 1.0).abs() < 0.03,
                 "{total_j} {p95_j} {class}"
