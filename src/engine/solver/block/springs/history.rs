@@ -128,6 +128,9 @@ impl Footing {
         (block, moving): (&Block, &Moving),
     ) {
         let histories = &mut self.springs.histories;
+        if histories.iter().all(|one| one.announced || one.captured) {
+            return;
+        }
         let rebounds = |one: &BlockHistory| !one.captured && one.closed;
         let goes_on = histories.iter().any(|one| one.announced && rebounds(one));
         let mass = moving.mass(block);

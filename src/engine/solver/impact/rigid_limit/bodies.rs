@@ -5,16 +5,18 @@
 //! rates. Impulses act on both ends of a contact at one point, so momentum and angular momentum are kept to rounding.
 
 use super::contacts::{AfterImpact, Contacts, REST};
-use super::{ContactEnds, FrozenBody, FrozenContact, ImpactRun};
+use super::{ContactEnds, FrozenBody, FrozenContact, ImpactRun, MOST_STEPS, Settled};
 use crate::rock::Vec3;
 use crate::solver::body::{STILL, Twist};
 use crate::solver::loss::Loss;
+use std::f64::consts::PI;
 
 /// Most bodies and contacts of one impact.
 pub(crate) const BODIES: usize = 16;
 pub(crate) const CONTACTS: usize = 48;
-/// Slowest frequency of a contact over the fastest (–): beyond it the stiff spring swings more often than steps are taken.
-const SLOWEST: f64 = 1e-3;
+/// Half swings of the heaviest body on the softest contact for which there must be steps: a stiff spring, or a light stone between heavy ones, swings thousands
+/// of times meanwhile, and a blow that is not followed to its end would stop what still moves.
+const SWINGS: f64 = 4.0;
 /// Rounds over the contacts in which what gives nothing back is brought to rest, at most.
 const ROUNDS: usize = 1000;
 
@@ -39,7 +41,7 @@ impl FrozenCollision {
 }
 
 /// Follows up to [`BODIES`] bodies through an impact on up to [`CONTACTS`] contacts at once, each of them at penetration zero or at its gap;
-/// `None` if nothing comes nearer, or where there are too many of them or their frequencies lie too far apart. `tolerance` is relative
+/// `None` if nothing comes nearer, or where there are too many of them or their frequencies lie too far apart to be followed to the end. `tolerance` is relative
 /// to the fastest motion at a contact (–).
 ///
 /// A contact that is pressed together slower than what is captured gives nothing back, whatever it gave in between.
@@ -63,17 +65,20 @@ fn followed<const B: usize, const K: usize, const N: usize, const Q: usize, cons
 ) -> Option<FrozenCollision> {
     let speed = fastest_m_s(bodies, contacts)?;
     let mut run = ImpactRun::<B, K, N, Q, P>::new((bodies, contacts), speed, tolerance);
-    if run.flow.contacts.softest < SLOWEST {
+    let swing_steps = PI / (run.flow.contacts.slowest_swing() * run.flow.longest);
+    if SWINGS * swing_steps > f64::from(MOST_STEPS) {
         return None;
     }
     let start = run.motions();
     let unit_j = run.flow.contacts.mass_kg * speed * speed;
     run.flow.contacts.capture(contacts, speed);
-    run.follow(tolerance);
+    let settled = run.follow(tolerance);
     let nothing = run.flow.nothing();
     let contacts = &run.flow.contacts;
-    let meets: [bool; K] =
-        std::array::from_fn(|k| k < contacts.list().len() && !run.flow.is_apart(k, &run.y));
+    let is_over = |k: usize| {
+        run.flow.is_apart(k, &run.y) || (settled == Settled::Free && run.flow.comes_back(k, &run.y))
+    };
+    let meets: [bool; K] = std::array::from_fn(|k| k < contacts.list().len() && !is_over(k));
     let AfterImpact { motions: together, plastic } =
         contacts.part_or_stay((run.motions(), meets), nothing);
     let (motions, lost) = contacts.balanced((&start, &together), plastic.iter().sum());

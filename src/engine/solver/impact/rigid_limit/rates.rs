@@ -45,7 +45,7 @@ pub(super) struct ContactRates<const B: usize, const K: usize> {
     /// Longest step.
     ///
     /// In radians of the stiffest contact, shorter where a dashpot is so strong that it, and not
-    /// the spring, sets the fastest rate.
+    /// the spring, sets the fastest rate; among several bodies longer where only soft ones are pressed.
     pub(super) longest: f64,
     /// Local error allowed.
     pub(super) allowed: f64,
@@ -89,6 +89,12 @@ impl<const B: usize, const K: usize> ContactRates<B, K> {
             -self.contacts.parting(k, way) - gap,
             -self.contacts.parting(k, |k| speed_of::<B, N>(y, k)),
         ]
+    }
+
+    /// Whether contact `k` is open and comes nearer: where the impact has ended before it is touched again it is touched in the next one.
+    pub(super) fn comes_back<const N: usize>(&self, k: usize, y: &[f64; N]) -> bool {
+        let [x, rate] = self.depth(k, y);
+        x < -self.nothing() && rate > self.nothing()
     }
 
     /// Whether contact `k` had a gap, and has one: what comes nearer there does so beyond this impact.
@@ -138,6 +144,16 @@ impl<const B: usize, const K: usize> ContactRates<B, K> {
             let sum: f64 = others.map(|(other, _)| contact.n.dot(&other.n).max(0.0).powi(2)).sum();
             self.damping[k] = contact.damping / sum.max(1.0).sqrt();
         }
+        if B > 1 {
+            self.longest = LONGEST_STEP / self.fastest_rate();
+        }
+    }
+
+    /// Fastest rate of what is pressed (rad of the stiffest contact): a stiff contact that is open holds up nothing.
+    fn fastest_rate(&self) -> f64 {
+        let pressed = self.contacts.list().iter().zip(self.pressed).filter(|(_, pressed)| *pressed);
+        let rates = pressed.map(|(contact, _)| contact.stiffness.sqrt().max(contact.damping));
+        rates.reduce(f64::max).unwrap_or(1.0)
     }
 
     /// Normal force of contact `k`, if it could pull.

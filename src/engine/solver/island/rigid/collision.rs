@@ -17,6 +17,7 @@ use crate::contact::ContactPoint;
 use crate::contact::pair::between;
 use crate::ground::Law;
 use crate::rock::Vec3;
+use crate::solver::body::Twist;
 use crate::solver::impact::{
     BODIES, CONTACTS, ContactEnds, FrozenBody, FrozenCollision, FrozenContact, collide,
 };
@@ -159,6 +160,9 @@ impl RigidIsland {
     fn strike_together(&mut self, scene: &mut ImpactScene, blow: &BlowStart, s: f64) -> bool {
         let Some(reach) = self.reach(scene, blow) else { return false };
         let Some(touching) = self.touching(scene, blow, (s, reach)) else { return false };
+        if touching.rocks.len() == 1 {
+            return false;
+        }
         let at_blow = |rock: &usize| {
             let (c, v) = self.balls[*rock].before_end(s);
             StruckRock { c, v, on_mesh: false }
@@ -169,17 +173,22 @@ impl RigidIsland {
         let Some(contacts) = self.contacts(scene, &struck, blow) else { return false };
         let has_gaps = contacts.iter().any(|contact| contact.gap_m > 0.0);
         let StruckRocks { touching, rocks } = &struck;
-        let own = if blow.pair.is_some() { 2 } else { 1 };
-        if touching.rocks.len() <= own && (blow.pair.is_none() || contacts.len() == 1) {
+        if contacts.len() == 1 {
             return false;
         }
         let frozen = |(rock, at): (&usize, &StruckRock)| {
             let ball = &self.balls[*rock];
             FrozenBody { body: ball.body, motion: (at.v, ball.w) }
         };
-        let bodies: ArrayVec<_, BODIES> = touching.rocks.iter().zip(rocks).map(frozen).collect();
+        let mut bodies: ArrayVec<_, BODIES> =
+            touching.rocks.iter().zip(rocks).map(frozen).collect();
+        // a rock alone is turned against the facet that it strikes, and back: all others meet the mesh as it is
+        let turned = |turn: Rotation3<f64>, (v, w): Twist| (turn * v, turn * w);
+        if let Some(turn) = &blow.turn {
+            bodies[0].motion = turned(turn.inverse(), bodies[0].motion);
+        }
         let broken = scene.broken_by(&touching.rocks, &bodies, &contacts);
-        let (after, stems) = match broken {
+        let (mut after, stems) = match broken {
             Some(Breakage { after, stems }) => (after, stems),
             None => match collide(&bodies, &contacts, self.impact_tolerance()) {
                 Some(after) => (after, ArrayVec::new()),
@@ -189,6 +198,9 @@ impl RigidIsland {
         let closes = |(contact, m_s): (&FrozenContact, &f64)| contact.gap_m > 0.0 && *m_s > 0.0;
         if has_gaps && !contacts.iter().zip(&after.fastest_m_s).any(closes) {
             return false;
+        }
+        if let Some(turn) = blow.turn {
+            after.motions[0] = turned(turn, after.motions[0]);
         }
         let (taken_j, by_trees) = self.book(scene, &struck, &contacts, &after);
         drop(contacts);
@@ -356,10 +368,8 @@ impl RigidIsland {
                     scene.members[*rock].kept.iter().any(|(held, ..)| *held == touch.feature);
                 let gap_m =
                     blow.gap_m(touch.distance_m - blow.reach_m(first, radius), radius, is_held);
-                // the facet is that of what is struck
-                let turn = blow.turn.filter(|_| blow.is_struck(first) && gap_m <= 0.0);
                 add(FrozenContact {
-                    normal: turn.map_or(touch.normal, |turn| turn * touch.normal),
+                    normal: touch.normal,
                     law: world.law(touch.triangle),
                     stiffness_scale: touch.gain2,
                     gap_m,
