@@ -120,3 +120,29 @@ fn a_comparison_of_worlds_says_that_their_rocks_depend_on_each_other() {
         }
     }
 }
+
+/// Blows through contacts so unlike that they are not followed to their end are told of before the run: by their masses and stiffnesses together, and
+/// sooner where nothing rebounds.
+#[test]
+fn blows_that_are_not_followed_are_told_of() {
+    let dir = tempfile::tempdir().unwrap();
+    let is_told = |(radii_m, stiffness_n_m, restitution): (&str, &str, f64), scheme: &str| {
+        let contact = contact(restitution).replace("1e8", stiffness_n_m);
+        let more = format!("{contact}\n[solver]\nscheme = \"{scheme}\"");
+        let asked = Asked { restitution, place: THREE, velocity: [0.0; 3], more: &more };
+        let scene = scene(dir.path(), &closed_box(), &asked);
+        let text = fs::read_to_string(&scene).unwrap();
+        let sized = text.replace("radius_m = 0.2", &format!("radius_m = {radii_m}"));
+        assert_ne!(text == sized, radii_m != "0.2");
+        fs::write(&scene, sized).unwrap();
+        let told = program::rockfall(&["plan", scene.to_str().unwrap()]);
+        assert!(told.status.success(), "{}", String::from_utf8_lossy(&told.stderr));
+        String::from_utf8_lossy(&told.stdout).contains("taken one by one")
+    };
+    let wide = "{ uniform = [0.005, 0.2] }";
+    assert!(!is_told(("0.2", "1e8", 0.5), "rigid"));
+    assert!(!is_told((wide, "1e8", 0.5), "rigid"));
+    assert!(is_told((wide, "1e8", 0.0), "rigid"));
+    assert!(is_told((wide, "1e12", 0.5), "rigid"));
+    assert!(!is_told((wide, "1e12", 0.5), "adaptive"));
+}

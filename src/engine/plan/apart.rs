@@ -2,10 +2,11 @@
 
 use super::{Part, Plan};
 use crate::error::{Error, Result};
-use crate::ground::Ground;
+use crate::ground::{Ground, damping_ratio};
 use crate::math;
 use crate::release::{Release, TYPED_DEPTH};
 use crate::scene::Scene;
+use crate::solver::impact::most_unlike;
 use crate::solver::island::broad_phase::{Ball, overlapping};
 
 /// Overlap allowed over that which the weight above presses in (–): a wedge presses more than a column.
@@ -28,9 +29,38 @@ impl Plan {
 
 /// What is said of the sample that the rocks of one world are; nothing where each has the terrain for itself.
 pub(super) fn one_sample(scene: &Scene) -> Vec<String> {
-    let shares = scene.release.together && scene.release.count > 1;
     let said = "rocks of one world meet each other, but all intervals take them for independent and are too narrow for what they share, as how long a heap moves: run several seeds and compare";
-    shares.then(|| said.to_owned()).into_iter().collect()
+    let shared = shares_world(scene).then(|| said.to_owned());
+    shared.into_iter().chain(unlike_blows(scene)).collect()
+}
+
+fn shares_world(scene: &Scene) -> bool {
+    scene.release.together && scene.release.count > 1
+}
+
+/// Warns of blows between rocks so unlike in mass, and on contacts so unlike in stiffness, that they are not followed to their end.
+fn unlike_blows(scene: &Scene) -> Option<String> {
+    let contact = scene.rocks.contact.as_ref().filter(|_| shares_world(scene))?;
+    if scene.solver.scheme().has_springs() {
+        return None;
+    }
+    let grounds = || scene.grounds.values();
+    let stiffness =
+        |k: usize| grounds().map(move |ground| ground.normal_stiffness_n_m.reckoned()[k]);
+    let own_n_m = contact.normal_stiffness_n_m;
+    let stiffest = stiffness(2).fold(own_n_m, f64::max);
+    let softest = stiffness(0).fold(own_n_m, f64::min);
+    let given_back =
+        grounds().filter_map(|ground| Some(ground.restitution.as_ref()?.reckoned()[0]));
+    let least = given_back.chain(contact.restitution).fold(1.0, f64::min);
+    let [smallest_m, _, largest_m] = scene.rocks.radius_m().reckoned();
+    let (masses, springs) = ((largest_m / smallest_m).powi(3), stiffest / softest);
+    let most = most_unlike(damping_ratio(least));
+    (masses * springs > most).then(|| {
+        format!(
+            "rocks differ up to {masses:.0} times in mass and contacts up to {springs:.0} times in stiffness: where the product is more than {most:.0e} blows through several contacts are taken one by one, and a boulder on a light stone comes off too slowly; write stiffnesses that are nearer to each other, or scheme = \"adaptive\""
+        )
+    })
 }
 
 /// Refuses rocks that overlap deeper than the weight of those above would press them together: their springs would shoot

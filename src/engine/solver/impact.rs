@@ -55,7 +55,7 @@ pub(crate) use plane::{BlowTable, NormalPassage, Plane, PressedIn, Rebound, blow
 pub(super) use rigid_limit::NOTHING;
 pub(crate) use rigid_limit::{
     BODIES, CONTACTS, ContactEnds, FrozenBody, FrozenCollision, FrozenContact, LONGEST_WAIT,
-    collide, throw,
+    collide, most_unlike, throw,
 };
 
 /// What following an impact has cost.

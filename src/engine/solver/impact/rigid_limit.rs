@@ -25,7 +25,7 @@ use crate::math;
 use crate::rock::Vec3;
 use crate::solver::body::{Body, STILL, Twist};
 use crate::solver::loss::{Loss, shared};
-pub(crate) use bodies::{BODIES, CONTACTS, FrozenCollision, collide};
+pub(crate) use bodies::{BODIES, CONTACTS, FrozenCollision, collide, most_unlike};
 use contacts::{AfterImpact, SwitchTime};
 use rates::ContactRates;
 use std::f64::consts::TAU;

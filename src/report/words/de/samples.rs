@@ -7,6 +7,10 @@ pub(super) const SAMPLES: &[(&str, &str)] = &[
         "Blöcke einer gemeinsamen Welt begegnen einander: alle Intervalle nehmen sie als unabhängig und sind zu eng für das, was sie teilen, etwa wie lange sich ein Haufen bewegt; mehrere Startwerte (seed) rechnen und vergleichen",
     ),
     (
+        "rocks differ up to {a} times in mass and contacts up to {b} times in stiffness: where the product is more than {c} blows through several contacts are taken one by one, and a boulder on a light stone comes off too slowly; write stiffnesses that are nearer to each other, or scheme = \"adaptive\"",
+        "Blöcke unterscheiden sich bis zu {a}-fach in der Masse und Kontakte bis zu {b}-fach in der Steifigkeit: wo das Produkt größer als {c} ist, werden Stöße durch mehrere Kontakte einzeln genommen, und ein großer Block auf einem leichten Stein prallt zu langsam ab; Steifigkeiten schreiben, die näher beieinander liegen, oder scheme = \"adaptive\"",
+    ),
+    (
         "line “{name}”: its pieces from corner {a} and corner {b} cross; a rock counts once, where it crosses first. Write the corners in order if the line is not meant so",
         "Linie „{name}“: ihre Stücke ab Ecke {a} und ab Ecke {b} kreuzen sich; ein Block zählt einmal, wo er sie zuerst quert. Die Ecken der Reihe nach schreiben, falls die Linie nicht so gemeint ist",
     ),

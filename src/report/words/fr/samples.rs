@@ -7,6 +7,10 @@ pub(super) const SAMPLES: &[(&str, &str)] = &[
         "les blocs d’un même monde se rencontrent\u{a0}: tous les intervalles les prennent pour indépendants et sont trop étroits pour ce qu’ils partagent, comme la durée du mouvement d’un amas\u{a0}; calculer avec plusieurs graines (seed) et comparer",
     ),
     (
+        "rocks differ up to {a} times in mass and contacts up to {b} times in stiffness: where the product is more than {c} blows through several contacts are taken one by one, and a boulder on a light stone comes off too slowly; write stiffnesses that are nearer to each other, or scheme = \"adaptive\"",
+        "les blocs diffèrent jusqu’à {a} fois en masse et les contacts jusqu’à {b} fois en raideur : où le produit dépasse {c}, les chocs à travers plusieurs contacts sont pris un à un, et un gros bloc sur une pierre légère rebondit trop lentement ; écrire des raideurs plus proches, ou scheme = \"adaptive\"",
+    ),
+    (
         "line “{name}”: its pieces from corner {a} and corner {b} cross; a rock counts once, where it crosses first. Write the corners in order if the line is not meant so",
         "ligne «\u{a0}{name}\u{a0}»\u{a0}: ses tronçons depuis les sommets {a} et {b} se croisent\u{a0}; un bloc compte une fois, là où il la franchit d’abord. Écrire les sommets dans l’ordre si la ligne n’est pas voulue ainsi",
     ),

@@ -7,6 +7,10 @@ pub(super) const SAMPLES: &[(&str, &str)] = &[
         "i blocchi di uno stesso mondo si incontrano: tutti gli intervalli li considerano indipendenti e sono troppo stretti per ciò che hanno in comune, come la durata del moto di un cumulo; calcolare con più semi (seed) e confrontare",
     ),
     (
+        "rocks differ up to {a} times in mass and contacts up to {b} times in stiffness: where the product is more than {c} blows through several contacts are taken one by one, and a boulder on a light stone comes off too slowly; write stiffnesses that are nearer to each other, or scheme = \"adaptive\"",
+        "i blocchi differiscono fino a {a} volte in massa e i contatti fino a {b} volte in rigidezza: dove il prodotto supera {c} gli urti attraverso più contatti sono presi uno a uno, e un masso su una pietra leggera rimbalza troppo lentamente; scrivere rigidezze più vicine, oppure scheme = \"adaptive\"",
+    ),
+    (
         "line “{name}”: its pieces from corner {a} and corner {b} cross; a rock counts once, where it crosses first. Write the corners in order if the line is not meant so",
         "linea “{name}”: i suoi tratti dai vertici {a} e {b} si incrociano; un blocco conta una volta, dove la attraversa per primo. Scrivere i vertici in ordine se la linea non è voluta così",
     ),

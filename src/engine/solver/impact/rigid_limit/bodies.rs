@@ -5,7 +5,7 @@
 //! rates. Impulses act on both ends of a contact at one point, so momentum and angular momentum are kept to rounding.
 
 use super::contacts::{AfterImpact, Contacts, REST};
-use super::{ContactEnds, FrozenBody, FrozenContact, ImpactRun, MOST_STEPS, Settled};
+use super::{ContactEnds, FrozenBody, FrozenContact, ImpactRun, LONGEST_STEP, MOST_STEPS, Settled};
 use crate::rock::Vec3;
 use crate::solver::body::{STILL, Twist};
 use crate::solver::loss::Loss;
@@ -19,6 +19,12 @@ pub(crate) const CONTACTS: usize = 48;
 const SWINGS: f64 = 4.0;
 /// Rounds over the contacts in which what gives nothing back is brought to rest, at most.
 const ROUNDS: usize = 1000;
+
+/// Largest ratio of masses times that of stiffnesses (–) with which a blow of several bodies is followed, where no contact has more than a damping ratio (–).
+pub(crate) fn most_unlike(damping_ratio: f64) -> f64 {
+    let longest = LONGEST_STEP / (2.0 * damping_ratio).max(1.0);
+    (longest * f64::from(MOST_STEPS) / (SWINGS * PI)).powi(2)
+}
 
 /// Motions after a frozen impact of several bodies.
 #[derive(Debug, Clone, Copy)]
@@ -65,8 +71,7 @@ fn followed<const B: usize, const K: usize, const N: usize, const Q: usize, cons
 ) -> Option<FrozenCollision> {
     let speed = fastest_m_s(bodies, contacts)?;
     let mut run = ImpactRun::<B, K, N, Q, P>::new((bodies, contacts), speed, tolerance);
-    let swing_steps = PI / (run.flow.contacts.slowest_swing() * run.flow.longest);
-    if SWINGS * swing_steps > f64::from(MOST_STEPS) {
+    if run.flow.contacts.slowest_swing() * run.flow.longest < SWINGS * PI / f64::from(MOST_STEPS) {
         return None;
     }
     let start = run.motions();
