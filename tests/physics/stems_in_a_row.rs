@@ -57,6 +57,25 @@ fn row_m_s(mut v: Vec<f64>, gap_m: f64, limit_j: f64) -> Vec<f64> {
     v
 }
 
+/// Rocks and stems of one material without friction.
+fn smooth_world() -> World {
+    let ground = Ground {
+        normal_stiffness_n_m: STIFFNESS_N_M,
+        shear_stiffness_n_m: 0.25 * STIFFNESS_N_M,
+        friction_angle_rad: 0.0,
+        restitution: Some(RESTITUTION),
+        ..GROUND
+    };
+    World {
+        restitution: RESTITUTION,
+        stiffness_n_m: STIFFNESS_N_M,
+        friction_angle_rad: 0.0,
+        ground,
+        grounds: 2,
+        ..WORLD
+    }
+}
+
 /// Rocks in touch, the first at the stem, the last of them coming at it.
 fn row(count: usize) -> Vec<Sphere> {
     let rock = |k: usize| -> Sphere {
@@ -72,13 +91,6 @@ fn row(count: usize) -> Vec<Sphere> {
 #[test]
 fn a_stem_gives_way_to_a_blow_that_runs_through_a_row() {
     let energy_j = 0.5 * MASS_KG * SPEED_M_S * SPEED_M_S;
-    let ground = Ground {
-        normal_stiffness_n_m: STIFFNESS_N_M,
-        shear_stiffness_n_m: 0.25 * STIFFNESS_N_M,
-        friction_angle_rad: 0.0,
-        restitution: Some(RESTITUTION),
-        ..GROUND
-    };
     for count in [2, 3, 12] {
         for share in [1e-3, 0.05, 0.15, 2.0] {
             let mut start = vec![0.0; count];
@@ -90,17 +102,7 @@ fn a_stem_gives_way_to_a_blow_that_runs_through_a_row() {
                 (Scheme::Adaptive, 0.01),
                 (Scheme::Reference, 1e-5),
             ] {
-                let world = World {
-                    scheme,
-                    tolerance_m_s: size,
-                    step_s: size,
-                    restitution: RESTITUTION,
-                    stiffness_n_m: STIFFNESS_N_M,
-                    friction_angle_rad: 0.0,
-                    ground,
-                    grounds: 2,
-                    ..WORLD
-                };
+                let world = World { scheme, tolerance_m_s: size, step_s: size, ..smooth_world() };
                 let terrain = stand_on(-50.0, 1, Some(share * energy_j));
                 let falls = world.falls(&terrain, &row(count), 0.06);
                 let ends = [0, count - 1].map(|k| (falls[k].end.velocity_m_s.x, exact[k]));
@@ -119,30 +121,15 @@ fn a_stem_gives_way_to_a_blow_that_runs_through_a_row() {
 #[test]
 fn a_stem_gives_way_to_rocks_that_follow_each_other() {
     let energy_j = 0.5 * MASS_KG * SPEED_M_S * SPEED_M_S;
-    let ground = Ground {
-        normal_stiffness_n_m: STIFFNESS_N_M,
-        shear_stiffness_n_m: 0.25 * STIFFNESS_N_M,
-        friction_angle_rad: 0.0,
-        restitution: Some(RESTITUTION),
-        ..GROUND
-    };
     let mut broken = 0;
     for gap_m in [0.5e-3, 2e-3, 4e-3, 6e-3] {
         for share in [0.7, 0.95, 1.1, 1.3] {
             let exact = row_m_s(vec![SPEED_M_S; 2], gap_m, share * energy_j);
-            let world = World {
-                restitution: RESTITUTION,
-                stiffness_n_m: STIFFNESS_N_M,
-                friction_angle_rad: 0.0,
-                ground,
-                grounds: 2,
-                ..WORLD
-            };
             let front = -0.5 - RADIUS_M - 1e-9;
             let rocks: [Sphere; 2] = [front, front - 2.0 * RADIUS_M - gap_m]
                 .map(|x| (RADIUS_M, 2700.0, [x, 0.0, 0.0], [SPEED_M_S, 0.0, 0.0], [0.0; 3]));
             let terrain = stand_on(-50.0, 1, Some(share * energy_j));
-            let falls = world.falls(&terrain, &rocks, 0.06);
+            let falls = smooth_world().falls(&terrain, &rocks, 0.06);
             for (fall, exact) in falls.iter().zip(&exact) {
                 let off = (fall.end.velocity_m_s.x - exact).abs();
                 assert!(
