@@ -8,7 +8,7 @@ pub(super) const SAMPLES: &[(&str, &str)] = &[
     ),
     (
         "rocks differ up to {a} times in mass and contacts up to {b} times in stiffness: where the product is more than {c} blows through several contacts are taken one by one, and a boulder on a light stone comes off too slowly; write stiffnesses that are nearer to each other, or scheme = \"adaptive\"",
-        "les blocs diffèrent jusqu’à {a} fois en masse et les contacts jusqu’à {b} fois en raideur : où le produit dépasse {c}, les chocs à travers plusieurs contacts sont pris un à un, et un gros bloc sur une pierre légère rebondit trop lentement ; écrire des raideurs plus proches, ou scheme = \"adaptive\"",
+        "les blocs diffèrent jusqu’à {a} fois en masse et les contacts jusqu’à {b} fois en raideur\u{a0}: où le produit dépasse {c}, les chocs à travers plusieurs contacts sont pris un à un, et un gros bloc sur une pierre légère rebondit trop lentement\u{a0}; écrire des raideurs plus proches, ou scheme = \"adaptive\"",
     ),
     (
         "line “{name}”: its pieces from corner {a} and corner {b} cross; a rock counts once, where it crosses first. Write the corners in order if the line is not meant so",
