@@ -115,6 +115,13 @@ fn sum_of(path: &Path, bytes: u64) -> Result<Crc> {
     }
 }
 
+/// CRC-32 of what is held in memory.
+pub(super) fn of_bytes(bytes: &[u8]) -> u32 {
+    let mut crc = Crc::new();
+    crc.update(bytes);
+    crc.sum()
+}
+
 /// Before and behind the checksum at the end of a JSON object.
 const CLOSING: [&str; 2] = [",\n  \"crc32\": \"", "\"\n}\n"];
 
@@ -122,11 +129,10 @@ const CLOSING: [&str; 2] = [",\n  \"crc32\": \"", "\"\n}\n"];
 pub(super) fn sealed(mut object: String) -> String {
     let inner = object.strip_suffix("\n}").map_or(object.len(), str::len);
     object.truncate(inner);
-    let mut crc = Crc::new();
-    crc.update(object.as_bytes());
+    let sum = of_bytes(object.as_bytes());
     let [before, behind] = CLOSING;
     // writing to a string cannot fail
-    let _ = write!(object, "{before}{:08x}{behind}", crc.sum());
+    let _ = write!(object, "{before}{sum:08x}{behind}");
     object
 }
 
@@ -139,12 +145,11 @@ pub(super) fn check_sealed(path: &Path, object: &[u8]) -> Result<()> {
     else {
         return Ok(());
     };
-    let mut crc = Crc::new();
-    crc.update(inner);
+    let found = of_bytes(inner);
     let written =
         std::str::from_utf8(digits).ok().and_then(|sum| u32::from_str_radix(sum, 16).ok());
     // digits that are none are damage too
-    compare(path, crc.sum(), written.unwrap_or(!crc.sum()))
+    compare(path, found, written.unwrap_or(!found))
 }
 
 /// A file that is summed while it grows.

@@ -8,7 +8,6 @@ use crate::file::write_atomic;
 use crate::frequency::Weights;
 use crate::hazard::{AnnualRequest, Layer, MapFrame, MapState, Maps, Matrix, year_maps};
 use crate::terrain::geotiff::{Image, NO_DATA, encode};
-use flate2::Crc;
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::fmt::Write as _;
@@ -158,9 +157,7 @@ pub(super) fn write_state(
     let text = serde_json::to_vec(&maps.state())
         .map_err(|why| Error::file("write", &path)(std::io::Error::other(why)))?;
     write_atomic(&path, &text)?;
-    let mut crc = Crc::new();
-    crc.update(&text);
-    sums.insert(state_name(done), crc.sum());
+    sums.insert(state_name(done), checksum::of_bytes(&text));
     Ok(())
 }
 

@@ -27,8 +27,8 @@ impl Plan {
     }
 }
 
-/// What is said of the sample that the rocks of one world are; nothing where each has the terrain for itself.
-pub(super) fn one_sample(scene: &Scene) -> Vec<String> {
+/// What is said of the sample that the rocks of one world are, and of blows between them; nothing where each has the terrain for itself.
+pub(super) fn warnings(scene: &Scene) -> Vec<String> {
     let said = "rocks of one world meet each other, but all intervals take them for independent and are too narrow for what they share, as how long a heap moves: run several seeds and compare";
     let shared = shares_world(scene).then(|| said.to_owned());
     shared.into_iter().chain(unlike_blows(scene)).collect()

@@ -125,7 +125,7 @@ fn rolling_of_blocks(scene: &Scene) -> impl Iterator<Item = String> {
 /// What the scene warns of that no part of the plan does: grounds, and what all rocks share.
 pub(super) fn warnings(scene: &Scene, terrain: &Terrain) -> Vec<String> {
     let of_terrain = [unused(scene, terrain), trees::astray(terrain)].concat();
-    [slips::of(scene, terrain.epsg), of_terrain, apart::one_sample(scene)].concat()
+    [slips::of(scene, terrain.epsg), of_terrain, apart::warnings(scene)].concat()
 }
 
 /// Warnings about grounds and keys that nothing answers with.

@@ -14,6 +14,8 @@ use std::sync::Arc;
 pub(super) struct Population {
     /// What they are: a heading.
     pub(super) name: String,
+    /// Whether they are what the barriers of a run have let through.
+    pub(super) is_behind_barriers: bool,
     /// Released rocks that they are among.
     pub(super) among: Arc<CountedReleases>,
     pub(super) shares: Vec<CountedShare>,
@@ -59,21 +61,15 @@ impl CountedShare {
     }
 }
 
-/// Ends the heading of rocks that barriers have let through.
-const BEHIND: &str = ", behind the barriers of each run";
-
 impl Population {
-    /// Whether it is what the barriers of a run have let through.
-    pub(super) fn is_behind_barriers(&self) -> bool {
-        self.name.ends_with(BEHIND)
-    }
-
     /// Whether it is that of another run rock by rock, and no barrier has a part in it.
     pub(super) fn is_like(&self, other: &Self) -> bool {
-        let share = |one: &CountedShare| (one.releases.clone(), one.open.clone());
-        let are_alike = self.shares.iter().map(share).eq(other.shares.iter().map(share));
-        are_alike
-            && !self.is_behind_barriers()
+        let is_alike = |(own, other): (&CountedShare, &CountedShare)| {
+            own.releases == other.releases && own.open == other.open
+        };
+        self.shares.len() == other.shares.len()
+            && self.shares.iter().zip(&other.shares).all(is_alike)
+            && !self.is_behind_barriers
             && self.among == other.among
             && self.values == other.values
             && self.open == other.open
@@ -246,6 +242,7 @@ fn all(
     };
     let mut found = Population {
         name: "All releases".to_owned(),
+        is_behind_barriers: false,
         among: Arc::clone(among),
         shares: StopKind::ALL.map(share).into(),
         values: WHOLE.map(|quantity| (ComparedQuantity::Whole(quantity), Values::new())).into(),
@@ -329,6 +326,7 @@ fn crossing(
     let cross = own().map(|row| row.index).collect();
     Population {
         name: format!("{what} “{name}”, barriers left aside"),
+        is_behind_barriers: false,
         among: Arc::clone(among.0),
         shares: vec![at_place(come, cross, (among, true))],
         open: Vec::new(),
@@ -358,7 +356,8 @@ fn arriving(
         arrived.iter().map(|rock| (rock.release, of(rock))).collect()
     };
     Population {
-        name: format!("“{name}”{BEHIND}"),
+        name: format!("“{name}”, behind the barriers of each run"),
+        is_behind_barriers: true,
         among: Arc::clone(among.0),
         shares,
         open: Vec::new(),

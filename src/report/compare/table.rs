@@ -119,7 +119,7 @@ pub(super) fn group([a, b]: &[Population; 2], paired: bool, same_run: bool) -> G
     }
     // what neither run has seen is no news
     rows.retain(|row| row.rocks != [0, 0]);
-    Group { name: a.name.clone(), rows, is_behind: a.is_behind_barriers() }
+    Group { name: a.name.clone(), rows, is_behind: a.is_behind_barriers }
 }
 
 /// How a share changes (–).

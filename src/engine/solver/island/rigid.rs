@@ -12,6 +12,7 @@
 //! position_correction   c moved out of what still overlaps, paid for by energy
 //! ```
 
+mod blow_start;
 mod broken_stems;
 mod collision;
 mod contacts;

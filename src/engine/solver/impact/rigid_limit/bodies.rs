@@ -22,8 +22,12 @@ const ROUNDS: usize = 1000;
 
 /// Largest ratio of masses times that of stiffnesses (–) with which a blow of several bodies is followed, where no contact has more than a damping ratio (–).
 pub(crate) fn most_unlike(damping_ratio: f64) -> f64 {
-    let longest = LONGEST_STEP / (2.0 * damping_ratio).max(1.0);
-    (longest * f64::from(MOST_STEPS) / (SWINGS * PI)).powi(2)
+    slowest_followed(LONGEST_STEP / (2.0 * damping_ratio).max(1.0)).powi(-2)
+}
+
+/// Slowest swing that there are steps for (rad of the stiffest contact), with steps of at most `longest`.
+fn slowest_followed(longest: f64) -> f64 {
+    SWINGS * PI / (longest * f64::from(MOST_STEPS))
 }
 
 /// Motions after a frozen impact of several bodies.
@@ -71,7 +75,7 @@ fn followed<const B: usize, const K: usize, const N: usize, const Q: usize, cons
 ) -> Option<FrozenCollision> {
     let speed = fastest_m_s(bodies, contacts)?;
     let mut run = ImpactRun::<B, K, N, Q, P>::new((bodies, contacts), speed, tolerance);
-    if run.flow.contacts.slowest_swing() * run.flow.longest < SWINGS * PI / f64::from(MOST_STEPS) {
+    if run.flow.contacts.slowest_swing() < slowest_followed(run.flow.longest) {
         return None;
     }
     let start = run.motions();

@@ -11,11 +11,11 @@
 //! stone is answered by the ground below it there too.
 
 use super::RigidIsland;
+use super::blow_start::{BlowStart, WIDEST};
 use super::broken_stems::TakenByTree;
 use super::contacts::{ImpactScene, LIVELY, hit_of};
 use crate::contact::ContactPoint;
 use crate::contact::pair::between;
-use crate::ground::Law;
 use crate::rock::Vec3;
 use crate::solver::body::Twist;
 use crate::solver::impact::{
@@ -27,16 +27,11 @@ use crate::solver::law::capture_m_s;
 use crate::solver::rigid::HELD;
 use arrayvec::ArrayVec;
 use nalgebra::Rotation3;
-use std::f64::consts::PI;
 
 /// Most rocks that a blow is followed with in an island of more than [`BODIES`]: a light one on the mesh, and a heavy one that strikes it.
 const TOGETHER_IN_HEAP: usize = 2;
 /// By how much the heavy one is heavier (–): taken by itself it would be stopped by blow after blow, and lose nearly all to the light one.
 const MUCH_LIGHTER: f64 = 2.0;
-/// Widest gap that closes within a blow (–, relative to R of the smaller rock): beyond it normals would turn while it lasts.
-const WIDEST: f64 = 0.05;
-/// A gap that is rounding of places (–, relative to R of the smaller rock).
-const NO_GAP: f64 = 1e-8;
 /// A rock that is no farther from the mesh at the end of the step (–, relative to R) may have touched it at a blow …
 const BESIDE_MESH: f64 = 0.02;
 /// … which presses it there if it pushes it against the normal, by this cosine.
@@ -55,51 +50,6 @@ impl Reach {
     const ON_MESH: Self = Self { rocks: TOGETHER_IN_HEAP, ..Self::ALL };
     /// One contact of each rock with the mesh must have room too.
     const NEAREST: Self = Self { pairs: CONTACTS - BODIES, or_nearest: true, ..Self::ALL };
-}
-
-/// What a blow begins with.
-pub(super) struct BlowStart {
-    /// The pair of rocks, or none where one comes to the mesh.
-    pub(super) pair: Option<usize>,
-    /// Turn of the facet of rough ground that is struck, if there is one.
-    pub(super) turn: Option<Rotation3<f64>>,
-    /// Distance of its centre (m) at which a rock that comes to the mesh touches it: its radius, but for rounding.
-    pub(super) touches_m: f64,
-    /// How fast its ends come at each other (m/s) …
-    pub(super) approach_m_s: f64,
-    /// … and how long they stay near each other (s): gaps that close meanwhile belong to the blow.
-    pub(super) lasts_s: f64,
-}
-
-impl BlowStart {
-    /// How long springs of a law are pressed in one blow, and as long again (s): what has just let go is still near.
-    pub(super) fn lasting_s(law: &Law) -> f64 {
-        2.0 * PI / law.omega_rad_s()
-    }
-
-    /// Widest gap (m) beside a rock of this radius (m) that closes while the blow lasts, at `closing_m_s` (m/s) and what the blow gives: up to twice
-    /// the approach, to a light rock that a heavy one strikes.
-    fn closes_m(&self, closing_m_s: f64, radius_m: f64) -> f64 {
-        let way_m = (closing_m_s.max(0.0) + 2.0 * self.approach_m_s) * self.lasts_s;
-        way_m.min(WIDEST * radius_m)
-    }
-
-    /// The gap (m) beside a rock of this radius (m) where so much is left. What is held is held though it is moved a little apart, and where no gap closes all is in touch that
-    /// is as near; else rounding alone leaves none.
-    fn gap_m(&self, left_m: f64, radius_m: f64, is_held: bool) -> f64 {
-        let none = if is_held || self.lasts_s <= 0.0 { HELD } else { NO_GAP };
-        if left_m > none * radius_m { left_m } else { 0.0 }
-    }
-
-    /// Whether rock `k` of the blow is the one that comes to the mesh.
-    fn is_struck(&self, k: usize) -> bool {
-        self.pair.is_none() && k == 0
-    }
-
-    /// Distance (m) at which rock `k` of the blow, of this radius (m), touches the mesh.
-    fn reach_m(&self, k: usize, radius_m: f64) -> f64 {
-        if self.is_struck(k) { self.touches_m } else { radius_m }
-    }
 }
 
 /// Rocks that touch each other, as places in the island, and their pairs.
@@ -135,6 +85,15 @@ struct StruckRock {
     on_mesh: bool,
 }
 
+/// What came of trying to follow a blow with all whose gaps may close.
+enum Followed {
+    Yes,
+    /// Nor would it be with what touches alone.
+    No,
+    /// It may be with what touches alone.
+    NotSoWide,
+}
+
 /// All that takes part in a blow.
 struct StruckRocks {
     touching: TouchingRocks,
@@ -153,15 +112,23 @@ impl RigidIsland {
     ) -> bool {
         // where no gap closes the blow is that of what touches, to the last digit
         let in_touch = BlowStart { lasts_s: 0.0, ..*blow };
-        [blow, &in_touch].into_iter().any(|blow| self.strike_together(scene, blow, s))
+        match self.strike_together(scene, blow, s) {
+            Followed::Yes => true,
+            Followed::No => false,
+            Followed::NotSoWide => {
+                matches!(self.strike_together(scene, &in_touch, s), Followed::Yes)
+            }
+        }
     }
 
-    /// The same with all whose gaps are no wider than may close; false too if none of them does.
-    fn strike_together(&mut self, scene: &mut ImpactScene, blow: &BlowStart, s: f64) -> bool {
-        let Some(reach) = self.reach(scene, blow) else { return false };
-        let Some(touching) = self.touching(scene, blow, (s, reach)) else { return false };
+    /// The same with all whose gaps are no wider than may close; not so either if none of them does.
+    fn strike_together(&mut self, scene: &mut ImpactScene, blow: &BlowStart, s: f64) -> Followed {
+        let Some(reach) = self.reach(scene, blow) else { return Followed::No };
+        let Some(touching) = self.touching(scene, blow, (s, reach)) else {
+            return Followed::NotSoWide;
+        };
         if touching.rocks.len() == 1 {
-            return false;
+            return Followed::No;
         }
         let at_blow = |rock: &usize| {
             let (c, v) = self.balls[*rock].before_end(s);
@@ -170,12 +137,36 @@ impl RigidIsland {
         let rocks = touching.rocks.iter().map(at_blow).collect();
         let mut struck = StruckRocks { touching, rocks };
         struck.look(scene, blow);
-        let Some(contacts) = self.contacts(scene, &struck, blow) else { return false };
+        let Some(contacts) = self.contacts(scene, &struck, blow) else {
+            return Followed::NotSoWide;
+        };
         let has_gaps = contacts.iter().any(|contact| contact.gap_m > 0.0);
-        let StruckRocks { touching, rocks } = &struck;
         if contacts.len() == 1 {
-            return false;
+            return Followed::No;
         }
+        let thrown = self.thrown(scene, &struck, &contacts, blow);
+        let Some(Breakage { after, stems }) = thrown else {
+            return if has_gaps { Followed::NotSoWide } else { Followed::No };
+        };
+        let closes = |(contact, m_s): (&FrozenContact, &f64)| contact.gap_m > 0.0 && *m_s > 0.0;
+        if has_gaps && !contacts.iter().zip(&after.fastest_m_s).any(closes) {
+            return Followed::NotSoWide;
+        }
+        let (taken_j, by_trees) = self.book(scene, &struck, &contacts, &after);
+        drop(contacts);
+        scene.load_stems(&struck.touching.rocks, &by_trees, &stems);
+        self.go_on_from(&struck, &after, (taken_j, s));
+        Followed::Yes
+    }
+
+    /// The motions after a blow, with the stems that it has broken; `None` where it cannot be followed.
+    fn thrown(
+        &self,
+        scene: &ImpactScene,
+        StruckRocks { touching, rocks }: &StruckRocks,
+        contacts: &[FrozenContact],
+        blow: &BlowStart,
+    ) -> Option<Breakage> {
         let frozen = |(rock, at): (&usize, &StruckRock)| {
             let ball = &self.balls[*rock];
             FrozenBody { body: ball.body, motion: (at.v, ball.w) }
@@ -187,26 +178,15 @@ impl RigidIsland {
         if let Some(turn) = &blow.turn {
             bodies[0].motion = turned(turn.inverse(), bodies[0].motion);
         }
-        let broken = scene.broken_by(&touching.rocks, &bodies, &contacts);
-        let (mut after, stems) = match broken {
-            Some(Breakage { after, stems }) => (after, stems),
-            None => match collide(&bodies, &contacts, self.impact_tolerance()) {
-                Some(after) => (after, ArrayVec::new()),
-                None => return false,
-            },
+        let whole = || {
+            let after = collide(&bodies, contacts, self.impact_tolerance())?;
+            Some(Breakage { after, stems: ArrayVec::new() })
         };
-        let closes = |(contact, m_s): (&FrozenContact, &f64)| contact.gap_m > 0.0 && *m_s > 0.0;
-        if has_gaps && !contacts.iter().zip(&after.fastest_m_s).any(closes) {
-            return false;
-        }
+        let mut thrown = scene.broken_by(&touching.rocks, &bodies, contacts).or_else(whole)?;
         if let Some(turn) = blow.turn {
-            after.motions[0] = turned(turn, after.motions[0]);
+            thrown.after.motions[0] = turned(turn, thrown.after.motions[0]);
         }
-        let (taken_j, by_trees) = self.book(scene, &struck, &contacts, &after);
-        drop(contacts);
-        scene.load_stems(&touching.rocks, &by_trees, &stems);
-        self.go_on_from(&struck, &after, (taken_j, s));
-        true
+        Some(thrown)
     }
 
     /// Books what the contacts of a blow took; what each rock lost in its contacts (J), and what trees took.

@@ -7,7 +7,7 @@
 //! step, and each takes energy.
 
 use super::RigidIsland;
-use super::collision::BlowStart;
+use super::blow_start::BlowStart;
 use super::contacts::{BallContact, ImpactScene, LIVELY, OnMesh, StepBody, hit_of};
 use super::expected::NEAR;
 use super::sweeps::FEW;
