@@ -31,7 +31,7 @@ use crate::contact::history::ContactHistory;
 use crate::contact::{ContactPoint, MOST};
 use crate::rock::Vec3;
 use arrayvec::ArrayVec;
-pub(super) use contact::{GroundContact, settle, sustained_m_s};
+pub(super) use contact::{GroundContact, converge, sustained_m_s};
 pub(super) use sustained::way_out;
 
 /// Touches no further away than this still hold the rock (–, relative to R).

@@ -1,107 +1,107 @@
 //! Which contacts of an island must be solved again.
 //!
-//! Most contacts of a large heap have settled after a few sweeps. A contact is asked again where one
-//! of its rocks was set in another motion since it was solved; all others are not even looked at.
+//! Most contacts of a large heap converge within a few sweeps. A contact is solved again only where the motion of
+//! one of its rocks has changed since; all others are skipped.
 
 use super::contact_queue::{ContactQueue, ContactsOfRocks};
 
-/// Part of what is allowed below which a change counts as settled however fast changes die out, and stirs nothing, in an island of a few
-/// rocks and in a larger one (–): what is passed over adds up.
-const SETTLED_AT_ONCE: (f64, f64) = (1e-4, 1e-2);
-/// In an island of no more rocks than this all contacts are asked in every sweep: little would be saved, and every digit counts.
+/// Change, relative to what is allowed, that is neglected: in an island of a few rocks and in a larger one (–). Contacts
+/// with such changes are not solved again, and what is neglected adds up.
+const NEGLIGIBLE: (f64, f64) = (1e-4, 1e-2);
+/// In an island of no more rocks than this every sweep solves all contacts: little would be saved, and every digit counts.
 const SMALL: usize = 4;
 
-/// Which rocks have been stirred, and which contacts must be asked for that. A rock's contacts with the mesh are asked together and
-/// have its number; the contacts of two rocks follow.
+/// Rocks whose motion has changed, and the contacts that must therefore be solved again. The contacts of a rock with the
+/// mesh are solved together and have its number; the contacts of two rocks follow.
 #[derive(Debug, Default)]
 pub(super) struct ActiveSet {
-    asked: ContactQueue,
-    /// How many there are.
+    queue: ContactQueue,
+    /// Number of contacts.
     count: usize,
-    /// Contacts with others of every rock.
+    /// Contacts with other rocks of every rock.
     of_rocks: ContactsOfRocks,
     ends: Vec<[usize; 2]>,
     /// Rocks whose forces changed in the last sweep.
-    pub(super) lately: Vec<bool>,
+    pub(super) changed: Vec<bool>,
     /// Largest change in the current sweep and in the two before, relative to what is allowed.
     changes: [f64; 3],
 }
 
 impl ActiveSet {
-    /// Nothing has been solved yet.
+    /// Begins an iteration: all contacts are still to be solved.
     pub(super) fn begin(&mut self, rocks: usize, pairs: impl Iterator<Item = [usize; 2]>) {
-        self.lately.clear();
-        self.lately.resize(rocks, true);
+        self.changed.clear();
+        self.changed.resize(rocks, true);
         self.changes = [f64::INFINITY; 3];
         self.ends.clear();
         self.ends.extend(pairs);
         self.count = rocks + self.ends.len();
-        self.asked.all(self.count);
+        self.queue.all(self.count);
         if !self.is_small() {
-            self.of_rocks.lay(&self.ends, rocks);
+            self.of_rocks.index(&self.ends, rocks);
         }
     }
 
     /// Whether the island has a few rocks only.
     pub(super) fn is_small(&self) -> bool {
-        self.lately.len() <= SMALL
+        self.changed.len() <= SMALL
     }
 
-    /// Part of what is allowed below which a change is none (–).
-    pub(super) fn nothing(&self) -> f64 {
-        if self.is_small() { SETTLED_AT_ONCE.0 } else { SETTLED_AT_ONCE.1 }
+    /// Change, relative to what is allowed, that is neglected (–).
+    pub(super) fn negligible(&self) -> f64 {
+        if self.is_small() { NEGLIGIBLE.0 } else { NEGLIGIBLE.1 }
     }
 
     /// Begins another sweep.
     pub(super) fn begin_sweep(&mut self) {
-        self.lately.fill(false);
+        self.changed.fill(false);
         self.changes = [0.0, self.changes[0], self.changes[1]];
         if self.is_small() {
-            self.asked.all(self.count);
+            self.queue.all(self.count);
         }
     }
 
-    /// The next contact to ask after `last`, or the first of a sweep.
+    /// The next contact to solve after `last`, or the first of a sweep.
     pub(super) fn next(&self, last: Option<usize>, backwards: bool) -> Option<usize> {
         match (last, backwards) {
-            (None, false) => self.asked.from(0),
-            (None, true) => self.asked.last(),
-            (Some(k), false) => self.asked.from(k + 1),
-            (Some(k), true) => self.asked.below(k),
+            (None, false) => self.queue.from(0),
+            (None, true) => self.queue.last(),
+            (Some(k), false) => self.queue.from(k + 1),
+            (Some(k), true) => self.queue.below(k),
         }
     }
 
     /// Notes a change, relative to what is allowed.
-    pub(super) fn note(&mut self, change: f64) {
+    pub(super) fn note_change(&mut self, change: f64) {
         self.changes[0] = self.changes[0].max(change);
     }
 
-    /// Whether all changes still to come are small: `q + q² + …` times the last one, if each sweep leaves the share `q` of
-    /// the change before. Where sweeps creep, that is far more than the last change, and only the third sweep tells.
+    /// Whether the sum of all changes still to come is small.
     ///
-    /// The geometric series `q/(1 − q)` of a linearly convergent iteration, with `q` the worse of
-    /// the last two ratios.
-    pub(super) fn is_settled(&self) -> bool {
+    /// For a linearly convergent iteration it is the geometric series `q/(1 − q)` times the last change, with `q` the
+    /// worse of the last two ratios of changes. Where convergence is slow that is far more than the last change; it is
+    /// known from the third sweep on.
+    pub(super) fn has_converged(&self) -> bool {
         let [now, before, earlier] = self.changes;
         let share = f64::max(now / before, before / earlier);
         let knows = earlier.is_finite() && share < 1.0;
-        now <= self.nothing() || knows && now <= 1.0 && now * share <= 1.0 - share
+        now <= self.negligible() || knows && now <= 1.0 && now * share <= 1.0 - share
     }
 
-    /// Contact `k` is solved for the motions of its rocks.
-    pub(super) fn see(&mut self, k: usize) {
-        self.asked.remove(k);
+    /// Contact `k` has been solved for the present motions of its rocks.
+    pub(super) fn mark_solved(&mut self, k: usize) {
+        self.queue.remove(k);
     }
 
-    /// Rock `k` has another motion: all its contacts must be asked again.
-    pub(super) fn stir(&mut self, k: usize) {
-        self.lately[k] = true;
+    /// The motion of rock `k` has changed: all its contacts must be solved again.
+    pub(super) fn mark_changed(&mut self, k: usize) {
+        self.changed[k] = true;
         if self.is_small() {
             return;
         }
-        self.asked.add(k);
+        self.queue.add(k);
         for contact in self.of_rocks.of(k) {
-            self.asked.add(self.lately.len() + contact);
+            self.queue.add(self.changed.len() + contact);
         }
     }
 }
@@ -110,27 +110,27 @@ impl ActiveSet {
 mod tests {
     use super::ActiveSet;
 
-    /// A contact is asked again exactly when one of its rocks was stirred after it had been solved.
+    /// A contact is queued exactly when the motion of one of its rocks has changed after it was solved.
     #[test]
     fn what_is_stirred_is_solved_again() {
-        let mut stirred = ActiveSet::default();
-        stirred.begin(6, [[0, 1], [1, 5]].into_iter());
-        let asked = |set: &ActiveSet| -> Vec<usize> {
+        let mut active = ActiveSet::default();
+        active.begin(6, [[0, 1], [1, 5]].into_iter());
+        let queued = |set: &ActiveSet| -> Vec<usize> {
             std::iter::successors(set.next(None, false), |k| set.next(Some(*k), false)).collect()
         };
-        assert_eq!(asked(&stirred), [0, 1, 2, 3, 4, 5, 6, 7]);
-        (0..8).for_each(|k| stirred.see(k));
-        assert!(asked(&stirred).is_empty());
-        stirred.stir(5);
-        assert_eq!(asked(&stirred), [5, 7]);
-        assert_eq!(stirred.next(Some(7), true), Some(5));
-        stirred.see(7);
-        stirred.begin_sweep();
-        assert_eq!(asked(&stirred), [5]);
+        assert_eq!(queued(&active), [0, 1, 2, 3, 4, 5, 6, 7]);
+        (0..8).for_each(|k| active.mark_solved(k));
+        assert!(queued(&active).is_empty());
+        active.mark_changed(5);
+        assert_eq!(queued(&active), [5, 7]);
+        assert_eq!(active.next(Some(7), true), Some(5));
+        active.mark_solved(7);
+        active.begin_sweep();
+        assert_eq!(queued(&active), [5]);
         // a small island is swept as a whole
-        stirred.begin(2, [[0, 1]].into_iter());
-        (0..3).for_each(|k| stirred.see(k));
-        stirred.begin_sweep();
-        assert_eq!(asked(&stirred), [0, 1, 2]);
+        active.begin(2, [[0, 1]].into_iter());
+        (0..3).for_each(|k| active.mark_solved(k));
+        active.begin_sweep();
+        assert_eq!(queued(&active), [0, 1, 2]);
     }
 }

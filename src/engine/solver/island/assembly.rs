@@ -44,7 +44,7 @@ pub struct Island<'a> {
     /// Velocity and spin of every rock at the stage's end, with the forces found so far. They stand apart from the rocks because
     /// sweeps ask for little else.
     pub(super) motions: Vec<Twist>,
-    pub(super) stirred: ActiveSet,
+    pub(super) active: ActiveSet,
     pub(super) tolerance: f64,
     /// Impacts of two rocks that a step runs into; those on the mesh are with the rocks.
     pub(super) onset: Onset,
@@ -81,7 +81,7 @@ impl<'a> Island<'a> {
             fresh: false,
             pairs: Vec::new(),
             motions: Vec::new(),
-            stirred: ActiveSet::default(),
+            active: ActiveSet::default(),
             tolerance: 0.0,
             onset: Onset::default(),
             pair_rates: Vec::new(),

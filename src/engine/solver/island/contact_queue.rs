@@ -1,12 +1,12 @@
-//! Which contacts of an island are to be solved, and the contacts of every rock.
+//! Queue of the contacts of an island that are still to be solved, and an index of the contacts of every rock.
 //!
-//! A sweep over a large heap costs what happens in it and not what is there: a contact is asked once more only after one of its
-//! rocks was set in another motion.
+//! A contact is solved again only after the motion of one of its rocks has changed. The cost of a sweep over a large heap
+//! therefore follows the number of changes and not the number of contacts.
 
 use std::ops::Range;
 
-/// A set of contacts, a bit for each.
-/// Found again in ascending or descending order by counting zeros of words: no heap, no sorting.
+/// A set of contacts, one bit for each.
+/// Iterated in ascending or descending order by counting the zeros of words: no heap, no sorting.
 #[derive(Debug, Default)]
 pub(super) struct ContactQueue(Vec<u64>);
 
@@ -58,18 +58,18 @@ impl ContactQueue {
     }
 }
 
-/// The contacts of every rock.
+/// The contacts of every rock, in compressed rows.
 #[derive(Debug, Default)]
 pub(super) struct ContactsOfRocks {
-    /// Where the list of each rock begins, and the lists, one after the other.
+    /// First entry of each rock in `lists`, and the lists of all rocks one after the other.
     first: Vec<u32>,
     lists: Vec<u32>,
 }
 
 impl ContactsOfRocks {
-    /// Lists for every rock the numbers of what joins it to another, or to itself alone.
-    /// Counting sort: two passes, no allocation but the lists themselves.
-    pub(super) fn lay(&mut self, ends: &[[usize; 2]], rocks: usize) {
+    /// Indexes contacts, given by their two rocks (twice the same for a contact with the mesh), by rock.
+    /// Counting sort: two passes, no allocation but that of the lists.
+    pub(super) fn index(&mut self, ends: &[[usize; 2]], rocks: usize) {
         let Self { first, lists } = self;
         let of = |[a, b]: [usize; 2]| [Some(a), Some(b).filter(|b| *b != a)].into_iter().flatten();
         first.clear();
@@ -84,7 +84,7 @@ impl ContactsOfRocks {
         }
         lists.clear();
         lists.resize(sum as usize, 0);
-        // filled from behind, so that each list is in order and its beginning is left where it belongs
+        // filled from the end, so that each list ascends and `first` ends at the beginning of each list
         for place in (0..ends.len()).rev() {
             for k in of(ends[place]) {
                 first[k] -= 1;
@@ -93,17 +93,17 @@ impl ContactsOfRocks {
         }
     }
 
-    /// Places in the lists of the contacts of a rock.
+    /// Range of the contacts of a rock in the lists.
     pub(super) fn places(&self, rock: usize) -> Range<usize> {
         self.first[rock] as usize..self.first[rock + 1] as usize
     }
 
-    /// The contact at a place.
+    /// The contact at a place in the lists.
     pub(super) fn at(&self, place: usize) -> usize {
         self.lists[place] as usize
     }
 
-    /// The contacts of a rock, rising.
+    /// The contacts of a rock in ascending order.
     pub(super) fn of(&self, rock: usize) -> impl Iterator<Item = usize> {
         self.lists[self.places(rock)].iter().map(|contact| *contact as usize)
     }

@@ -1,10 +1,10 @@
-//! Newton jumps for a whole island: the stage linearised in the modes that the sweeps have found.
+//! Newton steps for a whole island: the stage linearised in the contact modes that the sweeps have found.
 //!
 //! The paper's global system of 6×6 blocks, Eq. (4), with the change of friction with the normal force, which makes it
 //! unsymmetric.
 //!
-//! Sweeps over the contacts (Gauss–Seidel) find quickly which contacts press, stick or slip, but converge slowly in
-//! heaps: a push travels one contact a sweep. With those modes held, the stage is smooth, and one linear solve over
+//! Gauss–Seidel sweeps over the contacts find quickly which contacts press, stick or slip, but converge slowly in
+//! heaps: a load travels one contact a sweep. With these modes fixed the stage is smooth, and one linear solve over
 //! all rocks that take part replaces many sweeps. The sweeps then check the modes again.
 //!
 //! ```text
@@ -23,7 +23,7 @@ use crate::solver::body::Twist;
 use crate::solver::linear_forces::LinearForces;
 use nalgebra::{DMatrix, DVector, Matrix3};
 
-/// Most rocks for which a dense matrix is as cheap; it looks for its pivots everywhere.
+/// Most rocks for which a dense matrix with full pivoting by columns is as cheap.
 const DENSE: usize = 8;
 
 /// One contact, linear around the present motion.
@@ -51,12 +51,10 @@ struct NewtonSystem {
     load: Vec<f64>,
 }
 
-/// Motions of the rocks that take part that solve the stage of length `h` linearised around the present ones, while the
-/// others go on as they do.
+/// Motions that solve the stage of length `h`, linearised around the present ones, for the rocks that take part.
 ///
-/// `takes_part` lets a jump be local: rocks that have settled keep their motion and enter as moving
-/// supports.
-pub(super) fn jump(
+/// `takes_part` makes the solve local: rocks that have converged keep their motion and enter as moving supports.
+pub(super) fn solve_linearised(
     (members, motions): (&[BodySlot], &[Twist]),
     pairs: &[PairContact],
     takes_part: &[bool],
@@ -106,7 +104,7 @@ impl Linear {
         let sought = [0, 1].map(|k| if place[pair.ends[k]].is_some() { ends[k] } else { &still });
         let own = pair.speed(sought);
         Self {
-            // an end that does not take part moves as it does: its share of the normal speed goes
+            // an end that does not take part has a fixed motion: its share of the normal speed goes
             // into the constant
             normal: NormalLine { a: normal.a - normal.b * (speed - own), ..normal },
             shear: slider.at(trial, normal.at(speed)),

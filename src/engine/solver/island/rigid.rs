@@ -1,15 +1,15 @@
 //! Scheme `rigid` for an island: the limit of stiff springs for rocks that touch each other.
 //!
-//! A step has three parts. Sustained contact is solved for the whole island at velocity level; then the impacts that the
-//! step ran into are taken in the order of their times; then what still overlaps is moved apart. The step's length
-//! follows from the way of the fastest rock alone, so that its cost grows with the number of rocks and no faster. An
-//! island of one rock is the single rock's scheme.
+//! A step has three parts. Sustained contact is solved for the whole island at velocity level; then the impacts within the
+//! step are resolved in the order of their times; then rocks that still overlap are moved apart. The length of the step
+//! follows from the speed of the fastest rock alone, so that the cost grows linearly with the number of rocks. An island
+//! of one rock has the scheme of a rock alone.
 //!
 //! ```text
 //! resting_contacts      v₁ = v₀ + g Δt + M⁻¹ Σ J        sustained contacts, geometry of the middle of the step
-//! expected              which blows are due, and when
-//! impacts               blows between v₀ and v₁, each at its own time within the step
-//! position_correction   c moved out of what still overlaps, paid for by energy
+//! expected              prediction of the impacts and their times
+//! impacts               impacts between v₀ and v₁, each at its own time within the step
+//! position_correction   c moved out of overlaps, with the energy balanced
 //! ```
 
 mod blow_start;
@@ -42,14 +42,14 @@ use impacts::PendingImpact;
 use position_correction::NearPair;
 use std::collections::BinaryHeap;
 use std::sync::Arc;
-use sweeps::Leaning;
+use sweeps::ConjugateDirections;
 
-/// Longest way of a rock in one step (–, relative to its radius). Impacts on the way are found wherever they are; a
-/// contact that is slid over meanwhile is off by the square of half of this.
+/// Longest path of a rock in one step (–, relative to its radius). Impacts on it are found wherever they are; the error of
+/// a sliding contact on a curved surface is the square of half of this.
 pub const TRAVEL: f64 = 0.2;
 
 /// Work space of the rigid steps of an island.
-/// Kept from step to step and handed on from island to island, so that a step of a thousand rocks allocates next to nothing.
+/// Reused from step to step and from island to island, so that a step of a thousand rocks hardly allocates.
 #[derive(Debug, Default)]
 pub(crate) struct RigidIsland {
     balls: Vec<StepBody>,
@@ -59,31 +59,31 @@ pub(crate) struct RigidIsland {
     given: Vec<Given>,
     hits: Vec<Hit>,
     blows_in_step: Vec<BlowInStep>,
-    due: BinaryHeap<PendingImpact>,
-    /// Which pairs had a blow.
+    pending: BinaryHeap<PendingImpact>,
+    /// Which pairs had an impact.
     struck: Vec<bool>,
-    /// The rocks of the last blow.
+    /// The rocks of the last impact.
     in_blow: Vec<usize>,
     /// Pairs or contacts of every rock.
     of_rocks: ContactsOfRocks,
-    /// Contacts that one of their rocks has changed since.
-    asked: ContactQueue,
-    /// Rocks that the current sweep has stirred.
-    stirred: Vec<usize>,
-    lean: Leaning,
-    /// What the normal impulses of sustained contacts took in this step (J).
+    /// Contacts to be solved again.
+    queue: ContactQueue,
+    /// Rocks whose motion the current sweep has changed.
+    changed: Vec<usize>,
+    conjugate: ConjugateDirections,
+    /// Energy dissipated by the normal impulses of sustained contacts in this step (J).
     taken_j: f64,
     places: Vec<Vec3>,
-    /// Pairs that may get into each other while rocks are moved apart.
+    /// Pairs that may overlap during the position correction.
     near: Vec<NearPair>,
     /// Smallest capture speed (m/s).
     capture_m_s: f64,
     /// Length of the current step (s).
     dt: f64,
-    /// Blows between rocks of one material.
+    /// Table of impacts between rocks of one material.
     blows: Option<Arc<BlowTable>>,
     sweeps: u64,
-    jumps: u64,
+    newton_steps: u64,
 }
 
 impl RigidIsland {
@@ -92,8 +92,7 @@ impl RigidIsland {
     /// # Errors
     /// [`StepError`] if motion is no longer finite.
     ///
-    /// The order of the parts matters: sustained contact first gives each rock the path on which
-    /// its impacts are looked for.
+    /// The order matters: sustained contact gives each rock the path on which its impacts are predicted.
     pub(super) fn advance(
         &mut self,
         terrain: &Terrain,
@@ -103,13 +102,13 @@ impl RigidIsland {
     ) -> Result<Done, StepError> {
         self.begin(members, pair_histories);
         let dt = self.step_s(longest, h_max);
-        let settled = self.sustain(terrain, (members, pair_histories), dt);
+        let settled = self.solve_resting_contacts(terrain, (members, pair_histories), dt);
         let mut scene = ImpactScene { terrain, members, pair_histories };
-        let struck = self.strike(&mut scene, dt);
-        self.part(&mut scene);
+        let struck = self.resolve_impacts(&mut scene, dt);
+        self.correct_positions(&mut scene);
         let finite = self.balls.iter().all(StepBody::is_finite);
         self.take_over(terrain, (members, pair_histories), dt);
-        // blows fall in the order of their times, and are noted rock by rock
+        // impacts come in the order of their times, and are reported rock by rock
         self.hits.sort_by_cached_key(|hit| hit.rock);
         self.blows_in_step.sort_by_cached_key(|blow| blow.rock);
         let done = Done {
@@ -124,18 +123,18 @@ impl RigidIsland {
         if finite { Ok(done) } else { Err(StepError::NotFinite) }
     }
 
-    /// With the blows of a world whose rocks are of one material.
+    /// With the table of impacts of a world whose rocks are of one material.
     pub(crate) fn of_material(blows: Option<Arc<BlowTable>>) -> Self {
         Self { blows, ..Self::default() }
     }
 
-    /// Sweeps and systems solved since this was asked last.
+    /// Numbers of sweeps and Newton steps since the last call.
     pub(super) fn take_effort(&mut self) -> (u64, u64) {
-        (std::mem::take(&mut self.sweeps), std::mem::take(&mut self.jumps))
+        (std::mem::take(&mut self.sweeps), std::mem::take(&mut self.newton_steps))
     }
 
-    /// Takes over the end of the step.
-    /// Impulses over the step's length are the forces that the next step starts from.
+    /// Writes the end of the step to rocks and pairs.
+    /// Impulses over the length of the step are the forces of the next warm start.
     fn take_over(
         &self,
         terrain: &Terrain,
@@ -145,37 +144,36 @@ impl RigidIsland {
         for (pair_history, struck) in pair_histories.iter_mut().zip(&self.struck) {
             let [a, b] = [pair_history.a, pair_history.b].map(|k| &self.balls[k as usize]);
             let (n, distance) = between(&a.c, &b.c);
-            // a touch a little apart still holds: rounding must not end a heap's contacts from step
-            // to step
+            // a contact a little apart stays closed: rounding must not open the contacts of a heap
             let reach = a.body.radius + b.body.radius + HELD * a.body.radius.min(b.body.radius);
             pair_history.n = n;
             pair_history.closed =
                 *struck && distance <= reach && pair_history.is_slow(&(a.v - b.v));
             (pair_history.normal_force, pair_history.shear_force, pair_history.slides) =
                 (0.0, Vec3::zeros(), false);
-            // known from now on as a contact that does not rebound, until the rocks are apart
+            // a contact without restitution from now on, until the rocks are apart
             pair_history.captured = true;
             if distance > reach {
                 pair_history.captured = false;
             }
         }
         for ball_contact in
-            self.ball_contacts.iter().filter(|ball_contact| ball_contact.normal_force > 0.0)
+            self.ball_contacts.iter().filter(|ball_contact| ball_contact.normal_impulse > 0.0)
         {
             let pair_history = &mut pair_histories[ball_contact.pair_history];
             let [a, b] = ball_contact.ends.map(|k| &self.balls[k]);
             (pair_history.normal_force, pair_history.shear_force) =
-                (ball_contact.normal_force / dt, ball_contact.shear_force / dt);
+                (ball_contact.normal_impulse / dt, ball_contact.shear_impulse / dt);
             pair_history.slides = ball_contact
                 .limits
-                .slides(ball_contact.shear_force.norm(), ball_contact.normal_force);
-            // what carried in this step is where the next begins to look for what carries
+                .slides(ball_contact.shear_impulse.norm(), ball_contact.normal_impulse);
+            // contacts that carried a load are candidates of the next step
             pair_history.closed |= pair_history.is_slow(&(a.v - b.v));
         }
         let mut ground_contacts = self
             .ground_contacts
             .iter()
-            .filter(|ground_contact| ground_contact.normal_force > 0.0)
+            .filter(|ground_contact| ground_contact.normal_impulse > 0.0)
             .peekable();
         for (k, (member, ball)) in members.iter_mut().zip(&self.balls).enumerate() {
             let member = &mut **member;
@@ -184,9 +182,9 @@ impl RigidIsland {
                 ground_contacts.next_if(|ground_contact| ground_contact.rock == k)
             {
                 let kept = (
-                    ground_contact.normal_force / dt,
-                    ground_contact.shear_force / dt,
-                    ground_contact.turn / dt,
+                    ground_contact.normal_impulse / dt,
+                    ground_contact.shear_impulse / dt,
+                    ground_contact.rolling_impulse / dt,
                 );
                 member.kept.push((ground_contact.feature, kept.0, kept.1, kept.2));
             }

@@ -29,7 +29,7 @@ const TURNED: f64 = 1e-2;
 impl Island<'_> {
     /// Solves implicit stage `i` of a step of length `h` and stores its rates.
     ///
-    /// Outer loop: geometry; inner: forces (`settle`). A step that fails in either is tried again,
+    /// Outer loop: geometry; inner: forces (`converge`). A step that fails in either is tried again,
     /// shorter.
     pub(super) fn stage(&mut self, tableau: &Tableau, i: usize, h: f64) -> Option<()> {
         // γ h, the same for all stages: contacts keep their effective stiffness through the step
@@ -41,7 +41,7 @@ impl Island<'_> {
             member.base = member.state.base(tableau, i, h);
             member.guess = member.base.c + (ahead_c + ahead_v * hh) * hh;
             // what the rock would do in the stage without contacts: weight changes velocity,
-            // nothing changes spin
+            // negligible changes spin
             member.free = (member.base.v + member.body.gravity * hh, member.base.w);
             member.look(self.terrain);
         }
@@ -52,7 +52,7 @@ impl Island<'_> {
             }
             self.place_pairs(tableau, (i, h));
             // sweeps and jumps over all contacts of the island
-            if !self.settle(hh) {
+            if !self.converge(hh) {
                 return None;
             }
             let mut agreed = true;
@@ -60,7 +60,7 @@ impl Island<'_> {
                 // the stage's end with the forces just found
                 let c = member.base.c + motion.0 * hh;
                 // every rock must agree: a contact of one decides the forces on its neighbours
-                let allowed = if self.stirred.is_small() {
+                let allowed = if self.active.is_small() {
                     AGREED
                 } else {
                     // normals turn by the change over the radius, and with them what contacts have given

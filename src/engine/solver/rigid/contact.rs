@@ -12,7 +12,7 @@ use crate::solver::loss::Loss;
 /// Sweeps over the contacts of one rock, at most.
 const SWEEPS: u32 = 100;
 /// Change of an impulse, relative to the largest, below which they have settled (–).
-const SETTLED: f64 = 1e-12;
+const CONVERGED: f64 = 1e-12;
 
 /// One contact with the mesh and its impulses.
 #[derive(Debug, Clone, Copy)]
@@ -25,17 +25,17 @@ pub(crate) struct GroundContact {
     /// What friction and rolling friction bear.
     pub(crate) limits: FrictionLimits,
     /// Normal speed wanted after the impulse (m/s).
-    pub(crate) target: f64,
+    pub(crate) target_m_s: f64,
     /// Normal impulse (N s), ≥ 0.
-    pub(crate) normal_force: f64,
+    pub(crate) normal_impulse: f64,
     /// Impulse along the surface on the rock (N s).
-    pub(crate) shear_force: Vec3,
+    pub(crate) shear_impulse: Vec3,
     /// Rolling impulse on the rock (N m s).
-    pub(crate) turn: Vec3,
+    pub(crate) rolling_impulse: Vec3,
     /// Which of friction and rolling friction holds, as far as is known.
     pub(crate) mode: SlipState,
     /// Among others: the count of its rock when it was solved last.
-    pub(crate) seen: u32,
+    pub(crate) seen_version: u32,
 }
 
 impl GroundContact {
@@ -46,12 +46,12 @@ impl GroundContact {
         triangle: 0,
         frame: ContactFrame::LEVEL,
         limits: FrictionLimits::NONE,
-        target: 0.0,
-        normal_force: 0.0,
-        shear_force: ZERO,
-        turn: ZERO,
+        target_m_s: 0.0,
+        normal_impulse: 0.0,
+        shear_impulse: ZERO,
+        rolling_impulse: ZERO,
         mode: SlipState::Stick,
-        seen: 0,
+        seen_version: 0,
     };
 
     /// The contact of a rock where it touches, without impulses.
@@ -73,17 +73,18 @@ impl GroundContact {
     }
 
     /// Without impulses.
-    pub(crate) fn forget(&mut self) {
-        (self.normal_force, self.shear_force, self.turn) = (0.0, Vec3::zeros(), Vec3::zeros());
+    pub(crate) fn clear_impulses(&mut self) {
+        (self.normal_impulse, self.shear_impulse, self.rolling_impulse) =
+            (0.0, Vec3::zeros(), Vec3::zeros());
     }
 
     /// Finds the impulses for velocity `v` and spin `w` without this contact's own.
     ///
-    /// `J = max(0, m (target − n·v))`: exact for one contact; for several sweeps repeat it.
-    pub(crate) fn strike(&mut self, body: &Body, v: &Vec3, w: &Vec3) {
-        self.normal_force = (body.mass * (self.target - self.n().dot(v))).max(0.0);
-        if self.normal_force <= 0.0 {
-            self.forget();
+    /// `J = max(0, m (target_m_s − n·v))`: exact for one contact; for several sweeps repeat it.
+    pub(crate) fn solve_for(&mut self, body: &Body, v: &Vec3, w: &Vec3) {
+        self.normal_impulse = (body.mass * (self.target_m_s - self.n().dot(v))).max(0.0);
+        if self.normal_impulse <= 0.0 {
+            self.clear_impulses();
             return;
         }
         // The stick solution: `2/7 m` is the mass of a sphere's contact point along the surface, `I ω` stops all rotation; `Pair`
@@ -92,23 +93,24 @@ impl GroundContact {
             answers: &Answers::rigid(body.radius),
             a: self.frame.along(&(body.slip(self.n(), v, w) * body.mass_along())),
             d: self.frame.local(&(w * body.inertia)),
-            caps: self.limits.caps(self.normal_force),
+            caps: self.limits.caps(self.normal_impulse),
         };
         let (along, turn) = pair.solve(&mut self.mode);
-        (self.shear_force, self.turn) = (-self.frame.out_along(along), -self.frame.out_local(turn));
+        (self.shear_impulse, self.rolling_impulse) =
+            (-self.frame.out_along(along), -self.frame.out_local(turn));
     }
 
     /// Impulse (N s) and rotational impulse (N m s) on the rock.
     #[inline]
     pub(crate) fn load(&self, body: &Body) -> Twist {
         (
-            self.n() * self.normal_force + self.shear_force,
-            self.turn - self.n().cross(&self.shear_force) * body.radius,
+            self.n() * self.normal_impulse + self.shear_impulse,
+            self.rolling_impulse - self.n().cross(&self.shear_impulse) * body.radius,
         )
     }
 
     /// What its impulses change of the rock's velocity and spin.
-    pub(crate) fn effect(&self, body: &Body) -> Twist {
+    pub(crate) fn velocity_change(&self, body: &Body) -> Twist {
         let (push, turn) = self.load(body);
         (push / body.mass, turn / body.inertia)
     }
@@ -118,9 +120,9 @@ impl GroundContact {
     /// An impulse works with the mean of the velocities before and after: `J·(v₀ + v₁)/2` is the
     /// change of kinetic energy exactly.
     pub(crate) fn loss(&self, body: &Body, (v, w): &Twist) -> Loss {
-        let friction = -self.shear_force.dot(&body.slip(self.n(), v, w));
-        let damping = -self.normal_force * self.n().dot(v);
-        Loss::sharing([friction, damping, -self.turn.dot(w)])
+        let friction = -self.shear_impulse.dot(&body.slip(self.n(), v, w));
+        let damping = -self.normal_impulse * self.n().dot(v);
+        Loss::sharing([friction, damping, -self.rolling_impulse.dot(w)])
     }
 }
 
@@ -133,7 +135,7 @@ pub(crate) fn sustained_m_s(gap: f64, speed: f64, dt: f64) -> f64 {
 
 /// Sweeps over the contacts of one rock until their impulses settle, beginning with those that they have; `v` and `w` are its motion with
 /// these, and what is returned is that afterwards (projected Gauss–Seidel; for one contact the first sweep is exact).
-pub(crate) fn settle(
+pub(crate) fn converge(
     contacts: &mut [GroundContact],
     body: &Body,
     (mut v, mut w): Twist,
@@ -143,17 +145,18 @@ pub(crate) fn settle(
         *sweeps += 1;
         let (mut change, mut scale) = (0.0f64, f64::MIN_POSITIVE);
         for contact in &mut *contacts {
-            let (dv, dw) = contact.effect(body);
-            let (free, before) = ((v - dv, w - dw), (contact.normal_force, contact.shear_force));
-            contact.strike(body, &free.0, &free.1);
-            let (dv, dw) = contact.effect(body);
+            let (dv, dw) = contact.velocity_change(body);
+            let (free, before) =
+                ((v - dv, w - dw), (contact.normal_impulse, contact.shear_impulse));
+            contact.solve_for(body, &free.0, &free.1);
+            let (dv, dw) = contact.velocity_change(body);
             (v, w) = (free.0 + dv, free.1 + dw);
             change = change
-                .max((contact.normal_force - before.0).abs())
-                .max((contact.shear_force - before.1).norm());
-            scale = scale.max(contact.normal_force);
+                .max((contact.normal_impulse - before.0).abs())
+                .max((contact.shear_impulse - before.1).norm());
+            scale = scale.max(contact.normal_impulse);
         }
-        if contacts.len() <= 1 || change <= SETTLED * scale {
+        if contacts.len() <= 1 || change <= CONVERGED * scale {
             break;
         }
     }

@@ -52,13 +52,13 @@ impl PlaneContact<'_, '_> {
         let Self { world, touch } = self;
         let (body, n) = (&world.body, touch.normal);
         let mut contact = GroundContact::new(0, touch, world.law(touch.triangle));
-        contact.target = sustained_m_s(from.gap, n.dot(&from.v), dt);
+        contact.target_m_s = sustained_m_s(from.gap, n.dot(&from.v), dt);
         let free = from.v + body.gravity * dt;
-        contact.strike(body, &free, &from.w);
-        if contact.normal_force <= 0.0 {
+        contact.solve_for(body, &free, &from.w);
+        if contact.normal_impulse <= 0.0 {
             return None;
         }
-        let (dv, dw) = contact.effect(body);
+        let (dv, dw) = contact.velocity_change(body);
         let (v, w) = (free + dv, from.w + dw);
         let mean = (0.5 * (from.v + v), 0.5 * (from.w + w));
         let mut loss = from.loss;

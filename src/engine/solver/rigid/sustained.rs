@@ -1,6 +1,6 @@
 //! One step of sustained contact: what holds the rock bears it, and what it comes to within the step ends the step.
 
-use super::contact::{GroundContact, settle, sustained_m_s};
+use super::contact::{GroundContact, converge, sustained_m_s};
 use super::{is_coming, remember};
 use crate::contact::{ContactPoint, MOST, TOUCH};
 use crate::rock::Vec3;
@@ -47,7 +47,7 @@ pub(super) fn step(
     state.c += mean.0 * tried.dt;
     done.dt = tried.dt;
     // without any impulse the rock is free, and the next leap takes over
-    let pushed = tried.contacts.iter().any(|contact| contact.normal_force > 0.0);
+    let pushed = tried.contacts.iter().any(|contact| contact.normal_impulse > 0.0);
     push_out(world, state);
     remember(world, state, pushed);
 }
@@ -62,7 +62,7 @@ pub(super) fn meet(world: &ContactEnvironment, state: &mut ContactState, done: &
     let held = |touch: &ContactPoint| GroundContact::new(0, touch, world.law(touch.triangle));
     let mut contacts: ArrayVec<GroundContact, MOST> = touches().map(held).collect();
     let before = (state.v, state.w);
-    let after = settle(&mut contacts, &world.body, before, &mut state.sweeps);
+    let after = converge(&mut contacts, &world.body, before, &mut state.sweeps);
     book((world, state), &contacts, [&before, &after], done);
     (state.v, state.w) = after;
 }
@@ -97,11 +97,11 @@ impl HeldStep {
             }
             let gap = gap_at_start(world, touch, &half);
             let mut contact = GroundContact::new(0, touch, world.law(touch.triangle));
-            contact.target = sustained_m_s(gap, touch.normal.dot(&state.v), dt);
+            contact.target_m_s = sustained_m_s(gap, touch.normal.dot(&state.v), dt);
             self.contacts.push(contact);
         }
         let free = (state.v + world.body.gravity * dt, state.w);
-        self.after = settle(&mut self.contacts, &world.body, free, &mut state.sweeps);
+        self.after = converge(&mut self.contacts, &world.body, free, &mut state.sweeps);
     }
 }
 

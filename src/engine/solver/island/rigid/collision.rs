@@ -13,7 +13,7 @@
 use super::RigidIsland;
 use super::blow_start::{BlowStart, WIDEST};
 use super::broken_stems::TakenByTree;
-use super::contacts::{ImpactScene, LIVELY, hit_of};
+use super::contacts::{ImpactScene, REBOUNDS_IN_STEP, hit_of};
 use crate::contact::ContactPoint;
 use crate::contact::pair::between;
 use crate::rock::Vec3;
@@ -249,7 +249,7 @@ impl RigidIsland {
             ball.v += v - from.v;
             ball.c += (v - from.v) * s;
             ball.w = w;
-            ball.is_struck(s);
+            ball.note_impact(s);
             self.in_blow.push(rock);
         }
     }
@@ -319,7 +319,8 @@ impl RigidIsland {
         blow: &BlowStart,
     ) -> Option<ArrayVec<FrozenContact<'s>, CONTACTS>> {
         let mut contacts = ArrayVec::new();
-        let captured = touching.rocks.iter().any(|rock| self.balls[*rock].blows >= LIVELY);
+        let captured =
+            touching.rocks.iter().any(|rock| self.balls[*rock].impacts >= REBOUNDS_IN_STEP);
         let mut add = |contact: FrozenContact<'s>| -> Option<()> {
             contacts.try_push(FrozenContact { captured, ..contact }).ok()
         };

@@ -23,35 +23,35 @@ pub(super) struct StepBody {
     pub(super) before: Twist,
     /// `1/m` (1/kg) and `1/I` (1/(kg m²)).
     pub(super) inv: (f64, f64),
-    /// Change of speed in a sweep that has settled (m/s).
+    /// Change of speed in one sweep below which its contacts have converged (m/s).
     pub(super) allowed_m_s: f64,
-    /// How long before the end of the step its last blow was (s).
+    /// Time from its last impact to the end of the step (s).
     pub(super) since_s: f64,
-    /// Blows in this step.
-    pub(super) blows: u32,
-    /// How often it was set in another motion.
-    pub(super) times: u32,
-    /// Sweep that stirred it last.
-    pub(super) stirred: u64,
-    /// Sweep of the position correction in which it was moved last.
+    /// Number of impacts in this step.
+    pub(super) impacts: u32,
+    /// Number of changes of its motion.
+    pub(super) version: u32,
+    /// Sweep that changed its motion last.
+    pub(super) changed_in_sweep: u64,
+    /// Last sweep of the position correction that moved it.
     pub(super) shifted: u32,
     /// Whether another rock touches it.
     pub(super) has_neighbour: bool,
-    /// Whether a contact pushed it, and whether it was moved out of something.
+    /// Whether a contact pushed it, and whether the position correction moved it.
     pub(super) pushed: bool,
     pub(super) moved: bool,
-    /// What the mesh does to it in this step.
+    /// Its contact with the mesh in this step.
     pub(super) on_mesh: OnMesh,
 }
 
-/// What the mesh does to a rock in a step, blows apart.
+/// Contact of a rock with the mesh in a step, impacts apart.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum OnMesh {
-    /// Nothing.
+    /// None.
     Free,
-    /// It holds what has come to it too slowly to rebound.
-    Settles,
-    /// It holds it from the start.
+    /// The rock has come to the mesh too slowly to rebound, and is held from there on.
+    Captured,
+    /// Sustained contact from the start of the step.
     Held,
 }
 
@@ -67,9 +67,9 @@ impl StepBody {
             inv,
             allowed_m_s: 0.0,
             since_s: 0.0,
-            blows: 0,
-            times: 1,
-            stirred: 0,
+            impacts: 0,
+            version: 1,
+            changed_in_sweep: 0,
             shifted: 0,
             has_neighbour: false,
             pushed: false,
@@ -78,17 +78,17 @@ impl StepBody {
         }
     }
 
-    /// Takes an impulse (N s) and one of rotation (N m s).
+    /// Applies an impulse (N s) and a rotational one (N m s).
     #[inline]
-    pub(super) fn take(&mut self, (normal_force, turn): &Twist) {
-        self.v += normal_force * self.inv.0;
+    pub(super) fn apply_impulse(&mut self, (normal_impulse, turn): &Twist) {
+        self.v += normal_impulse * self.inv.0;
         self.w += turn * self.inv.1;
     }
 
-    /// The same for a blow that fell `s` (s) before the end of the step: the rock has gone on with what it got since.
-    pub(super) fn take_late(&mut self, blow: &Twist, s: f64) {
-        self.take(blow);
-        self.c += blow.0 * (self.inv.0 * s);
+    /// Applies the impulse of an impact `s` (s) before the end of the step: the rock has moved with it since.
+    pub(super) fn apply_impulse_earlier(&mut self, impulse: &Twist, s: f64) {
+        self.apply_impulse(impulse);
+        self.c += impulse.0 * (self.inv.0 * s);
     }
 
     /// Centre and velocity `s` (s) before the end of the step, on its parabola.
@@ -97,43 +97,43 @@ impl StepBody {
         (self.c - (self.v - gravity * (0.5 * s)) * s, self.v - gravity * s)
     }
 
-    /// The same with its spin; the time counts from the end of the step.
+    /// The same with its spin, at a time counted from the end of the step.
     pub(super) fn motion_before_end(&self, s: f64) -> Motion {
         let (position_m, velocity_m_s) = self.before_end(s);
         Motion { time_s: -s, position_m, velocity_m_s, spin_rad_s: self.w }
     }
 
-    /// Notes that a blow fell `s` (s) before the end of the step.
-    pub(super) fn is_struck(&mut self, s: f64) {
+    /// Notes an impact `s` (s) before the end of the step.
+    pub(super) fn note_impact(&mut self, s: f64) {
         self.since_s = s;
-        self.blows += 1;
+        self.impacts += 1;
         self.pushed = true;
-        self.times += 1;
+        self.version += 1;
     }
 
     /// Work of an impulse at mean velocity `v` and spin `w` (J).
-    pub(super) fn work_j((normal_force, turn): &Twist, v: &Vec3, w: &Vec3) -> f64 {
-        normal_force.dot(v) + turn.dot(w)
+    pub(super) fn work_j((normal_impulse, turn): &Twist, v: &Vec3, w: &Vec3) -> f64 {
+        normal_impulse.dot(v) + turn.dot(w)
     }
 }
 
-/// Blows on one rock in one step from which on they do not rebound.
-pub(super) const LIVELY: u32 = 200;
+/// Impacts of one rock in one step after which further ones do not rebound.
+pub(super) const REBOUNDS_IN_STEP: u32 = 200;
 
-/// What blows act on.
+/// Terrain, rocks and pairs on which impacts act.
 pub(super) struct ImpactScene<'s> {
     pub(super) terrain: &'s Terrain,
     pub(super) members: &'s mut [BodySlot],
     pub(super) pair_histories: &'s [PairHistory],
 }
 
-/// The impact of rock `k`, of which centre and radius are given, at a touch.
+/// Record of the impact of rock `k`, given by centre and radius, at a contact point.
 pub(super) fn hit_of(k: usize, touch: &ContactPoint, ball: (&Vec3, f64), approach_m_s: f64) -> Hit {
     let on = (touch.feature, touch.triangle);
     Hit { rock: k, struck: Struck::by_ball(ball, &touch.normal, on, approach_m_s) }
 }
 
-/// The impulses of one contact: normal (N s), along the surface (N s), of rolling (N m s).
+/// The impulses of one contact: normal (N s), tangential (N s) and of rolling friction (N m s).
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Impulses(f64, Vec3, Vec3);
 
@@ -152,62 +152,71 @@ impl Impulses {
         Self(self.0 * factor, self.1 * factor, self.2 * factor)
     }
 
-    /// Square of its size, with the weight of each kind.
+    /// Weighted sum of squares.
     pub(super) fn square(&self, [n, t, r]: [f64; 3]) -> f64 {
         n * self.0 * self.0 + t * self.1.norm_squared() + r * self.2.norm_squared()
     }
 
-    /// Within the cone of friction.
-    fn within(&self, limits: &FrictionLimits) -> Self {
-        let normal_force = self.0.max(0.0);
-        Self(normal_force, limits.shear(self.1, normal_force), limits.rolling(self.2, normal_force))
+    /// Projection onto the friction cone.
+    fn projected(&self, limits: &FrictionLimits) -> Self {
+        let normal_impulse = self.0.max(0.0);
+        Self(
+            normal_impulse,
+            limits.shear(self.1, normal_impulse),
+            limits.rolling(self.2, normal_impulse),
+        )
     }
 }
 
 /// The contact of two rocks and its impulses.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct BallContact {
-    /// Which pair of rocks it belongs to.
+    /// Place of its pair among the pairs of the island.
     pub(super) pair_history: usize,
     /// The two rocks, as places in the island.
     pub(super) ends: [usize; 2],
     /// Unit normal from the second to the first.
     pub(super) n: Vec3,
-    /// Distances from the centres to the common point that is touched (m).
+    /// Distances from the centres to the common contact point (m).
     pub(super) levers: [f64; 2],
-    /// `1/m_a + 1/m_b`, and the same for the touched point along the surface (1/kg).
+    /// `1/m_a + 1/m_b`, and the inverse mass of the contact point along the surface (1/kg).
     pub(super) inv: (f64, f64),
-    /// What friction bears.
+    /// Limits of friction.
     pub(super) limits: FrictionLimits,
-    /// Normal speed apart wanted after the impulse (m/s).
-    pub(super) target: f64,
+    /// Normal separation speed wanted after the impulse (m/s).
+    pub(super) target_m_s: f64,
     /// Normal impulse (N s), ≥ 0.
-    pub(super) normal_force: f64,
-    /// Impulse along the surface: the first rock feels `−q`, the second `q` (N s).
-    pub(super) shear_force: Vec3,
-    /// The counts of its rocks when it was solved last.
-    pub(super) seen: [u32; 2],
+    pub(super) normal_impulse: f64,
+    /// Tangential impulse `q`: `−q` acts on the first rock, `q` on the second (N s).
+    pub(super) shear_impulse: Vec3,
+    /// Versions of the motions of its rocks when it was solved last.
+    pub(super) seen_versions: [u32; 2],
 }
 
 impl BallContact {
     pub(super) fn impulses(&self) -> Impulses {
-        Impulses(self.normal_force, self.shear_force, Vec3::zeros())
+        Impulses(self.normal_impulse, self.shear_impulse, Vec3::zeros())
     }
 
-    /// Adds to its impulses what the cone allows, and acts with that.
-    pub(super) fn push_on(&mut self, step: &Impulses, a: &mut StepBody, b: &mut StepBody) {
-        let next = self.impulses().plus(step).within(&self.limits);
-        self.go_to((next.0, next.1), a, b);
+    /// Adds a step to its impulses, projected onto the cone, and applies the change.
+    pub(super) fn add_projected(&mut self, step: &Impulses, a: &mut StepBody, b: &mut StepBody) {
+        let next = self.impulses().plus(step).projected(&self.limits);
+        self.apply_impulses((next.0, next.1), a, b);
     }
 
-    /// Takes these impulses, and acts with what that changes; the change.
+    /// Sets the impulses and applies their change to both rocks; the change.
     #[inline]
-    fn go_to(&mut self, next: (f64, Vec3), a: &mut StepBody, b: &mut StepBody) -> (f64, Vec3) {
-        let change = (next.0 - self.normal_force, next.1 - self.shear_force);
-        (self.normal_force, self.shear_force) = next;
+    fn apply_impulses(
+        &mut self,
+        next: (f64, Vec3),
+        a: &mut StepBody,
+        b: &mut StepBody,
+    ) -> (f64, Vec3) {
+        let change = (next.0 - self.normal_impulse, next.1 - self.shear_impulse);
+        (self.normal_impulse, self.shear_impulse) = next;
         let (push, turn) = (self.n * change.0 - change.1, self.n.cross(&change.1));
-        a.take(&(push, turn * self.levers[0]));
-        b.take(&(-push, turn * self.levers[1]));
+        a.apply_impulse(&(push, turn * self.levers[0]));
+        b.apply_impulse(&(-push, turn * self.levers[1]));
         change
     }
 
@@ -219,7 +228,7 @@ impl BallContact {
     ) -> Self {
         let (n, distance) = between(at[0], at[1]);
         let reach = balls[0].body.radius + balls[1].body.radius;
-        // One common point: impulses with one line of action keep the angular momentum.
+        // one common point: impulses with one line of action conserve angular momentum
         let levers = balls.map(|ball| distance * ball.body.radius / reach);
         let inv_n = balls[0].inv.0 + balls[1].inv.0;
         let turning = [0, 1].map(|k| levers[k] * levers[k] * balls[k].inv.1);
@@ -230,20 +239,20 @@ impl BallContact {
             levers,
             inv: (inv_n, inv_n + turning[0] + turning[1]),
             limits: of.law.limits().without_rolling(),
-            target: 0.0,
-            normal_force: 0.0,
-            shear_force: Vec3::zeros(),
-            seen: [0; 2],
+            target_m_s: 0.0,
+            normal_impulse: 0.0,
+            shear_impulse: Vec3::zeros(),
+            seen_versions: [0; 2],
         }
     }
 
-    /// Normal speed apart (m/s).
+    /// Normal separation speed (m/s).
     #[inline]
     pub(super) fn speed(&self, a: &StepBody, b: &StepBody) -> f64 {
         self.n.dot(&(a.v - b.v))
     }
 
-    /// Slip of the first rock over the second at the touched point (m/s).
+    /// Slip of the first rock over the second at the contact point (m/s).
     #[inline]
     pub(super) fn slip(&self, a: &StepBody, b: &StepBody) -> Vec3 {
         let u = a.v - b.v;
@@ -253,21 +262,22 @@ impl BallContact {
     /// Impulse and rotational impulse on end `k`.
     #[inline]
     pub(super) fn load(&self, k: usize) -> Twist {
-        let normal_force = self.n * self.normal_force - self.shear_force;
+        let normal_impulse = self.n * self.normal_impulse - self.shear_impulse;
         (
-            if k == 0 { normal_force } else { -normal_force },
-            self.n.cross(&self.shear_force) * self.levers[k],
+            if k == 0 { normal_impulse } else { -normal_impulse },
+            self.n.cross(&self.shear_impulse) * self.levers[k],
         )
     }
 
-    /// Impulses of an impact of the two rocks: the limit of stiff springs, the same map as for a rock and the ground.
+    /// Sets the impulses to those of an impact of the two rocks in the limit of stiff springs, by the same map as for a
+    /// rock and the ground.
     pub(super) fn impact(
         &mut self,
         (law, known, tolerance): (&Law, Option<&BlowTable>, f64),
         [a, b]: [&StepBody; 2],
         captured: bool,
     ) {
-        let body = one_for_two(self.inv, a.body.radius.min(b.body.radius));
+        let body = reduced_body(self.inv, a.body.radius.min(b.body.radius));
         let mass = body.mass;
         let (approach, slip) = (-self.speed(a, b), self.slip(a, b));
         let speeds = [approach, slip.norm()];
@@ -275,74 +285,75 @@ impl BallContact {
         let known = known.filter(|_| !captured).and_then(|table| table.blow((&body, law), speeds));
         let pushed =
             known.unwrap_or_else(|| blow_along_a_line((&body, law), captured, speeds, tolerance));
-        self.normal_force = mass * pushed[0];
-        // followed to a tolerance, the impulse of a rock that slides all the while may be beyond its cap by as much
-        let shear_force = slip * (mass * pushed[1] / speeds[1].max(f64::MIN_POSITIVE));
-        self.shear_force = self.limits.shear(shear_force, self.normal_force);
+        self.normal_impulse = mass * pushed[0];
+        // integrated to a tolerance, the impulse of a contact that slides throughout may exceed its cap by as much
+        let shear_impulse = slip * (mass * pushed[1] / speeds[1].max(f64::MIN_POSITIVE));
+        self.shear_impulse = self.limits.shear(shear_impulse, self.normal_impulse);
     }
 
-    /// Finds the impulses for motions that hold the present ones, and acts with what they change by; how much that
-    /// changes the speed at the contact (m/s).
+    /// Solves the contact for motions that include its present impulses, and applies the change; the change of speed
+    /// at the contact (m/s).
     #[inline]
     pub(super) fn solve(&mut self, a: &mut StepBody, b: &mut StepBody) -> f64 {
-        let held = self.normal_force;
+        let held = self.normal_impulse;
         let speed = self.speed(a, b);
-        let normal_force = (held + (self.target - speed) / self.inv.0).max(0.0);
-        if normal_force <= 0.0 && held <= 0.0 {
+        let normal_impulse = (held + (self.target_m_s - speed) / self.inv.0).max(0.0);
+        if normal_impulse <= 0.0 && held <= 0.0 {
             return 0.0;
         }
-        let stick = self.shear_force + self.slip(a, b) / self.inv.1;
-        let next = (normal_force, self.limits.shear(stick, normal_force));
-        let change = self.go_to(next, a, b);
+        let stick = self.shear_impulse + self.slip(a, b) / self.inv.1;
+        let next = (normal_impulse, self.limits.shear(stick, normal_impulse));
+        let change = self.apply_impulses(next, a, b);
         (change.0.abs() * self.inv.0).max(change.1.norm() * self.inv.1)
     }
 }
 
-/// What two rocks do to each other is what the ground does to one body with their reduced mass `1/(1/m_a + 1/m_b)`, with their
-/// velocity apart and their slip for its velocity, and an inertia that meets friction at the contact point as they do. `inv_n` is
-/// one over that mass, `inv_t` the same of the touched point along the surface (1/kg).
-fn one_for_two((inv_n, inv_t): (f64, f64), radius: f64) -> Body {
+/// The body whose impact on the ground equals the impact of two rocks: it has their reduced mass `1/(1/m_a + 1/m_b)`, moves
+/// with their relative velocity and slip, and has the inertia that gives the same tangential mass at the contact point.
+/// `inv_n` is the inverse reduced mass, `inv_t` the inverse mass of the contact point along the surface (1/kg).
+fn reduced_body((inv_n, inv_t): (f64, f64), radius: f64) -> Body {
     let mass = 1.0 / inv_n;
     let inertia = mass * radius * radius / (inv_t / inv_n - 1.0);
     Body { mass, inertia, radius, gravity: Vec3::zeros() }
 }
 
-/// The blows of all rocks that are of the material of these two, which rebound from each other by `law`.
+/// Table of the impacts of all rocks of the material of these two, which rebound from each other by `law`.
 pub(crate) fn blows_of(law: &Law, [a, b]: [&Body; 2]) -> Option<BlowTable> {
     let inv_n = 1.0 / a.mass + 1.0 / b.mass;
     let turning = [a, b].map(|body| body.radius * body.radius / body.inertia);
-    let body = one_for_two((inv_n, inv_n + turning[0] + turning[1]), a.radius.min(b.radius));
+    let body = reduced_body((inv_n, inv_n + turning[0] + turning[1]), a.radius.min(b.radius));
     BlowTable::new(&body, &law.without_rolling())
 }
 
 impl GroundContact {
     pub(super) fn impulses(&self) -> Impulses {
-        Impulses(self.normal_force, self.shear_force, self.turn)
+        Impulses(self.normal_impulse, self.shear_impulse, self.rolling_impulse)
     }
 
-    /// Adds to its impulses what the cone allows, and acts with that.
-    pub(super) fn push_on(&mut self, step: &Impulses, ball: &mut StepBody) {
-        let next = self.impulses().plus(step).within(&self.limits);
+    /// Adds a step to its impulses, projected onto the cone, and applies the change.
+    pub(super) fn add_projected(&mut self, step: &Impulses, ball: &mut StepBody) {
+        let next = self.impulses().plus(step).projected(&self.limits);
         let change = next.less(&self.impulses());
         let mut step = *self;
-        (step.normal_force, step.shear_force, step.turn) = (change.0, change.1, change.2);
-        (self.normal_force, self.shear_force, self.turn) = (next.0, next.1, next.2);
+        (step.normal_impulse, step.shear_impulse, step.rolling_impulse) =
+            (change.0, change.1, change.2);
+        (self.normal_impulse, self.shear_impulse, self.rolling_impulse) = (next.0, next.1, next.2);
         let load = step.load(&ball.body);
-        ball.take(&load);
+        ball.apply_impulse(&load);
     }
 
-    /// Finds the impulses for a motion that holds the present ones, and acts with what they change by; how much that
-    /// changes the speed at the contact (m/s).
+    /// Solves the contact for a motion that includes its present impulses, and applies the change; the change of speed
+    /// at the contact (m/s).
     pub(super) fn solve(&mut self, ball: &mut StepBody) -> f64 {
         let held = self.impulses();
-        let (normal_force, turn) = self.load(&ball.body);
-        let (v, w) = (ball.v - normal_force * ball.inv.0, ball.w - turn * ball.inv.1);
-        self.strike(&ball.body, &v, &w);
-        if held.0 <= 0.0 && self.normal_force <= 0.0 {
+        let (normal_impulse, turn) = self.load(&ball.body);
+        let (v, w) = (ball.v - normal_impulse * ball.inv.0, ball.w - turn * ball.inv.1);
+        self.solve_for(&ball.body, &v, &w);
+        if held.0 <= 0.0 && self.normal_impulse <= 0.0 {
             return 0.0;
         }
-        let (normal_force, turn) = self.load(&ball.body);
-        (ball.v, ball.w) = (v + normal_force * ball.inv.0, w + turn * ball.inv.1);
+        let (normal_impulse, turn) = self.load(&ball.body);
+        (ball.v, ball.w) = (v + normal_impulse * ball.inv.0, w + turn * ball.inv.1);
         let change = self.impulses().less(&held);
         let along = change.1.norm().max(change.2.norm() / ball.body.radius);
         change.0.abs().max(along) * ball.inv.0

@@ -1,8 +1,8 @@
-//! Which blows are due within a step, and when.
+//! Prediction of the impacts within a step, and of their times.
 //!
-//! Between two events of a step a rock that nothing holds is on a parabola, and two of them are on a straight line relative to each other: when they touch is a
-//! closed form for a pair, and the first touch of a flight for the mesh, whatever it touches and however short that is. A rock that the mesh holds has
-//! its mean velocity in the step: what it comes to is a plane there.
+//! Between two impacts of a step a free rock moves on a parabola, and two free rocks move in a straight line relative to each
+//! other. The time of contact of a pair is therefore a closed form, and that with the mesh is the first touch of a flight.
+//! A rock in sustained contact moves with its mean velocity of the step, and the mesh around it is taken as planes.
 
 use super::RigidIsland;
 use super::contacts::{ImpactScene, OnMesh, StepBody};
@@ -16,46 +16,46 @@ use crate::solver::rigid::{HELD, is_fast};
 use crate::solver::roughness::Meeting;
 use std::cmp::Reverse;
 
-/// A touch at the time of a blow that is no farther than this (–, relative to R): a rock that is held is not on a parabola.
+/// Farthest contact point at the time of an impact (–, relative to R): a rock in sustained contact is not on a parabola.
 pub(super) const NEAR: f64 = 1e-3;
 
 impl RigidIsland {
-    /// Notes the blow of a pair, if one is due.
-    pub(super) fn expect_pair(&mut self, scene: &ImpactScene, place: usize) {
+    /// Predicts the impact of a pair within the step, if there is one.
+    pub(super) fn predict_pair_impact(&mut self, scene: &ImpactScene, place: usize) {
         let pair_history = &scene.pair_histories[place];
         let [a, b] = [pair_history.a, pair_history.b].map(|k| &self.balls[k as usize]);
         let Some(s) = meeting_before_end_s(a, b) else { return };
         let (n, _) = between(&(a.c - a.v * s), &(b.c - b.v * s));
         if -n.dot(&(a.v - b.v)) >= capture_m_s(&pair_history.law) {
-            self.due.push((s.to_bits(), Reverse(place), [a.times, b.times]));
+            self.pending.push((s.to_bits(), Reverse(place), [a.version, b.version]));
         }
     }
 
-    /// Notes the blow of a rock on the mesh, if one is due.
-    pub(super) fn expect_ground(&mut self, scene: &mut ImpactScene, k: usize) {
+    /// Predicts the impact of a rock on the mesh within the step, if there is one.
+    pub(super) fn predict_ground_impact(&mut self, scene: &mut ImpactScene, k: usize) {
         let ball = &mut self.balls[k];
         let (world, state) = scene.members[k].with_environment(scene.terrain);
         let flies = ball.on_mesh != OnMesh::Held;
         let exact = if flies { first_touch(&world, state, ball) } else { None };
-        // what is slow is met, and more may be struck where the step ends
+        // a slow first contact is captured; the rock may strike more where the step ends
         let first = match exact {
             Some((s, true)) => Some(s),
             _ => deepest_touch(&world, state, ball),
         };
         if flies {
             let is_slow = exact.is_some_and(|(_, is_fast)| !is_fast);
-            ball.on_mesh = if is_slow { OnMesh::Settles } else { OnMesh::Free };
+            ball.on_mesh = if is_slow { OnMesh::Captured } else { OnMesh::Free };
         }
         let meets_facet = || meets_facet(&world, state, ball).then_some(0.0);
         if let Some(s) = first.or_else(meets_facet) {
             let place = scene.pair_histories.len() + k;
-            self.due.push((s.to_bits(), Reverse(place), [ball.times; 2]));
+            self.pending.push((s.to_bits(), Reverse(place), [ball.version; 2]));
         }
     }
 }
 
-/// How long before the end of the step two rocks meet (s): on the way since their last blows, if they are apart where that begins, and else where they
-/// overlap and come nearer.
+/// Time from the first contact of two rocks to the end of the step (s): on their paths since their last impacts, if they are
+/// apart where these begin; else where they overlap and approach.
 fn meeting_before_end_s(a: &StepBody, b: &StepBody) -> Option<f64> {
     let (apart, closing) = (a.c - b.c, a.v - b.v);
     let reach = a.body.radius + b.body.radius;
@@ -63,7 +63,7 @@ fn meeting_before_end_s(a: &StepBody, b: &StepBody) -> Option<f64> {
     let (along, speed2, since_s) =
         (apart.dot(&closing), closing.norm_squared(), a.since_s.min(b.since_s));
     if along >= 0.0 {
-        // they go apart at the end: they have met if they came nearer at first, and passed at less than the sum of their radii
+        // they separate at the end: they have met if they approached at first, and passed at less than the sum of radii
         let began_along = along - speed2 * since_s;
         let nearest2 = distance2 - along * along / speed2.max(f64::MIN_POSITIVE);
         let began2 = distance2 - (along + began_along) * since_s;
@@ -82,7 +82,8 @@ fn meeting_before_end_s(a: &StepBody, b: &StepBody) -> Option<f64> {
     Some((inside / (root - along)).min(since_s))
 }
 
-/// How long before the end of the step a rock in flight first touches the mesh (s), since its last blow, and whether so fast that it rebounds.
+/// Time from the first contact of a free rock with the mesh, since its last impact, to the end of the step (s), and whether
+/// it is fast enough to rebound.
 fn first_touch(
     world: &ContactEnvironment,
     state: &mut ContactState,
@@ -107,7 +108,7 @@ fn first_touch(
     Some((s, state.touches.iter().any(|touch| is_fast(world, touch, &v))))
 }
 
-/// How long before the end of the step a rock touched what it is pressed into at the end (s), if it came fast.
+/// Time from the contact with what a rock is pressed into at the end of the step to that end (s), if it came fast.
 fn deepest_touch(
     world: &ContactEnvironment,
     state: &mut ContactState,
@@ -128,7 +129,7 @@ fn deepest_touch(
     first
 }
 
-/// Whether a rock that slides or rolls strikes the next facet of rough ground, the last one being behind it.
+/// Whether a rock that slides or rolls has left the last facet of rough ground and strikes the next one.
 fn meets_facet(world: &ContactEnvironment, state: &ContactState, ball: &StepBody) -> bool {
     let reach = ball.body.radius * (1.0 + HELD);
     let mut held = state.touches.iter().filter(|touch| touch.distance_m <= reach);
@@ -138,7 +139,8 @@ fn meets_facet(world: &ContactEnvironment, state: &ContactState, ball: &StepBody
     })
 }
 
-/// How long before the end of the step a rock that is pressed in by `pen` (m) along `n` touched (s), on its parabola.
+/// Time from the contact of a rock that is pressed in by `penetration` (m) along `n` to the end of the step (s), on its
+/// parabola.
 fn time_of_touch(ball: &StepBody, n: &Vec3, penetration: f64) -> Option<f64> {
     let speed = -n.dot(&ball.v);
     let root2 = speed * speed + 2.0 * n.dot(&ball.body.gravity) * penetration.max(0.0);

@@ -1,14 +1,15 @@
 //! Impacts within a step, in the order of their times.
 //!
-//! Rocks that came in faster than the capture speed overlap at the end of a step. When they touched is known: under the
-//! same gravity two rocks move in straight lines relative to each other, and one rock over the mesh in a parabola. Each
-//! blow is taken at that time, the earliest first, by itself or with all that touch ([`collision`](super::collision)), and the rocks go on from there with what they got; blows
-//! that follow from it are found with the new paths. A blow between two rocks alone is therefore exact, whatever the
-//! step, and each takes energy.
+//! Rocks that approach faster than the capture speed overlap at the end of a step. The time of their first contact is
+//! known in closed form: under the same gravity two rocks move in straight lines relative to each other, and a rock
+//! over the mesh on a parabola. Impacts are resolved in the order of these times, each by itself or together with all
+//! rocks in contact ([`collision`](super::collision)). The rocks then continue with their new velocities, and the
+//! impacts that follow are predicted on the new paths. An impact between two rocks alone is therefore exact whatever
+//! the step, and no impact adds energy.
 
 use super::RigidIsland;
 use super::blow_start::BlowStart;
-use super::contacts::{BallContact, ImpactScene, LIVELY, OnMesh, StepBody, hit_of};
+use super::contacts::{BallContact, ImpactScene, OnMesh, REBOUNDS_IN_STEP, StepBody, hit_of};
 use super::expected::NEAR;
 use super::sweeps::FEW;
 use crate::contact::ContactPoint;
@@ -24,20 +25,20 @@ use crate::solver::roughness::Meeting;
 use nalgebra::Rotation3;
 use std::cmp::Reverse;
 
-/// Blows on one rock in one step after which the rest is left to the next step.
+/// Impacts of one rock in one step, at most; further ones are left to the next step.
 const MOST: u32 = 400;
 
-/// Local error of a blow in an island of more than [`FEW`] rocks, followed in its own time (–, relative to its speed): a thirtieth
-/// of what sustained contact may leave there of a rock's speed. It is an error of the impulses of friction alone: the rebound
-/// is exact, momenta are kept, and no blow gives energy.
+/// Local error of an impact in an island of more than [`FEW`] rocks, integrated in its own time (–, relative to its speed): a
+/// thirtieth of the error that sustained contact may leave there of a rock's speed. It is an error of the friction impulses
+/// alone: the rebound is exact, momenta are conserved, and no impact adds energy.
 const IMPACT_OF_MANY: f64 = 1e-3;
 
-/// A blow that is due: time before the end of the step (s, as the bits of a positive number: they keep the order), the
-/// place of its contact, the counts of its rocks.
+/// A predicted impact: time before the end of the step (s, as the bits of a positive number, which keep the order), the
+/// place of its contact, the versions of the motions of its rocks.
 pub(super) type PendingImpact = (u64, Reverse<usize>, [u32; 2]);
 
 impl ImpactScene<'_> {
-    /// The rocks of a contact: pairs come first, then every rock with the mesh.
+    /// The rocks of a contact. Places: first all pairs, then every rock with the mesh.
     fn ends_of(&self, place: usize) -> [usize; 2] {
         self.pair_histories
             .get(place)
@@ -48,62 +49,62 @@ impl ImpactScene<'_> {
 }
 
 impl RigidIsland {
-    /// Takes all impacts of a step of length `dt` (s); whether none is left.
-    pub(super) fn strike(&mut self, scene: &mut ImpactScene, dt: f64) -> bool {
-        self.due.clear();
+    /// Resolves all impacts of a step of length `dt` (s); whether none is left.
+    pub(super) fn resolve_impacts(&mut self, scene: &mut ImpactScene, dt: f64) -> bool {
+        self.pending.clear();
         for ball in &mut self.balls {
-            (ball.since_s, ball.blows) = (dt, 0);
+            (ball.since_s, ball.impacts) = (dt, 0);
         }
         for k in 0..scene.pair_histories.len() {
-            self.expect_pair(scene, k);
+            self.predict_pair_impact(scene, k);
         }
         for k in 0..self.balls.len() {
-            self.expect_ground(scene, k);
+            self.predict_ground_impact(scene, k);
         }
-        if self.due.is_empty() {
+        if self.pending.is_empty() {
             return true;
         }
-        self.lay_links(scene.pair_histories);
+        self.index_pairs(scene.pair_histories);
         let mut all = true;
-        while let Some((bits, Reverse(place), counts)) = self.due.pop() {
+        while let Some((bits, Reverse(place), counts)) = self.pending.pop() {
             let ends = scene.ends_of(place);
-            if ends.map(|k| self.balls[k].times) != counts {
+            if ends.map(|k| self.balls[k].version) != counts {
                 continue;
             }
-            if ends.iter().any(|&k| self.balls[k].blows >= MOST) {
+            if ends.iter().any(|&k| self.balls[k].impacts >= MOST) {
                 all = false;
                 continue;
             }
             self.blow(scene, place, f64::from_bits(bits));
-            self.expect_more(scene);
+            self.predict_following_impacts(scene);
         }
         for k in 0..self.balls.len() {
-            self.settle_on(scene, k);
+            self.capture_on_mesh(scene, k);
         }
         all
     }
 
-    /// The pairs of every rock.
-    fn lay_links(&mut self, pair_histories: &[PairHistory]) {
+    /// Indexes the pairs by rock.
+    fn index_pairs(&mut self, pair_histories: &[PairHistory]) {
         let ends: Vec<[usize; 2]> = pair_histories
             .iter()
             .map(|pair_history| [pair_history.a as usize, pair_history.b as usize])
             .collect();
-        self.of_rocks.lay(&ends, self.balls.len());
+        self.of_rocks.index(&ends, self.balls.len());
     }
 
-    /// Looks for the blows that follow from the last one.
-    fn expect_more(&mut self, scene: &mut ImpactScene) {
+    /// Predicts the impacts that follow from the last one.
+    fn predict_following_impacts(&mut self, scene: &mut ImpactScene) {
         for k in 0..self.in_blow.len() {
             let rock = self.in_blow[k];
             for place in self.of_rocks.places(rock) {
-                self.expect_pair(scene, self.of_rocks.at(place));
+                self.predict_pair_impact(scene, self.of_rocks.at(place));
             }
-            self.expect_ground(scene, rock);
+            self.predict_ground_impact(scene, rock);
         }
     }
 
-    /// Takes the blow of a contact, `s` (s) before the end of the step.
+    /// Resolves the impact at a contact, `s` (s) before the end of the step.
     fn blow(&mut self, scene: &mut ImpactScene, place: usize, s: f64) {
         self.in_blow.clear();
         self.in_blow.extend(scene.ends_of(place));
@@ -123,13 +124,13 @@ impl RigidIsland {
         }
     }
 
-    /// Notes how a rock moves that a blow strikes `s` (s) before the end of the step.
+    /// Records the motion of a rock before an impact, `s` (s) before the end of the step.
     pub(super) fn begin_blow(&mut self, rock: usize, s: f64) {
         let motions = [self.balls[rock].motion_before_end(s); 2];
         self.blows_in_step.push(BlowInStep { rock, motions, hits: 0 });
     }
 
-    /// Local error of a blow (–).
+    /// Local error of an impact (–).
     pub(super) fn impact_tolerance(&self) -> f64 {
         if self.balls.len() <= FEW { IMPACT } else { IMPACT_OF_MANY }
     }
@@ -156,15 +157,15 @@ impl RigidIsland {
         ball_contact.impact(
             (&law, self.blows.as_deref(), tolerance),
             [a, b],
-            a.blows.max(b.blows) >= LIVELY,
+            a.impacts.max(b.impacts) >= REBOUNDS_IN_STEP,
         );
         let mut given = [0.0; 2];
         for (k, ball) in [a, b].into_iter().enumerate() {
             let load = ball_contact.load(k);
-            ball.take_late(&load, s);
-            let (v, w) = mean_late(ball, &before[k], s);
+            ball.apply_impulse_earlier(&load, s);
+            let (v, w) = mean_motion_earlier(ball, &before[k], s);
             given[k] = -StepBody::work_j(&load, &v, &w);
-            ball.is_struck(s);
+            ball.note_impact(s);
         }
         for (end, given) in ends.into_iter().zip(Given::of_ends(given)) {
             self.given[end].add(&given, 1.0);
@@ -178,7 +179,7 @@ impl RigidIsland {
         let (at, v) = ball.before_end(s);
         let reach = world.body.radius * (1.0 + NEAR);
         state.look(&world, &at, reach);
-        // a rock that the mesh holds is not on the parabola on which it is looked for
+        // a rock in sustained contact is not on the parabola of the prediction
         if state.touches.iter().all(|touch| touch.normal.dot(&v) >= 0.0) {
             state.look(&world, &ball.c, reach);
         }
@@ -187,8 +188,8 @@ impl RigidIsland {
             .iter()
             .min_by(|a, b| a.normal.dot(&v).total_cmp(&b.normal.dot(&v)))
             .copied();
-        let Some(touch) = hit else { return ball.is_struck(s) };
-        // how near something is at that instant is known as well as the parabola is the way of the rock
+        let Some(touch) = hit else { return ball.note_impact(s) };
+        // distances at that instant are known as well as the parabola is the rock's path
         let touches_m = touch.distance_m.max(world.body.radius);
         state.touches.keep_nearer(touches_m + HELD * world.body.radius);
         if let Some(broken) = state.broken_by(&world, (&v, &ball.w)) {
@@ -204,7 +205,7 @@ impl RigidIsland {
                 }
             }
             state.fell_broken(&world, &broken);
-            return ball.is_struck(s);
+            return ball.note_impact(s);
         }
         let lasts_s = BlowStart::lasting_s(world.law(touch.triangle));
         let meeting = Meeting { n: touch.normal, triangle: touch.triangle, c: at, v };
@@ -218,7 +219,8 @@ impl RigidIsland {
         }
     }
 
-    /// Throws rock `k`, which comes alone to `touch` with its centre at `at` and a velocity `v` (m/s), off all that it touches.
+    /// Rebound of rock `k`, which comes alone to `touch` with its centre at `at` and a velocity `v` (m/s), from all that it
+    /// touches.
     fn rebound(
         &mut self,
         scene: &mut ImpactScene,
@@ -230,27 +232,27 @@ impl RigidIsland {
         let ball = &mut self.balls[k];
         let (world, state) = scene.members[k].with_environment(scene.terrain);
         let ContactState { touches, stem_load, .. } = state;
-        let how = (ball.blows >= LIVELY, tolerance);
+        let how = (ball.impacts >= REBOUNDS_IN_STEP, tolerance);
         let mut note = |other: &ContactPoint, loss: &Loss, approach_m_s: Option<f64>| {
             stem_load.book((&world, other.triangle), loss, &mut self.losses[k]);
             let hit = |approach_m_s| hit_of(k, other, (at, world.body.radius), approach_m_s);
             self.hits.extend(approach_m_s.map(hit));
         };
         let motion = (v, &ball.w);
-        let after = throw_off((&world, touches), (touch, turn), motion, how, &mut note);
+        let after = rebound_from((&world, touches), (touch, turn), motion, how, &mut note);
         let load = ((after.0 - v) * world.body.mass, (after.1 - ball.w) * world.body.inertia);
-        ball.take_late(&load, s);
-        ball.is_struck(s);
+        ball.apply_impulse_earlier(&load, s);
+        ball.note_impact(s);
     }
 }
 
 impl RigidIsland {
-    /// Holds a rock that has come to the mesh within the step slower than it rebounds, and has fallen on into it since: what a step more would
-    /// take for a blow is no more than its weight has done on the rest of this one.
-    fn settle_on(&mut self, scene: &mut ImpactScene, k: usize) {
+    /// Stops a rock that has come to the mesh within the step too slowly to rebound, and has sunk in since. Its approach at
+    /// the end of the step is what weight has added on the rest of it; the next step would take it for an impact.
+    fn capture_on_mesh(&mut self, scene: &mut ImpactScene, k: usize) {
         let tolerance = self.impact_tolerance();
         let ball = &mut self.balls[k];
-        if ball.on_mesh != OnMesh::Settles {
+        if ball.on_mesh != OnMesh::Captured {
             return;
         }
         let (world, state) = scene.members[k].with_environment(scene.terrain);
@@ -263,15 +265,15 @@ impl RigidIsland {
         };
         let motion = (&ball.v, &ball.w);
         (ball.v, ball.w) =
-            throw_off((&world, touches), (&touch, None), motion, (true, tolerance), &mut note);
+            rebound_from((&world, touches), (&touch, None), motion, (true, tolerance), &mut note);
         ball.pushed = true;
     }
 }
 
-/// Velocity and spin after the impact of a rock on all that it touches at the instant at which it comes to `touch`; as a rock alone it
-/// is turned against a facet, and back. Gives nothing back if it is `dead`. Notes of every contact what it took, and of those struck
-/// the approach (m/s).
-fn throw_off(
+/// Velocity and spin after the impact of a rock on all that it touches at the instant at which it comes to `touch`. On a
+/// facet of rough ground the motion is turned into the facet's frame and back, as for a rock alone. Without restitution
+/// if `dead`. Reports the loss at every contact, and the approach (m/s) at those that are struck.
+fn rebound_from(
     (world, touches): (&ContactEnvironment, &[ContactPoint]),
     (touch, turn): (&ContactPoint, Option<Rotation3<f64>>),
     (v, w): (&Vec3, &Vec3),
@@ -293,7 +295,7 @@ fn throw_off(
     (turn * thrown.velocity_m_s, turn * thrown.spin_rad_s)
 }
 
-/// Mean motion in a blow that fell `s` (s) before the end of the step, from the motions there without and with it.
-fn mean_late(ball: &StepBody, before: &(Vec3, Vec3), s: f64) -> (Vec3, Vec3) {
+/// Mean motion in an impact `s` (s) before the end of the step, from the motions at the end without and with it.
+fn mean_motion_earlier(ball: &StepBody, before: &(Vec3, Vec3), s: f64) -> (Vec3, Vec3) {
     ((before.0 + ball.v) * 0.5 - ball.body.gravity * s, (before.1 + ball.w) * 0.5)
 }

@@ -1,8 +1,7 @@
-//! Rocks that got into each other or into the mesh are moved out, without adding velocity.
+//! Position correction: rocks that overlap each other or the mesh are moved apart, without a change of velocity.
 //!
-//! Velocity-level steps keep gaps only to the error of the step; left alone, overlaps grow. Moving
-//! rocks apart changes places only, but lifts some of them: that height is work, and someone must
-//! pay for it, or a heap warms up by itself.
+//! Velocity-level steps keep gaps only to the error of the step, and overlaps would grow. The correction changes positions
+//! only, but lifts some rocks: their potential energy is taken from dissipation and motion, or a heap would gain energy.
 
 use super::RigidIsland;
 use super::contacts::{ImpactScene, StepBody};
@@ -12,35 +11,35 @@ use crate::rock::Vec3;
 use crate::solver::loss::Given;
 use crate::solver::rigid::way_out;
 
-/// Overlap of two rocks that is left alone: what their weight presses springs in, within bounds (–, relative to the smaller
-/// radius).
+/// Overlap of two rocks that is not corrected: the static penetration of their springs, within bounds (–, relative to the
+/// smaller radius).
 const SLACK: (f64, f64) = (1e-8, 1e-5);
-/// Layers of rocks that press there (–).
+/// Layers of rocks whose weight counts there (–).
 const LAYERS: f64 = 4.0;
 /// Sweeps over what overlaps, at most.
 const SWEEPS: u32 = 30;
-/// From the second sweep on rocks are moved so much farther than until they no longer overlap, and by so much of what is left
-/// alone besides (–): in a heap each is pushed back by the next (successive over-relaxation, Young 1954), and what was moved
-/// to the brim would be moved again. Two rocks alone have parted in the first sweep.
+/// Over-relaxation from the second sweep on, relative to the overlap, and relative to the overlap that is not corrected (–):
+/// in a heap each rock is pushed back by the next (successive over-relaxation, Young 1954), and one moved just to the limit
+/// would be moved again. Two rocks alone are separated by the first sweep.
 const BEYOND: (f64, f64) = (0.8, 0.3);
-/// Way of a rock up to which it gets into none but the pairs that were near at first (–, relative to its radius). Where one is
-/// moved farther, twice as much is looked at.
+/// Displacement of a rock up to which it can only overlap the rocks that were near at first (–, relative to its radius).
+/// Where one is moved farther, the pairs within twice that distance are searched again.
 const ROOM: f64 = 0.005;
-/// Way of a rock for which the touches with the mesh that are known are taken for planes (–, relative to its radius). Over an
-/// edge that is off by half the square of it.
+/// Displacement of a rock for which the known contact points with the mesh are taken as planes (–, relative to its radius).
+/// Over an edge the error is half its square.
 const FLAT: f64 = 3e-4;
 
-/// Two rocks that may get into each other while rocks are moved.
+/// Two rocks that may overlap during the correction.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct NearPair {
     ends: [usize; 2],
-    /// Distance of the centres that is left alone (m).
+    /// Distance of the centres below which they are moved apart (m).
     allowed_m: f64,
 }
 
 impl PairHistory {
-    /// Distance of two centres that is left alone (m): what weight would press in anyway is left, as without it contacts of a
-    /// heap would open and close from step to step.
+    /// Distance of two centres below which they are moved apart (m). The static penetration is left, as without it the
+    /// contacts of a heap would open and close from step to step.
     fn allowed_m(&self, balls: [&StepBody; 2]) -> f64 {
         let weight = |ball: &StepBody| ball.body.mass * ball.body.gravity.norm();
         let radius = balls[0].body.radius.min(balls[1].body.radius);
@@ -51,20 +50,20 @@ impl PairHistory {
 }
 
 impl RigidIsland {
-    /// Moves apart what overlaps, each by its share of the mass; the height that a rock gains is paid by its motion.
+    /// Separates overlapping rocks in proportion to their inverse masses; books the potential energy that this adds.
     ///
-    /// Gauss–Seidel over pairs and mesh, to and fro between them until nothing moves: each rock out
-    /// of one neighbour may be in another. What has not been moved since it was seen is passed over: it is where it was.
-    pub(super) fn part(&mut self, scene: &mut ImpactScene) {
+    /// Gauss–Seidel over pairs and mesh until nothing moves, as a rock moved out of one neighbour may overlap another.
+    /// Pairs of which no rock has moved since the last sweep are skipped.
+    pub(super) fn correct_positions(&mut self, scene: &mut ImpactScene) {
         self.places.clear();
         self.places.extend(self.balls.iter().map(|ball| ball.c));
         let mut room = ROOM;
         self.find_near(scene.pair_histories, room);
         for sweep in 1..=SWEEPS {
-            let mut moved = self.part_pairs(sweep);
+            let mut moved = self.separate_pairs(sweep);
             let mut far = false;
             for k in 0..self.balls.len() {
-                if self.balls[k].is_stirred(sweep) {
+                if self.balls[k].was_moved(sweep) {
                     moved |= self.push_out(scene, k, sweep);
                     let ball = &self.balls[k];
                     let way2 = (ball.c - self.places[k]).norm_squared();
@@ -82,13 +81,13 @@ impl RigidIsland {
         self.pay_for_height();
     }
 
-    /// Farthest way of a rock so far, over its radius (–).
+    /// Largest displacement of a rock so far, relative to its radius (–).
     fn farthest(&self) -> f64 {
         let ways = self.balls.iter().zip(&self.places);
         ways.map(|(ball, from)| (ball.c - from).norm() / ball.body.radius).fold(0.0, f64::max)
     }
 
-    /// Lists the pairs that overlap or may do so before a rock has gone farther than `room` times its radius.
+    /// Lists the pairs that overlap or may overlap before a rock has moved farther than `room` times its radius.
     fn find_near(&mut self, pair_histories: &[PairHistory], room: f64) {
         self.near.clear();
         for pair_history in pair_histories {
@@ -102,19 +101,19 @@ impl RigidIsland {
         }
     }
 
-    /// Moves the rocks of every pair apart that overlaps; whether there was one.
-    fn part_pairs(&mut self, sweep: u32) -> bool {
+    /// Separates every pair that overlaps; whether there was one.
+    fn separate_pairs(&mut self, sweep: u32) -> bool {
         let mut moved = false;
         let beyond = if sweep > 1 { BEYOND } else { (0.0, 0.0) };
         for &NearPair { ends, allowed_m: allowed } in &self.near {
             let Ok([a, b]) = self.balls.get_disjoint_mut(ends) else { continue };
-            if !(a.is_stirred(sweep) || b.is_stirred(sweep))
+            if !(a.was_moved(sweep) || b.was_moved(sweep))
                 || (a.c - b.c).norm_squared() >= allowed * allowed
             {
                 continue;
             }
             let (n, distance) = between(&a.c, &b.c);
-            // each moves by its share of 1/m: the centre of mass of the two stays
+            // each moves in proportion to 1/m: the centre of mass of the two stays
             let slack = a.body.radius + b.body.radius - allowed;
             let missing = (allowed - distance) * (1.0 + beyond.0) + slack * beyond.1;
             let way = n * (missing / (a.inv.0 + b.inv.0));
@@ -126,7 +125,7 @@ impl RigidIsland {
         moved
     }
 
-    /// Moves a rock out of the mesh; whether it was in it.
+    /// Moves a rock out of the mesh; whether it overlapped it.
     fn push_out(&mut self, scene: &mut ImpactScene, k: usize, sweep: u32) -> bool {
         let ball = &mut self.balls[k];
         let (world, state) = scene.members[k].with_environment(scene.terrain);
@@ -142,11 +141,11 @@ impl RigidIsland {
         out.norm_squared() > (TOUCH * world.body.radius).powi(2)
     }
 
-    /// Pays for the height that rocks gain, first with what normal impulses took of them in this step: what sinks in by the
-    /// error of a step loses its energy there, and has it back when it is lifted out. The rest is paid by motion.
-    /// (Paid by motion alone, the lifting of 1e-5 R would stop a heap that begins to slide.)
+    /// Balances the potential energy that rocks gain: first from the dissipation of normal impulses in this step, as a rock
+    /// that sinks in by the error of a step has lost that energy there; the rest from the kinetic energy.
+    /// (Taken from kinetic energy alone, corrections of 1e-5 R would stop a heap that begins to slide.)
     fn pay_for_height(&mut self) {
-        // heights of all rocks together: what one rock sinks pays for what another rises
+        // summed over all rocks: the descent of one balances the ascent of another
         let (mut net_j, mut risen_j, mut sunk_j) = (0.0, 0.0, 0.0);
         for (k, (ball, from)) in self.balls.iter_mut().zip(&self.places).enumerate() {
             ball.moved = ball.c != *from;
@@ -157,7 +156,7 @@ impl RigidIsland {
             sunk_j -= lifted_j.min(0.0);
         }
         if net_j <= 0.0 {
-            // what has sunk more than others rose is lost
+            // a net descent is dissipated
             return self.share_out(|given, lifted_j| {
                 let lost_j = -net_j * (-lifted_j).max(0.0) / sunk_j.max(f64::MIN_POSITIVE);
                 (given.lost, given.passed_on) = (given.lost + lost_j, given.passed_on - lost_j);
@@ -167,21 +166,21 @@ impl RigidIsland {
         let paid_j = self.give_back(covered_j) + self.pay_together(net_j - covered_j);
         let unpaid_j = net_j - paid_j;
         if unpaid_j > 0.0 {
-            // nobody has it: the error of the step has made it
+            // no energy left to take: it stays as an error of the step
             self.share_out(|given, lifted_j| {
                 given.passed_on += unpaid_j * lifted_j.max(0.0) / risen_j;
             });
         }
     }
 
-    /// Goes through what rocks gave, with the energy that the height of each has gained (J).
+    /// Books something for every rock by the potential energy that it has gained (J).
     fn share_out(&mut self, mut book: impl FnMut(&mut Given, f64)) {
         for ((ball, from), given) in self.balls.iter().zip(&self.places).zip(&mut self.given) {
             book(given, ball.lifted_j(from));
         }
     }
 
-    /// Takes back energy (J) from what is booked as lost in this step, from every rock its share; how much there was.
+    /// Takes energy (J) back from what is booked as dissipated in this step, from every rock in proportion; how much there was.
     fn give_back(&mut self, wanted_j: f64) -> f64 {
         let booked = self.losses.iter().zip(&self.given);
         let booked_j: f64 =
@@ -199,8 +198,8 @@ impl RigidIsland {
         share * booked_j
     }
 
-    /// Takes energy (J) out of the motion of all rocks that are pushed, each its share; how much they had.
-    /// In proportion to what each has, so that directions and ratios of speeds stay.
+    /// Takes energy (J) from the motion of all rocks that were pushed or moved; how much they had.
+    /// In proportion to their kinetic energies, so that directions and ratios of speeds stay.
     fn pay_together(&mut self, owed_j: f64) -> f64 {
         let takes_part = |ball: &StepBody| ball.pushed || ball.moved;
         let motion_j: f64 =
@@ -223,7 +222,7 @@ impl RigidIsland {
 impl StepBody {
     /// Whether it was moved in this sweep or in the one before.
     #[inline]
-    fn is_stirred(&self, sweep: u32) -> bool {
+    fn was_moved(&self, sweep: u32) -> bool {
         self.shifted + 1 >= sweep
     }
 
@@ -232,7 +231,7 @@ impl StepBody {
         self.body.motion_j((&self.v, &self.w))
     }
 
-    /// Energy that its height has gained from a place (J).
+    /// Potential energy gained from a position (J).
     fn lifted_j(&self, from: &Vec3) -> f64 {
         self.body.lifted_j(&(self.c - from))
     }
