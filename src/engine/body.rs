@@ -11,9 +11,9 @@ mod made;
 mod mesh;
 mod solid;
 
-pub use hull::{Core, HullFace, Ridge, most_corners};
+pub use hull::{Core, HullFace, Ridge, max_corners};
 pub use made::{box_surface, eota, prism_surface, sphere_points};
-pub use mesh::{BadSurface, Thinned};
+pub use mesh::{BadSurface, ThinnedHull};
 pub use solid::{Solid, Surface};
 
 use crate::rock::{Rock, Vec3};
@@ -21,7 +21,7 @@ use serde::{Deserialize, Serialize};
 
 /// The smallest corner radius over the radius of the sphere of equal volume (–): sharper corners would need shorter steps than
 /// any use of them is worth.
-pub const SHARPEST: f64 = 0.01;
+pub const MIN_CORNER_RADIUS: f64 = 0.01;
 
 /// What a shape is made from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -83,18 +83,18 @@ impl Shape {
     /// A surface without volume, or a core that the balls would fill.
     pub fn of(solid: &Solid, corners: &[Vec3], ball: f64) -> Result<Self, BadSurface> {
         let unit = solid.equal_radius();
-        let into = |p: &Vec3| solid.axes.inverse_transform_vector(&(p - solid.centre)) / unit;
-        let stated: Vec<Vec3> = corners.iter().map(into).collect();
-        let hull = Core::of(&stated)?;
+        let to_own = |p: &Vec3| solid.axes.inverse_transform_vector(&(p - solid.centre)) / unit;
+        let scaled: Vec<Vec3> = corners.iter().map(to_own).collect();
+        let hull = Core::of(&scaled)?;
         if hull.faces.iter().any(|face| face.level <= ball) {
             return Err(BadSurface::NoCore);
         }
         let core = Core::of(&hull.inset(ball))?;
         let inertia = solid.moments.map(|moment| moment / (solid.volume * unit * unit));
         let reach = |core: &Core| core.corners.iter().map(Vec3::norm).fold(0.0, f64::max);
-        let beyond = hull.corners.iter().map(|p| core.distance(p) - ball).fold(f64::MIN, f64::max);
+        let cut_off = hull.corners.iter().map(|p| core.distance(p) - ball).fold(f64::MIN, f64::max);
         let bound = reach(&core) + ball;
-        Ok(Self { core, ball, inertia, bound, cut_off: beyond })
+        Ok(Self { core, ball, inertia, bound, cut_off })
     }
 }
 
@@ -123,7 +123,7 @@ impl Block {
             core: shape.core.scaled(radius_m),
             ball_m: shape.ball * radius_m,
             mass_kg,
-            inertia_kg_m2: shape.inertia.map(|one| one * mass_kg * radius_m * radius_m),
+            inertia_kg_m2: shape.inertia.map(|moment| moment * mass_kg * radius_m * radius_m),
             bound_m: shape.bound * radius_m,
             radius_m,
         }
@@ -136,7 +136,7 @@ impl Block {
     }
 
     /// How far it reaches at least, along any direction (m): the radius of the largest ball about its centre inside it.
-    pub fn least_support_m(&self) -> f64 {
+    pub fn min_support_m(&self) -> f64 {
         let nearest = self.core.faces.iter().map(|face| face.level).fold(f64::INFINITY, f64::min);
         nearest + self.ball_m
     }

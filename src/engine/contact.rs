@@ -31,7 +31,7 @@ use serde::{Deserialize, Serialize};
 /// Three contacts hold a sphere; more press at the same instant only in hollows with many walls.
 /// Should a mesh offer more than fit, those that press on nearly the same side are joined, with all
 /// their energy and force ([`ContactPoints::add`]).
-pub const MOST: usize = 16;
+pub const MAX_CONTACTS: usize = 16;
 /// A gap this small is a touch (–, relative to R): rounding of the leap.
 ///
 /// Looser than what sums of positions and times are rounded by, far tighter than any penetration
@@ -68,7 +68,7 @@ impl Feature {
     pub const NONE: Self = Self { kind: FeatureKind::Face, id: u32::MAX };
 
     /// Whether a triangle is this face, or has this edge or vertex.
-    pub(crate) fn is_of(self, terrain: &Terrain, triangle: u32) -> bool {
+    pub(crate) fn belongs_to(self, terrain: &Terrain, triangle: u32) -> bool {
         match self.kind {
             FeatureKind::Face => triangle == self.id,
             FeatureKind::Edge => {
@@ -143,10 +143,10 @@ impl ContactPoint {
 /// What a patch presses: sums over its parts from which the point contact that acts like it follows.
 #[derive(Debug, Clone, Copy)]
 struct PatchSums {
-    /// `Σ w pen²` (m²): the patch holds `U = p_N square/2`.
-    square: f64,
-    /// `Σ w pen n` (m): its force is `−∇U = p_N slope`.
-    slope: Vec3,
+    /// `Σ w pen²` (m²): the patch holds `U = p_N pen2/2`.
+    pen2: f64,
+    /// `Σ w pen n` (m): its force is `−∇U = p_N pen_n`.
+    pen_n: Vec3,
 }
 
 impl PatchSums {
@@ -154,33 +154,33 @@ impl PatchSums {
     ///
     /// A ball wedged between two parallel walls has `a = 0`: the forces cancel and there is no normal
     /// to speak of.
-    const BALANCED: f64 = 1e-12;
+    const CANCELLED: f64 = 1e-12;
 
     /// What `touch` presses into a ball of `radius` (m).
     fn of(touch: &ContactPoint, radius: f64) -> Self {
-        let slope = touch.gain2 * (radius - touch.distance_m);
-        Self { square: slope * (radius - touch.distance_m), slope: touch.normal * slope }
+        let pen = touch.gain2 * (radius - touch.distance_m);
+        Self { pen2: pen * (radius - touch.distance_m), pen_n: touch.normal * pen }
     }
 
     fn add(&mut self, other: &Self) {
-        self.square += other.square;
-        self.slope += other.slope;
+        self.pen2 += other.pen2;
+        self.pen_n += other.pen_n;
     }
 
     /// The point contact that acts like it, found again by its `nearest` point; `None` where it does not press.
-    fn touch(&self, nearest: &ContactPoint, radius: f64) -> Option<ContactPoint> {
-        let slope2 = self.slope.norm_squared();
+    fn equivalent_contact(&self, nearest: &ContactPoint, radius: f64) -> Option<ContactPoint> {
+        let pen_n2 = self.pen_n.norm_squared();
         // U ≤ 0 can only be rounding of a sum that cancels; a force without direction is left out,
         // too
-        if self.square <= 0.0 || slope2 <= Self::BALANCED * self.square {
+        if self.pen2 <= 0.0 || pen_n2 <= Self::CANCELLED * self.pen2 {
             return None;
         }
-        let slope = slope2.sqrt();
-        // p = √square, a = slope/p: pressed in by p/|a| = square/slope.
+        let pen_norm = pen_n2.sqrt();
+        // p = √pen2, a = slope/p: pressed in by p/|a| = pen2/slope.
         Some(ContactPoint {
-            normal: self.slope / slope,
-            distance_m: radius - self.square / slope,
-            gain2: slope2 / self.square,
+            normal: self.pen_n / pen_norm,
+            distance_m: radius - self.pen2 / pen_norm,
+            gain2: pen_n2 / self.pen2,
             ..*nearest
         })
     }
@@ -188,7 +188,7 @@ impl PatchSums {
 
 /// The touches of one rock, without allocation: the list is made anew at every stage of every step.
 #[derive(Debug, Clone, Default)]
-pub struct ContactPoints(ArrayVec<ContactPoint, MOST>);
+pub struct ContactPoints(ArrayVec<ContactPoint, MAX_CONTACTS>);
 
 impl ContactPoints {
     /// Forgets all.
@@ -203,7 +203,7 @@ impl ContactPoints {
     /// negative distance, hence more penetration and a force back to the side it came from. An
     /// unsigned distance would push it out on the other side.
     #[inline]
-    pub fn slide_to(&mut self, terrain: &Terrain, centre: &Vec3) -> bool {
+    pub fn update_on_planes(&mut self, terrain: &Terrain, centre: &Vec3) -> bool {
         if self.0.iter().any(|touch| !touch.is_on_plane()) {
             return false;
         }
@@ -222,16 +222,16 @@ impl ContactPoints {
     }
 
     /// Forgets what a ball with this radius (m) and velocity `v` does not touch, nor comes to within `together` (–, relative to the radius).
-    pub(crate) fn keep_struck(&mut self, radius_m: f64, v: &Vec3, together: f64) {
+    pub(crate) fn retain_impacting(&mut self, radius_m: f64, v: &Vec3, together: f64) {
         let [touched, near] = [TOUCH, together].map(|gap| radius_m * (1.0 + gap));
         self.retain(|touch| {
-            let comes = touch.normal.dot(v) < 0.0;
-            touch.distance_m < touched || touch.distance_m < near && comes
+            let approaches = touch.normal.dot(v) < 0.0;
+            touch.distance_m < touched || touch.distance_m < near && approaches
         });
     }
 
     /// Forgets those that are not nearer than `reach` (m).
-    pub fn keep_nearer(&mut self, reach: f64) {
+    pub fn retain_nearer(&mut self, reach: f64) {
         self.retain(|touch| touch.distance_m < reach);
     }
 
@@ -244,7 +244,7 @@ impl ContactPoints {
     /// whose normals are nearest to each other become one, as parts of a patch do.
     ///
     /// Energy and force of the whole are what they are with room for all: none comes or goes with the number. Normals
-    /// tell which, as they turn slowly while depths pass one another. O(1) until it is full, O(`MOST`²) after.
+    /// tell which, as they turn slowly while depths pass one another. O(1) until it is full, O(`MAX_CONTACTS`²) after.
     #[inline]
     pub fn add(&mut self, touch: ContactPoint, radius: f64) {
         if let Err(full) = self.0.try_push(touch) {
@@ -264,19 +264,24 @@ impl ContactPoints {
         if touch.distance_m >= radius {
             return;
         }
-        let pairs = (0..MOST).flat_map(|one| (one + 1..=MOST).map(move |other| (one, other)));
+        let pairs = (0..MAX_CONTACTS)
+            .flat_map(|first| (first + 1..=MAX_CONTACTS).map(move |second| (first, second)));
         let of = |place: usize| *self.0.get(place).unwrap_or(&touch);
-        let apart = |&(one, other): &(usize, usize)| -of(one).normal.dot(&of(other).normal);
-        let Some((one, other)) = pairs.min_by(|a, b| apart(a).total_cmp(&apart(b))) else { return };
-        let (kept, gone) = (of(one), of(other));
+        let misaligned =
+            |&(first, second): &(usize, usize)| -of(first).normal.dot(&of(second).normal);
+        let Some((first, second)) = pairs.min_by(|a, b| misaligned(a).total_cmp(&misaligned(b)))
+        else {
+            return;
+        };
+        let (kept, merged) = (of(first), of(second));
         let mut both = PatchSums::of(&kept, radius);
-        both.add(&PatchSums::of(&gone, radius));
+        both.add(&PatchSums::of(&merged, radius));
         // not that of the deeper one: two alike would be each other's heirs at every look
-        let known = if kept.feature <= gone.feature { kept } else { gone };
-        if let Some(last) = self.0.get_mut(other) {
+        let known = if kept.feature <= merged.feature { kept } else { merged };
+        if let Some(last) = self.0.get_mut(second) {
             *last = touch;
         }
-        self.0[one] = both.touch(&known, radius).unwrap_or(known);
+        self.0[first] = both.equivalent_contact(&known, radius).unwrap_or(known);
     }
 }
 
@@ -296,10 +301,10 @@ mod tests {
     fn energy_and_force_are_whole_however_many_press() {
         let radius = 2.0;
         let mut touches = ContactPoints::default();
-        let mut all = PatchSums { square: 0.0, slope: Vec3::zeros() };
-        for k in 0..3 * MOST {
+        let mut all = PatchSums { pen2: 0.0, pen_n: Vec3::zeros() };
+        for k in 0..3 * MAX_CONTACTS {
             // on a spiral over the lower half, some of them not pressed
-            let (turn, down) = (2.4 * k as f64, 0.3 + 0.2 * k as f64 / MOST as f64);
+            let (turn, down) = (2.4 * k as f64, 0.3 + 0.2 * k as f64 / MAX_CONTACTS as f64);
             let side = (1.0f64 - down * down).sqrt();
             let normal = Vec3::new(side * turn.cos(), side * turn.sin(), down);
             let pen = 0.1 * (1.3 * k as f64).sin();
@@ -311,12 +316,12 @@ mod tests {
                 all.add(&PatchSums::of(&touch, radius));
             }
         }
-        let mut kept = PatchSums { square: 0.0, slope: Vec3::zeros() };
+        let mut kept = PatchSums { pen2: 0.0, pen_n: Vec3::zeros() };
         for touch in touches.iter().filter(|touch| touch.distance_m < radius) {
             kept.add(&PatchSums::of(touch, radius));
         }
-        assert_eq!(touches.len(), MOST);
-        assert!((kept.square - all.square).abs() < 1e-14, "{} {}", kept.square, all.square);
-        assert!((kept.slope - all.slope).norm() < 1e-14, "{} {}", kept.slope, all.slope);
+        assert_eq!(touches.len(), MAX_CONTACTS);
+        assert!((kept.pen2 - all.pen2).abs() < 1e-14, "{} {}", kept.pen2, all.pen2);
+        assert!((kept.pen_n - all.pen_n).norm() < 1e-14, "{} {}", kept.pen_n, all.pen_n);
     }
 }

@@ -84,7 +84,7 @@ impl Parabola {
 }
 
 /// A time (s) in which what is as fast as `speed` (m/s) surely goes no further than `way` (m), though its weight may speed it up on the way.
-pub(crate) fn time_within(way: f64, speed: f64, gravity: f64) -> f64 {
+pub(crate) fn min_travel_time_s(way: f64, speed: f64, gravity: f64) -> f64 {
     // way ≥ |v| t + g t²/2, solved for t without cancellation
     2.0 * way / (speed + (speed * speed + 2.0 * gravity * way).sqrt())
 }
@@ -110,25 +110,25 @@ pub fn time_of_impact(
     longest_s: f64,
     tested: &mut u64,
 ) -> FlightEnd {
-    time_of_impact_past(terrain, flight, longest_s, &[], tested)
+    time_of_impact_without(terrain, flight, longest_s, &[], tested)
 }
 
-/// The same past the stems that are `gone`.
+/// The same past the stems that are `broken_stems`.
 ///
 /// A stem that has broken is still in the index: its triangles are skipped one by one, since a rock
 /// breaks few.
-pub fn time_of_impact_past(
+pub fn time_of_impact_without(
     terrain: &Terrain,
     flight: &Parabola,
     longest_s: f64,
-    gone: &[u32],
+    broken_stems: &[u32],
     tested: &mut u64,
 ) -> FlightEnd {
     let leaves = leaves_box_after(terrain, flight);
     // a touch that comes after the ball has left the box cannot be, and one after the time allowed
     // does not count
     let limit = longest_s.min(leaves);
-    match first_touch(terrain, flight, limit, (gone, tested)) {
+    match first_touch(terrain, flight, limit, (broken_stems, tested)) {
         Some(t) => FlightEnd::Touch(t),
         None if leaves <= longest_s => FlightEnd::Leaves(last_over_ground(terrain, flight, leaves)),
         None => FlightEnd::Flies,
@@ -136,21 +136,21 @@ pub fn time_of_impact_past(
 }
 
 /// Places of a last flight at which is looked whether there is ground below the ball.
-const LOOKS: u32 = 64;
+const GROUND_SAMPLES: u32 = 64;
 /// Halvings of the time between two of them: 2⁻⁴⁰ of a flight is less than its rounding on a map.
-const HALVINGS: u32 = 40;
+const BISECTIONS: u32 = 40;
 
 /// When a ball that touches nothing any more, and `leaves` its box, passes the last ground below it (s): the border of the mesh, however it
 /// runs, or the rim of a hole. Further down it would only fall, with a speed that no rock has; and under the slope no rock would fly on.
 ///
 /// Asked once in the life of a rock.
 fn last_over_ground(terrain: &Terrain, flight: &Parabola, leaves: f64) -> f64 {
-    let is_over = |at: &Vec3| terrain.ground_under(at.x, at.y, at.z).is_some();
-    let look = |k: u32| leaves * f64::from(k) / f64::from(LOOKS);
+    let has_ground = |at: &Vec3| terrain.ground_under(at.x, at.y, at.z).is_some();
+    let sample_s = |k: u32| leaves * f64::from(k) / f64::from(GROUND_SAMPLES);
     let mut last = None;
-    for k in 0..=LOOKS {
-        let at = flight.centre(look(k));
-        if is_over(&at) {
+    for k in 0..=GROUND_SAMPLES {
+        let at = flight.centre(sample_s(k));
+        if has_ground(&at) {
             last = Some(k);
         } else if terrain.ground_below(at.x, at.y).is_some() {
             // under the slope
@@ -159,10 +159,10 @@ fn last_over_ground(terrain: &Terrain, flight: &Parabola, leaves: f64) -> f64 {
     }
     match last {
         None => 0.0,
-        Some(LOOKS) => leaves,
-        Some(k) => {
-            math::bisected([look(k), look(k + 1)], HALVINGS, |t| is_over(&flight.centre(t)))[0]
-        }
+        Some(GROUND_SAMPLES) => leaves,
+        Some(k) => math::bisected([sample_s(k), sample_s(k + 1)], BISECTIONS, |t| {
+            has_ground(&flight.centre(t))
+        })[0],
     }
 }
 
@@ -175,7 +175,7 @@ fn leaves_box_after(terrain: &Terrain, flight: &Parabola) -> f64 {
     let (lo, hi) = terrain.index.bounds();
     let (c, v, r) = (flight.start, flight.velocity, flight.radius);
     // sides are moved out by the radius: the ball still touches what its centre has passed
-    let straight = |k: usize| {
+    let leaves_axis_s = |k: usize| {
         let to = if v[k] > 0.0 { hi[k] + r } else { lo[k] - r };
         if v[k] != 0.0 {
             ((to - c[k]) / v[k]).max(0.0)
@@ -185,15 +185,15 @@ fn leaves_box_after(terrain: &Terrain, flight: &Parabola) -> f64 {
             f64::INFINITY
         }
     };
-    let upright = if flight.gravity > 0.0 {
+    let leaves_vertically_s = if flight.gravity > 0.0 {
         // roots of c_z + v_z t − g t²/2 = lo_z − R: the later one is the way down
         // A ball that never comes up to the floor is below it from the start.
         let floor = quadratic(-0.5 * flight.gravity, v.z, c.z - (lo.z - r));
         floor.map_or(0.0, |(_, last)| last.max(0.0))
     } else {
-        straight(2)
+        leaves_axis_s(2)
     };
-    straight(0).min(straight(1)).min(upright)
+    leaves_axis_s(0).min(leaves_axis_s(1)).min(leaves_vertically_s)
 }
 
 /// Time at which the ball first touches the mesh, within `limit` (s).
@@ -204,23 +204,23 @@ fn first_touch(
     terrain: &Terrain,
     flight: &Parabola,
     limit: f64,
-    (gone, tested): (&[u32], &mut u64),
+    (broken_stems, tested): (&[u32], &mut u64),
 ) -> Option<f64> {
     let nodes = terrain.index.nodes();
     if nodes.is_empty() {
         return None;
     }
-    let slabs = ParabolaBox::new(flight);
+    let parabola_box = ParabolaBox::new(flight);
     let mut best = limit;
     let mut found = false;
     // on the stack: no flight allocates
-    let mut stack = [Waiting::default(); WAITING];
-    stack[0].ends = f32::INFINITY;
+    let mut stack = [StackEntry::default(); WAITING];
+    stack[0].ends_s = f32::INFINITY;
     let mut top = 1;
     while top > 0 {
         top -= 1;
-        let Waiting { child, begins, ends } = stack[top];
-        let (from, to) = (f64::from(begins), f64::from(ends));
+        let StackEntry { child, begins_s, ends_s } = stack[top];
+        let (from, to) = (f64::from(begins_s), f64::from(ends_s));
         // windows are rounded outwards, so this never drops a box in which an earlier touch lies
         if from >= best && found {
             continue;
@@ -228,21 +228,22 @@ fn first_touch(
         match Child::of(child) {
             Child::Inner(next) => {
                 let node = &nodes[next as usize];
-                top = wait(&mut stack, top, node, slabs.windows(node, best));
+                top = push_children(&mut stack, top, node, parabola_box.windows(node, best));
             }
             Child::Leaf(start, count) => {
                 for triangle in start..start + count {
                     // the window of the box holds for all its triangles: it spares most of their
                     // tests
-                    let window = (from, least(to, best));
+                    let window = (from, fast_min(to, best));
                     if window.0 > window.1 {
                         break;
                     }
                     *tested += 1;
-                    if terrain.is_gone(triangle, gone) {
+                    if terrain.is_gone(triangle, broken_stems) {
                         continue;
                     }
-                    if let Some(t) = touching::of_triangle(terrain, triangle, flight, window) {
+                    if let Some(t) = touching::triangle_impact_s(terrain, triangle, flight, window)
+                    {
                         best = t;
                         found = true;
                     }
@@ -256,10 +257,10 @@ fn first_touch(
 /// A child of a node whose box the ball passes during a window of time (s).
 /// Times in `f32`, as the boxes are; they are only bounds.
 #[derive(Clone, Copy, Default)]
-struct Waiting {
+struct StackEntry {
     child: u32,
-    begins: f32,
-    ends: f32,
+    begins_s: f32,
+    ends_s: f32,
 }
 
 /// Puts the children with a window on the stack, the first to be passed on top; returns the stack's new height.
@@ -267,8 +268,8 @@ struct Waiting {
 /// Insertion into the part of the stack above `bottom`: at most four children, so a sort of at most
 /// six comparisons.
 #[inline]
-fn wait(
-    stack: &mut [Waiting; WAITING],
+fn push_children(
+    stack: &mut [StackEntry; WAITING],
     mut top: usize,
     node: &BvhNode,
     (begins, ends): (f32x4, f32x4),
@@ -277,14 +278,15 @@ fn wait(
     let mut passed = begins.simd_le(ends).to_bitmask();
     let (begins, ends) = (begins.to_array(), ends.to_array());
     while passed != 0 {
-        let side = passed.trailing_zeros() as usize % begins.len();
+        let lane = passed.trailing_zeros() as usize % begins.len();
         passed &= passed - 1;
         let mut place = top;
-        while place > bottom && stack[place - 1].begins < begins[side] {
+        while place > bottom && stack[place - 1].begins_s < begins[lane] {
             stack[place] = stack[place - 1];
             place -= 1;
         }
-        stack[place] = Waiting { child: node.word(side), begins: begins[side], ends: ends[side] };
+        stack[place] =
+            StackEntry { child: node.word(lane), begins_s: begins[lane], ends_s: ends[lane] };
         top += 1;
     }
     top
@@ -293,12 +295,12 @@ fn wait(
 /// The lesser of two numbers, neither of them NaN: one instruction.
 /// `f64::min` must handle NaN and is slower in these loops.
 #[inline]
-fn least(a: f64, b: f64) -> f64 {
+fn fast_min(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }
 
 /// The greater of two numbers, neither of them NaN.
 #[inline]
-fn most(a: f64, b: f64) -> f64 {
+fn fast_max(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }

@@ -10,8 +10,8 @@ pub use law::{
     restitution, tangential_restitution,
 };
 pub(crate) use law::{
-    FixedStepNormal, FrictionElement, FrictionLimits, INSIDE, LinearFriction, NormalElement,
-    NormalLine, SliderForce, within,
+    FixedStepNormal, FrictionElement, FrictionLimits, LinearFriction, NormalElement, NormalLine,
+    STICK_THRESHOLD, SliderForce, clamp_norm,
 };
 pub(crate) use soil::over_unit;
 pub use soil::{Scar, SlipFriction, cut_area_m2, swept_m3};

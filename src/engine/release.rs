@@ -12,7 +12,7 @@ use crate::random::{Distribution, Purpose, RandomStream, stream, unit};
 use crate::rock::{Motion, Rock, Vec3};
 use crate::scene::{Area, Corner, GroundTable, Polyline, ReleasePoint, Scene, SourceTable, Zones};
 use crate::terrain::Terrain;
-use clear::{clear_of, is_in_slope};
+use clear::{is_in_slope, lifted_clear};
 use shapes::Shapes;
 pub use shapes::{DrawnShape, check_shapes};
 use std::path::PathBuf;
@@ -23,7 +23,7 @@ pub(crate) const TYPED_DEPTH: f64 = 1e-6;
 
 /// Places drawn for one release on a line or in an area before it is given up: where a tenth of the zone can be used, one
 /// release in 40 000 is.
-const MOST_DRAWS: usize = 100;
+const MAX_PLACE_DRAWS: usize = 100;
 /// Narrower in plan view than this (m), meshes are walls or dust, no ground.
 pub(crate) const NO_WIDTH_M: f64 = 1e-3;
 /// Why a release cannot be made.
@@ -44,20 +44,20 @@ pub struct Release {
 
 /// A release that cannot be made: the rock, and where it was to start (NaN what is not known of it).
 #[derive(Debug)]
-pub struct Lost {
+pub struct FailedRelease {
     /// The rock.
     pub rock: Rock,
     /// Where it was to start (local coordinates).
     pub start: Motion,
     /// Why not, in few words.
-    pub why: &'static str,
+    pub reason: &'static str,
     /// The message for its user.
     error: Error,
 }
 
 /// Where rocks are released, in map coordinates.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Where {
+pub enum ReleasePlace {
     /// At these points, one after the other and again from the first.
     Points(Vec<ReleasePoint>),
     /// Uniform along a line.
@@ -69,8 +69,8 @@ pub enum Where {
 }
 
 /// A release tried at one place after the other.
-struct TriedPlace {
-    release: std::result::Result<Release, Box<Lost>>,
+struct PlacementAttempt {
+    release: std::result::Result<Release, Box<FailedRelease>>,
     /// Places drawn for it.
     drawn: usize,
     /// Places among them in ground so steep that no height is clear of it.
@@ -86,7 +86,7 @@ pub struct Releases {
     seed: u64,
     gravity_m_s2: f64,
     /// One, or one for each source; zones that are sources are one.
-    places: Vec<Where>,
+    places: Vec<ReleasePlace>,
     zones_are_sources: bool,
     height_m: Option<Distribution>,
     velocity_m_s: [Distribution; 3],
@@ -111,12 +111,13 @@ impl Releases {
         let asked = &scene.release;
         let sources = scene.frequency.as_ref().map_or(&[][..], |table| &table.sources[..]);
         let places = if !asked.blocks.is_empty() {
-            vec![Where::Points(asked.blocks.iter().map(ReleasePoint::of_block).collect())]
+            vec![ReleasePlace::Points(asked.blocks.iter().map(ReleasePoint::of_block).collect())]
         } else if sources.is_empty() {
             vec![Self::place_asked(scene)?]
         } else {
-            let of_source =
-                |one: &SourceTable| Where::one_of((&one.points_m, &one.line_m, &one.polygon_m));
+            let of_source = |one: &SourceTable| {
+                ReleasePlace::one_of((&one.points_m, &one.line_m, &one.polygon_m))
+            };
             sources.iter().filter_map(of_source).collect()
         };
         let releases = Self {
@@ -135,8 +136,8 @@ impl Releases {
             grounds: scene.grounds.values().cloned().collect(),
             shapes: Shapes::compile(scene)?,
         };
-        releases.look_for_ground(terrain)?;
-        for index in 0..releases.turns().min(asked.count) {
+        releases.check_ground(terrain)?;
+        for index in 0..releases.fixed_cycle().min(asked.count) {
             releases.release(terrain, index)?;
         }
         Ok(releases)
@@ -150,7 +151,7 @@ impl Releases {
     /// Draws the zone of a release, the first number of its stream: a place that cannot be used is drawn again in the same
     /// one, so that every zone keeps its share. A zone that is a source has its own releases.
     fn draw_zone(&self, random: &mut RandomStream, index: usize) -> Option<usize> {
-        let Where::Zones(zones) = self.place_of(index).0 else { return None };
+        let ReleasePlace::Zones(zones) = self.place_of(index).0 else { return None };
         let drawn = zones.pick(unit(random));
         let source = self.frequency.as_ref().filter(|_| self.zones_are_sources);
         Some(source.map_or(drawn, |frequency| frequency.stratum(index).source))
@@ -160,7 +161,7 @@ impl Releases {
     fn check_corner(
         &self,
         terrain: &Terrain,
-        (place, entry): (&Where, usize),
+        (place, entry): (&ReleasePlace, usize),
         at_m: Corner,
         who: &str,
     ) -> Result<()> {
@@ -168,12 +169,12 @@ impl Releases {
         let (low, high) = terrain.index.bounds();
         let is_inside = (low.x..=high.x).contains(&x) && (low.y..=high.y).contains(&y);
         let height_m = match place {
-            Where::Points(points) => points[entry].height_m,
+            ReleasePlace::Points(points) => points[entry].height_m,
             _ if is_inside => return Ok(()),
             _ => None,
         };
         let Some(z) = height_m else { return self.ground_m(terrain, at_m, who).map(|_| ()) };
-        let radius_m = self.around_m(entry, &self.unplaced(entry).rock);
+        let radius_m = self.around_m(entry, &self.release_without_place(entry).rock);
         self.check_held(terrain, (Vec3::new(x, y, z - terrain.origin_m.z), radius_m), at_m, who)
     }
 
@@ -194,27 +195,29 @@ impl Releases {
         &self,
         terrain: &Terrain,
         index: usize,
-    ) -> std::result::Result<Release, Box<Lost>> {
+    ) -> std::result::Result<Release, Box<FailedRelease>> {
         self.place_rock(terrain, index).release
     }
 
     /// Draws a rock and a place for it. On a line or in an area a place without ground, or without room for the rock,
     /// is drawn again: rocks are released uniformly over what is left. Says how many places were drawn.
-    fn place_rock(&self, terrain: &Terrain, index: usize) -> TriedPlace {
-        let mut release = self.unplaced(index);
+    fn place_rock(&self, terrain: &Terrain, index: usize) -> PlacementAttempt {
+        let mut release = self.release_without_place(index);
         let mut random = stream(self.seed, Purpose::Place, index);
-        let is_fixed = matches!(self.place_of(index).0, Where::Points(_));
-        let draws = if is_fixed { 1 } else { MOST_DRAWS };
+        let is_fixed = matches!(self.place_of(index).0, ReleasePlace::Points(_));
+        let draws = if is_fixed { 1 } else { MAX_PLACE_DRAWS };
         let zone = self.draw_zone(&mut random, index).unwrap_or_default();
         let around_m = self.around_m(index, &release.rock);
         let (mut lost, mut steep) = (None, 0);
         for drawn in 1..=draws {
             let at_m = self.draw_place(&mut random, (index, zone));
-            let why = match self.centre(terrain, (at_m, around_m), &mut random, index) {
+            let failure = match self.centre(terrain, (at_m, around_m), &mut random, index) {
                 Ok((centre, lift_m)) => {
                     release.motion.position_m = centre;
                     match self.check_clear(terrain, (index, around_m), &release) {
-                        Ok(()) => return TriedPlace { release: Ok(release), drawn, steep, lift_m },
+                        Ok(()) => {
+                            return PlacementAttempt { release: Ok(release), drawn, steep, lift_m };
+                        }
                         Err(error) => {
                             steep += usize::from(is_in_slope(terrain, &centre, around_m));
                             (IN_GROUND, error)
@@ -228,14 +231,24 @@ impl Releases {
                 }
             };
             let (rock, start) = (release.rock, release.motion);
-            lost.get_or_insert(Box::new(Lost { rock, start, why: why.0, error: why.1 }));
+            lost.get_or_insert(Box::new(FailedRelease {
+                rock,
+                start,
+                reason: failure.0,
+                error: failure.1,
+            }));
         }
         // at least one place was drawn
-        TriedPlace { release: lost.map_or(Ok(release), Err), drawn: draws, steep, lift_m: 0.0 }
+        PlacementAttempt {
+            release: lost.map_or(Ok(release), Err),
+            drawn: draws,
+            steep,
+            lift_m: 0.0,
+        }
     }
 
     /// Everything of a release but its place.
-    fn unplaced(&self, index: usize) -> Release {
+    fn release_without_place(&self, index: usize) -> Release {
         let grounds = self.draw_grounds(index);
         let rock = Rock { radius_m: self.draw_radius_m(index), density_kg_m3: self.density_kg_m3 };
         let mut random = stream(self.seed, Purpose::Start, index);
@@ -254,13 +267,13 @@ impl Releases {
         let even = [0; 3].map(|_| unit(random));
         let (place, turn) = self.place_of(index);
         match place {
-            Where::Points(points) => {
+            ReleasePlace::Points(points) => {
                 let point = &points[turn % points.len()];
                 (point.at_m, point.height_m)
             }
-            Where::Line(line) => (line.at(even[0]), None),
-            Where::Area(area) => (area.at(even), None),
-            Where::Zones(zones) => (zones.list()[zone].at(even), None),
+            ReleasePlace::Line(line) => (line.at(even[0]), None),
+            ReleasePlace::Area(area) => (area.at(even), None),
+            ReleasePlace::Zones(zones) => (zones.list()[zone].at(even), None),
         }
     }
 
@@ -281,7 +294,7 @@ impl Releases {
         let ground_m = self.ground_m(terrain, at_m, &release_name(index))?;
         let gap_m = self.height_m.as_ref().map_or(0.0, |height| height.draw(random));
         let asked = Vec3::new(x, y, ground_m + gap_m + radius_m);
-        let centre = clear_of(terrain, asked, radius_m);
+        let centre = lifted_clear(terrain, asked, radius_m);
         Ok((centre, centre.z - asked.z))
     }
 

@@ -7,21 +7,21 @@ use nalgebra::Matrix3;
 /// Points of one face lie in its plane to this (–, relative to the size of the hull) …
 const FLAT: f64 = 1e-9;
 /// … or, where faces then overlap, to the first of these multiples of it with which they do not: points of a file are rounded to its digits.
-const FLATTER: [f64; 4] = [10.0, 1e2, 1e3, 1e4];
+const FLAT_MULTIPLES: [f64; 4] = [10.0, 1e2, 1e3, 1e4];
 /// Most corners of a core.
-const MOST: usize = 64;
+const MAX_CORNERS: usize = 64;
 /// Weight of "move along the mean normal" beside "keep every face where it is" when corners are moved inwards (–).
-const GUIDE: f64 = 1e-10;
-/// A corner that is moved inwards may stand out of a moved plane by this (–, relative to the way) …
-const STANDS_OUT: f64 = 0.05;
+const REGULARISATION: f64 = 1e-10;
+/// A corner that is moved inwards may stand out of a moved plane by this (–, relative to the depth) …
+const MAX_OVERSHOOT: f64 = 0.05;
 /// … is pushed back at most so often …
-const PUSHES: usize = 200;
-/// … and is one with another that ends closer than this (–, relative to the way).
-const ONE: f64 = 1e-6;
+const MAX_PROJECTIONS: usize = 200;
+/// … and is one with another that ends closer than this (–, relative to the depth).
+const MERGE_DISTANCE: f64 = 1e-6;
 
 /// Most corners that a core may have.
-pub const fn most_corners() -> usize {
-    MOST
+pub const fn max_corners() -> usize {
+    MAX_CORNERS
 }
 
 /// A face of the core.
@@ -61,7 +61,7 @@ impl Core {
         usize::from(part) < self.corners.len()
     }
 
-    /// The hull of at most [`most_corners`] points, those on its faces and edges or inside left out.
+    /// The hull of at most [`max_corners`] points, those on its faces and edges or inside left out.
     ///
     /// Every plane through three points with all others on one side is a face: of so few points that takes no time, and no
     /// rounding can make it miss one.
@@ -69,22 +69,23 @@ impl Core {
     /// # Errors
     /// Too many points, or all of them in one plane.
     pub fn of(points: &[Vec3]) -> Result<Self, BadSurface> {
-        if points.len() > MOST {
+        if points.len() > MAX_CORNERS {
             return Err(BadSurface::TooMany(points.len()));
         }
         let size = points.iter().map(Vec3::norm).fold(0.0, f64::max);
-        let first = Self::flat_to(points, FLAT * size)?;
-        if first.is_whole() {
+        let first = Self::with_tolerance(points, FLAT * size)?;
+        if first.is_closed() {
             return Ok(first);
         }
-        let mut flatter =
-            FLATTER.iter().map_while(|by| Self::flat_to(points, by * FLAT * size).ok());
-        Ok(flatter.find(Self::is_whole).unwrap_or(first))
+        let mut coarser = FLAT_MULTIPLES
+            .iter()
+            .map_while(|by| Self::with_tolerance(points, by * FLAT * size).ok());
+        Ok(coarser.find(Self::is_closed).unwrap_or(first))
     }
 
     /// The same, where points no further than `flat` from a plane lie in it.
-    fn flat_to(points: &[Vec3], flat: f64) -> Result<Self, BadSurface> {
-        let planes = supporting(points, flat);
+    fn with_tolerance(points: &[Vec3], flat: f64) -> Result<Self, BadSurface> {
+        let planes = supporting_planes(points, flat);
         let on = |k: usize| planes.iter().filter(|plane| plane.points & (1 << k) != 0).count();
         let kept: Vec<usize> = (0..points.len()).filter(|&k| on(k) > 2).collect();
         if planes.len() < 4 || kept.len() < 4 {
@@ -97,7 +98,7 @@ impl Core {
     }
 
     /// Whether its faces close and do not overlap: every edge has two, and Euler's formula holds.
-    fn is_whole(&self) -> bool {
+    fn is_closed(&self) -> bool {
         let sides: usize = self.faces.iter().map(|face| face.corners.len()).sum();
         sides == 2 * self.ridges.len()
             && self.corners.len() + self.faces.len() == self.ridges.len() + 2
@@ -112,40 +113,40 @@ impl Core {
         core
     }
 
-    /// Corners moved inwards so that the planes of their faces move by `way`: exactly where three faces meet, by least
+    /// Corners moved inwards so that the planes of their faces move by `depth`: exactly where three faces meet, by least
     /// squares where more do. The origin must lie deeper than that behind every face.
     ///
-    /// A corner of an edge or face that is short beside `way` would come out behind faces that are not its own, and the body would
+    /// A corner of an edge or face that is short beside `depth` would come out behind faces that are not its own, and the body would
     /// grow there: it is pushed back.
-    pub(super) fn inset(&self, way: f64) -> Vec<Vec3> {
+    pub(super) fn inset(&self, depth: f64) -> Vec<Vec3> {
         let moved = |k: usize| {
             let of = |face: &&HullFace| face.corners.contains(&(k as u8));
             let normals: Vec<Vec3> = self.faces.iter().filter(of).map(|face| face.normal).collect();
             let mean = normals.iter().sum::<Vec3>().normalize();
-            let mut square = Matrix3::identity() * GUIDE;
-            let mut right = mean * GUIDE;
+            let mut square = Matrix3::identity() * REGULARISATION;
+            let mut right = mean * REGULARISATION;
             for n in &normals {
                 square += n * n.transpose();
                 right += n;
             }
             let step = square.try_inverse().map_or(mean, |inverse| inverse * right);
-            self.pushed_back(self.corners[k] - step * way, way)
+            self.projected_inside(self.corners[k] - step * depth, depth)
         };
         let mut kept: Vec<Vec3> = Vec::new();
         for p in (0..self.corners.len()).map(moved) {
-            if kept.iter().all(|other| (p - other).norm() > ONE * way) {
+            if kept.iter().all(|other| (p - other).norm() > MERGE_DISTANCE * depth) {
                 kept.push(p);
             }
         }
         kept
     }
 
-    /// A point pushed back, plane by plane, until it stands out of no face's plane, moved inwards by `way`, by more than
-    /// [`STANDS_OUT`] of that; what is left then, towards the origin, which lies behind all of them.
-    fn pushed_back(&self, mut p: Vec3, way: f64) -> Vec3 {
-        let most = STANDS_OUT * way;
-        let level = |face: &HullFace| face.level - way + most;
-        for _ in 0..PUSHES {
+    /// A point pushed back, plane by plane, until it stands out of no face's plane, moved inwards by `depth`, by more than
+    /// [`MAX_OVERSHOOT`] of that; what is left then, towards the origin, which lies behind all of them.
+    fn projected_inside(&self, mut p: Vec3, depth: f64) -> Vec3 {
+        let max_out = MAX_OVERSHOOT * depth;
+        let level = |face: &HullFace| face.level - depth + max_out;
+        for _ in 0..MAX_PROJECTIONS {
             let out = self.faces.iter().map(|face| (face.normal.dot(&p) - level(face), face));
             match out.max_by(|one, other| one.0.total_cmp(&other.0)) {
                 Some((out, face)) if out > 0.0 => p -= face.normal * out,
@@ -189,7 +190,7 @@ struct HullPlane {
     points: u64,
 }
 
-fn supporting(points: &[Vec3], flat: f64) -> Vec<HullPlane> {
+fn supporting_planes(points: &[Vec3], flat: f64) -> Vec<HullPlane> {
     let mut planes: Vec<HullPlane> = Vec::new();
     let count = points.len();
     for i in 0..count {

@@ -1,6 +1,6 @@
 //! A scanned surface: is it closed, and which few of its corners will do.
 
-use super::hull::{Core, most_corners};
+use super::hull::{Core, max_corners};
 use super::solid::Surface;
 use crate::rock::Vec3;
 use parry3d_f64::math::Vector;
@@ -32,7 +32,7 @@ impl std::fmt::Display for BadSurface {
             Self::Parts(parts) => write!(to, "found {parts} surfaces that share no corner"),
             Self::Flat => write!(to, "found a body without volume"),
             Self::TooMany(corners) => {
-                write!(to, "found {corners} corners, where {} is the most", most_corners())
+                write!(to, "found {corners} corners, where {} is the most", max_corners())
             }
             Self::NoCore => write!(to, "found corners so round that nothing is left between them"),
         }
@@ -41,13 +41,13 @@ impl std::fmt::Display for BadSurface {
 
 /// Few corners of a surface.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Thinned {
+pub struct ThinnedHull {
     /// The corners.
     pub corners: Vec<Vec3>,
     /// Corners of the hull of all points.
-    pub of: usize,
+    pub hull_corners: usize,
     /// How far the hull of all points reaches beyond theirs at most (m).
-    pub left: f64,
+    pub deviation_m: f64,
 }
 
 impl Surface {
@@ -62,9 +62,9 @@ impl Surface {
                 *edges.entry((*from, *to)).or_default() += 1;
             }
         }
-        let one = |(from, to): (u32, u32)| edges.get(&(from, to)).copied().unwrap_or(0);
+        let count_of = |(from, to): (u32, u32)| edges.get(&(from, to)).copied().unwrap_or(0);
         let open =
-            edges.iter().filter(|((from, to), count)| **count != 1 || one((*to, *from)) != 1);
+            edges.iter().filter(|((from, to), count)| **count != 1 || count_of((*to, *from)) != 1);
         match open.count() {
             0 => match self.parts() {
                 0 | 1 => Ok(()),
@@ -86,8 +86,8 @@ impl Surface {
             point
         };
         for [a, b, c] in &self.triangles {
-            for (one, other) in [(a, b), (a, c)] {
-                let ends = [one, other].map(|point| root(&mut part_of, *point as usize));
+            for (first, second) in [(a, b), (a, c)] {
+                let ends = [first, second].map(|point| root(&mut part_of, *point as usize));
                 joined += usize::from(ends[0] != ends[1]);
                 part_of[ends[0]] = ends[1];
             }
@@ -100,7 +100,7 @@ impl Surface {
     ///
     /// # Errors
     /// A flat surface.
-    pub fn thinned(&self, most: usize, near: f64) -> Result<Thinned, BadSurface> {
+    pub fn thinned(&self, most: usize, near: f64) -> Result<ThinnedHull, BadSurface> {
         let points: Vec<Vector> = self.points.iter().map(|p| Vector::new(p.x, p.y, p.z)).collect();
         let (hull, _) = try_convex_hull(&points).map_err(|_| BadSurface::Flat)?;
         let hull: Vec<Vec3> = hull.iter().map(|p| Vec3::new(p.x, p.y, p.z)).collect();
@@ -111,10 +111,14 @@ impl Surface {
         loop {
             let core = Core::of(&kept)?;
             let far = hull.iter().map(|p| (core.distance(p), p));
-            let (left, farthest) =
+            let (deviation_m, farthest) =
                 far.max_by(|a, b| a.0.total_cmp(&b.0)).ok_or(BadSurface::Flat)?;
-            if left <= near || kept.len() >= most.min(most_corners()) {
-                return Ok(Thinned { corners: core.corners, of: hull.len(), left });
+            if deviation_m <= near || kept.len() >= most.min(max_corners()) {
+                return Ok(ThinnedHull {
+                    corners: core.corners,
+                    hull_corners: hull.len(),
+                    deviation_m,
+                });
             }
             kept.push(*farthest);
         }

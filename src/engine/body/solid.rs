@@ -69,19 +69,19 @@ impl Solid {
 }
 
 /// Turns until what is left beside the diagonal is rounding.
-const SWEEPS: usize = 60;
+const MAX_ROTATIONS: usize = 60;
 /// Rounding beside the diagonal (–): equal moments must not be turned by it.
-const OFF: f64 = 1e-14;
+const OFF_DIAGONAL: f64 = 1e-14;
 
 /// Eigenvalues of a symmetric matrix and a right-handed frame of eigenvectors, by Jacobi's rotations: a matrix that is
 /// diagonal already keeps its axes, and so does a body its corners.
 fn principal(mut a: Matrix3<f64>) -> ([f64; 3], Rotation3<f64>) {
     let mut axes = Matrix3::identity();
     let scale = a.norm();
-    for sweep in 0..SWEEPS {
+    for sweep in 0..MAX_ROTATIONS {
         let (p, q) = [(0, 1), (0, 2), (1, 2)][sweep % 3];
         let off = a[(p, q)];
-        if off.abs() <= OFF * scale {
+        if off.abs() <= OFF_DIAGONAL * scale {
             continue;
         }
         let theta = 0.5 * (a[(q, q)] - a[(p, p)]) / off;

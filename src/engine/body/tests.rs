@@ -131,9 +131,11 @@ fn a_scan_is_thinned_to_a_stated_distance() {
     let rough = surface.thinned(24, 0.0).unwrap();
     let fine = surface.thinned(64, 0.0).unwrap();
     assert!(rough.corners.len() <= 24 && fine.corners.len() > 48);
-    assert!(fine.left < rough.left && rough.left < 0.3 && fine.left > 0.0);
+    assert!(
+        fine.deviation_m < rough.deviation_m && rough.deviation_m < 0.3 && fine.deviation_m > 0.0
+    );
     let core = Core::of(&fine.corners).unwrap();
-    assert!(points.iter().all(|p| core.distance(p) <= fine.left * (1.0 + 1e-12)));
+    assert!(points.iter().all(|p| core.distance(p) <= fine.deviation_m * (1.0 + 1e-12)));
 }
 
 /// A box without one triangle is no body.
@@ -165,8 +167,8 @@ fn few_corners_span_a_body() {
     for corners in [regular, slender] {
         let surface = Surface { points: corners.map(Vec3::from).to_vec(), triangles: Vec::new() };
         let thinned = surface.thinned(32, 0.0).unwrap();
-        assert_eq!((thinned.corners.len(), thinned.of), (4, 4));
-        assert!(thinned.left < 1e-12);
+        assert_eq!((thinned.corners.len(), thinned.hull_corners), (4, 4));
+        assert!(thinned.deviation_m < 1e-12);
     }
 }
 

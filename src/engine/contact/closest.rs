@@ -26,7 +26,7 @@ impl Segment {
 
     /// From its first end to the other (m).
     #[inline]
-    pub fn way(&self) -> Vec3 {
+    pub fn vector(&self) -> Vec3 {
         self.along * self.length
     }
 

@@ -5,20 +5,20 @@
 //! what Coulomb's law has let go. The method paper has none (its Eq. (14) vanishes identically), so
 //! a sphere held by friction creeps at `T/(p_s dt)`, faster the smaller the step.
 
-use super::{ContactPoint, Feature, MOST};
+use super::{ContactPoint, Feature, MAX_CONTACTS};
 use crate::rock::Vec3;
 use arrayvec::ArrayVec;
 
 /// Most memories: the contacts of a step's start and those that come up during the step.
 /// A bit of a `u32` marks each as taken, so no more than 32 would do without a change there.
-pub const HISTORIES: usize = 2 * MOST;
+pub const MAX_HISTORIES: usize = 2 * MAX_CONTACTS;
 
 /// Cosine of the turn of the normal up to which a new contact takes over an old one's springs (–): a rock rolling
 /// from face to edge to face keeps its grip.
 ///
 /// 45.6°. Between faces that meet at a sharper angle the new contact is another impact, and starts
 /// without stretch.
-pub const SAME_GRIP: f64 = 0.7;
+pub const SAME_CONTACT_COSINE: f64 = 0.7;
 
 /// The memory of one contact.
 #[derive(Debug, Clone, Copy)]
@@ -63,7 +63,7 @@ pub struct ContactHistory {
     /// Whether it was there at the last accepted step.
     pub closed: bool,
     /// Approach at which it has come up, if it may rebound, until the impact has taken notice (m/s); else 0.
-    pub met_m_s: f64,
+    pub onset_m_s: f64,
     /// Damping ratio of its impact (–), where the restitution of the ground falls with the speed of the blow; 0 = that of the ground.
     pub damping_ratio: f64,
     /// Whether its beginning has been noted down.
@@ -86,7 +86,7 @@ impl ContactHistory {
             normal_force: 0.0,
             slides: false,
             closed: false,
-            met_m_s: 0.0,
+            onset_m_s: 0.0,
             damping_ratio: 0.0,
             announced: false,
             impact: 0,
@@ -101,7 +101,7 @@ impl ContactHistory {
 /// change because the ground curves. Projecting instead would lose stretch at every step of a rock
 /// that pivots on an edge. Singular only for `n' = −n`, which no memory survives.
 #[inline]
-pub fn carry(x: Vec3, from: &Vec3, to: &Vec3) -> Vec3 {
+pub fn transport(x: Vec3, from: &Vec3, to: &Vec3) -> Vec3 {
     if from == to { x } else { x - (from + to) * (to.dot(&x) / (1.0 + from.dot(to))) }
 }
 
@@ -115,22 +115,22 @@ impl ContactHistory {
     fn absorb(&mut self, other: &Self) {
         // |ξ|² of the merged spring is capped by the sum of squares: an upper bound on energy, not
         // on force
-        let both = |one: Vec3, other: Vec3| {
-            let (sum, most2) = (one + other, one.norm_squared() + other.norm_squared());
+        let merged = |own: Vec3, other: Vec3| {
+            let (sum, max2) = (own + other, own.norm_squared() + other.norm_squared());
             let size2 = sum.norm_squared();
-            if size2 > most2 { sum * (most2 / size2).sqrt() } else { sum }
+            if size2 > max2 { sum * (max2 / size2).sqrt() } else { sum }
         };
         // the stretch of the other is tangent to another normal: it is turned first; rolling is a
         // vector in space and needs no turn
-        self.shear = both(self.shear, carry(other.shear, &other.n, &self.n));
-        self.roll = both(self.roll, other.roll);
+        self.shear = merged(self.shear, transport(other.shear, &other.n, &self.n));
+        self.roll = merged(self.roll, other.roll);
     }
 }
 
 /// The memories of one rock, without allocation.
 /// Searched linearly: with one to three entries that is faster than any index.
 #[derive(Debug, Clone, Default)]
-pub struct ContactHistories(ArrayVec<ContactHistory, HISTORIES>);
+pub struct ContactHistories(ArrayVec<ContactHistory, MAX_HISTORIES>);
 
 impl ContactHistories {
     /// Forgets all.
@@ -140,7 +140,7 @@ impl ContactHistories {
 
     /// Knows these instead, no more than there is room for.
     pub fn restore(&mut self, histories: &[ContactHistory]) {
-        self.0 = histories.iter().take(HISTORIES).copied().collect();
+        self.0 = histories.iter().take(MAX_HISTORIES).copied().collect();
     }
 
     /// Adds one, if there is room.
@@ -158,7 +158,7 @@ impl ContactHistories {
     /// `taken` marks memories that belong to other touches of the same instant.
     ///
     /// The second rule lets a rolling rock keep its grip over seams: the face it leaves is no touch
-    /// any more, the face it enters has none yet, and both normals agree within `SAME_GRIP`.
+    /// any more, the face it enters has none yet, and both normals agree within `SAME_CONTACT_COSINE`.
     /// `captured` is asked only for a contact that is new.
     #[inline]
     pub fn find(
@@ -176,18 +176,19 @@ impl ContactHistories {
         // a memory whose feature is still touched keeps it, whatever its normal
         let orphan =
             |history: &ContactHistory| touches.iter().all(|other| other.feature != history.feature);
-        let like = (0..self.len())
-            .find(|&k| free(k) && self[k].n.dot(&touch.normal) > SAME_GRIP && orphan(&self[k]));
-        like.unwrap_or_else(|| {
+        let similar = (0..self.len()).find(|&k| {
+            free(k) && self[k].n.dot(&touch.normal) > SAME_CONTACT_COSINE && orphan(&self[k])
+        });
+        similar.unwrap_or_else(|| {
             // room for twice the contacts there can be; should it be full all the same, the
             // youngest memory is given up
-            self.0.truncate(HISTORIES - 1);
+            self.0.truncate(MAX_HISTORIES - 1);
             self.0.push(ContactHistory::new(touch, captured()));
             self.0.len() - 1
         })
     }
 
-    /// Hands the stretches of every contact that is no more to the one that it merged into: `heir` names its feature, `are_alike` says
+    /// Hands the stretches of every contact that is no more to the one that it merged into: `successor` names its feature, `are_alike` says
     /// whether the grounds of two triangles have the same springs, as a stretch means another force by others. Whether there was any.
     ///
     /// Where two contacts meet at a blunt fold they become one patch. Without this its spring would
@@ -195,7 +196,7 @@ impl ContactHistories {
     /// next.
     pub fn merge_lost(
         &mut self,
-        heir: impl Fn(Feature) -> Option<Feature>,
+        successor: impl Fn(Feature) -> Option<Feature>,
         are_alike: impl Fn(u32, u32) -> bool,
     ) -> bool {
         let mut merged = false;
@@ -205,7 +206,7 @@ impl ContactHistories {
             if lost.closed || lost.shear == Vec3::zeros() && lost.roll == Vec3::zeros() {
                 continue;
             }
-            let Some(feature) = heir(lost.feature) else { continue };
+            let Some(feature) = successor(lost.feature) else { continue };
             let takes_over = |history: &&mut ContactHistory| {
                 history.closed
                     && history.feature == feature
@@ -261,8 +262,8 @@ mod tests {
         both[0].closed = true;
         let mut all = ContactHistories::default();
         all.restore(&both);
-        let heir = |feature: Feature| (feature == both[1].feature).then_some(both[0].feature);
-        let is_merged = all.merge_lost(heir, |_, _| are_alike);
+        let successor = |feature: Feature| (feature == both[1].feature).then_some(both[0].feature);
+        let is_merged = all.merge_lost(successor, |_, _| are_alike);
         (all[0], is_merged)
     }
 

@@ -14,7 +14,7 @@ mod offered;
 mod pressed;
 mod collect;
 
-pub(crate) use offered::{Peak, SharpEdge};
+pub(crate) use offered::{SharpEdge, SharpVertex};
 
 use super::closest::{Segment, closest_on};
 use super::patch::PatchScratch;
@@ -22,8 +22,8 @@ use super::{ContactPoint, ContactPoints, Feature};
 use crate::contact::FeatureKind;
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
-use close::ShortWay;
-use features::{NearCorner, NearEdge, NearFace, NearFeatures, NearSaddle};
+use close::ShortPath;
+use features::{NearEdge, NearFace, NearFeatures, NearSaddle, NearVertex};
 pub use pressed::PressedPath;
 
 /// Inclusive tests, relative to the radius (–): a point on a border must not fall between two features.
@@ -34,7 +34,7 @@ const SLACK: f64 = 1e-9;
 pub(super) const SAME: f64 = 1e-6;
 /// Cosine of the fold between two sheets from which on a ball can press into both where one of them ends (–): springs give way by
 /// less than a tenth of the radius.
-const BLUNT: f64 = 0.9;
+const BLUNT_COSINE: f64 = 0.9;
 
 /// The features a rock can touch while its centre stays within a margin of a place.
 #[derive(Debug)]
@@ -51,14 +51,14 @@ pub struct Neighbours {
     all: NearFeatures,
     /// Those of them that may touch on a short way, and where that is.
     close: NearFeatures,
-    around: ShortWay,
+    short_path: ShortPath,
     /// Work space for what is pressed into around saddles.
     patches: PatchScratch,
     /// Directions that belong to edges and vertices, one after the other: normals of faces, or edges at a vertex.
     /// One list for all keeps them side by side in memory, and spares an allocation for each edge.
-    rays: Vec<Vec3>,
+    directions: Vec<Vec3>,
     /// Stems that have given way: they touch nothing any more.
-    pub gone: Vec<u32>,
+    pub broken_stems: Vec<u32>,
     /// Triangles tested so far.
     pub tested: u64,
 }
@@ -69,7 +69,7 @@ impl Default for Neighbours {
             all: NearFeatures::with_room(),
             close: NearFeatures::with_room(),
             patches: PatchScratch::with_room(),
-            rays: Vec::with_capacity(512),
+            directions: Vec::with_capacity(512),
             ..Self::empty()
         }
     }
@@ -85,10 +85,10 @@ impl Neighbours {
             reach: 0.0,
             all: NearFeatures::default(),
             close: NearFeatures::default(),
-            around: ShortWay::NONE,
+            short_path: ShortPath::NONE,
             patches: PatchScratch::default(),
-            rays: Vec::new(),
-            gone: Vec::new(),
+            directions: Vec::new(),
+            broken_stems: Vec::new(),
             tested: 0,
         }
     }
@@ -111,8 +111,8 @@ impl Neighbours {
         (self.centre, self.margin, self.radius) = (*centre, margin, radius);
         self.reach = radius + slack + margin;
         self.all.clear();
-        self.rays.clear();
-        self.around = ShortWay::NONE;
+        self.directions.clear();
+        self.short_path = ShortPath::NONE;
         // O(log n + k) in the n triangles of the mesh: the tree is walked once per margin, not once per step
         terrain.index.near(centre, self.reach, |start, count| {
             for t in start..start + count {
@@ -120,8 +120,8 @@ impl Neighbours {
                 let face = terrain.face(t);
                 let to = centre - face.a;
                 let height = face.n.dot(&to);
-                if height.abs() <= self.reach && !terrain.is_gone(t, &self.gone) {
-                    self.take(terrain, (t, &face), (to, height));
+                if height.abs() <= self.reach && !terrain.is_gone(t, &self.broken_stems) {
+                    self.collect_triangle(terrain, (t, &face), (to, height));
                 }
             }
         });
@@ -129,8 +129,8 @@ impl Neighbours {
 
     /// The directions that belong to an edge or a vertex.
     #[inline]
-    fn rays_of(&self, (first, end): (u32, u32)) -> &[Vec3] {
-        &self.rays[first as usize..end as usize]
+    fn directions_of(&self, (first, end): (u32, u32)) -> &[Vec3] {
+        &self.directions[first as usize..end as usize]
     }
 
     /// Whether what was collected holds for a rock at `centre`.
@@ -141,18 +141,20 @@ impl Neighbours {
 
     /// How far the centre may still go before it must be collected anew (m).
     #[inline]
-    pub fn room_m(&self, centre: &Vec3) -> f64 {
+    pub fn margin_left_m(&self, centre: &Vec3) -> f64 {
         self.margin - (centre - self.centre).norm()
     }
 
     /// The one face that can touch within the margin, if nothing else can: a certificate that geometry is a plane there.
     #[inline]
     pub fn plane(&self) -> Option<u32> {
-        let NearFeatures { faces, edges, corners, saddles, .. } = &self.all;
+        let NearFeatures { faces, edges, vertices, saddles, .. } = &self.all;
         match &faces[..] {
             // a plane of several triangles has several faces here, and no certificate: that is
-            // asked of `is_plane_on`
-            [face] if edges.is_empty() && corners.is_empty() && saddles.is_empty() => Some(face.id),
+            // asked of `meets_only_plane`
+            [face] if edges.is_empty() && vertices.is_empty() && saddles.is_empty() => {
+                Some(face.id)
+            }
             _ => None,
         }
     }
@@ -169,31 +171,31 @@ impl Neighbours {
     ) {
         touches.clear();
         self.patches.clear();
-        let near = self.within((centre, reach));
+        let near = self.candidates((centre, reach));
         // faces before edges before vertices: on a flat mesh the same point is found on several, and the face keeps it
         for face in &near.faces {
-            if let Some(height) = self.height_over(face, centre, reach) {
-                self.merge(face.touch(height), centre, touches);
+            if let Some(height) = self.face_height(face, centre, reach) {
+                self.add_unless_known(face.touch(height), centre, touches);
             }
         }
         for edge in &near.edges {
-            if let Some(touch) = self.on_edge(terrain, edge, centre, reach) {
-                self.merge(touch, centre, touches);
+            if let Some(touch) = self.edge_contact(terrain, edge, centre, reach) {
+                self.add_unless_known(touch, centre, touches);
             }
         }
-        for corner in &near.corners {
-            if let Some(touch) = self.on_corner(terrain, corner, centre, reach) {
-                self.merge(touch, centre, touches);
+        for vertex in &near.vertices {
+            if let Some(touch) = self.vertex_contact(terrain, vertex, centre, reach) {
+                self.add_unless_known(touch, centre, touches);
             }
         }
         if self.has_saddle(terrain, &near.saddles, centre) {
-            self.gather(terrain, (centre, reach), touches);
+            self.replace_by_patches(terrain, (centre, reach), touches);
         }
     }
 
     /// Whether the foot of `centre` is still on `face`, one of those collected.
     #[inline]
-    pub fn is_over(&self, face: u32, centre: &Vec3) -> bool {
+    pub fn is_foot_on(&self, face: u32, centre: &Vec3) -> bool {
         let slack = SLACK * self.radius;
         self.all.faces.iter().any(|own| own.id == face && own.holds_foot_of(centre, slack))
     }
@@ -203,25 +205,30 @@ impl Neighbours {
     /// Cheapest tests first: heights over faces need three products, borders a search through all
     /// triangles near.
     #[inline]
-    pub fn is_alone(&self, terrain: &Terrain, face: u32, (centre, reach): (&Vec3, f64)) -> bool {
+    pub fn is_only_contact(
+        &self,
+        terrain: &Terrain,
+        face: u32,
+        (centre, reach): (&Vec3, f64),
+    ) -> bool {
         let (mut faces, mut edges) = (self.all.faces.iter(), self.all.edges.iter());
         faces.all(|other| {
             other.id == face
-                || self.height_over(other, centre, reach).is_none()
-                || self.lies_on(face, other, centre)
+                || self.face_height(other, centre, reach).is_none()
+                || self.is_duplicate_sheet(face, other, centre)
         }) && !self.has_saddle(terrain, &self.all.saddles, centre)
-            && edges.all(|edge| self.on_edge(terrain, edge, centre, reach).is_none())
+            && edges.all(|edge| self.edge_contact(terrain, edge, centre, reach).is_none())
             && self
                 .all
-                .corners
+                .vertices
                 .iter()
-                .all(|corner| self.on_corner(terrain, corner, centre, reach).is_none())
+                .all(|vertex| self.vertex_contact(terrain, vertex, centre, reach).is_none())
     }
 
     /// Whether another face lies in the plane of `face` with the foot of `centre` well inside of it: a second sheet there, which is
     /// one contact with the first. Both are not told apart by a seam, where a rock rolls from one to the other.
     #[cold]
-    fn lies_on(&self, face: u32, other: &NearFace, centre: &Vec3) -> bool {
+    fn is_duplicate_sheet(&self, face: u32, other: &NearFace, centre: &Vec3) -> bool {
         let own = self.all.faces.iter().find(|own| own.id == face);
         own.is_some_and(|own| self.is_coplanar(own, other))
             && other.holds_foot_of(centre, -SLACK * self.radius)
@@ -229,14 +236,14 @@ impl Neighbours {
 
     /// Height over a face (m), if it is nearer than `reach` and has the foot of `centre` on it.
     #[inline]
-    fn height_over(&self, face: &NearFace, centre: &Vec3, reach: f64) -> Option<f64> {
+    fn face_height(&self, face: &NearFace, centre: &Vec3, reach: f64) -> Option<f64> {
         let height = face.n.dot(&(centre - face.a));
         let touches = height.abs() < reach && face.holds_foot_of(centre, SLACK * self.radius);
         touches.then_some(height)
     }
 
     #[inline]
-    fn on_edge(
+    fn edge_contact(
         &self,
         terrain: &Terrain,
         edge: &NearEdge,
@@ -258,9 +265,9 @@ impl Neighbours {
             return None;
         }
         let distance = distance2.sqrt();
-        let rays = self.rays_of(edge.rays);
+        let directions = self.directions_of(edge.directions);
         // the centre must stand outside of every face on the edge: else its nearest point lies on that face
-        if distance <= slack || rays.iter().any(|out| out.dot(&off) < -SLACK * distance) {
+        if distance <= slack || directions.iter().any(|out| out.dot(&off) < -SLACK * distance) {
             return None;
         }
         let feature = Feature { kind: FeatureKind::Edge, id: edge.id };
@@ -272,30 +279,30 @@ impl Neighbours {
     }
 
     #[inline]
-    fn on_corner(
+    fn vertex_contact(
         &self,
         terrain: &Terrain,
-        corner: &NearCorner,
+        vertex: &NearVertex,
         centre: &Vec3,
         reach: f64,
     ) -> Option<ContactPoint> {
-        let off = centre - corner.p;
+        let off = centre - vertex.p;
         let distance2 = off.norm_squared();
         if distance2 >= reach * reach {
             return None;
         }
         let distance = distance2.sqrt();
-        let rays = self.rays_of(corner.rays);
-        let feature = Feature { kind: FeatureKind::Vertex, id: corner.id };
+        let directions = self.directions_of(vertex.directions);
+        let feature = Feature { kind: FeatureKind::Vertex, id: vertex.id };
         if distance <= SLACK * self.radius
             // the same for the edges at a vertex: one that leads towards the centre comes nearer
-            || rays.iter().any(|along| along.dot(&off) > SLACK * distance)
-            || corner.at_border
-                && self.is_covered(terrain, feature, &corner.p, (centre, distance))
+            || directions.iter().any(|along| along.dot(&off) > SLACK * distance)
+            || vertex.at_border
+                && self.is_covered(terrain, feature, &vertex.p, (centre, distance))
         {
             return None;
         }
-        Some(ContactPoint::single(feature, corner.triangle, &off, distance))
+        Some(ContactPoint::single(feature, vertex.triangle, &off, distance))
     }
 
     /// Whether another triangle runs through the `nearest` point of a border edge or corner and comes nearer to the centre: then
@@ -318,16 +325,16 @@ impl Neighbours {
         if !through.any(|&t| gap(t, centre) < distance * (1.0 - 1e-12)) {
             return false;
         }
-        let is_own = |&&t: &&u32| border.is_of(terrain, t);
-        let goes_on = |own: &u32| {
-            others.clone().filter(|t| !is_own(t)).any(|&t| !part_bluntly(terrain, *own, t))
+        let is_own = |&&t: &&u32| border.belongs_to(terrain, t);
+        let continues = |own: &u32| {
+            others.clone().filter(|t| !is_own(t)).any(|&t| !is_blunt_fold(terrain, *own, t))
         };
-        others.clone().filter(is_own).all(goes_on)
+        others.clone().filter(is_own).all(continues)
     }
 
     /// Adds a touch unless the same point was found on a lower feature before.
     #[inline]
-    fn merge(&self, touch: ContactPoint, centre: &Vec3, touches: &mut ContactPoints) {
+    fn add_unless_known(&self, touch: ContactPoint, centre: &Vec3, touches: &mut ContactPoints) {
         if touches.is_empty() {
             touches.add(touch, self.radius);
             return;
@@ -345,8 +352,8 @@ impl Neighbours {
 }
 
 /// Whether two triangles through one point are neither of one plane nor sharply folded against each other.
-fn part_bluntly(terrain: &Terrain, one: u32, other: u32) -> bool {
-    let [one, other] = [one, other].map(|t| terrain.face(t).n);
-    let turned = (one - other).norm_squared().min((one + other).norm_squared());
-    turned > SAME * SAME && one.dot(&other).abs() > BLUNT
+fn is_blunt_fold(terrain: &Terrain, first: u32, second: u32) -> bool {
+    let [first, second] = [first, second].map(|t| terrain.face(t).n);
+    let misaligned2 = (first - second).norm_squared().min((first + second).norm_squared());
+    misaligned2 > SAME * SAME && first.dot(&second).abs() > BLUNT_COSINE
 }

@@ -6,7 +6,7 @@
 //! Mech. Min. Sci. 41, 2004, parallel bond) without its moments: a bond carries force and shear,
 //! but does not resist bending or twist.
 
-use crate::ground::{Law, within};
+use crate::ground::{Law, clamp_norm};
 use crate::groups::Groups;
 use crate::rock::Vec3;
 use std::f64::consts::PI;
@@ -14,7 +14,7 @@ use std::f64::consts::PI;
 /// Unit normal from sphere `b` to sphere `a` and the distance of their centres (m). Spheres about one centre part
 /// vertically, so that the answer is the same on every machine.
 #[inline]
-pub fn between(a: &Vec3, b: &Vec3) -> (Vec3, f64) {
+pub fn normal_and_distance(a: &Vec3, b: &Vec3) -> (Vec3, f64) {
     let off = a - b;
     let distance = off.norm();
     if distance > 0.0 { (off / distance, distance) } else { (Vec3::z(), 0.0) }
@@ -25,29 +25,29 @@ pub fn between(a: &Vec3, b: &Vec3) -> (Vec3, f64) {
 ///
 /// `apart` is `d = c_a − c_b` (m), `closing` is `u = v_a − v_b` (m/s), `reach` the sum of the radii (m). Spheres that
 /// touch already and approach meet at 0; those that part do not meet.
-pub fn meeting_s(apart: &Vec3, closing: &Vec3, reach: f64) -> Option<f64> {
-    let toward = -apart.dot(closing);
+pub fn collision_time_s(apart: &Vec3, closing: &Vec3, reach: f64) -> Option<f64> {
+    let approach = -apart.dot(closing);
     let speed2 = closing.norm_squared();
     // d(|d + u t|²)/dt = 2 d·u at t = 0: what is not negative only moves apart, for a straight
     // relative path for ever
-    if toward <= 0.0 || speed2 == 0.0 {
+    if approach <= 0.0 || speed2 == 0.0 {
         return None;
     }
     // |d|² − reach² as a product: the difference of squares would cost the digits of a small gap.
     let distance = apart.norm();
     let outside = (distance - reach) * (distance + reach);
-    // |u|² t² − 2 toward t + outside = 0; the smaller root written as outside/(toward + √…), which
-    // keeps the digits of a small gap where (toward − √…)/|u|² would lose them
-    let root2 = toward * toward - speed2 * outside;
+    // |u|² t² − 2 approach t + outside = 0; the smaller root written as outside/(approach + √…), which
+    // keeps the digits of a small gap where (approach − √…)/|u|² would lose them
+    let root2 = approach * approach - speed2 * outside;
     if outside <= 0.0 {
         return Some(0.0);
     }
-    (root2 >= 0.0).then(|| outside / (toward + root2.sqrt()))
+    (root2 >= 0.0).then(|| outside / (approach + root2.sqrt()))
 }
 
 /// How two rocks of a scene answer each other.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Strength {
+pub struct BondStrength {
     /// Tensile strength of a bond (Pa), 0 or more.
     pub tensile_pa: f64,
     /// Its cohesion (Pa), 0 or more.
@@ -55,7 +55,7 @@ pub struct Strength {
     pub cohesion_pa: f64,
 }
 
-impl Strength {
+impl BondStrength {
     /// Whether there is anything to bond with.
     pub fn is_some(&self) -> bool {
         self.tensile_pa > 0.0 || self.cohesion_pa > 0.0
@@ -69,7 +69,7 @@ impl Strength {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bond {
     /// Largest pull (N): `σ_t A`.
-    pub pull_n: f64,
+    pub tension_n: f64,
     /// Largest shear force without normal force (N): `c A`.
     pub shear_n: f64,
     /// Distance of the centres without force (m): that of the start, so that a block begins without stress.
@@ -79,9 +79,13 @@ pub struct Bond {
 impl Bond {
     /// The bond of two rocks whose smaller radius is `radius_m`, at a distance of `length_m`; its disc has that radius.
     /// A disc of the smaller radius: `A = π R²`, all of the section that the smaller rock has.
-    pub fn new(strength: &Strength, radius_m: f64, length_m: f64) -> Self {
+    pub fn new(strength: &BondStrength, radius_m: f64, length_m: f64) -> Self {
         let area = PI * radius_m * radius_m;
-        Self { pull_n: strength.tensile_pa * area, shear_n: strength.cohesion_pa * area, length_m }
+        Self {
+            tension_n: strength.tensile_pa * area,
+            shear_n: strength.cohesion_pa * area,
+            length_m,
+        }
     }
 
     /// How far a load passes the strength, as a share of it; 0 or less while the bond holds.
@@ -92,11 +96,11 @@ impl Bond {
     /// and tension weakens. The larger of both overloads counts; a step that overshoots by much is
     /// cut, so that the moment of breaking does not depend on its length.
     pub fn overload(&self, law: &Law, normal_force: f64, shear_force: f64) -> f64 {
-        let over = |load: f64, most: f64| {
+        let excess = |load: f64, most: f64| {
             if load <= most { 0.0 } else { (load - most) / most.max(f64::MIN_POSITIVE) }
         };
-        over(-normal_force, self.pull_n)
-            .max(over(shear_force, (self.shear_n + law.shear.cap(normal_force)).max(0.0)))
+        excess(-normal_force, self.tension_n)
+            .max(excess(shear_force, (self.shear_n + law.shear.cap(normal_force)).max(0.0)))
     }
 }
 
@@ -140,23 +144,23 @@ pub struct PairImpact {
     /// Speed of approach (m/s); 0 = there is none.
     pub speed_m_s: f64,
     /// How much longer it lasts at most (rad of the contact).
-    left_rad: f64,
+    remaining_rad: f64,
 }
 
 /// After so long (rad of the contact) an impact, on the mesh or between rocks, is over, or goes on as lasting contact.
-pub(crate) const LASTS_RAD: f64 = 20.0;
+pub(crate) const IMPACT_DURATION_RAD: f64 = 20.0;
 
 impl PairImpact {
     /// One that has just begun with an approach of so much (m/s).
-    pub fn begun(speed_m_s: f64) -> Self {
-        Self { speed_m_s, left_rad: LASTS_RAD }
+    pub fn new(speed_m_s: f64) -> Self {
+        Self { speed_m_s, remaining_rad: IMPACT_DURATION_RAD }
     }
 
     /// What is left of it so much later (rad).
     #[must_use]
     pub fn after(self, rad: f64) -> Self {
-        let left_rad = self.left_rad - rad;
-        if left_rad > 0.0 { Self { left_rad, ..self } } else { Self::default() }
+        let remaining_rad = self.remaining_rad - rad;
+        if remaining_rad > 0.0 { Self { remaining_rad, ..self } } else { Self::default() }
     }
 }
 
@@ -181,38 +185,38 @@ impl PairHistory {
 
     /// How far its forces pass the strength of its bond, as a share of it; 0 or less without one.
     pub(crate) fn overload(&self) -> f64 {
-        let over =
+        let overload =
             |bond: &Bond| bond.overload(&self.law, self.normal_force, self.shear_force.norm());
-        self.bond.as_ref().map_or(0.0, over)
+        self.bond.as_ref().map_or(0.0, overload)
     }
 
     /// Speed (m/s) at which its rocks, pulled apart or along each other, come to load their bond with the lesser of its strengths that is any; without a bond
     /// there is none.
-    pub(crate) fn breaks_m_s(&self) -> Option<f64> {
+    pub(crate) fn breaking_speed_m_s(&self) -> Option<f64> {
         let bond = self.bond.as_ref()?;
-        let strengths = [bond.pull_n, bond.shear_n].into_iter().filter(|most| *most > 0.0);
+        let strengths = [bond.tension_n, bond.shear_n].into_iter().filter(|most| *most > 0.0);
         let least_n = strengths.reduce(f64::min)?;
-        Some(self.gives_m_s(least_n))
+        Some(self.spring_speed_m_s(least_n))
     }
 
     /// Speed (m/s) that its spring, pressed or drawn by so much (N), gives its rocks against each other.
-    fn gives_m_s(&self, force_n: f64) -> f64 {
-        self.law.pressed_m(force_n) * self.law.omega_rad_s()
+    fn spring_speed_m_s(&self, force_n: f64) -> f64 {
+        self.law.static_penetration_m(force_n) * self.law.omega_rad_s()
     }
 
     /// Speed (m/s) of the vibration of rocks that move apart with `apart` (m/s): what they move with, or what their spring would give them.
-    pub(crate) fn vibrates_m_s(&self, apart: &Vec3) -> f64 {
-        self.gives_m_s(self.normal_force.abs()).max(apart.dot(&self.n).abs())
+    pub(crate) fn vibration_speed_m_s(&self, apart: &Vec3) -> f64 {
+        self.spring_speed_m_s(self.normal_force.abs()).max(apart.dot(&self.n).abs())
     }
 
     /// Lets a contact rebound that came up too slowly for it and is pressed together at a speed (m/s) now, if it is struck through;
     /// whether it is. A bond has no rebound.
-    pub(crate) fn release(&mut self, approach_m_s: f64) -> bool {
+    pub(crate) fn release_if_struck(&mut self, approach_m_s: f64) -> bool {
         let is_released = self.captured
             && self.bond.is_none()
             && self.law.is_struck_through(self.normal_force, approach_m_s);
         if is_released {
-            (self.captured, self.impact) = (false, PairImpact::begun(approach_m_s));
+            (self.captured, self.impact) = (false, PairImpact::new(approach_m_s));
         }
         is_released
     }
@@ -222,18 +226,18 @@ impl PairHistory {
         (self.bond, self.captured) = (None, true);
         self.normal_force = self.normal_force.max(0.0);
         let (slider, pressed) = (self.law.shear, self.normal_force);
-        self.shear = within(self.shear, slider.longest_stretch(pressed));
+        self.shear = clamp_norm(self.shear, slider.longest_stretch(pressed));
         self.shear_force = slider.capped(self.shear_force, pressed);
     }
 
     /// The rocks no longer touch.
-    pub fn part(&mut self) {
+    pub fn separate(&mut self) {
         self.closed = false;
-        self.forget_springs();
+        self.reset_springs();
     }
 
     /// Goes on with springs at rest.
-    pub(crate) fn forget_springs(&mut self) {
+    pub(crate) fn reset_springs(&mut self) {
         self.impact = PairImpact::default();
         (self.normal_force, self.shear_force, self.shear) = (0.0, Vec3::zeros(), Vec3::zeros());
     }
@@ -269,21 +273,21 @@ mod tests {
     #[test]
     fn flying_spheres_meet_when_their_distance_is_the_sum_of_radii() {
         let u = Vec3::new(-2.0, 0.0, 0.0);
-        assert_eq!(meeting_s(&Vec3::new(3.0, 0.0, 0.0), &u, 1.0), Some(1.0));
-        let t = meeting_s(&Vec3::new(3.0, 0.6, 0.0), &u, 1.0).unwrap();
+        assert_eq!(collision_time_s(&Vec3::new(3.0, 0.0, 0.0), &u, 1.0), Some(1.0));
+        let t = collision_time_s(&Vec3::new(3.0, 0.6, 0.0), &u, 1.0).unwrap();
         // |(3 − 2t, 0.6)| = 1 at 3 − 2t = 0.8
         assert!((t - 1.1).abs() < 1e-15);
-        assert_eq!(meeting_s(&Vec3::new(3.0, 1.1, 0.0), &u, 1.0), None);
-        assert_eq!(meeting_s(&Vec3::new(-3.0, 0.0, 0.0), &u, 1.0), None);
-        assert_eq!(meeting_s(&Vec3::new(1.0, 0.0, 0.0), &u, 1.0), Some(0.0));
+        assert_eq!(collision_time_s(&Vec3::new(3.0, 1.1, 0.0), &u, 1.0), None);
+        assert_eq!(collision_time_s(&Vec3::new(-3.0, 0.0, 0.0), &u, 1.0), None);
+        assert_eq!(collision_time_s(&Vec3::new(1.0, 0.0, 0.0), &u, 1.0), Some(0.0));
     }
 
     /// Pull breaks at `σ_t A`, shear without normal force at `c A`, under pressure at `c A + F tan φ`.
     #[test]
     fn a_bond_holds_up_to_its_strength() {
-        let bond = Bond::new(&Strength { tensile_pa: 1e6, cohesion_pa: 2e6 }, 0.5, 1.0);
+        let bond = Bond::new(&BondStrength { tensile_pa: 1e6, cohesion_pa: 2e6 }, 0.5, 1.0);
         let mut law = Law::NONE;
-        law.rub_with(0.5);
+        law.set_friction(0.5);
         let overload = |pull_n: f64, shear_n: f64| bond.overload(&law, pull_n, shear_n);
         let area = 0.25 * PI;
         assert!(overload(-0.999e6 * area, 0.0) <= 0.0);

@@ -47,14 +47,14 @@ struct PressedTriangle {
 
 /// An edge or a vertex inside the ball, once for every triangle on it.
 #[derive(Debug, Clone, Copy)]
-struct Shared {
+struct SharedFeature {
     /// Edges by the numbers of their ends, then vertices by theirs.
     ///
     /// Sorting by it brings the copies of one edge or vertex side by side, in an order that no
     /// thread or hash decides.
     key: u64,
     /// Which triangle of the list it was met on.
-    place: u32,
+    index: u32,
     /// Of an edge, a side on it.
     /// Three times the triangle plus 0, 1 or 2.
     side: u32,
@@ -71,7 +71,7 @@ const VERTEX: u64 = 1 << 63;
 #[derive(Debug, Default)]
 pub(super) struct PatchScratch {
     pressed: Vec<PressedTriangle>,
-    shared: Vec<Shared>,
+    shared: Vec<SharedFeature>,
 }
 
 impl PatchScratch {
@@ -93,15 +93,15 @@ impl PatchScratch {
         self.shared.clear();
         // triangles add w = 1 each; edges and vertices follow once each, after the sort
         for &t in sheets {
-            self.press(terrain, t, (centre, radius));
+            self.add_triangle(terrain, t, (centre, radius));
         }
-        self.shared.sort_unstable_by_key(|shared| (shared.key, shared.place));
-        self.join(terrain, radius);
+        self.shared.sort_unstable_by_key(|shared| (shared.key, shared.index));
+        self.add_shared_features(terrain, radius);
         for k in 0..self.pressed.len() {
             // only roots of the union–find stand for a patch
             let patch = &self.pressed[k];
             if patch.parent as usize == k
-                && let Some(touch) = patch.sums.touch(&patch.nearest, radius)
+                && let Some(touch) = patch.sums.equivalent_contact(&patch.nearest, radius)
             {
                 found(touch, &patch.nearest);
             }
@@ -116,19 +116,19 @@ impl PatchScratch {
     /// The nearest feature of the patch that holds `feature`, of those found last.
     /// Tells which patch a lost contact has merged into, so that its springs find an heir.
     pub(super) fn holding(&self, terrain: &Terrain, feature: Feature) -> Option<Feature> {
-        let has = |pressed: &PressedTriangle| feature.is_of(terrain, pressed.triangle);
-        let mut place = self.pressed.iter().position(has)?;
-        while self.pressed[place].parent as usize != place {
-            place = self.pressed[place].parent as usize;
+        let has = |pressed: &PressedTriangle| feature.belongs_to(terrain, pressed.triangle);
+        let mut index = self.pressed.iter().position(has)?;
+        while self.pressed[index].parent as usize != index {
+            index = self.pressed[index].parent as usize;
         }
-        Some(self.pressed[place].nearest.feature)
+        Some(self.pressed[index].nearest.feature)
     }
 
     /// Notes a triangle that is inside the ball, and those of its sides and corners that are.
     ///
     /// Distances to convex sets, so each term `max(0, R − dist)²` is once continuously
     /// differentiable in the centre.
-    fn press(&mut self, terrain: &Terrain, t: u32, (centre, radius): (&Vec3, f64)) {
+    fn add_triangle(&mut self, terrain: &Terrain, t: u32, (centre, radius): (&Vec3, f64)) {
         let face = terrain.face(t);
         // |height| is a lower bound of the distance to the triangle: most are rejected by one
         // scalar product
@@ -158,10 +158,10 @@ impl PatchScratch {
             TrianglePart::Face => (height.abs(), if height < 0.0 { -face.n } else { face.n }),
             _ => (distance2.sqrt(), off / distance2.sqrt()),
         };
-        let place = self.pressed.len() as u32;
+        let index = self.pressed.len() as u32;
         let nearest = ContactPoint { feature, triangle: t, normal, distance_m, gain2: 1.0 };
         let sums = PatchSums::of(&nearest, radius);
-        self.pressed.push(PressedTriangle { triangle: t, parent: place, sums, nearest });
+        self.pressed.push(PressedTriangle { triangle: t, parent: index, sums, nearest });
         // Every side and corner inside the ball is put down once for each of its triangles: that is
         // what joins triangles to patches. An edge inside the ball has all its triangles inside it
         // too, as none is farther than its edge: no copy is missing.
@@ -169,23 +169,29 @@ impl PatchScratch {
             let (a, b) = (corners[k], corners[(k + 1) % 3]);
             let side = b - a;
             let s = (side.dot(&(centre - a)) / side.norm_squared()).clamp(0.0, 1.0);
-            let number = 3 * t + k as u32;
+            let side_id = 3 * t + k as u32;
             // the two ends in ascending order: both triangles of an edge give it the same key,
             // whichever way they run along it
-            let [lower, upper] = ends(&terrain.triangles, number).map(u64::from);
-            let edge = (lower << 32 | upper, place, number);
-            self.share(edge, (centre - (a + side * s), radius));
-            let vertex = (VERTEX + u64::from(vertices[k]), place, number);
-            self.share(vertex, (centre - a, radius));
+            let [lower, upper] = ends(&terrain.triangles, side_id).map(u64::from);
+            let edge = (lower << 32 | upper, index, side_id);
+            self.add_shared(edge, (centre - (a + side * s), radius));
+            let vertex = (VERTEX + u64::from(vertices[k]), index, side_id);
+            self.add_shared(vertex, (centre - a, radius));
         }
     }
 
     #[inline]
-    fn share(&mut self, (key, place, side): (u64, u32, u32), (off, radius): (Vec3, f64)) {
+    fn add_shared(&mut self, (key, index, side): (u64, u32, u32), (off, radius): (Vec3, f64)) {
         let distance2 = off.norm_squared();
         if distance2 < radius * radius && distance2 > 0.0 {
             let distance_m = distance2.sqrt();
-            self.shared.push(Shared { key, place, side, distance_m, normal: off / distance_m });
+            self.shared.push(SharedFeature {
+                key,
+                index,
+                side,
+                distance_m,
+                normal: off / distance_m,
+            });
         }
     }
 
@@ -194,13 +200,13 @@ impl PatchScratch {
     /// `w(edge) = 1 − its triangles` is −1 for an ordinary edge, 0 at a border, −2 where three
     /// sheets meet. That of a vertex is known from the terrain: it takes all triangles and edges
     /// around it, and all of those are inside the ball if it is.
-    fn join(&mut self, terrain: &Terrain, radius: f64) {
+    fn add_shared_features(&mut self, terrain: &Terrain, radius: f64) {
         let mut start = 0;
         while start < self.shared.len() {
             let first = self.shared[start];
             let same = self.shared[start..].iter().take_while(|next| next.key == first.key).count();
             for k in start + 1..start + same {
-                self.unite(first.place, self.shared[k].place);
+                self.unite(first.index, self.shared[k].index);
             }
             let features = &terrain.features;
             let weight = if first.key < VERTEX {
@@ -210,34 +216,34 @@ impl PatchScratch {
             };
             // the copies differ by rounding at most; the first stands for all
             let penetration = radius - first.distance_m;
-            let root = self.root(first.place);
+            let root = self.root(first.index);
             let sums = &mut self.pressed[root as usize].sums;
-            sums.square += weight * penetration * penetration;
-            sums.slope += first.normal * (weight * penetration);
+            sums.pen2 += weight * penetration * penetration;
+            sums.pen_n += first.normal * (weight * penetration);
             start += same;
         }
     }
 
     /// Root of a patch, halving the path on the way (Tarjan): nearly O(1) a call.
-    fn root(&mut self, mut place: u32) -> u32 {
-        while self.pressed[place as usize].parent != place {
-            let up = self.pressed[place as usize].parent;
-            self.pressed[place as usize].parent = self.pressed[up as usize].parent;
-            place = up;
+    fn root(&mut self, mut index: u32) -> u32 {
+        while self.pressed[index as usize].parent != index {
+            let up = self.pressed[index as usize].parent;
+            self.pressed[index as usize].parent = self.pressed[up as usize].parent;
+            index = up;
         }
-        place
+        index
     }
 
     /// Joins two patches; the one with the smaller number stays, so the outcome does not depend on
     /// the order of joins.
-    fn unite(&mut self, one: u32, other: u32) {
-        let (one, other) = (self.root(one), self.root(other));
-        if one == other {
+    fn unite(&mut self, first: u32, second: u32) {
+        let (first, second) = (self.root(first), self.root(second));
+        if first == second {
             return;
         }
-        let (kept, gone) = (one.min(other) as usize, one.max(other) as usize);
-        let from = self.pressed[gone];
-        self.pressed[gone].parent = kept as u32;
+        let (kept, merged) = (first.min(second) as usize, first.max(second) as usize);
+        let from = self.pressed[merged];
+        self.pressed[merged].parent = kept as u32;
         let patch = &mut self.pressed[kept];
         patch.sums.add(&from.sums);
         if from.nearest.distance_m < patch.nearest.distance_m {

@@ -12,7 +12,7 @@
 //!
 //! These are the barycentric coordinates of the foot, scaled so that nothing is divided.
 
-use super::{Parabola, least, most};
+use super::{Parabola, fast_max, fast_min};
 use crate::terrain::faces::Face;
 
 /// Feet this far on the wrong side still count (–, relative to R): rounding.
@@ -61,17 +61,17 @@ impl EdgeWindows {
     /// parabola bulges.
     #[inline]
     fn range(&self, alpha: f64, beta: f64) -> (f64, f64) {
-        let one = alpha * self.from.0 + beta * self.from.1;
-        let other = alpha * self.to.0 + beta * self.to.1;
+        let start = alpha * self.from.0 + beta * self.from.1;
+        let end = alpha * self.to.0 + beta * self.to.1;
         let sag = alpha * self.sag.0 + beta * self.sag.1;
-        (least(one, other) - most(sag, 0.0), most(one, other) - least(sag, 0.0))
+        (fast_min(start, end) - fast_max(sag, 0.0), fast_max(start, end) - fast_min(sag, 0.0))
     }
 
-    /// Whether the ball can meet edge `k`: abreast of it, outside of the triangle, and at most `aside` (m) out.
-    pub(super) fn edge(&self, k: usize, aside: f64) -> bool {
+    /// Whether the ball can meet edge `k`: abreast of it, outside of the triangle, and at most `lateral_m` (m) out.
+    pub(super) fn edge(&self, k: usize, lateral_m: f64) -> bool {
         let (d11, d12, d22) = (self.d11, self.d12, self.d22);
         let det = d11 * d22 - d12 * d12;
-        let d_far = d11 + d22 - 2.0 * d12;
+        let d_third = d11 + d22 - 2.0 * d12;
         // `inside` grows with √(length² det) per metre towards the inside of the triangle.
         // range along the edge, its squared length, and range of the inside coordinate: the last
         // two swap ends where that has a minus
@@ -79,8 +79,8 @@ impl EdgeWindows {
             0 => (self.range(1.0, 0.0), d11, self.range(-d12, d11)),
             1 => {
                 let (low, high) = self.range(-1.0, 1.0);
-                let (least, most) = self.range(d22 - d12, d11 - d12);
-                ((low + d11 - d12, high + d11 - d12), d_far, (det - most, det - least))
+                let (lowest, highest) = self.range(d22 - d12, d11 - d12);
+                ((low + d11 - d12, high + d11 - d12), d_third, (det - highest, det - lowest))
             }
             _ => (self.range(0.0, 1.0), d22, self.range(d22, -d12)),
         };
@@ -90,13 +90,13 @@ impl EdgeWindows {
         high >= -along
             && low <= length2 + along
             && nearest <= SLACK * self.radius * per_metre
-            && furthest >= -(aside + SLACK * self.radius) * per_metre
+            && furthest >= -(lateral_m + SLACK * self.radius) * per_metre
     }
 
     /// Whether the ball can meet corner `k`: behind both sides that start there.
     pub(super) fn corner(&self, k: usize) -> bool {
         let (d11, d12, d22) = (self.d11, self.d12, self.d22);
-        let (one, other) = match k {
+        let (first, second) = match k {
             // at corner 0: e1·(c − a) ≤ 0 and e2·(c − a) ≤ 0; the others alike with their own two
             // sides
             0 => (self.range(1.0, 0.0).0, self.range(0.0, 1.0).0),
@@ -104,6 +104,6 @@ impl EdgeWindows {
             _ => (d22 - self.range(0.0, 1.0).1, self.range(1.0, -1.0).0 + d22 - d12),
         };
         let slack = SLACK * self.radius * (d11 + d22).sqrt();
-        one <= slack && other <= slack
+        first <= slack && second <= slack
     }
 }

@@ -3,7 +3,7 @@
 //! The polynomials are squared distances less `R²`, so a fall through zero is a touch and a rise is
 //! a parting.
 
-use super::{least, most};
+use super::{fast_max, fast_min};
 
 /// The two roots of `a t² + b t + c`, ascending, without cancellation; `None` if there are none.
 ///
@@ -17,32 +17,32 @@ pub(super) fn quadratic(a: f64, b: f64, c: f64) -> Option<(f64, f64)> {
         return (b != 0.0).then(|| (-c / b, -c / b));
     }
     // a negative discriminant: the height is never reached
-    let inside = b * b - 4.0 * a * c;
-    if inside < 0.0 {
+    let discriminant = b * b - 4.0 * a * c;
+    if discriminant < 0.0 {
         return None;
     }
-    let q = -0.5 * (b + inside.sqrt().copysign(b));
-    let (one, other) = (q / a, if q == 0.0 { 0.0 } else { c / q });
-    Some((least(one, other), most(one, other)))
+    let q = -0.5 * (b + discriminant.sqrt().copysign(b));
+    let (first, second) = (q / a, if q == 0.0 { 0.0 } else { c / q });
+    Some((fast_min(first, second), fast_max(first, second)))
 }
 
-/// First time in `t0..t1` at which the quartic `p[0] + p[1] t + … + p[4] t⁴` falls through zero and that is `wanted`.
+/// First time in `t0..t1` at which the quartic `p[0] + p[1] t + … + p[4] t⁴` falls through zero and that is `accepts`.
 ///
 /// The Bernstein coefficients over the window tell most cases at once: no change of sign, no crossing. Otherwise the
 /// window is halved until there is one change, which is then refined by safeguarded Newton steps.
 ///
-/// A general root finder seeks all four roots; here the earliest fall within a window is wanted,
+/// A general root finder seeks all four roots; here the earliest fall within a window is accepts,
 /// and most windows hold none: the signs of five numbers tell.
-pub(super) fn first_fall(
+pub(super) fn first_downcrossing(
     p: &[f64; 5],
     (t0, t1): (f64, f64),
-    wanted: &impl Fn(f64) -> bool,
+    accepts: &impl Fn(f64) -> bool,
 ) -> Option<f64> {
-    // `wanted` sees the refined time: the caller asks there whether the foot still lies on the edge
+    // `accepts` sees the refined time: the caller asks there whether the foot still lies on the edge
     let fall = |b: &[f64; 5], from: f64, to: f64| {
-        Some(polish(p, cross(b, from, to), t0, t1)).filter(|&t| wanted(t))
+        Some(polish(p, refined_crossing(b, from, to), t0, t1)).filter(|&t| accepts(t))
     };
-    fall_between(&bernstein(p, t0, t1), (t0, t1), 0, &fall)
+    downcrossing_between(&bernstein(p, t0, t1), (t0, t1), 0, &fall)
 }
 
 /// Bernstein coefficients of a quartic on `t0..t1`.
@@ -73,7 +73,7 @@ const HALVINGS: u32 = 48;
 
 /// The first fall on a window with Bernstein coefficients `b`; `fall` refines one where there is just one.
 /// The left half is searched before the right: the first fall found is the earliest.
-fn fall_between(
+fn downcrossing_between(
     b: &[f64; 5],
     (t0, t1): (f64, f64),
     depth: u32,
@@ -89,16 +89,16 @@ fn fall_between(
     if changes == 1 || depth == HALVINGS {
         return if b[0] > 0.0 && b[4] <= 0.0 { fall(b, t0, t1) } else { None };
     }
-    let (left, right) = halve(b);
+    let (left, right) = split_at_middle(b);
     let middle = 0.5 * (t0 + t1);
     // A fall exactly at the middle shows as a last coefficient of 0 on the left.
-    fall_between(&left, (t0, middle), depth + 1, fall)
-        .or_else(|| fall_between(&right, (middle, t1), depth + 1, fall))
+    downcrossing_between(&left, (t0, middle), depth + 1, fall)
+        .or_else(|| downcrossing_between(&right, (middle, t1), depth + 1, fall))
 }
 
 /// De Casteljau at the middle.
 /// Means of neighbours only: no cancellation, so halving 48 times loses nothing.
-fn halve(b: &[f64; 5]) -> ([f64; 5], [f64; 5]) {
+fn split_at_middle(b: &[f64; 5]) -> ([f64; 5], [f64; 5]) {
     let mut row = *b;
     let (mut left, mut right) = ([0.0; 5], [0.0; 5]);
     for k in 0..5 {
@@ -112,7 +112,7 @@ fn halve(b: &[f64; 5]) -> ([f64; 5], [f64; 5]) {
 }
 
 /// The one crossing between Bernstein coefficients of unlike sign: Newton steps, halving where one would leave the bracket.
-fn cross(b: &[f64; 5], t0: f64, t1: f64) -> f64 {
+fn refined_crossing(b: &[f64; 5], t0: f64, t1: f64) -> f64 {
     // Powers of 0..1; what rounding this costs close to a double root is won back by `polish`.
     // forward differences Δᵏb; the power coefficients are C(4, k) Δᵏb
     let (d1, d2, d3) = (b[1] - b[0], b[2] - 2.0 * b[1] + b[0], b[3] - 3.0 * (b[2] - b[1]) - b[0]);
@@ -163,8 +163,8 @@ mod tests {
 
     #[test]
     fn a_quadratic_keeps_its_small_root() {
-        let (one, other) = quadratic(1.0, -1e8, 1.0).unwrap();
-        assert!((one * 1e8 - 1.0).abs() < 1e-15 && (other / 1e8 - 1.0).abs() < 1e-15);
+        let (first, second) = quadratic(1.0, -1e8, 1.0).unwrap();
+        assert!((first * 1e8 - 1.0).abs() < 1e-15 && (second / 1e8 - 1.0).abs() < 1e-15);
     }
 
     proptest! {
@@ -183,13 +183,13 @@ mod tests {
             }
             let k = usize::from(!sign);
             for (root, from) in [(r[k], 0.0), (r[k + 2], r[k] + 5e-4)] {
-                let found = first_fall(&p, (0.0, 3.1), &|t| t > from).unwrap();
+                let found = first_downcrossing(&p, (0.0, 3.1), &|t| t > from).unwrap();
                 let size = p.iter().rev().fold(0.0, |sum, c| sum * root + c.abs());
                 let others = r.iter().map(|other| (root - other).abs()).filter(|off| *off > 0.0);
                 let known = 100.0 * f64::EPSILON * size / others.product::<f64>() + 256.0 * f64::EPSILON * root;
                 prop_assert!((found - root).abs() < known, "{found} {root} {known}");
             }
-            prop_assert!(first_fall(&p, (r[3] + 1e-3, 4.0), &|_| true).is_none());
+            prop_assert!(first_downcrossing(&p, (r[3] + 1e-3, 4.0), &|_| true).is_none());
         }
     }
 }

@@ -16,9 +16,9 @@
 //! costs one evaluation, about 1 µs, and has no error that grows with time: 3e-13 after 2 s against
 //! a fine Runge–Kutta. The orbit of the centre is a matter of `Parabola`.
 
-mod short;
+mod series;
 
-pub(crate) use short::ShortTurn;
+pub(crate) use series::RotationSeries;
 
 use crate::math::elliptic::{Elliptic, Jacobi, ThirdKind};
 use crate::math::{self, turn};
@@ -29,7 +29,7 @@ use std::cell::OnceCell;
 /// Moments of inertia this close are equal (–, relative).
 /// Cubes and prisms have equal moments but for rounding of their integrals.
 const EQUAL: f64 = 1e-12;
-/// A wobble smaller than this is none (–, relative to the spin).
+/// A top smaller than this is none (–, relative to the spin).
 /// Less than the rounding of the spin itself.
 const STEADY: f64 = 1e-15;
 
@@ -43,8 +43,8 @@ pub struct Top {
     /// World angular momentum (kg m²/s).
     momentum: Vec3,
     /// The turn soon after the start, of three unequal moments.
-    early: Option<ShortTurn>,
-    /// The turn for all times, worked out once one is asked for that is not early: a block that rocks on its corners flies for milliseconds.
+    series: Option<RotationSeries>,
+    /// The turn for all times, worked out once one is asked for that is not series: a block that rocks on its corners flies for milliseconds.
     motion: OnceCell<TopMotion>,
 }
 
@@ -58,12 +58,12 @@ enum TopMotion {
     /// Two equal moments: rates (rad/s) about `ℓ` and about the body's own axis.
     Symmetric(Unit<Vec3>, f64, Unit<Vec3>, f64),
     /// Three unequal moments: Jacobi's functions.
-    Elliptic(Wobble),
+    Elliptic(AsymmetricTop),
 }
 
 /// Three unequal moments.
 #[derive(Debug, Clone, Copy)]
-struct Wobble {
+struct AsymmetricTop {
     elliptic: Elliptic,
     /// Rows: the ordered axes in the body's frame, right-handed.
     axes: Matrix3<f64>,
@@ -71,7 +71,7 @@ struct Wobble {
     /// the axis of least inertia.
     moments: [f64; 3],
     /// Amplitudes with their signs (rad/s).
-    most: [f64; 3],
+    amplitudes: [f64; 3],
     /// `λ = √((C−B) d_A/(A B C))` (rad/s) and the phase at the start.
     rate: f64,
     u0: f64,
@@ -84,15 +84,15 @@ struct Wobble {
     /// World triad at the start, first column along `ℓ`.
     triad: Matrix3<f64>,
     /// Direction of the angular momentum in the world, and its size (kg m²/s).
-    about: Unit<Vec3>,
-    size: f64,
+    axis: Unit<Vec3>,
+    momentum_size: f64,
 }
 
 impl Top {
     /// From principal moments of inertia (kg m²), the rotation from body to world and the world angular momentum (kg m²/s).
     pub fn new(inertia: [f64; 3], start: Rotation3<f64>, momentum: Vec3) -> Self {
-        let early = ShortTurn::of(inertia, start, &momentum, f64::INFINITY);
-        Self { start, inertia, momentum, early, motion: OnceCell::new() }
+        let series = RotationSeries::of(inertia, start, &momentum, f64::INFINITY);
+        Self { start, inertia, momentum, series, motion: OnceCell::new() }
     }
 
     /// The rotation from body to world after `t` (s).
@@ -100,27 +100,27 @@ impl Top {
     /// `R(t) = [w(t)] [f(t)]ᵀ`: `f` is the triad of `ℓ` as seen from the body, `w` the one fixed to
     /// `ℓ` in the world, turned by `ψ(t)`.
     pub fn attitude(&self, t: f64) -> Rotation3<f64> {
-        match self.early.as_ref().filter(|_| self.is_early(t)) {
-            Some(early) => early.attitude(t),
-            None => self.late(t),
+        match self.series.as_ref().filter(|_| self.is_in_series(t)) {
+            Some(series) => series.attitude(t),
+            None => self.by_closed_form(t),
         }
     }
 
     /// The same by the closed form.
-    fn late(&self, t: f64) -> Rotation3<f64> {
+    fn by_closed_form(&self, t: f64) -> Rotation3<f64> {
         match self.motion.get_or_init(|| motion_of(self.inertia, &self.start, &self.momentum)) {
             TopMotion::Still => self.start,
             TopMotion::Steady(axis, rate) => turn(axis, rate * t) * self.start,
             TopMotion::Symmetric(about, rate, own, own_rate) => {
                 turn(about, rate * t) * self.start * turn(own, own_rate * t)
             }
-            TopMotion::Elliptic(wobble) => wobble.attitude(t),
+            TopMotion::Elliptic(top) => top.attitude(t),
         }
     }
 
     /// Whether the turn after `t` (s) is that of a series, without elliptic functions.
-    pub(crate) fn is_early(&self, t: f64) -> bool {
-        self.early.as_ref().is_some_and(|early| t.abs() <= early.holds_s)
+    pub(crate) fn is_in_series(&self, t: f64) -> bool {
+        self.series.as_ref().is_some_and(|series| t.abs() <= series.valid_s)
     }
 
     /// Angular velocity (rad/s) where the body is turned like this.
@@ -129,8 +129,12 @@ impl Top {
     }
 
     /// The turn around the moment `t` (s), where it is turned like this, as a series that is good for up to `asked_s` (s).
-    pub(crate) fn short(&self, attitude: Rotation3<f64>, asked_s: f64) -> Option<ShortTurn> {
-        ShortTurn::of(self.inertia, attitude, &self.momentum, asked_s)
+    pub(crate) fn series_at(
+        &self,
+        attitude: Rotation3<f64>,
+        asked_s: f64,
+    ) -> Option<RotationSeries> {
+        RotationSeries::of(self.inertia, attitude, &self.momentum, asked_s)
     }
 
     /// Rotational energy `ω·ℓ/2` (J), constant.
@@ -141,7 +145,7 @@ impl Top {
     /// Angular acceleration (rad/s²) where the body is turned like this.
     ///
     /// Euler's equations without torque, `I ω̇ = ℓ × ω` in the body's frame; `ω` changes alike in both frames.
-    pub(crate) fn angular_rad_s2(&self, attitude: &Rotation3<f64>) -> Vec3 {
+    pub(crate) fn angular_acceleration_rad_s2(&self, attitude: &Rotation3<f64>) -> Vec3 {
         let by_inertia = |x: &Vec3| x.component_div(&Vec3::from(self.inertia));
         let own = attitude.inverse_transform_vector(&self.momentum);
         attitude * by_inertia(&own.cross(&by_inertia(&own)))
@@ -153,7 +157,7 @@ impl Top {
     /// `I_min I_max |ω|² ≤ 2E (I_min + I_max) − ℓ²`; and by Euler's equations
     /// `I_min |ω̇| ≤ |ℓ × ω|`, where `|ℓ × ω|² = ℓ²ω² − (2E)²`. About a principal axis both are equalities. In the body's frame
     /// `I ω̈ = I ω̇ × ω + ℓ × ω̇`, in the world's `ω × ω̇` comes to it: `|ω̈| ≤ (2 I_max/I_min + 1) |ω| |ω̇|`.
-    pub(crate) fn bends(&self) -> Bends {
+    pub(crate) fn point_bounds(&self) -> PointBounds {
         let [low, high] =
             [f64::min, f64::max].map(|pick| self.inertia.into_iter().reduce(pick).unwrap_or(1.0));
         let (energy2, momentum2) = (2.0 * self.energy_j(), self.momentum.norm_squared());
@@ -161,17 +165,17 @@ impl Top {
         let angular = (momentum2 * spin2 - energy2 * energy2).max(0.0).sqrt() / low;
         let spin = spin2.sqrt();
         let jerk = spin * (spin2 + (2.0 * high / low + 4.0) * angular);
-        Bends { spin, bend: spin2 + angular, jerk }
+        PointBounds { velocity: spin, acceleration: spin2 + angular, jerk }
     }
 }
 
 /// Bounds on the way of a point of a body that turns freely, over the point's distance `ρ` from the centre of mass.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Bends {
+pub(crate) struct PointBounds {
     /// On its velocity `ω × ρ` (1/s).
-    pub(crate) spin: f64,
+    pub(crate) velocity: f64,
     /// On its acceleration `ω × (ω × ρ) + ω̇ × ρ` (1/s²).
-    pub(crate) bend: f64,
+    pub(crate) acceleration: f64,
     /// On the rate of that, `ω̈ × ρ + 2 ω̇ × (ω × ρ) + ω × (ω̇ × ρ) + ω × (ω × (ω × ρ))` (1/s³).
     pub(crate) jerk: f64,
 }
@@ -194,13 +198,13 @@ pub fn momentum_of(inertia: [f64; 3], attitude: &Rotation3<f64>, spin: &Vec3) ->
 /// Pairs of equal moments, each with the third axis.
 fn equal_pairs(inertia: [f64; 3]) -> impl Iterator<Item = (usize, usize, usize)> {
     // relative to the larger moment
-    let near = |a: f64, b: f64| (a - b).abs() <= EQUAL * a.max(b);
+    let are_equal = |a: f64, b: f64| (a - b).abs() <= EQUAL * a.max(b);
     let pairs = [(1, 2, 0), (2, 0, 1), (0, 1, 2)].into_iter();
-    pairs.filter(move |&(i, j, _)| near(inertia[i], inertia[j]))
+    pairs.filter(move |&(i, j, _)| are_equal(inertia[i], inertia[j]))
 }
 
 /// Whether all three moments differ, so that a free turn needs elliptic functions.
-fn is_wobbling(inertia: [f64; 3]) -> bool {
+fn is_asymmetric(inertia: [f64; 3]) -> bool {
     equal_pairs(inertia).next().is_none()
 }
 
@@ -211,7 +215,7 @@ pub(crate) fn attitude_after(
     momentum: &Vec3,
     t: f64,
 ) -> Rotation3<f64> {
-    match ShortTurn::through(inertia, start, momentum, t) {
+    match RotationSeries::covering(inertia, start, momentum, t) {
         Some(turn) => turn.attitude(t),
         None => Top::new(inertia, start, *momentum).attitude(t),
     }
@@ -236,7 +240,7 @@ fn motion_of(inertia: [f64; 3], start: &Rotation3<f64>, momentum: &Vec3) -> TopM
         let axis = Unit::new_unchecked(axis);
         return TopMotion::Symmetric(about, size / inertia[across], axis, own_rate);
     }
-    wobble_of(inertia, start, (about, size))
+    asymmetric_motion(inertia, start, (about, size))
 }
 
 /// Order of the axes with ascending moments of inertia.
@@ -246,7 +250,7 @@ fn ascending(inertia: [f64; 3]) -> [usize; 3] {
     order
 }
 
-fn wobble_of(
+fn asymmetric_motion(
     inertia: [f64; 3],
     start: &Rotation3<f64>,
     (about, size): (Unit<Vec3>, f64),
@@ -302,11 +306,11 @@ fn wobble_of(
     let rate = ((c - b) * d_a / (a * b * c)).sqrt();
     let third = elliptic.third_kind(-(a * w1m / (c * w3m)).powi(2));
     let triad0 = triad(&l);
-    TopMotion::Elliptic(Wobble {
+    TopMotion::Elliptic(AsymmetricTop {
         elliptic,
         axes,
         moments,
-        most: [w1m, sign2 * w2m, sign3 * w3m],
+        amplitudes: [w1m, sign2 * w2m, sign3 * w3m],
         rate,
         u0,
         third,
@@ -314,8 +318,8 @@ fn wobble_of(
         factor: -size * d_a / (a * rate * (c * w3m).powi(2)),
         third0: third.at(&elliptic.functions(u0)),
         triad: start.matrix() * axes.transpose() * triad0,
-        about,
-        size,
+        axis: about,
+        momentum_size: size,
     })
 }
 
@@ -330,30 +334,33 @@ fn phase_of(cn: f64, sn: f64) -> (f64, f64) {
 /// Across the first axis because `ℓ` is never along it: the spin circles the third. Against the
 /// third axis the angle would be singular for a rock that spins about it.
 fn triad(l: &Vec3) -> Matrix3<f64> {
-    let one = l.normalize();
-    let two = Vec3::new(0.0, -l.z, l.y).normalize();
-    Matrix3::from_columns(&[one, two, one.cross(&two)])
+    let first = l.normalize();
+    let second = Vec3::new(0.0, -l.z, l.y).normalize();
+    Matrix3::from_columns(&[first, second, first.cross(&second)])
 }
 
-impl Wobble {
+impl AsymmetricTop {
     fn attitude(&self, t: f64) -> Rotation3<f64> {
-        let now = self.elliptic.functions(self.rate * t + self.u0);
+        let functions = self.elliptic.functions(self.rate * t + self.u0);
         // the amplitude as whole half-turns and a rest, so that sine and cosine keep their digits
         // after many turns
-        let Jacobi { halves, sn, cn } = now;
+        let Jacobi { halves, sn, cn } = functions;
         let sign = if halves.rem_euclid(2.0) == 0.0 { 1.0 } else { -1.0 };
         let dn = self.elliptic.dn(sn, cn);
         let [a, b, c] = self.moments;
         // angular momentum in the ordered axes: moments times rates
         let l = Vec3::new(
-            a * self.most[0] * sign * cn,
-            b * self.most[1] * sign * sn,
-            c * self.most[2] * dn,
+            a * self.amplitudes[0] * sign * cn,
+            b * self.amplitudes[1] * sign * sn,
+            c * self.amplitudes[2] * dn,
         );
-        let third = self.third.at(&now) - self.third0;
+        let third = self.third.at(&functions) - self.third0;
         let psi = self.precession * t + self.factor * third;
-        let turned = turn(&self.about, psi).matrix() * self.triad;
-        debug_assert!((l.norm() / self.size - 1.0).abs() < 1e-9, "the momentum keeps its size");
+        let turned = turn(&self.axis, psi).matrix() * self.triad;
+        debug_assert!(
+            (l.norm() / self.momentum_size - 1.0).abs() < 1e-9,
+            "the momentum keeps its size"
+        );
         Rotation3::from_matrix_unchecked(turned * triad(&l).transpose() * self.axes)
     }
 }

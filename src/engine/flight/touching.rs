@@ -10,8 +10,8 @@
 //! triangle only, so no quartic is solved twice, and flat ones to none.
 
 use super::edge_windows::EdgeWindows;
-use super::roots::{first_fall, quadratic};
-use super::{Parabola, least, most};
+use super::roots::{first_downcrossing, quadratic};
+use super::{Parabola, fast_max, fast_min};
 use crate::contact::closest::Segment;
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
@@ -22,24 +22,24 @@ use crate::terrain::seen::Seen;
 /// A start nearer to touching than this counts as touching (–, relative to R²): rounding of the contact before.
 const TOUCHING: f64 = 1e-12;
 /// A range of heights ends this far beyond what was computed (–, relative to R): rounding.
-const NEAR: f64 = 1e-9;
+const RANGE_SLACK: f64 = 1e-9;
 /// A foot this far beside a triangle still lies on it (–, relative to R): neighbours must not leave a gap.
-const BESIDE: f64 = 1e-9;
+const FOOT_SLACK: f64 = 1e-9;
 /// What rounding may add to the sine of a brim's steepest direction (–).
 /// Three digits are enough: it only decides how many triangles are looked at.
-const ASIDE: f64 = 1e-3;
+const SINE_MARGIN: f64 = 1e-3;
 /// A start beside a triangle but this little under its plane (–, relative to R) is on a neighbour in the same plane.
-const ROUNDING: f64 = 1e-9;
+const PLANE_SLACK: f64 = 1e-9;
 
 /// First touch within a window of time, with the triangle and the edges and corners that it owns.
 #[inline]
-pub(super) fn of_triangle(
+pub(super) fn triangle_impact_s(
     terrain: &Terrain,
     t: u32,
     flight: &Parabola,
     window: (f64, f64),
 ) -> Option<f64> {
-    let (ta, tb) = (most(window.0, 0.0), window.1);
+    let (ta, tb) = (fast_max(window.0, 0.0), window.1);
     let face = terrain.face(t);
     // h(t) = h0 + h1 t + h2 t²: gravity acts along −z only, so its part along the normal is −g n_z/2
     let height = Height {
@@ -48,7 +48,7 @@ pub(super) fn of_triangle(
         h2: -0.5 * flight.gravity * face.n.z,
     };
     let range = height.range((ta, tb));
-    let near = flight.radius * (1.0 + NEAR);
+    let near = flight.radius * (1.0 + RANGE_SLACK);
     // most triangles near a path end here: the ball stays on one side of the plane, farther than its radius
     if range.0 > near || range.1 < -near {
         return None;
@@ -57,15 +57,15 @@ pub(super) fn of_triangle(
     let mut best = tb;
     let mut found = None;
     // The ball may land on either side, whichever side it is on now: the plane goes on beyond the triangle.
-    let slack = BESIDE * flight.radius;
+    let slack = FOOT_SLACK * flight.radius;
     let starts_near = ta <= 0.0 && starts_near(&face, flight, height.h0);
     let on_it = starts_near && face.holds_foot_of(&flight.start, slack);
     // a window whose greatest height stays below the radius cannot hold a landing from above
-    let level = flight.radius * (1.0 - 2.0 * NEAR);
+    let level = flight.radius * (1.0 - 2.0 * RANGE_SLACK);
     for (side, above) in [(1.0, range.1), (-1.0, -range.0)] {
         if (above >= level || on_it)
             // the plane is touched at t; the triangle only if the foot of the centre lies on it then
-            && let Some(t) = height.falls_to(side, (flight.radius, on_it), range, (ta, best))
+            && let Some(t) = height.landing_s(side, (flight.radius, on_it), range, (ta, best))
             // 1e-9 R beside the triangle still counts: between two neighbours there is no gap to
             // fall through
             && face.holds_foot_of(&flight.centre(t), slack)
@@ -80,15 +80,17 @@ pub(super) fn of_triangle(
     if brim.front | brim.back | brim.anywhere == 0 {
         return found;
     }
-    for rim in rims(brim, flight.radius, starts_near && is_pressed_in(terrain, t, flight)) {
-        if rim.owned == 0 || rim.heights.0 > range.1 || rim.heights.1 < range.0 {
+    for boundary in
+        boundary_features(brim, flight.radius, starts_near && is_pressed_in(terrain, t, flight))
+    {
+        if boundary.owned == 0 || boundary.heights.0 > range.1 || boundary.heights.1 < range.0 {
             continue;
         }
         // the touch lies between two heights over this plane (normal cone), which is a part of the
         // window again
-        let slab = height.within(rim.heights, (ta, best));
-        if slab.0 <= slab.1
-            && let Some(t) = of_rim(terrain, t, flight, (&rim, slab))
+        let window = height.within(boundary.heights, (ta, best));
+        if window.0 <= window.1
+            && let Some(t) = boundary_impact_s(terrain, t, flight, (&boundary, window))
         {
             best = t;
             found = Some(t);
@@ -98,43 +100,52 @@ pub(super) fn of_triangle(
 }
 
 /// Whether the ball may be nearer than its radius to a triangle when it starts, at a height of `h0` (m).
-/// At a height `h0` the ball reaches `√(R² − h0²)` aside in the plane.
+/// At a height `h0` the ball reaches `√(R² − h0²)` lateral_m in the plane.
 #[inline]
 fn starts_near(face: &Face, flight: &Parabola, h0: f64) -> bool {
-    let aside2 = flight.radius * flight.radius - h0 * h0;
-    if aside2 <= 0.0 {
+    let lateral2 = flight.radius * flight.radius - h0 * h0;
+    if lateral2 <= 0.0 {
         return false;
     }
-    let aside = aside2.sqrt() + NEAR * flight.radius;
-    Seen::of(face, flight.start - face.a, (h0, aside)).is_some()
+    let lateral_m = lateral2.sqrt() + RANGE_SLACK * flight.radius;
+    Seen::of(face, flight.start - face.a, (h0, lateral_m)).is_some()
 }
 
 /// Edges and corners of a triangle that are met alike.
-struct Rim {
+struct BoundaryFeatures {
     /// Bits 0–2 edges, bits 3–5 corners.
     owned: u8,
     /// Heights of the centre over the triangle's plane (m).
     heights: (f64, f64),
     /// How far beside the triangle the centre can be (m).
-    aside: f64,
+    lateral_m: f64,
 }
 
 /// What a triangle owns, as it is met from in front, from behind and from anywhere; all of it from anywhere by a ball that
 /// is pressed in.
 #[inline]
-fn rims(brim: &Brim, radius: f64, pressed_in: bool) -> [Rim; 3] {
-    let near = radius * (1.0 + NEAR);
-    let anywhere = |owned: u8| Rim { owned, heights: (-near, near), aside: near };
-    if pressed_in {
+fn boundary_features(brim: &Brim, radius: f64, is_pressed: bool) -> [BoundaryFeatures; 3] {
+    let near = radius * (1.0 + RANGE_SLACK);
+    let anywhere = |owned: u8| BoundaryFeatures { owned, heights: (-near, near), lateral_m: near };
+    if is_pressed {
         return [anywhere(brim.front | brim.back | brim.anywhere), anywhere(0), anywhere(0)];
     }
     // a touch whose normal leans by the angle with sine `√(1 − least²)` has its foot that far
     // beside, times R
-    let aside = |least: f64| ((1.0 - least * least).max(0.0).sqrt() + ASIDE) * radius;
-    let [front, back] = [brim.least_front, brim.least_back].map(|least| f64::from(least) - NEAR);
+    let lateral_m = |least: f64| ((1.0 - least * least).max(0.0).sqrt() + SINE_MARGIN) * radius;
+    let [front, back] =
+        [brim.least_front, brim.least_back].map(|least| f64::from(least) - RANGE_SLACK);
     [
-        Rim { owned: brim.front, heights: (front * radius, near), aside: aside(front) },
-        Rim { owned: brim.back, heights: (-near, -back * radius), aside: aside(back) },
+        BoundaryFeatures {
+            owned: brim.front,
+            heights: (front * radius, near),
+            lateral_m: lateral_m(front),
+        },
+        BoundaryFeatures {
+            owned: brim.back,
+            heights: (-near, -back * radius),
+            lateral_m: lateral_m(back),
+        },
         anywhere(brim.anywhere),
     ]
 }
@@ -148,7 +159,7 @@ fn is_pressed_in(terrain: &Terrain, t: u32, flight: &Parabola) -> bool {
     let brim = &terrain.features.brims[t as usize];
     let owned = brim.front | brim.back | brim.anywhere;
     let corners = terrain.corners_m(t);
-    let pressed2 = flight.radius * flight.radius * (1.0 - NEAR);
+    let pressed2 = flight.radius * flight.radius * (1.0 - RANGE_SLACK);
     // distance to the corner, then to the side that starts there, both against R²(1 − 1e-9)
     (0..3).any(|k| {
         let to = flight.start - corners[k];
@@ -163,28 +174,33 @@ fn is_pressed_in(terrain: &Terrain, t: u32, flight: &Parabola) -> bool {
 
 /// First touch of some of the edges and corners of a triangle.
 #[inline]
-fn of_rim(
+fn boundary_impact_s(
     terrain: &Terrain,
     t: u32,
     flight: &Parabola,
-    (rim, slab): (&Rim, (f64, f64)),
+    (boundary, window): (&BoundaryFeatures, (f64, f64)),
 ) -> Option<f64> {
     let face = terrain.face(t);
-    let (owned, aside) = (rim.owned, rim.aside);
-    let lasts = slab.1 - slab.0;
+    let (owned, lateral_m) = (boundary.owned, boundary.lateral_m);
+    let duration_s = window.1 - window.0;
     // |v| + g h/2 bounds the mean speed of the window: the foot goes no farther than this
-    let way = (flight.velocity(slab.0).norm() + 0.5 * flight.gravity * lasts) * lasts;
-    Seen::of(&face, flight.centre(slab.0) - face.a, (0.0, way + aside + NEAR * flight.radius))?;
-    let abreast = EdgeWindows::new(&face, flight, slab);
-    let (mut best, mut found) = (slab.1, None);
+    let path_m =
+        (flight.velocity(window.0).norm() + 0.5 * flight.gravity * duration_s) * duration_s;
+    Seen::of(
+        &face,
+        flight.centre(window.0) - face.a,
+        (0.0, path_m + lateral_m + RANGE_SLACK * flight.radius),
+    )?;
+    let edge_windows = EdgeWindows::new(&face, flight, window);
+    let (mut best, mut found) = (window.1, None);
     // each touch found shortens the window of the next
     for k in 0..3 {
-        let window = (slab.0, best);
+        let window = (window.0, best);
         let times = [
-            (owned & (1 << k) != 0 && abreast.edge(k, aside))
-                .then(|| edge(terrain, t, k, flight, window)),
-            (owned & (8 << k) != 0 && abreast.corner(k))
-                .then(|| corner(terrain, t, k, flight, window)),
+            (owned & (1 << k) != 0 && edge_windows.edge(k, lateral_m))
+                .then(|| edge_impact_s(terrain, t, k, flight, window)),
+            (owned & (8 << k) != 0 && edge_windows.corner(k))
+                .then(|| corner_impact_s(terrain, t, k, flight, window)),
         ];
         for time in times.into_iter().flatten().flatten() {
             if time <= best {
@@ -225,7 +241,7 @@ impl Height {
         // without a second derivative the turn is infinite or NaN and lies in no window
         let turn = -0.5 * self.h1 / self.h2;
         let ht = if turn > ta && turn < tb { self.at(turn) } else { ha };
-        (least(least(ha, hb), ht), most(most(ha, hb), ht))
+        (fast_min(fast_min(ha, hb), ht), fast_max(fast_max(ha, hb), ht))
     }
 
     /// The part of a window in which the height may be between two levels (its hull); reversed if nowhere.
@@ -239,9 +255,10 @@ impl Height {
             (if holds(ta) { ta } else { tb }, if holds(tb) { tb } else { ta });
         if first > ta || last < tb {
             for level in [high, low] {
-                let (one, other) = quadratic(self.h2, self.h1, self.h0 - level).unwrap_or((tb, ta));
-                for t in [one, other].into_iter().filter(|&t| t > ta && t < tb) {
-                    (first, last) = (least(first, t), most(last, t));
+                let (first_s, second_s) =
+                    quadratic(self.h2, self.h1, self.h0 - level).unwrap_or((tb, ta));
+                for t in [first_s, second_s].into_iter().filter(|&t| t > ta && t < tb) {
+                    (first, last) = (fast_min(first, t), fast_max(last, t));
                 }
             }
         }
@@ -254,7 +271,7 @@ impl Height {
     /// back at its starting height: it can never fall through. One that starts beside the triangle may be anywhere
     /// relative to the plane and must come down to the full radius.
     #[inline]
-    fn falls_to(
+    fn landing_s(
         &self,
         side: f64,
         (radius, on_it): (f64, bool),
@@ -264,7 +281,7 @@ impl Height {
         let (h0, h1, h2) = (side * self.h0, side * self.h1, side * self.h2);
         let touching = h0 >= 0.0
             && h0 < radius * (1.0 + TOUCHING)
-            && (on_it || h0 > radius * (1.0 - ROUNDING));
+            && (on_it || h0 > radius * (1.0 - PLANE_SLACK));
         // exactly on the plane and moving into it, or drawn into it by gravity at once: a touch
         // now, however small the speed
         if touching && ta <= 0.0 && (h1 < 0.0 || h1 == 0.0 && h2 < 0.0) {
@@ -273,16 +290,16 @@ impl Height {
         // Pressed in at the start: touching again at the radius would be at once, or never if it
         // leaves slowly. It touches when it is back at the depth it started from, so a grazing
         // start can never fall through.
-        let level = if touching { least(h0, radius) } else { radius };
+        let level = if touching { fast_min(h0, radius) } else { radius };
         let (below, above) = if side > 0.0 { (low, high) } else { (-high, -low) };
-        if level < below - NEAR * radius || level > above + NEAR * radius {
+        if level < below - RANGE_SLACK * radius || level > above + RANGE_SLACK * radius {
             return None;
         }
-        let (one, other) = quadratic(h2, h1, h0 - level)?;
+        let (first_s, second_s) = quadratic(h2, h1, h0 - level)?;
         // A start on the level has a root at 0 that is no fall.
         // of the two roots the first at which the height falls; rising through the level is a
         // parting
-        [one, other]
+        [first_s, second_s]
             .into_iter()
             .find(|&t| t >= ta && t <= tb && side * self.speed(t) < 0.0 && (t > 0.0 || h1 < 0.0))
     }
@@ -292,7 +309,13 @@ impl Height {
 ///
 /// `|(1 − e eᵀ)(c(t) − a)|² = R²` with the foot between the ends: a quartic in `t`, because gravity
 /// has a part across the edge.
-fn edge(terrain: &Terrain, t: u32, k: usize, flight: &Parabola, window: (f64, f64)) -> Option<f64> {
+fn edge_impact_s(
+    terrain: &Terrain,
+    t: u32,
+    k: usize,
+    flight: &Parabola,
+    window: (f64, f64),
+) -> Option<f64> {
     let corners = terrain.triangles[t as usize];
     let ends_m = [corners[k], corners[(k + 1) % 3]].map(|v| terrain.vertices_m[v as usize]);
     let Segment { a, along, length } = Segment::between(ends_m);
@@ -302,15 +325,15 @@ fn edge(terrain: &Terrain, t: u32, k: usize, flight: &Parabola, window: (f64, f6
     let fall = Vec3::new(0.0, 0.0, -0.5 * flight.gravity);
     let slack = 1e-11 * length;
     // beyond an end the corner is nearer and is asked by itself
-    let abreast = |x: Vec3| (-slack..=length + slack).contains(&along.dot(&(x - a)));
+    let is_abreast = |x: Vec3| (-slack..=length + slack).contains(&along.dot(&(x - a)));
     let path = [off(flight.start - a), off(flight.velocity), off(fall)];
     // The line goes on beyond the edge: the ball may meet it there first and the edge later.
-    ball_meets(path, flight.radius, window, &|t| abreast(flight.centre(t)))
+    sphere_contact_s(path, flight.radius, window, &|t| is_abreast(flight.centre(t)))
 }
 
 /// When the ball touches corner `k` of a triangle.
 /// `|c(t) − p|² = R²`.
-fn corner(
+fn corner_impact_s(
     terrain: &Terrain,
     t: u32,
     k: usize,
@@ -319,16 +342,16 @@ fn corner(
 ) -> Option<f64> {
     let p = terrain.vertices_m[terrain.triangles[t as usize][k] as usize];
     let fall = Vec3::new(0.0, 0.0, -0.5 * flight.gravity);
-    ball_meets([flight.start - p, flight.velocity, fall], flight.radius, window, &|_| true)
+    sphere_contact_s([flight.start - p, flight.velocity, fall], flight.radius, window, &|_| true)
 }
 
-/// First time that is `wanted` at which `|x0 + x1 t + x2 t²|` falls to the radius.
+/// First time that is `accepts` at which `|x0 + x1 t + x2 t²|` falls to the radius.
 #[inline]
-fn ball_meets(
+fn sphere_contact_s(
     [x0, x1, x2]: [Vec3; 3],
     radius: f64,
     (ta, tb): (f64, f64),
-    wanted: &impl Fn(f64) -> bool,
+    accepts: &impl Fn(f64) -> bool,
 ) -> Option<f64> {
     let r2 = radius * radius;
     // |x0 + x1 t + x2 t²|² − R² in powers of t
@@ -337,13 +360,17 @@ fn ball_meets(
     let curve = x1.norm_squared() + 2.0 * x0.dot(&x2);
     let cubic = 2.0 * x1.dot(&x2);
     // touching at the start: falling further is a touch at 0, to first or second order
-    if ta <= 0.0 && gap < TOUCHING * r2 && wanted(0.0) {
+    if ta <= 0.0 && gap < TOUCHING * r2 && accepts(0.0) {
         if slope < 0.0 || slope == 0.0 && curve < 0.0 {
             return Some(0.0);
         }
-        // Leaving from inside or from the rim: it touches again when it is back at its starting distance. The root at
+        // Leaving from inside or from the boundary: it touches again when it is back at its starting distance. The root at
         // 0 is divided out, what is left is a cubic.
-        return first_fall(&[slope, curve, cubic, x2.norm_squared(), 0.0], (0.0, tb), wanted);
+        return first_downcrossing(
+            &[slope, curve, cubic, x2.norm_squared(), 0.0],
+            (0.0, tb),
+            accepts,
+        );
     }
-    first_fall(&[gap, slope, curve, cubic, x2.norm_squared()], (ta, tb), wanted)
+    first_downcrossing(&[gap, slope, curve, cubic, x2.norm_squared()], (ta, tb), accepts)
 }

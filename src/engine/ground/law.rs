@@ -6,9 +6,9 @@
 //!
 //! | asked | here |
 //! |---|---|
-//! | a force at a motion | [`NormalElement::force`], [`FrictionElement::held`], `damped`, `capped` |
-//! | a force at the end of an implicit stage | [`NormalElement::stage_force`], [`FrictionElement::over`] |
-//! | its derivatives | [`NormalElement::line`], [`FrictionElement::left`] |
+//! | a force at a motion | [`NormalElement::force`], [`FrictionElement::spring_force`], `dashpot_force`, `capped` |
+//! | a force at the end of an implicit stage | [`NormalElement::stage_force`], [`FrictionElement::stage_stiffness`] |
+//! | its derivatives | [`NormalElement::line`], [`FrictionElement::stage_slider`] |
 //! | what springs store | [`Law::stored_j`], [`NormalElement::stored_j`] |
 //! | what friction bears | [`FrictionElement::cap`], [`Law::limits`] |
 //! | how long a contact lasts | [`Law::omega_rad_s`] |
@@ -21,13 +21,13 @@ mod normal;
 
 use super::Ground;
 use crate::rock::Rock;
-use damping::along_ratio;
+use damping::shear_ratio_at;
 pub use damping::{
     CAPTURE_DAMPING_RATIO, Damping, NormalImpact, damping_ratio, normal_impact, restitution,
     tangential_restitution,
 };
 pub(crate) use friction::{
-    FrictionElement, FrictionLimits, INSIDE, LinearFriction, SliderForce, within,
+    FrictionElement, FrictionLimits, LinearFriction, STICK_THRESHOLD, SliderForce, clamp_norm,
 };
 pub(crate) use normal::{FixedStepNormal, NormalElement, NormalLine};
 
@@ -37,7 +37,7 @@ const ROLLING_STIFFNESS: f64 = 0.1;
 const SLOWEST_REBOUND_M_S: f64 = 0.02;
 /// No impact is slower than this (m/s), whatever capture speed is asked for: in the rigid limit a blow takes no time, and rounding
 /// would strike without end.
-const LEAST_M_S: f64 = 1e-6;
+const MIN_CAPTURE_M_S: f64 = 1e-6;
 
 /// The contact law of one ground for one rock, or of two rocks.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -111,11 +111,12 @@ impl Law {
     ) -> Self {
         let (p_n, p_s) = (ground.normal_stiffness_n_m, ground.shear_stiffness_n_m);
         let omega = (p_n / m).sqrt();
-        let rolls = ground.rolling_friction > 0.0;
-        let k_r = if rolls { ROLLING_STIFFNESS * p_s * radius * radius } else { 0.0 };
+        let has_rolling = ground.rolling_friction > 0.0;
+        let k_r = if has_rolling { ROLLING_STIFFNESS * p_s * radius * radius } else { 0.0 };
         let physical = damping.capture_number * capture.gravity_m_s2 / omega;
         let least = (0.5 * capture.tolerance_m_s).max(SLOWEST_REBOUND_M_S);
-        let damped = if ground.restitution.is_some() { along_ratio(damping.ratio) } else { 0.0 };
+        let shear_ratio =
+            if ground.restitution.is_some() { shear_ratio_at(damping.ratio) } else { 0.0 };
         let critical = [
             2.0 * (p_s * m / Rock::SLIP_LIGHTNESS).sqrt(),
             2.0 * (k_r * Rock::ROLLING_INERTIA * m).sqrt() * radius,
@@ -126,12 +127,12 @@ impl Law {
             c_n_captured: 2.0 * CAPTURE_DAMPING_RATIO.max(damping.ratio) * m * omega,
             shear: FrictionElement {
                 k: p_s,
-                c: damped * critical[0],
+                c: shear_ratio * critical[0],
                 limit: ground.friction_coefficient(),
             },
             rolling: FrictionElement {
                 k: k_r,
-                c: along_ratio(damping.ratio) * critical[1],
+                c: shear_ratio_at(damping.ratio) * critical[1],
                 limit: ground.rolling_friction * radius,
             },
             critical,
@@ -146,7 +147,7 @@ impl Law {
 
     /// Springs that stand for a rigid contact: an impulse (N s) by speed (m/s) of so much, with the friction of another law on a
     /// rock of a radius (m).
-    pub(crate) fn stiff(stiffness_kg: f64, limits: FrictionLimits, radius: f64) -> Self {
+    pub(crate) fn penalty(stiffness_kg: f64, limits: FrictionLimits, radius: f64) -> Self {
         let k_r = if limits.has_rolling() { stiffness_kg * radius * radius } else { 0.0 };
         Self {
             p_n: stiffness_kg,
@@ -193,7 +194,7 @@ impl Law {
 
     /// What shares of depth and stretches its springs have under a load that those of `other` bear (–): normal, shear and rolling, 1 where they are no
     /// stiffer.
-    pub(crate) fn shares_of(&self, other: &Self) -> [f64; 3] {
+    pub(crate) fn stretch_ratios_to(&self, other: &Self) -> [f64; 3] {
         let share = |own: f64, other: f64| if own > other { other / own } else { 1.0 };
         [
             share(self.p_n, other.p_n),
@@ -204,12 +205,12 @@ impl Law {
 
     /// The same with the friction of `other`, along the surface and in rolling: springs that may be stretched stay what they are.
     pub(crate) fn with_friction_of(&self, other: &Self) -> Self {
-        let both = |own: FrictionElement, other: FrictionElement| {
+        let replaced = |own: FrictionElement, other: FrictionElement| {
             if own.is_on() { FrictionElement { limit: other.limit, ..own } } else { other }
         };
         Self {
-            shear: both(self.shear, other.shear),
-            rolling: both(self.rolling, other.rolling),
+            shear: replaced(self.shear, other.shear),
+            rolling: replaced(self.rolling, other.rolling),
             ..*self
         }
     }
@@ -233,7 +234,7 @@ impl Law {
     }
 
     /// Gives the ground another coefficient of friction (–); whether it is another.
-    pub(crate) fn rub_with(&mut self, coefficient: f64) -> bool {
+    pub(crate) fn set_friction(&mut self, coefficient: f64) -> bool {
         std::mem::replace(&mut self.shear.limit, coefficient).to_bits() != coefficient.to_bits()
     }
 }
@@ -250,26 +251,26 @@ impl Law {
 
     /// An upper bound of the power that a contact takes (W), and of half its growth (W/s), under a normal force (N), at speeds
     /// inwards and along the surface (m/s): forces do not grow faster than those of springs without loss.
-    pub(crate) fn taken_w(&self, force_n: f64, inwards: f64, slip: f64) -> (f64, f64) {
+    pub(crate) fn power_bound_w(&self, force_n: f64, inwards: f64, slip: f64) -> (f64, f64) {
         // W(h) ≤ Σ (v_n + μ |u|) (F h + p_N v_n h²/2)
         let force = force_n.max(self.c_n * inwards);
-        let way = inwards + self.shear.limit * slip;
-        (force * way, 0.5 * self.p_n * inwards * way)
+        let speed = inwards + self.shear.limit * slip;
+        (force * speed, 0.5 * self.p_n * inwards * speed)
     }
 }
 
 impl Law {
     /// Speed of approach from which on a blow rebounds in the rigid limit (m/s).
     #[inline]
-    pub(crate) fn rebounds_from_m_s(&self) -> f64 {
-        self.capture_m_s.max(LEAST_M_S)
+    pub(crate) fn rigid_capture_m_s(&self) -> f64 {
+        self.capture_m_s.max(MIN_CAPTURE_M_S)
     }
 
     /// Normal restitution (–) of an impact at a normal speed (m/s): `e/(1 + (v/v_half)²)` (Pfeiffer and Bowen 1989).
     #[inline]
     pub fn restitution_at(&self, approach_m_s: f64) -> f64 {
-        let over = approach_m_s / self.restitution_half_m_s;
-        self.restitution / (1.0 + over * over)
+        let relative = approach_m_s / self.restitution_half_m_s;
+        self.restitution / (1.0 + relative * relative)
     }
 
     /// Whether nothing is given back, however slow the impact.
@@ -280,31 +281,31 @@ impl Law {
 
     /// Damping ratio of an impact at a normal speed (m/s) (–), if it hangs on the speed.
     pub(crate) fn ratio_at(&self, approach_m_s: f64) -> Option<f64> {
-        let hangs_on_speed = self.restitution_half_m_s.is_finite();
-        hangs_on_speed.then(|| damping_ratio(self.restitution_at(approach_m_s)))
+        let depends_on_speed = self.restitution_half_m_s.is_finite();
+        depends_on_speed.then(|| damping_ratio(self.restitution_at(approach_m_s)))
     }
 
     /// Takes the dashpot of an impact at a normal speed (m/s), until the next one.
-    pub fn struck_at(&mut self, approach_m_s: f64) {
+    pub fn set_impact_speed(&mut self, approach_m_s: f64) {
         if let Some(ratio) = self.ratio_at(approach_m_s) {
-            self.damp(ratio);
+            self.set_damping_ratio(ratio);
         }
     }
 
     /// The same law with dashpots of a damping ratio (–).
     pub(crate) fn damped(&self, ratio: f64) -> Self {
         let mut law = *self;
-        law.damp(ratio);
+        law.set_damping_ratio(ratio);
         law
     }
 
     /// Takes dashpots of a damping ratio (–).
-    fn damp(&mut self, ratio: f64) {
+    fn set_damping_ratio(&mut self, ratio: f64) {
         let critical = 2.0 * self.p_n / self.omega;
         self.c_n = ratio * critical;
         self.c_n_captured = CAPTURE_DAMPING_RATIO.max(ratio) * critical;
-        self.shear.c = along_ratio(ratio) * self.critical[0];
-        self.rolling.c = along_ratio(ratio) * self.critical[1];
+        self.shear.c = shear_ratio_at(ratio) * self.critical[0];
+        self.rolling.c = shear_ratio_at(ratio) * self.critical[1];
     }
 }
 

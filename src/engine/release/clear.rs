@@ -11,20 +11,20 @@ use std::f64::consts::TAU;
 
 /// A rock over steep ground may be in it although its lowest point is clear: then it is lifted, straight up, until it
 /// just touches. The place itself where it is clear already, or where no such height is near.
-pub(super) fn clear_of(terrain: &Terrain, centre: Vec3, radius_m: f64) -> Vec3 {
+pub(super) fn lifted_clear(terrain: &Terrain, centre: Vec3, radius_m: f64) -> Vec3 {
     if terrain.distance_m(&centre, radius_m) >= radius_m {
         return centre;
     }
-    let start = centre + Vec3::z() * (LIFT * radius_m);
+    let start = centre + Vec3::z() * (MAX_LIFT * radius_m);
     let down = Parabola { start, velocity: -Vec3::z(), gravity: 0.0, radius: radius_m };
-    match time_of_impact(terrain, &down, LIFT * radius_m, &mut 0) {
+    match time_of_impact(terrain, &down, MAX_LIFT * radius_m, &mut 0) {
         FlightEnd::Touch(way_m) if way_m > 0.0 => start - Vec3::z() * way_m,
         _ => centre,
     }
 }
 
 /// A rock in steep ground is lifted by up to this many radii (–): enough for slopes up to 80°.
-const LIFT: f64 = 6.0;
+const MAX_LIFT: f64 = 6.0;
 
 impl Releases {
     /// Refuses a rock that starts deeper in ground or tree than its weight would press it.
@@ -41,9 +41,9 @@ impl Releases {
         let depth_m = around_m - terrain.distance_m(centre, around_m);
         // beyond the edge there is no ground to be under
         let buried = terrain.is_under_slope(centre);
-        let caged = is_inside_tree(terrain, centre);
+        let inside_tree = is_inside_tree(terrain, centre);
         let is_deep = depth_m > 2.0 * pressed_m + TYPED_DEPTH * around_m;
-        if !(is_deep || buried || caged) {
+        if !(is_deep || buried || inside_tree) {
             return Ok(());
         }
         let [x, y, z]: [f64; 3] = (centre + terrain.origin_m).into();
@@ -77,10 +77,10 @@ pub(super) fn is_inside_tree(terrain: &Terrain, point: &Vec3) -> bool {
     let directions: [Vec3; DIRECTIONS] = std::array::from_fn(|k| {
         // not along the axes, as the sides of made stems are
         let (sin, cos) = math::sin_cos(TAU * (k as f64 + 0.37) / DIRECTIONS as f64);
-        Vec3::new(cos, sin, 0.0) * INSIDE_TREE_M
+        Vec3::new(cos, sin, 0.0) * TREE_SEARCH_M
     });
     let mut near = Vec::new();
-    terrain.index.near(point, INSIDE_TREE_M, |start, count| {
+    terrain.index.near(point, TREE_SEARCH_M, |start, count| {
         near.extend((start..start + count).filter(|&t| terrain.is_tree(t)));
     });
     let mut parts = Groups::of(near.len());
@@ -100,7 +100,7 @@ pub(super) fn is_inside_tree(terrain: &Terrain, point: &Vec3) -> bool {
 }
 
 /// No tree is thicker than twice this (m).
-const INSIDE_TREE_M: f64 = 4.0;
+const TREE_SEARCH_M: f64 = 4.0;
 /// Horizontal directions looked in.
 const DIRECTIONS: usize = 12;
 

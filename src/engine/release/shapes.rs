@@ -51,11 +51,11 @@ pub fn check_shapes(scene: &Scene) -> Result<()> {
 pub(super) struct Shapes {
     entries: Vec<ShapeShare>,
     /// The shapes that rocks draw among, with the weights up to each (–): those of no block, then block by block.
-    choices: Vec<Vec<(f64, usize)>>,
-    /// The choice of each row of the release table; empty without one.
+    weighted: Vec<Vec<(f64, usize)>>,
+    /// The options of each row of the release table; empty without one.
     of_row: Vec<usize>,
     /// A fixed turn; none if it is drawn.
-    turned: Option<Rotation3<f64>>,
+    attitude: Option<Rotation3<f64>>,
     /// What the plan says of each.
     pub(super) lines: Vec<String>,
 }
@@ -66,7 +66,7 @@ impl Shapes {
     /// # Errors
     /// A scan that cannot be read or is not closed, corners too round for a shape.
     pub(super) fn compile(scene: &Scene) -> Result<Self> {
-        let mut shapes = Self { turned: fixed_turn(scene), ..Self::default() };
+        let mut shapes = Self { attitude: fixed_attitude(scene), ..Self::default() };
         if !scene.has_blocks() {
             return Ok(shapes);
         }
@@ -76,12 +76,12 @@ impl Shapes {
             shapes.lines.push(line);
             shapes.entries.push(ShapeShare { table: table.clone(), made });
         }
-        shapes.choose(scene);
+        shapes.group_by_block(scene);
         Ok(shapes)
     }
 
     /// Which shapes each row of the release table draws among: those of its block, or those of none.
-    fn choose(&mut self, scene: &Scene) {
+    fn group_by_block(&mut self, scene: &Scene) {
         let tables = &scene.rocks.shapes;
         let mut names: Vec<Option<&String>> = vec![None];
         let place = |names: &[Option<&String>], block: Option<&String>| {
@@ -92,7 +92,7 @@ impl Shapes {
                 names.push(table.block.as_ref());
             }
         }
-        let choice = |name: Option<&String>| {
+        let options = |name: Option<&String>| {
             let own = tables.iter().enumerate().filter(|(_, table)| table.block.as_ref() == name);
             let summed = own.scan(0.0, |sum, (index, table)| {
                 *sum += table.weight.unwrap_or(1.0);
@@ -100,7 +100,7 @@ impl Shapes {
             });
             summed.collect()
         };
-        self.choices = names.iter().copied().map(choice).collect();
+        self.weighted = names.iter().copied().map(options).collect();
         let rows = scene.release.blocks.iter();
         self.of_row = rows.map(|row| place(&names, row.block.as_ref()).unwrap_or(0)).collect();
     }
@@ -113,7 +113,7 @@ impl Shapes {
     /// The block of release `index`, which is the `turn`-th from its place, of the size of its rock; none if it is a sphere.
     pub(super) fn draw(&self, seed: u64, of: (usize, usize), rock: &Rock) -> Option<DrawnShape> {
         let (entry, drawn, mut random) = self.pick(seed, of)?;
-        let attitude = self.turned.unwrap_or_else(|| random_turn(&mut random));
+        let attitude = self.attitude.unwrap_or_else(|| random_attitude(&mut random));
         let (sides, made) = entry.shape(drawn)?;
         let block = Block::new(&made, rock);
         let sides = [sides[1] / sides[0], sides[2] / sides[0]];
@@ -128,11 +128,11 @@ impl Shapes {
         (index, turn): (usize, usize),
     ) -> Option<(&ShapeShare, [f64; 4], RandomStream)> {
         let row = turn.checked_rem(self.of_row.len()).map_or(0, |row| self.of_row[row]);
-        let choice = self.choices.get(row)?;
-        let all = choice.last()?.0;
+        let options = self.weighted.get(row)?;
+        let all = options.last()?.0;
         let mut random = stream(seed, Purpose::Shape, index);
         let pick = all * unit(&mut random);
-        let entry = &self.entries[choice[choice.partition_point(|(sum, _)| *sum <= pick)].1];
+        let entry = &self.entries[options[options.partition_point(|(sum, _)| *sum <= pick)].1];
         let drawn = [0; 4].map(|_| unit(&mut random));
         (entry.table.kind != ShapeKind::Sphere).then_some((entry, drawn, random))
     }
@@ -148,7 +148,7 @@ impl ShapeShare {
             Some(shape) => shape.clone(),
             // checked at the ends of what can be drawn; between them nothing is rounder: with x the logarithms of the sides, that of a
             // face's distance over the radius of equal volume, −½ ln Σ nᵢ² e^(−2xᵢ) − ⅓ Σ xᵢ, is concave, so it is least at an end
-            None => of_sides(&self.table, sides).ok()?,
+            None => shape_of_sides(&self.table, sides).ok()?,
         };
         Some((sides, shape))
     }
@@ -188,21 +188,21 @@ impl Releases {
 }
 
 /// Uniform over all turns, of three numbers (Shoemake 1992).
-fn random_turn(random: &mut RandomStream) -> Rotation3<f64> {
+fn random_attitude(random: &mut RandomStream) -> Rotation3<f64> {
     let [a, b, c] = [0; 3].map(|_| unit(random));
     let ((sin_b, cos_b), (sin_c, cos_c)) = (math::sin_cos(TAU * b), math::sin_cos(TAU * c));
     let (less, more) = ((1.0 - a).sqrt(), a.sqrt());
-    turn_of([more * cos_c, less * sin_b, less * cos_b, more * sin_c])
+    attitude_of([more * cos_c, less * sin_b, less * cos_b, more * sin_c])
 }
 
 /// The turn of a quaternion w, x, y, z of any length.
-fn turn_of([w, x, y, z]: [f64; 4]) -> Rotation3<f64> {
+fn attitude_of([w, x, y, z]: [f64; 4]) -> Rotation3<f64> {
     UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z)).to_rotation_matrix()
 }
 
-fn fixed_turn(scene: &Scene) -> Option<Rotation3<f64>> {
+fn fixed_attitude(scene: &Scene) -> Option<Rotation3<f64>> {
     match &scene.release.orientation {
-        Some(Orientation::Fixed(turn)) => Some(turn_of(*turn)),
+        Some(Orientation::Fixed(turn)) => Some(attitude_of(*turn)),
         _ => None,
     }
 }
@@ -218,14 +218,14 @@ fn sides_of(table: &ShapeTable, mut value: impl FnMut(&Distribution) -> f64) -> 
 }
 
 /// The shape of a table that is not a scan.
-fn make(
+fn shape_of(
     table: &ShapeTable,
     value: impl FnMut(&Distribution) -> f64,
 ) -> std::result::Result<Shape, BadSurface> {
-    of_sides(table, sides_of(table, value))
+    shape_of_sides(table, sides_of(table, value))
 }
 
-fn of_sides(table: &ShapeTable, sides: [f64; 3]) -> std::result::Result<Shape, BadSurface> {
+fn shape_of_sides(table: &ShapeTable, sides: [f64; 3]) -> std::result::Result<Shape, BadSurface> {
     let ball = table.corner_radius.unwrap_or(0.0);
     let surface = match table.kind {
         ShapeKind::Ellipsoid => {
@@ -250,25 +250,25 @@ fn prepared(
         ShapeKind::Sphere => {
             Ok((None, format!("{}, weight {}", named(table), table.weight.unwrap_or(1.0))))
         }
-        ShapeKind::Mesh => scanned(table)?.map(|(shape, note)| {
+        ShapeKind::Mesh => scanned_shape(table)?.map(|(shape, note)| {
             let line = described(table, &shape, &note);
             (Some(shape), line)
         }),
-        _ => made(table),
+        _ => made_shape(table),
     })
 }
 
-fn made(table: &ShapeTable) -> std::result::Result<(Option<Shape>, String), BadSurface> {
+fn made_shape(table: &ShapeTable) -> std::result::Result<(Option<Shape>, String), BadSurface> {
     // the extremes must do too, each side's with each other's: a shape that is drawn is made without a chance to complain
     for ends in 0..8_u32 {
         let mut side = 0;
-        make(table, |axis| {
+        shape_of(table, |axis| {
             let (least, most) = axis.support();
             side += 1;
             if ends >> (side - 1) & 1 == 0 { least } else { most }
         })?;
     }
-    let shape = make(table, |axis| axis.quantile(0.5))?;
+    let shape = shape_of(table, |axis| axis.quantile(0.5))?;
     let mut drawn = table.axes.iter().flatten().chain(&table.ratio);
     let is_drawn = drawn.any(|axis| axis.as_fixed().is_none());
     let note = if is_drawn { ", its sides drawn for each rock, of which the median" } else { "" };
@@ -277,13 +277,13 @@ fn made(table: &ShapeTable) -> std::result::Result<(Option<Shape>, String), BadS
 }
 
 /// The shape of a scan, with how its hull was thinned.
-fn scanned(table: &ShapeTable) -> Result<std::result::Result<(Shape, String), BadSurface>> {
+fn scanned_shape(table: &ShapeTable) -> Result<std::result::Result<(Shape, String), BadSurface>> {
     let path = table.mesh.as_deref().unwrap_or(Path::new(""));
     let soup = stl::read(path)?;
-    Ok(of_surface(&welded(&soup.facets), table))
+    Ok(shape_of_surface(&welded(&soup.facets), table))
 }
 
-fn of_surface(
+fn shape_of_surface(
     surface: &Surface,
     table: &ShapeTable,
 ) -> std::result::Result<(Shape, String), BadSurface> {
@@ -296,9 +296,9 @@ fn of_surface(
     let shape = Shape::of(&solid, &thinned.corners, table.corner_radius.unwrap_or(0.0))?;
     let note = format!(
         " of {} corners of the hull of {} points; what is left out stands out by {:.4} of the radius at most",
-        thinned.of,
+        thinned.hull_corners,
         surface.points.len(),
-        thinned.left / solid.equal_radius()
+        thinned.deviation_m / solid.equal_radius()
     );
     Ok((shape, note))
 }

@@ -1,6 +1,6 @@
 //! Places that release rocks, and the sizes of what each of them releases.
 
-use super::{Releases, Where};
+use super::{ReleasePlace, Releases};
 use crate::error::{Error, Result};
 use crate::frequency::{Frequency, radius_of_m3};
 use crate::random::{Purpose, stream, unit};
@@ -8,12 +8,14 @@ use crate::scene::{Area, Corner, Polyline, ReleasePoint, Scene, Zones};
 use crate::terrain::Terrain;
 
 impl Releases {
-    pub(super) fn place_asked(scene: &Scene) -> Result<Where> {
+    pub(super) fn place_asked(scene: &Scene) -> Result<ReleasePlace> {
         let asked = &scene.release;
         let drawn = (&asked.points_m, &asked.line_m, &asked.polygon_m);
         let place = match &asked.zone_list {
-            None => Where::one_of(drawn),
-            Some(zones) if drawn == (&None, &None, &None) => Some(Where::Zones(zones.clone())),
+            None => ReleasePlace::one_of(drawn),
+            Some(zones) if drawn == (&None, &None, &None) => {
+                Some(ReleasePlace::Zones(zones.clone()))
+            }
             Some(_) => None,
         };
         place.ok_or_else(|| {
@@ -23,7 +25,7 @@ impl Releases {
     }
 
     /// Refuses a point or corner without ground below.
-    pub(super) fn look_for_ground(&self, terrain: &Terrain) -> Result<()> {
+    pub(super) fn check_ground(&self, terrain: &Terrain) -> Result<()> {
         for (k, place) in self.places.iter().enumerate() {
             let table = if self.places.len() > 1 {
                 format!("[[frequency.sources]] #{}", k + 1)
@@ -38,14 +40,16 @@ impl Releases {
     }
 
     /// The first so many releases come from every fixed point.
-    pub(super) fn turns(&self) -> usize {
-        let points = |place: &Where| if let Where::Points(all) = place { all.len() } else { 0 };
+    pub(super) fn fixed_cycle(&self) -> usize {
+        let points = |place: &ReleasePlace| {
+            if let ReleasePlace::Points(all) = place { all.len() } else { 0 }
+        };
         let strata = self.frequency.as_ref().map_or(1, |one| one.strata().len());
         strata * self.places.iter().map(points).max().unwrap_or(0)
     }
 
     /// Place of a release, and which turn it is there.
-    pub(super) fn place_of(&self, index: usize) -> (&Where, usize) {
+    pub(super) fn place_of(&self, index: usize) -> (&ReleasePlace, usize) {
         match &self.frequency {
             Some(frequency) => {
                 let source = frequency.stratum(index).source.min(self.places.len() - 1);
@@ -89,12 +93,12 @@ impl Releases {
     }
 
     /// Where rocks are released: one place, or one for each source.
-    pub fn places(&self) -> &[Where] {
+    pub fn places(&self) -> &[ReleasePlace] {
         &self.places
     }
 }
 
-impl Where {
+impl ReleasePlace {
     /// The one place that is given; none where none or several are.
     pub(super) fn one_of(
         given: (&Option<Vec<ReleasePoint>>, &Option<Polyline>, &Option<Area>),

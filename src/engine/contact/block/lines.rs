@@ -18,9 +18,9 @@ pub(super) fn crossing((p, e): (Vec3, Vec3), (a, f): (Vec3, Vec3)) -> Option<(f6
 
 /// The point of a line between two ends that is nearest to `p`, and whether that is an end of it.
 pub(super) fn foot_or_end([a, b]: [Vec3; 2], p: &Vec3) -> (Vec3, bool) {
-    let way = b - a;
-    let s = (p - a).dot(&way) / way.norm_squared();
-    (a + way * s.clamp(0.0, 1.0), s <= 0.0 || s >= 1.0)
+    let side = b - a;
+    let s = (p - a).dot(&side) / side.norm_squared();
+    (a + side * s.clamp(0.0, 1.0), s <= 0.0 || s >= 1.0)
 }
 
 /// The point of a line between two ends that is nearest to `p`.
@@ -29,9 +29,9 @@ pub(super) fn foot_between(ends: [Vec3; 2], p: &Vec3) -> Vec3 {
 }
 
 /// Where two lines that do not cross between their ends are nearest: a point on each, one of which is an end.
-pub(super) fn nearest_at_ends(one: [Vec3; 2], other: [Vec3; 2]) -> [Vec3; 2] {
-    let from = one.map(|p| [p, foot_between(other, &p)]);
-    let to = other.map(|p| [foot_between(one, &p), p]);
+pub(super) fn nearest_at_ends(first: [Vec3; 2], second: [Vec3; 2]) -> [Vec3; 2] {
+    let from = first.map(|p| [p, foot_between(second, &p)]);
+    let to = second.map(|p| [foot_between(first, &p), p]);
     let nearer = |near: [Vec3; 2], next: [Vec3; 2]| {
         let away2 = |[p, q]: [Vec3; 2]| (p - q).norm_squared();
         if away2(next) < away2(near) { next } else { near }

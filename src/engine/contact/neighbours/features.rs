@@ -26,21 +26,21 @@ pub(super) struct NearEdge {
     pub(super) triangle: u32,
     /// Where it is.
     pub(super) line: Segment,
-    /// Range of outward face normals in `rays`.
-    pub(super) rays: (u32, u32),
+    /// Range of outward face normals in `directions`.
+    pub(super) directions: (u32, u32),
     /// Whether only one face is on it: then another sheet may run through it.
     pub(super) at_border: bool,
 }
 
 /// A vertex that stands out from all its edges for some centre within the margin.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct NearCorner {
+pub(super) struct NearVertex {
     pub(super) id: u32,
     pub(super) triangle: u32,
     /// Where it is (m).
     pub(super) p: Vec3,
-    /// Range of edge directions in `rays`.
-    pub(super) rays: (u32, u32),
+    /// Range of edge directions in `directions`.
+    pub(super) directions: (u32, u32),
     /// Whether a border of the mesh runs through it.
     pub(super) at_border: bool,
 }
@@ -48,8 +48,8 @@ pub(super) struct NearCorner {
 /// A place where the distance may have a saddle or a maximum inside the ball.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum NearSaddle {
-    /// A hollow edge, with its range of outward face normals in `rays`.
-    Edge { line: Segment, rays: (u32, u32) },
+    /// A hollow edge, with its range of outward face normals in `directions`.
+    Edge { line: Segment, directions: (u32, u32) },
     /// A vertex.
     Vertex { id: u32, p: Vec3 },
 }
@@ -57,10 +57,12 @@ pub(super) enum NearSaddle {
 /// Whether a rock at `centre` (m) may touch an edge from nearer than `reach` while the centre moves up to `way` (m): its foot on the edge, and
 /// the line no farther.
 #[inline]
-pub(super) fn may_meet(line: &Segment, centre: &Vec3, (way, reach): (f64, f64)) -> bool {
+pub(super) fn may_touch_edge(line: &Segment, centre: &Vec3, (distance, reach): (f64, f64)) -> bool {
     let to = centre - line.a;
     let s = line.along.dot(&to);
-    s >= -way && s <= line.length + way && (to - line.along * s).norm_squared() <= reach * reach
+    s >= -distance
+        && s <= line.length + distance
+        && (to - line.along * s).norm_squared() <= reach * reach
 }
 
 impl NearFace {
@@ -88,7 +90,7 @@ impl NearFace {
 pub(super) struct NearFeatures {
     pub(super) faces: Vec<NearFace>,
     pub(super) edges: Vec<NearEdge>,
-    pub(super) corners: Vec<NearCorner>,
+    pub(super) vertices: Vec<NearVertex>,
     pub(super) saddles: Vec<NearSaddle>,
     /// All triangles within reach; only looked at when a border or a saddle is near.
     pub(super) sheets: Vec<u32>,
@@ -100,7 +102,7 @@ impl NearFeatures {
         Self {
             faces: Vec::with_capacity(64),
             edges: Vec::with_capacity(64),
-            corners: Vec::with_capacity(64),
+            vertices: Vec::with_capacity(64),
             saddles: Vec::with_capacity(64),
             sheets: Vec::with_capacity(256),
         }
@@ -109,7 +111,7 @@ impl NearFeatures {
     pub(super) fn clear(&mut self) {
         self.faces.clear();
         self.edges.clear();
-        self.corners.clear();
+        self.vertices.clear();
         self.saddles.clear();
         self.sheets.clear();
     }

@@ -10,7 +10,7 @@ use crate::contact::{Feature, FeatureKind};
 use crate::rock::Vec3;
 
 /// Edges that go on in a straight line do so to this, in their direction and over their length (–).
-const STRAIGHT: f64 = 1e-6;
+const COLLINEAR: f64 = 1e-6;
 
 /// An edge of the mesh that stands out, as a block meets it.
 ///
@@ -26,18 +26,18 @@ pub(crate) struct SharpEdge<'a> {
 
 impl SharpEdge<'_> {
     /// Whether another edge is a part of the same straight line.
-    pub(crate) fn goes_straight_on(&self, other: &Self) -> bool {
+    pub(crate) fn is_collinear_with(&self, other: &Self) -> bool {
         let (line, other) = (&self.line, &other.line);
         let off = |way: Vec3| way - line.along * line.along.dot(&way);
-        off(other.along).norm() <= STRAIGHT
-            && off(other.a - line.a).norm() <= STRAIGHT * line.length
+        off(other.along).norm() <= COLLINEAR
+            && off(other.a - line.a).norm() <= COLLINEAR * line.length
     }
 }
 
 /// A vertex of the mesh that stands out, as a block meets it.
 /// At `p` (m); `edges` are unit vectors along the edges that start there.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Peak<'a> {
+pub(crate) struct SharpVertex<'a> {
     pub(crate) feature: Feature,
     pub(crate) triangle: u32,
     pub(crate) p: Vec3,
@@ -45,14 +45,14 @@ pub(crate) struct Peak<'a> {
     pub(crate) at_border: bool,
 }
 
-impl Peak<'_> {
+impl SharpVertex<'_> {
     /// Whether it is the top of its edges along a direction, to a sine of `slack` (–).
-    pub(crate) fn is_top(&self, up: &Vec3, slack: f64) -> bool {
+    pub(crate) fn is_extreme_along(&self, up: &Vec3, slack: f64) -> bool {
         self.edges.iter().all(|edge| edge.dot(up) <= slack)
     }
 
     /// Whether an edge goes straight on through the vertex, to a sine of `slack` (–): such a vertex only divides an edge, and stands out no further.
-    pub(crate) fn is_straight(&self, slack: f64) -> bool {
+    pub(crate) fn divides_straight_edge(&self, slack: f64) -> bool {
         let goes_on = |one: &Vec3| {
             self.edges.iter().any(|other| (one + other).norm_squared() <= slack * slack)
         };
@@ -62,7 +62,7 @@ impl Peak<'_> {
 
 impl Neighbours {
     /// How far (m) a foot that moves with `u` (m/s) stays on a face; 0 where it is none of those collected.
-    pub(crate) fn way_over(&self, face: u32, (foot, u): (&Vec3, &Vec3)) -> f64 {
+    pub(crate) fn path_on_face_m(&self, face: u32, (foot, u): (&Vec3, &Vec3)) -> f64 {
         let Some(face) = self.all.faces.iter().find(|near| near.id == face) else { return 0.0 };
         let leaves_s = (0..3).filter_map(|k| {
             let speed = face.out[k].dot(u);
@@ -72,7 +72,7 @@ impl Neighbours {
     }
 
     /// How many edges can be touched from where the centre is.
-    pub(crate) fn lines(&self) -> usize {
+    pub(crate) fn sharp_edge_count(&self) -> usize {
         self.all.edges.len()
     }
 
@@ -82,41 +82,41 @@ impl Neighbours {
             feature: Feature { kind: FeatureKind::Edge, id: edge.id },
             triangle: edge.triangle,
             line: edge.line,
-            outward: self.rays_of(edge.rays),
+            outward: self.directions_of(edge.directions),
             at_border: edge.at_border,
         })
     }
 
     /// The vertices that can be touched from where the centre is, with unit directions along their edges.
-    pub(crate) fn peaks(&self) -> impl Iterator<Item = Peak<'_>> {
-        self.all.corners.iter().map(|corner| Peak {
+    pub(crate) fn sharp_vertices(&self) -> impl Iterator<Item = SharpVertex<'_>> {
+        self.all.vertices.iter().map(|corner| SharpVertex {
             feature: Feature { kind: FeatureKind::Vertex, id: corner.id },
             triangle: corner.triangle,
             p: corner.p,
-            edges: self.rays_of(corner.rays),
+            edges: self.directions_of(corner.directions),
             at_border: corner.at_border,
         })
     }
 
     /// Whether what was collected holds for all that is `around_m` about a point or nearer.
     /// For a block the corners, not the centre, must stay inside the margin.
-    pub(crate) fn covers_around(&self, point: &Vec3, around_m: f64) -> bool {
+    pub(crate) fn covers_ball(&self, point: &Vec3, around_m: f64) -> bool {
         (point - self.centre).norm() + around_m <= self.margin
     }
 
     /// How far (m) the centre of a block that reaches so far, with balls of some radius at its corners (m), may go from `centre` with all
     /// that it can meet known; negative where that is not.
-    pub(crate) fn room_around(&self, centre: &Vec3, (ball, bound): (f64, f64)) -> f64 {
+    pub(crate) fn block_margin_m(&self, centre: &Vec3, (ball, bound): (f64, f64)) -> f64 {
         // what was collected for a rock of another size has other features; what touches is as far as the ball, half of that is
         // room for rounding
-        let is_own =
-            (self.radius - ball).abs() <= f64::EPSILON * ball && self.sees_m() >= 1.5 * ball;
+        let is_own = (self.radius - ball).abs() <= f64::EPSILON * ball
+            && self.query_radius_m() >= 1.5 * ball;
         let known = if is_own { self.margin + ball - bound } else { f64::NEG_INFINITY };
         known - (centre - self.centre).norm()
     }
 
     /// How far from a centre within the margin features are known (m).
-    pub(crate) fn sees_m(&self) -> f64 {
+    pub(crate) fn query_radius_m(&self) -> f64 {
         self.reach - self.margin
     }
 

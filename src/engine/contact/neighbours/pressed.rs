@@ -2,7 +2,7 @@
 //!
 //! The second question is that of a whole impact: does the rock, on its way in and out, meet
 //! anything but one plane? Its way is enclosed in the rectangle of `along` and `into`, widened by
-//! `off_m`; a linear function over a rectangle has its extremes at the corners, so each test is a
+//! `deviation_m`; a linear function over a rectangle has its extremes at the corners, so each test is a
 //! few scalar products.
 
 use super::{NearFace, NearSaddle, Neighbours, SLACK};
@@ -22,14 +22,14 @@ pub struct PressedPath {
     /// How far it goes into the plane, at most, against the normal (m).
     pub into: Vec3,
     /// How far it may be off the straight way at most (m).
-    pub off_m: f64,
+    pub deviation_m: f64,
     /// How far it gets from `start` at most (m).
-    pub way_m: f64,
+    pub reach_m: f64,
 }
 
 /// Off the straight way between its ends no path is more than so much of its time times all that its velocity along the plane changes by on
 /// the way (–): a constant force takes it half of that away, one that acts at once in the middle all of it.
-const BULGE: f64 = 0.25;
+const DEVIATION_FACTOR: f64 = 0.25;
 
 impl PressedPath {
     /// The path from `start` that shifts the centre by `shift` (m) within `dt` (s) while its velocity along the plane with unit normal `n`
@@ -42,9 +42,9 @@ impl PressedPath {
         deepest_m: f64,
     ) -> Self {
         let along = Self::tangent(n, shift);
-        let off_m = BULGE * dt * change_m_s;
-        let way_m = math::hypot(along.norm() + off_m, deepest_m);
-        Self { start, along, into: n * -deepest_m, off_m, way_m }
+        let deviation_m = DEVIATION_FACTOR * dt * change_m_s;
+        let reach_m = math::hypot(along.norm() + deviation_m, deepest_m);
+        Self { start, along, into: n * -deepest_m, deviation_m, reach_m }
     }
 
     /// The part of a vector along the plane with unit normal `n`.
@@ -63,13 +63,13 @@ impl PressedPath {
     /// From either side: a plane may be approached from behind by a ball that reaches over a ridge.
     fn comes_nearer_to_plane(&self, (n, p): (&Vec3, &Vec3), reach: f64) -> bool {
         let (low, high) = self.range(n, n.dot(&(self.start - p)));
-        low < reach + self.off_m && high > -reach - self.off_m
+        low < reach + self.deviation_m && high > -reach - self.deviation_m
     }
 
     /// Whether it stays where `direction · x` is larger than `rim`.
     /// Then the foot of the centre is never on the face of which `rim` is that side.
     fn stays_beyond(&self, direction: &Vec3, rim: f64) -> bool {
-        self.range(direction, direction.dot(&self.start)).0 > rim + self.off_m
+        self.range(direction, direction.dot(&self.start)).0 > rim + self.deviation_m
     }
 
     /// Whether it may come nearer than `reach` to a segment. To what lies below the centre it is nearest where it is deepest.
@@ -78,12 +78,12 @@ impl PressedPath {
         // below it
         let below = |x: &Vec3| self.into.dot(&(x - self.start - self.into)) >= 0.0;
         if below(p) && below(&(p + d)) {
-            let reach = reach + self.off_m;
+            let reach = reach + self.deviation_m;
             let lowest = self.start + self.into;
             segments_distance2((&lowest, &self.along), (p, d)) < reach * reach
         } else {
             // above the deepest place: the plain bound, everything within the way of the start
-            let reach = reach + self.way_m;
+            let reach = reach + self.reach_m;
             segments_distance2((&self.start, &Vec3::zeros()), (p, d)) < reach * reach
         }
     }
@@ -91,7 +91,7 @@ impl PressedPath {
 
 impl Neighbours {
     /// How far the centre may go from `centre` in `direction`, a unit vector, before it must be collected anew (m).
-    pub fn room_ahead_m(&self, centre: &Vec3, direction: &Vec3) -> f64 {
+    pub fn margin_ahead_m(&self, centre: &Vec3, direction: &Vec3) -> f64 {
         let from = centre - self.centre;
         let towards = -direction.dot(&from);
         let across2 = from.norm_squared() - towards * towards;
@@ -99,20 +99,21 @@ impl Neighbours {
     }
 
     /// Whether a rock on its `passage` touches nothing but the plane of `face`, however many triangles that is.
-    pub fn is_plane_on(&self, face: u32, passage: &PressedPath) -> bool {
+    pub fn meets_only_plane(&self, face: u32, passage: &PressedPath) -> bool {
         let Some(own) = self.all.faces.iter().find(|own| own.id == face) else { return false };
         // other triangles of the same plane are no obstacle: their seams are not felt
         let in_plane = |p: &Vec3| self.is_in_plane(own, p);
-        let lies_flat = |rays: (u32, u32)| {
-            let rays = self.rays_of(rays);
-            rays.len() > 1 && rays.iter().all(|ray| own.n.dot(ray).abs() <= SLACK)
+        let lies_flat = |directions: (u32, u32)| {
+            let directions = self.directions_of(directions);
+            directions.len() > 1
+                && directions.iter().all(|direction| own.n.dot(direction).abs() <= SLACK)
         };
-        // Whether the centre may come to stand outside (or inside) of all faces on an edge through `a`: `rays` point out of them
+        // Whether the centre may come to stand outside (or inside) of all faces on an edge through `a`: `directions` point out of them
         // and are square to the edge, so any of its points will do.
-        let beyond = passage.off_m + SLACK * self.radius;
-        let may_stand = |rays: (u32, u32), a: &Vec3, outside: bool| {
-            self.rays_of(rays).iter().all(|ray| {
-                let (low, high) = passage.range(ray, ray.dot(&(passage.start - a)));
+        let beyond = passage.deviation_m + SLACK * self.radius;
+        let may_stand = |directions: (u32, u32), a: &Vec3, outside: bool| {
+            self.directions_of(directions).iter().all(|direction| {
+                let (low, high) = passage.range(direction, direction.dot(&(passage.start - a)));
                 if outside { high >= -beyond } else { low <= beyond }
             })
         };
@@ -126,17 +127,17 @@ impl Neighbours {
         }) && self.all.edges.iter().all(|edge| {
             // an edge: never near, never with the centre outside of all its faces, or flat in the
             // plane itself
-            !passage.comes_nearer((&edge.line.a, &edge.line.way()), reach)
-                || !may_stand(edge.rays, &edge.line.a, true)
-                || !edge.at_border && lies_flat(edge.rays) && in_plane(&edge.line.a)
-        }) && self.all.corners.iter().all(|corner| {
-            !passage.comes_nearer((&corner.p, &Vec3::zeros()), reach)
-                || !corner.at_border && lies_flat(corner.rays) && in_plane(&corner.p)
+            !passage.comes_nearer((&edge.line.a, &edge.line.vector()), reach)
+                || !may_stand(edge.directions, &edge.line.a, true)
+                || !edge.at_border && lies_flat(edge.directions) && in_plane(&edge.line.a)
+        }) && self.all.vertices.iter().all(|vertex| {
+            !passage.comes_nearer((&vertex.p, &Vec3::zeros()), reach)
+                || !vertex.at_border && lies_flat(vertex.directions) && in_plane(&vertex.p)
         }) && self.all.saddles.iter().all(|saddle| match saddle {
-            NearSaddle::Edge { line, rays } => {
-                !passage.comes_nearer((&line.a, &line.way()), reach)
-                    || rays.0 < rays.1 && !may_stand(*rays, &line.a, false)
-                    || lies_flat(*rays) && in_plane(&line.a)
+            NearSaddle::Edge { line, directions } => {
+                !passage.comes_nearer((&line.a, &line.vector()), reach)
+                    || directions.0 < directions.1 && !may_stand(*directions, &line.a, false)
+                    || lies_flat(*directions) && in_plane(&line.a)
             }
             // a vertex that can be a saddle is only harmless out of reach: its sectors are not
             // looked at here
@@ -155,7 +156,7 @@ impl Neighbours {
     }
 
     /// Whether the foot of `centre` is on the triangle `face`, or on another of its plane where all that are near are `alike`.
-    pub fn stands_on(&self, face: u32, centre: &Vec3, alike: impl Fn(u32) -> bool) -> bool {
+    pub fn is_foot_on_plane(&self, face: u32, centre: &Vec3, alike: impl Fn(u32) -> bool) -> bool {
         let Some(own) = self.all.faces.iter().find(|own| own.id == face) else { return false };
         let slack = SLACK * self.radius;
         let mut plane = self.all.faces.iter().filter(|other| self.is_coplanar(own, other));
@@ -176,14 +177,14 @@ impl Neighbours {
         centre: &Vec3,
     ) -> bool {
         saddles.iter().any(|saddle| match saddle {
-            NearSaddle::Edge { line: Segment { a, along, length }, rays } => {
+            NearSaddle::Edge { line: Segment { a, along, length }, directions } => {
                 let to = centre - a;
                 let s = along.dot(&to);
                 let off = to - along * s;
                 let slack = SLACK * self.radius;
                 // the foot lies on the edge and the centre inside of both faces: both are minima,
                 // and the edge between them is the saddle
-                let outward = self.rays_of(*rays);
+                let outward = self.directions_of(*directions);
                 // beyond its ends the edge is as near as its vertices, and those are asked by themselves
                 s >= -slack
                     && s <= length + slack
@@ -205,7 +206,7 @@ impl Neighbours {
 
     /// Puts the patches in place of the touches that the ball presses into.
     #[cold]
-    pub(super) fn gather(
+    pub(super) fn replace_by_patches(
         &mut self,
         terrain: &Terrain,
         (centre, reach): (&Vec3, f64),
@@ -216,7 +217,7 @@ impl Neighbours {
         let mut patches = std::mem::take(&mut self.patches);
         patches.find(
             terrain,
-            &self.within((centre, reach)).sheets,
+            &self.candidates((centre, reach)).sheets,
             (centre, self.radius),
             |touch, nearest: &ContactPoint| {
                 let features = &terrain.features;
@@ -234,7 +235,7 @@ impl Neighbours {
                 let covered = at_border
                     && self.is_covered(terrain, touch.feature, &foot, (centre, nearest.distance_m));
                 if !covered {
-                    self.merge(touch, centre, touches);
+                    self.add_unless_known(touch, centre, touches);
                 }
             },
         );

@@ -3,8 +3,8 @@
 //! No part of a block meets a feature before the ball around it does, however it turns. What that ball does not reach within the window
 //! is left out of it, and of what is left a part of the block that has found a nearer feature looks at no later one.
 
-use super::clearance::apart_s;
-use super::{CAUTION, TOUCHING, Tumble};
+use super::clearance::safe_time_s;
+use super::{BlockFlight, ROUNDING_MARGIN, TOUCHING};
 use crate::contact::closest::{Segment, closest_on};
 use crate::contact::neighbours::Neighbours;
 use crate::rock::Vec3;
@@ -33,12 +33,12 @@ pub(super) struct FeaturesAhead {
     /// For its edges: those of the mesh that stand out.
     pub(super) edges: Vec<FeatureAhead<Segment>>,
     /// For its faces: vertices of the mesh that stand out (m).
-    pub(super) peaks: Vec<FeatureAhead<Vec3>>,
+    pub(super) vertices: Vec<FeatureAhead<Vec3>>,
 }
 
 /// The ball around a block as a window begins.
 struct BallAhead<'a> {
-    tumble: &'a Tumble<'a>,
+    flight: &'a BlockFlight<'a>,
     begins_s: f64,
     centre: Vec3,
     velocity: Vec3,
@@ -46,32 +46,32 @@ struct BallAhead<'a> {
 
 impl BallAhead<'_> {
     /// Before which time (s) the ball surely does not come to a convex feature with this point (m) nearest to its centre.
-    fn comes_s(&self, nearest: &Vec3) -> f64 {
-        let block = self.tumble.block;
+    fn earliest_s(&self, nearest: &Vec3) -> f64 {
+        let block = self.flight.block;
         let off = self.centre - nearest;
         let distance = off.norm();
-        let gap = distance * (1.0 - CAUTION) - block.bound_m - TOUCHING * block.radius_m;
+        let gap = distance * (1.0 - ROUNDING_MARGIN) - block.bound_m - TOUCHING * block.radius_m;
         if gap <= 0.0 {
             return self.begins_s;
         }
-        // weight alone bends the way of the centre
-        let (closing, bend) = (-off.dot(&self.velocity), self.tumble.path.gravity * off.z);
-        self.begins_s + apart_s((gap, closing / distance), bend / distance)
+        // weight alone bounds the way of the centre
+        let (closing, bend) = (-off.dot(&self.velocity), self.flight.path.gravity * off.z);
+        self.begins_s + safe_time_s((gap, closing / distance), bend / distance)
     }
 }
 
 impl FeaturesAhead {
     /// Those among the `near` ones that may be met in a window of the flight that `begins` and `ends` (s).
-    pub(super) fn look(
+    pub(super) fn collect(
         &mut self,
         terrain: &Terrain,
-        tumble: &Tumble,
+        flight: &BlockFlight,
         near: &mut Neighbours,
         (begins, ends): (f64, f64),
     ) {
-        let path = &tumble.path;
+        let path = &flight.path;
         let (centre, velocity) = (path.centre(begins), path.velocity(begins));
-        let ball = BallAhead { tumble, begins_s: begins, centre, velocity };
+        let ball = BallAhead { flight, begins_s: begins, centre, velocity };
         near.tested += near.triangles().len() as u64;
         let triangles = near.triangles().iter().map(|&id| {
             let face = terrain.face(id);
@@ -79,10 +79,10 @@ impl FeaturesAhead {
             (TriangleAhead { id, a: face.a, n: face.n }, nearest)
         });
         let edges = near.sharp_edges().map(|edge| (edge.line, edge.line.nearest_to(&ball.centre)));
-        let peaks = near.peaks().map(|peak| (peak.p, peak.p));
+        let vertices = near.sharp_vertices().map(|peak| (peak.p, peak.p));
         list(&mut self.triangles, triangles, (&ball, ends));
         list(&mut self.edges, edges, (&ball, ends));
-        list(&mut self.peaks, peaks, (&ball, ends));
+        list(&mut self.vertices, vertices, (&ball, ends));
     }
 }
 
@@ -93,7 +93,7 @@ fn list<T>(
     (ball, ends): (&BallAhead, f64),
 ) {
     to.clear();
-    let ahead = features.map(|(feature, p)| FeatureAhead { from_s: ball.comes_s(&p), feature });
+    let ahead = features.map(|(feature, p)| FeatureAhead { from_s: ball.earliest_s(&p), feature });
     to.extend(ahead.filter(|ahead| ahead.from_s < ends));
     // in a fixed order also where times are the same
     to.sort_by(|one, other| one.from_s.total_cmp(&other.from_s));

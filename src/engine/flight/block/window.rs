@@ -1,8 +1,8 @@
 //! How long the parts of a block surely keep off what is near it.
 
 use super::ahead::{FeatureAhead, FeaturesAhead, TriangleAhead};
-use super::clearance::{Clearance, Flying};
-use super::{Bends, BlockPart, CAUTION, Moment, TOUCHING, Tumble};
+use super::clearance::{Clearance, PointMotion};
+use super::{BlockFlight, BlockPart, FlightState, PointBounds, ROUNDING_MARGIN, TOUCHING};
 use crate::body::HullFace;
 use crate::contact::closest::closest_on;
 use crate::rock::Vec3;
@@ -10,88 +10,88 @@ use crate::terrain::Terrain;
 
 /// A time is short that is less than this share of the one asked for (–): a block that hangs on a peak or an edge by a hair's breadth would
 /// be followed in ever so many of them.
-const LITTLE: f64 = 0.01;
+const SHORT_SHARE: f64 = 0.01;
 
 /// The search of a window at one moment.
 pub(super) struct WindowSearch<'a> {
     pub(super) terrain: &'a Terrain,
-    pub(super) tumble: &'a Tumble<'a>,
+    pub(super) flight: &'a BlockFlight<'a>,
     pub(super) ahead: &'a FeaturesAhead,
-    pub(super) bends: Bends,
-    pub(super) moment: Moment,
-    pub(super) corners: &'a mut FlyingCorners,
+    pub(super) bounds: PointBounds,
+    pub(super) state: FlightState,
+    pub(super) corners: &'a mut CornerMotions,
     /// Triangles tested so far.
     pub(super) tested: &'a mut u64,
 }
 
 /// The corners of a block in flight, worked out once a moment for all parts that ask for them.
 #[derive(Debug, Default)]
-pub(super) struct FlyingCorners {
+pub(super) struct CornerMotions {
     /// Each corner at the time (s) at which it was last asked for.
-    known: Vec<(f64, Flying)>,
+    known: Vec<(f64, PointMotion)>,
     /// Those of a face.
-    of_face: Vec<Flying>,
+    of_face: Vec<PointMotion>,
 }
 
-impl FlyingCorners {
+impl CornerMotions {
     /// Begins another flight, of a block with so many corners.
     pub(super) fn begin(&mut self, count: usize) {
         self.known.clear();
-        self.known.resize(count, (f64::NAN, Flying::NONE));
+        self.known.resize(count, (f64::NAN, PointMotion::NONE));
     }
 }
 
 impl WindowSearch<'_> {
     /// A vector of the block's frame in that of the terrain, with its first and second rate.
     pub(super) fn turned(&self, own: &Vec3) -> [Vec3; 3] {
-        let Moment { pose, spin, angular, .. } = &self.moment;
+        let FlightState { pose, spin, angular, .. } = &self.state;
         let arm = pose.attitude * own;
         let turning = spin.cross(&arm);
         [arm, turning, angular.cross(&arm) + spin.cross(&turning)]
     }
 
     /// The block's centre.
-    pub(super) fn centre(&self) -> Flying {
-        let (path, Moment { pose, velocity, .. }) = (&self.tumble.path, &self.moment);
+    pub(super) fn centre(&self) -> PointMotion {
+        let (path, FlightState { pose, velocity, .. }) = (&self.flight.path, &self.state);
         let acceleration = Vec3::new(0.0, 0.0, -path.gravity);
         let (p, velocity) = (pose.centre, *velocity);
-        Flying { p, velocity, acceleration, bend: path.gravity, jerk: 0.0 }
+        PointMotion { p, velocity, acceleration, max_acceleration: path.gravity, max_jerk: 0.0 }
     }
 
-    pub(super) fn flying(&mut self, k: usize) -> Flying {
+    pub(super) fn corner_motion(&mut self, k: usize) -> PointMotion {
         let known = self.corners.known[k];
-        if known.0.to_bits() == self.moment.time_s.to_bits() {
+        if known.0.to_bits() == self.state.time_s.to_bits() {
             return known.1;
         }
-        let own = &self.tumble.block.core.corners[k];
+        let own = &self.flight.block.core.corners[k];
         let ([arm, turning, bending], far, centre) = (self.turned(own), own.norm(), self.centre());
-        let flying = Flying {
+        let motion = PointMotion {
             p: centre.p + arm,
             velocity: centre.velocity + turning,
             acceleration: centre.acceleration + bending,
-            bend: centre.bend + far * self.bends.bend,
-            jerk: far * self.bends.jerk,
+            max_acceleration: centre.max_acceleration + far * self.bounds.acceleration,
+            max_jerk: far * self.bounds.jerk,
         };
-        self.corners.known[k] = (self.moment.time_s, flying);
-        flying
+        self.corners.known[k] = (self.state.time_s, motion);
+        motion
     }
 
     /// Whether nothing of the block meets a feature, and what is listed behind it, within `least` (s).
     #[inline]
     fn is_later<T>(&self, ahead: &FeatureAhead<T>, least: f64) -> bool {
-        ahead.from_s >= self.moment.time_s + least
+        ahead.from_s >= self.state.time_s + least
     }
 
     /// A gap that counts as touching (m).
     fn touching(&self) -> f64 {
-        TOUCHING * self.tumble.block.radius_m
+        TOUCHING * self.flight.block.radius_m
     }
 
     /// How long all these corners surely keep off a plane (s), no longer than `most`.
-    fn off_plane(&self, corners: &[Flying], plane: (&Vec3, &Vec3), most: f64) -> f64 {
-        let (ball, touching) = (self.tumble.block.ball_m, self.touching());
+    fn off_plane(&self, corners: &[PointMotion], plane: (&Vec3, &Vec3), most: f64) -> f64 {
+        let (ball, touching) = (self.flight.block.ball_m, self.touching());
         corners.iter().fold(most, |least, corner| {
-            Clearance::of_corner(corner, ball, plane).open_s(touching, least)
+            Clearance::of_corner(corner, ball, plane).open_time_s(touching, least)
         })
     }
 
@@ -108,13 +108,13 @@ impl WindowSearch<'_> {
     fn open_at_least(&self, known_s: f64, gap: Option<Clearance>, most: f64) -> f64 {
         let touching = self.touching();
         // lines and planes may meet where edges and faces do not: that tells nothing
-        let gap = gap.filter(|gap| gap.now_m >= -touching);
-        gap.map_or(known_s, |gap| gap.open_s(touching, most).max(known_s))
+        let gap = gap.filter(|gap| gap.gap_m >= -touching);
+        gap.map_or(known_s, |gap| gap.open_time_s(touching, most).max(known_s))
     }
 
     fn of_corner(&mut self, k: usize, mut least: f64) -> f64 {
-        let corner = self.flying(k);
-        let (ball, touching) = (self.tumble.block.ball_m, self.touching());
+        let corner = self.corner_motion(k);
+        let (ball, touching) = (self.flight.block.ball_m, self.touching());
         for ahead in &self.ahead.triangles {
             if self.is_later(ahead, least) {
                 break;
@@ -134,7 +134,7 @@ impl WindowSearch<'_> {
             // a corner exactly on the triangle has no direction: the plane's normal on its side
             // stands in
             let n = (corner.p - q).try_normalize(0.0).unwrap_or(side);
-            least = Clearance::of_corner(&corner, ball, (&n, &q)).open_s(touching, least);
+            least = Clearance::of_corner(&corner, ball, (&n, &q)).open_time_s(touching, least);
         }
         least
     }
@@ -142,8 +142,8 @@ impl WindowSearch<'_> {
     /// The gap of a point of the mesh from a plane of the block with a normal and a level (m), as far as `most` (s).
     fn to_own_plane(&self, plane: (&Vec3, f64), point: &Vec3, most: f64) -> Clearance {
         let moving = (&self.centre(), |own: &Vec3| self.turned(own));
-        let ball = self.tumble.block.ball_m;
-        Clearance::of_own_plane((plane, ball), point, moving, (&self.bends, most))
+        let ball = self.flight.block.ball_m;
+        Clearance::of_own_plane((plane, ball), point, moving, (&self.bounds, most))
     }
 
     /// How long some corners, with all between them, surely keep off points of the mesh and all between those (s), no longer than `most`:
@@ -155,11 +155,11 @@ impl WindowSearch<'_> {
         (n, points): (&Vec3, &[Vec3]),
         (known_s, most): (f64, f64),
     ) -> f64 {
-        if known_s >= LITTLE * most {
+        if known_s >= SHORT_SHARE * most {
             return known_s;
         }
-        let own = self.moment.pose.attitude.inverse() * n;
-        let corner = |k: u8| &self.tumble.block.core.corners[usize::from(k)];
+        let own = self.state.pose.attitude.inverse() * n;
+        let corner = |k: u8| &self.flight.block.core.corners[usize::from(k)];
         let levels = corners.iter().map(|&k| own.dot(corner(k)));
         let level = levels.fold(f64::NEG_INFINITY, f64::max);
         let found_s = points.iter().fold(most, |least, point| {
@@ -172,12 +172,13 @@ impl WindowSearch<'_> {
     /// `n` keeps both apart, and the ridge stays on its side as long as both its ends do. Nor do the
     /// edges meet before the endless lines along them do.
     fn of_ridge(&mut self, k: usize, mut least: f64) -> f64 {
-        let ends = self.tumble.block.core.ridges[k].ends.map(|end| self.flying(usize::from(end)));
+        let ends =
+            self.flight.block.core.ridges[k].ends.map(|end| self.corner_motion(usize::from(end)));
         let [a, b] = ends;
         let (middle, half) = ((a.p + b.p) * 0.5, 0.5 * (b.p - a.p).norm());
-        let bend = a.bend.max(b.bend);
+        let bend = a.max_acceleration.max(b.max_acceleration);
         let fastest = a.velocity.norm().max(b.velocity.norm());
-        let ball = self.tumble.block.ball_m;
+        let ball = self.flight.block.ball_m;
         let around = half + ball;
         for ahead in &self.ahead.edges {
             if self.is_later(ahead, least) {
@@ -186,19 +187,19 @@ impl WindowSearch<'_> {
             // the edge's distance from the ridge's middle less half a ridge: a lower bound without
             // the nearest points; far away whatever the directions
             let edge = &ahead.feature;
-            let far = (around + least * (fastest + 0.5 * bend * least)) * (1.0 + CAUTION);
+            let far = (around + least * (fastest + 0.5 * bend * least)) * (1.0 + ROUNDING_MARGIN);
             if (middle - edge.nearest_to(&middle)).norm_squared() > far * far {
                 continue;
             }
-            let end = edge.a + edge.way();
+            let end = edge.a + edge.vector();
             let (p, q) = nearest_of_segments((a.p, b.p), (edge.a, end));
             let Some(n) = (p - q).try_normalize(0.0) else { continue };
             let off_plane = self.off_plane(&ends, (&n, &q), least);
             if off_plane < least {
                 let line = (&edge.a, &edge.along);
-                let gap = Clearance::of_lines(&ends, ball, line, (&self.bends, least));
+                let gap = Clearance::of_lines(&ends, ball, line, (&self.bounds, least));
                 let known_s = self.open_at_least(off_plane, gap, least);
-                let own = &self.tumble.block.core.ridges[k].ends;
+                let own = &self.flight.block.core.ridges[k].ends;
                 least = self.off_own_plane(own, (&-n, &[edge.a, end]), (known_s, least));
             }
         }
@@ -210,28 +211,28 @@ impl WindowSearch<'_> {
     fn of_face(&mut self, k: usize, most: f64) -> f64 {
         let mut corners = std::mem::take(&mut self.corners.of_face);
         corners.clear();
-        let face = &self.tumble.block.core.faces[k];
-        corners.extend(face.corners.iter().map(|&k| self.flying(usize::from(k))));
+        let face = &self.flight.block.core.faces[k];
+        corners.extend(face.corners.iter().map(|&k| self.corner_motion(usize::from(k))));
         let least = self.of_fan(face, &corners, most);
         self.corners.of_face = corners;
         least
     }
 
-    fn of_fan(&self, face: &HullFace, corners: &[Flying], mut least: f64) -> f64 {
-        let most = |of: fn(&Flying) -> f64| corners.iter().map(of).fold(0.0, f64::max);
-        let (bend, fastest) = (most(|c| c.bend), most(|c| c.velocity.norm()));
+    fn of_fan(&self, face: &HullFace, corners: &[PointMotion], mut least: f64) -> f64 {
+        let most = |of: fn(&PointMotion) -> f64| corners.iter().map(of).fold(0.0, f64::max);
+        let (bend, fastest) = (most(|c| c.max_acceleration), most(|c| c.velocity.norm()));
         let middle = corners.iter().map(|c| c.p).sum::<Vec3>() / corners.len() as f64;
         let around = corners.iter().map(|c| (c.p - middle).norm_squared()).fold(0.0, f64::max);
-        let skin = self.tumble.block.ball_m + TOUCHING * self.tumble.block.radius_m;
-        let around = around.sqrt() * (1.0 + CAUTION) + skin;
-        for ahead in &self.ahead.peaks {
+        let skin = self.flight.block.ball_m + TOUCHING * self.flight.block.radius_m;
+        let around = around.sqrt() * (1.0 + ROUNDING_MARGIN) + skin;
+        for ahead in &self.ahead.vertices {
             if self.is_later(ahead, least) {
                 break;
             }
             let peak = &ahead.feature;
             // far away: whatever the directions
-            let far = around + least * (fastest + 0.5 * bend * least) * (1.0 + CAUTION);
-            if (peak - middle).norm_squared() * (1.0 - CAUTION) > far * far {
+            let far = around + least * (fastest + 0.5 * bend * least) * (1.0 + ROUNDING_MARGIN);
+            if (peak - middle).norm_squared() * (1.0 - ROUNDING_MARGIN) > far * far {
                 continue;
             }
             let nearest = (1..corners.len() - 1)

@@ -138,22 +138,22 @@ fn a_short_turn_is_the_closed_form() {
     for spin in [[3.0, -4.0, 5.0], [1e-3, 10.0, 1e-3], [0.2, 0.1, -9.0], [7.0, 1e-9, 1e-3]] {
         for inertia in [BOX, [1.0, 40.0, 40.5]] {
             let top = top(inertia, Vec3::from(spin));
-            let short = top.short(top.start, 1e9).unwrap();
+            let series = top.series_at(top.start, 1e9).unwrap();
             for share in [1e-6, 0.1, 0.5, 1.0] {
-                let t = share * short.holds_s;
-                let found = short.attitude(t);
+                let t = share * series.valid_s;
+                let found = series.attitude(t);
                 worst[0] = worst[0].max((found.matrix() - integrated(&top, t, 128)).norm());
-                worst[1] = worst[1].max((found.matrix() - top.late(t).matrix()).norm());
+                worst[1] = worst[1].max((found.matrix() - top.by_closed_form(t).matrix()).norm());
             }
-            assert!(short.holds_s > 0.1 * 0.99 / (41.0 * Vec3::from(spin).norm()));
+            assert!(series.valid_s > 0.1 * 0.99 / (41.0 * Vec3::from(spin).norm()));
         }
     }
     println!("{worst:?}");
     // rounding of 128 steps
     assert!(worst[0] < 3e-14 && worst[1] < 1e-12, "{worst:?}");
     // closed forms without elliptic functions are cheap enough
-    assert!(top([1.0, 1.0, 2.0], Vec3::x()).short(Rotation3::identity(), 1.0).is_none());
-    assert!(top(BOX, Vec3::zeros()).short(Rotation3::identity(), 1.0).is_none());
+    assert!(top([1.0, 1.0, 2.0], Vec3::x()).series_at(Rotation3::identity(), 1.0).is_none());
+    assert!(top(BOX, Vec3::zeros()).series_at(Rotation3::identity(), 1.0).is_none());
 }
 
 /// No point of a body moves on a way that bends more than is said, and about a principal axis exactly so.
@@ -173,8 +173,8 @@ fn bends_bound_the_ways_of_all_points() {
                 *most = most.max(difference.svd(false, false).singular_values.max());
             }
         }
-        let bends = top.bends();
-        let shares = [most[0] / bends.bend, most[1] / bends.jerk];
+        let bounds = top.point_bounds();
+        let shares = [most[0] / bounds.acceleration, most[1] / bounds.jerk];
         let is_steady = start.x.abs() < f64::EPSILON;
         assert!(shares.iter().all(|share| *share <= 1.0 + 1e-5), "{shares:?}");
         let least = if is_steady { [0.999; 2] } else { [0.3, 0.05] };
@@ -189,7 +189,7 @@ fn spin_changes_by_the_angular_acceleration() {
         let (top, h) = (top(BOX, start), 1e-4);
         let spin = |t: f64| top.spin(&top.attitude(t));
         let rate = (spin(t + h) - spin(t - h)) / (2.0 * h);
-        let found = top.angular_rad_s2(&top.attitude(t));
+        let found = top.angular_acceleration_rad_s2(&top.attitude(t));
         assert!((found - rate).norm() < 1e-6 * (1.0 + rate.norm()), "{found} {rate}");
     }
 }

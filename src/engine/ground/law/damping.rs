@@ -17,7 +17,7 @@ const SHEAR_DAMPING_RATIO: f64 = 1.0;
 /// Damping ratio along the surface, at that along the normal. Where little rebounds it is the dashpot that pushes, and with a critical
 /// one along the surface its push would be over before friction has come: at `e = 0.01` half of Coulomb's impulse `min(μ J, 2/7 m u)`
 /// was missing. With equal ratios it is there to 2 %.
-pub(super) fn along_ratio(ratio: f64) -> f64 {
+pub(super) fn shear_ratio_at(ratio: f64) -> f64 {
     ratio.max(SHEAR_DAMPING_RATIO)
 }
 
@@ -49,7 +49,7 @@ fn angle_over_sine(zeta: f64) -> f64 {
 /// that [`restitution`] ends after.
 pub fn tangential_restitution(ratio: f64, damping: &Damping) -> f64 {
     let phase = (Rock::SLIP_LIGHTNESS * ratio).sqrt() * 2.0 * angle_over_sine(damping.ratio);
-    let zeta = along_ratio(damping.ratio);
+    let zeta = shear_ratio_at(damping.ratio);
     let root = (zeta * zeta - 1.0).sqrt();
     if root < 1e-4 {
         return (phase - 1.0) * math::exp(-phase);
@@ -81,14 +81,14 @@ pub struct NormalImpact {
 ///
 /// `x'' = g_n − 2 ζω x' − ω² x` from `x = 0, x' = v` until the force vanishes, then free.
 pub fn normal_impact(v: f64, omega: f64, zeta: f64, g_n: f64) -> NormalImpact {
-    let al = zeta * omega;
-    let wd = omega * (1.0 - zeta * zeta).sqrt();
-    let (x0, b) = (g_n / (omega * omega), (v - al * g_n / (omega * omega)) / wd);
+    let decay = zeta * omega;
+    let omega_d = omega * (1.0 - zeta * zeta).sqrt();
+    let (x0, b) = (g_n / (omega * omega), (v - decay * g_n / (omega * omega)) / omega_d);
     let state = |t: f64| {
-        let (s, c) = math::sin_cos(wd * t);
-        let fade = math::exp(-al * t);
+        let (s, c) = math::sin_cos(omega_d * t);
+        let fade = math::exp(-decay * t);
         let x = x0 + fade * (b * s - x0 * c);
-        let speed = fade * ((b * wd + al * x0) * c + (x0 * wd - al * b) * s);
+        let speed = fade * ((b * omega_d + decay * x0) * c + (x0 * omega_d - decay * b) * s);
         (x, speed)
     };
     // In units of g_n and 1/ω the same swing has its first trough at a known time.
@@ -101,14 +101,14 @@ pub fn normal_impact(v: f64, omega: f64, zeta: f64, g_n: f64) -> NormalImpact {
     let mut t = 0.5 * hi;
     for _ in 0..60 {
         let (x, speed) = state(t);
-        let push = omega * omega * x + 2.0 * al * speed;
-        if push > 0.0 {
+        let force = omega * omega * x + 2.0 * decay * speed;
+        if force > 0.0 {
             lo = t;
         } else {
             hi = t;
         }
-        let slope = omega * omega * speed + 2.0 * al * (g_n - push);
-        let next = t - push / slope;
+        let slope = omega * omega * speed + 2.0 * decay * (g_n - force);
+        let next = t - force / slope;
         let next = if next > lo && next < hi { next } else { 0.5 * (lo + hi) };
         let change = (next - t).abs();
         t = next;
@@ -127,11 +127,11 @@ pub fn normal_impact(v: f64, omega: f64, zeta: f64, g_n: f64) -> NormalImpact {
 /// The force swings around the weight, `F = 1 + A e^(−ζt) cos(ω_d t + φ)`, with `F(0) = 2ζp`, `F'(0) = p + 2ζ(1 − 2ζp)`
 /// at the approach speed `p = v ω/g_n`.
 fn first_trough(p: f64, zeta: f64) -> (f64, f64) {
-    let wd = (1.0 - zeta * zeta).sqrt();
+    let omega_d = (1.0 - zeta * zeta).sqrt();
     let (off, slope) = (2.0 * zeta * p - 1.0, p + 2.0 * zeta * (1.0 - 2.0 * zeta * p));
-    let across = -(slope + zeta * off) / wd;
-    let low = PI - math::atan(zeta / wd);
-    let t = (low - math::atan2(across, off)).rem_euclid(TAU) / wd;
+    let across = -(slope + zeta * off) / omega_d;
+    let low = PI - math::atan(zeta / omega_d);
+    let t = (low - math::atan2(across, off)).rem_euclid(TAU) / omega_d;
     (t, 1.0 + math::hypot(off, across) * math::exp(-zeta * t) * math::cos(low))
 }
 

@@ -13,11 +13,11 @@ use nalgebra::Matrix3;
 use std::ops::Mul;
 
 /// A force below this part of its cap is held (–).
-pub(crate) const INSIDE: f64 = 1.0 - 1e-9;
+pub(crate) const STICK_THRESHOLD: f64 = 1.0 - 1e-9;
 
 /// Shortens `x` to at most `cap`.
 #[inline]
-pub(crate) fn within(x: Vec3, cap: f64) -> Vec3 {
+pub(crate) fn clamp_norm(x: Vec3, cap: f64) -> Vec3 {
     let size2 = x.norm_squared();
     if size2 > cap * cap { x * (cap / size2.sqrt()) } else { x }
 }
@@ -58,40 +58,40 @@ impl FrictionElement {
     /// A force shortened to what the slider bears under a normal force (N).
     #[inline]
     pub(crate) fn capped(&self, force: Vec3, normal_force: f64) -> Vec3 {
-        within(force, self.cap(normal_force))
+        clamp_norm(force, self.cap(normal_force))
     }
 
     /// What the spring holds at a stretch.
     #[inline]
-    pub(crate) fn held<T: Mul<f64, Output = T>>(&self, stretch: T) -> T {
+    pub(crate) fn spring_force<T: Mul<f64, Output = T>>(&self, stretch: T) -> T {
         stretch * self.k
     }
 
     /// What the dashpot adds at a rate.
     #[inline]
-    pub(crate) fn damped<T: Mul<f64, Output = T>>(&self, rate: T) -> T {
+    pub(crate) fn dashpot_force<T: Mul<f64, Output = T>>(&self, rate: T) -> T {
         rate * self.c
     }
 
     /// What a rate adds to a sticking force over a stage of length `h` (s): `k h + c`.
     #[inline]
-    pub(crate) fn over(&self, h: f64) -> f64 {
+    pub(crate) fn stage_stiffness(&self, h: f64) -> f64 {
         self.k * h + self.c
     }
 
     /// What it does where its spring is stretched and stretches on at a rate, the slider bearing so much.
     #[inline]
     pub(crate) fn at_rate(&self, stretch: Vec3, rate: Vec3, cap: f64) -> SliderForce {
-        let held = self.held(stretch);
-        let asked = held + self.damped(rate);
-        let force = within(asked, cap);
-        let stretch_rate = self.relaxing(force, held);
-        SliderForce { force, stretch_rate, asked2: asked.norm_squared() }
+        let held = self.spring_force(stretch);
+        let trial = held + self.dashpot_force(rate);
+        let force = clamp_norm(trial, cap);
+        let stretch_rate = self.stretch_rate(force, held);
+        SliderForce { force, stretch_rate, trial_force2: trial.norm_squared() }
     }
 
     /// Rate at which the spring stretches under `force` where it holds `held`; nothing without a dashpot.
     #[inline]
-    pub(crate) fn relaxing(&self, force: Vec3, held: Vec3) -> Vec3 {
+    pub(crate) fn stretch_rate(&self, force: Vec3, held: Vec3) -> Vec3 {
         if self.c > 0.0 { (force - held) / self.c } else { Vec3::new(0.0, 0.0, 0.0) }
     }
 
@@ -104,7 +104,7 @@ impl FrictionElement {
     /// Stretch after a stage of length `h` from `stretch` under `force`: `ξ' = (h q + c ξ*)/(h k + c)`.
     #[inline]
     pub(crate) fn stretch_after(&self, force: &Vec3, stretch: &Vec3, h: f64) -> Vec3 {
-        (force * h + stretch * self.c) / self.over(h)
+        (force * h + stretch * self.c) / self.stage_stiffness(h)
     }
 
     /// Longest stretch that the slider bears under a normal force (N).
@@ -115,13 +115,13 @@ impl FrictionElement {
     /// Whether a force of a size slides under a normal force (N): at its cap but for rounding.
     #[inline]
     pub(crate) fn slides(&self, size: f64, normal_force: f64) -> bool {
-        size >= self.limit * normal_force * INSIDE
+        size >= self.limit * normal_force * STICK_THRESHOLD
     }
 
     /// The same from the square of the size.
     #[inline]
     pub(crate) fn slides2(&self, size2: f64, normal_force: f64) -> bool {
-        size2 >= (self.limit * normal_force * INSIDE).powi(2)
+        size2 >= (self.limit * normal_force * STICK_THRESHOLD).powi(2)
     }
 
     /// Stiffness, damping and limit in units of another contact.
@@ -136,17 +136,17 @@ impl FrictionElement {
     }
 
     /// The element over a stage of length `h` (s) in the mode in which `force` under a normal force (N) left it.
-    pub(crate) fn left(&self, h: f64, (force, normal_force): (&Vec3, f64)) -> Slider {
+    pub(crate) fn stage_slider(&self, h: f64, (force, normal_force): (&Vec3, f64)) -> Slider {
         Slider {
             limit: self.limit,
-            stiffness: self.over(h),
-            sticks: force.norm() < self.limit * normal_force * INSIDE,
+            stiffness: self.stage_stiffness(h),
+            sticks: force.norm() < self.limit * normal_force * STICK_THRESHOLD,
         }
     }
 
     /// The same in a bond, which never slides.
-    pub(crate) fn bonded(&self, h: f64) -> Slider {
-        Slider { limit: f64::INFINITY, stiffness: self.over(h), sticks: true }
+    pub(crate) fn bonded_slider(&self, h: f64) -> Slider {
+        Slider { limit: f64::INFINITY, stiffness: self.stage_stiffness(h), sticks: true }
     }
 }
 
@@ -158,7 +158,7 @@ pub(crate) struct SliderForce {
     /// Rate of its spring's stretch (m/s, rad/s).
     pub(crate) stretch_rate: Vec3,
     /// Square of the force that there would be without a cap.
-    pub(crate) asked2: f64,
+    pub(crate) trial_force2: f64,
 }
 
 /// A friction element over a stage, and its mode.
@@ -213,19 +213,19 @@ impl FrictionLimits {
     /// An impulse along the surface shortened to what its slider bears.
     #[inline]
     pub(crate) fn shear(&self, impulse: Vec3, normal: f64) -> Vec3 {
-        within(impulse, self.shear * normal)
+        clamp_norm(impulse, self.shear * normal)
     }
 
     /// An impulse of rolling shortened to what its slider bears.
     #[inline]
     pub(crate) fn rolling(&self, impulse: Vec3, normal: f64) -> Vec3 {
-        within(impulse, self.rolling * normal)
+        clamp_norm(impulse, self.rolling * normal)
     }
 
     /// Whether an impulse of a size along the surface slides.
     #[inline]
     pub(crate) fn slides(&self, size: f64, normal: f64) -> bool {
-        size >= self.shear * normal * INSIDE
+        size >= self.shear * normal * STICK_THRESHOLD
     }
 
     /// Whether there is friction along the surface.

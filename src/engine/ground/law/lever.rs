@@ -9,9 +9,9 @@ pub(crate) struct StageCompliance {
     /// Along the normal and along the surface (1/kg): speed over impulse.
     pub(crate) compliance: [f64; 2],
     /// Speed along the normal that is asked for, over the penetration (1/s) …
-    pub(crate) out_per_s: f64,
+    pub(crate) normal_recovery_per_s: f64,
     /// … and against the stretch along the surface, over it (1/s).
-    pub(crate) back_per_s: f64,
+    pub(crate) shear_recovery_per_s: f64,
 }
 
 impl Law {
@@ -19,21 +19,21 @@ impl Law {
     /// mass `mass_kg` does: damping ratios stay.
     #[must_use]
     pub(crate) fn for_masses(&self, [along, across]: [f64; 2], mass_kg: f64) -> Self {
-        let slower = (along / mass_kg).sqrt();
+        let scale = (along / mass_kg).sqrt();
         let mut law = *self;
-        law.c_n *= slower;
-        law.c_n_captured *= slower;
+        law.c_n *= scale;
+        law.c_n_captured *= scale;
         law.shear.c *= (Rock::SLIP_LIGHTNESS * across / mass_kg).sqrt();
-        law.omega /= slower;
+        law.omega /= scale;
         law
     }
 
     /// The law of a contact that moves so much mass along the surface (kg) of all (kg), with the dashpots of an impact at another normal speed (m/s)
     /// than it began with: soil has slowed the rock, or it has met a facet. Springs stay.
-    pub(crate) fn struck_anew(&self, approach_m_s: f64, [across, mass_kg]: [f64; 2]) -> Self {
+    pub(crate) fn for_impact_speed(&self, approach_m_s: f64, [across, mass_kg]: [f64; 2]) -> Self {
         let mut law = *self;
         if let Some(ratio) = law.ratio_at(approach_m_s) {
-            law.damp(ratio);
+            law.set_damping_ratio(ratio);
             law.shear.c *= (Rock::SLIP_LIGHTNESS * across / mass_kg).sqrt();
         }
         law
@@ -41,20 +41,20 @@ impl Law {
 
     /// What an implicit stage of length `h` (s) leaves of a fast motion along the normal (–), of the mass `m_n` that the contact moves:
     /// `1/(1 + h (p_N h + c_N)/m_n)`.
-    pub(crate) fn left_by_stage(&self, captured: bool, h: f64) -> f64 {
+    pub(crate) fn stage_amplification(&self, captured: bool, h: f64) -> f64 {
         let normal = self.normal(captured);
         let per_mass = self.omega * self.omega / normal.p_n;
         1.0 / (1.0 + h * (normal.p_n * h + normal.c_n) * per_mass)
     }
 
     /// Over a stage in which impulses act for `a` and points move for `b` (s): from `F = p pen − (p b + c) u` and `P = a F`.
-    pub(crate) fn over_stage(&self, captured: bool, (a, b): (f64, f64)) -> StageCompliance {
+    pub(crate) fn stage_compliance(&self, captured: bool, (a, b): (f64, f64)) -> StageCompliance {
         let normal = self.normal(captured);
-        let answers = [normal.p_n * b + normal.c_n, self.shear.over(b)];
+        let stiffness = [normal.p_n * b + normal.c_n, self.shear.stage_stiffness(b)];
         StageCompliance {
-            compliance: answers.map(|answer| 1.0 / (a * answer)),
-            out_per_s: normal.p_n / answers[0],
-            back_per_s: self.shear.k / answers[1],
+            compliance: stiffness.map(|k| 1.0 / (a * k)),
+            normal_recovery_per_s: normal.p_n / stiffness[0],
+            shear_recovery_per_s: self.shear.k / stiffness[1],
         }
     }
 }

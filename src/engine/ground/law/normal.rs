@@ -7,12 +7,12 @@
 use super::Law;
 
 /// Stiffness that holds a contact exactly at the surface, over `m/h` (–).
-const HOLD: f64 = 1e7;
+const HOLD_STIFFNESS: f64 = 1e7;
 /// Slowest blow that strikes through a loaded contact (–, relative to the speed that its spring could give). A blow that comes through
 /// a long row of rocks presses its last contacts a little before it is there.
-const STRUCK: f64 = 0.1;
+const STRUCK_SHARE: f64 = 0.1;
 /// Damping ratio that is none (–).
-const ROUNDED: f64 = 1e-9;
+const ROUNDING_RATIO: f64 = 1e-9;
 
 /// Spring and dashpot in force.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,14 +29,14 @@ impl NormalElement {
 
     /// Force at a penetration (m) and a speed apart (m/s) if the contact could pull (N): `p_N x − c_N s`.
     #[inline]
-    pub(crate) fn pull_or_push(&self, penetration: f64, apart_m_s: f64) -> f64 {
+    pub(crate) fn bilateral_force(&self, penetration: f64, apart_m_s: f64) -> f64 {
         self.p_n * penetration - self.c_n * apart_m_s
     }
 
     /// The force (N), ≥ 0.
     #[inline]
     pub(crate) fn force(&self, penetration: f64, apart_m_s: f64) -> f64 {
-        self.pull_or_push(penetration, apart_m_s).max(0.0)
+        self.bilateral_force(penetration, apart_m_s).max(0.0)
     }
 
     /// Force at the end of a stage of length `h` (s), no tension, set-valued where the bodies just do not get in; `vn` is their
@@ -71,7 +71,7 @@ impl NormalElement {
         let speed = (self.p_n * penetration - normal_force) / b;
         if penetration - h * speed < 0.0 {
             // The push is less than spring and dashpot would give: it holds the rock at the surface.
-            let b = HOLD * m / h;
+            let b = HOLD_STIFFNESS * m / h;
             return NormalLine { a: b * penetration / h, b };
         }
         NormalLine { a: self.p_n * penetration, b }
@@ -98,14 +98,14 @@ impl NormalElement {
     /// Whether its dashpot takes anything of the motion of a mass (kg): one for a restitution of 1 holds what its search rounds.
     #[inline]
     pub(crate) fn is_damped(&self, m: f64) -> bool {
-        self.c_n * self.c_n > (2.0 * ROUNDED).powi(2) * self.p_n * m
+        self.c_n * self.c_n > (2.0 * ROUNDING_RATIO).powi(2) * self.p_n * m
     }
 
     /// Power that the dashpot takes at a penetration (m) and a speed apart (m/s), ≥ 0 (W): `c_N s²` while the contact pushes, and all that
     /// its spring gives back, `p_N x s`, where it goes apart faster than spring and dashpot can follow.
     #[inline]
     pub(crate) fn dissipating_w(&self, penetration: f64, apart_m_s: f64) -> f64 {
-        if self.pull_or_push(penetration, apart_m_s) > 0.0 {
+        if self.bilateral_force(penetration, apart_m_s) > 0.0 {
             self.c_n * apart_m_s * apart_m_s
         } else {
             self.p_n * penetration * apart_m_s.max(0.0)
@@ -153,11 +153,11 @@ impl Law {
     /// captured, and not far slower than its spring as it is now could throw what it moves, `F/(m ω)`. Less than that neither opens
     /// a contact that bears a load nor is more than what a light rock trembles with under a heavy one.
     ///
-    /// `v ≥ v_capture` and `m ω v ≥ STRUCK (F − c v)`, with `m ω = p_N/ω`.
+    /// `v ≥ v_capture` and `m ω v ≥ STRUCK_SHARE (F − c v)`, with `m ω = p_N/ω`.
     pub(crate) fn is_struck_through(&self, normal_force: f64, approach_m_s: f64) -> bool {
         let spring_n = normal_force - self.c_n_captured * approach_m_s;
         approach_m_s >= self.capture_m_s
-            && approach_m_s * self.p_n / self.omega >= STRUCK * spring_n
+            && approach_m_s * self.p_n / self.omega >= STRUCK_SHARE * spring_n
     }
 
     /// The normal element of a fixed step of length `dt` (s): without dashpots nothing is captured.
@@ -167,13 +167,13 @@ impl Law {
 
     /// Penetration at which the spring alone holds a force (m).
     #[inline]
-    pub(crate) fn pressed_m(&self, force_n: f64) -> f64 {
+    pub(crate) fn static_penetration_m(&self, force_n: f64) -> f64 {
         force_n / self.p_n
     }
 
     /// Whether a contact that does not push now will not push for `dt` (s): what spring and dashpot would pull with grows as long
     /// as `p_N v_n` outdoes `c_N g`. `weight` is the part of gravity along the normal, ≤ 0 (m/s²).
-    pub(crate) fn lets_go(&self, apart_m_s: f64, weight_m_s2: f64, dt: f64) -> bool {
+    pub(crate) fn stays_open(&self, apart_m_s: f64, weight_m_s2: f64, dt: f64) -> bool {
         let damping = self.c_n.max(self.c_n_captured);
         self.p_n * (apart_m_s + weight_m_s2 * dt) > -damping * weight_m_s2
     }
@@ -193,7 +193,7 @@ impl NormalLine {
 
     /// Force of a bond for a normal speed `vn` without the bond's own effect (m/s); `inv_m` is the reciprocal of the mass it moves (1/kg).
     #[inline]
-    pub(crate) fn pull_or_push(&self, vn: f64, h: f64, inv_m: f64) -> f64 {
+    pub(crate) fn bilateral_force(&self, vn: f64, h: f64, inv_m: f64) -> f64 {
         (self.a - self.b * vn) / (1.0 + self.b * h * inv_m)
     }
 }

@@ -149,7 +149,7 @@ impl GroundContact {
     /// The contact with the mesh as the linear system knows contacts; signs turn, as there forces
     /// act against slip.
     fn spot(&self, radius: f64, stiffness: f64) -> StageContact {
-        let law = Law::stiff(stiffness, self.limits, radius);
+        let law = Law::penalty(stiffness, self.limits, radius);
         StageContact {
             feature: self.feature,
             triangle: self.triangle,
@@ -182,7 +182,7 @@ impl BallContact {
         bodies: [&Body; 2],
         stiffness: f64,
     ) -> PairContact {
-        let law = Law::stiff(stiffness, self.limits, 1.0);
+        let law = Law::penalty(stiffness, self.limits, 1.0);
         PairContact {
             pair_history: self.pair_history,
             ends: self.ends,

@@ -5,16 +5,16 @@
 //! no larger than `L Ω^k` and `Ω^k` (by induction), so the series is cut where `(Ω t)^k` is below rounding: what is left out is known
 //! beforehand, whatever the body.
 
-use super::is_wobbling;
+use super::is_asymmetric;
 use crate::rock::Vec3;
 use nalgebra::{Quaternion, Rotation3, UnitQuaternion};
 
 /// Terms at most.
-const TERMS: usize = 18;
+const MAX_TERMS: usize = 18;
 /// Longest time, as `Ω t` (rad): with it 16 terms are exact to rounding.
-const FAR: f64 = 0.1;
+const MAX_PHASE_RAD: f64 = 0.1;
 /// A term no larger than this is below rounding (–).
-const BELOW_ROUNDING: f64 = 1e-17;
+const SMALLEST_TERM: f64 = 1e-17;
 
 /// `Ω`: no spin of a body with this angular momentum is faster (rad/s).
 fn fastest_spin(inertia: [f64; 3], momentum: &Vec3) -> f64 {
@@ -23,17 +23,17 @@ fn fastest_spin(inertia: [f64; 3], momentum: &Vec3) -> f64 {
 
 /// A free rotation around one moment.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct ShortTurn {
+pub(crate) struct RotationSeries {
     start: Rotation3<f64>,
     /// How long it holds (s).
-    pub(crate) holds_s: f64,
+    pub(crate) valid_s: f64,
     /// Terms of the quaternion from the start's frame, scalar first (1/s^k).
-    terms: [[f64; 4]; TERMS],
+    terms: [[f64; 4]; MAX_TERMS],
     count: usize,
 }
 
-impl ShortTurn {
-    /// Of a body with three unequal moments (kg m²), turned like this, with a world angular momentum (kg m²/s), for up to `asked_s` (s) or as
+impl RotationSeries {
+    /// Of a body with three unequal moments (kg m²), quaternion like this, with a world angular momentum (kg m²/s), for up to `asked_s` (s) or as
     /// far as the series reaches. `None` where the closed form is cheap: two or three equal moments, or no spin.
     pub(crate) fn of(
         inertia: [f64; 3],
@@ -41,48 +41,50 @@ impl ShortTurn {
         momentum: &Vec3,
         asked_s: f64,
     ) -> Option<Self> {
-        if !is_wobbling(inertia) {
+        if !is_asymmetric(inertia) {
             return None;
         }
         let fastest = fastest_spin(inertia, momentum);
-        let holds_s = asked_s.min(FAR / fastest);
+        let valid_s = asked_s.min(MAX_PHASE_RAD / fastest);
         // also where no spin makes the time endless
-        if !(holds_s > 0.0 && fastest > 0.0 && holds_s.is_finite()) {
+        if !(valid_s > 0.0 && fastest > 0.0 && valid_s.is_finite()) {
             return None;
         }
-        let mut turn = Self { start, holds_s, terms: [[0.0; 4]; TERMS], count: 1 };
-        turn.grow(inertia, &start.inverse_transform_vector(momentum), fastest * holds_s);
-        Some(turn)
+        let mut series = Self { start, valid_s, terms: [[0.0; 4]; MAX_TERMS], count: 1 };
+        series.compute_terms(inertia, &start.inverse_transform_vector(momentum), fastest * valid_s);
+        Some(series)
     }
 
-    /// Of a turn for all of `t` (s); `None` also where the series does not reach so far.
-    pub(crate) fn through(
+    /// Of a turn for all of `t` (s); `None` also where the series does not phase so far.
+    pub(crate) fn covering(
         inertia: [f64; 3],
         start: Rotation3<f64>,
         momentum: &Vec3,
         t: f64,
     ) -> Option<Self> {
-        let reaches = t <= FAR / fastest_spin(inertia, momentum);
+        let reaches = t <= MAX_PHASE_RAD / fastest_spin(inertia, momentum);
         reaches.then(|| Self::of(inertia, start, momentum, t)).flatten()
     }
 
-    /// Works out the terms for an angular momentum in the body's frame and times up to `reach` over `Ω`.
-    fn grow(&mut self, inertia: [f64; 3], own: &Vec3, reach: f64) {
-        let mut momenta = [[0.0; 3]; TERMS];
-        let mut spins = [[0.0; 3]; TERMS];
+    /// Works out the terms for an angular momentum in the body's frame and times up to `phase` over `Ω`.
+    fn compute_terms(&mut self, inertia: [f64; 3], own: &Vec3, phase: f64) {
+        let mut momenta = [[0.0; 3]; MAX_TERMS];
+        let mut spins = [[0.0; 3]; MAX_TERMS];
         momenta[0] = [own.x, own.y, own.z];
         let rate = |momentum: [f64; 3]| {
             [momentum[0] / inertia[0], momentum[1] / inertia[1], momentum[2] / inertia[2]]
         };
         spins[0] = rate(momenta[0]);
-        // ℓ × I⁻¹ℓ along each axis: the product of the other two times what their moments differ by
-        let differ = |i: usize, j: usize| (inertia[i] - inertia[j]) / (inertia[i] * inertia[j]);
-        let unlike = [differ(1, 2), differ(2, 0), differ(0, 1)];
+        // ℓ × I⁻¹ℓ along each axis: the product of the other two times what their moments inverse_difference by
+        let inverse_difference =
+            |i: usize, j: usize| (inertia[i] - inertia[j]) / (inertia[i] * inertia[j]);
+        let inverse_differences =
+            [inverse_difference(1, 2), inverse_difference(2, 0), inverse_difference(0, 1)];
         self.terms[0] = [1.0, 0.0, 0.0, 0.0];
-        let mut size = reach;
-        while size > BELOW_ROUNDING && self.count < TERMS {
+        let mut size = phase;
+        while size > SMALLEST_TERM && self.count < MAX_TERMS {
             let k = self.count - 1;
-            let (mut products, mut turned) = ([0.0; 3], [0.0; 4]);
+            let (mut products, mut quaternion) = ([0.0; 3], [0.0; 4]);
             for j in 0..=k {
                 let ([x, y, z], [x1, y1, z1]) = (momenta[j], momenta[k - j]);
                 products[0] += y * z1;
@@ -90,17 +92,18 @@ impl ShortTurn {
                 products[2] += x * y1;
                 let [a, b, c] = spins[k - j];
                 let [s, i, j, k] = self.terms[j];
-                turned[0] -= i * a + j * b + k * c;
-                turned[1] += s * a + j * c - k * b;
-                turned[2] += s * b + k * a - i * c;
-                turned[3] += s * c + i * b - j * a;
+                quaternion[0] -= i * a + j * b + k * c;
+                quaternion[1] += s * a + j * c - k * b;
+                quaternion[2] += s * b + k * a - i * c;
+                quaternion[3] += s * c + i * b - j * a;
             }
             let share = 1.0 / self.count as f64;
-            momenta[self.count] = std::array::from_fn(|i| products[i] * unlike[i] * share);
+            momenta[self.count] =
+                std::array::from_fn(|i| products[i] * inverse_differences[i] * share);
             spins[self.count] = rate(momenta[self.count]);
-            self.terms[self.count] = turned.map(|x| x * (0.5 * share));
+            self.terms[self.count] = quaternion.map(|x| x * (0.5 * share));
             self.count += 1;
-            size *= reach;
+            size *= phase;
         }
     }
 
@@ -114,7 +117,7 @@ impl ShortTurn {
             }
         }
         let [s, i, j, k] = sum;
-        let turned = UnitQuaternion::new_normalize(Quaternion::new(s, i, j, k));
-        self.start * turned.to_rotation_matrix()
+        let quaternion = UnitQuaternion::new_normalize(Quaternion::new(s, i, j, k));
+        self.start * quaternion.to_rotation_matrix()
     }
 }
