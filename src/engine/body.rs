@@ -7,12 +7,12 @@
 
 mod cut;
 mod hull;
-mod made;
+mod primitives;
 mod mesh;
 mod solid;
 
 pub use hull::{Core, HullFace, Ridge, max_corners};
-pub use made::{box_surface, eota, prism_surface, sphere_points};
+pub use primitives::{box_surface, eota, prism_surface, sphere_points};
 pub use mesh::{BadSurface, ThinnedHull};
 pub use solid::{Solid, Surface};
 

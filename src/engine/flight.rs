@@ -1,24 +1,26 @@
-//! Free flight: the exact parabola to the first touch.
+//! Free flight: the exact parabola to the first contact.
 //!
-//! Between touches nothing but gravity acts, so the flight is leapt over: the first time at which the ball meets a
-//! face (a quadratic), an edge or a corner (quartics) is solved for, over the boxes that the parabola crosses.
+//! Between contacts only gravity acts, so a flight needs no time steps: the first time at which the
+//! ball touches a face (a quadratic), an edge or a corner (quartics) is computed over the boxes
+//! that the parabola crosses.
 //!
 //! Why no time step: a rock of 0.3 m at 30 m/s moves by its own radius in 10 ms, so a stepped
 //! flight must either step in milliseconds or tunnel through thin sheets. The roots cost some
-//! microseconds a flight, whatever its length, and the gap at the touch is about 1e-12 m. Air drag
-//! is left out; with it the path would be no polynomial.
+//! microseconds a flight, whatever its length, and the gap at the contact is about 1e-12 m. Air
+//! drag is left out; with it the path would not be a polynomial.
 //!
-//! Search: the boxes of the index in the order in which the ball enters them, each with the window
-//! of time in which it is inside. A touch found cuts all later windows. On 100 000 triangles a
-//! flight of a second sees about 50 nodes, 30 triangles and one or two quartics; twice as many
-//! triangles in the same area cost little more until they become smaller than the rock.
+//! Search: the boxes of the index in the order in which the ball enters them, each with the time
+//! window in which the ball is inside. A contact found shortens all later windows. On 100 000
+//! triangles a flight of a second visits about 50 nodes, 30 triangles and one or two quartics;
+//! twice as many triangles in the same area cost little more until they become smaller than the
+//! rock.
 
 mod edge_windows;
 pub mod block;
 mod roots;
 mod parabola_box;
 pub mod top;
-mod touching;
+mod triangle_impact;
 
 use crate::math;
 use crate::rock::{Motion, Vec3};
@@ -42,12 +44,13 @@ pub struct Parabola {
 }
 
 impl Parabola {
-    /// That of a ball that flies on from a motion.
+    /// The parabola of a ball that continues from a motion.
     pub fn of(from: &Motion, gravity: f64, radius: f64) -> Self {
         Self { start: from.position_m, velocity: from.velocity_m_s, gravity, radius }
     }
 
-    /// The one through two moments between which nothing was touched, bent as its velocity changes.
+    /// The parabola through two states between which nothing was touched, its gravity taken from
+    /// the change of velocity.
     pub fn between(from: &Motion, to: &Motion, radius: f64) -> Self {
         let dt = to.time_s - from.time_s;
         let gravity = ((from.velocity_m_s.z - to.velocity_m_s.z) / dt).max(0.0);
@@ -56,8 +59,7 @@ impl Parabola {
         Self { start: from.position_m, velocity, gravity, radius }
     }
 
-    /// Centre at time `t` (s).
-    /// `c0 + v0 t − g t²/2 ẑ`.
+    /// Centre at time `t` (s): `c0 + v0 t − g t²/2 ẑ`.
     #[inline]
     pub fn centre(&self, t: f64) -> Vec3 {
         let mut c = self.start + self.velocity * t;
@@ -65,8 +67,7 @@ impl Parabola {
         c
     }
 
-    /// Velocity at time `t` (s).
-    /// `v0 − g t ẑ`.
+    /// Velocity at time `t` (s): `v0 − g t ẑ`.
     #[inline]
     pub fn velocity(&self, t: f64) -> Vec3 {
         let mut v = self.velocity;
@@ -74,16 +75,17 @@ impl Parabola {
         v
     }
 
-    /// When, within a span of time (s), the centre is highest over ground that rises below it at `rise_m_s` (m/s): where it climbs as
-    /// fast, or at an end.
+    /// Time within a span (s) at which the centre is highest above ground that rises at `rise_m_s`
+    /// (m/s) below it: where it climbs at that rate, or an end of the span.
     #[inline]
     pub fn highest_over(&self, rise_m_s: f64, [from_s, to_s]: [f64; 2]) -> f64 {
-        // of a NaN (no gravity and no climb) `max` leaves the first end
+        // for NaN (no gravity and no climb) `max` returns the first end
         ((self.velocity.z - rise_m_s) / self.gravity).max(from_s).min(to_s)
     }
 }
 
-/// A time (s) in which what is as fast as `speed` (m/s) surely goes no further than `way` (m), though its weight may speed it up on the way.
+/// Least time (s) to travel the distance `way` (m) from an initial `speed` (m/s), if gravity
+/// accelerates the motion all along.
 pub(crate) fn min_travel_time_s(way: f64, speed: f64, gravity: f64) -> f64 {
     // way ≥ |v| t + g t²/2, solved for t without cancellation
     2.0 * way / (speed + (speed * speed + 2.0 * gravity * way).sqrt())
@@ -92,18 +94,18 @@ pub(crate) fn min_travel_time_s(way: f64, speed: f64, gravity: f64) -> f64 {
 /// How a flight ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum FlightEnd {
-    /// Touches the mesh after so many seconds.
+    /// Touches the mesh after this time (s).
     Touch(f64),
-    /// Has passed the last ground below it after so many seconds and will not touch the mesh again.
+    /// Passes the last ground below it after this time (s) and will not touch the mesh again.
     Leaves(f64),
-    /// Is still flying at the end of the time allowed.
+    /// Is still in flight at the end of the time allowed.
     Flies,
 }
 
 /// Follows the flight for at most `longest_s`; `tested` counts triangles.
 ///
-/// At the touch the distance to the mesh is the radius to about 1e-12 m and falling; a ball that
-/// starts on the mesh and moves into it touches after 0 s, one that moves off does not.
+/// At the contact the distance to the mesh equals the radius to about 1e-12 m and decreases. A ball
+/// that starts on the mesh and moves into it touches after 0 s, one that moves away does not.
 pub fn time_of_impact(
     terrain: &Terrain,
     flight: &Parabola,
@@ -113,10 +115,10 @@ pub fn time_of_impact(
     time_of_impact_without(terrain, flight, longest_s, &[], tested)
 }
 
-/// The same past the stems that are `broken_stems`.
+/// The same without the `broken_stems`.
 ///
-/// A stem that has broken is still in the index: its triangles are skipped one by one, since a rock
-/// breaks few.
+/// A broken stem remains in the index: its triangles are skipped one by one, since a rock breaks
+/// few.
 pub fn time_of_impact_without(
     terrain: &Terrain,
     flight: &Parabola,
@@ -125,8 +127,7 @@ pub fn time_of_impact_without(
     tested: &mut u64,
 ) -> FlightEnd {
     let leaves = leaves_box_after(terrain, flight);
-    // a touch that comes after the ball has left the box cannot be, and one after the time allowed
-    // does not count
+    // no contact after the ball has left the box, or after the time allowed
     let limit = longest_s.min(leaves);
     match first_touch(terrain, flight, limit, (broken_stems, tested)) {
         Some(t) => FlightEnd::Touch(t),
@@ -135,15 +136,16 @@ pub fn time_of_impact_without(
     }
 }
 
-/// Places of a last flight at which is looked whether there is ground below the ball.
+/// Points of the last flight at which the ground below the ball is looked up.
 const GROUND_SAMPLES: u32 = 64;
-/// Halvings of the time between two of them: 2⁻⁴⁰ of a flight is less than its rounding on a map.
+/// Bisections of the time between two of them: 2⁻⁴⁰ of a flight is less than its rounding on a map.
 const BISECTIONS: u32 = 40;
 
-/// When a ball that touches nothing any more, and `leaves` its box, passes the last ground below it (s): the border of the mesh, however it
-/// runs, or the rim of a hole. Further down it would only fall, with a speed that no rock has; and under the slope no rock would fly on.
+/// When a ball that touches nothing any more, and `leaves` its box, passes the last ground below it
+/// (s): the border of the mesh, however it runs, or the rim of a hole. Below that it would only
+/// fall, with a speed that no rock has; and no rock flies on under the slope.
 ///
-/// Asked once in the life of a rock.
+/// Evaluated once per rock.
 fn last_over_ground(terrain: &Terrain, flight: &Parabola, leaves: f64) -> f64 {
     let has_ground = |at: &Vec3| terrain.ground_under(at.x, at.y, at.z).is_some();
     let sample_s = |k: u32| leaves * f64::from(k) / f64::from(GROUND_SAMPLES);
@@ -166,10 +168,11 @@ fn last_over_ground(terrain: &Terrain, flight: &Parabola, leaves: f64) -> f64 {
     }
 }
 
-/// When the ball is outside the mesh's box for good (s): beside it, or below it; without gravity also above it.
+/// When the ball leaves the mesh's box for good (s): sideways, or below it; without gravity also
+/// above it.
 ///
 /// The earliest of the three times: a ball cannot come back through a side it has left (linear),
-/// nor up through the floor (the parabola opens downwards). Above the box it is not outside: it
+/// nor up through the bottom (the parabola opens downwards). Above the box it has not left: it
 /// falls back in.
 fn leaves_box_after(terrain: &Terrain, flight: &Parabola) -> f64 {
     let (lo, hi) = terrain.index.bounds();
@@ -186,8 +189,8 @@ fn leaves_box_after(terrain: &Terrain, flight: &Parabola) -> f64 {
         }
     };
     let leaves_vertically_s = if flight.gravity > 0.0 {
-        // roots of c_z + v_z t − g t²/2 = lo_z − R: the later one is the way down
-        // A ball that never comes up to the floor is below it from the start.
+        // roots of c_z + v_z t − g t²/2 = lo_z − R: the later one is the way down. A ball that
+        // never reaches the floor is below it from the start.
         let floor = quadratic(-0.5 * flight.gravity, v.z, c.z - (lo.z - r));
         floor.map_or(0.0, |(_, last)| last.max(0.0))
     } else {
@@ -198,8 +201,8 @@ fn leaves_box_after(terrain: &Terrain, flight: &Parabola) -> f64 {
 
 /// Time at which the ball first touches the mesh, within `limit` (s).
 ///
-/// Depth first, nearest window first; a box that the ball enters after the best touch so far is not
-/// opened.
+/// Depth first, nearest window first; a box that the ball enters after the earliest contact so far
+/// is not opened.
 fn first_touch(
     terrain: &Terrain,
     flight: &Parabola,
@@ -221,7 +224,7 @@ fn first_touch(
         top -= 1;
         let StackEntry { child, begins_s, ends_s } = stack[top];
         let (from, to) = (f64::from(begins_s), f64::from(ends_s));
-        // windows are rounded outwards, so this never drops a box in which an earlier touch lies
+        // windows are rounded outwards, so this never drops a box that holds an earlier contact
         if from >= best && found {
             continue;
         }
@@ -232,7 +235,7 @@ fn first_touch(
             }
             Child::Leaf(start, count) => {
                 for triangle in start..start + count {
-                    // the window of the box holds for all its triangles: it spares most of their
+                    // the window of the box holds for all its triangles and saves most of their
                     // tests
                     let window = (from, fast_min(to, best));
                     if window.0 > window.1 {
@@ -242,7 +245,7 @@ fn first_touch(
                     if terrain.is_gone(triangle, broken_stems) {
                         continue;
                     }
-                    if let Some(t) = touching::triangle_impact_s(terrain, triangle, flight, window)
+                    if let Some(t) = triangle_impact::first_contact_s(terrain, triangle, flight, window)
                     {
                         best = t;
                         found = true;
@@ -254,8 +257,8 @@ fn first_touch(
     found.then_some(best)
 }
 
-/// A child of a node whose box the ball passes during a window of time (s).
-/// Times in `f32`, as the boxes are; they are only bounds.
+/// A child of a node, with the time window in which the ball passes its box (s). Times in `f32`, as
+/// the boxes are; they are only bounds.
 #[derive(Clone, Copy, Default)]
 struct StackEntry {
     child: u32,
@@ -263,10 +266,11 @@ struct StackEntry {
     ends_s: f32,
 }
 
-/// Puts the children with a window on the stack, the first to be passed on top; returns the stack's new height.
+/// Pushes the children that have a window, the first to be passed on top; returns the new height of
+/// the stack.
 ///
-/// Insertion into the part of the stack above `bottom`: at most four children, so a sort of at most
-/// six comparisons.
+/// Insertion sort of the part of the stack above `bottom`: at most four children, so at most six
+/// comparisons.
 #[inline]
 fn push_children(
     stack: &mut [StackEntry; WAITING],
@@ -292,8 +296,8 @@ fn push_children(
     top
 }
 
-/// The lesser of two numbers, neither of them NaN: one instruction.
-/// `f64::min` must handle NaN and is slower in these loops.
+/// The lesser of two numbers, neither of them NaN: one instruction. `f64::min` must handle NaN and
+/// is slower in these loops.
 #[inline]
 fn fast_min(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }

@@ -1,9 +1,9 @@
 //! Rock number i: drawn from the scene, the seed and i, and put on the terrain.
 
-mod clear;
+mod clearance;
 mod shapes;
 mod sources;
-mod tried;
+mod trial;
 
 use crate::error::{Error, Result};
 use crate::frequency::Frequency;
@@ -12,7 +12,7 @@ use crate::random::{Distribution, Purpose, RandomStream, stream, unit};
 use crate::rock::{Motion, Rock, Vec3};
 use crate::scene::{Area, Corner, GroundTable, Polyline, ReleasePoint, Scene, SourceTable, Zones};
 use crate::terrain::Terrain;
-use clear::{is_in_slope, lifted_clear};
+use clearance::{is_in_slope, lifted_clear};
 use shapes::Shapes;
 pub use shapes::{DrawnShape, check_shapes};
 use std::path::PathBuf;

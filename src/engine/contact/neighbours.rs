@@ -1,20 +1,21 @@
-//! Finding contacts: where a ball touches, the strict local minima of the distance from its centre to the mesh; where it
-//! presses into a fold, patches.
+//! Contact search for a ball: the strict local minima of the distance from its centre to the mesh,
+//! and patches where it presses into a fold.
 //!
-//! Around a place, the features that could touch anywhere within a margin are collected once and asked many times.
-//! A face touches where the centre's foot lies inside it; an edge where the centre stands outside of every face on
-//! it; a vertex where the centre stands behind every edge at it. Flat and hollow edges fail by themselves, from
-//! either side of a sheet, and every contact belongs to one feature. Only where a saddle of the distance is inside the
-//! ball too – a hollow edge that holds the foot of the centre on both its faces, or a vertex among such – can several
-//! minima belong together: then `contact::patch` tells.
+//! The features that may be touched anywhere within a margin of a place are collected once and
+//! queried many times. A face is touched where the centre's foot lies inside it; an edge where the
+//! centre is outside every face at the edge; a vertex where the centre is behind every edge at it.
+//! Flat and concave edges fail these tests from either side of a sheet, and every contact belongs
+//! to one feature. Several minima can belong together only where a saddle of the distance is inside
+//! the ball too. A saddle is a concave edge that holds the foot of the centre on both its faces, or
+//! a vertex among such edges. Then `contact::patch` decides.
 
-mod close;
+mod short_path;
 mod features;
-mod offered;
+mod sharp_features;
 mod pressed;
 mod collect;
 
-pub(crate) use offered::{SharpEdge, SharpVertex};
+pub(crate) use sharp_features::{SharpEdge, SharpVertex};
 
 use super::closest::{Segment, closest_on};
 use super::patch::PatchScratch;
@@ -22,42 +23,46 @@ use super::{ContactPoint, ContactPoints, Feature};
 use crate::contact::FeatureKind;
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
-use close::ShortPath;
+use short_path::ShortPath;
 use features::{NearEdge, NearFace, NearFeatures, NearSaddle, NearVertex};
 pub use pressed::PressedPath;
 
-/// Inclusive tests, relative to the radius (–): a point on a border must not fall between two features.
-/// For a rock of 0.1 m that is 1e-10 m, a thousand times the rounding of coordinates of 1 km.
+/// Slack of the tests, relative to the radius (–): a point on a border must not fall between two
+/// features. For a rock of 0.1 m it is 1e-10 m, a thousand times the rounding of coordinates of 1
+/// km.
 const SLACK: f64 = 1e-9;
-/// Feet closer than this times the radius, with normals within it, are one contact (–). Loose enough for the
-/// rounding of map coordinates, which bends flat edges by 1e-9.
+/// Contacts are the same if their feet are closer than this times the radius and their normals
+/// differ by less than this (–). It is larger than the rounding of map coordinates, which bends
+/// flat edges by 1e-9.
 pub(super) const SAME: f64 = 1e-6;
-/// Cosine of the fold between two sheets from which on a ball can press into both where one of them ends (–): springs give way by
-/// less than a tenth of the radius.
+/// Cosine of the fold between two sheets above which a ball can press into both at the border of
+/// one of them (–): springs are compressed by less than a tenth of the radius.
 const BLUNT_COSINE: f64 = 0.9;
 
-/// The features a rock can touch while its centre stays within a margin of a place.
+/// The features that a rock can touch while its centre stays within a margin of a place.
 #[derive(Debug)]
 pub struct Neighbours {
-    /// Centre around which it was collected (m); infinite before the first look, so that nothing is covered.
+    /// Centre of the collection (m); infinite before the first one, so that no point is covered.
     centre: Vec3,
-    /// How far a rock's centre may be from there (m).
+    /// Largest distance of a rock's centre from there (m).
     margin: f64,
     /// Radius of the rock (m); slacks are relative to it.
     radius: f64,
-    /// Radius, slack and margin together (m): what lies farther from `centre` can touch no rock within the margin.
+    /// Radius, slack and margin together (m): a feature farther from `centre` can touch no rock
+    /// within the margin.
     reach: f64,
-    /// Features that may touch there.
+    /// Features that may be touched within the margin.
     all: NearFeatures,
-    /// Those of them that may touch on a short way, and where that is.
+    /// The subset that may be touched on a short path, and where that path is.
     close: NearFeatures,
     short_path: ShortPath,
-    /// Work space for what is pressed into around saddles.
+    /// Work space for patches around saddles.
     patches: PatchScratch,
-    /// Directions that belong to edges and vertices, one after the other: normals of faces, or edges at a vertex.
-    /// One list for all keeps them side by side in memory, and spares an allocation for each edge.
+    /// Directions that belong to edges and vertices, one after the other: normals of faces, or
+    /// edges at a vertex. One list for all keeps them together in memory and avoids an allocation
+    /// for each edge.
     directions: Vec<Vec3>,
-    /// Stems that have given way: they touch nothing any more.
+    /// Broken stems: their triangles are ignored.
     pub broken_stems: Vec<u32>,
     /// Triangles tested so far.
     pub tested: u64,
@@ -76,7 +81,7 @@ impl Default for Neighbours {
 }
 
 impl Neighbours {
-    /// No features yet and no memory taken: for rocks that are kept by the thousand.
+    /// No features, and no memory allocated: for rocks that are kept by the thousand.
     pub fn empty() -> Self {
         Self {
             centre: Vec3::repeat(f64::INFINITY),
@@ -93,13 +98,13 @@ impl Neighbours {
         }
     }
 
-    /// Forgets the place (before the next rock).
+    /// Invalidates the collection (before the next rock).
     pub fn forget(&mut self) {
         self.centre = Vec3::repeat(f64::INFINITY);
     }
 
-    /// Collects around `centre`, for a rock of `radius`, all that touches within `slack` of it while the centre
-    /// moves up to `margin` (all m).
+    /// Collects, around `centre` and for a rock of `radius`, all features within `slack` of its
+    /// surface while the centre moves up to `margin` (all m).
     pub fn collect(
         &mut self,
         terrain: &Terrain,
@@ -113,7 +118,8 @@ impl Neighbours {
         self.all.clear();
         self.directions.clear();
         self.short_path = ShortPath::NONE;
-        // O(log n + k) in the n triangles of the mesh: the tree is walked once per margin, not once per step
+        // O(log n + k) in the n triangles of the mesh: the tree is traversed once per margin, not
+        // once per step
         terrain.index.near(centre, self.reach, |start, count| {
             for t in start..start + count {
                 self.tested += 1;
@@ -127,31 +133,32 @@ impl Neighbours {
         });
     }
 
-    /// The directions that belong to an edge or a vertex.
+    /// The directions of an edge or a vertex.
     #[inline]
     fn directions_of(&self, (first, end): (u32, u32)) -> &[Vec3] {
         &self.directions[first as usize..end as usize]
     }
 
-    /// Whether what was collected holds for a rock at `centre`.
+    /// Whether the collection is valid for a rock at `centre`.
     #[inline]
     pub fn covers(&self, centre: &Vec3) -> bool {
         (centre - self.centre).norm_squared() <= self.margin * self.margin
     }
 
-    /// How far the centre may still go before it must be collected anew (m).
+    /// How far the centre may still move before a new collection is needed (m).
     #[inline]
     pub fn margin_left_m(&self, centre: &Vec3) -> f64 {
         self.margin - (centre - self.centre).norm()
     }
 
-    /// The one face that can touch within the margin, if nothing else can: a certificate that geometry is a plane there.
+    /// The only face that can be touched within the margin, if there is nothing else: a certificate
+    /// that the geometry is a plane there.
     #[inline]
     pub fn plane(&self) -> Option<u32> {
         let NearFeatures { faces, edges, vertices, saddles, .. } = &self.all;
         match &faces[..] {
-            // a plane of several triangles has several faces here, and no certificate: that is
-            // asked of `meets_only_plane`
+            // a plane of several triangles has several faces here and gets no certificate;
+            // `meets_only_plane` handles it
             [face] if edges.is_empty() && vertices.is_empty() && saddles.is_empty() => {
                 Some(face.id)
             }
@@ -159,8 +166,9 @@ impl Neighbours {
         }
     }
 
-    /// The touches of a rock at `centre` that are nearer than `reach` (m), in fixed order: faces, edges, corners; where a
-    /// saddle is inside the ball, the patches that it presses into after those that it does not reach yet.
+    /// The contacts of a rock at `centre` that are nearer than `reach` (m), in fixed order: faces,
+    /// edges, vertices. If a saddle is inside the ball, the patches it presses into follow those
+    /// contacts that it does not reach yet.
     #[inline]
     pub fn touches(
         &mut self,
@@ -172,7 +180,8 @@ impl Neighbours {
         touches.clear();
         self.patches.clear();
         let near = self.candidates((centre, reach));
-        // faces before edges before vertices: on a flat mesh the same point is found on several, and the face keeps it
+        // faces before edges before vertices: on a flat mesh the same point is found on several
+        // features, and the face keeps it
         for face in &near.faces {
             if let Some(height) = self.face_height(face, centre, reach) {
                 self.add_unless_known(face.touch(height), centre, touches);
@@ -193,17 +202,18 @@ impl Neighbours {
         }
     }
 
-    /// Whether the foot of `centre` is still on `face`, one of those collected.
+    /// Whether the foot of `centre` is on `face`, one of those collected.
     #[inline]
     pub fn is_foot_on(&self, face: u32, centre: &Vec3) -> bool {
         let slack = SLACK * self.radius;
         self.all.faces.iter().any(|own| own.id == face && own.holds_foot_of(centre, slack))
     }
 
-    /// Whether a rock at `centre` comes nearer than `reach` (m) to nothing but `face`, or a sheet that lies on it.
+    /// Whether a rock at `centre` is nearer than `reach` (m) to nothing but `face`, or a sheet that
+    /// lies on it.
     ///
     /// Cheapest tests first: heights over faces need three products, borders a search through all
-    /// triangles near.
+    /// near triangles.
     #[inline]
     pub fn is_only_contact(
         &self,
@@ -225,8 +235,9 @@ impl Neighbours {
                 .all(|vertex| self.vertex_contact(terrain, vertex, centre, reach).is_none())
     }
 
-    /// Whether another face lies in the plane of `face` with the foot of `centre` well inside of it: a second sheet there, which is
-    /// one contact with the first. Both are not told apart by a seam, where a rock rolls from one to the other.
+    /// Whether another face lies in the plane of `face` and holds the foot of `centre` well inside:
+    /// a second sheet, whose contact is the same as that of the first. A seam is no such case:
+    /// there the rock rolls from one face to the other.
     #[cold]
     fn is_duplicate_sheet(&self, face: u32, other: &NearFace, centre: &Vec3) -> bool {
         let own = self.all.faces.iter().find(|own| own.id == face);
@@ -234,7 +245,8 @@ impl Neighbours {
             && other.holds_foot_of(centre, -SLACK * self.radius)
     }
 
-    /// Height over a face (m), if it is nearer than `reach` and has the foot of `centre` on it.
+    /// Height over a face (m), if it is smaller than `reach` and the foot of `centre` is on the
+    /// face.
     #[inline]
     fn face_height(&self, face: &NearFace, centre: &Vec3, reach: f64) -> Option<f64> {
         let height = face.n.dot(&(centre - face.a));
@@ -258,7 +270,7 @@ impl Neighbours {
         if s < -slack || s > length + slack {
             return None;
         }
-        // the nearest point of the edge: its line's, held between its ends
+        // the nearest point of the edge: that of its line, clamped to its ends
         let off = to - along * s.clamp(0.0, length);
         let distance2 = off.norm_squared();
         if distance2 >= reach * reach {
@@ -266,7 +278,8 @@ impl Neighbours {
         }
         let distance = distance2.sqrt();
         let directions = self.directions_of(edge.directions);
-        // the centre must stand outside of every face on the edge: else its nearest point lies on that face
+        // the centre must be outside every face at the edge: otherwise the nearest point lies on
+        // that face
         if distance <= slack || directions.iter().any(|out| out.dot(&off) < -SLACK * distance) {
             return None;
         }
@@ -305,12 +318,14 @@ impl Neighbours {
         Some(ContactPoint::single(feature, vertex.triangle, &off, distance))
     }
 
-    /// Whether another triangle runs through the `nearest` point of a border edge or corner and comes nearer to the centre: then
-    /// it lies on the inside of a sheet (a T-junction, a seam) and touches nothing by itself.
+    /// Whether another triangle passes through the `nearest` point of a border edge or vertex and
+    /// is nearer to the centre. Then the border lies inside a sheet (a T-junction, a seam) and is
+    /// no contact of its own.
     ///
-    /// Not where the two sheets part bluntly there: the ball presses into both at once, each with its spring, until the foot
-    /// on one of them comes to its border; were that covered, all that its spring holds would vanish at a stroke. Sheets that go
-    /// on in one plane are one contact all along, and of a sharp fold the border is out of reach by then.
+    /// Not at a blunt fold between the two sheets: the ball presses into both at once, each with
+    /// its own spring, until the foot on one of them reaches its border. If that border were
+    /// covered, the energy of its spring would vanish at once. Coplanar sheets are one contact
+    /// throughout, and at a sharp fold the border is already out of reach.
     pub(crate) fn is_covered(
         &self,
         terrain: &Terrain,
@@ -332,7 +347,7 @@ impl Neighbours {
         others.clone().filter(is_own).all(continues)
     }
 
-    /// Adds a touch unless the same point was found on a lower feature before.
+    /// Adds a contact unless the same point was found on a lower feature before.
     #[inline]
     fn add_unless_known(&self, touch: ContactPoint, centre: &Vec3, touches: &mut ContactPoints) {
         if touches.is_empty() {
@@ -351,7 +366,7 @@ impl Neighbours {
     }
 }
 
-/// Whether two triangles through one point are neither of one plane nor sharply folded against each other.
+/// Whether two triangles through one point are neither coplanar nor sharply folded.
 fn is_blunt_fold(terrain: &Terrain, first: u32, second: u32) -> bool {
     let [first, second] = [first, second].map(|t| terrain.face(t).n);
     let misaligned2 = (first - second).norm_squared().min((first + second).norm_squared());

@@ -1,31 +1,34 @@
-//! Patches: where a ball presses into the mesh, every connected part of the mesh inside it is one contact.
+//! Contact patches: each connected part of the mesh inside a ball is one contact.
 //!
-//! The elastic energy of a ball of radius `R` with centre `c` on a mesh `K` counts every connected part once,
+//! The elastic energy of a ball of radius `R` with centre `c` on a mesh `K` counts every connected
+//! part once,
 //!
 //! ```text
 //! U(c) = p_N ∫₀ᴿ χ(K ∩ B(c, r)) (R − r) dr = p_N/2 Σ_σ w(σ) max(0, R − dist(c, σ))²
 //! w(triangle) = 1,   w(edge) = 1 − its triangles,   w(vertex) = 1 − Σ w of the triangles and edges that hold it
 //! ```
 //!
-//! with χ the Euler characteristic and the sum over all triangles, edges and vertices. Distances to convex sets are
-//! continuously differentiable, so energy and force are continuous whatever the triangulation. Where the ball only touches,
-//! and at ridges and apexes, a patch is the single nearest point of the paper's sphere–plane and sphere–edge contacts.
+//! with χ the Euler characteristic and the sum over all triangles, edges and vertices. Distances to
+//! convex sets are continuously differentiable, so energy and force are continuous for every
+//! triangulation. Where the ball just touches, and at ridges and apexes, a patch is the single
+//! nearest point of the paper's sphere–plane and sphere–edge contacts.
 //!
-//! A patch acts like one point contact: with `p = √(2U/p_N)`, `a = −∇p` and `n̂ = a/|a|`, its force `p_N p a` is that of a
-//! spring of stiffness `p_N |a|²` pressed in by `p/|a|` along `n̂`, with the same energy.
+//! A patch is equivalent to one point contact: with `p = √(2U/p_N)`, `a = −∇p` and `n̂ = a/|a|`,
+//! its force `p_N p a` is that of a spring of stiffness `p_N |a|²` pressed in by `p/|a|` along
+//! `n̂`, with the same energy.
 //!
 //! Why not one spring per nearest point: where the foot of the centre crosses a seam between two
-//! blunt faces, one nearest point vanishes with whatever penetration it has, and its energy with
-//! it. On a fold of 0.02 rad a rock left with 0.6 to 1.9 times the energy it came with, depending
-//! on where it landed. With the sum above it leaves with 1.00000.
+//! blunt faces, one nearest point vanishes with its whole penetration, and its energy is lost. On a
+//! fold of 0.02 rad a rock left with 0.6 to 1.9 times the energy it came with, depending on where
+//! it landed. With the sum above it leaves with 1.00000.
 //!
 //! Checks by hand. Coplanar triangles: all but one cancel, `U = p_N pen²/2`. Ridge: `+1 +1 −1` at
-//! one point. Apex of three faces: `3 − 3 + 1`. Sharp valley, its fold out of reach: two contacts.
-//! Blunt valley: `pen_A² + pen_B² − pen_fold²`.
+//! one point. Apex of three faces: `3 − 3 + 1`. Sharp valley with its fold out of reach: two
+//! contacts. Blunt valley: `pen_A² + pen_B² − pen_fold²`.
 //!
 //! Cost: O(k log k) in the k triangles inside the ball, from the sort that brings the copies of an
 //! edge together. It is paid only where a saddle of the distance may be inside the ball
-//! (`has_saddle`); most steps never come here.
+//! (`has_saddle`); most steps need no patches.
 
 use super::closest::{TrianglePart, closest_part};
 use super::{ContactPoint, Feature, FeatureKind, PatchSums};
@@ -33,13 +36,14 @@ use crate::rock::Vec3;
 use crate::terrain::Terrain;
 use crate::terrain::edges::ends;
 
-/// One triangle inside the ball, and the sums of the patch that it stands for.
+/// One triangle inside the ball. Triangles of one patch form a tree (union–find); its root has the
+/// sums of the patch.
 #[derive(Debug, Clone, Copy)]
 struct PressedTriangle {
     triangle: u32,
-    /// Another one of the same patch, or itself.
+    /// Another triangle of the same patch, or itself at the root.
     parent: u32,
-    /// What the whole patch presses, once its parts are joined: kept at the root.
+    /// Sums of the whole patch, once its parts are joined: kept at the root.
     sums: PatchSums,
     /// Nearest point of the patch.
     nearest: ContactPoint,
@@ -48,23 +52,23 @@ struct PressedTriangle {
 /// An edge or a vertex inside the ball, once for every triangle on it.
 #[derive(Debug, Clone, Copy)]
 struct SharedFeature {
-    /// Edges by the numbers of their ends, then vertices by theirs.
+    /// Edges by the numbers of their ends, then vertices by their own number.
     ///
-    /// Sorting by it brings the copies of one edge or vertex side by side, in an order that no
-    /// thread or hash decides.
+    /// Sorting by the key brings the copies of one edge or vertex together, in an order that
+    /// depends on no thread or hash.
     key: u64,
-    /// Which triangle of the list it was met on.
+    /// Index of its triangle in the list of pressed triangles.
     index: u32,
-    /// Of an edge, a side on it.
-    /// Three times the triangle plus 0, 1 or 2.
+    /// For an edge, one of its sides: three times the triangle plus 0, 1 or 2.
     side: u32,
-    /// From the centre to its nearest point (m), and the unit vector from there to the centre.
+    /// Distance from the centre to its nearest point (m), and the unit vector from there to the
+    /// centre.
     distance_m: f64,
     normal: Vec3,
 }
 
-/// There are fewer than 2³¹ vertices.
-/// An edge's key, two numbers below 2³¹ side by side, stays under this bit; a vertex has it set.
+/// Bit that marks the key of a vertex. There are fewer than 2³¹ vertices, so the key of an edge,
+/// two vertex numbers side by side, never sets it.
 const VERTEX: u64 = 1 << 63;
 
 /// Work space.
@@ -75,13 +79,14 @@ pub(super) struct PatchScratch {
 }
 
 impl PatchScratch {
-    /// With room for what is usually pressed.
+    /// With capacity for the usual number of triangles.
     pub(super) fn with_room() -> Self {
         Self { pressed: Vec::with_capacity(128), shared: Vec::with_capacity(1024) }
     }
 
-    /// Finds the patches of a ball of `radius` (m) at `centre` among `sheets`, all triangles near it, and hands each to
-    /// `found`, in the order of their first triangles: the point contact that acts like it, and its nearest point.
+    /// Finds the patches of a ball of `radius` (m) at `centre` among `sheets`, all triangles near
+    /// it. Calls `found` for each, in the order of their first triangles, with the equivalent point
+    /// contact and the patch's nearest point.
     pub(super) fn find(
         &mut self,
         terrain: &Terrain,
@@ -98,7 +103,7 @@ impl PatchScratch {
         self.shared.sort_unstable_by_key(|shared| (shared.key, shared.index));
         self.add_shared_features(terrain, radius);
         for k in 0..self.pressed.len() {
-            // only roots of the union–find stand for a patch
+            // only roots of the union–find represent a patch
             let patch = &self.pressed[k];
             if patch.parent as usize == k
                 && let Some(touch) = patch.sums.equivalent_contact(&patch.nearest, radius)
@@ -108,13 +113,13 @@ impl PatchScratch {
         }
     }
 
-    /// Forgets what was found last.
+    /// Removes the patches found last.
     pub(super) fn clear(&mut self) {
         self.pressed.clear();
     }
 
-    /// The nearest feature of the patch that holds `feature`, of those found last.
-    /// Tells which patch a lost contact has merged into, so that its springs find an heir.
+    /// The nearest feature of the patch, among those found last, that contains `feature`: the patch
+    /// into which a lost contact has merged, so that its springs can be passed on.
     pub(super) fn holding(&self, terrain: &Terrain, feature: Feature) -> Option<Feature> {
         let has = |pressed: &PressedTriangle| feature.belongs_to(terrain, pressed.triangle);
         let mut index = self.pressed.iter().position(has)?;
@@ -124,10 +129,10 @@ impl PatchScratch {
         Some(self.pressed[index].nearest.feature)
     }
 
-    /// Notes a triangle that is inside the ball, and those of its sides and corners that are.
+    /// Adds a triangle that is inside the ball, and those of its sides and corners that are.
     ///
-    /// Distances to convex sets, so each term `max(0, R − dist)²` is once continuously
-    /// differentiable in the centre.
+    /// Distances to convex sets make each term `max(0, R − dist)²` continuously differentiable in
+    /// the centre.
     fn add_triangle(&mut self, terrain: &Terrain, t: u32, (centre, radius): (&Vec3, f64)) {
         let face = terrain.face(t);
         // |height| is a lower bound of the distance to the triangle: most are rejected by one
@@ -162,9 +167,9 @@ impl PatchScratch {
         let nearest = ContactPoint { feature, triangle: t, normal, distance_m, gain2: 1.0 };
         let sums = PatchSums::of(&nearest, radius);
         self.pressed.push(PressedTriangle { triangle: t, parent: index, sums, nearest });
-        // Every side and corner inside the ball is put down once for each of its triangles: that is
-        // what joins triangles to patches. An edge inside the ball has all its triangles inside it
-        // too, as none is farther than its edge: no copy is missing.
+        // Every side and corner inside the ball is stored once for each of its triangles; this
+        // joins triangles into patches. No copy is missing: if an edge is inside the ball, so are
+        // all its triangles, as none is farther away than its edge.
         for k in 0..3 {
             let (a, b) = (corners[k], corners[(k + 1) % 3]);
             let side = b - a;
@@ -195,11 +200,11 @@ impl PatchScratch {
         }
     }
 
-    /// Adds every edge and vertex once to its patch, and joins the triangles that meet there.
+    /// Adds every edge and vertex once to its patch, and joins the triangles that share it.
     ///
     /// `w(edge) = 1 − its triangles` is −1 for an ordinary edge, 0 at a border, −2 where three
-    /// sheets meet. That of a vertex is known from the terrain: it takes all triangles and edges
-    /// around it, and all of those are inside the ball if it is.
+    /// sheets meet. The weight of a vertex is stored with the terrain: it involves all triangles
+    /// and edges around the vertex, and all of them are inside the ball if the vertex is.
     fn add_shared_features(&mut self, terrain: &Terrain, radius: f64) {
         let mut start = 0;
         while start < self.shared.len() {
@@ -214,7 +219,7 @@ impl PatchScratch {
             } else {
                 f64::from(features.vertex_weight[(first.key - VERTEX) as usize])
             };
-            // the copies differ by rounding at most; the first stands for all
+            // the copies differ by rounding at most; the first is used for all
             let penetration = radius - first.distance_m;
             let root = self.root(first.index);
             let sums = &mut self.pressed[root as usize].sums;
@@ -224,7 +229,7 @@ impl PatchScratch {
         }
     }
 
-    /// Root of a patch, halving the path on the way (Tarjan): nearly O(1) a call.
+    /// Root of a patch, with path halving (Tarjan): nearly O(1) a call.
     fn root(&mut self, mut index: u32) -> u32 {
         while self.pressed[index as usize].parent != index {
             let up = self.pressed[index as usize].parent;
@@ -234,7 +239,7 @@ impl PatchScratch {
         index
     }
 
-    /// Joins two patches; the one with the smaller number stays, so the outcome does not depend on
+    /// Joins two patches. The root with the smaller number stays, so the result does not depend on
     /// the order of joins.
     fn unite(&mut self, first: u32, second: u32) {
         let (first, second) = (self.root(first), self.root(second));

@@ -1,4 +1,4 @@
-//! Pairs of an edge or a face of the block with an edge or a vertex of the mesh.
+//! Contacts of an edge or a face of the block with an edge or a vertex of the mesh.
 
 use super::lines::{crossing, foot_or_end, nearest_at_ends};
 use super::{BlockContactPoint, DIRECTION_SLACK, PosedBlock};
@@ -10,7 +10,8 @@ use crate::rock::Vec3;
 use crate::terrain::Terrain;
 
 impl PosedBlock<'_> {
-    /// The block's edges that cross an edge of the mesh: those held, or all others.
+    /// Adds the contacts of the block's edges with one edge of the mesh: those of the active pairs,
+    /// or of all other pairs.
     pub(super) fn add_edge_contacts(
         &self,
         (near, terrain): (&Neighbours, &Terrain),
@@ -56,7 +57,8 @@ impl PosedBlock<'_> {
         }
     }
 
-    /// Where an edge of the block and one of the mesh are nearest, a point on each, and whether that is past an end, where only one held still is.
+    /// Nearest points of an edge of the block and one of the mesh, and whether they lie past an
+    /// end. Past an end only an active pair remains in contact.
     fn nearest_of(
         &self,
         ridge: &Ridge,
@@ -76,7 +78,8 @@ impl PosedBlock<'_> {
         })
     }
 
-    /// The block's edges and faces over a vertex of the mesh: those held, or all others.
+    /// Adds the contacts of the block's edges and faces with one vertex of the mesh: those of the
+    /// active pairs, or of all other pairs.
     pub(super) fn add_vertex_contacts(
         &self,
         on: (&Neighbours, &Terrain),
@@ -111,18 +114,20 @@ impl PosedBlock<'_> {
                 && is_extreme_and_uncovered(on, vertex, (&normal, other), (&p, distance))
             {
                 let touch = contact_point(vertex.feature, vertex.triangle, (normal, distance));
-                // where one of its edges is nearer, that goes on for it
+                // if one of the vertex's edges is nearer, the contact continues there
                 let is_past_end = is_beside || !vertex.is_extreme_along(&normal, DIRECTION_SLACK);
                 self.add((part, &p), (&touch, is_past_end), found);
             }
         }
-        // a face that lies on a straight edge is held where its own edges cross that edge, however many vertices divide it
+        // a face that lies on a straight edge touches it where the face's own edges cross it,
+        // however many vertices divide that edge
         if !vertex.divides_straight_edge(DIRECTION_SLACK) {
             self.add_face_contacts(on, vertex, (reach, is_active_pass), found);
         }
     }
 
-    /// The block's faces over a vertex of the mesh: those held, or all others.
+    /// Adds the contacts of the block's faces with one vertex of the mesh: those of the active
+    /// pairs, or of all other pairs.
     fn add_face_contacts(
         &self,
         on: (&Neighbours, &Terrain),
@@ -164,7 +169,8 @@ impl PosedBlock<'_> {
     }
 }
 
-/// Whether a vertex stands out of the mesh along a normal, within a slack (–), and no other sheet lies between it and the block at `p`.
+/// Whether a vertex is the extreme point of its edges along a normal, within a slack (–), and no
+/// other sheet lies between it and the block at `p`.
 fn is_extreme_and_uncovered(
     (near, terrain): (&Neighbours, &Terrain),
     vertex: &SharpVertex,

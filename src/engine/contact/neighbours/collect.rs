@@ -1,9 +1,9 @@
-//! What of a triangle can touch a rock whose centre stays within a margin.
+//! Which features of a triangle can touch a rock whose centre stays within a margin.
 //!
-//! Every test here bounds what the centre may do within the margin, so it may take too much and
-//! never too little: what it leaves out cannot be touched from any place within the margin, and the
-//! tests of each place (`touches`) are made on what is left. On a slope of triangles as large as
-//! the rock that is some ten triangles, and of their edges and vertices hardly any.
+//! Every test bounds what the centre may do within the margin, so it may keep too much but never
+//! too little. A feature left out cannot be touched from any place within the margin; the tests at
+//! each position (`touches`) act on the rest. On a slope of triangles as large as the rock these
+//! are some ten triangles, and hardly any of their edges and vertices.
 
 use super::features::may_touch_edge;
 use super::{NearEdge, NearFace, NearSaddle, NearVertex, Neighbours, SLACK};
@@ -13,17 +13,19 @@ use crate::terrain::Terrain;
 use crate::terrain::faces::Face;
 use crate::terrain::seen::Seen;
 
-/// What stands out on one side of a triangle is not touched from further than this on the other (–, relative to the
-/// distance): edges turn by 1e-6 at least before they are said to stand out, and tests have a slack of 1e-9.
+/// A feature that is convex on one side of a triangle is touched from no farther than this on the
+/// other (–, relative to the distance): edges turn by 1e-6 at least before they count as convex,
+/// and tests have a slack of 1e-9.
 const OTHER_SIDE: f64 = 0.01;
-/// Rounding of the sine of a brim's steepest direction (–).
+/// Rounding of the sine of the steepest direction in a normal cone (–).
 const SINE_SLACK: f32 = 1e-3;
 
 impl Neighbours {
-    /// Takes of one triangle what may touch; the centre is `to` from its first corner and `height` over its plane (m).
+    /// Collects the features of one triangle that may be touched. The centre is `to` from its first
+    /// corner and `height` over its plane (m).
     ///
-    /// `height` is signed along the triangle's normal; `to` is `c − a`. Nothing is taken twice:
-    /// each edge and vertex has one owner.
+    /// `height` is signed along the triangle's normal; `to` is `c − a`. Nothing is collected twice:
+    /// each edge and vertex belongs to one triangle.
     pub(super) fn collect_triangle(
         &mut self,
         terrain: &Terrain,
@@ -31,23 +33,23 @@ impl Neighbours {
         (to, height): (Vec3, f64),
     ) {
         self.all.sheets.push(t);
-        // how far the foot of the centre may come while the centre moves within the margin
+        // how far the foot of the centre may move while the centre moves within the margin
         let near = self.margin + SLACK * self.radius;
         let brim = &terrain.features.brims[t as usize];
         self.collect_saddle_vertices(terrain, t, brim.vertices);
         let (front, back) = ((brim.front, brim.least_front), (brim.back, brim.least_back));
         let far = [self.reach, self.reach - self.margin];
         let (owned, beside) = self.touchable_from_side(([front, back], brim.anywhere), height, far);
-        // the cone in which an edge is hollow is the opposite of that in which it stands out
+        // the cone in which an edge is concave is the opposite of that in which it is convex
         let concave_lists = [(back.0 & 7, back.1), (front.0 & 7, front.1)];
         let far = [self.radius + self.margin, self.radius];
         let (concave, beside_concave) =
             self.touchable_from_side((concave_lists, brim.anywhere & 7), height, far);
         let beside = beside.max(beside_concave).max(near);
-        // `beside` is the farthest beside the triangle at which any of its parts can be touched:
-        // beyond it nothing of it is
+        // `beside` is the farthest distance beside the triangle from which any of its parts can be
+        // touched
         let Some(seen) = Seen::of(face, to, (height, beside)) else { return };
-        // a face is touched only where the foot lies inside it
+        // a face is touched only if the foot lies inside it
         if seen.is_within(near) {
             self.collect_face(t, face);
         }
@@ -64,8 +66,9 @@ impl Neighbours {
         }
     }
 
-    /// Unit vectors out of the face across its three sides, `side × n`, and what `out · x` is on
-    /// each side: the test of a foot is then three scalar products and three comparisons.
+    /// Stores a face with the unit vectors outwards across its three sides, `side × n`, and the
+    /// value of `out · x` on each side: the test of a foot then takes three scalar products and
+    /// three comparisons.
     fn collect_face(&mut self, t: u32, face: &Face) {
         let corners = [face.a, face.a + face.e1, face.a + face.e2];
         // counter-clockwise as seen against the normal: a→b, b→c, c→a
@@ -75,11 +78,13 @@ impl Neighbours {
         self.all.faces.push(NearFace { id: t, a: face.a, n: face.n, out, rim });
     }
 
-    /// Those of the edges and corners on a triangle's brim that can be touched, or are concave, on the side on which the centre is, of those in
-    /// front of it, behind it and anywhere, and how far beside the triangle it can be then (m): `far` from them as it is, and less the margin.
+    /// Those edges and corners of a triangle that can be touched, or are concave, as seen from the
+    /// centre's side: bits of the features in front of it, behind it, and on any side. With them
+    /// the largest distance of the centre beside the triangle (m); `far` is the largest distance
+    /// from the features with and without the margin.
     ///
-    /// A normal cone that leans by no more than an angle with the cosine `steepest` is touched only
-    /// from within `far √(1 − steepest²)` beside the triangle.
+    /// A normal cone that is inclined by at most an angle with the cosine `steepest` is touched
+    /// only from within `far √(1 − steepest²)` beside the triangle.
     #[inline]
     fn touchable_from_side(
         &self,
@@ -102,10 +107,11 @@ impl Neighbours {
         (seen, self.margin + far[1] * f64::from(aside))
     }
 
-    /// Takes an edge that the ball can press into from its hollow side; `face` is the first triangle on it.
+    /// Collects an edge that the ball can press into from its concave side; `face` is the first
+    /// triangle at the edge.
     ///
-    /// Two faces hold the foot of the centre at once only if the centre stands inside of both
-    /// outward planes of the edge: the opposite of the condition under which an edge is touched.
+    /// Two faces hold the foot of the centre at once only if the centre is inside both outward
+    /// planes of the edge: the opposite of the condition under which the edge is touched.
     fn collect_concave_edge(&mut self, terrain: &Terrain, (edge, face): (u32, &Face)) {
         let edges = &terrain.features.edges;
         if edges.is_border(edge) {
@@ -114,13 +120,13 @@ impl Neighbours {
         let ends_m = terrain.mesh().ends_m(edge);
         let line = Segment::between(ends_m);
         let to = self.centre - line.a;
-        // distance of the centre from the edge, its ends included: a ball that does not reach it
-        // has no saddle there
+        // distance of the centre from the edge, its ends included: a ball that does not reach the
+        // edge has no saddle there
         let off = to - line.along * line.along.dot(&to).clamp(0.0, line.length);
         if off.norm() > self.radius + self.margin {
             return;
         }
-        // an edge of three sheets and more has no simple condition: it is kept whatever the
+        // an edge of three or more sheets has no simple condition: it is kept whatever the
         // directions
         let other = edges.pair_on(edge).map(|[_, other]| terrain.face(other));
         let faces = other.iter().flat_map(|other| [face, other]);
@@ -131,7 +137,7 @@ impl Neighbours {
         }
     }
 
-    /// Keeps the directions that belong to an edge or a vertex; none if one of them `rules_out` that it can be touched.
+    /// Stores the directions of an edge or a vertex; none if one of them `rules_out` a contact.
     fn keep_directions(
         &mut self,
         directions: impl Iterator<Item = Vec3>,
@@ -148,7 +154,7 @@ impl Neighbours {
         Some((first as u32, self.directions.len() as u32))
     }
 
-    /// Takes the vertices of one triangle that the ball can press into.
+    /// Collects the vertices of one triangle that the ball can press into.
     #[inline]
     fn collect_saddle_vertices(&mut self, terrain: &Terrain, t: u32, vertices: u8) {
         for k in (0..3).filter(|k| vertices & (1 << k) != 0) {
@@ -161,11 +167,11 @@ impl Neighbours {
         }
     }
 
-    /// Takes an edge; `face` is the first triangle on it.
+    /// Collects an edge; `face` is the first triangle at it.
     ///
-    /// `along` is its unit vector. Left out where the foot
-    /// stays beyond its ends, the line farther than the reach, or the centre behind one of its
-    /// faces, for all places within the margin.
+    /// `along` is its unit vector. The edge is left out if, for all places within the margin, the
+    /// foot stays beyond its ends, its line stays out of reach, or the centre stays behind one of
+    /// its faces.
     fn collect_edge(&mut self, terrain: &Terrain, (edge, face): (u32, &Face)) {
         let ends_m = terrain.mesh().ends_m(edge);
         let line = Segment::between(ends_m);
@@ -174,8 +180,8 @@ impl Neighbours {
         }
         let to = self.centre - line.a;
         let edges = &terrain.features.edges;
-        // in-plane unit vectors out of each triangle on the edge: `m_i`, and the contact test is (c
-        // − p)·m_i ≥ 0 for all of them
+        // unit vectors in the plane of each triangle at the edge, outwards: `m_i`. The contact test
+        // is (c − p)·m_i ≥ 0 for all of them
         let others = edges.triangles_on(edge).skip(1).map(|t| terrain.face(t).outward(&ends_m));
         let out = std::iter::once(face.outward(&ends_m)).chain(others);
         let least = -self.margin - SLACK * self.radius;
@@ -185,8 +191,8 @@ impl Neighbours {
         }
     }
 
-    /// A vertex stands out only if every edge at it leads away from the centre: `(c − p)·e_j ≤ 0`,
-    /// here with the margin allowed for.
+    /// Collects a vertex. It can be touched only if every edge at it leads away from the centre:
+    /// `(c − p)·e_j ≤ 0`, here with the margin added.
     fn collect_vertex(&mut self, terrain: &Terrain, id: u32, owner: u32) {
         let p = terrain.vertices_m[id as usize];
         let to = self.centre - p;

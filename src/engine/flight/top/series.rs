@@ -1,31 +1,33 @@
-//! The same rotation over a short time, as a power series: a tenth of the cost of the elliptic functions.
+//! The torque-free rotation over a short time as a power series: a tenth of the cost of the
+//! elliptic functions.
 //!
-//! In the body's frame `ℓ' = ℓ × I⁻¹ℓ`, and the quaternion from the start's frame obeys `q' = q ∘ I⁻¹ℓ/2`: both have
-//! products alone on the right, so their terms follow one from the other (Cauchy's product). With `Ω = L/I_min` the terms are
-//! no larger than `L Ω^k` and `Ω^k` (by induction), so the series is cut where `(Ω t)^k` is below rounding: what is left out is known
-//! beforehand, whatever the body.
+//! In the body's frame `ℓ' = ℓ × I⁻¹ℓ`, and the quaternion from the start's frame obeys `q' = q ∘
+//! I⁻¹ℓ/2`. The right-hand sides contain only products, so the terms follow from the previous ones
+//! (Cauchy product). With `Ω = L/I_min` the terms are no larger than `L Ω^k` and `Ω^k` (by
+//! induction), so the series is truncated where `(Ω t)^k` is below rounding: the truncation error
+//! is known beforehand, for every body.
 
 use super::is_asymmetric;
 use crate::rock::Vec3;
 use nalgebra::{Quaternion, Rotation3, UnitQuaternion};
 
-/// Terms at most.
+/// Most terms.
 const MAX_TERMS: usize = 18;
-/// Longest time, as `Ω t` (rad): with it 16 terms are exact to rounding.
+/// Largest time, as `Ω t` (rad): up to it 16 terms are exact to rounding.
 const MAX_PHASE_RAD: f64 = 0.1;
 /// A term no larger than this is below rounding (–).
 const SMALLEST_TERM: f64 = 1e-17;
 
-/// `Ω`: no spin of a body with this angular momentum is faster (rad/s).
+/// `Ω`: a bound on the spin of a body with this angular momentum (rad/s).
 fn fastest_spin(inertia: [f64; 3], momentum: &Vec3) -> f64 {
     momentum.norm() / inertia.into_iter().fold(f64::INFINITY, f64::min)
 }
 
-/// A free rotation around one moment.
+/// A torque-free rotation around one time.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct RotationSeries {
     start: Rotation3<f64>,
-    /// How long it holds (s).
+    /// Duration for which the series is valid (s).
     pub(crate) valid_s: f64,
     /// Terms of the quaternion from the start's frame, scalar first (1/s^k).
     terms: [[f64; 4]; MAX_TERMS],
@@ -33,8 +35,9 @@ pub(crate) struct RotationSeries {
 }
 
 impl RotationSeries {
-    /// Of a body with three unequal moments (kg m²), quaternion like this, with a world angular momentum (kg m²/s), for up to `asked_s` (s) or as
-    /// far as the series reaches. `None` where the closed form is cheap: two or three equal moments, or no spin.
+    /// The series of a body with three unequal moments (kg m²) at this attitude, with this angular
+    /// momentum in the world (kg m²/s), for up to `asked_s` (s) or as long as the series is valid.
+    /// `None` if the closed form is cheap: two or three equal moments, or no spin.
     pub(crate) fn of(
         inertia: [f64; 3],
         start: Rotation3<f64>,
@@ -46,7 +49,7 @@ impl RotationSeries {
         }
         let fastest = fastest_spin(inertia, momentum);
         let valid_s = asked_s.min(MAX_PHASE_RAD / fastest);
-        // also where no spin makes the time endless
+        // without spin the time would be infinite
         if !(valid_s > 0.0 && fastest > 0.0 && valid_s.is_finite()) {
             return None;
         }
@@ -55,7 +58,7 @@ impl RotationSeries {
         Some(series)
     }
 
-    /// Of a turn for all of `t` (s); `None` also where the series does not phase so far.
+    /// The series of a rotation for all of `t` (s); `None` also if it is not valid for so long.
     pub(crate) fn covering(
         inertia: [f64; 3],
         start: Rotation3<f64>,
@@ -66,7 +69,8 @@ impl RotationSeries {
         reaches.then(|| Self::of(inertia, start, momentum, t)).flatten()
     }
 
-    /// Works out the terms for an angular momentum in the body's frame and times up to `phase` over `Ω`.
+    /// Computes the terms for an angular momentum in the body's frame and times up to `phase` over
+    /// `Ω`.
     fn compute_terms(&mut self, inertia: [f64; 3], own: &Vec3, phase: f64) {
         let mut momenta = [[0.0; 3]; MAX_TERMS];
         let mut spins = [[0.0; 3]; MAX_TERMS];
@@ -75,7 +79,8 @@ impl RotationSeries {
             [momentum[0] / inertia[0], momentum[1] / inertia[1], momentum[2] / inertia[2]]
         };
         spins[0] = rate(momenta[0]);
-        // ℓ × I⁻¹ℓ along each axis: the product of the other two times what their moments inverse_difference by
+        // ℓ × I⁻¹ℓ along each axis: the product of the other two components times the difference of
+        // the inverse moments
         let inverse_difference =
             |i: usize, j: usize| (inertia[i] - inertia[j]) / (inertia[i] * inertia[j]);
         let inverse_differences =
@@ -107,7 +112,7 @@ impl RotationSeries {
         }
     }
 
-    /// The rotation from body to world `t` (s) after the start, no later than it holds.
+    /// The rotation from body to world `t` (s) after the start, within the valid duration.
     #[inline]
     pub(crate) fn attitude(&self, t: f64) -> Rotation3<f64> {
         let mut sum = [0.0; 4];

@@ -1,7 +1,8 @@
-//! What may touch on a short way, of all that was collected.
+//! The subset of the collected features that may be touched on a short path.
 //!
-//! Features are collected for a good part of the radius, as that is not cheap; an impact goes a few millimetres, and asks some
-//! thirty times what is touched. What its way cannot reach is passed over: the answers are the same, to the bit.
+//! Features are collected for a large part of the radius, because a collection is expensive. An
+//! impact moves a few millimetres and queries its contacts some thirty times. Features out of reach
+//! of its path are skipped: the results are the same, to the bit.
 
 use super::features::may_touch_edge;
 use super::{NearFeatures, NearSaddle, Neighbours, SLACK};
@@ -9,25 +10,26 @@ use crate::contact::closest::closest_on;
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
 
-/// By how much a way is taken longer than it is (–, relative to the radius): more than rounding and the slack of all tests.
+/// Added to the length of a path (–, relative to the radius): more than rounding and the slack of
+/// all tests.
 const PATH_MARGIN: f64 = 1e-6;
 
-/// Where the centre of a rock stays for a short while.
+/// A bound on the centre of a rock for a short time.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ShortPath {
     centre: Vec3,
-    /// How far it gets from there (m).
+    /// Largest distance from there (m).
     length_m: f64,
-    /// How far from the centre touches are asked for, at most (m).
+    /// Largest distance at which contacts are queried (m).
     reach: f64,
 }
 
 impl ShortPath {
-    /// Nowhere.
+    /// No path.
     pub(super) const NONE: Self =
         Self { centre: Vec3::new(0.0, 0.0, 0.0), length_m: -1.0, reach: 0.0 };
 
-    /// Whether `point` is on it, and `beyond_m` farther.
+    /// Whether `point` is within the bound, with at least `beyond_m` to spare.
     fn holds(&self, point: &Vec3, beyond_m: f64) -> bool {
         let room = self.length_m - beyond_m;
         room >= 0.0 && (point - self.centre).norm_squared() <= room * room
@@ -35,14 +37,16 @@ impl ShortPath {
 }
 
 impl Neighbours {
-    /// The features that may be nearer than `reach` (m) to a centre: few where it is on the short way that is known.
+    /// Features that may be nearer than `reach` (m) to a centre: few if the centre is on the known
+    /// short path.
     #[inline]
     pub(super) fn candidates(&self, (centre, reach): (&Vec3, f64)) -> &NearFeatures {
         let is_close = reach <= self.short_path.reach && self.short_path.holds(centre, 0.0);
         if is_close { &self.close } else { &self.all }
     }
 
-    /// Makes ready for touches nearer than `reach` on a way from `centre` of `next_m`, and of `length_m` in all (m).
+    /// Prepares queries of contacts nearer than `reach` for a centre that moves from `centre` by
+    /// `next_m` now and by `length_m` in all (m).
     pub fn prepare_short_path(
         &mut self,
         terrain: &Terrain,
@@ -60,7 +64,8 @@ impl Neighbours {
         self.close = close;
     }
 
-    /// Whether it is sure that a rock touches nothing from nearer than `reach` (m) while its centre stays within `length_m` of `centre`.
+    /// Whether a rock certainly touches nothing within `reach` (m) while its centre stays within
+    /// `length_m` of `centre`.
     pub(crate) fn are_out_of_reach(
         &mut self,
         terrain: &Terrain,
@@ -75,7 +80,8 @@ impl Neighbours {
         faces.is_empty() && edges.is_empty() && vertices.is_empty() && saddles.is_empty()
     }
 
-    /// Chooses what may touch on the short way: every test of [`Neighbours::touches`], with the way allowed for.
+    /// Selects the features that may be touched on the short path: each test of
+    /// [`Neighbours::touches`], with the path's length as margin.
     fn select_reachable(&self, terrain: &Terrain, close: &mut NearFeatures) {
         let ShortPath { centre, length_m, reach } = &self.short_path;
         let length = length_m + PATH_MARGIN * self.radius;
@@ -107,7 +113,7 @@ impl Neighbours {
             }
             NearSaddle::Vertex { p, .. } => (centre - p).norm_squared() < farthest * farthest,
         }));
-        // a patch is where a saddle is: without one the triangles are not asked for
+        // patches exist only at saddles: without one the triangles are not needed
         if !close.saddles.is_empty() {
             close.sheets.extend(self.all.sheets.iter().filter(|&&t| {
                 let face = terrain.face(t);
