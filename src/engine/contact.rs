@@ -115,7 +115,17 @@ impl ContactPoint {
     pub(crate) fn single(feature: Feature, triangle: u32, off: &Vec3, distance_m: f64) -> Self {
         // off = c − q: the normal follows from the distance vector itself, so faces, edges and
         // vertices need no separate cases
-        Self { feature, triangle, normal: off / distance_m, distance_m, gain2: 1.0 }
+        Self::with_normal(feature, triangle, (off / distance_m, distance_m))
+    }
+
+    /// A contact at a single nearest point, from its unit normal and its distance (m).
+    #[inline]
+    pub(crate) fn with_normal(
+        feature: Feature,
+        triangle: u32,
+        (normal, distance_m): (Vec3, f64),
+    ) -> Self {
+        Self { feature, triangle, normal, distance_m, gain2: 1.0 }
     }
 
     /// No contact.

@@ -84,11 +84,11 @@ impl Parabola {
     }
 }
 
-/// Least time (s) to travel the distance `way` (m) from an initial `speed` (m/s), if gravity
+/// Least time (s) to travel `distance_m` (m) from an initial `speed` (m/s), if gravity
 /// accelerates the motion all along.
-pub(crate) fn min_travel_time_s(way: f64, speed: f64, gravity: f64) -> f64 {
-    // way ≥ |v| t + g t²/2, solved for t without cancellation
-    2.0 * way / (speed + (speed * speed + 2.0 * gravity * way).sqrt())
+pub(crate) fn min_travel_time_s(distance_m: f64, speed: f64, gravity: f64) -> f64 {
+    // distance ≥ |v| t + g t²/2, solved for t without cancellation
+    2.0 * distance_m / (speed + (speed * speed + 2.0 * gravity * distance_m).sqrt())
 }
 
 /// How a flight ends.
@@ -245,7 +245,8 @@ fn first_touch(
                     if terrain.is_gone(triangle, broken_stems) {
                         continue;
                     }
-                    if let Some(t) = triangle_impact::first_contact_s(terrain, triangle, flight, window)
+                    if let Some(t) =
+                        triangle_impact::first_contact_s(terrain, triangle, flight, window)
                     {
                         best = t;
                         found = true;

@@ -1,4 +1,4 @@
-//! Rock number i: drawn from the scene, the seed and i, and put on the terrain.
+//! Release number i: drawn from the scene, the seed and i, and placed on the terrain.
 
 mod clearance;
 mod shapes;
@@ -17,14 +17,14 @@ use shapes::Shapes;
 pub use shapes::{DrawnShape, check_shapes};
 use std::path::PathBuf;
 
-/// How deep a rock may sit in the ground at its release, over its radius (–): coordinates are typed with
-/// six or seven digits, and so deep a spring holds no energy worth naming.
+/// Depth to which a rock may sit in the ground at its release, over its radius (–): coordinates are
+/// typed with six or seven digits, and a spring so deep stores no energy of note.
 pub(crate) const TYPED_DEPTH: f64 = 1e-6;
 
-/// Places drawn for one release on a line or in an area before it is given up: where a tenth of the zone can be used, one
-/// release in 40 000 is.
+/// Places drawn for one release on a line or in an area before it is given up: if a tenth of the
+/// zone is usable, that happens to one release in 40 000.
 const MAX_PLACE_DRAWS: usize = 100;
-/// Narrower in plan view than this (m), meshes are walls or dust, no ground.
+/// Meshes narrower than this in plan view (m) are walls or dust, not ground.
 pub(crate) const NO_WIDTH_M: f64 = 1e-3;
 /// Why a release cannot be made.
 const NO_GROUND: &str = "no ground below";
@@ -42,23 +42,23 @@ pub struct Release {
     pub grounds: Vec<Ground>,
 }
 
-/// A release that cannot be made: the rock, and where it was to start (NaN what is not known of it).
+/// A release that cannot be made: the rock, and where it was to start (NaN for what is unknown).
 #[derive(Debug)]
 pub struct FailedRelease {
     /// The rock.
     pub rock: Rock,
-    /// Where it was to start (local coordinates).
+    /// Its intended start (local coordinates).
     pub start: Motion,
-    /// Why not, in few words.
+    /// The reason, in few words.
     pub reason: &'static str,
-    /// The message for its user.
+    /// The error message.
     error: Error,
 }
 
-/// Where rocks are released, in map coordinates.
+/// The place where rocks are released, in map coordinates.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ReleasePlace {
-    /// At these points, one after the other and again from the first.
+    /// At these points in turn, repeatedly.
     Points(Vec<ReleasePoint>),
     /// Uniform along a line.
     Line(Polyline),
@@ -68,14 +68,14 @@ pub enum ReleasePlace {
     Zones(Zones),
 }
 
-/// A release tried at one place after the other.
+/// The outcome of drawing places for one release.
 struct PlacementAttempt {
     release: std::result::Result<Release, Box<FailedRelease>>,
-    /// Places drawn for it.
+    /// Number of places drawn.
     drawn: usize,
-    /// Places among them in ground so steep that no height is clear of it.
+    /// Number of those on ground so steep that no height is clear of it.
     steep: usize,
-    /// How far it was lifted off steep ground (m).
+    /// Height by which it was lifted off steep ground (m).
     lift_m: f64,
 }
 
@@ -85,7 +85,7 @@ pub struct Releases {
     file: PathBuf,
     seed: u64,
     gravity_m_s2: f64,
-    /// One, or one for each source; zones that are sources are one.
+    /// One place, or one for each source; zones that are sources are one place.
     places: Vec<ReleasePlace>,
     zones_are_sources: bool,
     height_m: Option<Distribution>,
@@ -93,7 +93,7 @@ pub struct Releases {
     spin_rad_s: [Distribution; 3],
     radius_m: Distribution,
     frequency: Option<Frequency>,
-    /// Radii of a table's blocks, taken in turn with their places (m); empty if they are drawn.
+    /// Radii of a table's blocks, used in turn with their places (m); empty if radii are drawn.
     radii_m: Vec<f64>,
     density_kg_m3: f64,
     grounds: Vec<GroundTable>,
@@ -101,12 +101,12 @@ pub struct Releases {
 }
 
 impl Releases {
-    /// Takes what a release needs from the scene and looks whether the corners of its place lie on the
-    /// terrain, and whether the first rock from each point is clear of it.
+    /// Takes what a release needs from the scene. Checks whether the corners of its place lie on
+    /// the terrain, and whether the first rock from each point is clear of it.
     ///
     /// # Errors
-    /// A point or corner of the place with no ground below, or a rock that starts in ground or tree, with its
-    /// coordinates.
+    /// A point or corner of the place without ground below, or a rock that starts in ground or
+    /// tree, with its coordinates.
     pub fn compile(scene: &Scene, terrain: &Terrain) -> Result<Self> {
         let asked = &scene.release;
         let sources = scene.frequency.as_ref().map_or(&[][..], |table| &table.sources[..]);
@@ -143,13 +143,15 @@ impl Releases {
         Ok(releases)
     }
 
-    /// The zone from which release `index` starts, by its place in [`Zones::list`]; none where the scene has no zones.
+    /// The zone from which release `index` starts, by its position in [`Zones::list`]; `None` if
+    /// the scene has no zones.
     pub fn zone_of(&self, index: usize) -> Option<usize> {
         self.draw_zone(&mut stream(self.seed, Purpose::Place, index), index)
     }
 
-    /// Draws the zone of a release, the first number of its stream: a place that cannot be used is drawn again in the same
-    /// one, so that every zone keeps its share. A zone that is a source has its own releases.
+    /// Draws the zone of a release, the first number of its stream: an unusable place is drawn
+    /// again in the same zone, so that every zone keeps its share. A zone that is a source has its
+    /// own releases.
     fn draw_zone(&self, random: &mut RandomStream, index: usize) -> Option<usize> {
         let ReleasePlace::Zones(zones) = self.place_of(index).0 else { return None };
         let drawn = zones.pick(unit(random));
@@ -157,7 +159,8 @@ impl Releases {
         Some(source.map_or(drawn, |frequency| frequency.stratum(index).source))
     }
 
-    /// Looks for ground below a point, or beside a centre given with its height. Corners of lines and areas may lie over a hole.
+    /// Checks for ground below a point, or beside a centre given with its height. Corners of lines
+    /// and areas may lie over a hole.
     fn check_corner(
         &self,
         terrain: &Terrain,
@@ -187,7 +190,7 @@ impl Releases {
         self.try_release(terrain, index).map_err(|lost| lost.error)
     }
 
-    /// The same, or what is known of a rock that finds no place to start from.
+    /// The same, or what is known of a rock for which no place to start is found.
     ///
     /// # Errors
     /// As [`Self::release`].
@@ -199,8 +202,8 @@ impl Releases {
         self.place_rock(terrain, index).release
     }
 
-    /// Draws a rock and a place for it. On a line or in an area a place without ground, or without room for the rock,
-    /// is drawn again: rocks are released uniformly over what is left. Says how many places were drawn.
+    /// Draws a rock and a place for it. On a line or in an area a place without ground, or without
+    /// room for the rock, is drawn again: rocks are released uniformly over the usable part.
     fn place_rock(&self, terrain: &Terrain, index: usize) -> PlacementAttempt {
         let mut release = self.release_without_place(index);
         let mut random = stream(self.seed, Purpose::Place, index);
@@ -247,7 +250,7 @@ impl Releases {
         }
     }
 
-    /// Everything of a release but its place.
+    /// A release without its place.
     fn release_without_place(&self, index: usize) -> Release {
         let grounds = self.draw_grounds(index);
         let rock = Rock { radius_m: self.draw_radius_m(index), density_kg_m3: self.density_kg_m3 };
@@ -261,7 +264,8 @@ impl Releases {
         Release { rock, motion, grounds }
     }
 
-    /// A place on the map, in a zone if there are some, and the height of the rock's centre where it is given.
+    /// A place on the map, in a zone if there are zones, and the height of the rock's centre if it
+    /// is given.
     fn draw_place(&self, random: &mut RandomStream, of: (usize, usize)) -> (Corner, Option<f64>) {
         let (index, zone) = of;
         let even = [0; 3].map(|_| unit(random));
@@ -277,7 +281,8 @@ impl Releases {
         }
     }
 
-    /// The centre of a rock over a place (m, local), and how far it is lifted off steep ground for it (m).
+    /// The centre of a rock over a place (m, local), and the height by which it is lifted off steep
+    /// ground (m).
     fn centre(
         &self,
         terrain: &Terrain,
@@ -298,7 +303,8 @@ impl Releases {
         Ok((centre, centre.z - asked.z))
     }
 
-    /// A centre given with its height may hang beyond the edge of the terrain where the rock touches it.
+    /// Checks a centre given with its height: it may be beyond the edge of the terrain if the rock
+    /// touches the terrain.
     fn check_held(
         &self,
         terrain: &Terrain,
@@ -324,7 +330,8 @@ impl Releases {
 
     fn draw_grounds(&self, index: usize) -> Vec<Ground> {
         let mut random = stream(self.seed, Purpose::Grounds, index);
-        // How a block rolls is its shape, which it keeps: the same quantile on every ground.
+        // How a block rolls depends on its shape, which it keeps: the same quantile on every
+        // ground.
         let mut character = None;
         let draw_ground = |table: &GroundTable| {
             let normal_stiffness_n_m = table.normal_stiffness_n_m.draw(&mut random);
@@ -365,7 +372,7 @@ fn local(terrain: &Terrain, [x, y]: Corner) -> Corner {
     [x - terrain.origin_m.x, y - terrain.origin_m.y]
 }
 
-/// What to write instead of a place outside: the box of the terrain on the map.
+/// Remedy for a place outside the terrain: its bounding box on the map.
 pub(crate) fn outside(terrain: &Terrain) -> String {
     let (low, high) = terrain.index.bounds();
     let narrowest_m = (high.x - low.x).min(high.y - low.y);

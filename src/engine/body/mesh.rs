@@ -1,4 +1,4 @@
-//! A scanned surface: is it closed, and which few of its corners will do.
+//! A scanned surface: whether it is closed, and a hull with few corners.
 
 use super::hull::{Core, max_corners};
 use super::solid::Surface;
@@ -7,18 +7,18 @@ use parry3d_f64::math::Vector;
 use parry3d_f64::transformation::try_convex_hull;
 use std::collections::BTreeMap;
 
-/// Why a surface makes no block.
+/// Why no block can be made from a surface.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum BadSurface {
-    /// So many of its edges do not join two triangles in opposite turns.
+    /// Number of its edges that do not join two triangles of the same orientation.
     Open(usize),
-    /// It is so many surfaces that share no corner.
+    /// Number of separate surfaces that share no corner.
     Parts(usize),
     /// It encloses no volume.
     Flat,
     /// More corners than a core may have.
     TooMany(usize),
-    /// Balls as large as this leave no core between them.
+    /// The balls are so large that no core is left between them.
     NoCore,
 }
 
@@ -39,19 +39,20 @@ impl std::fmt::Display for BadSurface {
     }
 }
 
-/// Few corners of a surface.
+/// A hull with few corners.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ThinnedHull {
     /// The corners.
     pub corners: Vec<Vec3>,
-    /// Corners of the hull of all points.
+    /// Number of corners of the hull of all points.
     pub hull_corners: usize,
-    /// How far the hull of all points reaches beyond theirs at most (m).
+    /// How far the hull of all points reaches beyond this one at most (m).
     pub deviation_m: f64,
 }
 
 impl Surface {
-    /// Whether every edge joins two triangles turned alike, and all of them are one surface.
+    /// Whether every edge joins two triangles of the same orientation, and all of them are one
+    /// surface.
     ///
     /// # Errors
     /// The number of edges that do not, or of surfaces.
@@ -74,7 +75,7 @@ impl Surface {
         }
     }
 
-    /// How many surfaces its triangles are that share no corner.
+    /// Number of connected surfaces among its triangles, which share no corner.
     fn parts(&self) -> usize {
         let mut part_of: Vec<usize> = (0..self.points.len()).collect();
         let mut joined = 0;
@@ -95,8 +96,8 @@ impl Surface {
         self.points.len() - joined
     }
 
-    /// At most `most` corners of the hull, the farthest out of the others' hull first, until none is more than `near` (m)
-    /// outside.
+    /// At most `most` corners of the hull. Corners are added, always the one farthest outside the
+    /// hull of the others, until none is more than `near` (m) outside.
     ///
     /// # Errors
     /// A flat surface.
@@ -125,7 +126,7 @@ impl Surface {
     }
 }
 
-/// Points farthest out along the axes and diagonals, as many as span a body.
+/// Extreme points along the axes, slightly tilted, as first corners of a hull.
 fn first_corners(points: &[Vec3]) -> Vec<Vec3> {
     let mut kept: Vec<Vec3> = Vec::new();
     for k in 0..6 {
@@ -141,7 +142,8 @@ fn first_corners(points: &[Vec3]) -> Vec<Vec3> {
     kept
 }
 
-/// Four points that span much: of a body with few corners those along the axes may lie in one plane.
+/// Four points that span a large tetrahedron: for a body with few corners the extreme points along
+/// the axes may lie in one plane.
 fn widest_four(points: &[Vec3]) -> Vec<Vec3> {
     let farthest = |from: &dyn Fn(&Vec3) -> f64| {
         points.iter().copied().max_by(|a, b| from(a).total_cmp(&from(b))).unwrap_or_default()

@@ -99,8 +99,8 @@ pub fn closest_part(&[a, b, c]: &[Vec3; 3], p: &Vec3) -> (Vec3, TrianglePart) {
 /// exact up to that angle times their length.
 const PARALLEL: f64 = 1e-15;
 
-/// Square of the least distance between two segments, each from its first point along its second (Ericson, Real-Time
-/// Collision Detection, 5.1.9). A segment may be a point.
+/// Square of the least distance between two segments, each from its first point along its second
+/// (Ericson, Real-Time Collision Detection, 5.1.9). A segment may be a point.
 ///
 /// Minimises `|r + s d − t e|²` over the unit square of `(s, t)`, with `r = p − q`:
 ///
@@ -131,7 +131,8 @@ pub fn segments_distance2((p, d): (&Vec3, &Vec3), (q, e): (&Vec3, &Vec3)) -> f64
 mod tests {
     use super::*;
 
-    /// No pair of points of the two segments is nearer, and some pair is as near: tried on a fine lattice of both.
+    /// No pair of points of the two segments is nearer, and some pair is as near: tested on a fine
+    /// grid of both.
     #[test]
     fn the_distance_of_segments_is_the_least() {
         let mut state = 7u64;

@@ -23,9 +23,9 @@ use super::{ContactPoint, ContactPoints, Feature};
 use crate::contact::FeatureKind;
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
-use short_path::ShortPath;
 use features::{NearEdge, NearFace, NearFeatures, NearSaddle, NearVertex};
 pub use pressed::PressedPath;
+use short_path::ShortPath;
 
 /// Slack of the tests, relative to the radius (–): a point on a border must not fall between two
 /// features. For a rock of 0.1 m it is 1e-10 m, a thousand times the rounding of coordinates of 1

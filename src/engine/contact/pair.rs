@@ -36,8 +36,8 @@ pub fn collision_time_s(apart: &Vec3, closing: &Vec3, reach: f64) -> Option<f64>
     // |d|² − reach² as a product: the difference of squares would cost the digits of a small gap
     let distance = apart.norm();
     let outside = (distance - reach) * (distance + reach);
-    // |u|² t² − 2 approach t + outside = 0; the smaller root written as outside/(approach + √…), which
-    // keeps the digits of a small gap where (approach − √…)/|u|² would lose them
+    // |u|² t² − 2 approach t + outside = 0; the smaller root is outside/(approach + √…), which keeps
+    // the digits of a small gap, while (approach − √…)/|u|² would lose them
     let root2 = approach * approach - speed2 * outside;
     if outside <= 0.0 {
         return Some(0.0);

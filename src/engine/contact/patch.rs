@@ -164,7 +164,7 @@ impl PatchScratch {
             _ => (distance2.sqrt(), off / distance2.sqrt()),
         };
         let index = self.pressed.len() as u32;
-        let nearest = ContactPoint { feature, triangle: t, normal, distance_m, gain2: 1.0 };
+        let nearest = ContactPoint::with_normal(feature, t, (normal, distance_m));
         let sums = PatchSums::of(&nearest, radius);
         self.pressed.push(PressedTriangle { triangle: t, parent: index, sums, nearest });
         // Every side and corner inside the ball is stored once for each of its triangles; this

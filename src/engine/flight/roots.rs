@@ -176,8 +176,9 @@ mod tests {
     }
 
     proptest! {
-        /// A quartic with known real roots falls first at the first root with a negative slope, as exactly as its
-        /// coefficients know it: their rounding moves a root by about `ε Σ|p_k| t^k / |p'|`, far where roots are close.
+        /// A quartic with known real roots falls first at the first root with a negative slope, as
+        /// exactly as its coefficients know it: their rounding moves a root by about `ε Σ|p_k| t^k
+        /// / |p'|`, far where roots are close.
         #[test]
         fn the_first_fall_is_found(mut r in prop::array::uniform4(0.01f64..3.0), sign in prop::bool::ANY) {
             r.sort_by(f64::total_cmp);

@@ -1,4 +1,4 @@
-//! The shape of rock number i and how it is turned.
+//! Shape and attitude of rock number i.
 
 use super::Releases;
 use crate::body::{
@@ -30,11 +30,11 @@ pub struct DrawnShape {
     pub attitude: Rotation3<f64>,
 }
 
-/// What a shape of the scene takes of the whole.
+/// A shape of the scene, with its share of the rocks.
 #[derive(Debug, Clone, PartialEq)]
 struct ShapeShare {
     table: ShapeTable,
-    /// The shape, where nothing of it is drawn.
+    /// The shape, if nothing of it is drawn.
     made: Option<Shape>,
 }
 
@@ -50,13 +50,14 @@ pub fn check_shapes(scene: &Scene) -> Result<()> {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Shapes {
     entries: Vec<ShapeShare>,
-    /// The shapes that rocks draw among, with the weights up to each (–): those of no block, then block by block.
+    /// The shapes among which rocks draw, with cumulative weights (–): those of no block, then
+    /// block by block.
     weighted: Vec<Vec<(f64, usize)>>,
-    /// The options of each row of the release table; empty without one.
+    /// For each row of the release table, its entry in `weighted`; empty without a table.
     of_row: Vec<usize>,
-    /// A fixed turn; none if it is drawn.
+    /// A fixed attitude; `None` if it is drawn.
     attitude: Option<Rotation3<f64>>,
-    /// What the plan says of each.
+    /// Lines of the plan, one for each shape.
     pub(super) lines: Vec<String>,
 }
 
@@ -80,7 +81,8 @@ impl Shapes {
         Ok(shapes)
     }
 
-    /// Which shapes each row of the release table draws among: those of its block, or those of none.
+    /// Sets the shapes among which each row of the release table draws: those of its block, or
+    /// those of none.
     fn group_by_block(&mut self, scene: &Scene) {
         let tables = &scene.rocks.shapes;
         let mut names: Vec<Option<&String>> = vec![None];
@@ -105,12 +107,13 @@ impl Shapes {
         self.of_row = rows.map(|row| place(&names, row.block.as_ref()).unwrap_or(0)).collect();
     }
 
-    /// Whether some rocks are no spheres.
+    /// Whether some rocks are not spheres.
     pub(super) fn has_blocks(&self) -> bool {
         !self.entries.is_empty()
     }
 
-    /// The block of release `index`, which is the `turn`-th from its place, of the size of its rock; none if it is a sphere.
+    /// The block of release `index`, the `turn`-th from its place, with the size of its rock;
+    /// `None` for a sphere.
     pub(super) fn draw(&self, seed: u64, of: (usize, usize), rock: &Rock) -> Option<DrawnShape> {
         let (entry, drawn, mut random) = self.pick(seed, of)?;
         let attitude = self.attitude.unwrap_or_else(|| random_attitude(&mut random));
@@ -120,8 +123,8 @@ impl Shapes {
         Some(DrawnShape { kind: entry.table.kind, sides, block, attitude })
     }
 
-    /// The entry of release `index`, which is the `turn`-th from its place, the numbers that choose its sides, and the stream
-    /// behind them; none if it is a sphere.
+    /// The entry of release `index`, the `turn`-th from its place, the numbers that determine its
+    /// sides, and the rest of the random stream; `None` for a sphere.
     fn pick(
         &self,
         seed: u64,
@@ -139,15 +142,16 @@ impl Shapes {
 }
 
 impl ShapeShare {
-    /// The sides and the shape that these numbers choose.
+    /// The sides and the shape for these random numbers.
     fn shape(&self, drawn: [f64; 4]) -> Option<([f64; 3], Shape)> {
         let mut next = drawn.into_iter();
         let quantile = |axis: &Distribution| axis.quantile(next.next().unwrap_or(0.5));
         let sides = sides_of(&self.table, quantile);
         let shape = match &self.made {
             Some(shape) => shape.clone(),
-            // checked at the ends of what can be drawn; between them nothing is rounder: with x the logarithms of the sides, that of a
-            // face's distance over the radius of equal volume, −½ ln Σ nᵢ² e^(−2xᵢ) − ⅓ Σ xᵢ, is concave, so it is least at an end
+            // Checked at the ends of what can be drawn; between them nothing is rounder. With x the
+            // logarithms of the sides, the logarithm of a face's distance over the radius of equal
+            // volume, −½ ln Σ nᵢ² e^(−2xᵢ) − ⅓ Σ xᵢ, is concave, so it is least at an end.
             None => shape_of_sides(&self.table, sides).ok()?,
         };
         Some((sides, shape))
@@ -155,12 +159,13 @@ impl ShapeShare {
 }
 
 impl Releases {
-    /// The shape of release `index`, of the size of its rock, and how it is turned; none for a sphere.
+    /// The shape of release `index`, with the size of its rock, and its attitude; `None` for a
+    /// sphere.
     pub fn block(&self, index: usize, rock: &Rock) -> Option<DrawnShape> {
         self.shapes.draw(self.seed, (index, self.place_of(index).1), rock)
     }
 
-    /// The shape of release `index` without its size; none for a sphere.
+    /// The shape of release `index` without its size; `None` for a sphere.
     pub fn shape(&self, index: usize) -> Option<Shape> {
         let (entry, drawn, _) = self.shapes.pick(self.seed, (index, self.place_of(index).1))?;
         entry.shape(drawn).map(|(_, shape)| shape)
@@ -176,18 +181,19 @@ impl Releases {
         self.grounds.iter().any(|ground| ground.scar.is_some())
     }
 
-    /// What the plan says of each shape; empty for spheres alone.
+    /// The plan's line on each shape; empty for spheres alone.
     pub fn shapes(&self) -> &[String] {
         &self.shapes.lines
     }
 
-    /// Radius of the ball around a rock (m): what must be clear where it starts, however it is turned.
+    /// Radius of the bounding ball of a rock (m), which must be clear where it starts, whatever its
+    /// attitude.
     pub(super) fn around_m(&self, index: usize, rock: &Rock) -> f64 {
         self.block(index, rock).map_or(rock.radius_m, |drawn| drawn.block.bound_m)
     }
 }
 
-/// Uniform over all turns, of three numbers (Shoemake 1992).
+/// Uniform over all rotations, from three numbers (Shoemake 1992).
 fn random_attitude(random: &mut RandomStream) -> Rotation3<f64> {
     let [a, b, c] = [0; 3].map(|_| unit(random));
     let ((sin_b, cos_b), (sin_c, cos_c)) = (math::sin_cos(TAU * b), math::sin_cos(TAU * c));
@@ -195,7 +201,7 @@ fn random_attitude(random: &mut RandomStream) -> Rotation3<f64> {
     attitude_of([more * cos_c, less * sin_b, less * cos_b, more * sin_c])
 }
 
-/// The turn of a quaternion w, x, y, z of any length.
+/// The rotation of a quaternion w, x, y, z of any length.
 fn attitude_of([w, x, y, z]: [f64; 4]) -> Rotation3<f64> {
     UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z)).to_rotation_matrix()
 }
@@ -207,7 +213,7 @@ fn fixed_attitude(scene: &Scene) -> Option<Rotation3<f64>> {
     }
 }
 
-/// The three sides of a shape, `value` choosing among those that are drawn.
+/// The three sides of a shape; `value` selects those that are distributions.
 fn sides_of(table: &ShapeTable, mut value: impl FnMut(&Distribution) -> f64) -> [f64; 3] {
     match (table.kind, &table.axes, &table.ratio) {
         (_, Some(axes), _) if axes.len() == 3 => [0, 1, 2].map(|k| value(&axes[k])),
@@ -242,7 +248,7 @@ fn shape_of_sides(table: &ShapeTable, sides: [f64; 3]) -> std::result::Result<Sh
     Shape::of(&Solid::of(&surface), &surface.points, ball)
 }
 
-/// A shape where nothing of it is drawn, and what the plan says of it.
+/// A shape if nothing of it is drawn, and the plan's line on it.
 fn prepared(
     table: &ShapeTable,
 ) -> Result<std::result::Result<(Option<Shape>, String), BadSurface>> {
@@ -259,7 +265,8 @@ fn prepared(
 }
 
 fn made_shape(table: &ShapeTable) -> std::result::Result<(Option<Shape>, String), BadSurface> {
-    // the extremes must do too, each side's with each other's: a shape that is drawn is made without a chance to complain
+    // the extremes must be valid too, in all combinations of the sides: a drawn shape is made
+    // without error handling
     for ends in 0..8_u32 {
         let mut side = 0;
         shape_of(table, |axis| {
@@ -276,7 +283,7 @@ fn made_shape(table: &ShapeTable) -> std::result::Result<(Option<Shape>, String)
     Ok(((!is_drawn).then_some(shape), line))
 }
 
-/// The shape of a scan, with how its hull was thinned.
+/// The shape of a scan, with a note on how its hull was thinned.
 fn scanned_shape(table: &ShapeTable) -> Result<std::result::Result<(Shape, String), BadSurface>> {
     let path = table.mesh.as_deref().unwrap_or(Path::new(""));
     let soup = stl::read(path)?;
@@ -303,12 +310,12 @@ fn shape_of_surface(
     Ok((shape, note))
 }
 
-/// The facets of a file with their common corners joined: those written with the same numbers.
+/// The facets of a file with common corners merged: those written with the same numbers.
 fn welded(facets: &Facets) -> Surface {
     let mut known: BTreeMap<[u64; 3], u32> = BTreeMap::new();
     let mut points = Vec::new();
     let mut place = |p: Vec3| {
-        // −0 and 0 are one place
+        // −0 and 0 are the same position
         let key = [p.x, p.y, p.z].map(|x| (x + 0.0).to_bits());
         *known.entry(key).or_insert_with(|| {
             points.push(p);
@@ -323,7 +330,7 @@ fn welded(facets: &Facets) -> Surface {
     surface
 }
 
-/// The message of a shape that cannot be made: of its scan, or of its corners.
+/// The error of a shape that cannot be made, because of its scan or of its corners.
 fn refused(scene: &Scene, (index, table): (usize, &ShapeTable), why: &BadSurface) -> Error {
     let of_corners = matches!(why, BadSurface::NoCore).then_some(table.corner_radius).flatten();
     let key = if of_corners.is_some() { "corner_radius" } else { "mesh" };
@@ -346,13 +353,13 @@ fn remedy(why: &BadSurface) -> &'static str {
     }
 }
 
-/// A shape's kind, and the block that has it.
+/// A shape's kind, and its block if it has one.
 fn named(table: &ShapeTable) -> String {
     let kind = table.kind.name();
     table.block.as_ref().map_or_else(|| kind.to_owned(), |block| format!("{kind} (block {block})"))
 }
 
-/// A shape in the words of the plan.
+/// A shape's line in the plan.
 fn described(table: &ShapeTable, shape: &Shape, note: &str) -> String {
     let [low, middle, high] = {
         let mut moments = shape.inertia.map(|moment| moment / 0.4);

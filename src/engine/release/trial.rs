@@ -1,34 +1,39 @@
-//! The first releases, tried out before a run.
+//! Trial releases before a run.
 
 use super::{Frequency, PlacementAttempt, Release, ReleasePlace, Releases};
 use crate::error::{Error, Result};
 use crate::terrain::Terrain;
 
-/// Releases tried out.
+/// Number of trial releases.
 const TRIAL_RELEASES: usize = 1000;
-/// Releases of a source that must be tried before it is refused: large rocks may find no room where smaller ones do.
+/// Trial releases of a source before it is refused: large rocks may find no room where smaller ones
+/// do.
 const MIN_TRIALS_OF_SOURCE: usize = 20;
 
-/// A rock that is lifted by less than this, over its radius, starts where the scene says (–).
+/// A rock lifted by less than this, over its radius, is not reported (–).
 const REPORTED_LIFT: f64 = 0.1;
 
-/// A centre higher above the ground than this (m) is in other heights than the slope, or beside a cliff.
+/// A centre higher above the ground than this (m) indicates another height datum than that of the
+/// slope, or a place beside a cliff.
 const FAR_ABOVE_M: f64 = 100.0;
 
-/// What the first releases showed.
+/// Result of the trial releases.
 #[derive(Debug)]
 pub struct TrialReleases {
-    /// Those that were made.
+    /// Those that could be made.
     pub made: Vec<Release>,
-    /// How many are lifted off steep ground, and by how much, in words; none where none is by a tenth of its radius.
+    /// How many are lifted off steep ground, and by how much, in words; `None` if none is lifted by
+    /// a tenth of its radius.
     pub lifted: Option<String>,
 }
 
 impl Releases {
-    /// Tries the first releases out before a run: says which share of the zone has no ground or no room.
+    /// Tries the first releases before a run, and warns which share of the zone has no ground or no
+    /// room.
     ///
     /// # Errors
-    /// If none of them can be made, or none of a source that has a frequency: its events would be missing.
+    /// If none of them can be made, or none of a source that has a frequency: its events would be
+    /// missing.
     pub fn try_out(&self, terrain: &Terrain, warnings: &mut Vec<String>) -> Result<TrialReleases> {
         let (mut places, mut in_slope, mut made, mut first) = (0, 0, Vec::new(), None);
         let mut lifts_m = Vec::new();
@@ -67,7 +72,8 @@ impl Releases {
         Ok(TrialReleases { made, lifted })
     }
 
-    /// Refuses a source of which no release tried out could be made; `of_source`: how many were tried, and how many made.
+    /// Refuses a source of which no trial release could be made; `of_source`: how many were tried,
+    /// and how many made.
     fn check_sources(&self, of_source: &[[usize; 2]]) -> Result<()> {
         let sources = self.frequency.iter().flat_map(Frequency::sources);
         let has_no_release =
@@ -84,12 +90,12 @@ impl Releases {
         })
     }
 
-    /// Whether every place is written, and none drawn.
+    /// Whether all places are given points, and none is drawn.
     pub(crate) fn are_points(&self) -> bool {
         self.places.iter().all(|place| matches!(place, ReleasePlace::Points(_)))
     }
 
-    /// What to say of places drawn in vain, and of releases that found none.
+    /// Warnings about places drawn in vain, and about releases that found none.
     fn lost_places(&self, (places, in_slope): (usize, usize), made: usize) -> Vec<String> {
         let mut warnings = Vec::new();
         let in_vain = places - made;
@@ -115,7 +121,8 @@ impl Releases {
     }
 }
 
-/// What to say of releases of which most start far above the ground: a slope in other heights, or with negated ones, is met by no rock as it should be.
+/// Warning if most releases start far above the ground: a slope with another height datum, or with
+/// negated heights, is not met properly by any rock.
 fn far_above(made: &[Release], terrain: &Terrain) -> Option<String> {
     let above_m = |release: &Release| {
         let centre = release.motion.position_m;

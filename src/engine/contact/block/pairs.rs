@@ -52,7 +52,7 @@ impl PosedBlock<'_> {
             {
                 continue;
             }
-            let touch = contact_point(edge.feature, edge.triangle, (normal, distance));
+            let touch = ContactPoint::with_normal(edge.feature, edge.triangle, (normal, distance));
             self.add((part, &p), (&touch, is_past_end), found);
         }
     }
@@ -113,7 +113,8 @@ impl PosedBlock<'_> {
             if self.is_in_normal_cone(&ridge.into, &normal, own)
                 && is_extreme_and_uncovered(on, vertex, (&normal, other), (&p, distance))
             {
-                let touch = contact_point(vertex.feature, vertex.triangle, (normal, distance));
+                let touch =
+                    ContactPoint::with_normal(vertex.feature, vertex.triangle, (normal, distance));
                 // if one of the vertex's edges is nearer, the contact continues there
                 let is_past_end = is_beside || !vertex.is_extreme_along(&normal, DIRECTION_SLACK);
                 self.add((part, &p), (&touch, is_past_end), found);
@@ -162,7 +163,8 @@ impl PosedBlock<'_> {
             if distance < reach
                 && is_extreme_and_uncovered(on, vertex, (&normal, other), (&p, distance))
             {
-                let touch = contact_point(vertex.feature, vertex.triangle, (normal, distance));
+                let touch =
+                    ContactPoint::with_normal(vertex.feature, vertex.triangle, (normal, distance));
                 self.add((part, &p), (&touch, is_past_end), found);
             }
         }
@@ -180,12 +182,4 @@ fn is_extreme_and_uncovered(
     let is_covered =
         || vertex.at_border && near.is_covered(terrain, vertex.feature, &vertex.p, (p, distance));
     vertex.is_extreme_along(normal, slack) && !is_covered()
-}
-
-fn contact_point(
-    feature: Feature,
-    triangle: u32,
-    (normal, distance_m): (Vec3, f64),
-) -> ContactPoint {
-    ContactPoint { feature, triangle, normal, distance_m, gain2: 1.0 }
 }

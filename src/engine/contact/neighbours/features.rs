@@ -75,13 +75,9 @@ impl NearFace {
     /// The contact of a centre at `height` (m).
     #[inline]
     pub(super) fn touch(&self, height: f64) -> ContactPoint {
-        ContactPoint {
-            feature: Feature { kind: FeatureKind::Face, id: self.id },
-            triangle: self.id,
-            normal: if height < 0.0 { -self.n } else { self.n },
-            distance_m: height.abs(),
-            gain2: 1.0,
-        }
+        let normal = if height < 0.0 { -self.n } else { self.n };
+        let feature = Feature { kind: FeatureKind::Face, id: self.id };
+        ContactPoint::with_normal(feature, self.id, (normal, height.abs()))
     }
 }
 

@@ -1,20 +1,22 @@
-//! How a gap between a part of a block and a feature of the mesh changes from now on, and how long it surely stays open.
+//! Lower bounds on the gap between a part of a block and a feature of the mesh, and how long it
+//! certainly stays open.
 
 use super::{PointBounds, ROUNDING_MARGIN};
 use crate::rock::Vec3;
 
-/// The time sought for a bound is halved, on a scale of powers, so many times at most.
+/// Most bisections, on a logarithmic scale, of the time for which a bound is sought.
 const SEARCH_STEPS: u32 = 6;
-/// A time this much shorter than one for which nothing is known is good enough (–).
+/// A safe time is good enough if it is at least this share of one that is not known to be safe (–).
 const GOOD_ENOUGH: f64 = 0.5;
-/// Edges are not followed to where they are nearer to parallel than this (–, cosine).
+/// Edges are followed only while they are farther from parallel than this (–, cosine).
 const MAX_PARALLEL_COSINE: f64 = 0.99;
 
-/// How long what is `gap` off a convex feature surely keeps off it (s): it is `closing` a second, and that grows by no more than `bend` a
-/// second.
+/// How long a gap to a convex feature certainly stays open (s): it closes at the speed `closing`,
+/// which grows by no more than `max_acceleration`.
 ///
-/// The first positive root of `δ − c τ − B τ²/2 = 0`: `τ = 2δ/(c + √(c² + 2Bδ))` while it approaches, `(√(c² + 2Bδ) − c)/B` while it
-/// parts (`c ≤ 0`), each in the form without cancellation. Where it is turned away before it arrives there is none.
+/// The first positive root of `δ − c τ − B τ²/2 = 0`: `τ = 2δ/(c + √(c² + 2Bδ))` for an approach,
+/// `(√(c² + 2Bδ) − c)/B` for a separation (`c ≤ 0`), each in the form without cancellation.
+/// Infinite if the motion turns back before the gap closes.
 pub(super) fn safe_time_s((gap, closing): (f64, f64), max_acceleration: f64) -> f64 {
     let square = closing * closing + 2.0 * max_acceleration * gap;
     if closing > 0.0 && square >= 0.0 {
@@ -26,14 +28,14 @@ pub(super) fn safe_time_s((gap, closing): (f64, f64), max_acceleration: f64) -> 
     }
 }
 
-/// A corner as it flies.
-/// Position `p` (m), velocity (m/s) and acceleration (m/s²) in the frame of the terrain.
+/// Motion of a point of the block: position `p` (m), velocity (m/s) and acceleration (m/s²) in the
+/// frame of the terrain.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PointMotion {
     pub(super) p: Vec3,
     pub(super) velocity: Vec3,
     pub(super) acceleration: Vec3,
-    /// Largest acceleration (m/s²), and largest rate of it (m/s³).
+    /// Bounds on the acceleration (m/s²) and on the jerk (m/s³).
     pub(super) max_acceleration: f64,
     pub(super) max_jerk: f64,
 }
@@ -48,7 +50,8 @@ impl PointMotion {
     };
 }
 
-/// A gap: after `τ` it is no less than `δ + δ' τ + ½ δ'' τ² − ⅙ J τ³`, nor than `δ + δ' τ − ½ B τ²`, for `τ` up to some time.
+/// Bounds on a gap: after `τ` it is no less than `δ + δ' τ + ½ δ'' τ² − ⅙ J τ³`, and no less than
+/// `δ + δ' τ − ½ B τ²`, while `τ` is within the valid time.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Clearance {
     /// `δ` (m).
@@ -61,12 +64,13 @@ pub(super) struct Clearance {
     max_acceleration: f64,
     /// `J` (m/s³).
     max_third_m_s3: f64,
-    /// That time (s).
+    /// Time for which the bounds are valid (s).
     pub(super) valid_s: f64,
 }
 
 impl Clearance {
-    /// Of a corner with a ball (m) round it and a plane with unit normal `n` through `q` (m).
+    /// Of a corner with its ball of radius `ball` (m) and the plane with unit normal `n` through
+    /// `q` (m).
     #[inline]
     pub(super) fn of_corner(corner: &PointMotion, ball: f64, (n, q): (&Vec3, &Vec3)) -> Self {
         Self {
@@ -79,12 +83,16 @@ impl Clearance {
         }
     }
 
-    /// Of two edges, as far as `most` (s): the distance of the endless lines along an edge of the block between two corners and along one of
-    /// the mesh from `e` (m) with a unit direction, less the radius of the ball (m) along the first. `None` where they are nearly parallel.
+    /// Of two edges, for at most `most` (s): the distance of the infinite lines along the block's
+    /// edge between two corners and along the mesh's edge from `e` (m) with a unit direction, less
+    /// the radius of the block's corner balls (m). `None` if they are nearly parallel.
     ///
-    /// With `u` along the block's edge, `w` along the mesh's, `x = a − e` and `N = |u × w|` it is `x·(u × w)/N − r`; `x·(u × w) − r N` over the present
-    /// `N` is followed, as `u` turns and `a` moves: nought when that is. `N = √(u² − z²)` with `z = u·w` curves upwards by no more than `|z z''|/N`. What a bound
-    /// by a plane takes for an approach, that one end of an edge comes nearer as it turns about where it touches, is none here.
+    /// With `u` along the block's edge, `w` along the mesh's, `x = a − e` and `N = |u × w|` the gap
+    /// is `x·(u × w)/N − r`. As `u` rotates and `a` moves, `x·(u × w) − r N` over the present `N`
+    /// is followed, which is zero when the gap is. `N = √(u² − z²)` with `z = u·w` has an upward
+    /// curvature of at most `|z z''|/N`. When an edge rotates about its contact, one of its ends
+    /// approaches the plane through it, so the bound by a plane finds an approach; this one does
+    /// not.
     pub(super) fn of_lines(
         [a, b]: &[PointMotion; 2],
         ball: f64,
@@ -94,7 +102,7 @@ impl Clearance {
         let (u, u1, u2) = (b.p - a.p, b.velocity - a.velocity, b.acceleration - a.acceleration);
         let (length, z, z1, x) = (u.norm(), u.dot(w), u1.dot(w), a.p - e);
         let (spin, turned) = (bounds.velocity, length * bounds.acceleration);
-        // how long the edges are surely not parallel
+        // how long the edges are certainly not parallel
         let valid_s = ((MAX_PARALLEL_COSINE * length - z.abs()) / (spin * length)).min(most);
         if valid_s <= 0.0 {
             return None;
@@ -110,7 +118,8 @@ impl Clearance {
             a.velocity.dot(&across) + x.dot(&across1),
             a.acceleration.dot(&across) + 2.0 * a.velocity.dot(&across1) + x.dot(&across2),
         ];
-        // bounds on |a'|, on what of x is square to w, and by the product rule on the third derivative of the numerator
+        // bounds on |a'|, on the part of x normal to w, and by the product rule on the third
+        // derivative of the numerator
         let fastest = a.velocity.norm() + a.max_acceleration * valid_s;
         let aside = (x - w * w.dot(&x)).norm() + fastest * valid_s;
         let third = a.max_jerk * length
@@ -127,8 +136,9 @@ impl Clearance {
         })
     }
 
-    /// Of a point (m) of the mesh and a plane that is fixed to a block, which flies like `centre`, as far as `most` (s); the ball (m) lies on
-    /// the plane. The plane is turned as `turn` turns its vectors, and their rates.
+    /// Of a point of the mesh (m) and a plane fixed to a block that moves like `centre`, for at
+    /// most `most` (s); the rounded surface is `ball` (m) outside the plane. `turn` rotates vectors
+    /// of the block, and gives their rates.
     ///
     /// `δ = m·(p − c) − h − r` with the plane's unit normal `m` and its height `h` over the centre.
     pub(super) fn of_own_plane(
@@ -153,20 +163,21 @@ impl Clearance {
         }
     }
 
-    /// What it is after `t` (s) at least (m).
+    /// Lower bound of the gap after `t` (s) (m).
     #[cfg(test)]
     pub(super) fn at_least_m(&self, t: f64) -> f64 {
         self.gap_m
             + t * (self.opening_m_s + t * (0.5 * self.second_m_s2 - t * self.max_third_m_s3 / 6.0))
     }
 
-    /// `B` for so long a time (s): `J τ³/6 ≤ (J T/3) τ²/2` for `τ ≤ T`.
+    /// `B` for times up to `most` (s): `J τ³/6 ≤ (J T/3) τ²/2` for `τ ≤ T`.
     #[inline]
     fn max_acceleration_within(&self, most: f64) -> f64 {
         self.max_acceleration.min(self.max_third_m_s3 * most / 3.0 - self.second_m_s2)
     }
 
-    /// Whether it surely stays open for `most` (s), more than `touching` (m): as [`Clearance::open_time_s`], without a root.
+    /// Whether the gap certainly stays above `touching` (m) for `most` (s): as
+    /// [`Clearance::open_time_s`], without a root.
     #[inline]
     pub(super) fn stays_open(&self, touching: f64, most: f64) -> bool {
         let bent = 0.5 * self.max_acceleration_within(most).max(0.0) * most;
@@ -174,11 +185,14 @@ impl Clearance {
         self.gap_m > touching && self.gap_m >= most * (bent - self.opening_m_s + rounding)
     }
 
-    /// How long it surely stays open (s), no longer than `most`; not at all where it is no more than `touching` (m) and becomes less.
+    /// How long the gap certainly stays open (s), at most `most`; 0 if it is no larger than
+    /// `touching` (m) and decreasing.
     ///
-    /// A bound for a shorter time is a better one: the longest time is sought for which what is known within it reaches through it.
+    /// A bound for a shorter time is a better one: the search is for the longest time whose own
+    /// bound covers it.
     pub(super) fn open_time_s(&self, touching: f64, most: f64) -> f64 {
-        // only an approach touches: what has just left lies within the same gap and must be free to go
+        // only an approach touches: a part that has just separated lies within the same gap and
+        // must be free to move away
         if self.opening_m_s < 0.0 && self.gap_m <= touching {
             return 0.0;
         }

@@ -13,14 +13,14 @@ use parry3d_f64::query::distance;
 use parry3d_f64::shape::{ConvexPolyhedron, Triangle};
 use std::path::Path;
 
-/// Random flights of the test; `ROCKFALL_FLIGHTS` asks for more.
+/// Random flights of the test; `ROCKFALL_FLIGHTS` sets another number.
 const FLIGHTS: usize = 1500;
 
 fn even(chance: &mut RandomStream, low: f64, high: f64) -> f64 {
     low + (high - low) * unit(chance)
 }
 
-/// Cells of 1 m with heights up to 0.5 m: vertices, ridges and hollows of every angle.
+/// Cells of 1 m with heights up to 0.5 m: peaks, ridges and hollows of every angle.
 fn rough() -> Terrain {
     let n = 12;
     let mut chance = stream(5, Purpose::Place, 0);
@@ -56,7 +56,8 @@ fn blocks() -> Vec<Block> {
     shapes.iter().map(|shape| Block::new(shape, &rock)).collect()
 }
 
-/// Distance between block and mesh by another program (GJK): all triangles against the hull of the corners as they stand.
+/// Distance between block and mesh by another program (GJK): all triangles against the hull of the
+/// corners at that time.
 fn gap_m(terrain: &Terrain, flight: &BlockFlight, t: f64) -> f64 {
     let pose = flight.pose(t);
     let into = |p: &Vec3| Vector::new(p.x, p.y, p.z);
@@ -75,7 +76,8 @@ fn gap_m(terrain: &Terrain, flight: &BlockFlight, t: f64) -> f64 {
     nearest - flight.block.ball_m
 }
 
-/// Random tumbling flights over vertices and ridges: nothing is touched before the time that is found, and then it is.
+/// Random tumbling flights over peaks and ridges: nothing is touched before the time found, and at
+/// that time there is a contact.
 #[test]
 fn no_touch_is_missed() {
     let (terrain, blocks) = (rough(), blocks());
@@ -113,8 +115,8 @@ fn no_touch_is_missed() {
     assert!(missed == 0 && worst < 1e-6, "{missed} missed, {worst:e} m off at a touch");
 }
 
-/// By how much the line through two points is further off the one through `e` along a unit vector `w` than `ball`, times the size of `u × w`,
-/// and that.
+/// Distance of two lines less `ball`, times the size of `u × w`, and that size: one line through
+/// two points, the other through `e` along a unit vector `w`.
 fn between_lines([a, b]: [Vec3; 2], (e, w): (&Vec3, &Vec3), ball: f64) -> (f64, f64) {
     let across = (b - a).cross(w);
     ((a - e).dot(&across).abs() - ball * across.norm(), across.norm())
@@ -131,7 +133,7 @@ fn search<'a>(
     WindowSearch { terrain, flight, ahead, bounds, state, corners, tested }
 }
 
-/// What lies ahead of a block in a window of 1 s, among all that is near.
+/// The features ahead of a block in a window of 1 s, among all that are near.
 fn features_ahead(terrain: &Terrain, flight: &BlockFlight) -> FeaturesAhead {
     let (block, mut near) = (flight.block, Neighbours::default());
     near.collect(terrain, &flight.path.start, block.ball_m, 3.0 * block.bound_m, block.ball_m);
@@ -140,7 +142,8 @@ fn features_ahead(terrain: &Terrain, flight: &BlockFlight) -> FeaturesAhead {
     ahead
 }
 
-/// Gaps of edges and of faces are nowhere less than their bounds say, and these are near to them over short times.
+/// Gaps of edges and of faces are nowhere less than their bounds, and these are close to them over
+/// short times.
 #[test]
 fn gaps_are_no_less_than_their_bounds() {
     let (terrain, blocks) = (rough(), blocks());
@@ -190,7 +193,8 @@ fn gaps_are_no_less_than_their_bounds() {
     assert!(kept > 1000 && worst < 1e-5, "{kept} {worst:e}");
 }
 
-/// The ball of a corner that flies beside a sheet reaches through the sheet's plane, and comes to its border however that plane is left.
+/// The ball of a corner that flies beside a sheet reaches through the sheet's plane, and touches
+/// its border however it leaves that plane.
 #[test]
 fn a_corner_beside_a_sheet_comes_to_its_border() {
     let sheet = [(0.0, -5.0), (0.0, 5.0), (-8.0, 0.0)].map(|(x, y)| Vec3::new(x, y, 0.0));
@@ -209,7 +213,8 @@ fn a_corner_beside_a_sheet_comes_to_its_border() {
     assert!(step > 0.0 && step < 2.0 * block.ball_m, "{step} {}", block.ball_m);
 }
 
-/// What turns low over level ground, and weighs nothing, never touches it: neither does it where times are rounded.
+/// A weightless block that rotates low over level ground never touches it, also where times are
+/// rounded.
 #[test]
 fn what_rounding_leaves_of_a_window_is_no_touch() {
     let [a, b, c, d] =
@@ -233,8 +238,9 @@ fn what_rounding_leaves_of_a_window_is_no_touch() {
     }
 }
 
-/// A block that turns about a peak under one of its edges, a hair's breadth off it, does not come nearer: nor do the ends of the edge, one of
-/// which moves towards a plane through the peak that stands still, say that it soon may.
+/// A block that rotates about a peak just below one of its edges does not approach it. The ends of
+/// the edge must not report an approach either, though one of them moves towards a plane through
+/// the peak that is fixed to the terrain.
 #[test]
 fn a_block_that_turns_about_a_peak_keeps_off_it() {
     let peak = Vec3::zeros();

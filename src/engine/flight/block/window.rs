@@ -1,4 +1,4 @@
-//! How long the parts of a block surely keep off what is near it.
+//! How long the parts of a block certainly stay clear of the near features.
 
 use super::ahead::{FeatureAhead, FeaturesAhead, TriangleAhead};
 use super::clearance::{Clearance, PointMotion};
@@ -8,11 +8,11 @@ use crate::contact::closest::closest_on;
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
 
-/// A time is short that is less than this share of the one asked for (–): a block that hangs on a peak or an edge by a hair's breadth would
-/// be followed in ever so many of them.
+/// A safe time below this share of the one asked for is short (–) and is improved: a block that
+/// hangs over a vertex or an edge by a hair would otherwise need very many of them.
 const SHORT_SHARE: f64 = 0.01;
 
-/// The search of a window at one moment.
+/// The search of a window, at one state of the flight.
 pub(super) struct WindowSearch<'a> {
     pub(super) terrain: &'a Terrain,
     pub(super) flight: &'a BlockFlight<'a>,
@@ -24,17 +24,17 @@ pub(super) struct WindowSearch<'a> {
     pub(super) tested: &'a mut u64,
 }
 
-/// The corners of a block in flight, worked out once a moment for all parts that ask for them.
+/// The motions of a block's corners, computed once per time for all parts that need them.
 #[derive(Debug, Default)]
 pub(super) struct CornerMotions {
-    /// Each corner at the time (s) at which it was last asked for.
+    /// For each corner the time (s) of its last evaluation and its motion then.
     known: Vec<(f64, PointMotion)>,
-    /// Those of a face.
+    /// Work space: the corners of one face.
     of_face: Vec<PointMotion>,
 }
 
 impl CornerMotions {
-    /// Begins another flight, of a block with so many corners.
+    /// Prepares for another flight, of a block with `count` corners.
     pub(super) fn begin(&mut self, count: usize) {
         self.known.clear();
         self.known.resize(count, (f64::NAN, PointMotion::NONE));
@@ -42,7 +42,8 @@ impl CornerMotions {
 }
 
 impl WindowSearch<'_> {
-    /// A vector of the block's frame in that of the terrain, with its first and second rate.
+    /// A vector of the block's frame in that of the terrain, with its first and second time
+    /// derivatives.
     pub(super) fn turned(&self, own: &Vec3) -> [Vec3; 3] {
         let FlightState { pose, spin, angular, .. } = &self.state;
         let arm = pose.attitude * own;
@@ -50,7 +51,7 @@ impl WindowSearch<'_> {
         [arm, turning, angular.cross(&arm) + spin.cross(&turning)]
     }
 
-    /// The block's centre.
+    /// Motion of the block's centre.
     pub(super) fn centre(&self) -> PointMotion {
         let (path, FlightState { pose, velocity, .. }) = (&self.flight.path, &self.state);
         let acceleration = Vec3::new(0.0, 0.0, -path.gravity);
@@ -76,7 +77,8 @@ impl WindowSearch<'_> {
         motion
     }
 
-    /// Whether nothing of the block meets a feature, and what is listed behind it, within `least` (s).
+    /// Whether no part of the block touches a feature, and those listed after it, within `least`
+    /// (s).
     #[inline]
     fn is_later<T>(&self, ahead: &FeatureAhead<T>, least: f64) -> bool {
         ahead.from_s >= self.state.time_s + least
@@ -87,7 +89,7 @@ impl WindowSearch<'_> {
         TOUCHING * self.flight.block.radius_m
     }
 
-    /// How long all these corners surely keep off a plane (s), no longer than `most`.
+    /// How long all these corners certainly stay on their side of a plane (s), at most `most`.
     fn off_plane(&self, corners: &[PointMotion], plane: (&Vec3, &Vec3), most: f64) -> f64 {
         let (ball, touching) = (self.flight.block.ball_m, self.touching());
         corners.iter().fold(most, |least, corner| {
@@ -95,7 +97,7 @@ impl WindowSearch<'_> {
         })
     }
 
-    /// How long a part surely touches nothing (s), no longer than `most`.
+    /// How long a part certainly touches nothing (s), at most `most`.
     pub(super) fn safe_step(&mut self, part: BlockPart, most: f64) -> f64 {
         match part {
             BlockPart::Corner(k) => self.of_corner(k, most),
@@ -104,10 +106,11 @@ impl WindowSearch<'_> {
         }
     }
 
-    /// The longer of two times (s) for which a part keeps off a feature: one that is known, and what a gap that is never wider than theirs tells.
+    /// The longer of two times (s) for which a part stays clear of a feature: a known one, and that
+    /// of a gap which is never larger than theirs.
     fn open_at_least(&self, known_s: f64, gap: Option<Clearance>, most: f64) -> f64 {
         let touching = self.touching();
-        // lines and planes may meet where edges and faces do not: that tells nothing
+        // lines and planes may intersect where edges and faces do not: that proves nothing
         let gap = gap.filter(|gap| gap.gap_m >= -touching);
         gap.map_or(known_s, |gap| gap.open_time_s(touching, most).max(known_s))
     }
@@ -122,33 +125,36 @@ impl WindowSearch<'_> {
             *self.tested += 1;
             let TriangleAhead { id, a, n } = &ahead.feature;
             let side = if n.dot(&(corner.p - a)) < 0.0 { -n } else { *n };
-            // the plane is never farther than the triangle; one that the ball reaches through beside it tells nothing
+            // the plane is never farther than the triangle; if the ball reaches through the plane
+            // beside the triangle, that proves nothing
             let gap = Clearance::of_corner(&corner, ball, (&side, a));
             if gap.stays_open(touching, least) || self.open_at_least(0.0, Some(gap), least) >= least
             {
                 continue;
             }
-            // the true distance of a convex set is never less than that of its own supporting plane
-            // at the nearest point
+            // the distance from a convex set is never less than that from its supporting plane at
+            // the nearest point
             let q = closest_on(&self.terrain.corners_m(*id), &corner.p);
-            // a corner exactly on the triangle has no direction: the plane's normal on its side
-            // stands in
+            // a corner exactly on the triangle has no direction: the plane's normal on its side is
+            // used instead
             let n = (corner.p - q).try_normalize(0.0).unwrap_or(side);
             least = Clearance::of_corner(&corner, ball, (&n, &q)).open_time_s(touching, least);
         }
         least
     }
 
-    /// The gap of a point of the mesh from a plane of the block with a normal and a level (m), as far as `most` (s).
+    /// The gap between a point of the mesh and a plane of the block with a normal and a level (m),
+    /// for at most `most` (s).
     fn to_own_plane(&self, plane: (&Vec3, f64), point: &Vec3, most: f64) -> Clearance {
         let moving = (&self.centre(), |own: &Vec3| self.turned(own));
         let ball = self.flight.block.ball_m;
         Clearance::of_own_plane((plane, ball), point, moving, (&self.bounds, most))
     }
 
-    /// How long some corners, with all between them, surely keep off points of the mesh and all between those (s), no longer than `most`:
-    /// asked where little is `known_s`. The plane square to `n`, from the block to them, is fixed to the block here: one that turns about where
-    /// it touches does not come nearer, while its corners come nearer to a plane of the terrain.
+    /// How long the hull of some corners certainly stays clear of the hull of points of the mesh
+    /// (s), at most `most`; evaluated only if `known_s` is short. The plane normal to `n`, from the
+    /// block to the points, is fixed to the block here. A block that rotates about its contact does
+    /// not approach in this measure, while its corners do approach a plane fixed to the terrain.
     fn off_own_plane(
         &self,
         corners: &[u8],
@@ -168,15 +174,15 @@ impl WindowSearch<'_> {
         found_s.max(known_s)
     }
 
-    /// An edge of the block: with `n` from the nearest points of two segments, the plane square to
-    /// `n` keeps both apart, and the ridge stays on its side as long as both its ends do. Nor do the
-    /// edges meet before the endless lines along them do.
+    /// An edge of the block. With `n` from the nearest points of two segments, the plane normal to
+    /// `n` separates both, and the ridge stays on its side as long as both its ends do. Nor do the
+    /// edges touch before the infinite lines along them do.
     fn of_ridge(&mut self, k: usize, mut least: f64) -> f64 {
         let ends =
             self.flight.block.core.ridges[k].ends.map(|end| self.corner_motion(usize::from(end)));
         let [a, b] = ends;
         let (middle, half) = ((a.p + b.p) * 0.5, 0.5 * (b.p - a.p).norm());
-        let bend = a.max_acceleration.max(b.max_acceleration);
+        let max_acceleration = a.max_acceleration.max(b.max_acceleration);
         let fastest = a.velocity.norm().max(b.velocity.norm());
         let ball = self.flight.block.ball_m;
         let around = half + ball;
@@ -185,9 +191,10 @@ impl WindowSearch<'_> {
                 break;
             }
             // the edge's distance from the ridge's middle less half a ridge: a lower bound without
-            // the nearest points; far away whatever the directions
+            // the nearest points; distant edges are skipped whatever the directions
             let edge = &ahead.feature;
-            let far = (around + least * (fastest + 0.5 * bend * least)) * (1.0 + ROUNDING_MARGIN);
+            let far = (around + least * (fastest + 0.5 * max_acceleration * least))
+                * (1.0 + ROUNDING_MARGIN);
             if (middle - edge.nearest_to(&middle)).norm_squared() > far * far {
                 continue;
             }
@@ -206,8 +213,8 @@ impl WindowSearch<'_> {
         least
     }
 
-    /// A face of the block against a vertex of the mesh: nearest point over a fan of triangles,
-    /// then the bound for all corners of the face, or that of the vertex for the face's plane.
+    /// A face of the block against the vertices of the mesh: nearest point on a fan of triangles,
+    /// then the bound for all corners of the face, or that of the vertex against the face's plane.
     fn of_face(&mut self, k: usize, most: f64) -> f64 {
         let mut corners = std::mem::take(&mut self.corners.of_face);
         corners.clear();
@@ -220,7 +227,8 @@ impl WindowSearch<'_> {
 
     fn of_fan(&self, face: &HullFace, corners: &[PointMotion], mut least: f64) -> f64 {
         let most = |of: fn(&PointMotion) -> f64| corners.iter().map(of).fold(0.0, f64::max);
-        let (bend, fastest) = (most(|c| c.max_acceleration), most(|c| c.velocity.norm()));
+        let (max_acceleration, fastest) =
+            (most(|c| c.max_acceleration), most(|c| c.velocity.norm()));
         let middle = corners.iter().map(|c| c.p).sum::<Vec3>() / corners.len() as f64;
         let around = corners.iter().map(|c| (c.p - middle).norm_squared()).fold(0.0, f64::max);
         let skin = self.flight.block.ball_m + TOUCHING * self.flight.block.radius_m;
@@ -229,29 +237,30 @@ impl WindowSearch<'_> {
             if self.is_later(ahead, least) {
                 break;
             }
-            let peak = &ahead.feature;
-            // far away: whatever the directions
-            let far = around + least * (fastest + 0.5 * bend * least) * (1.0 + ROUNDING_MARGIN);
-            if (peak - middle).norm_squared() * (1.0 - ROUNDING_MARGIN) > far * far {
+            let vertex = &ahead.feature;
+            // distant vertices are skipped whatever the directions
+            let far = around
+                + least * (fastest + 0.5 * max_acceleration * least) * (1.0 + ROUNDING_MARGIN);
+            if (vertex - middle).norm_squared() * (1.0 - ROUNDING_MARGIN) > far * far {
                 continue;
             }
             let nearest = (1..corners.len() - 1)
-                .map(|k| closest_on(&[corners[0].p, corners[k].p, corners[k + 1].p], peak))
-                .min_by(|a, b| (a - peak).norm_squared().total_cmp(&(b - peak).norm_squared()));
-            let Some(n) = nearest.and_then(|p| (p - peak).try_normalize(0.0)) else { continue };
-            let off_plane = self.off_plane(corners, (&n, peak), least);
+                .map(|k| closest_on(&[corners[0].p, corners[k].p, corners[k + 1].p], vertex))
+                .min_by(|a, b| (a - vertex).norm_squared().total_cmp(&(b - vertex).norm_squared()));
+            let Some(n) = nearest.and_then(|p| (p - vertex).try_normalize(0.0)) else { continue };
+            let off_plane = self.off_plane(corners, (&n, vertex), least);
             if off_plane < least {
-                let gap = self.to_own_plane((&face.normal, face.level), peak, least);
+                let gap = self.to_own_plane((&face.normal, face.level), vertex, least);
                 let known_s = self.open_at_least(off_plane, Some(gap), least);
-                least = self.off_own_plane(&face.corners, (&-n, &[*peak]), (known_s, least));
+                least = self.off_own_plane(&face.corners, (&-n, &[*vertex]), (known_s, least));
             }
         }
         least
     }
 }
 
-/// The nearest points of two segments (Ericson, Real-Time Collision Detection, 5.1.9).
-/// As `closest::segments_distance2`, but it tells the points: `n` is wanted, not only the distance.
+/// The nearest points of two segments (Ericson, Real-Time Collision Detection, 5.1.9). As
+/// `closest::segments_distance2`, but with the points, from which the direction `n` follows.
 fn nearest_of_segments((p1, q1): (Vec3, Vec3), (p2, q2): (Vec3, Vec3)) -> (Vec3, Vec3) {
     let (d1, d2, r) = (q1 - p1, q2 - p2, p1 - p2);
     let (a, e, f) = (d1.norm_squared(), d2.norm_squared(), d2.dot(&r));

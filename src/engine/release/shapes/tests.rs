@@ -1,6 +1,7 @@
 use super::*;
 
-/// Turns drawn are uniform: every entry of the matrix has mean 0 and mean square 1/3, within five standard errors.
+/// Drawn rotations are uniform: every entry of the matrix has mean 0 and mean square 1/3, within
+/// five standard errors.
 #[test]
 fn turns_are_uniform() {
     let (mut mean, mut square) = (0.0, 0.0);
@@ -15,8 +16,8 @@ fn turns_are_uniform() {
     assert!((square - 1.0 / 3.0).abs() < 5.0 * 0.298 / (n as f64).sqrt(), "{square}");
 }
 
-/// Sides that are drawn are tried with each other's ends: with corners of 0.3, a cube and a bar have a core left, a slab has none, and it must
-/// not be met as a sphere.
+/// Drawn sides are tested in all combinations of their ends: with corners of 0.3 a cube and a bar
+/// have a core left, a slab has none, and it must not be treated as a sphere.
 #[test]
 fn sides_are_tried_with_each_others_ends() {
     let table = |axes: &str, ball: f64| -> ShapeTable {
