@@ -32,9 +32,11 @@ pub enum ShapeKind {
     Sphere,
     /// EOTA's test block of equal sides, 26 faces (ETAG 027).
     Eota111,
+    /// The same at half the thickness: a wheel.
     Eota221,
     /// A box.
     Box,
+    /// An ellipsoid, represented by 42 points of its surface.
     Ellipsoid,
     /// A straight prism over a regular polygon.
     Prism,

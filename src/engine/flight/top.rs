@@ -43,6 +43,7 @@ pub struct Top {
     start: Rotation3<f64>,
     /// Principal moments (kg m²).
     inertia: [f64; 3],
+    /// Angular momentum in the world's frame (kg m²/s).
     momentum: Vec3,
     /// Power series of the rotation near the start, for three unequal moments.
     series: Option<RotationSeries>,

@@ -122,6 +122,7 @@ fn starts_near(face: &Face, flight: &Parabola, h0: f64) -> bool {
 struct BoundaryFeatures {
     /// Bits 0–2 edges, bits 3–5 corners.
     owned: u8,
+    /// Heights of the centre over the triangle's plane at a contact (m).
     heights: (f64, f64),
     /// Largest distance of the centre beside the triangle (m).
     lateral_m: f64,
@@ -219,6 +220,7 @@ fn boundary_impact_s(
 
 /// Height of the centre over a plane, a quadratic in time.
 struct Height {
+    /// Height at time 0 (m).
     h0: f64,
     /// Its rate at time 0 (m/s).
     h1: f64,

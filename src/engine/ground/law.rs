@@ -55,6 +55,7 @@ pub struct Law {
     pub(crate) shear: FrictionElement,
     /// Friction against rolling.
     pub(crate) rolling: FrictionElement,
+    /// Critical dashpots along the surface (N s/m) and of rolling (N m s/rad).
     critical: [f64; 2],
     /// Impacts slower than this do not rebound (m/s).
     pub capture_m_s: f64,

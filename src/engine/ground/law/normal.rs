@@ -19,6 +19,7 @@ const ROUNDING_RATIO: f64 = 1e-9;
 /// Spring and dashpot in force.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct NormalElement {
+    /// Stiffness `p_N` (N/m).
     pub(super) p_n: f64,
     /// Damping `c_N` (N s/m).
     pub(super) c_n: f64,
