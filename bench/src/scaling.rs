@@ -1,7 +1,7 @@
 //! Cost against the number of rocks that share one world: spheres fall onto the ridge between two open boxes.
 
 use crate::speed::machine::status_bytes;
-use rockfall::contact::pair::Strength;
+use rockfall::contact::pair::BondStrength;
 use rockfall::ground::Ground;
 use rockfall::math;
 use rockfall::plan::{Recorders, RestRule};
@@ -198,8 +198,10 @@ pub fn world(scheme: Scheme, spheres: usize, (longest_s, before): (f64, Option<u
         seed: 1,
     };
     let releases = heap(spheres, size, terrain.origin_m);
-    let answer =
-        PairMaterial { ground: GROUND, strength: Strength { tensile_pa: 0.0, cohesion_pa: 0.0 } };
+    let answer = PairMaterial {
+        ground: GROUND,
+        strength: BondStrength { tensile_pa: 0.0, cohesion_pa: 0.0 },
+    };
     let keep = |_| Keep { path_step_s: None, impacts: false };
     let never = AtomicBool::new(false);
     // Linux forgets the largest memory so far when asked to; where it cannot, the number is left out.

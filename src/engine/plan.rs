@@ -22,11 +22,11 @@ pub use listing::PlanEntry;
 pub use recorders::{EvaluationLine, Footprint, LinePiece, MapGrid, Recorders};
 pub use stiffness::{FastWarning, OwnDissipation};
 
-use crate::contact::pair::Strength;
+use crate::contact::pair::BondStrength;
 use crate::error::Result;
 use crate::ground::Ground;
 use crate::random::Distribution;
-use crate::release::{Lost, Release, Releases};
+use crate::release::{FailedRelease, Release, Releases};
 use crate::scene::{self, BarrierTable, InputFile, Language, ObjectTable, RecordTable};
 use crate::scene::{MeasuredEnds, Scene};
 use crate::solver::Settings;
@@ -148,7 +148,7 @@ pub struct Plan {
     /// One system of equations for all rocks that touch.
     pub coupled_solve: Part<()>,
     /// Bonds between rocks that touch at the start.
-    pub bonds: Part<Strength>,
+    pub bonds: Part<BondStrength>,
     /// Kept paths.
     pub paths: Part<Paths>,
     /// Kept impacts.
@@ -336,7 +336,7 @@ impl Plan {
     ///
     /// # Errors
     /// As [`Self::release`].
-    pub fn try_release(&self, index: usize) -> std::result::Result<Release, Box<Lost>> {
+    pub fn try_release(&self, index: usize) -> std::result::Result<Release, Box<FailedRelease>> {
         self.releases.try_release(&self.terrain, index)
     }
 

@@ -1,9 +1,9 @@
-//! Rock number i: drawn from the scene, the seed and i, and put on the terrain.
+//! Release number i: drawn from the scene, the seed and i, and placed on the terrain.
 
-mod clear;
+mod clearance;
 mod shapes;
 mod sources;
-mod tried;
+mod trial;
 
 use crate::error::{Error, Result};
 use crate::frequency::Frequency;
@@ -12,19 +12,19 @@ use crate::random::{Distribution, Purpose, RandomStream, stream, unit};
 use crate::rock::{Motion, Rock, Vec3};
 use crate::scene::{Area, Corner, GroundTable, Polyline, ReleasePoint, Scene, SourceTable, Zones};
 use crate::terrain::Terrain;
-use clear::{clear_of, is_in_slope};
+use clearance::{is_in_slope, lifted_clear};
 use shapes::Shapes;
 pub use shapes::{DrawnShape, check_shapes};
 use std::path::PathBuf;
 
-/// How deep a rock may sit in the ground at its release, over its radius (–): coordinates are typed with
-/// six or seven digits, and so deep a spring holds no energy worth naming.
+/// Depth to which a rock may sit in the ground at its release, over its radius (–): coordinates are
+/// typed with six or seven digits, and a spring so deep stores no energy of note.
 pub(crate) const TYPED_DEPTH: f64 = 1e-6;
 
-/// Places drawn for one release on a line or in an area before it is given up: where a tenth of the zone can be used, one
-/// release in 40 000 is.
-const MOST_DRAWS: usize = 100;
-/// Narrower in plan view than this (m), meshes are walls or dust, no ground.
+/// Places drawn for one release on a line or in an area before it is given up: if a tenth of the
+/// zone is usable, that happens to one release in 40 000.
+const MAX_PLACE_DRAWS: usize = 100;
+/// Meshes narrower than this in plan view (m) are walls or dust, not ground.
 pub(crate) const NO_WIDTH_M: f64 = 1e-3;
 /// Why a release cannot be made.
 const NO_GROUND: &str = "no ground below";
@@ -42,23 +42,23 @@ pub struct Release {
     pub grounds: Vec<Ground>,
 }
 
-/// A release that cannot be made: the rock, and where it was to start (NaN what is not known of it).
+/// A release that cannot be made: the rock, and where it was to start (NaN for what is unknown).
 #[derive(Debug)]
-pub struct Lost {
+pub struct FailedRelease {
     /// The rock.
     pub rock: Rock,
-    /// Where it was to start (local coordinates).
+    /// Its intended start (local coordinates).
     pub start: Motion,
-    /// Why not, in few words.
-    pub why: &'static str,
-    /// The message for its user.
+    /// The reason, in few words.
+    pub reason: &'static str,
+    /// The error message.
     error: Error,
 }
 
-/// Where rocks are released, in map coordinates.
+/// The place where rocks are released, in map coordinates.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Where {
-    /// At these points, one after the other and again from the first.
+pub enum ReleasePlace {
+    /// At these points in turn, repeatedly.
     Points(Vec<ReleasePoint>),
     /// Uniform along a line.
     Line(Polyline),
@@ -68,14 +68,14 @@ pub enum Where {
     Zones(Zones),
 }
 
-/// A release tried at one place after the other.
-struct TriedPlace {
-    release: std::result::Result<Release, Box<Lost>>,
-    /// Places drawn for it.
+/// The outcome of drawing places for one release.
+struct PlacementAttempt {
+    release: std::result::Result<Release, Box<FailedRelease>>,
+    /// Number of places drawn.
     drawn: usize,
-    /// Places among them in ground so steep that no height is clear of it.
+    /// Number of those on ground so steep that no height is clear of it.
     steep: usize,
-    /// How far it was lifted off steep ground (m).
+    /// Height by which it was lifted off steep ground (m).
     lift_m: f64,
 }
 
@@ -85,15 +85,15 @@ pub struct Releases {
     file: PathBuf,
     seed: u64,
     gravity_m_s2: f64,
-    /// One, or one for each source; zones that are sources are one.
-    places: Vec<Where>,
+    /// One place, or one for each source; zones that are sources are one place.
+    places: Vec<ReleasePlace>,
     zones_are_sources: bool,
     height_m: Option<Distribution>,
     velocity_m_s: [Distribution; 3],
     spin_rad_s: [Distribution; 3],
     radius_m: Distribution,
     frequency: Option<Frequency>,
-    /// Radii of a table's blocks, taken in turn with their places (m); empty if they are drawn.
+    /// Radii of a table's blocks, used in turn with their places (m); empty if radii are drawn.
     radii_m: Vec<f64>,
     density_kg_m3: f64,
     grounds: Vec<GroundTable>,
@@ -101,22 +101,23 @@ pub struct Releases {
 }
 
 impl Releases {
-    /// Takes what a release needs from the scene and looks whether the corners of its place lie on the
-    /// terrain, and whether the first rock from each point is clear of it.
+    /// Takes what a release needs from the scene. Checks whether the corners of its place lie on
+    /// the terrain, and whether the first rock from each point is clear of it.
     ///
     /// # Errors
-    /// A point or corner of the place with no ground below, or a rock that starts in ground or tree, with its
-    /// coordinates.
+    /// A point or corner of the place without ground below, or a rock that starts in ground or
+    /// tree, with its coordinates.
     pub fn compile(scene: &Scene, terrain: &Terrain) -> Result<Self> {
         let asked = &scene.release;
         let sources = scene.frequency.as_ref().map_or(&[][..], |table| &table.sources[..]);
         let places = if !asked.blocks.is_empty() {
-            vec![Where::Points(asked.blocks.iter().map(ReleasePoint::of_block).collect())]
+            vec![ReleasePlace::Points(asked.blocks.iter().map(ReleasePoint::of_block).collect())]
         } else if sources.is_empty() {
             vec![Self::place_asked(scene)?]
         } else {
-            let of_source =
-                |one: &SourceTable| Where::one_of((&one.points_m, &one.line_m, &one.polygon_m));
+            let of_source = |one: &SourceTable| {
+                ReleasePlace::one_of((&one.points_m, &one.line_m, &one.polygon_m))
+            };
             sources.iter().filter_map(of_source).collect()
         };
         let releases = Self {
@@ -135,32 +136,35 @@ impl Releases {
             grounds: scene.grounds.values().cloned().collect(),
             shapes: Shapes::compile(scene)?,
         };
-        releases.look_for_ground(terrain)?;
-        for index in 0..releases.turns().min(asked.count) {
+        releases.check_ground(terrain)?;
+        for index in 0..releases.fixed_cycle().min(asked.count) {
             releases.release(terrain, index)?;
         }
         Ok(releases)
     }
 
-    /// The zone from which release `index` starts, by its place in [`Zones::list`]; none where the scene has no zones.
+    /// The zone from which release `index` starts, by its position in [`Zones::list`]; `None` if
+    /// the scene has no zones.
     pub fn zone_of(&self, index: usize) -> Option<usize> {
         self.draw_zone(&mut stream(self.seed, Purpose::Place, index), index)
     }
 
-    /// Draws the zone of a release, the first number of its stream: a place that cannot be used is drawn again in the same
-    /// one, so that every zone keeps its share. A zone that is a source has its own releases.
+    /// Draws the zone of a release, the first number of its stream: an unusable place is drawn
+    /// again in the same zone, so that every zone keeps its share. A zone that is a source has its
+    /// own releases.
     fn draw_zone(&self, random: &mut RandomStream, index: usize) -> Option<usize> {
-        let Where::Zones(zones) = self.place_of(index).0 else { return None };
+        let ReleasePlace::Zones(zones) = self.place_of(index).0 else { return None };
         let drawn = zones.pick(unit(random));
         let source = self.frequency.as_ref().filter(|_| self.zones_are_sources);
         Some(source.map_or(drawn, |frequency| frequency.stratum(index).source))
     }
 
-    /// Looks for ground below a point, or beside a centre given with its height. Corners of lines and areas may lie over a hole.
+    /// Checks for ground below a point, or beside a centre given with its height. Corners of lines
+    /// and areas may lie over a hole.
     fn check_corner(
         &self,
         terrain: &Terrain,
-        (place, entry): (&Where, usize),
+        (place, entry): (&ReleasePlace, usize),
         at_m: Corner,
         who: &str,
     ) -> Result<()> {
@@ -168,12 +172,12 @@ impl Releases {
         let (low, high) = terrain.index.bounds();
         let is_inside = (low.x..=high.x).contains(&x) && (low.y..=high.y).contains(&y);
         let height_m = match place {
-            Where::Points(points) => points[entry].height_m,
+            ReleasePlace::Points(points) => points[entry].height_m,
             _ if is_inside => return Ok(()),
             _ => None,
         };
         let Some(z) = height_m else { return self.ground_m(terrain, at_m, who).map(|_| ()) };
-        let radius_m = self.around_m(entry, &self.unplaced(entry).rock);
+        let radius_m = self.around_m(entry, &self.release_without_place(entry).rock);
         self.check_held(terrain, (Vec3::new(x, y, z - terrain.origin_m.z), radius_m), at_m, who)
     }
 
@@ -186,7 +190,7 @@ impl Releases {
         self.try_release(terrain, index).map_err(|lost| lost.error)
     }
 
-    /// The same, or what is known of a rock that finds no place to start from.
+    /// The same, or what is known of a rock for which no place to start is found.
     ///
     /// # Errors
     /// As [`Self::release`].
@@ -194,27 +198,29 @@ impl Releases {
         &self,
         terrain: &Terrain,
         index: usize,
-    ) -> std::result::Result<Release, Box<Lost>> {
+    ) -> std::result::Result<Release, Box<FailedRelease>> {
         self.place_rock(terrain, index).release
     }
 
-    /// Draws a rock and a place for it. On a line or in an area a place without ground, or without room for the rock,
-    /// is drawn again: rocks are released uniformly over what is left. Says how many places were drawn.
-    fn place_rock(&self, terrain: &Terrain, index: usize) -> TriedPlace {
-        let mut release = self.unplaced(index);
+    /// Draws a rock and a place for it. On a line or in an area a place without ground, or without
+    /// room for the rock, is drawn again: rocks are released uniformly over the usable part.
+    fn place_rock(&self, terrain: &Terrain, index: usize) -> PlacementAttempt {
+        let mut release = self.release_without_place(index);
         let mut random = stream(self.seed, Purpose::Place, index);
-        let is_fixed = matches!(self.place_of(index).0, Where::Points(_));
-        let draws = if is_fixed { 1 } else { MOST_DRAWS };
+        let is_fixed = matches!(self.place_of(index).0, ReleasePlace::Points(_));
+        let draws = if is_fixed { 1 } else { MAX_PLACE_DRAWS };
         let zone = self.draw_zone(&mut random, index).unwrap_or_default();
         let around_m = self.around_m(index, &release.rock);
         let (mut lost, mut steep) = (None, 0);
         for drawn in 1..=draws {
             let at_m = self.draw_place(&mut random, (index, zone));
-            let why = match self.centre(terrain, (at_m, around_m), &mut random, index) {
+            let failure = match self.centre(terrain, (at_m, around_m), &mut random, index) {
                 Ok((centre, lift_m)) => {
                     release.motion.position_m = centre;
                     match self.check_clear(terrain, (index, around_m), &release) {
-                        Ok(()) => return TriedPlace { release: Ok(release), drawn, steep, lift_m },
+                        Ok(()) => {
+                            return PlacementAttempt { release: Ok(release), drawn, steep, lift_m };
+                        }
                         Err(error) => {
                             steep += usize::from(is_in_slope(terrain, &centre, around_m));
                             (IN_GROUND, error)
@@ -228,14 +234,24 @@ impl Releases {
                 }
             };
             let (rock, start) = (release.rock, release.motion);
-            lost.get_or_insert(Box::new(Lost { rock, start, why: why.0, error: why.1 }));
+            lost.get_or_insert(Box::new(FailedRelease {
+                rock,
+                start,
+                reason: failure.0,
+                error: failure.1,
+            }));
         }
         // at least one place was drawn
-        TriedPlace { release: lost.map_or(Ok(release), Err), drawn: draws, steep, lift_m: 0.0 }
+        PlacementAttempt {
+            release: lost.map_or(Ok(release), Err),
+            drawn: draws,
+            steep,
+            lift_m: 0.0,
+        }
     }
 
-    /// Everything of a release but its place.
-    fn unplaced(&self, index: usize) -> Release {
+    /// A release without its place.
+    fn release_without_place(&self, index: usize) -> Release {
         let grounds = self.draw_grounds(index);
         let rock = Rock { radius_m: self.draw_radius_m(index), density_kg_m3: self.density_kg_m3 };
         let mut random = stream(self.seed, Purpose::Start, index);
@@ -248,23 +264,25 @@ impl Releases {
         Release { rock, motion, grounds }
     }
 
-    /// A place on the map, in a zone if there are some, and the height of the rock's centre where it is given.
+    /// A place on the map, in a zone if there are zones, and the height of the rock's centre if it
+    /// is given.
     fn draw_place(&self, random: &mut RandomStream, of: (usize, usize)) -> (Corner, Option<f64>) {
         let (index, zone) = of;
         let even = [0; 3].map(|_| unit(random));
         let (place, turn) = self.place_of(index);
         match place {
-            Where::Points(points) => {
+            ReleasePlace::Points(points) => {
                 let point = &points[turn % points.len()];
                 (point.at_m, point.height_m)
             }
-            Where::Line(line) => (line.at(even[0]), None),
-            Where::Area(area) => (area.at(even), None),
-            Where::Zones(zones) => (zones.list()[zone].at(even), None),
+            ReleasePlace::Line(line) => (line.at(even[0]), None),
+            ReleasePlace::Area(area) => (area.at(even), None),
+            ReleasePlace::Zones(zones) => (zones.list()[zone].at(even), None),
         }
     }
 
-    /// The centre of a rock over a place (m, local), and how far it is lifted off steep ground for it (m).
+    /// The centre of a rock over a place (m, local), and the height by which it is lifted off steep
+    /// ground (m).
     fn centre(
         &self,
         terrain: &Terrain,
@@ -281,11 +299,12 @@ impl Releases {
         let ground_m = self.ground_m(terrain, at_m, &release_name(index))?;
         let gap_m = self.height_m.as_ref().map_or(0.0, |height| height.draw(random));
         let asked = Vec3::new(x, y, ground_m + gap_m + radius_m);
-        let centre = clear_of(terrain, asked, radius_m);
+        let centre = lifted_clear(terrain, asked, radius_m);
         Ok((centre, centre.z - asked.z))
     }
 
-    /// A centre given with its height may hang beyond the edge of the terrain where the rock touches it.
+    /// Checks a centre given with its height: it may be beyond the edge of the terrain if the rock
+    /// touches the terrain.
     fn check_held(
         &self,
         terrain: &Terrain,
@@ -311,7 +330,8 @@ impl Releases {
 
     fn draw_grounds(&self, index: usize) -> Vec<Ground> {
         let mut random = stream(self.seed, Purpose::Grounds, index);
-        // How a block rolls is its shape, which it keeps: the same quantile on every ground.
+        // How a block rolls depends on its shape, which it keeps: the same quantile on every
+        // ground.
         let mut character = None;
         let draw_ground = |table: &GroundTable| {
             let normal_stiffness_n_m = table.normal_stiffness_n_m.draw(&mut random);
@@ -352,7 +372,7 @@ fn local(terrain: &Terrain, [x, y]: Corner) -> Corner {
     [x - terrain.origin_m.x, y - terrain.origin_m.y]
 }
 
-/// What to write instead of a place outside: the box of the terrain on the map.
+/// Remedy for a place outside the terrain: its bounding box on the map.
 pub(crate) fn outside(terrain: &Terrain) -> String {
     let (low, high) = terrain.index.bounds();
     let narrowest_m = (high.x - low.x).min(high.y - low.y);

@@ -5,7 +5,7 @@ use super::vector::GeoJsonFile;
 use crate::error::{Error, Result};
 use crate::file::write_atomic;
 use crate::plan::{Part, Plan};
-use crate::release::{Releases, Where};
+use crate::release::{ReleasePlace, Releases};
 use crate::scene::{Area, BarrierTable, Corner, Polyline, Zone, ZonePlace};
 use crate::terrain::geotiff::{Image, encode};
 use serde_json::{Value, json};
@@ -80,17 +80,17 @@ fn of_line(name: &str, barrier: Option<&BarrierTable>) -> Value {
 }
 
 /// Geometry and properties of every place of release.
-fn places(place: &Where, releases: &Releases) -> Vec<(Value, Value)> {
+fn places(place: &ReleasePlace, releases: &Releases) -> Vec<(Value, Value)> {
     match place {
-        Where::Points(points) => {
+        ReleasePlace::Points(points) => {
             let points: Vec<Corner> = points.iter().map(|point| point.at_m).collect();
             vec![(json!({ "type": "MultiPoint", "coordinates": points }), json!({}))]
         }
-        Where::Line(line) => vec![(line_string(line.corners_m()), json!({}))],
-        Where::Area(area) => {
+        ReleasePlace::Line(line) => vec![(line_string(line.corners_m()), json!({}))],
+        ReleasePlace::Area(area) => {
             vec![(json!({ "type": "Polygon", "coordinates": rings(area) }), json!({}))]
         }
-        Where::Zones(zones) => {
+        ReleasePlace::Zones(zones) => {
             let zone = |(number, zone): (usize, &Zone)| {
                 let share = releases.share_of_zone(zones, number);
                 let mut properties = json!({ "name": zone.name, "share": share });

@@ -6,7 +6,7 @@ use crate::frequency::Frequency;
 use crate::hazard::{Barrier, Elsewhere, LineInfo, MapFrame, Rule};
 use crate::output::{ReleaseZone, Site};
 use crate::plan::{self, EvaluationLine, Plan};
-use crate::release::Where;
+use crate::release::ReleasePlace;
 use crate::scene::{self, Area, BarrierTable, DesignTable, Polyline, ZonePlace};
 
 /// Where meshes and releases lie.
@@ -30,7 +30,7 @@ pub(super) fn site(plan: &Plan) -> Site {
 }
 
 /// Outlines of a place of release, each with the name of its zone or of the place.
-fn zones(place: &Where, name: &str) -> Vec<(String, ReleaseZone)> {
+fn zones(place: &ReleasePlace, name: &str) -> Vec<(String, ReleaseZone)> {
     let line = |line: &Polyline| ReleaseZone::Line(line.corners_m().to_vec());
     let area = |area: &Area| ReleaseZone::Polygon(area.corners_m().to_vec());
     let drawn = |one: &scene::Zone| -> Vec<(String, ReleaseZone)> {
@@ -42,12 +42,12 @@ fn zones(place: &Where, name: &str) -> Vec<(String, ReleaseZone)> {
         outlines.into_iter().map(|outline| (one.name.clone(), outline)).collect()
     };
     let outline = match place {
-        Where::Points(points) => {
+        ReleasePlace::Points(points) => {
             ReleaseZone::Points(points.iter().map(|point| point.at_m).collect())
         }
-        Where::Line(one) => line(one),
-        Where::Area(one) => area(one),
-        Where::Zones(zones) => return zones.list().iter().flat_map(drawn).collect(),
+        ReleasePlace::Line(one) => line(one),
+        ReleasePlace::Area(one) => area(one),
+        ReleasePlace::Zones(zones) => return zones.list().iter().flat_map(drawn).collect(),
     };
     vec![(name.to_owned(), outline)]
 }

@@ -1,7 +1,7 @@
 //! Spheres that share one world.
 
 use super::{CASE, GROUND, terrain};
-use rockfall::contact::pair::Strength;
+use rockfall::contact::pair::BondStrength;
 use rockfall::ground::Ground;
 use rockfall::plan::{MapGrid, Recorders, RestRule};
 use rockfall::release::Release;
@@ -29,7 +29,7 @@ pub struct World {
     pub rigid_heaps: bool,
     pub ground: Ground,
     pub rest_time_s: f64,
-    pub strength: Strength,
+    pub strength: BondStrength,
     /// How many grounds there are, all alike.
     pub grounds: usize,
 }
@@ -45,7 +45,7 @@ pub const WORLD: World = World {
     rigid_heaps: true,
     ground: GROUND,
     rest_time_s: 0.3,
-    strength: Strength { tensile_pa: 0.0, cohesion_pa: 0.0 },
+    strength: BondStrength { tensile_pa: 0.0, cohesion_pa: 0.0 },
     grounds: 1,
 };
 

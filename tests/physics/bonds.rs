@@ -5,7 +5,7 @@ use crate::common;
 
 use common::together::{self, World, plane, space};
 use common::{GROUND, terrain};
-use rockfall::contact::pair::Strength;
+use rockfall::contact::pair::BondStrength;
 use rockfall::ground::{Ground, damping_ratio};
 use rockfall::rock::{Rock, Vec3};
 use rockfall::simulation::Stop;
@@ -24,7 +24,7 @@ fn a_bond_in_tension_breaks_at_its_strength() {
     let pull = 2.0 * v * (GROUND.normal_stiffness_n_m * 0.5 * m).sqrt();
     let area = std::f64::consts::PI * 0.25;
     for (share, holds) in [(1.03, true), (0.97, false)] {
-        let strength = Strength { tensile_pa: share * pull / area, cohesion_pa: 1e12 };
+        let strength = BondStrength { tensile_pa: share * pull / area, cohesion_pa: 1e12 };
         let world = World { restitution: 1.0, tolerance_m_s: 1e-5, strength, ..WORLD };
         let spheres = [free(-0.5, 0.0, [-v, 0.0, 0.0]), free(0.5, 0.0, [v, 0.0, 0.0])];
         let falls = world.falls(&space(), &spheres, 1.0);
@@ -46,7 +46,7 @@ fn a_bond_loaded_at_once_bears_what_its_spring_swings_to() {
     {
         let pull = (1.0 + restitution) * rock.mass_kg() * spin * spin * rock.radius_m;
         for (share, holds) in [(1.03, true), (0.95, false)] {
-            let strength = Strength { tensile_pa: share * pull / area, cohesion_pa: 1e9 };
+            let strength = BondStrength { tensile_pa: share * pull / area, cohesion_pa: 1e9 };
             let usual = World { tolerance_m_s: 0.05, strength, ..WORLD };
             let world = World { restitution, stiffness_n_m, ..usual };
             let sphere =
@@ -72,7 +72,7 @@ fn a_bond_of_unequal_rocks_has_the_section_of_the_smaller() {
     let pull = u * (GROUND.normal_stiffness_n_m * light * heavy / (light + heavy)).sqrt();
     let area = std::f64::consts::PI * 0.25_f64.powi(2);
     for (share, holds) in [(1.03, true), (0.97, false)] {
-        let strength = Strength { tensile_pa: share * pull / area, cohesion_pa: 1e12 };
+        let strength = BondStrength { tensile_pa: share * pull / area, cohesion_pa: 1e12 };
         let world = World { restitution: 1.0, tolerance_m_s: 1e-5, strength, ..WORLD };
         let sphere = |k: usize, x: f64, v: f64| {
             (radii_m[k], density_kg_m3, [x, 0.0, 20.0], [v, 0.0, 0.0], [0.0; 3])
@@ -89,7 +89,7 @@ fn a_bond_of_unequal_rocks_has_the_section_of_the_smaller() {
 #[test]
 fn a_bond_in_shear_breaks_at_its_cohesion() {
     for (cohesion_pa, holds) in [(1e9, true), (1e3, false)] {
-        let strength = Strength { tensile_pa: 1e9, cohesion_pa };
+        let strength = BondStrength { tensile_pa: 1e9, cohesion_pa };
         let world = World { tolerance_m_s: 1e-5, strength, ..WORLD };
         let spheres = [free(-0.5, 0.0, [0.0, -0.1, 0.0]), free(0.5, 0.0, [0.0, 0.1, 0.0])];
         let falls = world.falls(&space(), &spheres, 4.0);
@@ -103,7 +103,7 @@ fn a_bond_in_shear_breaks_at_its_cohesion() {
 /// was up, and that fall counted.
 #[test]
 fn bonded_spheres_leave_the_terrain_at_its_border() {
-    let strength = Strength { tensile_pa: 1e12, cohesion_pa: 1e12 };
+    let strength = BondStrength { tensile_pa: 1e12, cohesion_pa: 1e12 };
     let world =
         World { scheme: Scheme::Adaptive, tolerance_m_s: 0.01, gravity_m_s2: 9.81, ..WORLD };
     let spheres = [free(-0.5, 25.0, [0.0, 8.0, 0.0]), free(0.5, 25.0, [0.0, 8.0, 0.0])];
@@ -119,7 +119,7 @@ fn bonded_spheres_leave_the_terrain_at_its_border() {
 /// of equal masses, and of a heavy one and a light one that turns round it, whose centre of mass falls straight.
 #[test]
 fn bonded_spheres_strike_a_border_that_lies_ahead_of_them() {
-    let strength = Strength { tensile_pa: 1e12, cohesion_pa: 1e12 };
+    let strength = BondStrength { tensile_pa: 1e12, cohesion_pa: 1e12 };
     let world =
         World { scheme: Scheme::Adaptive, tolerance_m_s: 0.01, gravity_m_s2: 9.81, ..WORLD };
     let at = |x: f64, y: f64| Vec3::new(x, y, -10.0);
@@ -146,7 +146,7 @@ fn bonded_spheres_strike_a_border_that_lies_ahead_of_them() {
 fn a_bond_without_strength_is_a_plain_contact() {
     let spheres = [free(-0.5, 0.0, [0.3, 0.1, 0.0]), free(0.5, 0.0, [0.0; 3])];
     let plain = WORLD.falls(&space(), &spheres, 1.0);
-    let nothing = World { strength: Strength { tensile_pa: 0.0, cohesion_pa: 0.0 }, ..WORLD };
+    let nothing = World { strength: BondStrength { tensile_pa: 0.0, cohesion_pa: 0.0 }, ..WORLD };
     assert_eq!(plain, nothing.falls(&space(), &spheres, 1.0));
 }
 
@@ -198,7 +198,8 @@ fn a_bond_that_falls_bears_what_it_swings_to() {
         let section_m2 = std::f64::consts::PI * radii_m[0].min(radii_m[1]).powi(2);
         for (share, holds) in [(0.9, false), (1.1, true), (10.0, true)] {
             let pa = share * pull_n / section_m2;
-            let world = World { strength: Strength { tensile_pa: pa, cohesion_pa: pa }, ..world };
+            let world =
+                World { strength: BondStrength { tensile_pa: pa, cohesion_pa: pa }, ..world };
             let sphere = |k: usize, z: f64| {
                 (radii_m[k], 2700.0, [0.0, 0.0, z], [0.0, 0.0, -speed_m_s], [0.0; 3])
             };
@@ -222,7 +223,7 @@ fn a_bond_that_falls_bears_what_it_swings_to() {
 /// A bond that nothing damps goes on vibrating, at the usual local error: after 50 vibrations it keeps most of its energy. It kept nothing after ten.
 #[test]
 fn an_undamped_bond_vibrates_on() {
-    let strength = Strength { tensile_pa: 1e9, cohesion_pa: 1e9 };
+    let strength = BondStrength { tensile_pa: 1e9, cohesion_pa: 1e9 };
     let world = World { tolerance_m_s: 0.05, restitution: 1.0, strength, ..WORLD };
     let spheres = [free(-0.5, 0.0, [-0.3, 0.0, 0.0]), free(0.5, 0.0, [0.3, 0.0, 0.0])];
     let omega = (2.0 * world.stiffness_n_m
@@ -263,7 +264,7 @@ fn turning_m_s(world: &World, mass_kg: f64, (about, v, time_s): (f64, f64, f64))
 /// A bond between rocks that turn about their line holds them along the surface with a spring that turns with them, so that they slip aside.
 #[test]
 fn the_spring_of_a_bond_turns_with_its_rocks_about_their_line() {
-    let strength = Strength { tensile_pa: 1e9, cohesion_pa: 1e9 };
+    let strength = BondStrength { tensile_pa: 1e9, cohesion_pa: 1e9 };
     let world = World { tolerance_m_s: 1e-6, restitution: 1.0, strength, ..WORLD };
     let mass_kg = Rock { radius_m: 0.5, density_kg_m3: 2700.0 }.mass_kg();
     let omega = (7.0 * 0.25 * world.stiffness_n_m / mass_kg).sqrt();

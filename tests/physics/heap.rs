@@ -5,7 +5,7 @@ use crate::common;
 
 use common::together::{plane, space};
 use common::{CASE, G, GROUND};
-use rockfall::contact::pair::Strength;
+use rockfall::contact::pair::BondStrength;
 use rockfall::ground::Ground;
 use rockfall::plan::{Recorders, RestRule};
 use rockfall::release::Release;
@@ -24,11 +24,11 @@ struct World {
     scheme: Scheme,
     gravity_m_s2: f64,
     restitution: Option<f64>,
-    strength: Strength,
+    strength: BondStrength,
     rest_time_s: f64,
 }
 
-const NONE: Strength = Strength { tensile_pa: 0.0, cohesion_pa: 0.0 };
+const NONE: BondStrength = BondStrength { tensile_pa: 0.0, cohesion_pa: 0.0 };
 const WORLD: World = World {
     scheme: Scheme::Dda,
     gravity_m_s2: 0.0,
@@ -130,7 +130,7 @@ fn with_the_fixed_step_a_bond_breaks_at_its_tensile_strength() {
     let pull = 2.0 * v * (GROUND.normal_stiffness_n_m * 0.5 * rock.mass_kg()).sqrt();
     let area = PI * 0.25;
     for (share, holds) in [(1.03, true), (0.97, false)] {
-        let strength = Strength { tensile_pa: share * pull / area, cohesion_pa: 1e12 };
+        let strength = BondStrength { tensile_pa: share * pull / area, cohesion_pa: 1e12 };
         let world = World { restitution: None, strength, ..WORLD };
         let spheres = [free(-0.5, [-v, 0.0, 0.0]), free(0.5, [v, 0.0, 0.0])];
         let (falls, _) = world.run(&space(), &spheres, 1.0);
@@ -144,7 +144,7 @@ fn with_the_fixed_step_a_bond_breaks_at_its_tensile_strength() {
 #[test]
 fn with_the_fixed_step_a_bond_breaks_at_its_cohesion() {
     for (cohesion_pa, holds) in [(1e9, true), (1e3, false)] {
-        let strength = Strength { tensile_pa: 1e9, cohesion_pa };
+        let strength = BondStrength { tensile_pa: 1e9, cohesion_pa };
         let world = World { strength, ..WORLD };
         let spheres = [free(-0.5, [0.0, -0.1, 0.0]), free(0.5, [0.0, 0.1, 0.0])];
         let (falls, _) = world.run(&space(), &spheres, 4.0);
@@ -158,7 +158,7 @@ fn with_the_fixed_step_a_bond_breaks_at_its_cohesion() {
 #[test]
 fn a_broken_bond_stays_broken() {
     for scheme in [Scheme::Dda, Scheme::Adaptive] {
-        let strength = Strength { tensile_pa: 1e3, cohesion_pa: 1e3 };
+        let strength = BondStrength { tensile_pa: 1e3, cohesion_pa: 1e3 };
         let world = World { scheme, strength, restitution: Some(0.9), ..WORLD };
         // the second runs into the third at x = 2 and comes back to the first, which waits
         let spheres =

@@ -152,13 +152,13 @@ fn a_way_on_one_plane_touches_nothing_else() {
                 start: foot + n * radius,
                 along,
                 into: n * -between(random, 0.0, 0.02 * radius),
-                off_m: between(random, 0.0, 0.01 * radius),
-                way_m: along.norm() + 0.15 * radius, // more than any of them gets
+                deviation_m: between(random, 0.0, 0.01 * radius),
+                reach_m: along.norm() + 0.15 * radius, // more than any of them gets
             };
             let mut near = Neighbours::default();
             let (middle, half) = (passage.start + along * 0.5, 0.5 * along.norm());
             near.collect(&terrain, &middle, radius, half + 0.2 * radius, 0.1 * radius);
-            if !near.is_plane_on(face, &passage) {
+            if !near.meets_only_plane(face, &passage) {
                 crossing += 1;
                 continue;
             }
@@ -168,7 +168,7 @@ fn a_way_on_one_plane_touches_nothing_else() {
                 let centre = passage.start
                     + along * between(random, 0.0, 1.0)
                     + passage.into * between(random, 0.0, 1.0)
-                    + aside * between(random, 0.0, passage.off_m);
+                    + aside * between(random, 0.0, passage.deviation_m);
                 let height = n.dot(&(centre - a));
                 let is_own = |touch: &ContactPoint| {
                     touch.normal.dot(&n).abs() > 1.0 - 1e-9

@@ -10,7 +10,7 @@ use common::zoo::*;
 use common::*;
 use rockfall::contact::closest::closest_on;
 use rockfall::contact::neighbours::Neighbours;
-use rockfall::contact::{ContactPoints, MOST};
+use rockfall::contact::{ContactPoints, MAX_CONTACTS};
 use rockfall::rock::Vec3;
 use rockfall::terrain::{Terrain, make};
 
@@ -128,7 +128,7 @@ fn touches_are_the_local_minima_of_the_distance() {
                 most = most.max(right.len());
                 let name = format!("{} {mesh} {index} R {radius} {centre:?}", KINDS[kind]);
                 if touches.iter().any(|touch| touch.gain2 != 1.0)
-                    || touches.len() < right.len().min(MOST)
+                    || touches.len() < right.len().min(MAX_CONTACTS)
                 {
                     // pressed into a fold: every connected part of the mesh in the ball counts once, however many they are
                     merged += 1;
@@ -143,8 +143,12 @@ fn touches_are_the_local_minima_of_the_distance() {
                     );
                     continue;
                 }
-                assert_eq!(touches.len(), right.len().min(MOST), "{name}: {touches:?} {right:?}");
-                for (d, p) in right.iter().take(MOST) {
+                assert_eq!(
+                    touches.len(),
+                    right.len().min(MAX_CONTACTS),
+                    "{name}: {touches:?} {right:?}"
+                );
+                for (d, p) in right.iter().take(MAX_CONTACTS) {
                     let found = touches.iter().find(|touch| {
                         (touch.distance_m - d).abs() < 1e-9
                             && (centre - touch.normal * touch.distance_m - p).norm() < 1e-7

@@ -65,7 +65,7 @@ fn an_oblique_blow_keeps_both_momenta() {
             // the normal at the touch: relative motion is a straight line
             let apart = falls[0].start.position_m - falls[1].start.position_m;
             let u = falls[0].start.velocity_m_s - falls[1].start.velocity_m_s;
-            let t = rockfall::contact::pair::meeting_s(&apart, &u, 1.0).unwrap();
+            let t = rockfall::contact::pair::collision_time_s(&apart, &u, 1.0).unwrap();
             let n = apart + u * t;
             let push = impulse.dot(&n);
             let drag = (impulse - n * push).norm();

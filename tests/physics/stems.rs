@@ -12,7 +12,7 @@ use common::{GROUND, ROCK};
 use proptest::prelude::*;
 use rockfall::contact::ContactPoints;
 use rockfall::contact::neighbours::Neighbours;
-use rockfall::flight::{Parabola, time_of_impact, time_of_impact_past};
+use rockfall::flight::{Parabola, time_of_impact, time_of_impact_without};
 use rockfall::plan::{Recorders, RestRule};
 use rockfall::random::{Distribution, Purpose, stream};
 use rockfall::release::Release;
@@ -206,14 +206,14 @@ proptest! {
         let gone: Vec<u32> = (0..3).filter(|&stem| stem != first).collect();
         let one = stand(1, None);
         let at = |terrain: &Terrain| Parabola { start: flight.start - terrain.origin_m, ..flight };
-        let past = time_of_impact_past(&three, &at(&three), 2.0, &gone, &mut 0);
+        let past = time_of_impact_without(&three, &at(&three), 2.0, &gone, &mut 0);
         let never = time_of_impact(&one, &at(&one), 2.0, &mut 0);
         // the box that a rock leaves may be another, what it touches is the same
         let touch = |landing| if let rockfall::flight::FlightEnd::Touch(t) = landing { t } else { f64::INFINITY };
         prop_assert!((touch(past) - touch(never)).abs() < 1e-9 || touch(past) == touch(never));
         let touches = |terrain: &Terrain, gone: &[u32]| {
             let mut near = Neighbours::default();
-            near.gone.extend(gone);
+            near.broken_stems.extend(gone);
             let centre = at(terrain).start;
             near.collect(terrain, &centre, flight.radius, 0.35, 0.1);
             let mut touches = ContactPoints::default();

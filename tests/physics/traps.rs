@@ -2,7 +2,7 @@
 
 use crate::common;
 use common::{CASE, Case, GROUND, ROCK, terrain};
-use rockfall::contact::history::carry;
+use rockfall::contact::history::transport;
 use rockfall::ground::Ground;
 use rockfall::rock::{Rock, Vec3};
 use rockfall::simulation::{Stop, Trajectory};
@@ -116,7 +116,7 @@ fn a_stretch_turns_with_the_normal() {
     let from = Vec3::new(0.1, -0.2, 0.97).normalize();
     let to = Vec3::new(-0.3, 0.4, 0.8).normalize();
     let stretch = from.cross(&Vec3::new(0.3, 0.9, -0.2)) * 1e-4;
-    let carried = carry(stretch, &from, &to);
+    let carried = transport(stretch, &from, &to);
     assert!((carried.norm() - stretch.norm()).abs() < 1e-18 && carried.dot(&to).abs() < 1e-19);
 }
 

@@ -9,7 +9,7 @@ use crate::common;
 
 use common::together::{Sphere, WORLD, World, energy_j, plane};
 use common::{G, GROUND, terrain};
-use rockfall::contact::pair::Strength;
+use rockfall::contact::pair::BondStrength;
 use rockfall::ground::Ground;
 use rockfall::rock::Vec3;
 use rockfall::simulation::Trajectory;
@@ -118,7 +118,7 @@ fn the_row_of_a_rock_in_a_heap_on_rough_ground_adds_up() {
 /// A bonded block that is dropped, hits and comes to rest: no episode ends with more energy than it began with.
 #[test]
 fn a_bonded_block_gains_nothing() {
-    let strength = Strength { tensile_pa: 1e9, cohesion_pa: 1e9 };
+    let strength = BondStrength { tensile_pa: 1e9, cohesion_pa: 1e9 };
     for (scheme, tolerance_m_s) in
         [(Scheme::Reference, 1e-6), (Scheme::Adaptive, 1e-2), (Scheme::Adaptive, 1e-4)]
     {
@@ -138,7 +138,7 @@ fn a_bonded_block_gains_nothing() {
 /// Two bonded rocks that swing against each other without loss: whenever the run ends, what is no motion is in the springs between them.
 #[test]
 fn what_a_bond_holds_at_the_end_is_not_lost() {
-    let strength = Strength { tensile_pa: 1e12, cohesion_pa: 1e12 };
+    let strength = BondStrength { tensile_pa: 1e12, cohesion_pa: 1e12 };
     let (scheme, tolerance_m_s) = (Scheme::Reference, 1e-8);
     let world = World { scheme, tolerance_m_s, strength, restitution: 1.0, ..WORLD };
     let rock = |x: f64| (0.1, 2700.0, [x, 0.0, 5.0], [x, 0.0, 0.0], [0.0; 3]);

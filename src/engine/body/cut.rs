@@ -1,4 +1,4 @@
-//! What a block is drawn as: its rounded hull with edges and corners cut flat.
+//! The surface by which a block is drawn: its rounded hull with edges and corners cut flat.
 
 use super::Shape;
 use super::solid::Surface;
@@ -8,9 +8,9 @@ use std::collections::BTreeMap;
 type CornerOfFace = (usize, u8);
 
 impl Shape {
-    /// The closed surface through the points where the faces of the rounded hull end: each face where it is, a strip for
-    /// each edge, a polygon for each corner. All of it lies in the rounded hull, nowhere deeper than the radius of the
-    /// balls.
+    /// The closed surface through the points where the faces of the rounded hull end: each face in
+    /// its place, a strip for each edge, a polygon for each corner. All of it is inside the rounded
+    /// hull, nowhere deeper than the radius of the balls.
     pub fn cut_surface(&self) -> Surface {
         let faces = &self.core.faces;
         let mut number: BTreeMap<CornerOfFace, u32> = BTreeMap::new();
@@ -40,7 +40,7 @@ impl Shape {
         surface
     }
 
-    /// The face on the left of each way along an edge, seen from outside.
+    /// The face on the left of each directed edge, as seen from outside.
     fn sides(&self) -> BTreeMap<(u8, u8), usize> {
         let mut sides = BTreeMap::new();
         for (f, face) in self.core.faces.iter().enumerate() {
@@ -50,7 +50,7 @@ impl Shape {
         sides
     }
 
-    /// The faces at a corner in turn, seen from outside.
+    /// The faces at a corner in order, as seen from outside.
     fn around(&self, corner: u8, sides: &BTreeMap<(u8, u8), usize>) -> Vec<CornerOfFace> {
         let next = |f: usize| {
             let own = &self.core.faces[f].corners;

@@ -4,24 +4,27 @@ use super::BadSurface;
 use crate::rock::Vec3;
 use nalgebra::Matrix3;
 
-/// Points of one face lie in its plane to this (–, relative to the size of the hull) …
+/// Points of one face lie in its plane up to this (–, relative to the size of the hull) …
 const FLAT: f64 = 1e-9;
-/// … or, where faces then overlap, to the first of these multiples of it with which they do not: points of a file are rounded to its digits.
-const FLATTER: [f64; 4] = [10.0, 1e2, 1e3, 1e4];
+/// … or, if faces overlap then, up to the first of these multiples for which they do not: the
+/// points of a file are rounded to its digits.
+const FLAT_MULTIPLES: [f64; 4] = [10.0, 1e2, 1e3, 1e4];
 /// Most corners of a core.
-const MOST: usize = 64;
-/// Weight of "move along the mean normal" beside "keep every face where it is" when corners are moved inwards (–).
-const GUIDE: f64 = 1e-10;
-/// A corner that is moved inwards may stand out of a moved plane by this (–, relative to the way) …
-const STANDS_OUT: f64 = 0.05;
-/// … is pushed back at most so often …
-const PUSHES: usize = 200;
-/// … and is one with another that ends closer than this (–, relative to the way).
-const ONE: f64 = 1e-6;
+const MAX_CORNERS: usize = 64;
+/// Weight of "move along the mean normal" against "keep every face in its place" when corners are
+/// moved inwards (–).
+const REGULARISATION: f64 = 1e-10;
+/// A corner that is moved inwards may lie outside a moved plane by this (–, relative to the depth)
+/// …
+const MAX_OVERSHOOT: f64 = 0.05;
+/// … is projected back at most this often …
+const MAX_PROJECTIONS: usize = 200;
+/// … and is merged with another that ends closer than this (–, relative to the depth).
+const MERGE_DISTANCE: f64 = 1e-6;
 
 /// Most corners that a core may have.
-pub const fn most_corners() -> usize {
-    MOST
+pub const fn max_corners() -> usize {
+    MAX_CORNERS
 }
 
 /// A face of the core.
@@ -31,7 +34,7 @@ pub struct HullFace {
     pub normal: Vec3,
     /// Distance of its plane from the origin along the normal.
     pub level: f64,
-    /// Its corners in turn, seen from outside.
+    /// Its corners, counter-clockwise as seen from outside.
     pub corners: Vec<u8>,
 }
 
@@ -40,7 +43,8 @@ pub struct HullFace {
 pub struct Ridge {
     /// Its ends.
     pub ends: [u8; 2],
-    /// Unit directions across it into its two faces: a direction that has no part along either lies in the cone of its normals.
+    /// Unit directions across it into its two faces: a direction with no component along either
+    /// lies in the normal cone of the edge.
     pub into: [Vec3; 2],
 }
 
@@ -56,35 +60,37 @@ pub struct Core {
 }
 
 impl Core {
-    /// Whether a part, counted through corners, edges and faces, is a corner.
+    /// Whether a part, numbered through corners, edges and faces, is a corner.
     pub(crate) fn is_corner(&self, part: u16) -> bool {
         usize::from(part) < self.corners.len()
     }
 
-    /// The hull of at most [`most_corners`] points, those on its faces and edges or inside left out.
+    /// The convex hull of at most [`max_corners`] points; points inside faces or edges, or in the
+    /// interior, are left out.
     ///
-    /// Every plane through three points with all others on one side is a face: of so few points that takes no time, and no
-    /// rounding can make it miss one.
+    /// Every plane through three points with all others on one side is a face: for so few points
+    /// this takes no time, and no rounding can make it miss one.
     ///
     /// # Errors
     /// Too many points, or all of them in one plane.
     pub fn of(points: &[Vec3]) -> Result<Self, BadSurface> {
-        if points.len() > MOST {
+        if points.len() > MAX_CORNERS {
             return Err(BadSurface::TooMany(points.len()));
         }
         let size = points.iter().map(Vec3::norm).fold(0.0, f64::max);
-        let first = Self::flat_to(points, FLAT * size)?;
-        if first.is_whole() {
+        let first = Self::with_tolerance(points, FLAT * size)?;
+        if first.is_closed() {
             return Ok(first);
         }
-        let mut flatter =
-            FLATTER.iter().map_while(|by| Self::flat_to(points, by * FLAT * size).ok());
-        Ok(flatter.find(Self::is_whole).unwrap_or(first))
+        let mut coarser = FLAT_MULTIPLES
+            .iter()
+            .map_while(|by| Self::with_tolerance(points, by * FLAT * size).ok());
+        Ok(coarser.find(Self::is_closed).unwrap_or(first))
     }
 
-    /// The same, where points no further than `flat` from a plane lie in it.
-    fn flat_to(points: &[Vec3], flat: f64) -> Result<Self, BadSurface> {
-        let planes = supporting(points, flat);
+    /// The hull, where points no farther than `flat` from a plane lie in it.
+    fn with_tolerance(points: &[Vec3], flat: f64) -> Result<Self, BadSurface> {
+        let planes = supporting_planes(points, flat);
         let on = |k: usize| planes.iter().filter(|plane| plane.points & (1 << k) != 0).count();
         let kept: Vec<usize> = (0..points.len()).filter(|&k| on(k) > 2).collect();
         if planes.len() < 4 || kept.len() < 4 {
@@ -97,13 +103,13 @@ impl Core {
     }
 
     /// Whether its faces close and do not overlap: every edge has two, and Euler's formula holds.
-    fn is_whole(&self) -> bool {
+    fn is_closed(&self) -> bool {
         let sides: usize = self.faces.iter().map(|face| face.corners.len()).sum();
         sides == 2 * self.ridges.len()
             && self.corners.len() + self.faces.len() == self.ridges.len() + 2
     }
 
-    /// The same, larger.
+    /// The same, scaled.
     #[must_use]
     pub fn scaled(&self, by: f64) -> Self {
         let mut core = self.clone();
@@ -112,40 +118,42 @@ impl Core {
         core
     }
 
-    /// Corners moved inwards so that the planes of their faces move by `way`: exactly where three faces meet, by least
-    /// squares where more do. The origin must lie deeper than that behind every face.
+    /// Corners moved inwards so that the planes of their faces move by `depth`: exactly where three
+    /// faces meet, by least squares where more do. The origin must lie deeper than that behind
+    /// every face.
     ///
-    /// A corner of an edge or face that is short beside `way` would come out behind faces that are not its own, and the body would
-    /// grow there: it is pushed back.
-    pub(super) fn inset(&self, way: f64) -> Vec<Vec3> {
+    /// A corner of an edge or face that is short compared with `depth` would end up outside faces
+    /// that are not its own, and the body would grow there: such a corner is projected back.
+    pub(super) fn inset(&self, depth: f64) -> Vec<Vec3> {
         let moved = |k: usize| {
             let of = |face: &&HullFace| face.corners.contains(&(k as u8));
             let normals: Vec<Vec3> = self.faces.iter().filter(of).map(|face| face.normal).collect();
             let mean = normals.iter().sum::<Vec3>().normalize();
-            let mut square = Matrix3::identity() * GUIDE;
-            let mut right = mean * GUIDE;
+            let mut square = Matrix3::identity() * REGULARISATION;
+            let mut right = mean * REGULARISATION;
             for n in &normals {
                 square += n * n.transpose();
                 right += n;
             }
             let step = square.try_inverse().map_or(mean, |inverse| inverse * right);
-            self.pushed_back(self.corners[k] - step * way, way)
+            self.projected_inside(self.corners[k] - step * depth, depth)
         };
         let mut kept: Vec<Vec3> = Vec::new();
         for p in (0..self.corners.len()).map(moved) {
-            if kept.iter().all(|other| (p - other).norm() > ONE * way) {
+            if kept.iter().all(|other| (p - other).norm() > MERGE_DISTANCE * depth) {
                 kept.push(p);
             }
         }
         kept
     }
 
-    /// A point pushed back, plane by plane, until it stands out of no face's plane, moved inwards by `way`, by more than
-    /// [`STANDS_OUT`] of that; what is left then, towards the origin, which lies behind all of them.
-    fn pushed_back(&self, mut p: Vec3, way: f64) -> Vec3 {
-        let most = STANDS_OUT * way;
-        let level = |face: &HullFace| face.level - way + most;
-        for _ in 0..PUSHES {
+    /// A point projected back, plane by plane, until it is outside no face's plane, moved inwards
+    /// by `depth`, by more than [`MAX_OVERSHOOT`] of that depth. A remainder is removed by scaling
+    /// towards the origin, which lies behind all planes.
+    fn projected_inside(&self, mut p: Vec3, depth: f64) -> Vec3 {
+        let max_out = MAX_OVERSHOOT * depth;
+        let level = |face: &HullFace| face.level - depth + max_out;
+        for _ in 0..MAX_PROJECTIONS {
             let out = self.faces.iter().map(|face| (face.normal.dot(&p) - level(face), face));
             match out.max_by(|one, other| one.0.total_cmp(&other.0)) {
                 Some((out, face)) if out > 0.0 => p -= face.normal * out,
@@ -156,7 +164,7 @@ impl Core {
         p * self.faces.iter().map(share).fold(1.0, f64::min)
     }
 
-    /// Distance of a point from the core, 0 inside: that to the nearest of its faces' planes, or more.
+    /// Distance of a point from the core, 0 inside.
     pub(super) fn distance(&self, p: &Vec3) -> f64 {
         let corners = self.corners.iter().map(|corner| (p - corner).norm());
         let ridges = self.ridges.iter().map(|ridge| {
@@ -181,7 +189,7 @@ impl Core {
     }
 }
 
-/// A plane with all points on one side.
+/// A supporting plane: all points lie on one side of it.
 struct HullPlane {
     normal: Vec3,
     level: f64,
@@ -189,7 +197,7 @@ struct HullPlane {
     points: u64,
 }
 
-fn supporting(points: &[Vec3], flat: f64) -> Vec<HullPlane> {
+fn supporting_planes(points: &[Vec3], flat: f64) -> Vec<HullPlane> {
     let mut planes: Vec<HullPlane> = Vec::new();
     let count = points.len();
     for i in 0..count {
@@ -209,7 +217,7 @@ fn supporting(points: &[Vec3], flat: f64) -> Vec<HullPlane> {
     planes
 }
 
-/// The plane through point `i`, turned outwards, if all points are on one side of it.
+/// The plane through point `i`, oriented outwards, if all points lie on one side of it.
 fn plane_through(points: &[Vec3], (i, normal): (usize, Vec3), flat: f64) -> Option<HullPlane> {
     let level = normal.dot(&points[i]);
     let (mut above, mut below, mut on) = (false, false, 0);
@@ -234,7 +242,7 @@ fn plane_through(points: &[Vec3], (i, normal): (usize, Vec3), flat: f64) -> Opti
 }
 
 impl HullPlane {
-    /// The face with its corners in turn; `kept` are the points that are corners.
+    /// The face with its corners in order; `kept` are the points that are corners.
     fn face(&self, kept: &[usize], corners: &[Vec3]) -> HullFace {
         let mut own: Vec<u8> = (0..kept.len())
             .filter(|&k| self.points & (1 << kept[k]) != 0)

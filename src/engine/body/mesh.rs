@@ -1,24 +1,24 @@
-//! A scanned surface: is it closed, and which few of its corners will do.
+//! A scanned surface: whether it is closed, and a hull with few corners.
 
-use super::hull::{Core, most_corners};
+use super::hull::{Core, max_corners};
 use super::solid::Surface;
 use crate::rock::Vec3;
 use parry3d_f64::math::Vector;
 use parry3d_f64::transformation::try_convex_hull;
 use std::collections::BTreeMap;
 
-/// Why a surface makes no block.
+/// Why no block can be made from a surface.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum BadSurface {
-    /// So many of its edges do not join two triangles in opposite turns.
+    /// Number of its edges that do not join two triangles of the same orientation.
     Open(usize),
-    /// It is so many surfaces that share no corner.
+    /// Number of separate surfaces that share no corner.
     Parts(usize),
     /// It encloses no volume.
     Flat,
     /// More corners than a core may have.
     TooMany(usize),
-    /// Balls as large as this leave no core between them.
+    /// The balls are so large that no core is left between them.
     NoCore,
 }
 
@@ -32,26 +32,27 @@ impl std::fmt::Display for BadSurface {
             Self::Parts(parts) => write!(to, "found {parts} surfaces that share no corner"),
             Self::Flat => write!(to, "found a body without volume"),
             Self::TooMany(corners) => {
-                write!(to, "found {corners} corners, where {} is the most", most_corners())
+                write!(to, "found {corners} corners, where {} is the most", max_corners())
             }
             Self::NoCore => write!(to, "found corners so round that nothing is left between them"),
         }
     }
 }
 
-/// Few corners of a surface.
+/// A hull with few corners.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Thinned {
+pub struct ThinnedHull {
     /// The corners.
     pub corners: Vec<Vec3>,
-    /// Corners of the hull of all points.
-    pub of: usize,
-    /// How far the hull of all points reaches beyond theirs at most (m).
-    pub left: f64,
+    /// Number of corners of the hull of all points.
+    pub hull_corners: usize,
+    /// How far the hull of all points reaches beyond this one at most (m).
+    pub deviation_m: f64,
 }
 
 impl Surface {
-    /// Whether every edge joins two triangles turned alike, and all of them are one surface.
+    /// Whether every edge joins two triangles of the same orientation, and all of them are one
+    /// surface.
     ///
     /// # Errors
     /// The number of edges that do not, or of surfaces.
@@ -62,9 +63,9 @@ impl Surface {
                 *edges.entry((*from, *to)).or_default() += 1;
             }
         }
-        let one = |(from, to): (u32, u32)| edges.get(&(from, to)).copied().unwrap_or(0);
+        let count_of = |(from, to): (u32, u32)| edges.get(&(from, to)).copied().unwrap_or(0);
         let open =
-            edges.iter().filter(|((from, to), count)| **count != 1 || one((*to, *from)) != 1);
+            edges.iter().filter(|((from, to), count)| **count != 1 || count_of((*to, *from)) != 1);
         match open.count() {
             0 => match self.parts() {
                 0 | 1 => Ok(()),
@@ -74,7 +75,7 @@ impl Surface {
         }
     }
 
-    /// How many surfaces its triangles are that share no corner.
+    /// Number of connected surfaces among its triangles, which share no corner.
     fn parts(&self) -> usize {
         let mut part_of: Vec<usize> = (0..self.points.len()).collect();
         let mut joined = 0;
@@ -86,8 +87,8 @@ impl Surface {
             point
         };
         for [a, b, c] in &self.triangles {
-            for (one, other) in [(a, b), (a, c)] {
-                let ends = [one, other].map(|point| root(&mut part_of, *point as usize));
+            for (first, second) in [(a, b), (a, c)] {
+                let ends = [first, second].map(|point| root(&mut part_of, *point as usize));
                 joined += usize::from(ends[0] != ends[1]);
                 part_of[ends[0]] = ends[1];
             }
@@ -95,12 +96,12 @@ impl Surface {
         self.points.len() - joined
     }
 
-    /// At most `most` corners of the hull, the farthest out of the others' hull first, until none is more than `near` (m)
-    /// outside.
+    /// At most `most` corners of the hull. Corners are added, always the one farthest outside the
+    /// hull of the others, until none is more than `near` (m) outside.
     ///
     /// # Errors
     /// A flat surface.
-    pub fn thinned(&self, most: usize, near: f64) -> Result<Thinned, BadSurface> {
+    pub fn thinned(&self, most: usize, near: f64) -> Result<ThinnedHull, BadSurface> {
         let points: Vec<Vector> = self.points.iter().map(|p| Vector::new(p.x, p.y, p.z)).collect();
         let (hull, _) = try_convex_hull(&points).map_err(|_| BadSurface::Flat)?;
         let hull: Vec<Vec3> = hull.iter().map(|p| Vec3::new(p.x, p.y, p.z)).collect();
@@ -111,17 +112,21 @@ impl Surface {
         loop {
             let core = Core::of(&kept)?;
             let far = hull.iter().map(|p| (core.distance(p), p));
-            let (left, farthest) =
+            let (deviation_m, farthest) =
                 far.max_by(|a, b| a.0.total_cmp(&b.0)).ok_or(BadSurface::Flat)?;
-            if left <= near || kept.len() >= most.min(most_corners()) {
-                return Ok(Thinned { corners: core.corners, of: hull.len(), left });
+            if deviation_m <= near || kept.len() >= most.min(max_corners()) {
+                return Ok(ThinnedHull {
+                    corners: core.corners,
+                    hull_corners: hull.len(),
+                    deviation_m,
+                });
             }
             kept.push(*farthest);
         }
     }
 }
 
-/// Points farthest out along the axes and diagonals, as many as span a body.
+/// Extreme points along the axes, slightly tilted, as first corners of a hull.
 fn first_corners(points: &[Vec3]) -> Vec<Vec3> {
     let mut kept: Vec<Vec3> = Vec::new();
     for k in 0..6 {
@@ -137,7 +142,8 @@ fn first_corners(points: &[Vec3]) -> Vec<Vec3> {
     kept
 }
 
-/// Four points that span much: of a body with few corners those along the axes may lie in one plane.
+/// Four points that span a large tetrahedron: for a body with few corners the extreme points along
+/// the axes may lie in one plane.
 fn widest_four(points: &[Vec3]) -> Vec<Vec3> {
     let farthest = |from: &dyn Fn(&Vec3) -> f64| {
         points.iter().copied().max_by(|a, b| from(a).total_cmp(&from(b))).unwrap_or_default()

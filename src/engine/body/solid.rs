@@ -5,7 +5,7 @@ use crate::rock::Vec3;
 use nalgebra::{Matrix3, Rotation3};
 use std::f64::consts::PI;
 
-/// A closed surface of triangles, their corners in turn as seen from outside.
+/// A closed surface of triangles, their corners counter-clockwise as seen from outside.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Surface {
     /// Points (m).
@@ -28,11 +28,12 @@ pub struct Solid {
 }
 
 impl Solid {
-    /// Integrates over signed tetrahedra from a point of the surface (Mirtich 1996): `V = Σ a·(b×c)/6`, centre
-    /// `Σ v (a+b+c)/4 / V`, second moments `Σ v/20 (aaᵀ + bbᵀ + ccᵀ + ssᵀ)`, `s = a+b+c`. Negative where triangles are
-    /// turned inside out.
+    /// Integrates over signed tetrahedra from a point of the surface (Mirtich 1996): `V = Σ
+    /// a·(b×c)/6`, centre `Σ v (a+b+c)/4 / V`, second moments `Σ v/20 (aaᵀ + bbᵀ + ccᵀ + ssᵀ)`, `s
+    /// = a+b+c`. Negative if the triangles are inside out.
     pub fn of(surface: &Surface) -> Self {
-        // near the body, not near the origin of a map: products of large coordinates would lose the digits
+        // near the body, not near the origin of a map: products of large coordinates would lose the
+        // digits
         let origin = surface.points.first().copied().unwrap_or_default();
         let corners = |t: &[u32; 3]| t.map(|k| surface.points[k as usize] - origin);
         let (mut volume, mut first, mut second) = (0.0, Vec3::zeros(), Matrix3::zeros());
@@ -68,20 +69,20 @@ impl Solid {
     }
 }
 
-/// Turns until what is left beside the diagonal is rounding.
-const SWEEPS: usize = 60;
-/// Rounding beside the diagonal (–): equal moments must not be turned by it.
-const OFF: f64 = 1e-14;
+/// Rotations until the off-diagonal entries are rounding.
+const MAX_ROTATIONS: usize = 60;
+/// Rounding of the off-diagonal entries (–): it must not rotate the axes of equal moments.
+const OFF_DIAGONAL: f64 = 1e-14;
 
-/// Eigenvalues of a symmetric matrix and a right-handed frame of eigenvectors, by Jacobi's rotations: a matrix that is
-/// diagonal already keeps its axes, and so does a body its corners.
+/// Eigenvalues of a symmetric matrix and a right-handed frame of eigenvectors, by Jacobi rotations.
+/// A diagonal matrix keeps its axes, and so does a body its corners.
 fn principal(mut a: Matrix3<f64>) -> ([f64; 3], Rotation3<f64>) {
     let mut axes = Matrix3::identity();
     let scale = a.norm();
-    for sweep in 0..SWEEPS {
+    for sweep in 0..MAX_ROTATIONS {
         let (p, q) = [(0, 1), (0, 2), (1, 2)][sweep % 3];
         let off = a[(p, q)];
-        if off.abs() <= OFF * scale {
+        if off.abs() <= OFF_DIAGONAL * scale {
             continue;
         }
         let theta = 0.5 * (a[(q, q)] - a[(p, p)]) / off;

@@ -11,7 +11,8 @@ fn sorted(mut moments: [f64; 3]) -> [f64; 3] {
     moments
 }
 
-/// Volumes and moments in closed form: a box, EOTA's cube and wheel, a hexagonal prism about its axis, Lu's block.
+/// Volumes and moments in closed form: a box, EOTA's cube and wheel, a hexagonal prism about its
+/// axis, Lu's block.
 #[test]
 fn bodies_have_their_closed_forms() {
     let solid = Solid::of(&box_surface([3.0, 2.0, 1.0]));
@@ -37,7 +38,8 @@ fn bodies_have_their_closed_forms() {
     );
 }
 
-/// The farthest corner over the radius of equal volume, of unrounded blocks, in closed form: 1.1074 and 1.3051.
+/// The farthest corner over the radius of equal volume, of unrounded blocks, in closed form: 1.1074
+/// and 1.3051.
 #[test]
 fn eota_blocks_reach_as_far_as_they_should() {
     for (sides, corner, reach) in [
@@ -54,7 +56,8 @@ fn eota_blocks_reach_as_far_as_they_should() {
     }
 }
 
-/// Turned and a million metres away the moments stay, to what such coordinates hold.
+/// Rotated and moved by a million metres the moments stay the same, up to the digits of such
+/// coordinates.
 #[test]
 fn moments_do_not_depend_on_place_and_turn() {
     let mut surface = eota([1.0, 0.8, 0.5]);
@@ -85,8 +88,8 @@ fn cores_have_all_their_faces() {
     }
 }
 
-/// Points that a file holds with few digits lie only nearly in the planes of their faces: the faces are found all the same, none twice and none
-/// across another.
+/// Points stored with few digits lie only nearly in the planes of their faces: all faces are found
+/// all the same, none twice and none across another.
 #[test]
 fn faces_of_rounded_coordinates_do_not_overlap() {
     let turned = turn(&Unit::new_normalize(Vec3::new(0.3, -1.0, 0.6)), 1.1);
@@ -100,7 +103,8 @@ fn faces_of_rounded_coordinates_do_not_overlap() {
     }
 }
 
-/// A rounded box keeps its faces where they are and loses only its corners, by (√3 − 1) of the balls' radius.
+/// A rounded box keeps its faces in place and loses only its corners, by (√3 − 1) of the radius of
+/// the balls.
 #[test]
 fn rounding_keeps_faces() {
     let surface = box_surface([2.0, 2.0, 2.0]);
@@ -116,7 +120,7 @@ fn rounding_keeps_faces() {
     assert_eq!(Shape::of(&solid, &surface.points, 2.0), Err(BadSurface::NoCore));
 }
 
-/// A scan of many points: its thinned hull says how much it leaves out, and every point is within that.
+/// A scan of many points: its thinned hull states its deviation, and every point is within it.
 #[test]
 fn a_scan_is_thinned_to_a_stated_distance() {
     let points: Vec<Vec3> = (0..500)
@@ -131,9 +135,11 @@ fn a_scan_is_thinned_to_a_stated_distance() {
     let rough = surface.thinned(24, 0.0).unwrap();
     let fine = surface.thinned(64, 0.0).unwrap();
     assert!(rough.corners.len() <= 24 && fine.corners.len() > 48);
-    assert!(fine.left < rough.left && rough.left < 0.3 && fine.left > 0.0);
+    assert!(
+        fine.deviation_m < rough.deviation_m && rough.deviation_m < 0.3 && fine.deviation_m > 0.0
+    );
     let core = Core::of(&fine.corners).unwrap();
-    assert!(points.iter().all(|p| core.distance(p) <= fine.left * (1.0 + 1e-12)));
+    assert!(points.iter().all(|p| core.distance(p) <= fine.deviation_m * (1.0 + 1e-12)));
 }
 
 /// A box without one triangle is no body.
@@ -157,7 +163,8 @@ fn two_surfaces_are_no_block() {
     assert_eq!(both.check_closed(), Err(BadSurface::Parts(2)));
 }
 
-/// Four corners are a body, wherever they are: a regular tetrahedron's lie three in a plane as seen along the axes.
+/// Four corners make a body, wherever they are: of a regular tetrahedron's corners three lie in a
+/// plane as seen along the axes.
 #[test]
 fn few_corners_span_a_body() {
     let regular = [[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]];
@@ -165,13 +172,14 @@ fn few_corners_span_a_body() {
     for corners in [regular, slender] {
         let surface = Surface { points: corners.map(Vec3::from).to_vec(), triangles: Vec::new() };
         let thinned = surface.thinned(32, 0.0).unwrap();
-        assert_eq!((thinned.corners.len(), thinned.of), (4, 4));
-        assert!(thinned.left < 1e-12);
+        assert_eq!((thinned.corners.len(), thinned.hull_corners), (4, 4));
+        assert!(thinned.deviation_m < 1e-12);
     }
 }
 
-/// However round its corners are, a body does not grow by it: no ball stands out of a face by more than a twentieth of its radius, also where
-/// edges and faces are shorter than that; faces of boxes stay where they are.
+/// However round its corners, rounding does not enlarge a body: no ball is outside a face by more
+/// than a twentieth of its radius, also where edges and faces are shorter than that; faces of boxes
+/// stay where they are.
 #[test]
 fn rounding_stands_out_of_no_face() {
     let scan: Vec<Vec3> = (0..32)

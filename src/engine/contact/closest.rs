@@ -1,8 +1,8 @@
 //! Nearest points of triangles and segments.
 //!
-//! Both questions are a minimum of a convex quadratic over a convex set, so each has one answer and
-//! no iteration is needed: the plane is cut into the Voronoi regions of the parts, and signs of
-//! scalar products tell the region.
+//! Each query minimises a convex quadratic over a convex set. The minimum is unique and needs no
+//! iteration: the space is divided into the Voronoi regions of the parts, and the signs of scalar
+//! products identify the region.
 
 use crate::rock::Vec3;
 
@@ -18,15 +18,15 @@ pub struct Segment {
 }
 
 impl Segment {
-    /// The one between two points (m).
+    /// The segment between two points (m).
     pub fn between([a, b]: [Vec3; 2]) -> Self {
         let length = (b - a).norm();
         Self { a, along: (b - a) / length, length }
     }
 
-    /// From its first end to the other (m).
+    /// The vector from its first end to the other (m).
     #[inline]
-    pub fn way(&self) -> Vec3 {
+    pub fn vector(&self) -> Vec3 {
         self.along * self.length
     }
 
@@ -37,7 +37,7 @@ impl Segment {
     }
 }
 
-/// The part of a triangle on which its nearest point lies.
+/// The part of a triangle that holds its nearest point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TrianglePart {
     /// Inside.
@@ -48,22 +48,22 @@ pub enum TrianglePart {
     Corner(usize),
 }
 
-/// The point of a triangle closest to `p` (Ericson, Real-Time Collision Detection, 5.1.5: by Voronoi regions).
-/// Cost: at most six scalar products and one division; no square root.
+/// The point of a triangle closest to `p` (Ericson, Real-Time Collision Detection, 5.1.5: by
+/// Voronoi regions). Cost: at most six scalar products and one division; no square root.
 pub fn closest_on(corners: &[Vec3; 3], p: &Vec3) -> Vec3 {
     closest_part(corners, p).0
 }
 
-/// The same, with the part of the triangle on which it lies.
+/// The closest point, with the part of the triangle on which it lies.
 ///
-/// Needs no unit vectors and no normal, so a triangle of any size will do; one without area falls
-/// to its sides or corners.
+/// It needs neither unit vectors nor a normal, so triangles of any size will do. For a degenerate
+/// triangle the point lies on its sides or corners.
 pub fn closest_part(&[a, b, c]: &[Vec3; 3], p: &Vec3) -> (Vec3, TrianglePart) {
-    // p projects on the line through a side before its start, within it, or behind its end: d1 … d6
-    // are those projections, times the length of the side
+    // d1 … d6 are projections on the sides, times the length of the side: p projects before the
+    // start of a side, within it, or beyond its end
     let (ab, ac, ap) = (b - a, c - a, p - a);
     let (d1, d2) = (ab.dot(&ap), ac.dot(&ap));
-    // region of a corner: p lies behind the corner as seen along both sides that start there
+    // region of a corner: p lies behind the corner along both sides that start there
     if d1 <= 0.0 && d2 <= 0.0 {
         return (a, TrianglePart::Corner(0));
     }
@@ -95,11 +95,12 @@ pub fn closest_part(&[a, b, c]: &[Vec3; 3], p: &Vec3) -> (Vec3, TrianglePart) {
     (a + (ab * vb + ac * vc) / (va + vb + vc), TrianglePart::Face)
 }
 
-/// Square of the sine of the angle up to which segments are parallel (–): the distance is right to that angle times their length.
+/// Square of the sine of the angle below which segments count as parallel (–): the distance is
+/// exact up to that angle times their length.
 const PARALLEL: f64 = 1e-15;
 
-/// Square of the least distance between two segments, each from its first point along its second (Ericson, Real-Time
-/// Collision Detection, 5.1.9). A segment may be a point.
+/// Square of the least distance between two segments, each from its first point along its second
+/// (Ericson, Real-Time Collision Detection, 5.1.9). A segment may be a point.
 ///
 /// Minimises `|r + s d − t e|²` over the unit square of `(s, t)`, with `r = p − q`:
 ///
@@ -108,18 +109,18 @@ const PARALLEL: f64 = 1e-15;
 /// ```
 ///
 pub fn segments_distance2((p, d): (&Vec3, &Vec3), (q, e): (&Vec3, &Vec3)) -> f64 {
-    // a segment that is a point has its parameter at 0: no division by its length
+    // a degenerate segment has its parameter at 0, without a division by its length
     let r = p - q;
     let (a, b, c, f, g) = (d.norm_squared(), d.dot(e), d.dot(&r), e.norm_squared(), e.dot(&r));
     let onto =
         |x: f64, length2: f64| if length2 > 0.0 { (x / length2).clamp(0.0, 1.0) } else { 0.0 };
-    // a f − b² = |d × e|², 0 for parallel segments: any s will do then, and 0 is taken
+    // a f − b² = |d × e|² is 0 for parallel segments: any s is a minimum then, and 0 is taken
     let across = a * f - b * b;
     let s =
         if across > PARALLEL * a * f { ((b * g - c * f) / across).clamp(0.0, 1.0) } else { 0.0 };
-    // The square's border may cut the free minimum off. With s clamped, the best t follows; with
-    // that t clamped, the best s; and t once more for that s. Convexity makes this the minimum over
-    // the square, no search needed.
+    // The unconstrained minimum may lie outside the unit square. With s clamped, take the best t;
+    // with that t clamped, the best s; then the best t for that s. By convexity this is the minimum
+    // over the square; no search is needed.
     let t = onto(b * s + g, f);
     let s = onto(b * t - c, a);
     let t = onto(b * s + g, f);
@@ -130,7 +131,8 @@ pub fn segments_distance2((p, d): (&Vec3, &Vec3), (q, e): (&Vec3, &Vec3)) -> f64
 mod tests {
     use super::*;
 
-    /// No pair of points of the two segments is nearer, and some pair is as near: tried on a fine lattice of both.
+    /// No pair of points of the two segments is nearer, and some pair is as near: tested on a fine
+    /// grid of both.
     #[test]
     fn the_distance_of_segments_is_the_least() {
         let mut state = 7u64;

@@ -1,13 +1,15 @@
 //! The 6×6 submatrices of one contact between a sphere and a fixed mesh, equation by equation.
 //!
-//! Wang, Jiao, Huang, Zheng, Zhao: *Model of Sphere-to-Edge Contact for Spherical Discontinuous Deformation
-//! Analysis*, Int. J. Geomech. 17(12), 2017. Unknown is the displacement of one step, `D = (d, r)`: three
-//! displacements of the centre (m) and three rotations about it (rad), Eq. (1). What is called `K` goes into the matrix
-//! of Eq. (4), what is called `F` to its right-hand side. Points are counted from the sphere's centre `C`: a step
-//! needs only differences, and map coordinates would cost digits.
+//! Wang, Jiao, Huang, Zheng, Zhao: *Model of Sphere-to-Edge Contact for Spherical Discontinuous
+//! Deformation Analysis*, Int. J. Geomech. 17(12), 2017. Unknown is the displacement of one step,
+//! `D = (d, r)`: three displacements of the centre (m) and three rotations about it (rad), Eq. (1).
+//! What is called `K` goes into the matrix of Eq. (4), what is called `F` to its right-hand side.
+//! Points are counted from the sphere's centre `C`: a step needs only differences, and map
+//! coordinates would cost digits.
 //!
-//! `V` is the unit vector from the centre to the touched point; a [`ContactPoint`](super::ContactPoint) carries its opposite.
-//! Three equations are corrected, each where it stands: Eqs. (14), (16), (18).
+//! `V` is the unit vector from the centre to the touched point; a
+//! [`ContactPoint`](super::ContactPoint) carries its opposite. Three equations are corrected, each
+//! where it stands: Eqs. (14), (16), (18).
 
 use crate::rock::Vec3;
 use nalgebra::{SMatrix, SVector};
@@ -19,7 +21,8 @@ pub type Mat6 = SMatrix<f64, 6, 6>;
 /// From the motion of the sphere to that of one of its points.
 pub type Mat3x6 = SMatrix<f64, 3, 6>;
 
-/// Displacement matrix `T` of Eq. (3) for the point `p` of the sphere (m, from its centre): `u = T D = d + r × p`.
+/// Displacement matrix `T` of Eq. (3) for the point `p` of the sphere (m, from its centre): `u = T
+/// D = d + r × p`.
 #[inline]
 pub fn displacement(p: &Vec3) -> Mat3x6 {
     #[rustfmt::skip]
@@ -37,14 +40,15 @@ pub fn touching_point(v: &Vec3, radius_m: f64) -> Vec3 {
     v * radius_m
 }
 
-/// `λ` of Eq. (7): distance from `P1` to the touched point `P2` along `V` (m), negative when pressed in.
+/// `λ` of Eq. (7): distance from `P1` to the touched point `P2` along `V` (m), negative when
+/// pressed in.
 #[inline]
 pub fn gap(v: &Vec3, p1: &Vec3, p2: &Vec3) -> f64 {
     v.dot(&(p2 - p1))
 }
 
-/// `V_N = (V, 0)` of Eq. (9). It equals `Vᵀ T` because the lever of `P1` is parallel to `V`: a normal force turns
-/// nothing.
+/// `V_N = (V, 0)` of Eq. (9). It equals `Vᵀ T` because the lever of `P1` is parallel to `V`: a
+/// normal force turns nothing.
 #[inline]
 pub fn normal_row(v: &Vec3) -> Vec6 {
     Vec6::new(v.x, v.y, v.z, 0.0, 0.0, 0.0)
@@ -68,11 +72,11 @@ pub fn shear_stiffness(stiffness_n_m: f64, t: &Mat3x6, row: &Vec6) -> Mat6 {
     (t.transpose() * t - row * row.transpose()) * stiffness_n_m
 }
 
-/// Shear spring stretched by `stretch` (m, tangent to the surface) at the step's start, in place of Eq. (14):
-/// `−p_s Tᵀ ξ → F`.
+/// Shear spring stretched by `stretch` (m, tangent to the surface) at the step's start, in place of
+/// Eq. (14): `−p_s Tᵀ ξ → F`.
 ///
-/// As printed, `p_s Tᵀ (P2 − P1) − p_s λ V_Nᵀ` is identically zero: `P1` is placed anew on the normal at every step,
-/// so `P2 − P1 = λ V`. The stretch has to be carried from step to step.
+/// As printed, `p_s Tᵀ (P2 − P1) − p_s λ V_Nᵀ` is identically zero: `P1` is placed anew on the
+/// normal at every step, so `P2 − P1 = λ V`. The stretch has to be carried from step to step.
 #[inline]
 pub fn shear_load(stiffness_n_m: f64, t: &Mat3x6, stretch: &Vec3) -> Vec6 {
     force_at(t, &(stretch * -stiffness_n_m))
@@ -86,11 +90,11 @@ pub fn slip(v: &Vec3, u: &Vec3) -> Vec3 {
     u - v * v.dot(u)
 }
 
-/// Friction on the sphere (N), Eqs. (17), (18): `−f Tᵀ (l m n)ᵀ → F`, `friction` being `f` times the direction in which
-/// the sphere slides.
+/// Friction on the sphere (N), Eqs. (17), (18): `−f Tᵀ (l m n)ᵀ → F`, `friction` being `f` times
+/// the direction in which the sphere slides.
 ///
-/// The sign is right only with the direction of the sphere's own slip. Eq. (15) calls `f` `f_s`: it is `N tan φ`, and the paper
-/// takes `N = p_N d_p` of the last step's end.
+/// The sign is right only with the direction of the sphere's own slip. Eq. (15) calls `f` `f_s`: it
+/// is `N tan φ`, and the paper takes `N = p_N d_p` of the last step's end.
 #[inline]
 pub fn friction_load(t: &Mat3x6, friction: &Vec3) -> Vec6 {
     force_at(t, &-friction)
@@ -102,8 +106,8 @@ pub fn force_at(t: &Mat3x6, force: &Vec3) -> Vec6 {
     t.tr_mul(force)
 }
 
-/// Spring against rotation (N m/rad) about any axis through the centre: on the rotations' diagonal `→ K`. Not in
-/// the paper: rolling friction.
+/// Spring against rotation (N m/rad) about any axis through the centre: on the rotations' diagonal
+/// `→ K`. Not in the paper: rolling friction.
 #[inline]
 pub fn rolling_stiffness(stiffness_n_m_rad: f64) -> Mat6 {
     let [x, y, z] = [stiffness_n_m_rad; 3];
@@ -161,7 +165,8 @@ mod tests {
         0.5 * P * (xi + slip(v, &(t * d))).norm_squared()
     }
 
-    /// Negative gradient of an energy at `D = 0`: exact by central differences, as the energies are quadratic.
+    /// Negative gradient of an energy at `D = 0`: exact by central differences, as the energies are
+    /// quadratic.
     fn pull(energy: impl Fn(&Vec6) -> f64) -> Vec6 {
         Vec6::from_fn(|k, _| {
             let d = Vec6::from_fn(|j, _| f64::from(j == k));
@@ -184,11 +189,12 @@ mod tests {
         /// `u = d + r × p`: Eq. (3) is the small rotation of a rigid body.
         #[test]
         fn points_move_like_a_rigid_body(p in unit(), d in motion()) {
-            let (way, turn): (Vec3, Vec3) = (d.fixed_rows::<3>(0).into(), d.fixed_rows::<3>(3).into());
-            prop_assert!((displacement(&p) * d - (way + turn.cross(&p))).norm() < 1e-15 * 8.0);
+            let (shift, turn): (Vec3, Vec3) = (d.fixed_rows::<3>(0).into(), d.fixed_rows::<3>(3).into());
+            prop_assert!((displacement(&p) * d - (shift + turn.cross(&p))).norm() < 1e-15 * 8.0);
         }
 
-        /// A normal force has no lever: `Vᵀ T = V_N` but for one rounding of the lever's two products.
+        /// A normal force has no lever: `Vᵀ T = V_N` but for one rounding of the lever's two
+        /// products.
         #[test]
         fn a_normal_force_turns_nothing(v in unit()) {
             let t = displacement(&touching_point(&v, RADIUS));
@@ -223,8 +229,8 @@ mod tests {
             prop_assert!((shear - (d2 - d_n * d_n)).abs() < 1e-14 * (1.0 + d2));
         }
 
-        /// Symmetric and positive semidefinite: springs resist. Two directions of slip and no more for shear, one
-        /// for the normal: rank 2 and 1.
+        /// Symmetric and positive semidefinite: springs resist. Two directions of slip and no more
+        /// for shear, one for the normal: rank 2 and 1.
         #[test]
         fn stiffness_is_symmetric_and_never_negative(v in unit()) {
             let row = normal_row(&v);
@@ -251,10 +257,10 @@ mod tests {
         #[test]
         fn friction_opposes_the_slip_of_the_sphere(v in unit(), d in motion()) {
             let t = displacement(&touching_point(&v, RADIUS));
-            let way = slip(&v, &(t * d));
+            let slipped = slip(&v, &(t * d));
             let force = 0.5 * P;
-            let work = friction_load(&t, &(way.normalize() * force)).dot(&d);
-            prop_assert!((work + force * way.norm()).abs() < 1e-14 * P);
+            let work = friction_load(&t, &(slipped.normalize() * force)).dot(&d);
+            prop_assert!((work + force * slipped.norm()).abs() < 1e-14 * P);
         }
     }
 }

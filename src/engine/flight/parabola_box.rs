@@ -1,7 +1,9 @@
-//! When a parabola passes the boxes of the index: four boxes at once, in `f32`, never too narrow.
+//! Time windows in which a parabola passes the boxes of the index: four boxes at once, in `f32`,
+//! never too narrow.
 //!
-//! Boxes are `f32` anyway. What is taken from the flight is rounded away from them, what is computed of it is off by a few
-//! roundings of its own size, and the windows that come out are wider by more than that ([`WIDER`]).
+//! Boxes are `f32` anyway. Inputs from the flight are rounded away from them, computed values are
+//! off by a few roundings of their own size, and the resulting windows are extended by more than
+//! that ([`WINDOW_MARGIN`]).
 //!
 //! ```text
 //! x, y:  lo − R ≤ c0 + v t ≤ hi + R                          one interval each, from two products
@@ -10,32 +12,34 @@
 //!        below the roof:  |t − t_a| ≥ √(2 (z_a − hi_z − R)/g)
 //! ```
 //!
-//! The floor gives one interval and the roof cuts its middle out; what is kept is the hull of the
-//! two ends, so a box under the arc of a flight is opened in vain now and then. A window too narrow
-//! would lose a touch, and with it a rock through the slope.
+//! The floor gives one interval and the roof cuts out its middle. The hull of the two ends is kept,
+//! so a box under the arc of a flight is sometimes opened in vain. A window too narrow would lose a
+//! contact, and with it a rock through the slope.
 
 use super::Parabola;
 use crate::terrain::index::{BvhNode, above, below};
 use wide::f32x4;
 
-/// Boxes are grown by this much more than the radius (–, relative to it): a ball that meets a plate as it enters the
-/// plate's box, which has no thickness, must not be cut off by rounding.
-const ROUNDING: f64 = 1e-6;
-/// Windows are wider by this (–, relative to their ends): four roundings lie behind each, of 6e-8.
-const WIDER: f32 = 6e-7;
-/// Squares of times are off by as much (–).
-const SQUARED: f64 = 1e-6;
-/// Reciprocal of a speed too small to leave any box: its sign decides, it never overflows to NaN.
-const STANDING: f64 = 1e30;
+/// Boxes are enlarged by this much more than the radius (–, relative to it): rounding must not
+/// exclude a ball that touches a plate as it enters the plate's box, which has no thickness.
+const RADIUS_MARGIN: f64 = 1e-6;
+/// Windows are extended by this (–, relative to their ends): each is affected by four roundings of
+/// 6e-8.
+const WINDOW_MARGIN: f32 = 6e-7;
+/// Error of the squares of times (–).
+const SQUARE_MARGIN: f64 = 1e-6;
+/// Reciprocal of a speed too small to leave any box: its sign decides, and it never overflows to
+/// NaN.
+const LARGEST_RECIPROCAL: f64 = 1e30;
 
-/// The parabola's pass through boxes: linear in x and y, quadratic in z.
+/// The passage of a parabola through boxes: linear in x and y, quadratic in z.
 pub(super) struct ParabolaBox {
-    /// Start less, and plus, the radius of the ball and a little more.
-    /// The one is compared with lower sides of boxes, the other with upper ones.
-    less: [f32x4; 3],
-    plus: [f32x4; 3],
-    /// Reciprocal of the speeds; of the vertical one without gravity only.
-    inv: [f32x4; 3],
+    /// Start minus and plus the radius of the ball, with a margin. The first is compared with upper
+    /// sides of boxes, the second with lower ones.
+    minus_radius: [f32x4; 3],
+    plus_radius: [f32x4; 3],
+    /// Reciprocals of the speeds; of the vertical one only without gravity.
+    inverse_speed: [f32x4; 3],
     fall: Option<HeightOverTime>,
 }
 
@@ -43,42 +47,45 @@ pub(super) struct ParabolaBox {
 struct HeightOverTime {
     /// Time of the apex, rounded down and up.
     apex_s: [f32x4; 2],
-    /// Its height less, and plus, the radius.
-    less: f32x4,
-    plus: f32x4,
-    /// `2/g`, a little too small and too large.
-    over: [f32x4; 2],
+    /// Its height minus and plus the radius.
+    minus_radius: f32x4,
+    plus_radius: f32x4,
+    /// `2/g`, rounded down and up.
+    two_over_g: [f32x4; 2],
 }
 
 impl ParabolaBox {
     pub(super) fn new(flight: &Parabola) -> Self {
         let (c, v, g) = (flight.start, flight.velocity, flight.gravity);
-        let r = flight.radius * (1.0 + ROUNDING);
+        let r = flight.radius * (1.0 + RADIUS_MARGIN);
         let (down, up) = (|x: f64| f32x4::splat(below(x)), |x: f64| f32x4::splat(above(x)));
         // z_a = c_z + v_z²/(2 g)
         let apex = c.z + 0.5 * v.z * v.z / g;
-        // Gravity so weak that the apex is out of every scale bends no flight.
-        let bends = g > 0.0 && apex < STANDING;
-        let fall = bends.then(|| HeightOverTime {
+        // gravity so weak that the apex overflows the scale does not bend any flight
+        let has_apex = g > 0.0 && apex < LARGEST_RECIPROCAL;
+        let fall = has_apex.then(|| HeightOverTime {
             apex_s: [down(v.z / g), up(v.z / g)],
-            less: down(apex - r),
-            plus: up(apex + r),
-            over: [down(2.0 / g * (1.0 - SQUARED)), up(2.0 / g * (1.0 + SQUARED))],
+            minus_radius: down(apex - r),
+            plus_radius: up(apex + r),
+            two_over_g: [
+                down(2.0 / g * (1.0 - SQUARE_MARGIN)),
+                up(2.0 / g * (1.0 + SQUARE_MARGIN)),
+            ],
         });
-        // 1/0 becomes 1e30: times a distance to a box it is ±1e30 s or more than any window, the
-        // right sign deciding
-        let inv = |speed: f64| (1.0 / speed).clamp(-STANDING, STANDING) as f32;
+        // 1/0 becomes 1e30: times a distance to a box it is ±1e30 s or more than any window, with
+        // the right sign
+        let inv = |speed: f64| (1.0 / speed).clamp(-LARGEST_RECIPROCAL, LARGEST_RECIPROCAL) as f32;
         Self {
-            less: [0, 1, 2].map(|k| down(c[k] - r)),
-            plus: [0, 1, 2].map(|k| up(c[k] + r)),
-            inv: [0, 1, 2].map(|k| f32x4::splat(inv(v[k]))),
+            minus_radius: [0, 1, 2].map(|k| down(c[k] - r)),
+            plus_radius: [0, 1, 2].map(|k| up(c[k] + r)),
+            inverse_speed: [0, 1, 2].map(|k| f32x4::splat(inv(v[k]))),
             fall,
         }
     }
 
-    /// Times within `0..limit` between which the centre may be in the boxes grown by the radius: where the windows begin
-    /// and where they end; empty if reversed.
-    /// Four children of a node at once: the four lanes are the four boxes.
+    /// Times within `0..limit` between which the centre may be in the boxes enlarged by the radius:
+    /// starts and ends of the windows; empty if reversed. The four lanes are the four children of a
+    /// node.
     #[inline]
     pub(super) fn windows(&self, node: &BvhNode, limit: f64) -> (f32x4, f32x4) {
         let mut window = (f32x4::ZERO, f32x4::splat(limit as f32));
@@ -88,10 +95,10 @@ impl ParabolaBox {
             self.clip(node, 2, &mut window);
         }
         let floor2 = self.fall.as_ref().map(|fall| fall.clip_to_floor(node, &mut window));
-        let mut window = (window.0 * (1.0 - WIDER), window.1 * (1.0 + WIDER));
+        let mut window = (window.0 * (1.0 - WINDOW_MARGIN), window.1 * (1.0 + WINDOW_MARGIN));
         if let (Some(fall), Some(floor2)) = (&self.fall, floor2) {
             fall.clip_to_roof(node, &mut window);
-            // floor2 < 0: the apex lies below the floor of the grown box, it is never reached
+            // floor2 < 0: the apex lies below the floor of the enlarged box, which is never reached
             let never = f32x4::splat(f32::INFINITY);
             window.0 = floor2.simd_lt(f32x4::ZERO).select(never, window.0);
         }
@@ -101,36 +108,37 @@ impl ParabolaBox {
     /// Clips the windows to the time between two planes.
     #[inline]
     fn clip(&self, node: &BvhNode, axis: usize, (begin, end): &mut (f32x4, f32x4)) {
-        // one of the two products is the time of entry, whichever way the ball moves: the lesser of
-        // both
-        let one = (node.lo[axis] - self.plus[axis]) * self.inv[axis];
-        let other = (node.hi[axis] - self.less[axis]) * self.inv[axis];
-        *begin = begin.fast_max(one.fast_min(other));
-        *end = end.fast_min(one.fast_max(other));
+        // one of the two products is the time of entry, whichever way the ball moves: the lesser
+        // one
+        let lower = (node.lo[axis] - self.plus_radius[axis]) * self.inverse_speed[axis];
+        let upper = (node.hi[axis] - self.minus_radius[axis]) * self.inverse_speed[axis];
+        *begin = begin.fast_max(lower.fast_min(upper));
+        *end = end.fast_min(lower.fast_max(upper));
     }
 }
 
 impl HeightOverTime {
-    /// Clips the windows to the time above the floors; gives the squares of the times that the fall from the apex takes
-    /// to them, negative if they are never reached.
+    /// Clips the windows to the time above the floors. Returns the squares of the times that the
+    /// fall from the apex to the floors takes, negative if they are never reached.
     #[inline]
     fn clip_to_floor(&self, node: &BvhNode, (begin, end): &mut (f32x4, f32x4)) -> f32x4 {
-        let floor2 = (self.plus - node.lo[2]) * self.over[1];
+        let floor2 = (self.plus_radius - node.lo[2]) * self.two_over_g[1];
         let floor = floor2.fast_max(f32x4::ZERO).sqrt();
         *begin = begin.fast_max(self.apex_s[0] - floor);
         *end = end.fast_min(self.apex_s[1] + floor);
         floor2
     }
 
-    /// Above the roof between two times: leaves the window's hull, unless the way up or the way down is out of it already.
+    /// Removes the time above the roof, between two times, if that shortens the window: if the
+    /// ascent or the descent lies outside it already. Otherwise the hull of the window stays.
     #[inline]
     fn clip_to_roof(&self, node: &BvhNode, (begin, end): &mut (f32x4, f32x4)) {
-        // 2/g rounded down and heights rounded so that the part above the roof comes out too short:
-        // the window may only be too wide
-        let roof2 = (self.less - node.hi[2]) * self.over[0];
+        // 2/g and heights rounded so that the time above the roof comes out too short: a window may
+        // only be too wide
+        let roof2 = (self.minus_radius - node.hi[2]) * self.two_over_g[0];
         let roof = roof2.fast_max(f32x4::ZERO).sqrt();
-        let up = (self.apex_s[1] - roof) * (1.0 + WIDER);
-        let down = (self.apex_s[0] + roof) * (1.0 - WIDER);
+        let up = (self.apex_s[1] - roof) * (1.0 + WINDOW_MARGIN);
+        let down = (self.apex_s[0] + roof) * (1.0 - WINDOW_MARGIN);
         *begin = begin.simd_gt(up).select(begin.fast_max(down), *begin);
         *end = end.simd_lt(down).select(end.fast_min(up), *end);
     }

@@ -1,9 +1,9 @@
-//! Times at which a polynomial of degree two or four first falls through zero.
+//! Downcrossings: the times at which a polynomial of degree two or four first falls through zero.
 //!
-//! The polynomials are squared distances less `R²`, so a fall through zero is a touch and a rise is
-//! a parting.
+//! The polynomials are squared distances less `R²`, so a downcrossing is a contact and an
+//! upcrossing a separation.
 
-use super::{least, most};
+use super::{fast_max, fast_min};
 
 /// The two roots of `a t² + b t + c`, ascending, without cancellation; `None` if there are none.
 ///
@@ -17,38 +17,42 @@ pub(super) fn quadratic(a: f64, b: f64, c: f64) -> Option<(f64, f64)> {
         return (b != 0.0).then(|| (-c / b, -c / b));
     }
     // a negative discriminant: the height is never reached
-    let inside = b * b - 4.0 * a * c;
-    if inside < 0.0 {
+    let discriminant = b * b - 4.0 * a * c;
+    if discriminant < 0.0 {
         return None;
     }
-    let q = -0.5 * (b + inside.sqrt().copysign(b));
-    let (one, other) = (q / a, if q == 0.0 { 0.0 } else { c / q });
-    Some((least(one, other), most(one, other)))
+    let q = -0.5 * (b + discriminant.sqrt().copysign(b));
+    let (first, second) = (q / a, if q == 0.0 { 0.0 } else { c / q });
+    Some((fast_min(first, second), fast_max(first, second)))
 }
 
-/// First time in `t0..t1` at which the quartic `p[0] + p[1] t + … + p[4] t⁴` falls through zero and that is `wanted`.
+/// First time in `t0..t1` at which the quartic `p[0] + p[1] t + … + p[4] t⁴` falls through zero and
+/// which `accepts` accepts.
 ///
-/// The Bernstein coefficients over the window tell most cases at once: no change of sign, no crossing. Otherwise the
-/// window is halved until there is one change, which is then refined by safeguarded Newton steps.
+/// The signs of the Bernstein coefficients over the window decide most cases at once: without a
+/// change of sign there is no crossing. Otherwise the window is bisected until there is one change,
+/// which is then refined by safeguarded Newton steps.
 ///
-/// A general root finder seeks all four roots; here the earliest fall within a window is wanted,
-/// and most windows hold none: the signs of five numbers tell.
-pub(super) fn first_fall(
+/// A general root finder computes all four roots; here only the earliest downcrossing in a window
+/// is wanted, and most windows hold none.
+pub(super) fn first_downcrossing(
     p: &[f64; 5],
     (t0, t1): (f64, f64),
-    wanted: &impl Fn(f64) -> bool,
+    accepts: &impl Fn(f64) -> bool,
 ) -> Option<f64> {
-    // `wanted` sees the refined time: the caller asks there whether the foot still lies on the edge
+    // `accepts` gets the refined time: there the caller tests whether the foot still lies on the
+    // edge
     let fall = |b: &[f64; 5], from: f64, to: f64| {
-        Some(polish(p, cross(b, from, to), t0, t1)).filter(|&t| wanted(t))
+        Some(polish(p, refined_crossing(b, from, to), t0, t1)).filter(|&t| accepts(t))
     };
-    fall_between(&bernstein(p, t0, t1), (t0, t1), 0, &fall)
+    downcrossing_between(&bernstein(p, t0, t1), (t0, t1), 0, &fall)
 }
 
 /// Bernstein coefficients of a quartic on `t0..t1`.
 ///
 /// With `p(t0 + h s) = Σ c_j s^j` they are `b_k = Σ_j C(k, j)/C(4, j) c_j`. The curve lies in the
-/// hull of its coefficients, and has no more zeros than they change sign (variation diminishing).
+/// convex hull of its coefficients and has no more zeros than they have changes of sign (variation
+/// diminishing).
 fn bernstein(p: &[f64; 5], t0: f64, t1: f64) -> [f64; 5] {
     // Taylor shift to t0 (Horner), then scale to 0..1.
     let mut s = *p;
@@ -68,37 +72,38 @@ fn bernstein(p: &[f64; 5], t0: f64, t1: f64) -> [f64; 5] {
     ]
 }
 
-/// Halvings after which a window is as narrow as rounding.
+/// Bisections after which a window is as narrow as rounding.
 const HALVINGS: u32 = 48;
 
-/// The first fall on a window with Bernstein coefficients `b`; `fall` refines one where there is just one.
-/// The left half is searched before the right: the first fall found is the earliest.
-fn fall_between(
+/// The first downcrossing on a window with Bernstein coefficients `b`; `fall` refines one if it is
+/// the only crossing. The left half is searched before the right, so the first one found is the
+/// earliest.
+fn downcrossing_between(
     b: &[f64; 5],
     (t0, t1): (f64, f64),
     depth: u32,
     fall: &impl Fn(&[f64; 5], f64, f64) -> Option<f64>,
 ) -> Option<f64> {
-    // all of one sign: no zero; a coefficient of exactly 0 counts as below, so that a touch at the
-    // window's end is not lost
+    // all of one sign: no zero. A coefficient of exactly 0 counts as negative, so that a contact at
+    // the end of the window is not lost
     if b.iter().all(|&c| c > 0.0) || b.iter().all(|&c| c <= 0.0) {
         return None;
     }
     let changes = b.windows(2).filter(|w| (w[0] > 0.0) != (w[1] > 0.0)).count();
-    // one change of sign, one zero: it is a fall if the curve starts above
+    // one change of sign, one zero: a downcrossing if the curve starts above
     if changes == 1 || depth == HALVINGS {
         return if b[0] > 0.0 && b[4] <= 0.0 { fall(b, t0, t1) } else { None };
     }
-    let (left, right) = halve(b);
+    let (left, right) = split_at_middle(b);
     let middle = 0.5 * (t0 + t1);
-    // A fall exactly at the middle shows as a last coefficient of 0 on the left.
-    fall_between(&left, (t0, middle), depth + 1, fall)
-        .or_else(|| fall_between(&right, (middle, t1), depth + 1, fall))
+    // a downcrossing exactly at the middle gives the left half a last coefficient of 0
+    downcrossing_between(&left, (t0, middle), depth + 1, fall)
+        .or_else(|| downcrossing_between(&right, (middle, t1), depth + 1, fall))
 }
 
-/// De Casteljau at the middle.
-/// Means of neighbours only: no cancellation, so halving 48 times loses nothing.
-fn halve(b: &[f64; 5]) -> ([f64; 5], [f64; 5]) {
+/// De Casteljau subdivision at the middle. It takes means of neighbours only: no cancellation, so
+/// 48 bisections lose nothing.
+fn split_at_middle(b: &[f64; 5]) -> ([f64; 5], [f64; 5]) {
     let mut row = *b;
     let (mut left, mut right) = ([0.0; 5], [0.0; 5]);
     for k in 0..5 {
@@ -111,16 +116,17 @@ fn halve(b: &[f64; 5]) -> ([f64; 5], [f64; 5]) {
     (left, right)
 }
 
-/// The one crossing between Bernstein coefficients of unlike sign: Newton steps, halving where one would leave the bracket.
-fn cross(b: &[f64; 5], t0: f64, t1: f64) -> f64 {
-    // Powers of 0..1; what rounding this costs close to a double root is won back by `polish`.
-    // forward differences Δᵏb; the power coefficients are C(4, k) Δᵏb
+/// The only crossing between Bernstein coefficients of different sign: Newton steps, with bisection
+/// where a step would leave the bracket.
+fn refined_crossing(b: &[f64; 5], t0: f64, t1: f64) -> f64 {
+    // Power basis on 0..1 from forward differences Δᵏb: the coefficients are C(4, k) Δᵏb. What
+    // rounding costs close to a double root is recovered by `polish`.
     let (d1, d2, d3) = (b[1] - b[0], b[2] - 2.0 * b[1] + b[0], b[3] - 3.0 * (b[2] - b[1]) - b[0]);
     let d4 = b[4] - 4.0 * (b[3] + b[1]) + 6.0 * b[2] + b[0];
     let c = [b[0], 4.0 * d1, 6.0 * d2, 4.0 * d3, d4];
     let (mut lo, mut hi) = (0.0, 1.0);
     let mut s = b[0] / (b[0] - b[4]);
-    // f > 0 before the fall and < 0 after it: the bracket lo … hi keeps that
+    // f > 0 before the crossing and < 0 after it: the bracket lo … hi keeps that
     for _ in 0..HALVINGS {
         let f = c[0] + s * (c[1] + s * (c[2] + s * (c[3] + s * c[4])));
         let slope = c[1] + s * (2.0 * c[2] + s * (3.0 * c[3] + s * (4.0 * c[4])));
@@ -139,11 +145,13 @@ fn cross(b: &[f64; 5], t0: f64, t1: f64) -> f64 {
     t0 + (t1 - t0) * s
 }
 
-/// Last bits of a root that are rounding (2⁻⁴⁴ of it): which of them Newton ends with depends on where it began.
+/// Last bits of a root that are rounding (2⁻⁴⁴ of it): Newton's result in them depends on the start
+/// value.
 const ROUNDING: u64 = 0xff;
 
-/// Two Newton steps on the polynomial itself: the window's rounding is removed. So are the last bits, towards an earlier time:
-/// the root must not depend on which other features were asked before.
+/// Two Newton steps on the polynomial itself remove the rounding of the window. The last bits are
+/// then cleared, towards an earlier time: the root must not depend on which other features were
+/// tested before.
 fn polish(p: &[f64; 5], t: f64, t0: f64, t1: f64) -> f64 {
     let mut best = t;
     for _ in 0..2 {
@@ -163,13 +171,14 @@ mod tests {
 
     #[test]
     fn a_quadratic_keeps_its_small_root() {
-        let (one, other) = quadratic(1.0, -1e8, 1.0).unwrap();
-        assert!((one * 1e8 - 1.0).abs() < 1e-15 && (other / 1e8 - 1.0).abs() < 1e-15);
+        let (first, second) = quadratic(1.0, -1e8, 1.0).unwrap();
+        assert!((first * 1e8 - 1.0).abs() < 1e-15 && (second / 1e8 - 1.0).abs() < 1e-15);
     }
 
     proptest! {
-        /// A quartic with known real roots falls first at the first root with a negative slope, as exactly as its
-        /// coefficients know it: their rounding moves a root by about `ε Σ|p_k| t^k / |p'|`, far where roots are close.
+        /// A quartic with known real roots falls first at the first root with a negative slope, as
+        /// exactly as its coefficients know it: their rounding moves a root by about `ε Σ|p_k| t^k
+        /// / |p'|`, far where roots are close.
         #[test]
         fn the_first_fall_is_found(mut r in prop::array::uniform4(0.01f64..3.0), sign in prop::bool::ANY) {
             r.sort_by(f64::total_cmp);
@@ -183,13 +192,13 @@ mod tests {
             }
             let k = usize::from(!sign);
             for (root, from) in [(r[k], 0.0), (r[k + 2], r[k] + 5e-4)] {
-                let found = first_fall(&p, (0.0, 3.1), &|t| t > from).unwrap();
+                let found = first_downcrossing(&p, (0.0, 3.1), &|t| t > from).unwrap();
                 let size = p.iter().rev().fold(0.0, |sum, c| sum * root + c.abs());
                 let others = r.iter().map(|other| (root - other).abs()).filter(|off| *off > 0.0);
                 let known = 100.0 * f64::EPSILON * size / others.product::<f64>() + 256.0 * f64::EPSILON * root;
                 prop_assert!((found - root).abs() < known, "{found} {root} {known}");
             }
-            prop_assert!(first_fall(&p, (r[3] + 1e-3, 4.0), &|_| true).is_none());
+            prop_assert!(first_downcrossing(&p, (r[3] + 1e-3, 4.0), &|_| true).is_none());
         }
     }
 }

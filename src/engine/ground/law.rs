@@ -1,16 +1,18 @@
-//! The contact law: all that stiffness, damping and friction of a ground do to a rock, or to two rocks.
+//! The contact law: all that stiffness, damping and friction of a ground do to a rock, or to two
+//! rocks.
 //!
-//! Normal: a spring beside a dashpot, no tension ([`normal`](NormalElement)). Shear and rolling: a slider in series with a spring
-//! and a dashpot ([`friction`](FrictionElement)). **Nobody outside this folder reads a coefficient**: what a contact does is asked
-//! here, by meaning, so that another law is written in one place. The fields are private, so the compiler sees to it.
+//! Normal: a spring beside a dashpot, no tension ([`normal`](NormalElement)). Shear and rolling: a
+//! slider in series with a spring and a dashpot ([`friction`](FrictionElement)). **Nobody outside
+//! this folder reads a coefficient**: callers ask for a quantity by its meaning, so that another
+//! law is written in one place. The fields are private, which the compiler enforces.
 //!
-//! | asked | here |
+//! | quantity | function |
 //! |---|---|
-//! | a force at a motion | [`NormalElement::force`], [`FrictionElement::held`], `damped`, `capped` |
-//! | a force at the end of an implicit stage | [`NormalElement::stage_force`], [`FrictionElement::over`] |
-//! | its derivatives | [`NormalElement::line`], [`FrictionElement::left`] |
-//! | what springs store | [`Law::stored_j`], [`NormalElement::stored_j`] |
-//! | what friction bears | [`FrictionElement::cap`], [`Law::limits`] |
+//! | a force at a motion | [`NormalElement::force`], [`FrictionElement::spring_force`], `dashpot_force`, `capped` |
+//! | a force at the end of an implicit stage | [`NormalElement::stage_force`], [`FrictionElement::stage_stiffness`] |
+//! | its derivatives | [`NormalElement::line`], [`FrictionElement::stage_slider`] |
+//! | the energy in springs | [`Law::stored_j`], [`NormalElement::stored_j`] |
+//! | the friction limits | [`FrictionElement::cap`], [`Law::limits`] |
 //! | how long a contact lasts | [`Law::omega_rad_s`] |
 //! | which impact rebounds, and how | [`Law::capture_m_s`], [`Law::restitution_at`] |
 
@@ -21,23 +23,24 @@ mod normal;
 
 use super::Ground;
 use crate::rock::Rock;
-use damping::along_ratio;
+use damping::shear_ratio_at;
 pub use damping::{
     CAPTURE_DAMPING_RATIO, Damping, NormalImpact, damping_ratio, normal_impact, restitution,
     tangential_restitution,
 };
 pub(crate) use friction::{
-    FrictionElement, FrictionLimits, INSIDE, LinearFriction, SliderForce, within,
+    FrictionElement, FrictionLimits, LinearFriction, STICK_THRESHOLD, SliderForce, clamp_norm,
 };
 pub(crate) use normal::{FixedStepNormal, NormalElement, NormalLine};
 
-/// Rolling stiffness over `p_s R²` (–); with it the rolling spring is a tenth as stiff as the shear spring.
+/// Rolling stiffness over `p_s R²` (–); with it the rolling spring is a tenth as stiff as the shear
+/// spring.
 const ROLLING_STIFFNESS: f64 = 0.1;
-/// No impact slower than this rebounds (m/s), whatever the springs say.
+/// No impact slower than this rebounds (m/s), whatever the springs.
 const SLOWEST_REBOUND_M_S: f64 = 0.02;
-/// No impact is slower than this (m/s), whatever capture speed is asked for: in the rigid limit a blow takes no time, and rounding
-/// would strike without end.
-const LEAST_M_S: f64 = 1e-6;
+/// Lower bound of the capture speed in the rigid limit (m/s), whatever is asked for: an impact
+/// takes no time there, and rounding errors would cause impacts without end.
+const MIN_CAPTURE_M_S: f64 = 1e-6;
 
 /// The contact law of one ground for one rock, or of two rocks.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,9 +51,9 @@ pub struct Law {
     c_n: f64,
     /// Normal damping of a captured impact (N s/m).
     c_n_captured: f64,
-    /// What slip along the surface meets.
+    /// Friction against slip along the surface.
     pub(crate) shear: FrictionElement,
-    /// What rolling meets.
+    /// Friction against rolling.
     pub(crate) rolling: FrictionElement,
     /// Critical dashpots along the surface (N s/m) and of rolling (N m s/rad).
     critical: [f64; 2],
@@ -58,29 +61,29 @@ pub struct Law {
     pub capture_m_s: f64,
     /// Normal restitution (–) of slow impacts, see [`Self::restitution_at`].
     restitution: f64,
-    /// Normal speed (m/s) at which half of it is left; infinite where it stays the same.
+    /// Normal speed (m/s) at which it has fallen to half; infinite where it is constant.
     pub(crate) restitution_half_m_s: f64,
     /// Largest random tilt of the normal (rad).
     pub roughness_rad: f64,
-    /// Way over which one tilted facet reaches (m).
+    /// Length of one tilted facet (m).
     pub roughness_length_m: f64,
     /// `√(p_N/m)` (rad/s).
     omega: f64,
 }
 
-/// What a law needs to know besides ground and rock.
+/// What the capture speed depends on besides ground and rock.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Capture {
-    /// Capture speed the user wrote (m/s), if any.
+    /// Capture speed given by the user (m/s), if any.
     pub own_m_s: Option<f64>,
-    /// Local error allowed (m/s): slower rebounds than half of it cannot be told from error.
+    /// Local error allowed (m/s): rebounds slower than half of it cannot be told from errors.
     pub tolerance_m_s: f64,
     /// Gravity (m/s²), positive.
     pub gravity_m_s2: f64,
 }
 
 impl Law {
-    /// A ground that does nothing.
+    /// A ground without any effect.
     pub const NONE: Self = Self {
         p_n: 0.0,
         c_n: 0.0,
@@ -101,8 +104,9 @@ impl Law {
         Self::of_mass(ground, damping, (rock.mass_kg(), rock.radius_m), capture)
     }
 
-    /// The law of a contact that moves the mass `m` (kg), of a rolling radius (m). For two rocks that is their reduced
-    /// mass `m_a m_b/(m_a + m_b)`: the same formulas hold, along the surface too, as both are solid spheres.
+    /// The law of a contact that moves the mass `m` (kg), with a rolling radius (m). For two rocks
+    /// `m` is their reduced mass `m_a m_b/(m_a + m_b)`: the same formulas hold, along the surface
+    /// too, as both are solid spheres.
     pub fn of_mass(
         ground: &Ground,
         damping: &Damping,
@@ -111,11 +115,12 @@ impl Law {
     ) -> Self {
         let (p_n, p_s) = (ground.normal_stiffness_n_m, ground.shear_stiffness_n_m);
         let omega = (p_n / m).sqrt();
-        let rolls = ground.rolling_friction > 0.0;
-        let k_r = if rolls { ROLLING_STIFFNESS * p_s * radius * radius } else { 0.0 };
+        let has_rolling = ground.rolling_friction > 0.0;
+        let k_r = if has_rolling { ROLLING_STIFFNESS * p_s * radius * radius } else { 0.0 };
         let physical = damping.capture_number * capture.gravity_m_s2 / omega;
         let least = (0.5 * capture.tolerance_m_s).max(SLOWEST_REBOUND_M_S);
-        let damped = if ground.restitution.is_some() { along_ratio(damping.ratio) } else { 0.0 };
+        let shear_ratio =
+            if ground.restitution.is_some() { shear_ratio_at(damping.ratio) } else { 0.0 };
         let critical = [
             2.0 * (p_s * m / Rock::SLIP_LIGHTNESS).sqrt(),
             2.0 * (k_r * Rock::ROLLING_INERTIA * m).sqrt() * radius,
@@ -126,12 +131,12 @@ impl Law {
             c_n_captured: 2.0 * CAPTURE_DAMPING_RATIO.max(damping.ratio) * m * omega,
             shear: FrictionElement {
                 k: p_s,
-                c: damped * critical[0],
+                c: shear_ratio * critical[0],
                 limit: ground.friction_coefficient(),
             },
             rolling: FrictionElement {
                 k: k_r,
-                c: along_ratio(damping.ratio) * critical[1],
+                c: shear_ratio_at(damping.ratio) * critical[1],
                 limit: ground.rolling_friction * radius,
             },
             critical,
@@ -144,9 +149,9 @@ impl Law {
         }
     }
 
-    /// Springs that stand for a rigid contact: an impulse (N s) by speed (m/s) of so much, with the friction of another law on a
-    /// rock of a radius (m).
-    pub(crate) fn stiff(stiffness_kg: f64, limits: FrictionLimits, radius: f64) -> Self {
+    /// Penalty springs of a rigid contact, with the friction of another law on a rock of a radius
+    /// (m). Their stiffness is an impulse (N s) per speed (m/s), hence in kg.
+    pub(crate) fn penalty(stiffness_kg: f64, limits: FrictionLimits, radius: f64) -> Self {
         let k_r = if limits.has_rolling() { stiffness_kg * radius * radius } else { 0.0 };
         Self {
             p_n: stiffness_kg,
@@ -156,9 +161,10 @@ impl Law {
         }
     }
 
-    /// The same law for a patch of stiffness `gain2 = |a|²` (–) among several that are pressed at once: its effective mass is
-    /// `m/|a|²`, so `c_N` goes with `|a|`, and parallel dashpots take `share` of theirs (–), so that the damping ratio, and
-    /// with it the restitution, does not depend on how many patches there are.
+    /// The same law for a patch of stiffness `gain2 = |a|²` (–) among several that are pressed at
+    /// once. Its effective mass is `m/|a|²`, so `c_N` scales with `|a|`. Parallel dashpots take
+    /// `share` of theirs (–), so that the damping ratio, and with it the restitution, does not
+    /// depend on the number of patches.
     #[must_use]
     #[inline]
     #[expect(clippy::float_cmp, reason = "a single point has exactly these")]
@@ -175,13 +181,14 @@ impl Law {
         }
     }
 
-    /// The same law without rolling friction: rocks among themselves have none.
+    /// The same law without rolling friction, which contacts between rocks do not have.
     #[must_use]
     pub(crate) fn without_rolling(&self) -> Self {
         Self { rolling: FrictionElement::NONE, ..*self }
     }
 
-    /// Whether its springs are as stiff as those of `other`; what has no friction has no spring that could be another.
+    /// Whether its springs have the stiffnesses of `other`; a friction spring that one of them
+    /// lacks is not compared.
     pub(crate) fn has_springs_of(&self, other: &Self) -> bool {
         let are_alike = |own: &FrictionElement, other: &FrictionElement| {
             !(own.is_on() && other.is_on()) || own.k.to_bits() == other.k.to_bits()
@@ -191,9 +198,9 @@ impl Law {
             && are_alike(&self.rolling, &other.rolling)
     }
 
-    /// What shares of depth and stretches its springs have under a load that those of `other` bear (–): normal, shear and rolling, 1 where they are no
-    /// stiffer.
-    pub(crate) fn shares_of(&self, other: &Self) -> [f64; 3] {
+    /// Ratios of its depth and stretches to those of `other` under the same load (–): normal, shear
+    /// and rolling; 1 where its springs are no stiffer.
+    pub(crate) fn stretch_ratios_to(&self, other: &Self) -> [f64; 3] {
         let share = |own: f64, other: f64| if own > other { other / own } else { 1.0 };
         [
             share(self.p_n, other.p_n),
@@ -202,14 +209,15 @@ impl Law {
         ]
     }
 
-    /// The same with the friction of `other`, along the surface and in rolling: springs that may be stretched stay what they are.
+    /// The same law with the friction of `other`, along the surface and in rolling; springs that
+    /// may be stretched keep their stiffness and damping.
     pub(crate) fn with_friction_of(&self, other: &Self) -> Self {
-        let both = |own: FrictionElement, other: FrictionElement| {
+        let replaced = |own: FrictionElement, other: FrictionElement| {
             if own.is_on() { FrictionElement { limit: other.limit, ..own } } else { other }
         };
         Self {
-            shear: both(self.shear, other.shear),
-            rolling: both(self.rolling, other.rolling),
+            shear: replaced(self.shear, other.shear),
+            rolling: replaced(self.rolling, other.rolling),
             ..*self
         }
     }
@@ -220,20 +228,20 @@ impl Law {
         self.omega
     }
 
-    /// What sliders bear: the limits of friction and of rolling friction.
+    /// The limits of friction and of rolling friction.
     #[inline]
     pub(crate) fn limits(&self) -> FrictionLimits {
         FrictionLimits { shear: self.shear.limit, rolling: self.rolling.limit }
     }
 
-    /// Coefficient of friction `tan φ` in force (–), before what slip adds.
+    /// Coefficient of friction `tan φ` in force (–), before the increase by slip.
     #[inline]
     pub(crate) fn friction_coefficient(&self) -> f64 {
         self.shear.limit
     }
 
-    /// Gives the ground another coefficient of friction (–); whether it is another.
-    pub(crate) fn rub_with(&mut self, coefficient: f64) -> bool {
+    /// Sets the coefficient of friction (–); returns whether it has changed.
+    pub(crate) fn set_friction(&mut self, coefficient: f64) -> bool {
         std::mem::replace(&mut self.shear.limit, coefficient).to_bits() != coefficient.to_bits()
     }
 }
@@ -248,67 +256,70 @@ impl Law {
             + self.rolling.k * roll2)
     }
 
-    /// An upper bound of the power that a contact takes (W), and of half its growth (W/s), under a normal force (N), at speeds
-    /// inwards and along the surface (m/s): forces do not grow faster than those of springs without loss.
-    pub(crate) fn taken_w(&self, force_n: f64, inwards: f64, slip: f64) -> (f64, f64) {
+    /// Upper bound of the power dissipated in a contact (W), and half of its growth rate (W/s),
+    /// under a normal force (N), at speeds inwards and along the surface (m/s): forces do not grow
+    /// faster than those of springs without loss.
+    pub(crate) fn power_bound_w(&self, force_n: f64, inwards: f64, slip: f64) -> (f64, f64) {
         // W(h) ≤ Σ (v_n + μ |u|) (F h + p_N v_n h²/2)
         let force = force_n.max(self.c_n * inwards);
-        let way = inwards + self.shear.limit * slip;
-        (force * way, 0.5 * self.p_n * inwards * way)
+        let speed = inwards + self.shear.limit * slip;
+        (force * speed, 0.5 * self.p_n * inwards * speed)
     }
 }
 
 impl Law {
-    /// Speed of approach from which on a blow rebounds in the rigid limit (m/s).
+    /// Speed of approach above which an impact rebounds in the rigid limit (m/s).
     #[inline]
-    pub(crate) fn rebounds_from_m_s(&self) -> f64 {
-        self.capture_m_s.max(LEAST_M_S)
+    pub(crate) fn rigid_capture_m_s(&self) -> f64 {
+        self.capture_m_s.max(MIN_CAPTURE_M_S)
     }
 
-    /// Normal restitution (–) of an impact at a normal speed (m/s): `e/(1 + (v/v_half)²)` (Pfeiffer and Bowen 1989).
+    /// Normal restitution (–) of an impact at a normal speed (m/s): `e/(1 + (v/v_half)²)` (Pfeiffer
+    /// and Bowen 1989).
     #[inline]
     pub fn restitution_at(&self, approach_m_s: f64) -> f64 {
-        let over = approach_m_s / self.restitution_half_m_s;
-        self.restitution / (1.0 + over * over)
+        let relative = approach_m_s / self.restitution_half_m_s;
+        self.restitution / (1.0 + relative * relative)
     }
 
-    /// Whether nothing is given back, however slow the impact.
+    /// Whether the restitution is 0, however slow the impact.
     #[inline]
     pub(crate) fn is_plastic(&self) -> bool {
         self.restitution <= 0.0
     }
 
-    /// Damping ratio of an impact at a normal speed (m/s) (–), if it hangs on the speed.
+    /// Damping ratio (–) of an impact at a normal speed (m/s), if the restitution depends on the
+    /// speed.
     pub(crate) fn ratio_at(&self, approach_m_s: f64) -> Option<f64> {
-        let hangs_on_speed = self.restitution_half_m_s.is_finite();
-        hangs_on_speed.then(|| damping_ratio(self.restitution_at(approach_m_s)))
+        let depends_on_speed = self.restitution_half_m_s.is_finite();
+        depends_on_speed.then(|| damping_ratio(self.restitution_at(approach_m_s)))
     }
 
-    /// Takes the dashpot of an impact at a normal speed (m/s), until the next one.
-    pub fn struck_at(&mut self, approach_m_s: f64) {
+    /// Sets the dashpots to those of an impact at a normal speed (m/s), until the next one.
+    pub fn set_impact_speed(&mut self, approach_m_s: f64) {
         if let Some(ratio) = self.ratio_at(approach_m_s) {
-            self.damp(ratio);
+            self.set_damping_ratio(ratio);
         }
     }
 
     /// The same law with dashpots of a damping ratio (–).
     pub(crate) fn damped(&self, ratio: f64) -> Self {
         let mut law = *self;
-        law.damp(ratio);
+        law.set_damping_ratio(ratio);
         law
     }
 
-    /// Takes dashpots of a damping ratio (–).
-    fn damp(&mut self, ratio: f64) {
+    /// Sets the dashpots to a damping ratio (–).
+    fn set_damping_ratio(&mut self, ratio: f64) {
         let critical = 2.0 * self.p_n / self.omega;
         self.c_n = ratio * critical;
         self.c_n_captured = CAPTURE_DAMPING_RATIO.max(ratio) * critical;
-        self.shear.c = along_ratio(ratio) * self.critical[0];
-        self.rolling.c = along_ratio(ratio) * self.critical[1];
+        self.shear.c = shear_ratio_at(ratio) * self.critical[0];
+        self.rolling.c = shear_ratio_at(ratio) * self.critical[1];
     }
 }
 
-/// The numbers of a law, for tests that write it down a second time.
+/// The coefficients of a law, for tests that implement it a second time.
 #[cfg(test)]
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Coefficients {
@@ -321,7 +332,7 @@ pub(crate) struct Coefficients {
 
 #[cfg(test)]
 impl Law {
-    /// All numbers.
+    /// All coefficients.
     pub(crate) fn coefficients(&self) -> Coefficients {
         let of = |element: &FrictionElement| [element.k, element.c, element.limit];
         Coefficients {

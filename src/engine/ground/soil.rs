@@ -1,23 +1,25 @@
-//! What soft soil does besides friction and restitution: friction that grows with slip, a scar that drags.
+//! Effects of soft soil besides friction and restitution: friction that grows with slip, and the
+//! drag of a scar.
 
 use crate::math;
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Friction that grows with the way slipped `s` (m), as soil is pushed up before a rock (Leine et al. 2014, Eqs. 46–47):
-/// `μ(s) = μ_0 + (2/π)(μ_max − μ_0) atan(κ s)`, `s' = |slip|` in contact and `s' = −β s` in flight; `μ_0` is that of the friction
-/// angle.
+/// Friction that grows with the slip distance `s` (m), as soil is pushed up in front of a rock
+/// (Leine et al. 2014, Eqs. 46–47): `μ(s) = μ_0 + (2/π)(μ_max − μ_0) atan(κ s)`, `s' = |slip|` in
+/// contact and `s' = −β s` in flight; `μ_0` is that of the friction angle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SlipFriction {
     /// Largest coefficient of friction `μ_max` (–).
     pub most: f64,
-    /// How fast it grows `κ` (1/m), positive.
+    /// Rate of growth `κ` (1/m), positive.
     pub kappa_per_m: f64,
-    /// How fast it is forgotten in flight `β` (1/s), 0 or more.
+    /// Rate of decay in flight `β` (1/s), 0 or more.
     pub beta_per_s: f64,
 }
 
-/// A layer of soil that gives way to an impact (Lu et al. 2019, Eqs. 9–14). The rock digs in to the depth [`Self::depth_m`], meets
-/// a hard plane there, and leaves; on its way through the soil a drag `½ C ρ_s A |v|²` acts against its velocity, at its centre.
+/// A layer of soil that yields in an impact (Lu et al. 2019, Eqs. 9–14). The rock digs in to the
+/// depth [`Self::depth_m`], meets a hard plane there, and leaves. In the soil a drag `½ C ρ_s A
+/// |v|²` acts against its velocity, at its centre.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scar {
     /// Strength of the soil `M_E` (kN/m²), positive.
@@ -34,31 +36,34 @@ impl SlipFriction {
         least + (self.most - least) * math::atan(self.kappa_per_m * slip_m) / FRAC_PI_2
     }
 
-    /// What is left of a slip (m) after a flight of `flight_s` (s): `s e^(−β t)`.
+    /// Slip (m) that is left after a flight of `flight_s` (s): `s e^(−β t)`.
     pub(crate) fn left_m(&self, slip_m: f64, flight_s: f64) -> f64 {
         slip_m * math::exp(-self.beta_per_s * flight_s)
     }
 }
 
 impl Scar {
-    /// Depth of the scar (m) of a rock of so many kg that comes to the surface with a normal speed (m/s):
-    /// `d = 0.1 M^(1/3) M_E^(−0.4) v^0.8`, bound to these units (Eq. 11).
+    /// Depth of the scar (m) of a rock of a mass (kg) that hits the surface with a normal speed
+    /// (m/s): `d = 0.1 M^(1/3) M_E^(−0.4) v^0.8`, bound to these units (Eq. 11).
     pub fn depth_m(&self, mass_kg: f64, approach_m_s: f64) -> f64 {
         let strength = math::pow(self.strength_kn_m2, -0.4);
         0.1 * math::cbrt(mass_kg) * strength * math::pow(approach_m_s, 0.8)
     }
 
-    /// What the drag takes of the speed on each metre by each square metre that is cut (1/m³): `C ρ_s/(2 m)`.
+    /// Relative loss of speed by the drag per metre and per square metre of the cut (1/m³): `C
+    /// ρ_s/(2 m)`.
     pub fn drag_per_m3(&self, mass_kg: f64) -> f64 {
         0.5 * self.drag * self.soil_density_kg_m3 / mass_kg
     }
 }
 
-/// Area (m²) of the part of a ball that is deeper than `depth_m` under its lowest point is high, as seen along its velocity.
+/// Area (m²) of that part of a ball which is below the surface, as seen along its velocity.
 ///
-/// `depth_m` is how far the ball reaches below the surface; `cosine` that of the angle between velocity and the surface's normal.
-/// The cut is a disc, seen as an ellipse, and where the ball's outline dips in, the segment of that outline beside it. `cosine` 1: the
-/// disc `π(2Rζ − ζ²)` up to the ball's middle; `cosine` 0: the segment `R² acos(1 − ζ/R) − (R − ζ)√(2Rζ − ζ²)`.
+/// `depth_m` is how far the ball reaches below the surface, `cosine` that of the angle between
+/// velocity and surface normal. The cut by the surface is a disc, seen as an ellipse; where the
+/// ball's outline dips below the surface, the circular segment beside it is added. `cosine` 1: the
+/// disc `π(2Rζ − ζ²)` up to the ball's middle; `cosine` 0: the segment `R² acos(1 − ζ/R) − (R −
+/// ζ)√(2Rζ − ζ²)`.
 pub fn cut_area_m2(radius_m: f64, depth_m: f64, cosine: f64) -> f64 {
     let (r, sine) = (radius_m, (1.0 - cosine * cosine).max(0.0).sqrt());
     let above = r - depth_m;
@@ -78,25 +83,26 @@ pub fn cut_area_m2(radius_m: f64, depth_m: f64, cosine: f64) -> f64 {
     r * r * beyond(outline) + disc2 * cosine * (PI - beyond(disc))
 }
 
-/// Soil that a ball sweeps (m³) straight from the surface to a depth (m), or out again: `∫ A dζ / cosine` over the depth.
+/// Volume of soil (m³) that a ball sweeps on a straight path from the surface to a depth (m), or
+/// out again: `∫ A dζ / cosine` over the depth.
 pub fn swept_m3(radius_m: f64, depth_m: f64, cosine: f64) -> f64 {
     let r = radius_m;
     let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
-    // until the outline dips in there is the disc alone
+    // until the outline dips in the area is the disc alone
     let first = depth_m.min(r * (1.0 - sine));
     let early = PI * first * first * (r - first / 3.0);
-    // and from here on all of the ball
+    // and from here on the whole ball
     let last = depth_m.min(r * (1.0 + sine));
     let all = PI * r * r * (depth_m - last);
     if depth_m <= first {
         return early;
     }
-    // with the square of the variable the area has no root at the lower end
+    // with the square of the variable the integrand has no root singularity at the lower end
     let cut = |x: f64| 2.0 * x * cut_area_m2(r, first + (last - first) * x * x, cosine);
     early + ((last - first) * over_unit(cut) + all) / cosine
 }
 
-/// Nodes and weights of Gauss and Legendre with sixteen points, those above 0.
+/// Nodes and weights of Gauss–Legendre quadrature with sixteen points, those above 0.
 const GAUSS: [[f64; 2]; 8] = [
     [0.095_012_509_837_637_44, 0.189_450_610_455_068_5],
     [0.281_603_550_779_258_9, 0.182_603_415_044_923_6],
@@ -108,7 +114,7 @@ const GAUSS: [[f64; 2]; 8] = [
     [0.989_400_934_991_649_9, 0.027_152_459_411_754_095],
 ];
 
-/// Integral from 0 to 1.
+/// Integral from 0 to 1, by Gauss–Legendre quadrature.
 pub(crate) fn over_unit(f: impl Fn(f64) -> f64) -> f64 {
     let pair = |[x, weight]: [f64; 2]| 0.5 * weight * (f(0.5 - 0.5 * x) + f(0.5 + 0.5 * x));
     GAUSS.map(pair).iter().sum()
@@ -120,8 +126,8 @@ mod tests {
 
     const R: f64 = 0.5;
 
-    /// The area against one counted on a fine grid of lines along the velocity: a line counts if any part of it that lies in the
-    /// ball is deep enough.
+    /// The area against one counted on a fine grid of lines along the velocity: a line counts if
+    /// any part of it inside the ball is deep enough.
     #[test]
     fn the_cut_area_is_what_lines_along_the_velocity_meet() {
         let n = 400;
@@ -142,7 +148,7 @@ mod tests {
         }
     }
 
-    /// What is swept against a fine sum of areas; falling square to the surface, `π(R z² − z³/3)`.
+    /// The swept volume against a fine sum of areas; for a normal impact, `π(R z² − z³/3)`.
     #[test]
     fn what_is_swept_is_the_integral_of_the_area() {
         for depth in [0.001, 0.1, 0.4, 0.8, 1.3] {
@@ -159,8 +165,8 @@ mod tests {
         assert!((swept_m3(R, 0.2, 1.0) / square(0.2) - 1.0).abs() < 1e-14);
     }
 
-    /// A ball of 0.5 m and 2700 kg/m³ that falls into soil with `C ρ_s` = 2.5 · 1700 kg/m³ keeps 0.978204 of its speed after 0.1 m
-    /// and 0.921409 after 0.2 m.
+    /// A ball of 0.5 m and 2700 kg/m³ that falls into soil with `C ρ_s` = 2.5 · 1700 kg/m³ keeps
+    /// 0.978204 of its speed after 0.1 m and 0.921409 after 0.2 m.
     #[test]
     fn a_ball_that_falls_square_keeps_what_the_closed_form_says() {
         let mass = 4.0 / 3.0 * PI * R.powi(3) * 2700.0;
@@ -171,7 +177,8 @@ mod tests {
         }
     }
 
-    /// Eq. 11 by its powers, and its value for 780 kg at 10 m/s on 15 MN/m², taken by hand: 0.12405 m.
+    /// Eq. 11 by its powers, and its value for 780 kg at 10 m/s on 15 MN/m², computed by hand:
+    /// 0.12405 m.
     #[test]
     fn the_depth_of_a_scar_is_that_of_the_equation() {
         let scar = Scar { strength_kn_m2: 15e3, drag: 2.5, soil_density_kg_m3: 1700.0 };
@@ -184,7 +191,8 @@ mod tests {
         assert!(scar.depth_m(780.0, 0.0) == 0.0);
     }
 
-    /// The shallower a rock comes in, the less it sweeps: nothing is left at a grazing touch, where depth falls with v^0.8.
+    /// The shallower the approach of a rock, the less it sweeps: nothing is left at a grazing
+    /// touch, where the depth falls with v^0.8.
     #[test]
     fn a_grazing_rock_sweeps_nothing() {
         let scar = Scar { strength_kn_m2: 5e3, drag: 2.5, soil_density_kg_m3: 1700.0 };

@@ -1,7 +1,7 @@
 //! What the grounds of a scene ask of the plan: stems that give way, sources of values, grounds without use.
 
 use super::{Part, apart, can_exceed_0, slips, trees};
-use crate::contact::pair::Strength;
+use crate::contact::pair::BondStrength;
 use crate::error::{Error, Result};
 use crate::ground::{Damping, Ground, Scar, swept_m3, tangential_restitution};
 use crate::math;
@@ -162,7 +162,7 @@ pub(super) fn between_rocks(scene: &Scene) -> Option<Ground> {
 }
 
 /// Bonds between the rocks of one world.
-pub(super) fn bonds(scene: &Scene) -> Part<Strength> {
+pub(super) fn bonds(scene: &Scene) -> Part<BondStrength> {
     let Some(contact) = scene.rocks.contact.as_ref().filter(|_| scene.release.together) else {
         return Part::LeftOut("releases are independent");
     };
@@ -170,7 +170,7 @@ pub(super) fn bonds(scene: &Scene) -> Part<Strength> {
         return Part::LeftOut("a bond breaks by its springs, and the rigid limit has none");
     }
     let strength =
-        Strength { tensile_pa: contact.tensile_strength_pa, cohesion_pa: contact.cohesion_pa };
+        BondStrength { tensile_pa: contact.tensile_strength_pa, cohesion_pa: contact.cohesion_pa };
     Part::when(
         strength.is_some().then_some(strength),
         "neither tensile_strength_pa nor cohesion_pa is above 0",

@@ -4,7 +4,7 @@ use super::inputs::short;
 use super::{EvaluationLine, Part, Paths, Plan, RestRule, annual, settings};
 use crate::count::counted;
 use crate::ground::Ground;
-use crate::release::{Releases, Where};
+use crate::release::{ReleasePlace, Releases};
 use crate::scene::{BarrierTable, InputFile, ObjectTable, Zone, ZonePlace, Zones};
 use crate::solver::dda::own_restitution;
 use crate::solver::{Scheme, Settings};
@@ -309,19 +309,19 @@ fn never(part: &Part<Infallible>) -> &'static str {
 }
 
 fn places(releases: &Releases) -> String {
-    let words = |one: &Where| place(one, releases.zones_are_sources());
+    let words = |one: &ReleasePlace| place(one, releases.zones_are_sources());
     releases.places().iter().map(words).collect::<Vec<_>>().join(", ")
 }
 
-fn place(place: &Where, zones_are_sources: bool) -> String {
+fn place(place: &ReleasePlace, zones_are_sources: bool) -> String {
     match place {
-        Where::Points(points) => match points.len() {
+        ReleasePlace::Points(points) => match points.len() {
             1 => "from one point".to_owned(),
             points => format!("from {points} points in turn"),
         },
-        Where::Line(line) => format!("along a line of {:.1} m", line.length_m()),
-        Where::Area(area) => format!("over an area of {:.1} m²", area.area_m2()),
-        Where::Zones(zones) => {
+        ReleasePlace::Line(line) => format!("along a line of {:.1} m", line.length_m()),
+        ReleasePlace::Area(area) => format!("over an area of {:.1} m²", area.area_m2()),
+        ReleasePlace::Zones(zones) => {
             let file = zones.file.display();
             let how = if zones_are_sources { "each a source of its own" } else { shared_by(zones) };
             format!("over {} of {file}, {how}", zones.counted())

@@ -1,4 +1,4 @@
-//! The shape of rock number i and how it is turned.
+//! Shape and attitude of rock number i.
 
 use super::Releases;
 use crate::body::{
@@ -30,11 +30,11 @@ pub struct DrawnShape {
     pub attitude: Rotation3<f64>,
 }
 
-/// What a shape of the scene takes of the whole.
+/// A shape of the scene, with its share of the rocks.
 #[derive(Debug, Clone, PartialEq)]
 struct ShapeShare {
     table: ShapeTable,
-    /// The shape, where nothing of it is drawn.
+    /// The shape, if nothing of it is drawn.
     made: Option<Shape>,
 }
 
@@ -50,13 +50,14 @@ pub fn check_shapes(scene: &Scene) -> Result<()> {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Shapes {
     entries: Vec<ShapeShare>,
-    /// The shapes that rocks draw among, with the weights up to each (–): those of no block, then block by block.
-    choices: Vec<Vec<(f64, usize)>>,
-    /// The choice of each row of the release table; empty without one.
+    /// The shapes among which rocks draw, with cumulative weights (–): those of no block, then
+    /// block by block.
+    weighted: Vec<Vec<(f64, usize)>>,
+    /// For each row of the release table, its entry in `weighted`; empty without a table.
     of_row: Vec<usize>,
-    /// A fixed turn; none if it is drawn.
-    turned: Option<Rotation3<f64>>,
-    /// What the plan says of each.
+    /// A fixed attitude; `None` if it is drawn.
+    attitude: Option<Rotation3<f64>>,
+    /// Lines of the plan, one for each shape.
     pub(super) lines: Vec<String>,
 }
 
@@ -66,7 +67,7 @@ impl Shapes {
     /// # Errors
     /// A scan that cannot be read or is not closed, corners too round for a shape.
     pub(super) fn compile(scene: &Scene) -> Result<Self> {
-        let mut shapes = Self { turned: fixed_turn(scene), ..Self::default() };
+        let mut shapes = Self { attitude: fixed_attitude(scene), ..Self::default() };
         if !scene.has_blocks() {
             return Ok(shapes);
         }
@@ -76,12 +77,13 @@ impl Shapes {
             shapes.lines.push(line);
             shapes.entries.push(ShapeShare { table: table.clone(), made });
         }
-        shapes.choose(scene);
+        shapes.group_by_block(scene);
         Ok(shapes)
     }
 
-    /// Which shapes each row of the release table draws among: those of its block, or those of none.
-    fn choose(&mut self, scene: &Scene) {
+    /// Sets the shapes among which each row of the release table draws: those of its block, or
+    /// those of none.
+    fn group_by_block(&mut self, scene: &Scene) {
         let tables = &scene.rocks.shapes;
         let mut names: Vec<Option<&String>> = vec![None];
         let place = |names: &[Option<&String>], block: Option<&String>| {
@@ -92,7 +94,7 @@ impl Shapes {
                 names.push(table.block.as_ref());
             }
         }
-        let choice = |name: Option<&String>| {
+        let options = |name: Option<&String>| {
             let own = tables.iter().enumerate().filter(|(_, table)| table.block.as_ref() == name);
             let summed = own.scan(0.0, |sum, (index, table)| {
                 *sum += table.weight.unwrap_or(1.0);
@@ -100,67 +102,70 @@ impl Shapes {
             });
             summed.collect()
         };
-        self.choices = names.iter().copied().map(choice).collect();
+        self.weighted = names.iter().copied().map(options).collect();
         let rows = scene.release.blocks.iter();
         self.of_row = rows.map(|row| place(&names, row.block.as_ref()).unwrap_or(0)).collect();
     }
 
-    /// Whether some rocks are no spheres.
+    /// Whether some rocks are not spheres.
     pub(super) fn has_blocks(&self) -> bool {
         !self.entries.is_empty()
     }
 
-    /// The block of release `index`, which is the `turn`-th from its place, of the size of its rock; none if it is a sphere.
+    /// The block of release `index`, the `turn`-th from its place, with the size of its rock;
+    /// `None` for a sphere.
     pub(super) fn draw(&self, seed: u64, of: (usize, usize), rock: &Rock) -> Option<DrawnShape> {
         let (entry, drawn, mut random) = self.pick(seed, of)?;
-        let attitude = self.turned.unwrap_or_else(|| random_turn(&mut random));
+        let attitude = self.attitude.unwrap_or_else(|| random_attitude(&mut random));
         let (sides, made) = entry.shape(drawn)?;
         let block = Block::new(&made, rock);
         let sides = [sides[1] / sides[0], sides[2] / sides[0]];
         Some(DrawnShape { kind: entry.table.kind, sides, block, attitude })
     }
 
-    /// The entry of release `index`, which is the `turn`-th from its place, the numbers that choose its sides, and the stream
-    /// behind them; none if it is a sphere.
+    /// The entry of release `index`, the `turn`-th from its place, the numbers that determine its
+    /// sides, and the rest of the random stream; `None` for a sphere.
     fn pick(
         &self,
         seed: u64,
         (index, turn): (usize, usize),
     ) -> Option<(&ShapeShare, [f64; 4], RandomStream)> {
         let row = turn.checked_rem(self.of_row.len()).map_or(0, |row| self.of_row[row]);
-        let choice = self.choices.get(row)?;
-        let all = choice.last()?.0;
+        let options = self.weighted.get(row)?;
+        let all = options.last()?.0;
         let mut random = stream(seed, Purpose::Shape, index);
         let pick = all * unit(&mut random);
-        let entry = &self.entries[choice[choice.partition_point(|(sum, _)| *sum <= pick)].1];
+        let entry = &self.entries[options[options.partition_point(|(sum, _)| *sum <= pick)].1];
         let drawn = [0; 4].map(|_| unit(&mut random));
         (entry.table.kind != ShapeKind::Sphere).then_some((entry, drawn, random))
     }
 }
 
 impl ShapeShare {
-    /// The sides and the shape that these numbers choose.
+    /// The sides and the shape for these random numbers.
     fn shape(&self, drawn: [f64; 4]) -> Option<([f64; 3], Shape)> {
         let mut next = drawn.into_iter();
         let quantile = |axis: &Distribution| axis.quantile(next.next().unwrap_or(0.5));
         let sides = sides_of(&self.table, quantile);
         let shape = match &self.made {
             Some(shape) => shape.clone(),
-            // checked at the ends of what can be drawn; between them nothing is rounder: with x the logarithms of the sides, that of a
-            // face's distance over the radius of equal volume, −½ ln Σ nᵢ² e^(−2xᵢ) − ⅓ Σ xᵢ, is concave, so it is least at an end
-            None => of_sides(&self.table, sides).ok()?,
+            // Checked at the ends of what can be drawn; between them nothing is rounder. With x the
+            // logarithms of the sides, the logarithm of a face's distance over the radius of equal
+            // volume, −½ ln Σ nᵢ² e^(−2xᵢ) − ⅓ Σ xᵢ, is concave, so it is least at an end.
+            None => shape_of_sides(&self.table, sides).ok()?,
         };
         Some((sides, shape))
     }
 }
 
 impl Releases {
-    /// The shape of release `index`, of the size of its rock, and how it is turned; none for a sphere.
+    /// The shape of release `index`, with the size of its rock, and its attitude; `None` for a
+    /// sphere.
     pub fn block(&self, index: usize, rock: &Rock) -> Option<DrawnShape> {
         self.shapes.draw(self.seed, (index, self.place_of(index).1), rock)
     }
 
-    /// The shape of release `index` without its size; none for a sphere.
+    /// The shape of release `index` without its size; `None` for a sphere.
     pub fn shape(&self, index: usize) -> Option<Shape> {
         let (entry, drawn, _) = self.shapes.pick(self.seed, (index, self.place_of(index).1))?;
         entry.shape(drawn).map(|(_, shape)| shape)
@@ -176,38 +181,39 @@ impl Releases {
         self.grounds.iter().any(|ground| ground.scar.is_some())
     }
 
-    /// What the plan says of each shape; empty for spheres alone.
+    /// The plan's line on each shape; empty for spheres alone.
     pub fn shapes(&self) -> &[String] {
         &self.shapes.lines
     }
 
-    /// Radius of the ball around a rock (m): what must be clear where it starts, however it is turned.
+    /// Radius of the bounding ball of a rock (m), which must be clear where it starts, whatever its
+    /// attitude.
     pub(super) fn around_m(&self, index: usize, rock: &Rock) -> f64 {
         self.block(index, rock).map_or(rock.radius_m, |drawn| drawn.block.bound_m)
     }
 }
 
-/// Uniform over all turns, of three numbers (Shoemake 1992).
-fn random_turn(random: &mut RandomStream) -> Rotation3<f64> {
+/// Uniform over all rotations, from three numbers (Shoemake 1992).
+fn random_attitude(random: &mut RandomStream) -> Rotation3<f64> {
     let [a, b, c] = [0; 3].map(|_| unit(random));
     let ((sin_b, cos_b), (sin_c, cos_c)) = (math::sin_cos(TAU * b), math::sin_cos(TAU * c));
     let (less, more) = ((1.0 - a).sqrt(), a.sqrt());
-    turn_of([more * cos_c, less * sin_b, less * cos_b, more * sin_c])
+    attitude_of([more * cos_c, less * sin_b, less * cos_b, more * sin_c])
 }
 
-/// The turn of a quaternion w, x, y, z of any length.
-fn turn_of([w, x, y, z]: [f64; 4]) -> Rotation3<f64> {
+/// The rotation of a quaternion w, x, y, z of any length.
+fn attitude_of([w, x, y, z]: [f64; 4]) -> Rotation3<f64> {
     UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z)).to_rotation_matrix()
 }
 
-fn fixed_turn(scene: &Scene) -> Option<Rotation3<f64>> {
+fn fixed_attitude(scene: &Scene) -> Option<Rotation3<f64>> {
     match &scene.release.orientation {
-        Some(Orientation::Fixed(turn)) => Some(turn_of(*turn)),
+        Some(Orientation::Fixed(turn)) => Some(attitude_of(*turn)),
         _ => None,
     }
 }
 
-/// The three sides of a shape, `value` choosing among those that are drawn.
+/// The three sides of a shape; `value` selects those that are distributions.
 fn sides_of(table: &ShapeTable, mut value: impl FnMut(&Distribution) -> f64) -> [f64; 3] {
     match (table.kind, &table.axes, &table.ratio) {
         (_, Some(axes), _) if axes.len() == 3 => [0, 1, 2].map(|k| value(&axes[k])),
@@ -218,14 +224,14 @@ fn sides_of(table: &ShapeTable, mut value: impl FnMut(&Distribution) -> f64) -> 
 }
 
 /// The shape of a table that is not a scan.
-fn make(
+fn shape_of(
     table: &ShapeTable,
     value: impl FnMut(&Distribution) -> f64,
 ) -> std::result::Result<Shape, BadSurface> {
-    of_sides(table, sides_of(table, value))
+    shape_of_sides(table, sides_of(table, value))
 }
 
-fn of_sides(table: &ShapeTable, sides: [f64; 3]) -> std::result::Result<Shape, BadSurface> {
+fn shape_of_sides(table: &ShapeTable, sides: [f64; 3]) -> std::result::Result<Shape, BadSurface> {
     let ball = table.corner_radius.unwrap_or(0.0);
     let surface = match table.kind {
         ShapeKind::Ellipsoid => {
@@ -242,7 +248,7 @@ fn of_sides(table: &ShapeTable, sides: [f64; 3]) -> std::result::Result<Shape, B
     Shape::of(&Solid::of(&surface), &surface.points, ball)
 }
 
-/// A shape where nothing of it is drawn, and what the plan says of it.
+/// A shape if nothing of it is drawn, and the plan's line on it.
 fn prepared(
     table: &ShapeTable,
 ) -> Result<std::result::Result<(Option<Shape>, String), BadSurface>> {
@@ -250,25 +256,26 @@ fn prepared(
         ShapeKind::Sphere => {
             Ok((None, format!("{}, weight {}", named(table), table.weight.unwrap_or(1.0))))
         }
-        ShapeKind::Mesh => scanned(table)?.map(|(shape, note)| {
+        ShapeKind::Mesh => scanned_shape(table)?.map(|(shape, note)| {
             let line = described(table, &shape, &note);
             (Some(shape), line)
         }),
-        _ => made(table),
+        _ => made_shape(table),
     })
 }
 
-fn made(table: &ShapeTable) -> std::result::Result<(Option<Shape>, String), BadSurface> {
-    // the extremes must do too, each side's with each other's: a shape that is drawn is made without a chance to complain
+fn made_shape(table: &ShapeTable) -> std::result::Result<(Option<Shape>, String), BadSurface> {
+    // the extremes must be valid too, in all combinations of the sides: a drawn shape is made
+    // without error handling
     for ends in 0..8_u32 {
         let mut side = 0;
-        make(table, |axis| {
+        shape_of(table, |axis| {
             let (least, most) = axis.support();
             side += 1;
             if ends >> (side - 1) & 1 == 0 { least } else { most }
         })?;
     }
-    let shape = make(table, |axis| axis.quantile(0.5))?;
+    let shape = shape_of(table, |axis| axis.quantile(0.5))?;
     let mut drawn = table.axes.iter().flatten().chain(&table.ratio);
     let is_drawn = drawn.any(|axis| axis.as_fixed().is_none());
     let note = if is_drawn { ", its sides drawn for each rock, of which the median" } else { "" };
@@ -276,14 +283,14 @@ fn made(table: &ShapeTable) -> std::result::Result<(Option<Shape>, String), BadS
     Ok(((!is_drawn).then_some(shape), line))
 }
 
-/// The shape of a scan, with how its hull was thinned.
-fn scanned(table: &ShapeTable) -> Result<std::result::Result<(Shape, String), BadSurface>> {
+/// The shape of a scan, with a note on how its hull was thinned.
+fn scanned_shape(table: &ShapeTable) -> Result<std::result::Result<(Shape, String), BadSurface>> {
     let path = table.mesh.as_deref().unwrap_or(Path::new(""));
     let soup = stl::read(path)?;
-    Ok(of_surface(&welded(&soup.facets), table))
+    Ok(shape_of_surface(&welded(&soup.facets), table))
 }
 
-fn of_surface(
+fn shape_of_surface(
     surface: &Surface,
     table: &ShapeTable,
 ) -> std::result::Result<(Shape, String), BadSurface> {
@@ -296,19 +303,19 @@ fn of_surface(
     let shape = Shape::of(&solid, &thinned.corners, table.corner_radius.unwrap_or(0.0))?;
     let note = format!(
         " of {} corners of the hull of {} points; what is left out stands out by {:.4} of the radius at most",
-        thinned.of,
+        thinned.hull_corners,
         surface.points.len(),
-        thinned.left / solid.equal_radius()
+        thinned.deviation_m / solid.equal_radius()
     );
     Ok((shape, note))
 }
 
-/// The facets of a file with their common corners joined: those written with the same numbers.
+/// The facets of a file with common corners merged: those written with the same numbers.
 fn welded(facets: &Facets) -> Surface {
     let mut known: BTreeMap<[u64; 3], u32> = BTreeMap::new();
     let mut points = Vec::new();
     let mut place = |p: Vec3| {
-        // −0 and 0 are one place
+        // −0 and 0 are the same position
         let key = [p.x, p.y, p.z].map(|x| (x + 0.0).to_bits());
         *known.entry(key).or_insert_with(|| {
             points.push(p);
@@ -323,7 +330,7 @@ fn welded(facets: &Facets) -> Surface {
     surface
 }
 
-/// The message of a shape that cannot be made: of its scan, or of its corners.
+/// The error of a shape that cannot be made, because of its scan or of its corners.
 fn refused(scene: &Scene, (index, table): (usize, &ShapeTable), why: &BadSurface) -> Error {
     let of_corners = matches!(why, BadSurface::NoCore).then_some(table.corner_radius).flatten();
     let key = if of_corners.is_some() { "corner_radius" } else { "mesh" };
@@ -346,13 +353,13 @@ fn remedy(why: &BadSurface) -> &'static str {
     }
 }
 
-/// A shape's kind, and the block that has it.
+/// A shape's kind, and its block if it has one.
 fn named(table: &ShapeTable) -> String {
     let kind = table.kind.name();
     table.block.as_ref().map_or_else(|| kind.to_owned(), |block| format!("{kind} (block {block})"))
 }
 
-/// A shape in the words of the plan.
+/// A shape's line in the plan.
 fn described(table: &ShapeTable, shape: &Shape, note: &str) -> String {
     let [low, middle, high] = {
         let mut moments = shape.inertia.map(|moment| moment / 0.4);

@@ -1,6 +1,6 @@
-//! Places that release rocks, and the sizes of what each of them releases.
+//! Release places and sources, and the rock sizes of each source.
 
-use super::{Releases, Where};
+use super::{ReleasePlace, Releases};
 use crate::error::{Error, Result};
 use crate::frequency::{Frequency, radius_of_m3};
 use crate::random::{Purpose, stream, unit};
@@ -8,12 +8,14 @@ use crate::scene::{Area, Corner, Polyline, ReleasePoint, Scene, Zones};
 use crate::terrain::Terrain;
 
 impl Releases {
-    pub(super) fn place_asked(scene: &Scene) -> Result<Where> {
+    pub(super) fn place_asked(scene: &Scene) -> Result<ReleasePlace> {
         let asked = &scene.release;
         let drawn = (&asked.points_m, &asked.line_m, &asked.polygon_m);
         let place = match &asked.zone_list {
-            None => Where::one_of(drawn),
-            Some(zones) if drawn == (&None, &None, &None) => Some(Where::Zones(zones.clone())),
+            None => ReleasePlace::one_of(drawn),
+            Some(zones) if drawn == (&None, &None, &None) => {
+                Some(ReleasePlace::Zones(zones.clone()))
+            }
             Some(_) => None,
         };
         place.ok_or_else(|| {
@@ -23,7 +25,7 @@ impl Releases {
     }
 
     /// Refuses a point or corner without ground below.
-    pub(super) fn look_for_ground(&self, terrain: &Terrain) -> Result<()> {
+    pub(super) fn check_ground(&self, terrain: &Terrain) -> Result<()> {
         for (k, place) in self.places.iter().enumerate() {
             let table = if self.places.len() > 1 {
                 format!("[[frequency.sources]] #{}", k + 1)
@@ -37,15 +39,17 @@ impl Releases {
         Ok(())
     }
 
-    /// The first so many releases come from every fixed point.
-    pub(super) fn turns(&self) -> usize {
-        let points = |place: &Where| if let Where::Points(all) = place { all.len() } else { 0 };
+    /// Number of first releases among which every fixed point occurs.
+    pub(super) fn fixed_cycle(&self) -> usize {
+        let points = |place: &ReleasePlace| {
+            if let ReleasePlace::Points(all) = place { all.len() } else { 0 }
+        };
         let strata = self.frequency.as_ref().map_or(1, |one| one.strata().len());
         strata * self.places.iter().map(points).max().unwrap_or(0)
     }
 
-    /// Place of a release, and which turn it is there.
-    pub(super) fn place_of(&self, index: usize) -> (&Where, usize) {
+    /// Place of a release, and its turn among the releases of that place.
+    pub(super) fn place_of(&self, index: usize) -> (&ReleasePlace, usize) {
         match &self.frequency {
             Some(frequency) => {
                 let source = frequency.stratum(index).source.min(self.places.len() - 1);
@@ -55,7 +59,7 @@ impl Releases {
         }
     }
 
-    /// Radius of a rock (m), as its source, its table or else the scene has it.
+    /// Radius of a rock (m), from its source, its table or else the scene.
     pub(super) fn draw_radius_m(&self, index: usize) -> f64 {
         if !self.radii_m.is_empty() {
             return self.radii_m[self.place_of(index).1 % self.radii_m.len()];
@@ -66,12 +70,13 @@ impl Releases {
         volume_m3.map_or_else(|| self.radius_m.draw(&mut random), radius_of_m3)
     }
 
-    /// The sources, their laws of size, and what is asked of the year; none where the scene says nothing of it.
+    /// The sources, their size distributions, and what is asked per year; `None` if the scene has
+    /// none.
     pub fn frequency(&self) -> Option<&Frequency> {
         self.frequency.as_ref()
     }
 
-    /// The share of all releases that a zone gets (–).
+    /// The share of a zone in all releases (–).
     pub fn share_of_zone(&self, zones: &Zones, zone: usize) -> f64 {
         match self.frequency.as_ref().filter(|_| self.zones_are_sources) {
             None => zones.share(zone),
@@ -83,19 +88,19 @@ impl Releases {
         }
     }
 
-    /// Whether zones are sources, each with a frequency of its own.
+    /// Whether zones are sources, each with its own frequency.
     pub fn zones_are_sources(&self) -> bool {
         self.zones_are_sources
     }
 
     /// Where rocks are released: one place, or one for each source.
-    pub fn places(&self) -> &[Where] {
+    pub fn places(&self) -> &[ReleasePlace] {
         &self.places
     }
 }
 
-impl Where {
-    /// The one place that is given; none where none or several are.
+impl ReleasePlace {
+    /// The place that is given; `None` if there is none or more than one.
     pub(super) fn one_of(
         given: (&Option<Vec<ReleasePoint>>, &Option<Polyline>, &Option<Area>),
     ) -> Option<Self> {
@@ -107,7 +112,8 @@ impl Where {
         }
     }
 
-    /// Its points or corners in plan view (m), map coordinates, each with the scene's key and entry that it stands in.
+    /// Its points or corners in plan view (m), map coordinates, each with its key and entry in the
+    /// scene.
     fn corners_m(&self) -> Vec<(String, Corner)> {
         let numbered = |key: &str, corners: &mut dyn Iterator<Item = Corner>| {
             let named = |(number, corner)| (format!("{key}, entry {number}"), corner);

@@ -3,7 +3,7 @@
 use super::Scene;
 use super::blocks::BlockRow;
 use super::check::{Allowed, Checked, Complaint, drawn, number, optional, suggest};
-use crate::body::{SHARPEST, ShapeKind, most_corners};
+use crate::body::{MIN_CORNER_RADIUS, ShapeKind, max_corners};
 use crate::count::number_of;
 use crate::error::{Error, Result};
 use crate::random::Distribution;
@@ -16,7 +16,7 @@ use std::path::PathBuf;
 pub struct ShapeTable {
     /// What it is made from.
     pub kind: ShapeKind,
-    /// Radius of the balls at the corners over `radius_m` (–), [`SHARPEST`] to 0.5; not of a sphere.
+    /// Radius of the balls at the corners over `radius_m` (–), [`MIN_CORNER_RADIUS`] to 0.5; not of a sphere.
     pub corner_radius: Option<f64>,
     /// The block of the release table that has this shape, by its name there; absent = all that have none of their own.
     pub block: Option<String>,
@@ -56,7 +56,7 @@ pub enum RandomWord {
 }
 
 /// What `corner_radius` may be.
-pub(super) const CORNER_RADIUS: Allowed = Allowed::Between(SHARPEST, 0.5);
+pub(super) const CORNER_RADIUS: Allowed = Allowed::Between(MIN_CORNER_RADIUS, 0.5);
 
 /// Corners kept of a scan where the scene does not say.
 pub const CORNERS: usize = 32;
@@ -127,10 +127,10 @@ impl ShapeTable {
         if let Some(ratio) = &self.ratio {
             drawn("ratio", ratio, Allowed::Between(0.05, 20.0), "")?;
         }
-        if self.sides.is_some_and(|sides| !(3..=most_corners() as u32 / 2).contains(&sides)) {
+        if self.sides.is_some_and(|sides| !(3..=max_corners() as u32 / 2).contains(&sides)) {
             return Err(Complaint::about("sides", "write 3..32"));
         }
-        if self.corners.is_some_and(|corners| !(6..=most_corners()).contains(&corners)) {
+        if self.corners.is_some_and(|corners| !(6..=max_corners()).contains(&corners)) {
             return Err(Complaint::about("corners", "write 6..64"));
         }
         Ok(())

@@ -14,10 +14,10 @@ use super::recorder::{Keep, Recorder};
 use super::settings::RunSettings;
 use super::{ShapeOf, Stop, Trajectory};
 use crate::body::Block;
-use crate::contact::MOST;
-use crate::contact::block::BlockTouch;
+use crate::contact::MAX_CONTACTS;
+use crate::contact::block::BlockContactPoint;
 use crate::flight::Parabola;
-use crate::flight::block::{Tumble, first_touch};
+use crate::flight::block::{BlockFlight, first_touch};
 use crate::flight::top::Top;
 use crate::ground::Law;
 use crate::random::RandomStream;
@@ -64,7 +64,7 @@ pub(super) fn follow_block(
     let block = &drawn.block;
     let world = settings.around(Body::of_block(block, settings.gravity_m_s2), laws);
     footing.forget();
-    footing.stem_load.raise(settings.terrain, &random, &mut footing.near.gone);
+    footing.stem_load.raise(settings.terrain, &random, &mut footing.near.broken_stems);
     (footing.near.tested, footing.sweeps) = (0, 0);
     footing.facets = RoughFacets::of(random, laws);
     footing.slip.begin(&release.grounds);
@@ -112,7 +112,7 @@ impl<'a> Falling<'a> for Roll<'a> {
         let path = Parabola::of(&self.recorder.now, self.settings.gravity_m_s2, block.bound_m);
         let top = Top::new(block.inertia_kg_m2, self.moving.pose.attitude, self.moving.momentum);
         let left = self.settings.longest_s - time_s;
-        let tumble = Tumble { block, top, path };
+        let tumble = BlockFlight { block, top, path };
         let scratch = (&mut self.footing.near, &mut self.footing.window);
         let landing = first_touch(self.settings.terrain, &tumble, left, scratch);
         self.recorder.effort.leaps += 1;
@@ -212,11 +212,12 @@ impl Roll<'_> {
         // touching contacts that approach faster than their ground captures: one impact, resolved together
         let mut struck = std::mem::take(&mut self.footing.aside);
         struck.clear();
-        let is_struck =
-            |touch: &&BlockTouch| Footing::is_struck(&self.world, (block, &self.moving), touch);
+        let is_struck = |touch: &&BlockContactPoint| {
+            Footing::is_struck(&self.world, (block, &self.moving), touch)
+        };
         struck.extend(self.footing.touching(block).filter(is_struck));
         // as many have a row as there is room for at a time
-        for touch in struck.iter().take(MOST) {
+        for touch in struck.iter().take(MAX_CONTACTS) {
             // of the touching point, spin included: v + ω × r
             let velocity = self.moving.at(block, &touch.lever);
             let struck = Struck {
@@ -260,7 +261,7 @@ impl Roll<'_> {
     }
 
     /// Digs into the soil of what is struck.
-    fn dig_where(&mut self, struck: &[BlockTouch]) {
+    fn dig_where(&mut self, struck: &[BlockContactPoint]) {
         if !self.scars.are_any() {
             return;
         }

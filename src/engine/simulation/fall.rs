@@ -7,7 +7,7 @@ use super::rock_in_contact::RockInContact;
 use super::settings::RunSettings;
 use super::{Stop, Trajectory};
 use crate::contact::TOUCH;
-use crate::flight::{Parabola, time_of_impact_past};
+use crate::flight::{Parabola, time_of_impact_without};
 use crate::ground::Law;
 use crate::random::RandomStream;
 use crate::release::Release;
@@ -45,7 +45,7 @@ pub(super) fn follow_sphere(
 ) -> Trajectory {
     state.near.forget();
     (state.near.tested, state.sweeps) = (0, 0);
-    state.stem_load.raise(settings.terrain, &random, &mut state.near.gone);
+    state.stem_load.raise(settings.terrain, &random, &mut state.near.broken_stems);
     state.facets = RoughFacets::of(random, laws);
     slip.begin(&release.grounds);
     let form = Form { rock: release.rock, block: None };
@@ -126,11 +126,11 @@ impl<'a> Falling<'a> for Fall<'a> {
         let left = self.settings.longest_s - now.time_s;
         let begun = self.state.stopwatches.now();
         // stems that this rock has broken are no longer in its way
-        let end = time_of_impact_past(
+        let end = time_of_impact_without(
             self.settings.terrain,
             &flight,
             left,
-            &self.state.near.gone,
+            &self.state.near.broken_stems,
             &mut self.recorder.effort.triangles,
         );
         // a flight counts as one leap, however long

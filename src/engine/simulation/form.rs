@@ -137,7 +137,7 @@ impl RockFlight<'_> {
     /// the angle and `|u| ≤ S` it changes by no more than `ω³ dt/4` per second.
     pub(super) fn bend(&self) -> Option<f64> {
         Some(match self.turning? {
-            AttitudeOnWay::Top(top) => top.bends().bend,
+            AttitudeOnWay::Top(top) => top.point_bounds().acceleration,
             AttitudeOnWay::Step(ends) => {
                 let spin = Turned::turning(ends, 0.5).norm() / self.lasts_s;
                 spin * spin * (1.0 + 0.25 * spin * self.lasts_s)
@@ -184,7 +184,7 @@ impl Form<'_> {
 
     /// How far the lowest point lies below the centre at least, however it is turned (m).
     pub(super) fn least_below_m(&self) -> f64 {
-        self.block.map_or(self.rock.radius_m, Block::least_support_m)
+        self.block.map_or(self.rock.radius_m, Block::min_support_m)
     }
 
     /// How far the lowest corner of a block lies below the centre (m), and how fast it sinks against it (m/s).

@@ -10,8 +10,8 @@
 //! is, and it is what a dashpot takes from.
 
 use super::Impact;
-use crate::contact::MOST;
-use crate::contact::history::SAME_GRIP;
+use crate::contact::MAX_CONTACTS;
+use crate::contact::history::SAME_CONTACT_COSINE;
 use crate::rock::Vec3;
 use crate::solver::struck::Struck;
 
@@ -85,7 +85,7 @@ pub(super) struct Impacts {
 /// Those under way, without allocation.
 #[derive(Debug, Clone, Copy, Default)]
 struct Hand {
-    list: [Option<InHand>; MOST],
+    list: [Option<InHand>; MAX_CONTACTS],
     /// What had gone into contacts with the mesh when the first of them began, and what of it into soil (J).
     /// The ledger's sums when the group began: the group's loss is the difference at its end.
     began_j: (MeshEnergy, f64),
@@ -98,7 +98,7 @@ impl Hand {
         let age = |place: &Option<InHand>| {
             place.as_ref().map(|impact| (impact.over_s.is_none(), impact.number))
         };
-        let first = (0..MOST).min_by_key(|&k| age(&self.list[k])).unwrap_or(0);
+        let first = (0..MAX_CONTACTS).min_by_key(|&k| age(&self.list[k])).unwrap_or(0);
         &mut self.list[first]
     }
 }
@@ -155,7 +155,7 @@ impl Impacts {
         let is_same = |impact: &&mut InHand| {
             impact.over_s.is_some_and(|over_s| now_s - over_s <= SAME_IMPACT_S)
                 && impact.owner == owner
-                && impact.normal.dot(&struck.normal) > SAME_GRIP
+                && impact.normal.dot(&struck.normal) > SAME_CONTACT_COSINE
         };
         if let Some(impact) = self.hand.list.iter_mut().flatten().find(is_same) {
             let number = impact.number;

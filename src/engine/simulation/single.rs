@@ -111,7 +111,9 @@ pub fn simulate_release(
 ) -> Result<Trajectory> {
     let release = match plan.try_release(index) {
         Ok(release) => release,
-        Err(lost) => return Ok(Trajectory::not_released(index, lost.rock, lost.start, lost.why)),
+        Err(lost) => {
+            return Ok(Trajectory::not_released(index, lost.rock, lost.start, lost.reason));
+        }
     };
     let keep = kept(plan, index, paths);
     let settings = RunSettings::of(plan);

@@ -4,10 +4,10 @@
 //!
 //! Two laws, each on grounds that ask for it: the scar of Lu et al. (2019), `solver::scar`, and
 //! friction that grows with slip of Leine et al. (2014), `solver::slip`. A third, restitution that
-//! falls with the speed of the impact, is the ground's own (`Law::struck_at`).
+//! falls with the speed of the impact, is the ground's own (`Law::set_impact_speed`).
 
 use super::fall::{Fall, Slips};
-use crate::contact::MOST;
+use crate::contact::MAX_CONTACTS;
 use crate::contact::history::ContactHistory;
 use crate::rock::Vec3;
 use crate::solver::scar::GroundBlow;
@@ -43,12 +43,13 @@ impl Fall<'_> {
             }
         }
         let of = |blow: &Blow| (world.ground_of(blow.triangle), kept * blow.approach_m_s);
-        let mut struck: ArrayVec<(u16, f64), MOST> = self.state.blows.iter().map(of).collect();
+        let mut struck: ArrayVec<(u16, f64), MAX_CONTACTS> =
+            self.state.blows.iter().map(of).collect();
         self.state.blows.clear();
         // the fastest on each ground last
         struck.sort_by(|one, other| one.1.total_cmp(&other.1));
         for (ground, approach_m_s) in struck {
-            self.laws[usize::from(ground)].struck_at(approach_m_s);
+            self.laws[usize::from(ground)].set_impact_speed(approach_m_s);
         }
         kept
     }
@@ -63,7 +64,7 @@ impl Fall<'_> {
             let ground = world.ground_of(triangle);
             GroundBlow { ground, normal, approach_m_s, of_point_m_s: approach_m_s }
         };
-        let struck: ArrayVec<GroundBlow, MOST> = state.blows.iter().map(blow).collect();
+        let struck: ArrayVec<GroundBlow, MAX_CONTACTS> = state.blows.iter().map(blow).collect();
         scars.enter(&self.body, &struck, (state.v.norm(), in_soil))
     }
 
@@ -128,7 +129,7 @@ impl Fall<'_> {
         let mut changes = false;
         for (ground, law) in self.laws.iter_mut().enumerate() {
             let friction = self.soil.slip.friction(ground as u16, law, ahead_m);
-            changes |= law.rub_with(friction);
+            changes |= law.set_friction(friction);
         }
         if changes {
             let (v, w) = (self.state.v, self.state.w);

@@ -25,7 +25,7 @@ use super::rest::RestCriterion;
 use super::settings::RunSettings;
 use super::single::kept;
 use super::{Stop, Trajectory};
-use crate::contact::pair::{Bond, PairHistory, Strength, between};
+use crate::contact::pair::{Bond, BondStrength, PairHistory, normal_and_distance};
 use crate::error::{Error, Result};
 use crate::ground::{Capture, Damping, Ground, Law};
 use crate::plan::{Part, Plan};
@@ -46,7 +46,7 @@ pub struct PairMaterial {
     /// Springs, friction and restitution, as of a ground.
     pub ground: Ground,
     /// Bonds between rocks that touch at the start.
-    pub strength: Strength,
+    pub strength: BondStrength,
 }
 
 /// Rocks nearer than this at the start touch (–, relative to the smaller radius): coordinates are typed with five or
@@ -114,7 +114,7 @@ pub fn simulate_releases_together(
         return Err(Error::Request("the rocks of this plan do not share one world".to_owned()));
     };
     let releases = plan.world()?;
-    let none = Strength { tensile_pa: 0.0, cohesion_pa: 0.0 };
+    let none = BondStrength { tensile_pa: 0.0, cohesion_pa: 0.0 };
     let strength = if let Part::Kept(strength) = plan.bonds { strength } else { none };
     let answer = PairMaterial { ground: *ground, strength };
     let keep = |index| kept(plan, index, paths);
@@ -166,7 +166,7 @@ pub fn simulate_world(
             let mut body = body(settings, release, keep(k), &mut damping);
             let random = stream(settings.seed, Purpose::Impacts, k);
             let state = &mut body.member.state;
-            state.stem_load.raise(settings.terrain, &random, &mut state.near.gone);
+            state.stem_load.raise(settings.terrain, &random, &mut state.near.broken_stems);
             body.member.state.facets = RoughFacets::of(random, &body.member.laws);
             Some(Box::new(body))
         })
@@ -232,7 +232,7 @@ impl BodyWorld<'_> {
         // whatever its weight then does to it
         for (a, b) in self.touching_at_start() {
             let [one, two] = [a, b].map(|k| &self.body(k).member);
-            let (n, length) = between(&one.state.c, &two.state.c);
+            let (n, length) = normal_and_distance(&one.state.c, &two.state.c);
             let radius = one.body.radius.min(two.body.radius);
             let bond = Bond::new(&answer.strength, radius, length);
             let law = self.law(a, b);
@@ -266,7 +266,7 @@ impl BodyWorld<'_> {
         let is_held = |pair: &&PairHistory| pair.is_held() && !self.body(pair.a).is_unloaded;
         for pair in self.pair_histories.iter().filter(is_held) {
             let [one, two] = [pair.a, pair.b].map(|k| &self.body(k).member);
-            let (_, distance) = between(&one.state.c, &two.state.c);
+            let (_, distance) = normal_and_distance(&one.state.c, &two.state.c);
             let stored_j = pair.stored_j(distance, one.body.radius + two.body.radius);
             for k in [pair.a, pair.b] {
                 held_j[k as usize] += 0.5 * stored_j;

@@ -29,7 +29,7 @@ use super::scar::GroundBlow;
 use super::slip::Slip;
 use super::stem_load::StemLoad;
 use crate::body::Block;
-use crate::contact::block::{BlockTouch, BlockTouches, Pose};
+use crate::contact::block::{BlockContactPoint, BlockContactPoints, Pose};
 use crate::contact::neighbours::Neighbours;
 use crate::flight::block::WindowScratch;
 use crate::flight::top::{attitude_after, momentum_of, spin_of};
@@ -76,7 +76,7 @@ pub(crate) struct Moving {
 #[derive(Debug, Default)]
 pub(crate) struct Footing {
     pub(crate) near: Neighbours,
-    pub(crate) touches: BlockTouches,
+    pub(crate) touches: BlockContactPoints,
     /// From where, and how far, the last look was (m), as long as its touches stand.
     looked: Option<(Pose, f64)>,
     /// Work space of the search for the end of a flight.
@@ -87,7 +87,7 @@ pub(crate) struct Footing {
     /// Those of an impact, and the speed that each shall give back (m/s).
     wanted: Vec<(BlockContact, f64)>,
     /// Touches set aside for a moment.
-    pub(crate) aside: Vec<BlockTouch>,
+    pub(crate) aside: Vec<BlockContactPoint>,
     /// What strikes grounds at one instant, and contacts on springs that begin then, by their memories.
     pub(crate) blows: Vec<GroundBlow>,
     pub(crate) begun: Vec<usize>,
@@ -170,14 +170,14 @@ impl Moving {
     pub(crate) fn fastest<'t>(
         &self,
         block: &Block,
-        touches: impl Iterator<Item = &'t BlockTouch>,
-    ) -> Option<&'t BlockTouch> {
-        let approach = |touch: &&BlockTouch| self.approach_m_s(block, touch);
+        touches: impl Iterator<Item = &'t BlockContactPoint>,
+    ) -> Option<&'t BlockContactPoint> {
+        let approach = |touch: &&BlockContactPoint| self.approach_m_s(block, touch);
         touches.max_by(|one, other| approach(one).total_cmp(&approach(other)))
     }
 
     /// Speed of a contact towards the mesh (m/s).
-    pub(crate) fn approach_m_s(&self, block: &Block, touch: &BlockTouch) -> f64 {
+    pub(crate) fn approach_m_s(&self, block: &Block, touch: &BlockContactPoint) -> f64 {
         -touch.normal.dot(&self.at(block, &touch.lever))
     }
 
@@ -198,9 +198,10 @@ fn orthonormal(turned: &Rotation3<f64>) -> Rotation3<f64> {
 
 impl Footing {
     /// Contacts that hold the block or strike it: those of the last look that touch.
-    pub(crate) fn touching(&self, block: &Block) -> impl Iterator<Item = &BlockTouch> {
+    pub(crate) fn touching(&self, block: &Block) -> impl Iterator<Item = &BlockContactPoint> {
         let most = TOUCH * block.radius_m;
-        let touches = move |touch: &&BlockTouch| touch.gap_m <= most || self.clamp.holds(touch);
+        let touches =
+            move |touch: &&BlockContactPoint| touch.gap_m <= most || self.clamp.holds(touch);
         self.touches.found.iter().filter(touches)
     }
 
@@ -225,7 +226,7 @@ impl Footing {
         let (v, w) = (moving.v, moving.spin(block));
         self.contacts.clear();
         let let_out = (DEEP * block.radius_m, LET_OUT * world.body.fall_speed_m_s());
-        let came = |touch: &BlockTouch| Came::of(block, [&start, moving], touch, dt);
+        let came = |touch: &BlockContactPoint| Came::of(block, [&start, moving], touch, dt);
         // stopped within the step, what strikes would give nothing back
         self.set_aside(|touch| !came(touch).strikes(world, block, touch));
         for touch in &self.aside {
@@ -266,7 +267,7 @@ impl Footing {
     fn contact(
         &self,
         world: &ContactEnvironment,
-        (mass, touch): (&Mass, &BlockTouch),
+        (mass, touch): (&Mass, &BlockContactPoint),
         ahead_m: f64,
         goal: Vec3,
     ) -> BlockContact {

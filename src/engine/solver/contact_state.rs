@@ -12,9 +12,9 @@ use super::roughness::{RoughFacets, Tilt};
 use super::stem_load::StemLoad;
 use super::struck::Blow;
 use super::tableau::STAGES;
-use crate::contact::history::{ContactHistories, HISTORIES};
+use crate::contact::history::{ContactHistories, MAX_HISTORIES};
 use crate::contact::neighbours::Neighbours;
-use crate::contact::{ContactPoints, MOST, TOUCH};
+use crate::contact::{ContactPoints, MAX_CONTACTS, TOUCH};
 use crate::ground::Law;
 use crate::rock::Vec3;
 use crate::stopwatch::{Stopwatches, TimedPiece};
@@ -31,9 +31,9 @@ pub struct StateRates {
     /// Angular acceleration (rad/s²).
     pub w: Vec3,
     /// Of the shear springs (m/s), in the frames of the memories.
-    pub shear: [Vec3; HISTORIES],
+    pub shear: [Vec3; MAX_HISTORIES],
     /// Of the rolling springs (rad/s).
-    pub roll: [Vec3; HISTORIES],
+    pub roll: [Vec3; MAX_HISTORIES],
     /// Power lost (W).
     pub loss: Loss,
 }
@@ -59,8 +59,8 @@ impl StateRates {
         c: Vec3::new(0.0, 0.0, 0.0),
         v: Vec3::new(0.0, 0.0, 0.0),
         w: Vec3::new(0.0, 0.0, 0.0),
-        shear: [Vec3::new(0.0, 0.0, 0.0); HISTORIES],
-        roll: [Vec3::new(0.0, 0.0, 0.0); HISTORIES],
+        shear: [Vec3::new(0.0, 0.0, 0.0); MAX_HISTORIES],
+        roll: [Vec3::new(0.0, 0.0, 0.0); MAX_HISTORIES],
         loss: Loss::on_slope([0.0; 3]),
     };
 }
@@ -98,7 +98,7 @@ pub struct ContactState {
     /// Energy in the springs of the contacts at the present state (J), if the first rate is fresh.
     pub stored: f64,
     /// Contacts of the current stage.
-    pub contacts: [StageContact; MOST],
+    pub contacts: [StageContact; MAX_CONTACTS],
     /// How many of them.
     pub contact_count: usize,
     /// The same of a rock on one plane.
@@ -108,7 +108,7 @@ pub struct ContactState {
     /// Contacts that are about to be struck anew within an episode (`rigid`).
     pub struck: ContactHistories,
     /// The blows that have been announced last, of one instant, until somebody takes them.
-    pub(crate) blows: ArrayVec<Blow, MOST>,
+    pub(crate) blows: ArrayVec<Blow, MAX_CONTACTS>,
     /// The facets it meets on rough ground.
     pub(crate) facets: RoughFacets,
     /// What it has done to the stems.
@@ -160,7 +160,7 @@ impl ContactState {
             rates: [StateRates::NONE; STAGES],
             fresh: false,
             stored: 0.0,
-            contacts: [StageContact::NONE; MOST],
+            contacts: [StageContact::NONE; MAX_CONTACTS],
             contact_count: 0,
             plane: PlaneState::default(),
             impact: ImpactProgress::default(),
@@ -206,7 +206,7 @@ impl ContactState {
             self.collect_within(world, &c, margin);
         }
         self.look(world, &c, world.body.radius * (1.0 + together));
-        self.touches.keep_struck(world.body.radius, &v, together);
+        self.touches.retain_impacting(world.body.radius, &v, together);
         // An impact rebounds or not as a whole, by its fastest approach.
         let captured = self.touches.iter().all(|touch| world.captures(touch, &v));
         for k in 0..self.touches.len() {
@@ -309,7 +309,7 @@ impl ContactState {
         let slow = world.captures(touch, v);
         let history = self.histories.find(touch, &self.touches, taken, || slow && !rebounds);
         if history >= before {
-            self.histories[history].met_m_s = if slow { 0.0 } else { -touch.normal.dot(v) };
+            self.histories[history].onset_m_s = if slow { 0.0 } else { -touch.normal.dot(v) };
             self.part_springs(world, history, k);
             for rate in &mut self.rates {
                 (rate.shear[history], rate.roll[history]) = (Vec3::zeros(), Vec3::zeros());
@@ -327,15 +327,15 @@ impl ContactState {
     /// Fastest approach of what has come up in the present try and presses (m/s).
     pub(super) fn met_m_s(&self) -> f64 {
         let pressed = self.stage_contacts().iter().filter(|contact| contact.normal_force > 0.0);
-        pressed.map(|contact| self.histories[contact.history].met_m_s).fold(0.0, f64::max)
+        pressed.map(|contact| self.histories[contact.history].onset_m_s).fold(0.0, f64::max)
     }
 
     /// The contacts that have come up belong to the impact from now on.
     pub(super) fn accept_meetings(&mut self, world: &ContactEnvironment) {
         let slowest = world.least_impact_m_s();
         for history in self.histories.iter_mut() {
-            self.impact.meet(history.met_m_s, slowest);
-            history.met_m_s = 0.0;
+            self.impact.meet(history.onset_m_s, slowest);
+            history.onset_m_s = 0.0;
         }
     }
 

@@ -11,7 +11,7 @@ pub(crate) mod slider;
 use super::body::Body;
 use crate::contact::history::ContactHistory;
 use crate::contact::submatrix::{Mat6, Vec6, inertia};
-use crate::contact::{ContactPoint, MOST};
+use crate::contact::{ContactPoint, MAX_CONTACTS};
 use crate::ground::Law;
 use arrayvec::ArrayVec;
 use contact::{ContactMatrixTerms, DdaContact};
@@ -52,7 +52,7 @@ impl StepConstants {
 #[derive(Debug, Default)]
 pub struct DdaScratch {
     pub(super) step: StepConstants,
-    contacts: ArrayVec<DdaContact, MOST>,
+    contacts: ArrayVec<DdaContact, MAX_CONTACTS>,
     /// Memories that belong to the contacts.
     pub(super) taken: u32,
     /// What contacts add to the free displacement, `E`, and both together, `D = D₀ + E`, Eq. (1).
@@ -60,7 +60,7 @@ pub struct DdaScratch {
     pub(super) d: Vec6,
     /// Of what the block was made: inertia, and contacts in their states.
     inertia: Mat6,
-    terms: ArrayVec<ContactMatrixTerms, MOST>,
+    terms: ArrayVec<ContactMatrixTerms, MAX_CONTACTS>,
     /// What the contacts add to the block.
     springs: Mat6,
     /// Factor of the block; `None` if nobody has asked for it, or if there is none.

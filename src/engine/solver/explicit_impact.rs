@@ -24,7 +24,7 @@ use super::plane_ahead::longest_step;
 use super::stage::End;
 use super::step_control::{Advance, StepError, TRAVEL};
 use crate::contact::TOUCH;
-use crate::contact::history::{ContactHistory, HISTORIES};
+use crate::contact::history::{ContactHistory, MAX_HISTORIES};
 pub(super) use flow::HeldEnergy;
 use flow::{Among, LOSSES, V, WAY};
 
@@ -126,7 +126,7 @@ impl ContactState {
         if !is_done {
             // what the crowded try has met is forgotten
             self.histories.truncate(known);
-            self.steps_among::<HISTORIES, { 9 + 6 * HISTORIES }, { LOSSES + HISTORIES }, { 3 * HISTORIES }>(
+            self.steps_among::<MAX_HISTORIES, { 9 + 6 * MAX_HISTORIES }, { LOSSES + MAX_HISTORIES }, { 3 * MAX_HISTORIES }>(
                 world, scale, h_max, done,
             )?;
         }
@@ -148,7 +148,7 @@ impl ContactState {
         let limit = longest_step(&world.body, speed, way).min(LONGEST_RAD / omega);
         let next_m = AHEAD * speed * limit;
         let reach = world.body.radius * (1.0 + TOUCH);
-        self.near.come_close(world.terrain, &c, (next_m, STEPS_AHEAD * next_m), reach);
+        self.near.prepare_short_path(world.terrain, &c, (next_m, STEPS_AHEAD * next_m), reach);
         // a share of the tolerance, as an impact takes a handful of steps; relative to the speed of
         // the impact, so it has no unit of its own
         let allowed = LOCAL * tolerance * self.impact.speed_m_s;
@@ -239,7 +239,7 @@ impl ContactState {
             let law = world.springs_of(history);
             let n = &history.n;
             let weight = n.dot(&world.body.gravity).min(0.0);
-            history.normal_force <= 0.0 && law.lets_go(n.dot(&self.v), weight, dt)
+            history.normal_force <= 0.0 && law.stays_open(n.dot(&self.v), weight, dt)
         };
         if !self.histories.iter().all(leaves) {
             return 0.0;
@@ -299,7 +299,7 @@ fn step_among<const C: usize, const N: usize, const Q: usize, const P: usize>(
         let dt = wished.min(h_max);
         let is_short = dt * omega < SHORTEST_RAD;
         let attempt = stages.step(flow, &y, dt, (!is_short).then_some(allowed));
-        if flow.is_crowded && C < HISTORIES {
+        if flow.is_crowded && C < MAX_HISTORIES {
             flow.state.histories.truncate(known);
             flow.state.impact.h = step.wish;
             return Ok(None);

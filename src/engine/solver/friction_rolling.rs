@@ -8,7 +8,7 @@
 
 use super::body::Body;
 use super::contact_frame::{Along, Local, square};
-use crate::ground::{INSIDE, Law};
+use crate::ground::{Law, STICK_THRESHOLD};
 use crate::rock::Rock;
 
 /// What a contact answers with over a stage of a given length: the same for all stages of a step.
@@ -32,7 +32,7 @@ pub(crate) struct Answers {
 impl Answers {
     #[inline]
     pub(crate) fn of(body: &Body, law: &Law, h: f64) -> Self {
-        let (kap, kar) = (law.shear.over(h), law.rolling.over(h));
+        let (kap, kar) = (law.shear.stage_stiffness(h), law.rolling.stage_stiffness(h));
         let (turn_q, turn_m) = (kap * h / body.inertia, kar * h / body.inertia);
         Self::new(
             (kap, kar),
@@ -153,7 +153,7 @@ impl Pair<'_> {
     fn rolls(&self, ratio: Option<f64>) -> Option<(SlipState, Along, Local)> {
         let (ratio, share, rolling_moment) = self.rolling_alone(ratio);
         let q = self.shear_at(rolling_moment);
-        let rolls = share * INSIDE <= self.answers.share_m;
+        let rolls = share * STICK_THRESHOLD <= self.answers.share_m;
         let mode = SlipState::Roll(by(ratio, self.caps.1));
         (rolls && square(q) <= self.caps.0 * self.caps.0).then_some((mode, q, rolling_moment))
     }
@@ -164,7 +164,7 @@ impl Pair<'_> {
         let (cap_q, cap_m) = self.caps;
         let q = self.sliding_alone();
         let rolling_moment = self.moment_at(q);
-        let slides = square(self.shear_at(rolling_moment)) >= (INSIDE * cap_q).powi(2);
+        let slides = square(self.shear_at(rolling_moment)) >= (STICK_THRESHOLD * cap_q).powi(2);
         (slides && square(rolling_moment) <= cap_m * cap_m).then_some((
             SlipState::Slide,
             q,

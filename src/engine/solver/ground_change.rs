@@ -13,7 +13,7 @@ use super::contact_state::{ContactEnvironment, ContactState};
 use super::loss::Loss;
 use super::plane_kernel::is_on_face;
 use crate::contact::TOUCH;
-use crate::contact::history::{ContactHistory, SAME_GRIP};
+use crate::contact::history::{ContactHistory, SAME_CONTACT_COSINE};
 use crate::rock::Vec3;
 
 /// A contact that is so deep when it comes up is part of one that was there, as patches part (–, relative to the radius of the ball).
@@ -36,7 +36,7 @@ pub(super) fn springs_parted_from(
 ) -> Option<u32> {
     let along = |(n, _): &(Vec3, u32)| n.dot(normal);
     let nearest = pressed.max_by(|one, other| along(one).total_cmp(&along(other)));
-    nearest.filter(|one| along(one) > SAME_GRIP).map(|(_, springs_of)| springs_of)
+    nearest.filter(|one| along(one) > SAME_CONTACT_COSINE).map(|(_, springs_of)| springs_of)
 }
 
 /// What a rock does that comes on stiffer springs under the load of its softer ones.
@@ -102,7 +102,7 @@ impl ContactState {
         let (before, pressed_m) = (self.histories[0], self.sunk(world));
         let mut after = ContactHistory { springs_of: before.triangle, ..before };
         let (soft, stiff) = (world.springs_of(&before), world.springs_of(&after));
-        let [normal, shear, roll] = stiff.shares_of(&soft);
+        let [normal, shear, roll] = stiff.stretch_ratios_to(&soft);
         (after.shear, after.roll) = (before.shear * shear, before.roll * roll);
         let way = before.n * (pressed_m * (1.0 - normal));
         let lifted_j = world.body.lifted_j(&way);
@@ -168,7 +168,7 @@ mod tests {
             let pressed = sides.iter().map(|(angle, springs_of)| (tilted(*angle), *springs_of));
             springs_parted_from(&Vec3::z(), pressed)
         };
-        let sharp = SAME_GRIP.acos() + 0.01;
+        let sharp = SAME_CONTACT_COSINE.acos() + 0.01;
         assert_eq!(parted(&[(-0.3, 4), (0.2, 7), (0.5, 9)]), Some(7));
         assert_eq!(parted(&[(sharp - 0.02, 4), (sharp, 7)]), Some(4));
         assert_eq!(parted(&[(sharp, 4), (-1.5, 7)]), None);

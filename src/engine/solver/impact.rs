@@ -20,7 +20,7 @@
 //! Without friction and rolling friction nothing is integrated. Whether an impact is captured is
 //! the caller's to ask before.
 //!
-//! **Frozen geometry, no weight** (scheme `rigid`, the limit `p_N → ∞`): [`throw`] with up to [`MOST`](crate::contact::MOST)
+//! **Frozen geometry, no weight** (scheme `rigid`, the limit `p_N → ∞`): [`throw`] with up to [`MAX_CONTACTS`](crate::contact::MAX_CONTACTS)
 //! contacts, all at penetration zero; those that do not approach are pressed as soon as motion presses them.
 //!
 //! - Ratios of stiffness between grounds are kept; own time is that of the stiffest contact.

@@ -1,9 +1,9 @@
 //! How far an impact that is followed in its own time has come.
 //!
-//! An impact that has not ended after `LASTS_RAD` radians of its contact is none any more: the rock
+//! An impact that has not ended after `IMPACT_DURATION_RAD` radians of its contact is none any more: the rock
 //! rolls, slides or rests, and implicit steps take over, whose length does not hang on `ω`.
 
-use crate::contact::pair::LASTS_RAD;
+use crate::contact::pair::IMPACT_DURATION_RAD;
 
 /// What an impact needs besides the rock's state.
 #[derive(Debug, Clone, Default)]
@@ -41,6 +41,6 @@ impl ImpactProgress {
         }
         // a further contact within an impact prolongs it, and the fastest approach sets the scale
         // of its error
-        (self.speed_m_s, self.left) = (self.speed_m_s.max(speed_m_s), LASTS_RAD);
+        (self.speed_m_s, self.left) = (self.speed_m_s.max(speed_m_s), IMPACT_DURATION_RAD);
     }
 }

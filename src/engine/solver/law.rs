@@ -9,7 +9,7 @@ use super::contact_frame::ContactFrame;
 use super::friction_rolling::{Answers, Pair, SlipState};
 use crate::contact::Feature;
 use crate::contact::history::ContactHistory;
-pub(crate) use crate::ground::within;
+pub(crate) use crate::ground::clamp_norm;
 use crate::ground::{Law, NormalElement, SliderForce};
 use crate::rock::Vec3;
 
@@ -82,7 +82,7 @@ impl Action {
         at: &ContactPlace,
         (v, w): (&Vec3, &Vec3),
     ) -> Self {
-        let pulls = normal.pull_or_push(at.penetration, at.n.dot(v));
+        let pulls = normal.bilateral_force(at.penetration, at.n.dot(v));
         let normal_force = pulls.max(0.0);
         let slip = body.slip(&at.n, v, w);
         let shear = law.shear.at_rate(at.shear, slip, law.shear.cap(normal_force));
@@ -127,8 +127,8 @@ impl StageContact {
         let slip = body.slip(&self.n, v, w);
         let pair = Pair {
             answers: &answers,
-            a: frame.along(&(law.shear.held(self.shear) + slip * answers.kap)),
-            d: frame.local(&(law.rolling.held(self.roll) + w * answers.kar)),
+            a: frame.along(&(law.shear.spring_force(self.shear) + slip * answers.kap)),
+            d: frame.local(&(law.rolling.spring_force(self.roll) + w * answers.kar)),
             caps: law.limits().caps(self.normal_force),
         };
         let (shear_force, rolling_moment) = pair.solve(&mut self.mode);
@@ -139,8 +139,9 @@ impl StageContact {
     /// What shear and rolling springs would hold at velocity `v` and spin `w` if they did not slide.
     pub(crate) fn trials(&self, body: &Body, v: &Vec3, w: &Vec3, h: f64) -> (Vec3, Vec3) {
         let law = &self.law;
-        let stick = law.shear.held(self.shear) + body.slip(&self.n, v, w) * law.shear.over(h);
-        (stick, law.rolling.held(self.roll) + w * law.rolling.over(h))
+        let stick = law.shear.spring_force(self.shear)
+            + body.slip(&self.n, v, w) * law.shear.stage_stiffness(h);
+        (stick, law.rolling.spring_force(self.roll) + w * law.rolling.stage_stiffness(h))
     }
 
     /// Change of velocity and spin by this contact's forces over `h`.
@@ -182,7 +183,7 @@ impl StageContact {
     pub fn stretches(&self, h: f64) -> (Vec3, Vec3) {
         let law = &self.law;
         let shear = law.shear.stretch_after(&self.shear_force, &self.shear, h);
-        let roll = if law.rolling.over(h) > 0.0 {
+        let roll = if law.rolling.stage_stiffness(h) > 0.0 {
             law.rolling.stretch_after(&self.rolling_moment, &self.roll, h)
         } else {
             Vec3::zeros()
@@ -193,5 +194,5 @@ impl StageContact {
 
 /// Speed of approach up to which a blow does not rebound in the rigid limit (m/s).
 pub(crate) fn capture_m_s(law: &Law) -> f64 {
-    law.rebounds_from_m_s()
+    law.rigid_capture_m_s()
 }

@@ -55,8 +55,8 @@ impl StageContact {
         let NormalLine { a, b } = self.line(body, h);
         self.normal_force = (a - b * self.n.dot(v) - b * self.n.dot(dv)).max(0.0);
         let (stick, wound) = self.trials(body, v, w, h);
-        let stick = stick + body.slip(&self.n, dv, dw) * self.law.shear.over(h);
-        let wound = wound + dw * self.law.rolling.over(h);
+        let stick = stick + body.slip(&self.n, dv, dw) * self.law.shear.stage_stiffness(h);
+        let wound = wound + dw * self.law.rolling.stage_stiffness(h);
         self.shear_force = self.law.shear.capped(stick, self.normal_force);
         self.rolling_moment = self.law.rolling.capped(wound, self.normal_force);
     }
@@ -83,8 +83,8 @@ impl StageContact {
         let normal_force = normal.at(n.dot(v));
         // The sweeps know the mode. What the law gives at `(v, w)` does not: a newton of another contact that has changed
         // since moves a stiff spring far beyond its cap.
-        let shear = law.shear.left(h, (&self.shear_force, self.normal_force));
-        let roll = law.rolling.left(h, (&self.rolling_moment, self.normal_force));
+        let shear = law.shear.stage_slider(h, (&self.shear_force, self.normal_force));
+        let roll = law.rolling.stage_slider(h, (&self.rolling_moment, self.normal_force));
         let (shear, roll) = (shear.at(stick, normal_force), roll.at(wound, normal_force));
         let slip = body.slip(&n, v, w);
         // q ≈ q0 + J (u − u0) − e μ b (s − s0), and the same for the moment.

@@ -8,7 +8,7 @@ use super::body::Body;
 use super::contact_state::{AHEAD, ContactEnvironment, ContactState, MARGIN};
 use super::plane_state::FIRST_REACH;
 use crate::contact::neighbours::{Neighbours, PressedPath};
-use crate::flight::time_within;
+use crate::flight::min_travel_time_s;
 use crate::rock::Vec3;
 
 /// Longest way on one plane in one step (–, relative to R): from [`FIRST_REACH`] on it doubles where the plane is clear, and is halved where it
@@ -52,7 +52,7 @@ impl PlaneStep {
         let change_m_s = PressedPath::tangent(&self.n, change).norm();
         let path = PressedPath::of(&self.n, self.start, (shift, change_m_s), dt, sunk_m);
         let is_alike = |triangle| world.ground_of(triangle) == world.ground_of(self.face);
-        near.is_plane_on(self.face, &path) && near.stands_on(self.face, &end, is_alike)
+        near.meets_only_plane(self.face, &path) && near.is_foot_on_plane(self.face, &end, is_alike)
     }
 }
 
@@ -63,7 +63,7 @@ impl ContactState {
         let (c, way) = (self.c, travel * world.body.radius);
         self.know(world, &c);
         let is_plane = self.near.plane().is_some();
-        let room = if is_plane { self.near.room_m(&self.c).max(way) } else { way };
+        let room = if is_plane { self.near.margin_left_m(&self.c).max(way) } else { way };
         longest_step(&world.body, self.v.norm(), room)
     }
 
@@ -108,7 +108,7 @@ impl ContactState {
         }
         let direction = self.v / speed;
         self.see_along(world, &(direction * most));
-        let most = most.min(self.near.room_ahead_m(&self.c, &direction));
+        let most = most.min(self.near.margin_ahead_m(&self.c, &direction));
         if self.is_clear(face, &(direction * most)) {
             self.plane.reach = (2.0 * most / radius).clamp(FIRST_REACH, LONGEST);
             return most.max(least);
@@ -125,13 +125,14 @@ impl ContactState {
         if self.near.plane() == Some(face) {
             return true;
         }
-        let (start, into, off_m) = (self.c, Vec3::zeros(), OFF * way.norm());
-        let way_m = way.norm() + off_m;
-        self.near.is_plane_on(face, &PressedPath { start, along: *way, into, off_m, way_m })
+        let (start, into, deviation_m) = (self.c, Vec3::zeros(), OFF * way.norm());
+        let reach_m = way.norm() + deviation_m;
+        self.near
+            .meets_only_plane(face, &PressedPath { start, along: *way, into, deviation_m, reach_m })
     }
 }
 
 /// Longest step in which a rock at `speed` goes no further than `room` (s); its weight may speed it up on the way.
 pub(crate) fn longest_step(body: &Body, speed: f64, room: f64) -> f64 {
-    time_within(room, speed, body.gravity.norm())
+    min_travel_time_s(room, speed, body.gravity.norm())
 }

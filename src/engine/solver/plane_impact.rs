@@ -101,7 +101,7 @@ impl ContactState {
         let most_m_s = rubbed_m_s + world.body.gravity.norm() * passage.time_s();
         let likely_m_s = if is_whole { rubbed_m_s.min(STOPS * slip_m_s) } else { most_m_s };
         let straight = encloses(&(self.v * passage.time_s()), likely_m_s);
-        if straight.way_m + pressed.depth_m > self.near.room_m(&self.c) {
+        if straight.reach_m + pressed.depth_m > self.near.margin_left_m(&self.c) {
             let c = self.c;
             self.collect(world, &c);
         }
@@ -117,7 +117,8 @@ impl ContactState {
     /// Whether nothing but the plane of `face` is touched on a `path`, as far as features are known.
     fn is_alone_on(&self, face: u32, path: &PressedPath) -> bool {
         let beyond = (path.start - self.c).norm();
-        path.way_m + beyond <= self.near.room_m(&self.c) && self.near.is_plane_on(face, path)
+        path.reach_m + beyond <= self.near.margin_left_m(&self.c)
+            && self.near.meets_only_plane(face, path)
     }
 
     /// Takes over the end of a passage.
@@ -151,7 +152,7 @@ impl ContactState {
         let action = Action::of(&world.body, &law, &law.normal(false), &at, (&self.v, &self.w));
         (history.shear, history.roll) = (at.shear, at.roll);
         history.normal_force = action.normal[0];
-        history.slides = law.shear.slides2(action.shear.asked2, action.normal[0]);
+        history.slides = law.shear.slides2(action.shear.trial_force2, action.normal[0]);
         history.closed = true;
     }
 }

@@ -83,7 +83,7 @@ impl ContactState {
             penetration,
             energy: self.motion_j(&world.body) + self.stored,
             energy_at_end: 0.0,
-            room2: self.near.room_m(&self.c).max(0.0).powi(2),
+            room2: self.near.margin_left_m(&self.c).max(0.0).powi(2),
             near: &self.near,
             start: self.c,
             face: history.feature.id,

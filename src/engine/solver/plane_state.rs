@@ -172,11 +172,11 @@ impl PlaneState {
         let (speed, spin) = (three(s, SPEED), three(s, SPIN));
         let slip = slip(body, speed, spin);
         let normal_force = normal.force(penetration, speed[2]);
-        let held = two(s, SHEAR).map(|x| law.shear.held(x));
-        let asked = [0, 1].map(|k| held[k] + law.shear.damped(slip[k]));
+        let held = two(s, SHEAR).map(|x| law.shear.spring_force(x));
+        let asked = [0, 1].map(|k| held[k] + law.shear.dashpot_force(slip[k]));
         let shear_force = cut(asked, law.shear.cap(normal_force));
-        let wound = three(s, ROLL).map(|x| law.rolling.held(x));
-        let asked = [0, 1, 2].map(|k| wound[k] + law.rolling.damped(spin[k]));
+        let wound = three(s, ROLL).map(|x| law.rolling.spring_force(x));
+        let asked = [0, 1, 2].map(|k| wound[k] + law.rolling.dashpot_force(spin[k]));
         let rolling_moment = cut(asked, law.rolling.cap(normal_force));
         let (over_s, over_r) = (law.shear.mobility(), law.rolling.mobility());
         let gravity = self.frame.local(&body.gravity);

@@ -28,7 +28,7 @@ use super::roughness;
 use super::step_control::{Advance, StepError, TRAVEL};
 use crate::contact::TOUCH;
 use crate::contact::history::ContactHistory;
-use crate::contact::{ContactPoint, MOST};
+use crate::contact::{ContactPoint, MAX_CONTACTS};
 use crate::rock::Vec3;
 use arrayvec::ArrayVec;
 pub(super) use contact::{GroundContact, converge, sustained_m_s};
@@ -65,7 +65,7 @@ pub fn advance(
     if hits(world, state) {
         // only what touches at this instant takes part in the impact
         let mut touches = state.touches.clone();
-        touches.keep_struck(world.body.radius, &state.v, STRUCK_TOGETHER);
+        touches.retain_impacting(world.body.radius, &state.v, STRUCK_TOGETHER);
         if state.is_struck {
             impact(world, state, &touches, &mut done);
         } else {
@@ -130,7 +130,7 @@ pub(super) fn frozen<'w>(
     world: &'w ContactEnvironment,
     touches: &[ContactPoint],
     v: &Vec3,
-) -> ArrayVec<FrozenContact<'w>, MOST> {
+) -> ArrayVec<FrozenContact<'w>, MAX_CONTACTS> {
     let contact = |touch: &ContactPoint| FrozenContact {
         normal: touch.normal,
         law: world.law(touch.triangle),

@@ -12,7 +12,7 @@
 //! changes neither speed nor spin.
 
 use super::environment::ContactEnvironment;
-use crate::contact::history::SAME_GRIP;
+use crate::contact::history::SAME_CONTACT_COSINE;
 use crate::ground::Law;
 use crate::math;
 use crate::random::{RandomStream, unit};
@@ -148,7 +148,7 @@ impl RoughFacets {
             && self.last.as_ref().is_none_or(|facet| {
                 (facet.centre - at.c).norm() >= facet.reach_m
                     || facet.ground != world.ground_of(at.triangle)
-                    || facet.normal.dot(&at.n) <= SAME_GRIP
+                    || facet.normal.dot(&at.n) <= SAME_CONTACT_COSINE
             })
     }
 

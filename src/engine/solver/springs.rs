@@ -4,7 +4,7 @@ use super::contact_state::{ContactEnvironment, ContactState};
 use super::loss::Loss;
 use super::stem_load::{PressedTree, PressedTrees};
 use crate::contact::history::ContactHistory;
-use crate::contact::{ContactPoint, MOST, TOUCH};
+use crate::contact::{ContactPoint, MAX_CONTACTS, TOUCH};
 use crate::ground::Law;
 use crate::rock::Vec3;
 use arrayvec::ArrayVec;
@@ -45,7 +45,7 @@ impl ContactState {
     pub(super) fn pressed_in_impacts(
         &mut self,
         world: &ContactEnvironment,
-    ) -> ArrayVec<(Vec3, u32, f64), MOST> {
+    ) -> ArrayVec<(Vec3, u32, f64), MAX_CONTACTS> {
         let c = self.c;
         self.look(world, &c, world.body.radius);
         let of_touch = |touch: &ContactPoint| {
@@ -136,7 +136,8 @@ impl ContactState {
             let speed = -history.n.dot(&self.v);
             let (inwards, slip): (f64, Vec3) =
                 (speed.max(0.0), world.body.slip(&history.n, &self.v, &self.w));
-            let (power_w, growth_w_s) = law.taken_w(history.normal_force, inwards, slip.norm());
+            let (power_w, growth_w_s) =
+                law.power_bound_w(history.normal_force, inwards, slip.norm());
             now_w += power_w;
             grows_w_s += growth_w_s;
         }

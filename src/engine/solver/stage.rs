@@ -10,7 +10,7 @@ use super::loss::Loss;
 use super::multi_contact;
 use super::tableau::Tableau;
 use crate::contact::TOUCH;
-use crate::contact::history::carry;
+use crate::contact::history::transport;
 use crate::ground::NormalElement;
 use crate::rock::Vec3;
 
@@ -93,7 +93,7 @@ impl ContactState {
         let mut guess = base.c + (before.c + before.v * hh) * hh;
         // Planes slid along may have ended on the way: what they say must be confirmed by the look at the end.
         let mut looked =
-            !(self.near.covers(&guess) && self.touches.slide_to(world.terrain, &guess));
+            !(self.near.covers(&guess) && self.touches.update_on_planes(world.terrain, &guess));
         if looked {
             self.look_ahead(world, &guess);
         }
@@ -147,7 +147,7 @@ impl ContactState {
             let mut contact = self.contact_of(world, k, history, (shear, roll));
             contact.penetration =
                 world.body.radius - self.touches[k].distance_m - contact.n.dot(&(base.c - at));
-            if self.onset.waits && memory.met_m_s > 0.0 {
+            if self.onset.waits && memory.onset_m_s > 0.0 {
                 contact.normal = NormalElement::NONE;
             }
             self.contacts[k] = contact;
@@ -172,7 +172,7 @@ impl ContactState {
             n: touch.normal,
             penetration: 0.0,
             // turned with the normal, keeping its length
-            shear: carry(shear, &memory.n, &touch.normal),
+            shear: transport(shear, &memory.n, &touch.normal),
             roll,
             normal_force: memory.normal_force,
             shear_force: Vec3::zeros(),
@@ -203,11 +203,11 @@ impl ContactState {
             let (shear_rate, roll_rate) =
                 ((shear - contact.shear) / hh, (roll - contact.roll) / hh);
             rate.shear[contact.history] =
-                carry(shear_rate, &contact.n, &self.histories[contact.history].n);
+                transport(shear_rate, &contact.n, &self.histories[contact.history].n);
             rate.roll[contact.history] = roll_rate;
             rate.loss.add(&contact.loss(world, &end.v, &end.w, &shear_rate), 1.0);
             self.onset.is_met |= self.onset.waits
-                && self.histories[contact.history].met_m_s > 0.0
+                && self.histories[contact.history].onset_m_s > 0.0
                 && contact.pen_at(&end.v, hh) > 0.0;
         }
     }
@@ -234,7 +234,7 @@ impl ContactState {
             rate.w += (contact.n.cross(&contact.shear_force) * body.radius
                 - contact.rolling_moment)
                 / body.inertia;
-            rate.shear[history] = carry(shear_rate, &contact.n, &back);
+            rate.shear[history] = transport(shear_rate, &contact.n, &back);
             rate.roll[history] = roll_rate;
             rate.loss.add(&contact.loss(world, &v, &w, &shear_rate), 1.0);
         }

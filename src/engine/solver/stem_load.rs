@@ -2,7 +2,7 @@
 
 use super::environment::ContactEnvironment;
 use super::loss::Loss;
-use crate::contact::MOST;
+use crate::contact::MAX_CONTACTS;
 use crate::random::{Purpose, RandomStream, beside};
 use crate::terrain::Terrain;
 use crate::terrain::stems::Stems;
@@ -35,7 +35,7 @@ pub(super) struct PressedTree {
 
 /// The trees that are pressed, each once.
 #[derive(Debug, Clone, Default)]
-pub(super) struct PressedTrees(ArrayVec<PressedTree, MOST>);
+pub(super) struct PressedTrees(ArrayVec<PressedTree, MAX_CONTACTS>);
 
 impl PressedTrees {
     /// Adds a contact with a tree.
@@ -64,7 +64,11 @@ impl PressedTrees {
     }
 
     /// What each has taken of `lost_j` (J) until `end`: what its springs hold more, and of the rest a share by its weights of both instants.
-    fn taken_until(mut self, end: &Self, lost_j: f64) -> ArrayVec<(Option<u32>, f64), MOST> {
+    fn taken_until(
+        mut self,
+        end: &Self,
+        lost_j: f64,
+    ) -> ArrayVec<(Option<u32>, f64), MAX_CONTACTS> {
         for tree in &mut self.0 {
             tree.held_j = -tree.held_j;
         }
@@ -177,7 +181,7 @@ impl StemLoad {
         stems: &Stems,
         end: &PressedTrees,
         lost_j: f64,
-    ) -> ArrayVec<(u32, f64), MOST> {
+    ) -> ArrayVec<(u32, f64), MAX_CONTACTS> {
         let taken = std::mem::take(&mut self.pressed).taken_until(end, lost_j);
         let of_stem = |(stem, joule): (Option<u32>, f64)| {
             let stem = stem?;

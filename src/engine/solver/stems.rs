@@ -20,7 +20,7 @@ use super::rigid::STRUCK_TOGETHER;
 use super::stem_load::{APART_RAD, PressedTrees};
 use super::yielding::yielding_impact;
 use crate::contact::history::ContactHistory;
-use crate::contact::{ContactPoint, MOST};
+use crate::contact::{ContactPoint, MAX_CONTACTS};
 use crate::rock::Vec3;
 use crate::terrain::stems::Stems;
 use arrayvec::ArrayVec;
@@ -29,11 +29,11 @@ use arrayvec::ArrayVec;
 #[derive(Debug, Clone)]
 pub(crate) struct Broken {
     /// The stems that are gone.
-    stems: ArrayVec<u32, MOST>,
+    stems: ArrayVec<u32, MAX_CONTACTS>,
     /// Velocity (m/s) and spin (rad/s) with which the rock goes on.
     pub(crate) motion: Twist,
     /// What was struck, and what the blow has lost there.
-    pub(crate) struck: ArrayVec<(ContactPoint, Loss), MOST>,
+    pub(crate) struck: ArrayVec<(ContactPoint, Loss), MAX_CONTACTS>,
 }
 
 impl ContactState {
@@ -107,8 +107,8 @@ impl ContactState {
         let stems = world.terrain.stems.as_ref()?;
         let motion_j = world.body.motion_j((v, w));
         let stands =
-            |touch: &&ContactPoint| !world.terrain.is_gone(touch.triangle, &self.near.gone);
-        let standing: ArrayVec<ContactPoint, MOST> =
+            |touch: &&ContactPoint| !world.terrain.is_gone(touch.triangle, &self.near.broken_stems);
+        let standing: ArrayVec<ContactPoint, MAX_CONTACTS> =
             self.touches.iter().filter(stands).copied().collect();
         let may_break =
             |touch: &ContactPoint| self.stem_load.may_yield_at(stems, touch.triangle, motion_j);
@@ -216,7 +216,7 @@ impl ContactState {
             return;
         }
         self.look(world, &c, world.body.radius * (1.0 + STRUCK_TOGETHER));
-        self.touches.keep_struck(world.body.radius, &self.v, STRUCK_TOGETHER);
+        self.touches.retain_impacting(world.body.radius, &self.v, STRUCK_TOGETHER);
         while let Some(broken) = self.broken_by(world, (&self.v, &self.w)) {
             for (touch, loss) in &broken.struck {
                 note(self, touch, (loss, self.is_new(stems, touch)));
@@ -241,7 +241,7 @@ impl ContactState {
 
     /// A stem is gone for this rock, with all that its contacts remember.
     fn fell(&mut self, stems: &Stems, stem: u32) {
-        self.near.gone.push(stem);
+        self.near.broken_stems.push(stem);
         self.near.forget();
         self.histories.retain(|history| stems.of_triangle(history.triangle) != Some(stem));
         self.fresh = false;

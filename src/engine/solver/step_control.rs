@@ -20,7 +20,7 @@ use super::law::StageContact;
 use super::loss::Loss;
 use super::stage::End;
 use super::tableau::Tableau;
-use crate::contact::history::carry;
+use crate::contact::history::transport;
 use crate::ground::Law;
 pub(crate) use onset::{Begun, MET, MOST_CUTS, OnsetSearch};
 pub(crate) use settle::{StepFailure, TrialStep, TryOutcome, settle};
@@ -348,7 +348,8 @@ pub(crate) fn accept(
     }
     for contact in &state.contacts[..state.contact_count] {
         let history = &mut state.histories[contact.history];
-        next.shear[contact.history] = carry(next.shear[contact.history], &history.n, &contact.n);
+        next.shear[contact.history] =
+            transport(next.shear[contact.history], &history.n, &contact.n);
         contact.remember(contact.stretches(hh), contact.is_closed(&end.v, hh), history);
     }
     state.fresh = !state.merge_lost(world);

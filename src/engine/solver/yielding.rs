@@ -55,7 +55,7 @@ impl Pressing {
     /// Whether it is still on its way in, or pushed out.
     fn presses(&self, law: &Law) -> bool {
         let apart_m_s = self.at.n.dot(&self.v);
-        let force = law.normal(false).pull_or_push(self.at.penetration, apart_m_s);
+        let force = law.normal(false).bilateral_force(self.at.penetration, apart_m_s);
         apart_m_s < 0.0 || force > 0.0
     }
 

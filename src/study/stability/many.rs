@@ -2,7 +2,7 @@
 
 use super::bounds::{DIGITS, SpringImpact, impact_error};
 use super::{Notes, SchemeSetting, is_finite, same_bits};
-use crate::contact::pair::Strength;
+use crate::contact::pair::BondStrength;
 use crate::ground::damping_ratio;
 use crate::math;
 use crate::plan::{Recorders, RestRule};
@@ -43,7 +43,7 @@ fn together(
         grounds: vec![GROUND],
     };
     let releases: Vec<Release> = spheres.iter().map(release).collect();
-    let strength = Strength { tensile_pa: 0.0, cohesion_pa: 0.0 };
+    let strength = BondStrength { tensile_pa: 0.0, cohesion_pa: 0.0 };
     let answer = PairMaterial { ground: GROUND, strength };
     let keep = |_| Keep { path_step_s: None, impacts: false };
     simulate_world(&course, &releases, &answer, keep, Observer::silent(&AtomicBool::new(false)))

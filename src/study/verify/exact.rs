@@ -1,7 +1,7 @@
 //! Two spheres and stacks, whose answers are formulas.
 
 use super::{Verification, VerificationRow, timed};
-use crate::contact::pair::Strength;
+use crate::contact::pair::BondStrength;
 use crate::error::Result;
 use crate::plan::{Recorders, RestRule};
 use crate::release::Release;
@@ -108,7 +108,7 @@ fn rocks(
             grounds: vec![GROUND],
         })
         .collect();
-    let strength = Strength { tensile_pa: 0.0, cohesion_pa: 0.0 };
+    let strength = BondStrength { tensile_pa: 0.0, cohesion_pa: 0.0 };
     let answer = PairMaterial { ground: GROUND, strength };
     let keep = |_| Keep { path_step_s: None, impacts: false };
     let falls = simulate_world(

@@ -1,11 +1,11 @@
-//! The features that a rock may touch, as they are kept for the tests of each place.
+//! Features that a rock may touch, as stored for the tests at each position.
 
 use crate::contact::closest::Segment;
 use crate::contact::{ContactPoint, Feature, FeatureKind};
 use crate::rock::Vec3;
 
-/// A face that the foot of a centre within the margin can lie on. The three sides are planes through its edges, so
-/// that the test whether it holds a foot is three dot products.
+/// A face that may hold the foot of a centre within the margin. Its three sides are planes through
+/// its edges, so the test for a foot takes three scalar products.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct NearFace {
     pub(super) id: u32,
@@ -13,54 +13,56 @@ pub(super) struct NearFace {
     pub(super) a: Vec3,
     /// Unit normal.
     pub(super) n: Vec3,
-    /// Unit vectors in the plane of the face, out of it across each side.
+    /// Unit vectors in the plane of the face, outwards across each side.
     pub(super) out: [Vec3; 3],
     /// `out[k] · x ≤ rim[k]` inside.
     pub(super) rim: [f64; 3],
 }
 
-/// A convex edge, or one at a border, that the centre can stand outside of.
+/// A convex edge, or one at a border, that can be outside of all its faces as seen from the centre.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct NearEdge {
     pub(super) id: u32,
     pub(super) triangle: u32,
-    /// Where it is.
+    /// Its segment.
     pub(super) line: Segment,
-    /// Range of outward face normals in `rays`.
-    pub(super) rays: (u32, u32),
-    /// Whether only one face is on it: then another sheet may run through it.
+    /// Range of outward face normals in `directions`.
+    pub(super) directions: (u32, u32),
+    /// Whether only one face is at the edge: then another sheet may pass through it.
     pub(super) at_border: bool,
 }
 
-/// A vertex that stands out from all its edges for some centre within the margin.
+/// A vertex that is behind none of its edges for some centre within the margin.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct NearCorner {
+pub(super) struct NearVertex {
     pub(super) id: u32,
     pub(super) triangle: u32,
-    /// Where it is (m).
+    /// Its position (m).
     pub(super) p: Vec3,
-    /// Range of edge directions in `rays`.
-    pub(super) rays: (u32, u32),
-    /// Whether a border of the mesh runs through it.
+    /// Range of edge directions in `directions`.
+    pub(super) directions: (u32, u32),
+    /// Whether a border of the mesh passes through it.
     pub(super) at_border: bool,
 }
 
-/// A place where the distance may have a saddle or a maximum inside the ball.
+/// A feature where the distance may have a saddle or a maximum inside the ball.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum NearSaddle {
-    /// A hollow edge, with its range of outward face normals in `rays`.
-    Edge { line: Segment, rays: (u32, u32) },
+    /// A concave edge, with its range of outward face normals in `directions`.
+    Edge { line: Segment, directions: (u32, u32) },
     /// A vertex.
     Vertex { id: u32, p: Vec3 },
 }
 
-/// Whether a rock at `centre` (m) may touch an edge from nearer than `reach` while the centre moves up to `way` (m): its foot on the edge, and
-/// the line no farther.
+/// Whether a rock at `centre` (m) may touch an edge from within `reach` while the centre moves up
+/// to `distance` (m): the foot on the edge, and the line within reach.
 #[inline]
-pub(super) fn may_meet(line: &Segment, centre: &Vec3, (way, reach): (f64, f64)) -> bool {
+pub(super) fn may_touch_edge(line: &Segment, centre: &Vec3, (distance, reach): (f64, f64)) -> bool {
     let to = centre - line.a;
     let s = line.along.dot(&to);
-    s >= -way && s <= line.length + way && (to - line.along * s).norm_squared() <= reach * reach
+    s >= -distance
+        && s <= line.length + distance
+        && (to - line.along * s).norm_squared() <= reach * reach
 }
 
 impl NearFace {
@@ -70,37 +72,33 @@ impl NearFace {
         (0..3).all(|k| self.out[k].dot(point) <= self.rim[k] + slack)
     }
 
-    /// The touch of a centre at `height` (m).
+    /// The contact of a centre at `height` (m).
     #[inline]
     pub(super) fn touch(&self, height: f64) -> ContactPoint {
-        ContactPoint {
-            feature: Feature { kind: FeatureKind::Face, id: self.id },
-            triangle: self.id,
-            normal: if height < 0.0 { -self.n } else { self.n },
-            distance_m: height.abs(),
-            gain2: 1.0,
-        }
+        let normal = if height < 0.0 { -self.n } else { self.n };
+        let feature = Feature { kind: FeatureKind::Face, id: self.id };
+        ContactPoint::with_normal(feature, self.id, (normal, height.abs()))
     }
 }
 
-/// Features that may touch, kind by kind; the lists keep their memory from look to look.
+/// Features that may be touched, by kind; the lists keep their memory from query to query.
 #[derive(Debug, Default)]
 pub(super) struct NearFeatures {
     pub(super) faces: Vec<NearFace>,
     pub(super) edges: Vec<NearEdge>,
-    pub(super) corners: Vec<NearCorner>,
+    pub(super) vertices: Vec<NearVertex>,
     pub(super) saddles: Vec<NearSaddle>,
-    /// All triangles within reach; only looked at when a border or a saddle is near.
+    /// All triangles within reach; used only near a border or a saddle.
     pub(super) sheets: Vec<u32>,
 }
 
 impl NearFeatures {
-    /// With room for what is usually near.
+    /// With capacity for the usual number of features.
     pub(super) fn with_room() -> Self {
         Self {
             faces: Vec::with_capacity(64),
             edges: Vec::with_capacity(64),
-            corners: Vec::with_capacity(64),
+            vertices: Vec::with_capacity(64),
             saddles: Vec::with_capacity(64),
             sheets: Vec::with_capacity(256),
         }
@@ -109,7 +107,7 @@ impl NearFeatures {
     pub(super) fn clear(&mut self) {
         self.faces.clear();
         self.edges.clear();
-        self.corners.clear();
+        self.vertices.clear();
         self.saddles.clear();
         self.sheets.clear();
     }

@@ -1,9 +1,9 @@
-//! Where a ball presses into the mesh: patches in place of minima, and how far a single plane reaches.
+//! Patches where a ball presses into the mesh, and whether an impact meets only one plane.
 //!
-//! The second question is that of a whole impact: does the rock, on its way in and out, meet
-//! anything but one plane? Its way is enclosed in the rectangle of `along` and `into`, widened by
-//! `off_m`; a linear function over a rectangle has its extremes at the corners, so each test is a
-//! few scalar products.
+//! The second question concerns a whole impact: does the rock, on its path in and out, touch
+//! anything but one plane? Its path is enclosed in the rectangle of `along` and `into`, widened by
+//! `deviation_m`. A linear function on a rectangle has its extremes at the corners, so each test
+//! takes a few scalar products.
 
 use super::{NearFace, NearSaddle, Neighbours, SLACK};
 use crate::contact::closest::{Segment, segments_distance2};
@@ -12,28 +12,30 @@ use crate::math;
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
 
-/// Where the centre of a rock goes while it is pressed into a plane and comes out again.
+/// A bound on the path of a rock's centre while it is pressed into a plane and comes out again.
 #[derive(Debug, Clone, Copy)]
 pub struct PressedPath {
-    /// Where it touched (m).
+    /// Centre at the first touch (m).
     pub start: Vec3,
-    /// How far it goes along the plane (m).
+    /// Displacement along the plane (m).
     pub along: Vec3,
-    /// How far it goes into the plane, at most, against the normal (m).
+    /// Largest displacement into the plane, against the normal (m).
     pub into: Vec3,
-    /// How far it may be off the straight way at most (m).
-    pub off_m: f64,
-    /// How far it gets from `start` at most (m).
-    pub way_m: f64,
+    /// Largest deviation from the straight path (m).
+    pub deviation_m: f64,
+    /// Largest distance from `start` (m).
+    pub reach_m: f64,
 }
 
-/// Off the straight way between its ends no path is more than so much of its time times all that its velocity along the plane changes by on
-/// the way (–): a constant force takes it half of that away, one that acts at once in the middle all of it.
-const BULGE: f64 = 0.25;
+/// A path deviates from the straight line between its ends by no more than this factor times its
+/// duration times the total change of its velocity along the plane (–). A constant force causes
+/// half of that, an impulse in the middle all of it.
+const DEVIATION_FACTOR: f64 = 0.25;
 
 impl PressedPath {
-    /// The path from `start` that shifts the centre by `shift` (m) within `dt` (s) while its velocity along the plane with unit normal `n`
-    /// changes by `change_m_s` in all; it gets no deeper than `deepest_m` below the start.
+    /// The path from `start` that displaces the centre by `shift` (m) within `dt` (s) while its
+    /// velocity along the plane with unit normal `n` changes by `change_m_s` in total; its depth
+    /// below the start is at most `deepest_m`.
     pub fn of(
         n: &Vec3,
         start: Vec3,
@@ -42,104 +44,109 @@ impl PressedPath {
         deepest_m: f64,
     ) -> Self {
         let along = Self::tangent(n, shift);
-        let off_m = BULGE * dt * change_m_s;
-        let way_m = math::hypot(along.norm() + off_m, deepest_m);
-        Self { start, along, into: n * -deepest_m, off_m, way_m }
+        let deviation_m = DEVIATION_FACTOR * dt * change_m_s;
+        let reach_m = math::hypot(along.norm() + deviation_m, deepest_m);
+        Self { start, along, into: n * -deepest_m, deviation_m, reach_m }
     }
 
-    /// The part of a vector along the plane with unit normal `n`.
+    /// The component of a vector along the plane with unit normal `n`.
     pub fn tangent(n: &Vec3, x: &Vec3) -> Vec3 {
         x - n * n.dot(x)
     }
 
-    /// Least and largest value of a linear function over the rectangle of `along` and `into`.
+    /// Least and largest value of a linear function on the rectangle of `along` and `into`:
     /// `d·(start + s along + t into)` over `0 ≤ s, t ≤ 1`.
     fn range(&self, direction: &Vec3, at_start: f64) -> (f64, f64) {
         let (s, d) = (direction.dot(&self.along), direction.dot(&self.into));
         (at_start + s.min(0.0) + d.min(0.0), at_start + s.max(0.0) + d.max(0.0))
     }
 
-    /// Whether it may come nearer than `reach` to a plane.
-    /// From either side: a plane may be approached from behind by a ball that reaches over a ridge.
+    /// Whether the path may come nearer than `reach` to a plane, from either side: a ball that
+    /// reaches over a ridge may approach a plane from behind.
     fn comes_nearer_to_plane(&self, (n, p): (&Vec3, &Vec3), reach: f64) -> bool {
         let (low, high) = self.range(n, n.dot(&(self.start - p)));
-        low < reach + self.off_m && high > -reach - self.off_m
+        low < reach + self.deviation_m && high > -reach - self.deviation_m
     }
 
-    /// Whether it stays where `direction · x` is larger than `rim`.
-    /// Then the foot of the centre is never on the face of which `rim` is that side.
+    /// Whether the path stays where `direction · x` is larger than `rim`. Then the foot of the
+    /// centre is never on the face of which `rim` is that side.
     fn stays_beyond(&self, direction: &Vec3, rim: f64) -> bool {
-        self.range(direction, direction.dot(&self.start)).0 > rim + self.off_m
+        self.range(direction, direction.dot(&self.start)).0 > rim + self.deviation_m
     }
 
-    /// Whether it may come nearer than `reach` to a segment. To what lies below the centre it is nearest where it is deepest.
+    /// Whether the path may come nearer than `reach` to a segment. It is nearest to a segment below
+    /// the centre at its deepest point.
     fn comes_nearer(&self, (p, d): (&Vec3, &Vec3), reach: f64) -> bool {
-        // `into` points against the normal, so what lies further that way than the deepest place is
-        // below it
+        // `into` points against the normal: a point farther in that direction than the deepest
+        // centre is below it
         let below = |x: &Vec3| self.into.dot(&(x - self.start - self.into)) >= 0.0;
         if below(p) && below(&(p + d)) {
-            let reach = reach + self.off_m;
+            let reach = reach + self.deviation_m;
             let lowest = self.start + self.into;
             segments_distance2((&lowest, &self.along), (p, d)) < reach * reach
         } else {
-            // above the deepest place: the plain bound, everything within the way of the start
-            let reach = reach + self.way_m;
+            // above the deepest centre: the plain bound with the distance from the start
+            let reach = reach + self.reach_m;
             segments_distance2((&self.start, &Vec3::zeros()), (p, d)) < reach * reach
         }
     }
 }
 
 impl Neighbours {
-    /// How far the centre may go from `centre` in `direction`, a unit vector, before it must be collected anew (m).
-    pub fn room_ahead_m(&self, centre: &Vec3, direction: &Vec3) -> f64 {
+    /// How far the centre may move from `centre` in `direction`, a unit vector, before a new
+    /// collection is needed (m).
+    pub fn margin_ahead_m(&self, centre: &Vec3, direction: &Vec3) -> f64 {
         let from = centre - self.centre;
         let towards = -direction.dot(&from);
         let across2 = from.norm_squared() - towards * towards;
         towards + (self.margin * self.margin - across2).max(0.0).sqrt()
     }
 
-    /// Whether a rock on its `passage` touches nothing but the plane of `face`, however many triangles that is.
-    pub fn is_plane_on(&self, face: u32, passage: &PressedPath) -> bool {
+    /// Whether a rock on its `passage` touches nothing but the plane of `face`, however many
+    /// triangles that plane has.
+    pub fn meets_only_plane(&self, face: u32, passage: &PressedPath) -> bool {
         let Some(own) = self.all.faces.iter().find(|own| own.id == face) else { return false };
-        // other triangles of the same plane are no obstacle: their seams are not felt
+        // other triangles of the same plane do no harm: their seams have no effect
         let in_plane = |p: &Vec3| self.is_in_plane(own, p);
-        let lies_flat = |rays: (u32, u32)| {
-            let rays = self.rays_of(rays);
-            rays.len() > 1 && rays.iter().all(|ray| own.n.dot(ray).abs() <= SLACK)
+        let lies_flat = |directions: (u32, u32)| {
+            let directions = self.directions_of(directions);
+            directions.len() > 1
+                && directions.iter().all(|direction| own.n.dot(direction).abs() <= SLACK)
         };
-        // Whether the centre may come to stand outside (or inside) of all faces on an edge through `a`: `rays` point out of them
-        // and are square to the edge, so any of its points will do.
-        let beyond = passage.off_m + SLACK * self.radius;
-        let may_stand = |rays: (u32, u32), a: &Vec3, outside: bool| {
-            self.rays_of(rays).iter().all(|ray| {
-                let (low, high) = passage.range(ray, ray.dot(&(passage.start - a)));
+        // Whether the centre may be outside (or inside) of all faces at an edge through `a`:
+        // `directions` point out of them and are normal to the edge, so any point of the edge will
+        // do.
+        let beyond = passage.deviation_m + SLACK * self.radius;
+        let may_stand = |directions: (u32, u32), a: &Vec3, outside: bool| {
+            self.directions_of(directions).iter().all(|direction| {
+                let (low, high) = passage.range(direction, direction.dot(&(passage.start - a)));
                 if outside { high >= -beyond } else { low <= beyond }
             })
         };
         let reach = self.radius;
-        // a face is harmless if it lies in the same plane (either winding), is never near, or never
-        // holds the foot
+        // a face does no harm if it lies in the same plane (either winding), is never near, or
+        // never holds the foot
         self.all.faces.iter().all(|other| {
             self.is_coplanar(own, other)
                 || !passage.comes_nearer_to_plane((&other.n, &other.a), reach)
                 || (0..3).any(|k| passage.stays_beyond(&other.out[k], other.rim[k]))
         }) && self.all.edges.iter().all(|edge| {
-            // an edge: never near, never with the centre outside of all its faces, or flat in the
+            // an edge: never near, never with the centre outside all its faces, or flat in the
             // plane itself
-            !passage.comes_nearer((&edge.line.a, &edge.line.way()), reach)
-                || !may_stand(edge.rays, &edge.line.a, true)
-                || !edge.at_border && lies_flat(edge.rays) && in_plane(&edge.line.a)
-        }) && self.all.corners.iter().all(|corner| {
-            !passage.comes_nearer((&corner.p, &Vec3::zeros()), reach)
-                || !corner.at_border && lies_flat(corner.rays) && in_plane(&corner.p)
+            !passage.comes_nearer((&edge.line.a, &edge.line.vector()), reach)
+                || !may_stand(edge.directions, &edge.line.a, true)
+                || !edge.at_border && lies_flat(edge.directions) && in_plane(&edge.line.a)
+        }) && self.all.vertices.iter().all(|vertex| {
+            !passage.comes_nearer((&vertex.p, &Vec3::zeros()), reach)
+                || !vertex.at_border && lies_flat(vertex.directions) && in_plane(&vertex.p)
         }) && self.all.saddles.iter().all(|saddle| match saddle {
-            NearSaddle::Edge { line, rays } => {
-                !passage.comes_nearer((&line.a, &line.way()), reach)
-                    || rays.0 < rays.1 && !may_stand(*rays, &line.a, false)
-                    || lies_flat(*rays) && in_plane(&line.a)
+            NearSaddle::Edge { line, directions } => {
+                !passage.comes_nearer((&line.a, &line.vector()), reach)
+                    || directions.0 < directions.1 && !may_stand(*directions, &line.a, false)
+                    || lies_flat(*directions) && in_plane(&line.a)
             }
-            // a vertex that can be a saddle is only harmless out of reach: its sectors are not
-            // looked at here
+            // a vertex that may be a saddle does no harm only out of reach: its sectors are not
+            // examined here
             NearSaddle::Vertex { p, .. } => !passage.comes_nearer((p, &Vec3::zeros()), reach),
         })
     }
@@ -154,8 +161,9 @@ impl Neighbours {
         turned <= SLACK * SLACK && self.is_in_plane(own, &other.a)
     }
 
-    /// Whether the foot of `centre` is on the triangle `face`, or on another of its plane where all that are near are `alike`.
-    pub fn stands_on(&self, face: u32, centre: &Vec3, alike: impl Fn(u32) -> bool) -> bool {
+    /// Whether the foot of `centre` is on the triangle `face`, or on another triangle of its plane
+    /// if all of that plane near the centre are `alike`.
+    pub fn is_foot_on_plane(&self, face: u32, centre: &Vec3, alike: impl Fn(u32) -> bool) -> bool {
         let Some(own) = self.all.faces.iter().find(|own| own.id == face) else { return false };
         let slack = SLACK * self.radius;
         let mut plane = self.all.faces.iter().filter(|other| self.is_coplanar(own, other));
@@ -166,8 +174,8 @@ impl Neighbours {
 
     /// Whether a saddle or a maximum of the distance is inside the ball.
     ///
-    /// Decides whether single nearest points will do (the usual case) or patches must be summed;
-    /// asked at every stage, so it is cheap.
+    /// It decides whether single nearest points suffice (the usual case) or patches must be summed.
+    /// It is evaluated at every stage, so it is cheap.
     #[inline]
     pub(super) fn has_saddle(
         &self,
@@ -176,15 +184,16 @@ impl Neighbours {
         centre: &Vec3,
     ) -> bool {
         saddles.iter().any(|saddle| match saddle {
-            NearSaddle::Edge { line: Segment { a, along, length }, rays } => {
+            NearSaddle::Edge { line: Segment { a, along, length }, directions } => {
                 let to = centre - a;
                 let s = along.dot(&to);
                 let off = to - along * s;
                 let slack = SLACK * self.radius;
-                // the foot lies on the edge and the centre inside of both faces: both are minima,
-                // and the edge between them is the saddle
-                let outward = self.rays_of(*rays);
-                // beyond its ends the edge is as near as its vertices, and those are asked by themselves
+                // the foot lies on the edge and the centre inside both faces: both are minima, and
+                // the edge between them is the saddle
+                let outward = self.directions_of(*directions);
+                // beyond its ends the edge is as near as its vertices, and those have tests of
+                // their own
                 s >= -slack
                     && s <= length + slack
                     && off.norm_squared() < self.radius * self.radius
@@ -198,25 +207,25 @@ impl Neighbours {
         })
     }
 
-    /// The feature under which the patch that holds `feature` was found by the last look, if there was one.
+    /// The feature of the patch that contains `feature`, if the last query found one.
     pub fn patch_holding(&self, terrain: &Terrain, feature: Feature) -> Option<Feature> {
         self.patches.holding(terrain, feature)
     }
 
-    /// Puts the patches in place of the touches that the ball presses into.
+    /// Replaces the contacts that the ball presses into by patches.
     #[cold]
-    pub(super) fn gather(
+    pub(super) fn replace_by_patches(
         &mut self,
         terrain: &Terrain,
         (centre, reach): (&Vec3, f64),
         touches: &mut ContactPoints,
     ) {
-        // what does not reach the ball yet stays as it is: a patch is only what is pressed in
+        // contacts not reached yet stay as they are: a patch contains only what is pressed in
         touches.retain(|touch| touch.distance_m >= self.radius);
         let mut patches = std::mem::take(&mut self.patches);
         patches.find(
             terrain,
-            &self.within((centre, reach)).sheets,
+            &self.candidates((centre, reach)).sheets,
             (centre, self.radius),
             |touch, nearest: &ContactPoint| {
                 let features = &terrain.features;
@@ -227,14 +236,14 @@ impl Neighbours {
                         features.is_border_vertex(touch.feature.id, terrain.mesh())
                     }
                 };
-                // The border of one sheet on another (T-junction, overlap) is no contact of its own. Where that is asked is
-                // the nearest point of the mesh: that of the point contact which acts like the patch lies beside the mesh,
-                // and the patch's own triangles would cover it.
+                // The border of one sheet on another (T-junction, overlap) is no contact of its
+                // own. The test uses the nearest point of the mesh: that of the equivalent point
+                // contact lies beside the mesh, and the patch's own triangles would cover it.
                 let foot = centre - nearest.normal * nearest.distance_m;
                 let covered = at_border
                     && self.is_covered(terrain, touch.feature, &foot, (centre, nearest.distance_m));
                 if !covered {
-                    self.merge(touch, centre, touches);
+                    self.add_unless_known(touch, centre, touches);
                 }
             },
         );

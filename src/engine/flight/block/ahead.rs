@@ -1,23 +1,26 @@
-//! What of the mesh a block may meet within a window, in the order of the times from which on it may.
+//! Features of the mesh that a block may touch within a window, sorted by the earliest possible
+//! time.
 //!
-//! No part of a block meets a feature before the ball around it does, however it turns. What that ball does not reach within the window
-//! is left out of it, and of what is left a part of the block that has found a nearer feature looks at no later one.
+//! No part of a block touches a feature before the bounding ball does, whatever the rotation.
+//! Features that the ball does not reach within the window are left out. A part whose safe time
+//! already ends at a nearer feature examines no later one.
 
-use super::clearance::apart_s;
-use super::{CAUTION, TOUCHING, Tumble};
+use super::clearance::safe_time_s;
+use super::{BlockFlight, ROUNDING_MARGIN, TOUCHING};
 use crate::contact::closest::{Segment, closest_on};
 use crate::contact::neighbours::Neighbours;
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
 
-/// A feature, and the time (s) before which nothing of the block meets it.
+/// A feature, and the time (s) before which no part of the block touches it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct FeatureAhead<T> {
     pub(super) from_s: f64,
     pub(super) feature: T,
 }
 
-/// A triangle with a corner (m) and the unit normal of its plane: looked up once a window, asked hundreds of times.
+/// A triangle with a corner (m) and the unit normal of its plane: looked up once per window, used
+/// hundreds of times.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct TriangleAhead {
     pub(super) id: u32,
@@ -25,53 +28,55 @@ pub(super) struct TriangleAhead {
     pub(super) n: Vec3,
 }
 
-/// All of them, soonest first; lists keep their memory from window to window.
+/// All features ahead, soonest first; lists keep their memory from window to window.
 #[derive(Debug, Default)]
 pub(super) struct FeaturesAhead {
     /// For the corners of the block.
     pub(super) triangles: Vec<FeatureAhead<TriangleAhead>>,
-    /// For its edges: those of the mesh that stand out.
+    /// For its edges: convex edges of the mesh.
     pub(super) edges: Vec<FeatureAhead<Segment>>,
-    /// For its faces: vertices of the mesh that stand out (m).
-    pub(super) peaks: Vec<FeatureAhead<Vec3>>,
+    /// For its faces: convex vertices of the mesh (m).
+    pub(super) vertices: Vec<FeatureAhead<Vec3>>,
 }
 
-/// The ball around a block as a window begins.
+/// The bounding ball of a block at the beginning of a window.
 struct BallAhead<'a> {
-    tumble: &'a Tumble<'a>,
+    flight: &'a BlockFlight<'a>,
     begins_s: f64,
     centre: Vec3,
     velocity: Vec3,
 }
 
 impl BallAhead<'_> {
-    /// Before which time (s) the ball surely does not come to a convex feature with this point (m) nearest to its centre.
-    fn comes_s(&self, nearest: &Vec3) -> f64 {
-        let block = self.tumble.block;
+    /// Time (s) before which the ball certainly does not touch a convex feature whose point nearest
+    /// to its centre is given (m).
+    fn earliest_s(&self, nearest: &Vec3) -> f64 {
+        let block = self.flight.block;
         let off = self.centre - nearest;
         let distance = off.norm();
-        let gap = distance * (1.0 - CAUTION) - block.bound_m - TOUCHING * block.radius_m;
+        let gap = distance * (1.0 - ROUNDING_MARGIN) - block.bound_m - TOUCHING * block.radius_m;
         if gap <= 0.0 {
             return self.begins_s;
         }
-        // weight alone bends the way of the centre
-        let (closing, bend) = (-off.dot(&self.velocity), self.tumble.path.gravity * off.z);
-        self.begins_s + apart_s((gap, closing / distance), bend / distance)
+        // weight alone bends the path of the centre
+        let (closing, acceleration) = (-off.dot(&self.velocity), self.flight.path.gravity * off.z);
+        self.begins_s + safe_time_s((gap, closing / distance), acceleration / distance)
     }
 }
 
 impl FeaturesAhead {
-    /// Those among the `near` ones that may be met in a window of the flight that `begins` and `ends` (s).
-    pub(super) fn look(
+    /// Collects those of the `near` features that may be touched in a window of the flight that
+    /// `begins` and `ends` (s).
+    pub(super) fn collect(
         &mut self,
         terrain: &Terrain,
-        tumble: &Tumble,
+        flight: &BlockFlight,
         near: &mut Neighbours,
         (begins, ends): (f64, f64),
     ) {
-        let path = &tumble.path;
+        let path = &flight.path;
         let (centre, velocity) = (path.centre(begins), path.velocity(begins));
-        let ball = BallAhead { tumble, begins_s: begins, centre, velocity };
+        let ball = BallAhead { flight, begins_s: begins, centre, velocity };
         near.tested += near.triangles().len() as u64;
         let triangles = near.triangles().iter().map(|&id| {
             let face = terrain.face(id);
@@ -79,22 +84,23 @@ impl FeaturesAhead {
             (TriangleAhead { id, a: face.a, n: face.n }, nearest)
         });
         let edges = near.sharp_edges().map(|edge| (edge.line, edge.line.nearest_to(&ball.centre)));
-        let peaks = near.peaks().map(|peak| (peak.p, peak.p));
+        let vertices = near.sharp_vertices().map(|vertex| (vertex.p, vertex.p));
         list(&mut self.triangles, triangles, (&ball, ends));
         list(&mut self.edges, edges, (&ball, ends));
-        list(&mut self.peaks, peaks, (&ball, ends));
+        list(&mut self.vertices, vertices, (&ball, ends));
     }
 }
 
-/// Lists features, each with its point nearest to the ball's centre, that may be met before the window `ends` (s).
+/// Lists the features that may be touched before the window `ends` (s), each with its point nearest
+/// to the ball's centre.
 fn list<T>(
     to: &mut Vec<FeatureAhead<T>>,
     features: impl Iterator<Item = (T, Vec3)>,
     (ball, ends): (&BallAhead, f64),
 ) {
     to.clear();
-    let ahead = features.map(|(feature, p)| FeatureAhead { from_s: ball.comes_s(&p), feature });
+    let ahead = features.map(|(feature, p)| FeatureAhead { from_s: ball.earliest_s(&p), feature });
     to.extend(ahead.filter(|ahead| ahead.from_s < ends));
-    // in a fixed order also where times are the same
-    to.sort_by(|one, other| one.from_s.total_cmp(&other.from_s));
+    // a stable sort: the order is fixed also for equal times
+    to.sort_by(|a, b| a.from_s.total_cmp(&b.from_s));
 }

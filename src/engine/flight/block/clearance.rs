@@ -1,105 +1,113 @@
-//! How a gap between a part of a block and a feature of the mesh changes from now on, and how long it surely stays open.
+//! Lower bounds on the gap between a part of a block and a feature of the mesh, and how long it
+//! certainly stays open.
 
-use super::{Bends, CAUTION};
+use super::{PointBounds, ROUNDING_MARGIN};
 use crate::rock::Vec3;
 
-/// The time sought for a bound is halved, on a scale of powers, so many times at most.
-const LOOKS: u32 = 6;
-/// A time this much shorter than one for which nothing is known is good enough (–).
-const NEAR_ENOUGH: f64 = 0.5;
-/// Edges are not followed to where they are nearer to parallel than this (–, cosine).
-const PARALLEL: f64 = 0.99;
+/// Most bisections, on a logarithmic scale, of the time for which a bound is sought.
+const SEARCH_STEPS: u32 = 6;
+/// A safe time is good enough if it is at least this share of one that is not known to be safe (–).
+const GOOD_ENOUGH: f64 = 0.5;
+/// Edges are followed only while they are farther from parallel than this (–, cosine).
+const MAX_PARALLEL_COSINE: f64 = 0.99;
 
-/// How long what is `gap` off a convex feature surely keeps off it (s): it is `closing` a second, and that grows by no more than `bend` a
-/// second.
+/// How long a gap to a convex feature certainly stays open (s): it closes at the speed `closing`,
+/// which grows by no more than `max_acceleration`.
 ///
-/// The first positive root of `δ − c τ − B τ²/2 = 0`: `τ = 2δ/(c + √(c² + 2Bδ))` while it approaches, `(√(c² + 2Bδ) − c)/B` while it
-/// parts (`c ≤ 0`), each in the form without cancellation. Where it is turned away before it arrives there is none.
-pub(super) fn apart_s((gap, closing): (f64, f64), bend: f64) -> f64 {
-    let square = closing * closing + 2.0 * bend * gap;
+/// The first positive root of `δ − c τ − B τ²/2 = 0`: `τ = 2δ/(c + √(c² + 2Bδ))` for an approach,
+/// `(√(c² + 2Bδ) − c)/B` for a separation (`c ≤ 0`), each in the form without cancellation.
+/// Infinite if the motion turns back before the gap closes.
+pub(super) fn safe_time_s((gap, closing): (f64, f64), max_acceleration: f64) -> f64 {
+    let square = closing * closing + 2.0 * max_acceleration * gap;
     if closing > 0.0 && square >= 0.0 {
         2.0 * gap / (closing + square.sqrt())
-    } else if closing <= 0.0 && bend > 0.0 {
-        (square.sqrt() - closing) / bend
+    } else if closing <= 0.0 && max_acceleration > 0.0 {
+        (square.sqrt() - closing) / max_acceleration
     } else {
         f64::INFINITY
     }
 }
 
-/// A corner as it flies.
-/// Position `p` (m), velocity (m/s) and acceleration (m/s²) in the frame of the terrain.
+/// Motion of a point of the block: position `p` (m), velocity (m/s) and acceleration (m/s²) in the
+/// frame of the terrain.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Flying {
+pub(super) struct PointMotion {
     pub(super) p: Vec3,
     pub(super) velocity: Vec3,
     pub(super) acceleration: Vec3,
-    /// Largest acceleration (m/s²), and largest rate of it (m/s³).
-    pub(super) bend: f64,
-    pub(super) jerk: f64,
+    /// Bounds on the acceleration (m/s²) and on the jerk (m/s³).
+    pub(super) max_acceleration: f64,
+    pub(super) max_jerk: f64,
 }
 
-impl Flying {
+impl PointMotion {
     pub(super) const NONE: Self = Self {
         p: Vec3::new(0.0, 0.0, 0.0),
         velocity: Vec3::new(0.0, 0.0, 0.0),
         acceleration: Vec3::new(0.0, 0.0, 0.0),
-        bend: 0.0,
-        jerk: 0.0,
+        max_acceleration: 0.0,
+        max_jerk: 0.0,
     };
 }
 
-/// A gap: after `τ` it is no less than `δ + δ' τ + ½ δ'' τ² − ⅙ J τ³`, nor than `δ + δ' τ − ½ B τ²`, for `τ` up to some time.
+/// Bounds on a gap: after `τ` it is no less than `δ + δ' τ + ½ δ'' τ² − ⅙ J τ³`, and no less than
+/// `δ + δ' τ − ½ B τ²`, while `τ` is within the valid time.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Clearance {
     /// `δ` (m).
-    pub(super) now_m: f64,
+    pub(super) gap_m: f64,
     /// `δ'` (m/s).
-    pub(super) parting_m_s: f64,
+    pub(super) opening_m_s: f64,
     /// `δ''` (m/s²).
-    second: f64,
+    second_m_s2: f64,
     /// `B` (m/s²).
-    bend: f64,
+    max_acceleration: f64,
     /// `J` (m/s³).
-    third: f64,
-    /// That time (s).
-    pub(super) holds_s: f64,
+    max_third_m_s3: f64,
+    /// Time for which the bounds are valid (s).
+    pub(super) valid_s: f64,
 }
 
 impl Clearance {
-    /// Of a corner with a ball (m) round it and a plane with unit normal `n` through `q` (m).
+    /// Of a corner with its ball of radius `ball` (m) and the plane with unit normal `n` through
+    /// `q` (m).
     #[inline]
-    pub(super) fn of_corner(corner: &Flying, ball: f64, (n, q): (&Vec3, &Vec3)) -> Self {
+    pub(super) fn of_corner(corner: &PointMotion, ball: f64, (n, q): (&Vec3, &Vec3)) -> Self {
         Self {
-            now_m: n.dot(&(corner.p - q)) - ball,
-            parting_m_s: n.dot(&corner.velocity),
-            second: n.dot(&corner.acceleration),
-            bend: corner.bend,
-            third: corner.jerk,
-            holds_s: f64::INFINITY,
+            gap_m: n.dot(&(corner.p - q)) - ball,
+            opening_m_s: n.dot(&corner.velocity),
+            second_m_s2: n.dot(&corner.acceleration),
+            max_acceleration: corner.max_acceleration,
+            max_third_m_s3: corner.max_jerk,
+            valid_s: f64::INFINITY,
         }
     }
 
-    /// Of two edges, as far as `most` (s): the distance of the endless lines along an edge of the block between two corners and along one of
-    /// the mesh from `e` (m) with a unit direction, less the radius of the ball (m) along the first. `None` where they are nearly parallel.
+    /// Of two edges, for at most `most` (s): the distance of the infinite lines along the block's
+    /// edge between two corners and along the mesh's edge from `e` (m) with a unit direction, less
+    /// the radius of the block's corner balls (m). `None` if they are nearly parallel.
     ///
-    /// With `u` along the block's edge, `w` along the mesh's, `x = a − e` and `N = |u × w|` it is `x·(u × w)/N − r`; `x·(u × w) − r N` over the present
-    /// `N` is followed, as `u` turns and `a` moves: nought when that is. `N = √(u² − z²)` with `z = u·w` curves upwards by no more than `|z z''|/N`. What a bound
-    /// by a plane takes for an approach, that one end of an edge comes nearer as it turns about where it touches, is none here.
+    /// With `u` along the block's edge, `w` along the mesh's, `x = a − e` and `N = |u × w|` the gap
+    /// is `x·(u × w)/N − r`. As `u` rotates and `a` moves, `x·(u × w) − r N` over the present `N`
+    /// is followed, which is zero when the gap is. `N = √(u² − z²)` with `z = u·w` has an upward
+    /// curvature of at most `|z z''|/N`. When an edge rotates about its contact, one of its ends
+    /// approaches the plane through it, so the bound by a plane finds an approach; this one does
+    /// not.
     pub(super) fn of_lines(
-        [a, b]: &[Flying; 2],
+        [a, b]: &[PointMotion; 2],
         ball: f64,
         (e, w): (&Vec3, &Vec3),
-        (bends, most): (&Bends, f64),
+        (bounds, most): (&PointBounds, f64),
     ) -> Option<Self> {
         let (u, u1, u2) = (b.p - a.p, b.velocity - a.velocity, b.acceleration - a.acceleration);
         let (length, z, z1, x) = (u.norm(), u.dot(w), u1.dot(w), a.p - e);
-        let (spin, turned) = (bends.spin, length * bends.bend);
-        // how long the edges are surely not parallel
-        let holds_s = ((PARALLEL * length - z.abs()) / (spin * length)).min(most);
-        if holds_s <= 0.0 {
+        let (spin, turned) = (bounds.velocity, length * bounds.acceleration);
+        // how long the edges are certainly not parallel
+        let valid_s = ((MAX_PARALLEL_COSINE * length - z.abs()) / (spin * length)).min(most);
+        if valid_s <= 0.0 {
             return None;
         }
-        let widest = z.abs() + spin * length * holds_s;
+        let widest = z.abs() + spin * length * valid_s;
         let (n, least_n) =
             ((length * length - z * z).sqrt(), (length * length - widest * widest).sqrt());
         let across = u.cross(w);
@@ -110,84 +118,93 @@ impl Clearance {
             a.velocity.dot(&across) + x.dot(&across1),
             a.acceleration.dot(&across) + 2.0 * a.velocity.dot(&across1) + x.dot(&across2),
         ];
-        // bounds on |a'|, on what of x is square to w, and by the product rule on the third derivative of the numerator
-        let fastest = a.velocity.norm() + a.bend * holds_s;
-        let aside = (x - w * w.dot(&x)).norm() + fastest * holds_s;
-        let third = a.jerk * length
-            + 3.0 * a.bend * spin * length
+        // bounds on |a'|, on the part of x normal to w, and by the product rule on the third
+        // derivative of the numerator
+        let fastest = a.velocity.norm() + a.max_acceleration * valid_s;
+        let aside = (x - w * w.dot(&x)).norm() + fastest * valid_s;
+        let third = a.max_jerk * length
+            + 3.0 * a.max_acceleration * spin * length
             + 3.0 * fastest * turned
-            + aside * length * bends.jerk;
+            + aside * length * bounds.jerk;
         Some(Self {
-            now_m: volume[0] * side - ball,
-            parting_m_s: volume[1] * side + ball * z * z1 / (n * n),
-            second: volume[2] * side - ball * widest * turned / (least_n * n),
-            bend: f64::INFINITY,
-            third: third / n,
-            holds_s,
+            gap_m: volume[0] * side - ball,
+            opening_m_s: volume[1] * side + ball * z * z1 / (n * n),
+            second_m_s2: volume[2] * side - ball * widest * turned / (least_n * n),
+            max_acceleration: f64::INFINITY,
+            max_third_m_s3: third / n,
+            valid_s,
         })
     }
 
-    /// Of a point (m) of the mesh and a plane that is fixed to a block, which flies like `centre`, as far as `most` (s); the ball (m) lies on
-    /// the plane. The plane is turned as `turn` turns its vectors, and their rates.
+    /// Of a point of the mesh (m) and a plane fixed to a block that moves like `centre`, for at
+    /// most `most` (s); the rounded surface is `ball` (m) outside the plane. `turn` rotates vectors
+    /// of the block, and gives their rates.
     ///
     /// `δ = m·(p − c) − h − r` with the plane's unit normal `m` and its height `h` over the centre.
     pub(super) fn of_own_plane(
         ((normal, level), ball): ((&Vec3, f64), f64),
         point: &Vec3,
-        (centre, turn): (&Flying, impl Fn(&Vec3) -> [Vec3; 3]),
-        (bends, most): (&Bends, f64),
+        (centre, turn): (&PointMotion, impl Fn(&Vec3) -> [Vec3; 3]),
+        (bounds, most): (&PointBounds, f64),
     ) -> Self {
         let ([m, m1, m2], off) = (turn(normal), point - centre.p);
-        let fastest = centre.velocity.norm() + centre.bend * most;
-        let third = bends.jerk * (off.norm() + fastest * most)
-            + 3.0 * (bends.bend * fastest + bends.spin * centre.bend);
+        let fastest = centre.velocity.norm() + centre.max_acceleration * most;
+        let third = bounds.jerk * (off.norm() + fastest * most)
+            + 3.0 * (bounds.acceleration * fastest + bounds.velocity * centre.max_acceleration);
         Self {
-            now_m: m.dot(&off) - level - ball,
-            parting_m_s: m1.dot(&off) - m.dot(&centre.velocity),
-            second: m2.dot(&off) - 2.0 * m1.dot(&centre.velocity) - m.dot(&centre.acceleration),
-            bend: f64::INFINITY,
-            third,
-            holds_s: most,
+            gap_m: m.dot(&off) - level - ball,
+            opening_m_s: m1.dot(&off) - m.dot(&centre.velocity),
+            second_m_s2: m2.dot(&off)
+                - 2.0 * m1.dot(&centre.velocity)
+                - m.dot(&centre.acceleration),
+            max_acceleration: f64::INFINITY,
+            max_third_m_s3: third,
+            valid_s: most,
         }
     }
 
-    /// What it is after `t` (s) at least (m).
+    /// Lower bound of the gap after `t` (s) (m).
     #[cfg(test)]
     pub(super) fn at_least_m(&self, t: f64) -> f64 {
-        self.now_m + t * (self.parting_m_s + t * (0.5 * self.second - t * self.third / 6.0))
+        self.gap_m
+            + t * (self.opening_m_s + t * (0.5 * self.second_m_s2 - t * self.max_third_m_s3 / 6.0))
     }
 
-    /// `B` for so long a time (s): `J τ³/6 ≤ (J T/3) τ²/2` for `τ ≤ T`.
+    /// `B` for times up to `most` (s): `J τ³/6 ≤ (J T/3) τ²/2` for `τ ≤ T`.
     #[inline]
-    fn bend_within(&self, most: f64) -> f64 {
-        self.bend.min(self.third * most / 3.0 - self.second)
+    fn max_acceleration_within(&self, most: f64) -> f64 {
+        self.max_acceleration.min(self.max_third_m_s3 * most / 3.0 - self.second_m_s2)
     }
 
-    /// Whether it surely stays open for `most` (s), more than `touching` (m): as [`Clearance::open_s`], without a root.
+    /// Whether the gap certainly stays above `touching` (m) for `most` (s): as
+    /// [`Clearance::open_time_s`], without a root.
     #[inline]
     pub(super) fn stays_open(&self, touching: f64, most: f64) -> bool {
-        let bent = 0.5 * self.bend_within(most).max(0.0) * most;
-        let rounding = CAUTION * (self.parting_m_s.abs() + bent);
-        self.now_m > touching && self.now_m >= most * (bent - self.parting_m_s + rounding)
+        let bent = 0.5 * self.max_acceleration_within(most).max(0.0) * most;
+        let rounding = ROUNDING_MARGIN * (self.opening_m_s.abs() + bent);
+        self.gap_m > touching && self.gap_m >= most * (bent - self.opening_m_s + rounding)
     }
 
-    /// How long it surely stays open (s), no longer than `most`; not at all where it is no more than `touching` (m) and becomes less.
+    /// How long the gap certainly stays open (s), at most `most`; 0 if it is no larger than
+    /// `touching` (m) and decreasing.
     ///
-    /// A bound for a shorter time is a better one: the longest time is sought for which what is known within it reaches through it.
-    pub(super) fn open_s(&self, touching: f64, most: f64) -> f64 {
-        // only an approach touches: what has just left lies within the same gap and must be free to go
-        if self.parting_m_s < 0.0 && self.now_m <= touching {
+    /// A bound for a shorter time is a better one: the search is for the longest time whose own
+    /// bound covers it.
+    pub(super) fn open_time_s(&self, touching: f64, most: f64) -> f64 {
+        // only an approach touches: a part that has just separated lies within the same gap and
+        // must be free to move away
+        if self.opening_m_s < 0.0 && self.gap_m <= touching {
             return 0.0;
         }
-        let asked = (self.now_m.max(0.0), -self.parting_m_s);
-        let within = |most: f64| apart_s(asked, self.bend_within(most)).min(most);
-        let mut fails = most.min(self.holds_s);
+        let asked = (self.gap_m.max(0.0), -self.opening_m_s);
+        let within = |most: f64| safe_time_s(asked, self.max_acceleration_within(most)).min(most);
+        let mut fails = most.min(self.valid_s);
         let mut safe = within(fails);
         if safe >= fails {
             return safe;
         }
-        for _ in 0..LOOKS {
-            if safe >= NEAR_ENOUGH * fails {
+        for _ in 0..SEARCH_STEPS {
+            if safe >= GOOD_ENOUGH * fails {
                 break;
             }
             let middle = (safe * fails).sqrt();

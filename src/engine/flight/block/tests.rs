@@ -13,7 +13,7 @@ use parry3d_f64::query::distance;
 use parry3d_f64::shape::{ConvexPolyhedron, Triangle};
 use std::path::Path;
 
-/// Random flights of the test; `ROCKFALL_FLIGHTS` asks for more.
+/// Random flights of the test; `ROCKFALL_FLIGHTS` sets another number.
 const FLIGHTS: usize = 1500;
 
 fn even(chance: &mut RandomStream, low: f64, high: f64) -> f64 {
@@ -56,26 +56,28 @@ fn blocks() -> Vec<Block> {
     shapes.iter().map(|shape| Block::new(shape, &rock)).collect()
 }
 
-/// Distance between block and mesh by another program (GJK): all triangles against the hull of the corners as they stand.
-fn gap_m(terrain: &Terrain, tumble: &Tumble, t: f64) -> f64 {
-    let pose = tumble.pose(t);
+/// Distance between block and mesh by another program (GJK): all triangles against the hull of the
+/// corners at that time.
+fn gap_m(terrain: &Terrain, flight: &BlockFlight, t: f64) -> f64 {
+    let pose = flight.pose(t);
     let into = |p: &Vec3| Vector::new(p.x, p.y, p.z);
     let corners: Vec<Vector> =
-        tumble.block.core.corners.iter().map(|own| into(&pose.point(own))).collect();
+        flight.block.core.corners.iter().map(|own| into(&pose.point(own))).collect();
     let hull = ConvexPolyhedron::from_convex_hull(&corners).unwrap();
     let place = Place::default();
     let mut nearest = f64::INFINITY;
-    terrain.index.near(&pose.centre, tumble.block.bound_m + 0.1, |start, count| {
+    terrain.index.near(&pose.centre, flight.block.bound_m + 0.1, |start, count| {
         for t in start..start + count {
             let [a, b, c] = terrain.corners_m(t).map(|p| into(&p));
             let found = distance(&place, &hull, &place, &Triangle::new(a, b, c)).unwrap();
             nearest = nearest.min(found.distance);
         }
     });
-    nearest - tumble.block.ball_m
+    nearest - flight.block.ball_m
 }
 
-/// Random tumbling flights over peaks and ridges: nothing is touched before the time that is found, and then it is.
+/// Random tumbling flights over peaks and ridges: nothing is touched before the time found, and at
+/// that time there is a contact.
 #[test]
 fn no_touch_is_missed() {
     let (terrain, blocks) = (rough(), blocks());
@@ -94,27 +96,27 @@ fn no_touch_is_missed() {
         let attitude = turn(&Unit::new_normalize(axis), 3.0 * axis.x);
         let path = Parabola { start, velocity, gravity: 9.81, radius: block.bound_m };
         let top = Top::new(block.inertia_kg_m2, attitude, own);
-        let tumble = Tumble { block, top, path };
+        let flight = BlockFlight { block, top, path };
         let ends =
-            match first_touch(&terrain, &tumble, 5.0, (&mut near, &mut WindowScratch::default())) {
+            match first_touch(&terrain, &flight, 5.0, (&mut near, &mut WindowScratch::default())) {
                 FlightEnd::Touch(t) => {
                     touched += 1;
-                    worst = worst.max(gap_m(&terrain, &tumble, t).abs());
+                    worst = worst.max(gap_m(&terrain, &flight, t).abs());
                     t
                 }
                 FlightEnd::Leaves(t) => t,
                 FlightEnd::Flies => 5.0,
             };
         let is_inside =
-            |k: u32| gap_m(&terrain, &tumble, ends * (f64::from(k) + 0.5) / 60.0) < -1e-6;
+            |k: u32| gap_m(&terrain, &flight, ends * (f64::from(k) + 0.5) / 60.0) < -1e-6;
         missed += usize::from((0..60).any(is_inside));
     }
     assert!(touched > FLIGHTS / 2, "{touched}");
     assert!(missed == 0 && worst < 1e-6, "{missed} missed, {worst:e} m off at a touch");
 }
 
-/// By how much the line through two points is further off the one through `e` along a unit vector `w` than `ball`, times the size of `u × w`,
-/// and that.
+/// Distance of two lines less `ball`, times the size of `u × w`, and that size: one line through
+/// two points, the other through `e` along a unit vector `w`.
 fn between_lines([a, b]: [Vec3; 2], (e, w): (&Vec3, &Vec3), ball: f64) -> (f64, f64) {
     let across = (b - a).cross(w);
     ((a - e).dot(&across).abs() - ball * across.norm(), across.norm())
@@ -123,24 +125,25 @@ fn between_lines([a, b]: [Vec3; 2], (e, w): (&Vec3, &Vec3), ball: f64) -> (f64, 
 /// The search of a window of 1 s at its start.
 fn search<'a>(
     (terrain, ahead): (&'a Terrain, &'a FeaturesAhead),
-    tumble: &'a Tumble<'a>,
-    (corners, tested): (&'a mut FlyingCorners, &'a mut u64),
+    flight: &'a BlockFlight<'a>,
+    (corners, tested): (&'a mut CornerMotions, &'a mut u64),
 ) -> WindowSearch<'a> {
-    corners.begin(tumble.block.core.corners.len());
-    let (bends, moment) = (tumble.top.bends(), tumble.moment(0.0, 1.0, &mut None));
-    WindowSearch { terrain, tumble, ahead, bends, moment, corners, tested }
+    corners.begin(flight.block.core.corners.len());
+    let (bounds, state) = (flight.top.point_bounds(), flight.state(0.0, 1.0, &mut None));
+    WindowSearch { terrain, flight, ahead, bounds, state, corners, tested }
 }
 
-/// What lies ahead of a block in a window of 1 s, among all that is near.
-fn near_ahead(terrain: &Terrain, tumble: &Tumble) -> FeaturesAhead {
-    let (block, mut near) = (tumble.block, Neighbours::default());
-    near.collect(terrain, &tumble.path.start, block.ball_m, 3.0 * block.bound_m, block.ball_m);
+/// The features ahead of a block in a window of 1 s, among all that are near.
+fn features_ahead(terrain: &Terrain, flight: &BlockFlight) -> FeaturesAhead {
+    let (block, mut near) = (flight.block, Neighbours::default());
+    near.collect(terrain, &flight.path.start, block.ball_m, 3.0 * block.bound_m, block.ball_m);
     let mut ahead = FeaturesAhead::default();
-    ahead.look(terrain, tumble, &mut near, (0.0, 1.0));
+    ahead.collect(terrain, flight, &mut near, (0.0, 1.0));
     ahead
 }
 
-/// Gaps of edges and of faces are nowhere less than their bounds say, and these are near to them over short times.
+/// Gaps of edges and of faces are nowhere less than their bounds, and these are close to them over
+/// short times.
 #[test]
 fn gaps_are_no_less_than_their_bounds() {
     let (terrain, blocks) = (rough(), blocks());
@@ -155,30 +158,31 @@ fn gaps_are_no_less_than_their_bounds() {
         let (start, velocity) = (vector(1.0), vector(8.0));
         let path = Parabola { start, velocity, gravity: 9.81, radius: block.bound_m };
         let top = Top::new(block.inertia_kg_m2, attitude, own);
-        let tumble = Tumble { block, top, path };
-        let (bends, mut corners, mut tested) = (tumble.top.bends(), FlyingCorners::default(), 0);
-        let mut search = search((&terrain, &ahead), &tumble, (&mut corners, &mut tested));
+        let flight = BlockFlight { block, top, path };
+        let (bounds, mut corners, mut tested) =
+            (flight.top.point_bounds(), CornerMotions::default(), 0);
+        let mut search = search((&terrain, &ahead), &flight, (&mut corners, &mut tested));
         let (e, w, point) = (vector(2.0), vector(1.0).normalize(), vector(3.0));
         let ridge = block.core.ridges[case % block.core.ridges.len()].ends.map(usize::from);
         let face = &block.core.faces[case % block.core.faces.len()];
-        let flying = ridge.map(|k| search.flying(k));
-        let of_lines = Clearance::of_lines(&flying, block.ball_m, (&e, &w), (&bends, most));
+        let flying = ridge.map(|k| search.corner_motion(k));
+        let of_lines = Clearance::of_lines(&flying, block.ball_m, (&e, &w), (&bounds, most));
         let turned = |own: &Vec3| search.turned(own);
         let moving = (&search.centre(), turned);
         let plane = ((&face.normal, face.level), block.ball_m);
-        let of_face = Clearance::of_own_plane(plane, &point, moving, (&bends, most));
+        let of_face = Clearance::of_own_plane(plane, &point, moving, (&bounds, most));
         let size = between_lines(flying.map(|end| end.p), (&e, &w), 0.0).1;
         for share in [0.01, 0.1, 0.4, 0.7, 1.0] {
-            let pose = tumble.pose(share * most);
+            let pose = flight.pose(share * most);
             let height = (pose.attitude * face.normal).dot(&(point - pose.centre)) - face.level;
             assert!(of_face.at_least_m(share * most) <= height - block.ball_m + 1e-9);
             let Some(gap) = of_lines else { continue };
-            let t = share * gap.holds_s;
-            let pose = tumble.pose(t);
+            let t = share * gap.valid_s;
+            let pose = flight.pose(t);
             let ends = ridge.map(|k| pose.point(&block.core.corners[k]));
             let now = between_lines(ends, (&e, &w), block.ball_m).0 / size;
             // only where the lines have not met before
-            if gap.open_s(1e-9, gap.holds_s) >= t {
+            if gap.open_time_s(1e-9, gap.valid_s) >= t {
                 kept += 1;
                 assert!(gap.at_least_m(t) <= now + 1e-9, "{case}: {share} {now} {t} {gap:?}");
                 worst = worst.max(if share < 0.1 { now - gap.at_least_m(t) } else { 0.0 });
@@ -189,7 +193,8 @@ fn gaps_are_no_less_than_their_bounds() {
     assert!(kept > 1000 && worst < 1e-5, "{kept} {worst:e}");
 }
 
-/// The ball of a corner that flies beside a sheet reaches through the sheet's plane, and comes to its border however that plane is left.
+/// The ball of a corner that flies beside a sheet reaches through the sheet's plane, and touches
+/// its border however it leaves that plane.
 #[test]
 fn a_corner_beside_a_sheet_comes_to_its_border() {
     let sheet = [(0.0, -5.0), (0.0, 5.0), (-8.0, 0.0)].map(|(x, y)| Vec3::new(x, y, 0.0));
@@ -200,23 +205,24 @@ fn a_corner_beside_a_sheet_comes_to_its_border() {
     let velocity = Vec3::new(-1.0, 0.0, 0.01);
     let path = Parabola { start, velocity, gravity: 0.0, radius: block.bound_m };
     let top = Top::new(block.inertia_kg_m2, Rotation3::identity(), Vec3::zeros());
-    let tumble = Tumble { block, top, path };
-    let ahead = near_ahead(&terrain, &tumble);
+    let flight = BlockFlight { block, top, path };
+    let ahead = features_ahead(&terrain, &flight);
     let (mut corners, mut tested) = Default::default();
-    let mut search = search((&terrain, &ahead), &tumble, (&mut corners, &mut tested));
+    let mut search = search((&terrain, &ahead), &flight, (&mut corners, &mut tested));
     let step = search.safe_step(BlockPart::Corner(0), 1.0);
     assert!(step > 0.0 && step < 2.0 * block.ball_m, "{step} {}", block.ball_m);
 }
 
-/// What turns low over level ground, and weighs nothing, never touches it: neither does it where times are rounded.
+/// A weightless block that rotates low over level ground never touches it, also where times are
+/// rounded.
 #[test]
 fn what_rounding_leaves_of_a_window_is_no_touch() {
     let [a, b, c, d] =
         [(-1e3, -1e3), (1e3, -1e3), (1e3, 1e3), (-1e3, 1e3)].map(|(x, y)| Vec3::new(x, y, 0.0));
     let (terrain, blocks) = (made(vec![[a, b, c], [a, c, d]]), blocks());
     let (mut near, mut scratch) = (Neighbours::default(), WindowScratch::default());
-    for flight in 0..3000 {
-        let mut chance = stream(19, Purpose::Start, flight);
+    for index in 0..3000 {
+        let mut chance = stream(19, Purpose::Start, index);
         let block = &blocks[0];
         let [speed, spin, height] =
             [(1.0, 4.0), (1.0, 6.0), (0.01, 0.2)].map(|(low, high)| even(&mut chance, low, high));
@@ -225,15 +231,16 @@ fn what_rounding_leaves_of_a_window_is_no_touch() {
         let path = Parabola { start, velocity, gravity: 0.0, radius: block.bound_m };
         let momentum = Vec3::z() * (spin * block.inertia_kg_m2[2]);
         let top = Top::new(block.inertia_kg_m2, Rotation3::identity(), momentum);
-        let tumble = Tumble { block, top, path };
+        let flight = BlockFlight { block, top, path };
         near.forget();
-        let end = first_touch(&terrain, &tumble, 3.0, (&mut near, &mut scratch));
-        assert_eq!(end, FlightEnd::Flies, "{flight}");
+        let end = first_touch(&terrain, &flight, 3.0, (&mut near, &mut scratch));
+        assert_eq!(end, FlightEnd::Flies, "{index}");
     }
 }
 
-/// A block that turns about a peak under one of its edges, a hair's breadth off it, does not come nearer: nor do the ends of the edge, one of
-/// which moves towards a plane through the peak that stands still, say that it soon may.
+/// A block that rotates about a peak just below one of its edges does not approach it. The ends of
+/// the edge must not report an approach either, though one of them moves towards a plane through
+/// the peak that is fixed to the terrain.
 #[test]
 fn a_block_that_turns_about_a_peak_keeps_off_it() {
     let peak = Vec3::zeros();
@@ -262,10 +269,10 @@ fn a_block_that_turns_about_a_peak_keeps_off_it() {
     let inertia = Vec3::from(block.inertia_kg_m2);
     let momentum = attitude * inertia.component_mul(&(attitude.inverse() * spin));
     let top = Top::new(block.inertia_kg_m2, attitude, momentum);
-    let tumble = Tumble { block, top, path };
-    let ahead = near_ahead(&terrain, &tumble);
+    let flight = BlockFlight { block, top, path };
+    let ahead = features_ahead(&terrain, &flight);
     let (mut corners, mut tested) = Default::default();
-    let mut search = search((&terrain, &ahead), &tumble, (&mut corners, &mut tested));
+    let mut search = search((&terrain, &ahead), &flight, (&mut corners, &mut tested));
     assert!(!search.ahead.edges.is_empty());
     let step = search.safe_step(BlockPart::Ridge(edge), 1.0);
     assert!(step > 1e-5, "{step:e}");

@@ -1,101 +1,103 @@
-//! How long the parts of a block surely keep off what is near it.
+//! How long the parts of a block certainly stay clear of the near features.
 
 use super::ahead::{FeatureAhead, FeaturesAhead, TriangleAhead};
-use super::clearance::{Clearance, Flying};
-use super::{Bends, BlockPart, CAUTION, Moment, TOUCHING, Tumble};
+use super::clearance::{Clearance, PointMotion};
+use super::{BlockFlight, BlockPart, FlightState, PointBounds, ROUNDING_MARGIN, TOUCHING};
 use crate::body::HullFace;
 use crate::contact::closest::closest_on;
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
 
-/// A time is short that is less than this share of the one asked for (–): a block that hangs on a peak or an edge by a hair's breadth would
-/// be followed in ever so many of them.
-const LITTLE: f64 = 0.01;
+/// A safe time below this share of the one asked for is short (–) and is improved: a block that
+/// hangs over a vertex or an edge by a hair would otherwise need very many of them.
+const SHORT_SHARE: f64 = 0.01;
 
-/// The search of a window at one moment.
+/// The search of a window, at one state of the flight.
 pub(super) struct WindowSearch<'a> {
     pub(super) terrain: &'a Terrain,
-    pub(super) tumble: &'a Tumble<'a>,
+    pub(super) flight: &'a BlockFlight<'a>,
     pub(super) ahead: &'a FeaturesAhead,
-    pub(super) bends: Bends,
-    pub(super) moment: Moment,
-    pub(super) corners: &'a mut FlyingCorners,
+    pub(super) bounds: PointBounds,
+    pub(super) state: FlightState,
+    pub(super) corners: &'a mut CornerMotions,
     /// Triangles tested so far.
     pub(super) tested: &'a mut u64,
 }
 
-/// The corners of a block in flight, worked out once a moment for all parts that ask for them.
+/// The motions of a block's corners, computed once per time for all parts that need them.
 #[derive(Debug, Default)]
-pub(super) struct FlyingCorners {
-    /// Each corner at the time (s) at which it was last asked for.
-    known: Vec<(f64, Flying)>,
-    /// Those of a face.
-    of_face: Vec<Flying>,
+pub(super) struct CornerMotions {
+    /// For each corner the time (s) of its last evaluation and its motion then.
+    known: Vec<(f64, PointMotion)>,
+    /// Work space: the corners of one face.
+    of_face: Vec<PointMotion>,
 }
 
-impl FlyingCorners {
-    /// Begins another flight, of a block with so many corners.
+impl CornerMotions {
+    /// Prepares for another flight, of a block with `count` corners.
     pub(super) fn begin(&mut self, count: usize) {
         self.known.clear();
-        self.known.resize(count, (f64::NAN, Flying::NONE));
+        self.known.resize(count, (f64::NAN, PointMotion::NONE));
     }
 }
 
 impl WindowSearch<'_> {
-    /// A vector of the block's frame in that of the terrain, with its first and second rate.
+    /// A vector of the block's frame in that of the terrain, with its first and second time
+    /// derivatives.
     pub(super) fn turned(&self, own: &Vec3) -> [Vec3; 3] {
-        let Moment { pose, spin, angular, .. } = &self.moment;
+        let FlightState { pose, spin, angular, .. } = &self.state;
         let arm = pose.attitude * own;
         let turning = spin.cross(&arm);
         [arm, turning, angular.cross(&arm) + spin.cross(&turning)]
     }
 
-    /// The block's centre.
-    pub(super) fn centre(&self) -> Flying {
-        let (path, Moment { pose, velocity, .. }) = (&self.tumble.path, &self.moment);
+    /// Motion of the block's centre.
+    pub(super) fn centre(&self) -> PointMotion {
+        let (path, FlightState { pose, velocity, .. }) = (&self.flight.path, &self.state);
         let acceleration = Vec3::new(0.0, 0.0, -path.gravity);
         let (p, velocity) = (pose.centre, *velocity);
-        Flying { p, velocity, acceleration, bend: path.gravity, jerk: 0.0 }
+        PointMotion { p, velocity, acceleration, max_acceleration: path.gravity, max_jerk: 0.0 }
     }
 
-    pub(super) fn flying(&mut self, k: usize) -> Flying {
+    pub(super) fn corner_motion(&mut self, k: usize) -> PointMotion {
         let known = self.corners.known[k];
-        if known.0.to_bits() == self.moment.time_s.to_bits() {
+        if known.0.to_bits() == self.state.time_s.to_bits() {
             return known.1;
         }
-        let own = &self.tumble.block.core.corners[k];
+        let own = &self.flight.block.core.corners[k];
         let ([arm, turning, bending], far, centre) = (self.turned(own), own.norm(), self.centre());
-        let flying = Flying {
+        let motion = PointMotion {
             p: centre.p + arm,
             velocity: centre.velocity + turning,
             acceleration: centre.acceleration + bending,
-            bend: centre.bend + far * self.bends.bend,
-            jerk: far * self.bends.jerk,
+            max_acceleration: centre.max_acceleration + far * self.bounds.acceleration,
+            max_jerk: far * self.bounds.jerk,
         };
-        self.corners.known[k] = (self.moment.time_s, flying);
-        flying
+        self.corners.known[k] = (self.state.time_s, motion);
+        motion
     }
 
-    /// Whether nothing of the block meets a feature, and what is listed behind it, within `least` (s).
+    /// Whether no part of the block touches a feature, and those listed after it, within `least`
+    /// (s).
     #[inline]
     fn is_later<T>(&self, ahead: &FeatureAhead<T>, least: f64) -> bool {
-        ahead.from_s >= self.moment.time_s + least
+        ahead.from_s >= self.state.time_s + least
     }
 
     /// A gap that counts as touching (m).
     fn touching(&self) -> f64 {
-        TOUCHING * self.tumble.block.radius_m
+        TOUCHING * self.flight.block.radius_m
     }
 
-    /// How long all these corners surely keep off a plane (s), no longer than `most`.
-    fn off_plane(&self, corners: &[Flying], plane: (&Vec3, &Vec3), most: f64) -> f64 {
-        let (ball, touching) = (self.tumble.block.ball_m, self.touching());
+    /// How long all these corners certainly stay on their side of a plane (s), at most `most`.
+    fn off_plane(&self, corners: &[PointMotion], plane: (&Vec3, &Vec3), most: f64) -> f64 {
+        let (ball, touching) = (self.flight.block.ball_m, self.touching());
         corners.iter().fold(most, |least, corner| {
-            Clearance::of_corner(corner, ball, plane).open_s(touching, least)
+            Clearance::of_corner(corner, ball, plane).open_time_s(touching, least)
         })
     }
 
-    /// How long a part surely touches nothing (s), no longer than `most`.
+    /// How long a part certainly touches nothing (s), at most `most`.
     pub(super) fn safe_step(&mut self, part: BlockPart, most: f64) -> f64 {
         match part {
             BlockPart::Corner(k) => self.of_corner(k, most),
@@ -104,17 +106,18 @@ impl WindowSearch<'_> {
         }
     }
 
-    /// The longer of two times (s) for which a part keeps off a feature: one that is known, and what a gap that is never wider than theirs tells.
+    /// The longer of two times (s) for which a part stays clear of a feature: a known one, and that
+    /// of a gap which is never larger than theirs.
     fn open_at_least(&self, known_s: f64, gap: Option<Clearance>, most: f64) -> f64 {
         let touching = self.touching();
-        // lines and planes may meet where edges and faces do not: that tells nothing
-        let gap = gap.filter(|gap| gap.now_m >= -touching);
-        gap.map_or(known_s, |gap| gap.open_s(touching, most).max(known_s))
+        // lines and planes may intersect where edges and faces do not: that proves nothing
+        let gap = gap.filter(|gap| gap.gap_m >= -touching);
+        gap.map_or(known_s, |gap| gap.open_time_s(touching, most).max(known_s))
     }
 
     fn of_corner(&mut self, k: usize, mut least: f64) -> f64 {
-        let corner = self.flying(k);
-        let (ball, touching) = (self.tumble.block.ball_m, self.touching());
+        let corner = self.corner_motion(k);
+        let (ball, touching) = (self.flight.block.ball_m, self.touching());
         for ahead in &self.ahead.triangles {
             if self.is_later(ahead, least) {
                 break;
@@ -122,44 +125,47 @@ impl WindowSearch<'_> {
             *self.tested += 1;
             let TriangleAhead { id, a, n } = &ahead.feature;
             let side = if n.dot(&(corner.p - a)) < 0.0 { -n } else { *n };
-            // the plane is never farther than the triangle; one that the ball reaches through beside it tells nothing
+            // the plane is never farther than the triangle; if the ball reaches through the plane
+            // beside the triangle, that proves nothing
             let gap = Clearance::of_corner(&corner, ball, (&side, a));
             if gap.stays_open(touching, least) || self.open_at_least(0.0, Some(gap), least) >= least
             {
                 continue;
             }
-            // the true distance of a convex set is never less than that of its own supporting plane
-            // at the nearest point
+            // the distance from a convex set is never less than that from its supporting plane at
+            // the nearest point
             let q = closest_on(&self.terrain.corners_m(*id), &corner.p);
-            // a corner exactly on the triangle has no direction: the plane's normal on its side
-            // stands in
+            // a corner exactly on the triangle has no direction: the plane's normal on its side is
+            // used instead
             let n = (corner.p - q).try_normalize(0.0).unwrap_or(side);
-            least = Clearance::of_corner(&corner, ball, (&n, &q)).open_s(touching, least);
+            least = Clearance::of_corner(&corner, ball, (&n, &q)).open_time_s(touching, least);
         }
         least
     }
 
-    /// The gap of a point of the mesh from a plane of the block with a normal and a level (m), as far as `most` (s).
+    /// The gap between a point of the mesh and a plane of the block with a normal and a level (m),
+    /// for at most `most` (s).
     fn to_own_plane(&self, plane: (&Vec3, f64), point: &Vec3, most: f64) -> Clearance {
         let moving = (&self.centre(), |own: &Vec3| self.turned(own));
-        let ball = self.tumble.block.ball_m;
-        Clearance::of_own_plane((plane, ball), point, moving, (&self.bends, most))
+        let ball = self.flight.block.ball_m;
+        Clearance::of_own_plane((plane, ball), point, moving, (&self.bounds, most))
     }
 
-    /// How long some corners, with all between them, surely keep off points of the mesh and all between those (s), no longer than `most`:
-    /// asked where little is `known_s`. The plane square to `n`, from the block to them, is fixed to the block here: one that turns about where
-    /// it touches does not come nearer, while its corners come nearer to a plane of the terrain.
+    /// How long the hull of some corners certainly stays clear of the hull of points of the mesh
+    /// (s), at most `most`; evaluated only if `known_s` is short. The plane normal to `n`, from the
+    /// block to the points, is fixed to the block here. A block that rotates about its contact does
+    /// not approach in this measure, while its corners do approach a plane fixed to the terrain.
     fn off_own_plane(
         &self,
         corners: &[u8],
         (n, points): (&Vec3, &[Vec3]),
         (known_s, most): (f64, f64),
     ) -> f64 {
-        if known_s >= LITTLE * most {
+        if known_s >= SHORT_SHARE * most {
             return known_s;
         }
-        let own = self.moment.pose.attitude.inverse() * n;
-        let corner = |k: u8| &self.tumble.block.core.corners[usize::from(k)];
+        let own = self.state.pose.attitude.inverse() * n;
+        let corner = |k: u8| &self.flight.block.core.corners[usize::from(k)];
         let levels = corners.iter().map(|&k| own.dot(corner(k)));
         let level = levels.fold(f64::NEG_INFINITY, f64::max);
         let found_s = points.iter().fold(most, |least, point| {
@@ -168,89 +174,93 @@ impl WindowSearch<'_> {
         found_s.max(known_s)
     }
 
-    /// An edge of the block: with `n` from the nearest points of two segments, the plane square to
-    /// `n` keeps both apart, and the ridge stays on its side as long as both its ends do. Nor do the
-    /// edges meet before the endless lines along them do.
+    /// An edge of the block. With `n` from the nearest points of two segments, the plane normal to
+    /// `n` separates both, and the ridge stays on its side as long as both its ends do. Nor do the
+    /// edges touch before the infinite lines along them do.
     fn of_ridge(&mut self, k: usize, mut least: f64) -> f64 {
-        let ends = self.tumble.block.core.ridges[k].ends.map(|end| self.flying(usize::from(end)));
+        let ends =
+            self.flight.block.core.ridges[k].ends.map(|end| self.corner_motion(usize::from(end)));
         let [a, b] = ends;
         let (middle, half) = ((a.p + b.p) * 0.5, 0.5 * (b.p - a.p).norm());
-        let bend = a.bend.max(b.bend);
+        let max_acceleration = a.max_acceleration.max(b.max_acceleration);
         let fastest = a.velocity.norm().max(b.velocity.norm());
-        let ball = self.tumble.block.ball_m;
+        let ball = self.flight.block.ball_m;
         let around = half + ball;
         for ahead in &self.ahead.edges {
             if self.is_later(ahead, least) {
                 break;
             }
             // the edge's distance from the ridge's middle less half a ridge: a lower bound without
-            // the nearest points; far away whatever the directions
+            // the nearest points; distant edges are skipped whatever the directions
             let edge = &ahead.feature;
-            let far = (around + least * (fastest + 0.5 * bend * least)) * (1.0 + CAUTION);
+            let far = (around + least * (fastest + 0.5 * max_acceleration * least))
+                * (1.0 + ROUNDING_MARGIN);
             if (middle - edge.nearest_to(&middle)).norm_squared() > far * far {
                 continue;
             }
-            let end = edge.a + edge.way();
+            let end = edge.a + edge.vector();
             let (p, q) = nearest_of_segments((a.p, b.p), (edge.a, end));
             let Some(n) = (p - q).try_normalize(0.0) else { continue };
             let off_plane = self.off_plane(&ends, (&n, &q), least);
             if off_plane < least {
                 let line = (&edge.a, &edge.along);
-                let gap = Clearance::of_lines(&ends, ball, line, (&self.bends, least));
+                let gap = Clearance::of_lines(&ends, ball, line, (&self.bounds, least));
                 let known_s = self.open_at_least(off_plane, gap, least);
-                let own = &self.tumble.block.core.ridges[k].ends;
+                let own = &self.flight.block.core.ridges[k].ends;
                 least = self.off_own_plane(own, (&-n, &[edge.a, end]), (known_s, least));
             }
         }
         least
     }
 
-    /// A face of the block against a vertex of the mesh: nearest point over a fan of triangles,
-    /// then the bound for all corners of the face, or that of the vertex for the face's plane.
+    /// A face of the block against the vertices of the mesh: nearest point on a fan of triangles,
+    /// then the bound for all corners of the face, or that of the vertex against the face's plane.
     fn of_face(&mut self, k: usize, most: f64) -> f64 {
         let mut corners = std::mem::take(&mut self.corners.of_face);
         corners.clear();
-        let face = &self.tumble.block.core.faces[k];
-        corners.extend(face.corners.iter().map(|&k| self.flying(usize::from(k))));
+        let face = &self.flight.block.core.faces[k];
+        corners.extend(face.corners.iter().map(|&k| self.corner_motion(usize::from(k))));
         let least = self.of_fan(face, &corners, most);
         self.corners.of_face = corners;
         least
     }
 
-    fn of_fan(&self, face: &HullFace, corners: &[Flying], mut least: f64) -> f64 {
-        let most = |of: fn(&Flying) -> f64| corners.iter().map(of).fold(0.0, f64::max);
-        let (bend, fastest) = (most(|c| c.bend), most(|c| c.velocity.norm()));
+    fn of_fan(&self, face: &HullFace, corners: &[PointMotion], mut least: f64) -> f64 {
+        let most = |of: fn(&PointMotion) -> f64| corners.iter().map(of).fold(0.0, f64::max);
+        let (max_acceleration, fastest) =
+            (most(|c| c.max_acceleration), most(|c| c.velocity.norm()));
         let middle = corners.iter().map(|c| c.p).sum::<Vec3>() / corners.len() as f64;
         let around = corners.iter().map(|c| (c.p - middle).norm_squared()).fold(0.0, f64::max);
-        let skin = self.tumble.block.ball_m + TOUCHING * self.tumble.block.radius_m;
-        let around = around.sqrt() * (1.0 + CAUTION) + skin;
-        for ahead in &self.ahead.peaks {
+        let skin = self.flight.block.ball_m + TOUCHING * self.flight.block.radius_m;
+        let around = around.sqrt() * (1.0 + ROUNDING_MARGIN) + skin;
+        for ahead in &self.ahead.vertices {
             if self.is_later(ahead, least) {
                 break;
             }
-            let peak = &ahead.feature;
-            // far away: whatever the directions
-            let far = around + least * (fastest + 0.5 * bend * least) * (1.0 + CAUTION);
-            if (peak - middle).norm_squared() * (1.0 - CAUTION) > far * far {
+            let vertex = &ahead.feature;
+            // distant vertices are skipped whatever the directions
+            let far = around
+                + least * (fastest + 0.5 * max_acceleration * least) * (1.0 + ROUNDING_MARGIN);
+            if (vertex - middle).norm_squared() * (1.0 - ROUNDING_MARGIN) > far * far {
                 continue;
             }
             let nearest = (1..corners.len() - 1)
-                .map(|k| closest_on(&[corners[0].p, corners[k].p, corners[k + 1].p], peak))
-                .min_by(|a, b| (a - peak).norm_squared().total_cmp(&(b - peak).norm_squared()));
-            let Some(n) = nearest.and_then(|p| (p - peak).try_normalize(0.0)) else { continue };
-            let off_plane = self.off_plane(corners, (&n, peak), least);
+                .map(|k| closest_on(&[corners[0].p, corners[k].p, corners[k + 1].p], vertex))
+                .min_by(|a, b| (a - vertex).norm_squared().total_cmp(&(b - vertex).norm_squared()));
+            let Some(n) = nearest.and_then(|p| (p - vertex).try_normalize(0.0)) else { continue };
+            let off_plane = self.off_plane(corners, (&n, vertex), least);
             if off_plane < least {
-                let gap = self.to_own_plane((&face.normal, face.level), peak, least);
+                let gap = self.to_own_plane((&face.normal, face.level), vertex, least);
                 let known_s = self.open_at_least(off_plane, Some(gap), least);
-                least = self.off_own_plane(&face.corners, (&-n, &[*peak]), (known_s, least));
+                least = self.off_own_plane(&face.corners, (&-n, &[*vertex]), (known_s, least));
             }
         }
         least
     }
 }
 
-/// The nearest points of two segments (Ericson, Real-Time Collision Detection, 5.1.9).
-/// As `closest::segments_distance2`, but it tells the points: `n` is wanted, not only the distance.
+/// The nearest points of two segments (Ericson, Real-Time Collision Detection, 5.1.9). As
+/// `closest::segments_distance2`, but with the points, from which the direction `n` follows.
 fn nearest_of_segments((p1, q1): (Vec3, Vec3), (p2, q2): (Vec3, Vec3)) -> (Vec3, Vec3) {
     let (d1, d2, r) = (q1 - p1, q2 - p2, p1 - p2);
     let (a, e, f) = (d1.norm_squared(), d2.norm_squared(), d2.dot(&r));

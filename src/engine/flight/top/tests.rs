@@ -20,7 +20,8 @@ fn own_spin(top: &Top, t: f64) -> Vec3 {
     attitude.inverse_transform_vector(&top.spin(&attitude))
 }
 
-/// The two starts of Leine's box against 40 digits: near the middle axis (the flip of Dzhanibekov) and away from it.
+/// The two starts of Leine's box against 40 digits: near the middle axis (the flip of Dzhanibekov)
+/// and away from it.
 #[test]
 fn spin_after_twenty_seconds_has_its_digits() {
     let cases = [
@@ -44,7 +45,8 @@ fn spin_after_twenty_seconds_has_its_digits() {
     }
 }
 
-/// The classical Runge–Kutta method on attitude and constant momentum: another way to the same rotation.
+/// The classical Runge–Kutta method on attitude and constant momentum: another way to the same
+/// rotation.
 fn integrated(top: &Top, t: f64, steps: u32) -> Matrix3<f64> {
     let rate = |r: &Matrix3<f64>| {
         let w = top.spin(&Rotation3::from_matrix_unchecked(*r));
@@ -62,7 +64,8 @@ fn integrated(top: &Top, t: f64, steps: u32) -> Matrix3<f64> {
     r
 }
 
-/// Boxes, nearly symmetric and symmetric bodies, balls, spins near every axis, on both sides of the separatrix and on it.
+/// Boxes, nearly symmetric and symmetric bodies, balls, with spins near every axis, on both sides
+/// of the separatrix and on it.
 #[test]
 fn attitude_follows_the_equation_of_motion() {
     let scan = [0.83, 1.37, 1.71];
@@ -87,7 +90,8 @@ fn attitude_follows_the_equation_of_motion() {
     }
 }
 
-/// Momentum, energy and length of the axes stay to rounding; at time 0 the body is where it was.
+/// Momentum, energy and the length of the axes are conserved to rounding; at time 0 the body is
+/// where it was.
 #[test]
 fn what_is_conserved_stays() {
     for spin in [Vec3::new(1e-3, 10.0, 1e-3), Vec3::new(3.0, -4.0, 5.0)] {
@@ -104,7 +108,8 @@ fn what_is_conserved_stays() {
     }
 }
 
-/// A body set up to turn about its middle axis turns about it, whatever rounding its spin has, until that has grown e^λt-fold.
+/// A body set up to rotate about its middle axis does so, whatever the rounding of its spin, until
+/// that has grown e^λt-fold.
 #[test]
 fn spin_about_the_middle_axis_with_rounding_stays_steady() {
     for seed in 0..200_u32 {
@@ -130,33 +135,34 @@ fn a_wheel_keeps_its_axis() {
     }
 }
 
-/// The series of a short turn, as far as it reaches, about every axis: fine steps of Runge and Kutta to rounding, and the closed form to that of
-/// its own.
+/// The series of a short rotation, as long as it is valid, about every axis: it agrees with fine
+/// steps of Runge and Kutta to rounding, and with the closed form to the rounding of that form.
 #[test]
 fn a_short_turn_is_the_closed_form() {
     let mut worst = [0.0f64; 2];
     for spin in [[3.0, -4.0, 5.0], [1e-3, 10.0, 1e-3], [0.2, 0.1, -9.0], [7.0, 1e-9, 1e-3]] {
         for inertia in [BOX, [1.0, 40.0, 40.5]] {
             let top = top(inertia, Vec3::from(spin));
-            let short = top.short(top.start, 1e9).unwrap();
+            let series = top.series_at(top.start, 1e9).unwrap();
             for share in [1e-6, 0.1, 0.5, 1.0] {
-                let t = share * short.holds_s;
-                let found = short.attitude(t);
+                let t = share * series.valid_s;
+                let found = series.attitude(t);
                 worst[0] = worst[0].max((found.matrix() - integrated(&top, t, 128)).norm());
-                worst[1] = worst[1].max((found.matrix() - top.late(t).matrix()).norm());
+                worst[1] = worst[1].max((found.matrix() - top.by_closed_form(t).matrix()).norm());
             }
-            assert!(short.holds_s > 0.1 * 0.99 / (41.0 * Vec3::from(spin).norm()));
+            assert!(series.valid_s > 0.1 * 0.99 / (41.0 * Vec3::from(spin).norm()));
         }
     }
     println!("{worst:?}");
     // rounding of 128 steps
     assert!(worst[0] < 3e-14 && worst[1] < 1e-12, "{worst:?}");
     // closed forms without elliptic functions are cheap enough
-    assert!(top([1.0, 1.0, 2.0], Vec3::x()).short(Rotation3::identity(), 1.0).is_none());
-    assert!(top(BOX, Vec3::zeros()).short(Rotation3::identity(), 1.0).is_none());
+    assert!(top([1.0, 1.0, 2.0], Vec3::x()).series_at(Rotation3::identity(), 1.0).is_none());
+    assert!(top(BOX, Vec3::zeros()).series_at(Rotation3::identity(), 1.0).is_none());
 }
 
-/// No point of a body moves on a way that bends more than is said, and about a principal axis exactly so.
+/// The motion of no point of a body exceeds the bounds, and about a principal axis the bound on the
+/// acceleration is attained.
 #[test]
 fn bends_bound_the_ways_of_all_points() {
     let starts = [Vec3::new(3.0, -4.0, 5.0), Vec3::new(0.1, 6.0, 0.1), Vec3::new(0.0, 0.0, 5.0)];
@@ -166,15 +172,16 @@ fn bends_bound_the_ways_of_all_points() {
         for k in 0..400 {
             let attitude =
                 |steps: f64| top.attitude(0.01 * f64::from(k) + steps * h).matrix() * 1.0;
-            // central differences of the rotation: their norms are the largest of any point over its length
+            // central differences of the rotation: their norms are the largest of any point over
+            // its length
             let second = attitude(1.0) - attitude(0.0) * 2.0 + attitude(-1.0);
             let third = (attitude(0.5) - attitude(-0.5)) * 3.0 - (attitude(1.5) - attitude(-1.5));
             for (most, difference) in most.iter_mut().zip([second / (h * h), third / (h * h * h)]) {
                 *most = most.max(difference.svd(false, false).singular_values.max());
             }
         }
-        let bends = top.bends();
-        let shares = [most[0] / bends.bend, most[1] / bends.jerk];
+        let bounds = top.point_bounds();
+        let shares = [most[0] / bounds.acceleration, most[1] / bounds.jerk];
         let is_steady = start.x.abs() < f64::EPSILON;
         assert!(shares.iter().all(|share| *share <= 1.0 + 1e-5), "{shares:?}");
         let least = if is_steady { [0.999; 2] } else { [0.3, 0.05] };
@@ -189,7 +196,7 @@ fn spin_changes_by_the_angular_acceleration() {
         let (top, h) = (top(BOX, start), 1e-4);
         let spin = |t: f64| top.spin(&top.attitude(t));
         let rate = (spin(t + h) - spin(t - h)) / (2.0 * h);
-        let found = top.angular_rad_s2(&top.attitude(t));
+        let found = top.angular_acceleration_rad_s2(&top.attitude(t));
         assert!((found - rate).norm() < 1e-6 * (1.0 + rate.norm()), "{found} {rate}");
     }
 }

@@ -1,4 +1,4 @@
-//! What restitution asks of the normal dashpot, and what one impact gives back.
+//! The normal dashpot that gives a restitution, and the rebound of one impact.
 
 use crate::math;
 use crate::rock::Rock;
@@ -11,20 +11,22 @@ pub const CAPTURE_DAMPING_RATIO: f64 = 2.0;
 /// Damping ratio of a plastic impact; `e(5) = 0.01`.
 const PLASTIC_DAMPING_RATIO: f64 = 5.0;
 
-/// Damping ratio of the shear spring, and of the rolling spring: without it the spring returns the slip like a super ball.
+/// Damping ratio of the shear spring and of the rolling spring: without damping the spring returns
+/// the slip like a super ball.
 const SHEAR_DAMPING_RATIO: f64 = 1.0;
 
-/// Damping ratio along the surface, at that along the normal. Where little rebounds it is the dashpot that pushes, and with a critical
-/// one along the surface its push would be over before friction has come: at `e = 0.01` half of Coulomb's impulse `min(μ J, 2/7 m u)`
-/// was missing. With equal ratios it is there to 2 %.
-pub(super) fn along_ratio(ratio: f64) -> f64 {
+/// Damping ratio along the surface, for that along the normal. Where little rebounds, the dashpot
+/// carries the normal force; with a critical dashpot along the surface, that force would be over
+/// before friction has built up: at `e = 0.01` half of Coulomb's impulse `min(μ J, 2/7 m u)` was
+/// missing. With equal ratios it is reached to 2 %.
+pub(super) fn shear_ratio_at(ratio: f64) -> f64 {
     ratio.max(SHEAR_DAMPING_RATIO)
 }
 
 /// Restitution of a no-tension spring and dashpot without gravity.
 ///
-/// `e(ζ) = exp(−2 ζ acos ζ / √(1−ζ²))`; the contact ends when the force falls to zero, not when the spring is
-/// back at its length (the textbook's `exp(−π ζ/√(1−ζ²))`), so nothing ever pulls.
+/// `e(ζ) = exp(−2 ζ acos ζ / √(1−ζ²))`; the contact ends when the force falls to zero, not when the
+/// spring is back at its length (the textbook's `exp(−π ζ/√(1−ζ²))`), so the contact never pulls.
 pub fn restitution(zeta: f64) -> f64 {
     math::exp(-2.0 * zeta * angle_over_sine(zeta))
 }
@@ -41,25 +43,26 @@ fn angle_over_sine(zeta: f64) -> f64 {
     }
 }
 
-/// Share of its slip that an impact on a plane gives back where it sticks throughout (–), for a ratio `p_s/p_N` (–);
-/// negative where the slip goes on when the rock leaves.
+/// Share of its slip that an impact on a plane gives back if it sticks throughout (–), for a ratio
+/// `p_s/p_N` (–); negative if the slip still continues when the rock leaves.
 ///
-/// The slip is that of the contact point's `2/7 m` on the shear spring with its dashpot of ratio `ζ_s = max(1, ζ)`,
-/// `u = u₀ (1 − ω_s t) e^(−ω_s t)` where that is critical, with `ω_s = ω √(7/2 p_s/p_N)`, over the `2 acos ζ/√(1 − ζ²)` radians of ω
-/// that [`restitution`] ends after.
+/// The slip is that of the contact point's `2/7 m` on the shear spring with its dashpot of ratio
+/// `ζ_s = max(1, ζ)`, `u = u₀ (1 − ω_s t) e^(−ω_s t)` where that is critical, with `ω_s = ω √(7/2
+/// p_s/p_N)`, over the `2 acos ζ/√(1 − ζ²)` radians of ω after which [`restitution`] ends.
 pub fn tangential_restitution(ratio: f64, damping: &Damping) -> f64 {
     let phase = (Rock::SLIP_LIGHTNESS * ratio).sqrt() * 2.0 * angle_over_sine(damping.ratio);
-    let zeta = along_ratio(damping.ratio);
+    let zeta = shear_ratio_at(damping.ratio);
     let root = (zeta * zeta - 1.0).sqrt();
     if root < 1e-4 {
         return (phase - 1.0) * math::exp(-phase);
     }
-    // over-damped: two rates that die out
+    // overdamped: two decaying rates
     let slow = (zeta / root - 1.0) * math::exp(-(zeta - root) * phase);
     0.5 * (slow - (zeta / root + 1.0) * math::exp(-(zeta + root) * phase))
 }
 
-/// The damping ratio ζ that gives restitution `e` (0..1), the inverse of [`restitution`] by bisection.
+/// The damping ratio ζ that gives restitution `e` (0..1), the inverse of [`restitution`] by
+/// bisection.
 pub fn damping_ratio(e: f64) -> f64 {
     if e < PLASTIC_RESTITUTION {
         return PLASTIC_DAMPING_RATIO;
@@ -68,47 +71,48 @@ pub fn damping_ratio(e: f64) -> f64 {
     0.5 * (lo + hi)
 }
 
-/// One impact on a plane with gravity, exact as far as the normal motion goes.
+/// One impact on a plane with gravity, exact as far as the normal motion is concerned.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NormalImpact {
-    /// When the force falls to zero after the touch (s).
+    /// Time from the touch until the force falls to zero (s).
     pub lift_s: f64,
-    /// Rebound speed at the surface (m/s); `None` when the rock does not come out again.
+    /// Rebound speed at the surface (m/s); `None` if the rock does not come out again.
     pub rebound_m_s: Option<f64>,
 }
 
-/// Closed form of the spring-dashpot impact at approach speed `v`, frequency `omega`, damping ratio `zeta < 1`.
+/// Closed form of the spring-dashpot impact at approach speed `v`, frequency `omega`, damping ratio
+/// `zeta < 1`.
 ///
 /// `x'' = g_n − 2 ζω x' − ω² x` from `x = 0, x' = v` until the force vanishes, then free.
 pub fn normal_impact(v: f64, omega: f64, zeta: f64, g_n: f64) -> NormalImpact {
-    let al = zeta * omega;
-    let wd = omega * (1.0 - zeta * zeta).sqrt();
-    let (x0, b) = (g_n / (omega * omega), (v - al * g_n / (omega * omega)) / wd);
+    let decay = zeta * omega;
+    let omega_d = omega * (1.0 - zeta * zeta).sqrt();
+    let (x0, b) = (g_n / (omega * omega), (v - decay * g_n / (omega * omega)) / omega_d);
     let state = |t: f64| {
-        let (s, c) = math::sin_cos(wd * t);
-        let fade = math::exp(-al * t);
+        let (s, c) = math::sin_cos(omega_d * t);
+        let fade = math::exp(-decay * t);
         let x = x0 + fade * (b * s - x0 * c);
-        let speed = fade * ((b * wd + al * x0) * c + (x0 * wd - al * b) * s);
+        let speed = fade * ((b * omega_d + decay * x0) * c + (x0 * omega_d - decay * b) * s);
         (x, speed)
     };
-    // In units of g_n and 1/ω the same swing has its first trough at a known time.
+    // in units of g_n and 1/ω the first trough of the oscillation is at a known time
     let (low, deepest) = first_trough(v * omega / g_n, zeta);
     if deepest > 0.0 {
         return NormalImpact { lift_s: f64::INFINITY, rebound_m_s: None };
     }
-    // Newton on the force, halving where a step would leave the bracket.
+    // Newton on the force, with bisection where a step would leave the bracket.
     let (mut lo, mut hi) = (0.0, low / omega);
     let mut t = 0.5 * hi;
     for _ in 0..60 {
         let (x, speed) = state(t);
-        let push = omega * omega * x + 2.0 * al * speed;
-        if push > 0.0 {
+        let force = omega * omega * x + 2.0 * decay * speed;
+        if force > 0.0 {
             lo = t;
         } else {
             hi = t;
         }
-        let slope = omega * omega * speed + 2.0 * al * (g_n - push);
-        let next = t - push / slope;
+        let slope = omega * omega * speed + 2.0 * decay * (g_n - force);
+        let next = t - force / slope;
         let next = if next > lo && next < hi { next } else { 0.5 * (lo + hi) };
         let change = (next - t).abs();
         t = next;
@@ -122,20 +126,20 @@ pub fn normal_impact(v: f64, omega: f64, zeta: f64, g_n: f64) -> NormalImpact {
     NormalImpact { lift_s: t, rebound_m_s: leaves.then(|| out.sqrt()) }
 }
 
-/// Time and depth of the contact force's first trough, in units of 1/ω and of the weight.
+/// Time and depth of the first trough of the contact force, in units of 1/ω and of the weight.
 ///
-/// The force swings around the weight, `F = 1 + A e^(−ζt) cos(ω_d t + φ)`, with `F(0) = 2ζp`, `F'(0) = p + 2ζ(1 − 2ζp)`
-/// at the approach speed `p = v ω/g_n`.
+/// The force oscillates about the weight, `F = 1 + A e^(−ζt) cos(ω_d t + φ)`, with `F(0) = 2ζp`,
+/// `F'(0) = p + 2ζ(1 − 2ζp)` at the approach speed `p = v ω/g_n`.
 fn first_trough(p: f64, zeta: f64) -> (f64, f64) {
-    let wd = (1.0 - zeta * zeta).sqrt();
+    let omega_d = (1.0 - zeta * zeta).sqrt();
     let (off, slope) = (2.0 * zeta * p - 1.0, p + 2.0 * zeta * (1.0 - 2.0 * zeta * p));
-    let across = -(slope + zeta * off) / wd;
-    let low = PI - math::atan(zeta / wd);
-    let t = (low - math::atan2(across, off)).rem_euclid(TAU) / wd;
+    let across = -(slope + zeta * off) / omega_d;
+    let low = PI - math::atan(zeta / omega_d);
+    let t = (low - math::atan2(across, off)).rem_euclid(TAU) / omega_d;
     (t, 1.0 + math::hypot(off, across) * math::exp(-zeta * t) * math::cos(low))
 }
 
-/// What restitution asks of the normal dashpot.
+/// The normal dashpot of a restitution.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Damping {
     /// Restitution (–), `None` without dashpots.
@@ -159,7 +163,7 @@ impl Damping {
 }
 
 fn capture_number(zeta: f64) -> f64 {
-    // Towards ζ = 1 the swing dies out; so heavily damped an impact hardly rebounds at all.
+    // towards ζ = 1 the oscillation dies out; an impact so heavily damped hardly rebounds at all
     let zeta = zeta.min(0.95);
     let stays = |speed: f64| normal_impact(speed, 1.0, zeta, 1.0).rebound_m_s.is_none();
     math::bisected([0.0, 200.0], 50, stays)[1]

@@ -1,7 +1,9 @@
-//! The friction element of a contact, shear or rolling: a slider in series with a spring and a dashpot side by side.
+//! The friction element of a contact, shear or rolling: a slider in series with a spring and a
+//! dashpot side by side.
 //!
-//! While it sticks, the spring's stretch `ξ` follows the slip `u`: force `k ξ + c u`. The slider lets go at `limit × F_n`: Coulomb's
-//! cap along the surface, that of rolling friction about the centre. Both are one element with other units:
+//! While it sticks, the spring's stretch `ξ` follows the slip `u`: force `k ξ + c u`. The slider
+//! slides at `limit × F_n`: Coulomb's cap along the surface, that of rolling friction about the
+//! centre. Both are one element with other units:
 //!
 //! | | stretch | rate | force | `k` | `c` | limit |
 //! |---|---|---|---|---|---|---|
@@ -12,12 +14,12 @@ use crate::rock::Vec3;
 use nalgebra::Matrix3;
 use std::ops::Mul;
 
-/// A force below this part of its cap is held (–).
-pub(crate) const INSIDE: f64 = 1.0 - 1e-9;
+/// A force below this share of its cap sticks (–).
+pub(crate) const STICK_THRESHOLD: f64 = 1.0 - 1e-9;
 
-/// Shortens `x` to at most `cap`.
+/// Shortens `x` to a length of at most `cap`.
 #[inline]
-pub(crate) fn within(x: Vec3, cap: f64) -> Vec3 {
+pub(crate) fn clamp_norm(x: Vec3, cap: f64) -> Vec3 {
     let size2 = x.norm_squared();
     if size2 > cap * cap { x * (cap / size2.sqrt()) } else { x }
 }
@@ -55,110 +57,113 @@ impl FrictionElement {
         self.limit * normal_force
     }
 
-    /// A force shortened to what the slider bears under a normal force (N).
+    /// A force shortened to the slider's limit under a normal force (N).
     #[inline]
     pub(crate) fn capped(&self, force: Vec3, normal_force: f64) -> Vec3 {
-        within(force, self.cap(normal_force))
+        clamp_norm(force, self.cap(normal_force))
     }
 
-    /// What the spring holds at a stretch.
+    /// Force of the spring at a stretch.
     #[inline]
-    pub(crate) fn held<T: Mul<f64, Output = T>>(&self, stretch: T) -> T {
+    pub(crate) fn spring_force<T: Mul<f64, Output = T>>(&self, stretch: T) -> T {
         stretch * self.k
     }
 
-    /// What the dashpot adds at a rate.
+    /// Force of the dashpot at a rate.
     #[inline]
-    pub(crate) fn damped<T: Mul<f64, Output = T>>(&self, rate: T) -> T {
+    pub(crate) fn dashpot_force<T: Mul<f64, Output = T>>(&self, rate: T) -> T {
         rate * self.c
     }
 
-    /// What a rate adds to a sticking force over a stage of length `h` (s): `k h + c`.
+    /// Increase of a sticking force per rate over a stage of length `h` (s): `k h + c`.
     #[inline]
-    pub(crate) fn over(&self, h: f64) -> f64 {
+    pub(crate) fn stage_stiffness(&self, h: f64) -> f64 {
         self.k * h + self.c
     }
 
-    /// What it does where its spring is stretched and stretches on at a rate, the slider bearing so much.
+    /// The element's response at a stretch and a rate, with a given cap of the slider.
     #[inline]
     pub(crate) fn at_rate(&self, stretch: Vec3, rate: Vec3, cap: f64) -> SliderForce {
-        let held = self.held(stretch);
-        let asked = held + self.damped(rate);
-        let force = within(asked, cap);
-        let stretch_rate = self.relaxing(force, held);
-        SliderForce { force, stretch_rate, asked2: asked.norm_squared() }
+        let held = self.spring_force(stretch);
+        let trial = held + self.dashpot_force(rate);
+        let force = clamp_norm(trial, cap);
+        let stretch_rate = self.stretch_rate(force, held);
+        SliderForce { force, stretch_rate, trial_force2: trial.norm_squared() }
     }
 
-    /// Rate at which the spring stretches under `force` where it holds `held`; nothing without a dashpot.
+    /// Rate at which the spring stretches under `force` at the spring force `held`; zero without a
+    /// dashpot.
     #[inline]
-    pub(crate) fn relaxing(&self, force: Vec3, held: Vec3) -> Vec3 {
+    pub(crate) fn stretch_rate(&self, force: Vec3, held: Vec3) -> Vec3 {
         if self.c > 0.0 { (force - held) / self.c } else { Vec3::new(0.0, 0.0, 0.0) }
     }
 
-    /// `1/c`, 0 without a dashpot.
+    /// `1/c`, or 0 without a dashpot.
     #[inline]
     pub(crate) fn mobility(&self) -> f64 {
         if self.c > 0.0 { 1.0 / self.c } else { 0.0 }
     }
 
-    /// Stretch after a stage of length `h` from `stretch` under `force`: `ξ' = (h q + c ξ*)/(h k + c)`.
+    /// Stretch after a stage of length `h` from `stretch` under `force`: `ξ' = (h q + c ξ*)/(h k +
+    /// c)`.
     #[inline]
     pub(crate) fn stretch_after(&self, force: &Vec3, stretch: &Vec3, h: f64) -> Vec3 {
-        (force * h + stretch * self.c) / self.over(h)
+        (force * h + stretch * self.c) / self.stage_stiffness(h)
     }
 
-    /// Longest stretch that the slider bears under a normal force (N).
+    /// Longest stretch that the slider's limit allows under a normal force (N).
     pub(crate) fn longest_stretch(&self, normal_force: f64) -> f64 {
         self.limit * normal_force / self.k
     }
 
-    /// Whether a force of a size slides under a normal force (N): at its cap but for rounding.
+    /// Whether a force of this size slides under a normal force (N): at its cap up to rounding.
     #[inline]
     pub(crate) fn slides(&self, size: f64, normal_force: f64) -> bool {
-        size >= self.limit * normal_force * INSIDE
+        size >= self.limit * normal_force * STICK_THRESHOLD
     }
 
     /// The same from the square of the size.
     #[inline]
     pub(crate) fn slides2(&self, size2: f64, normal_force: f64) -> bool {
-        size2 >= (self.limit * normal_force * INSIDE).powi(2)
+        size2 >= (self.limit * normal_force * STICK_THRESHOLD).powi(2)
     }
 
-    /// Stiffness, damping and limit in units of another contact.
+    /// Stiffness, damping and limit in the units of another contact.
     #[inline]
     pub(crate) fn in_units(&self, [stiffness, damping, limit]: [f64; 3]) -> [f64; 3] {
         [self.k / stiffness, self.c / damping, self.limit / limit]
     }
 
-    /// Spring and dashpot over a step of fixed length (s): force by way.
+    /// Spring and dashpot over a step of fixed length (s): force per displacement.
     pub(crate) fn over_step(&self, dt: f64) -> [f64; 2] {
         [self.k, self.c / dt]
     }
 
-    /// The element over a stage of length `h` (s) in the mode in which `force` under a normal force (N) left it.
-    pub(crate) fn left(&self, h: f64, (force, normal_force): (&Vec3, f64)) -> Slider {
+    /// The element over a stage of length `h` (s) in the mode, sticking or sliding, of a `force`
+    /// under a normal force (N).
+    pub(crate) fn stage_slider(&self, h: f64, (force, normal_force): (&Vec3, f64)) -> Slider {
         Slider {
             limit: self.limit,
-            stiffness: self.over(h),
-            sticks: force.norm() < self.limit * normal_force * INSIDE,
+            stiffness: self.stage_stiffness(h),
+            sticks: force.norm() < self.limit * normal_force * STICK_THRESHOLD,
         }
     }
 
-    /// The same in a bond, which never slides.
-    pub(crate) fn bonded(&self, h: f64) -> Slider {
-        Slider { limit: f64::INFINITY, stiffness: self.over(h), sticks: true }
+    /// The element in a bond, which never slides.
+    pub(crate) fn bonded_slider(&self, h: f64) -> Slider {
+        Slider { limit: f64::INFINITY, stiffness: self.stage_stiffness(h), sticks: true }
     }
 }
 
-/// What a friction element does at a motion.
+/// Response of a friction element.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct SliderForce {
     /// Its force (N) or moment (N m).
     pub(crate) force: Vec3,
     /// Rate of its spring's stretch (m/s, rad/s).
     pub(crate) stretch_rate: Vec3,
-    /// Square of the force that there would be without a cap.
-    pub(crate) asked2: f64,
+    /// Square of the trial force, before the cap.
+    pub(crate) trial_force2: f64,
 }
 
 /// A friction element over a stage, and its mode.
@@ -169,17 +174,17 @@ pub(crate) struct Slider {
     sticks: bool,
 }
 
-/// A slider's force, and how that changes with the speed and with the push.
+/// A slider's force and its derivatives with respect to speed and normal force.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LinearFriction {
     pub(crate) force: Vec3,
     pub(crate) jacobian: Matrix3<f64>,
-    /// Change of force with the push; zero while it sticks.
+    /// Derivative with respect to the normal force; zero while it sticks.
     pub(crate) along: Vec3,
 }
 
 impl Slider {
-    /// Its force and derivatives where it would hold `trial` if it stuck.
+    /// Force and derivatives for the trial force `trial`, that of a sticking element.
     pub(crate) fn at(&self, trial: Vec3, normal_force: f64) -> LinearFriction {
         let (cap, size) = (self.limit * normal_force, trial.norm());
         if self.sticks || size <= cap {
@@ -193,7 +198,7 @@ impl Slider {
     }
 }
 
-/// What sliders bear, where impulses take the place of forces: the limits of friction (–) and of rolling friction (m).
+/// The limits of friction (–) and of rolling friction (m), where impulses take the place of forces.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct FrictionLimits {
     pub(super) shear: f64,
@@ -210,22 +215,22 @@ impl FrictionLimits {
         (self.shear * normal, self.rolling * normal)
     }
 
-    /// An impulse along the surface shortened to what its slider bears.
+    /// An impulse along the surface, shortened to its limit.
     #[inline]
     pub(crate) fn shear(&self, impulse: Vec3, normal: f64) -> Vec3 {
-        within(impulse, self.shear * normal)
+        clamp_norm(impulse, self.shear * normal)
     }
 
-    /// An impulse of rolling shortened to what its slider bears.
+    /// An impulse of rolling, shortened to its limit.
     #[inline]
     pub(crate) fn rolling(&self, impulse: Vec3, normal: f64) -> Vec3 {
-        within(impulse, self.rolling * normal)
+        clamp_norm(impulse, self.rolling * normal)
     }
 
-    /// Whether an impulse of a size along the surface slides.
+    /// Whether an impulse of this size along the surface slides.
     #[inline]
     pub(crate) fn slides(&self, size: f64, normal: f64) -> bool {
-        size >= self.shear * normal * INSIDE
+        size >= self.shear * normal * STICK_THRESHOLD
     }
 
     /// Whether there is friction along the surface.
@@ -238,7 +243,7 @@ impl FrictionLimits {
         self.rolling > 0.0
     }
 
-    /// The same without rolling friction: rocks among themselves have none.
+    /// The same without rolling friction, which contacts between rocks do not have.
     pub(crate) fn without_rolling(self) -> Self {
         Self { rolling: 0.0, ..self }
     }

@@ -5,7 +5,7 @@
 //! later instant in closed form; at a touch the state takes over from it (`land`, `begin`).
 
 use super::{BodyState, WorldBody};
-use crate::flight::{FlightEnd, Parabola, time_of_impact_past};
+use crate::flight::{FlightEnd, Parabola, time_of_impact_without};
 use crate::release::Release;
 use crate::rock::{Motion, Vec3};
 use crate::simulation::impacts::MeshEnergy;
@@ -78,11 +78,11 @@ impl<'a> WorldBody<'a> {
         // one search along the whole parabola up to the time limit, O(log n) in the triangles near its path
         effort.leaps += 1;
         self.lands = Some(
-            match time_of_impact_past(
+            match time_of_impact_without(
                 settings.terrain,
                 &flight,
                 left,
-                &self.member.state.near.gone,
+                &self.member.state.near.broken_stems,
                 &mut effort.triangles,
             ) {
                 FlightEnd::Touch(t) => (now_s + t, None),

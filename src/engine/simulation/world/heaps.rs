@@ -10,7 +10,7 @@
 use super::bodies::BodyWorld;
 use super::window::IslandWindow;
 use super::{PairMaterial, WorldBody};
-use crate::contact::pair::{PairHistory, between, held_groups};
+use crate::contact::pair::{PairHistory, held_groups, normal_and_distance};
 use crate::rock::Motion;
 use crate::simulation::settings::RunSettings;
 use crate::solver::island::unload_pair;
@@ -44,7 +44,7 @@ impl<'a> BodyWorld<'a> {
         let [a, b] = ends.map(|k| self.body(k));
         let [at, other] = [a, b].map(|body| body.position_at(self.settings, self.now_s));
         let [v, w] = [a, b].map(|body| body.velocity_at(self.settings, self.now_s));
-        let (n, _) = between(&at, &other);
+        let (n, _) = normal_and_distance(&at, &other);
         let approach_m_s = -n.dot(&(v - w));
         [a, b].iter().any(|body| body.member.body.is_struck_hard(approach_m_s))
     }
@@ -92,11 +92,11 @@ impl IslandWindow<'_> {
     /// Springs begin at rest: contacts of the rigid limit know the forces of their last step.
     fn load(&mut self) {
         for body in self.bodies.iter_mut().filter(|body| body.is_unloaded) {
-            body.member.forget_springs();
+            body.member.reset_springs();
         }
         // others in the island may have springs already
         let of_heap = |pair: &&mut PairHistory| self.bodies[pair.a as usize].is_unloaded;
-        self.pair_histories.iter_mut().filter(of_heap).for_each(PairHistory::forget_springs);
+        self.pair_histories.iter_mut().filter(of_heap).for_each(PairHistory::reset_springs);
     }
 }
 

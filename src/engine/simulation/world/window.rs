@@ -12,7 +12,7 @@ mod held_together;
 mod rigid;
 
 use super::{WorldBody, WorldStats};
-use crate::contact::pair::{PairHistory, PairImpact, meeting_s};
+use crate::contact::pair::{PairHistory, PairImpact, collision_time_s};
 use crate::simulation::Stop;
 use crate::simulation::settings::RunSettings;
 use crate::solver::island::{Done, Island, RigidIsland};
@@ -139,7 +139,7 @@ impl<'a> IslandWindow<'a> {
         };
         // gravity acts on both alike and drops out: the relative path of two flying rocks is a straight line
         let ((c_a, v_a, r_a), (c_b, v_b, r_b)) = (at(a), at(b));
-        meeting_s(&(c_a - c_b), &(v_a - v_b), r_a + r_b).map(|t| self.now_s + t)
+        collision_time_s(&(c_a - c_b), &(v_a - v_b), r_a + r_b).map(|t| self.now_s + t)
     }
 
     /// Whether two flying rocks approach and touch but for rounding.
@@ -178,13 +178,13 @@ impl<'a> IslandWindow<'a> {
             let [a, b] = ends.map(|end| &self.bodies[end].member.state);
             let pair_history = &mut self.pair_histories[k];
             // the normal points from b to a; a negative normal speed approaches
-            let (n, _) = crate::contact::pair::between(&a.c, &b.c);
+            let (n, _) = crate::contact::pair::normal_and_distance(&a.c, &b.c);
             (pair_history.n, pair_history.closed) = (n, true);
             // below the capture speed a rebound would be smaller than the errors of the steps: dashpot of full damping
             let approach_m_s = -n.dot(&(a.v - b.v));
             pair_history.captured = approach_m_s < pair_history.law.capture_m_s;
             if !pair_history.captured {
-                pair_history.impact = PairImpact::begun(approach_m_s);
+                pair_history.impact = PairImpact::new(approach_m_s);
                 // the first step of an impact resolves the onset of its spring, whatever step the island had before
                 let h = ONSET / pair_history.law.omega_rad_s();
                 for end in ends {

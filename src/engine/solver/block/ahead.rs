@@ -2,7 +2,7 @@
 
 use super::{AHEAD, Footing, Moving, TOUCH};
 use crate::body::Block;
-use crate::contact::block::BlockTouch;
+use crate::contact::block::BlockContactPoint;
 use crate::rock::Vec3;
 use crate::solver::environment::ContactEnvironment;
 use crate::solver::law::capture_m_s;
@@ -29,7 +29,7 @@ impl Came {
     pub(super) fn of(
         block: &Block,
         [start, middle]: [&Moving; 2],
-        touch: &BlockTouch,
+        touch: &BlockContactPoint,
         dt: f64,
     ) -> Self {
         let n = &touch.normal;
@@ -48,7 +48,7 @@ impl Came {
         &self,
         world: &ContactEnvironment,
         block: &Block,
-        touch: &BlockTouch,
+        touch: &BlockContactPoint,
     ) -> bool {
         let speed = -touch.normal.dot(&self.began);
         self.least_gap_m > TOUCH * block.radius_m && speed >= capture_m_s(world.law(touch.triangle))
@@ -59,7 +59,12 @@ impl Came {
     ///
     /// At the surface a step ends that began with the gap `g` and the speed `b` and ends with `−2g/Δt − b`. A contact that comes down on it would be
     /// thrown back so: it ends no faster than what was pressed in is let out, with `out_m_s` (m/s) from `deep_m` (m) on.
-    pub(super) fn goal(&self, touch: &BlockTouch, dt: f64, (deep_m, out_m_s): (f64, f64)) -> Vec3 {
+    pub(super) fn goal(
+        &self,
+        touch: &BlockContactPoint,
+        dt: f64,
+        (deep_m, out_m_s): (f64, f64),
+    ) -> Vec3 {
         let n = &touch.normal;
         let up = n.dot(&self.turned);
         let most_m_s = out_m_s * (-self.gap_m / deep_m).clamp(0.0, 1.0);

@@ -4,7 +4,7 @@
 
 use super::{Footing, Moving};
 use crate::body::Block;
-use crate::contact::block::BlockTouch;
+use crate::contact::block::BlockContactPoint;
 use crate::solver::environment::ContactEnvironment;
 use crate::solver::law::capture_m_s;
 use crate::solver::roughness::{Meeting, Tilt};
@@ -29,7 +29,7 @@ impl Footing {
     pub(crate) fn is_struck(
         world: &ContactEnvironment,
         (block, moving): (&Block, &Moving),
-        touch: &BlockTouch,
+        touch: &BlockContactPoint,
     ) -> bool {
         moving.approach_m_s(block, touch) >= capture_m_s(world.law(touch.triangle))
     }

@@ -2,7 +2,9 @@
 
 use super::{Footing, TOUCH};
 use crate::body::Block;
-use crate::contact::block::{BlockTouch, MOST_TOUCHES, Pose, keep_widest, touches};
+use crate::contact::block::{
+    BlockContactPoint, MAX_BLOCK_CONTACTS, Pose, reduce_contacts, touches,
+};
 use crate::solver::environment::ContactEnvironment;
 
 /// Features are collected for a way of the centre (–, relative to the radius of the sphere of equal volume) …
@@ -22,7 +24,7 @@ impl Footing {
     /// Sees to it that the features around a block are known, with room for some looks.
     fn know(&mut self, world: &ContactEnvironment, block: &Block, pose: &Pose) {
         let core = block.bound_m - block.ball_m;
-        if !self.near.covers_around(&pose.centre, core) {
+        if !self.near.covers_ball(&pose.centre, core) {
             let margin = core + WAY * block.radius_m;
             let slack = SEES * block.ball_m;
             self.near.collect(world.terrain, &pose.centre, block.ball_m, margin, slack);
@@ -64,13 +66,13 @@ impl Footing {
     }
 
     /// Sets aside the contacts found that are `wanted`, and those of a clamp: where more than can act at a time, those that span most.
-    pub(super) fn set_aside(&mut self, wanted: impl Fn(&BlockTouch) -> bool) {
+    pub(super) fn set_aside(&mut self, wanted: impl Fn(&BlockContactPoint) -> bool) {
         self.aside.clear();
         self.aside.extend(
             self.touches.found.iter().filter(|touch| self.clamp.holds(touch) || wanted(touch)),
         );
-        if self.aside.len() > MOST_TOUCHES {
-            keep_widest(&mut self.aside, MOST_TOUCHES);
+        if self.aside.len() > MAX_BLOCK_CONTACTS {
+            reduce_contacts(&mut self.aside, MAX_BLOCK_CONTACTS);
         }
     }
 }

@@ -50,8 +50,8 @@ impl Turning {
 
     /// Over a stage in which it acts for `a` and the block turns for `b` (s), from a stretch of its spring (rad).
     pub(super) fn over(element: &FrictionElement, stretch: &Vec3, (a, b): (f64, f64)) -> Self {
-        let answer = element.over(b);
-        let wound = element.held(*stretch) / answer;
+        let answer = element.stage_stiffness(b);
+        let wound = element.spring_force(*stretch) / answer;
         Self { compliance: Some(1.0 / (a * answer)), wound, ..Self::NONE }
     }
 
@@ -118,5 +118,5 @@ fn taken(inverse: &Matrix3<f64>, spin: &Vec3, (least, limit): (f64, f64)) -> Vec
         let Some(next) = whole(s) else { break };
         (soft, taken) = (next, next * spin);
     }
-    crate::solver::law::within(taken, limit)
+    crate::solver::law::clamp_norm(taken, limit)
 }

@@ -4,7 +4,7 @@ use super::solve::BlockContact;
 use super::{AHEAD, Footing, HELD, Moving};
 use crate::body::Block;
 use crate::contact::FeatureKind;
-use crate::contact::block::BlockTouch;
+use crate::contact::block::BlockContactPoint;
 use crate::rock::Vec3;
 
 /// Corners that all skid over one triangle each may go this much further in a step (–): while they do, nothing of the contact changes.
@@ -21,7 +21,8 @@ pub(super) fn slip_m_s(block: &Block, moving: &Moving, (n, lever): (&Vec3, &Vec3
 impl Footing {
     /// Fastest slip of the contacts that touch (m/s).
     pub(super) fn slip_m_s(&self, block: &Block, moving: &Moving) -> f64 {
-        let slip = |touch: &BlockTouch| slip_m_s(block, moving, (&touch.normal, &touch.lever));
+        let slip =
+            |touch: &BlockContactPoint| slip_m_s(block, moving, (&touch.normal, &touch.lever));
         let free = self.touching(block).filter(|touch| !self.clamp.holds(touch));
         free.map(slip).fold(0.0, f64::max)
     }
@@ -43,7 +44,7 @@ impl Footing {
                 && touch.feature.kind == FeatureKind::Face
                 && u.norm() >= SKIDS_AT * fastest;
             let foot = moving.pose.centre + touch.lever;
-            if skids { self.near.way_over(touch.feature.id, (&foot, &u)) } else { 0.0 }
+            if skids { self.near.path_on_face_m(touch.feature.id, (&foot, &u)) } else { 0.0 }
         });
         let way_m = ways.reduce(f64::min).unwrap_or(0.0);
         way_m.clamp(short_m, long_m.max(short_m))

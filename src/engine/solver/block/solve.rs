@@ -12,8 +12,8 @@ mod newton;
 mod sliding;
 
 use super::rolling::Turning;
-use crate::contact::MOST;
-use crate::contact::block::MOST_TOUCHES;
+use crate::contact::MAX_CONTACTS;
+use crate::contact::block::MAX_BLOCK_CONTACTS;
 use crate::ground::FrictionLimits;
 use crate::rock::Vec3;
 use mixing::{BEFORE, Mixing};
@@ -284,10 +284,10 @@ pub(crate) fn solve(
     sweeps: &mut u64,
 ) -> bool {
     // a face with many corners is rare, and room for all of them is not cleared for nothing
-    if asked.0.len() <= MOST {
-        sweep::<{ MOST + 1 }>(mass, asked, free, until, sweeps)
+    if asked.0.len() <= MAX_CONTACTS {
+        sweep::<{ MAX_CONTACTS + 1 }>(mass, asked, free, until, sweeps)
     } else {
-        sweep::<{ MOST_TOUCHES + 1 }>(mass, asked, free, until, sweeps)
+        sweep::<{ MAX_BLOCK_CONTACTS + 1 }>(mass, asked, free, until, sweeps)
     }
 }
 

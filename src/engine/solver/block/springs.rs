@@ -211,8 +211,9 @@ impl ActingAlong {
 impl SpringContact {
     /// The contact that a stage sees in which impulses act for `a` and the block moves for `b` (s).
     fn giving_way(&self, mass: &Mass, (a, b): (f64, f64)) -> BlockContact {
-        let stage = self.law.over_stage(self.captured, (a, b));
-        let goal = self.n * (stage.out_per_s * self.penetration) - self.shear * stage.back_per_s;
+        let stage = self.law.stage_compliance(self.captured, (a, b));
+        let goal = self.n * (stage.normal_recovery_per_s * self.penetration)
+            - self.shear * stage.shear_recovery_per_s;
         let springs = GivingWay { compliance: stage.compliance, surface_m_s: self.penetration / b };
         let slides = (self.law.friction_coefficient(), self.triangle);
         BlockContact::on_springs(mass, (self.n, self.lever), slides, (goal, springs))
@@ -229,7 +230,7 @@ impl SpringContact {
     fn press(&mut self, u: &Vec3) -> (f64, SliderForce) {
         let (up, element) = (self.n.dot(u), &self.law.shear);
         let normal = self.law.normal(self.captured);
-        let pulls = normal.pull_or_push(self.penetration.max(0.0), up);
+        let pulls = normal.bilateral_force(self.penetration.max(0.0), up);
         self.normal_force = pulls.max(0.0);
         let cap = element.cap(self.normal_force);
         let shear = element.at_rate(self.shear, u - self.n * up, cap);

@@ -8,7 +8,7 @@ use super::rolling::Turning;
 use super::springs::BlockHistory;
 use super::{Footing, Moving, STILL_M_S};
 use crate::body::Block;
-use crate::contact::block::BlockTouch;
+use crate::contact::block::BlockContactPoint;
 use crate::flight::top::momentum_of;
 use crate::rock::Vec3;
 use crate::solver::environment::ContactEnvironment;
@@ -51,15 +51,16 @@ impl Footing {
         (block, moving): (&Block, &mut Moving),
     ) -> Option<Loss> {
         let motion_j = moving.motion_j(block);
-        let may_break =
-            |touch: &BlockTouch| self.stem_load.may_yield_at(stems, touch.triangle, motion_j);
+        let may_break = |touch: &BlockContactPoint| {
+            self.stem_load.may_yield_at(stems, touch.triangle, motion_j)
+        };
         if !self.touching(block).any(may_break) {
             return None;
         }
-        let comes = |touch: &&BlockTouch| {
+        let comes = |touch: &&BlockContactPoint| {
             world.terrain.is_tree(touch.triangle) && moving.approach_m_s(block, touch) > STILL_M_S
         };
-        let struck: ArrayVec<BlockTouch, 2> =
+        let struck: ArrayVec<BlockContactPoint, 2> =
             self.touching(block).filter(comes).take(2).copied().collect();
         // what springs have pressed already is theirs to follow
         let on_trees = |one: &BlockHistory| world.terrain.is_tree(one.triangle);
@@ -79,7 +80,7 @@ impl Footing {
     fn break_alone(
         &mut self,
         world: &ContactEnvironment,
-        touch: &BlockTouch,
+        touch: &BlockContactPoint,
         (block, moving): (&Block, &mut Moving),
     ) -> Option<Loss> {
         let stems = world.terrain.stems.as_ref()?;
@@ -101,12 +102,12 @@ impl Footing {
         let stems = world.terrain.stems.as_ref()?;
         self.set_touching_aside(block);
         let mass = moving.mass(block);
-        let contact = |touch: &BlockTouch| {
+        let contact = |touch: &BlockContactPoint| {
             let approach_m_s = moving.approach_m_s(block, touch);
             let mut law =
                 Self::law_of_touch(world, &mass, touch, (approach_m_s, self.aside.iter()));
             let ground = world.ground_of(touch.triangle);
-            law.rub_with(self.slip.friction(ground, world.law(touch.triangle), 0.0));
+            law.set_friction(self.slip.friction(ground, world.law(touch.triangle), 0.0));
             JointContact {
                 n: touch.normal,
                 end: JointEnd { rock: 0, lever: touch.lever },
@@ -235,7 +236,7 @@ impl Footing {
 
     /// A stem is gone for this block.
     fn fell(&mut self, stem: u32) {
-        self.near.gone.push(stem);
+        self.near.broken_stems.push(stem);
         self.near.forget();
         self.looked = None;
         self.springs.forget_look();

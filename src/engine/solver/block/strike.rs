@@ -8,7 +8,7 @@ use super::energy::ActingAlong;
 use super::solve::{BlockContact, SWEEPS, rigid_turning, solve};
 use super::{Footing, Moving, ROUNDING, ROUNDING_OF_SPEED, STILL_M_S};
 use crate::body::Block;
-use crate::contact::block::BlockTouch;
+use crate::contact::block::BlockContactPoint;
 use crate::ground::FrictionElement;
 use crate::math;
 use crate::rock::Vec3;
@@ -28,7 +28,7 @@ impl Footing {
         moving: &mut Moving,
     ) -> Option<Loss> {
         let bursts = self.carry_clamp(block);
-        let comes = |touch: &BlockTouch| {
+        let comes = |touch: &BlockContactPoint| {
             moving.approach_m_s(block, touch) > STILL_M_S && !self.clamp.holds(touch)
         };
         let comes = bursts || self.touching(block).any(comes);
@@ -72,10 +72,11 @@ impl Footing {
         world: &ContactEnvironment,
         (block, moving): (&Block, &Moving),
     ) -> bool {
-        let law = |touch: &BlockTouch| world.law(touch.triangle);
-        let is_struck = |touch: &BlockTouch| Self::is_struck(world, (block, moving), touch);
+        let law = |touch: &BlockContactPoint| world.law(touch.triangle);
+        let is_struck = |touch: &BlockContactPoint| Self::is_struck(world, (block, moving), touch);
         let shear = || self.touching(block).map(|touch| &law(touch).shear);
-        let is_damped = |touch: &BlockTouch| law(touch).normal(false).is_damped(block.mass_kg);
+        let is_damped =
+            |touch: &BlockContactPoint| law(touch).normal(false).is_damped(block.mass_kg);
         let is_struck_anywhere = self.touching(block).any(is_struck);
         if !shear().any(FrictionElement::is_on) {
             return is_struck_anywhere

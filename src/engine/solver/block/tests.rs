@@ -16,7 +16,7 @@ mod springs;
 mod yielding;
 
 use crate::body::{Shape, Solid, Surface, box_surface, eota, prism_surface};
-use crate::flight::block::{Tumble, first_touch};
+use crate::flight::block::{BlockFlight, first_touch};
 use crate::flight::top::Top;
 use crate::flight::{FlightEnd, Parabola};
 use crate::ground::{Capture, Damping, Ground, Law};
@@ -117,7 +117,7 @@ impl BlockRun {
                 radius: block.bound_m,
             };
             let top = Top::new(block.inertia_kg_m2, moving.pose.attitude, moving.momentum);
-            let tumble = Tumble { block: &block, top, path };
+            let tumble = BlockFlight { block: &block, top, path };
             let left = longest_s - now;
             let dt = match first_touch(
                 &self.terrain,

@@ -8,7 +8,7 @@
 use super::solve::BlockContact;
 use crate::math;
 use crate::rock::Vec3;
-use crate::solver::law::within;
+use crate::solver::law::clamp_norm;
 use crate::solver::yielding::BISECTIONS;
 
 /// Shares of the normal impulse that would stop the contact point without friction, for one of which a step goes (–).
@@ -40,7 +40,7 @@ impl BlockContact {
         let mut hold = Vec3::zeros();
         for _ in 0..PASSES {
             let next = hold - along(slip / push + self.answer * (self.n + hold)) * rate;
-            hold = within(next, self.friction);
+            hold = clamp_norm(next, self.friction);
         }
         (hold, false)
     }

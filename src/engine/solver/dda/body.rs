@@ -2,7 +2,7 @@
 
 use super::DEEPEST;
 use crate::contact::submatrix::Vec6;
-use crate::contact::{ContactPoint, MOST};
+use crate::contact::{ContactPoint, MAX_CONTACTS};
 use crate::rock::Vec3;
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
 use crate::solver::dda_system::StepConstants;
@@ -79,7 +79,8 @@ impl<'a> DdaBody<'a> {
         let before = self.state.scratch.contacts().len();
         for (k, touch) in touches.iter().enumerate() {
             let contacts = self.state.scratch.contacts();
-            let is_inside = touch.distance_m < self.world.body.radius && contacts.len() < MOST;
+            let is_inside =
+                touch.distance_m < self.world.body.radius && contacts.len() < MAX_CONTACTS;
             if is_inside && !knows(contacts, touch, &touches, &self.state.scratch.d) {
                 // as far from it as it was at the step's start
                 self.add_contact(k, touch.distance_m - touch.normal.dot(&way));

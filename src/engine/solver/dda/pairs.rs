@@ -120,7 +120,7 @@ impl DdaPairs {
         bodies: &mut [DdaBody],
         pair_histories: &mut [PairHistory],
     ) -> Result<u64, StepError> {
-        pair_histories.iter_mut().for_each(PairHistory::part);
+        pair_histories.iter_mut().for_each(PairHistory::separate);
         let mut broken = 0;
         for pair in &self.pairs {
             let d = d(pair, bodies);

@@ -61,7 +61,7 @@ impl DdaStep<'_, '_> {
     /// Solves the step, and solves it again with the contacts that it ran into: a rock that rolls into a fold would
     /// otherwise find itself inside the other flank and be thrown out with energy from nowhere. Whether states settled.
     ///
-    /// Ends: each round adds a contact, and no rock has more than `MOST`.
+    /// Ends: each round adds a contact, and no rock has more than `MAX_CONTACTS`.
     fn solve(&mut self, solves: &mut u32) -> Option<bool> {
         loop {
             let settled = self.settle(solves)?;

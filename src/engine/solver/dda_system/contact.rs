@@ -3,7 +3,7 @@
 use super::StepConstants;
 use super::slider::{Change, DdaSlider, along};
 use crate::contact::TOUCH;
-use crate::contact::history::{ContactHistory, SAME_GRIP, carry};
+use crate::contact::history::{ContactHistory, SAME_CONTACT_COSINE, transport};
 use crate::contact::submatrix::{
     Mat3x6, Mat6, Vec6, displacement, friction_load, gap, moment_load, normal_load, normal_row,
     normal_stiffness, rolling_stiffness, shear_load, shear_stiffness, slip, touching_point,
@@ -115,7 +115,7 @@ impl DdaContact {
             ..Self::new(step, law, history.captured, step.compliance)
         };
         contact.roll.stretch = history.roll;
-        let stretch = carry(history.shear, &history.n, &touch.normal);
+        let stretch = transport(history.shear, &history.n, &touch.normal);
         let free = contact.ways(&step.free);
         let left = (history.normal_force, stretch);
         contact.begin((history.closed, history.slides), left, &free);
@@ -169,7 +169,7 @@ impl DdaContact {
     /// Whether a touch after `d` is where this contact has got to: no deeper in a surface no steeper.
     pub(crate) fn leads_to(&self, touch: &ContactPoint, d: &Vec6) -> bool {
         let deeper = self.radius - touch.distance_m - self.depth(d);
-        -self.v.dot(&touch.normal) > SAME_GRIP && deeper <= TOUCH * self.radius
+        -self.v.dot(&touch.normal) > SAME_CONTACT_COSINE && deeper <= TOUCH * self.radius
     }
 
     /// Penetration at the start (m), 0 when apart: the dashpot begins at the touch.

@@ -9,8 +9,8 @@
 
 use super::StepConstants;
 use super::contact::{ContactWays, DdaContact};
-use crate::contact::history::carry;
-use crate::contact::pair::{PairHistory, between};
+use crate::contact::history::transport;
+use crate::contact::pair::{PairHistory, normal_and_distance};
 use crate::contact::submatrix::{
     Mat6, Vec6, displacement, force_at, normal_row, normal_stiffness, touching_point,
 };
@@ -38,7 +38,7 @@ impl DdaPairContact {
         steps: [&StepConstants; 2],
         at: [&Vec3; 2],
     ) -> Option<Self> {
-        let (n, distance) = between(at[0], at[1]);
+        let (n, distance) = normal_and_distance(at[0], at[1]);
         let radii = steps.map(|step| step.radius);
         let radius = radii[0].min(radii[1]);
         let bonded = pair_history.bond.is_some();
@@ -62,7 +62,7 @@ impl DdaPairContact {
         let free = pair.ways(steps.map(|step| &step.free));
         // A new pair knows no normal yet, and from the opposite of `n` there is no shortest turn.
         let from = if pair_history.is_held() { &pair_history.n } else { &n };
-        let left = (pair_history.normal_force, carry(pair_history.shear, from, &n));
+        let left = (pair_history.normal_force, transport(pair_history.shear, from, &n));
         pair.contact.begin((pair_history.is_held(), pair_history.slides), left, &free);
         Some(pair)
     }

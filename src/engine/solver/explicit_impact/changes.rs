@@ -6,18 +6,18 @@
 //! a face over an edge to the next, forces go on and only their rates jump: it acts at once, and a step whose error is too large for
 //! that is tried anew up to there.
 
-use crate::contact::{ContactPoint, ContactPoints, Feature, MOST};
+use crate::contact::{ContactPoint, ContactPoints, Feature, MAX_CONTACTS};
 use crate::rock::Vec3;
 use arrayvec::ArrayVec;
 
 /// The contacts of a step's start, and the first stages that see others.
 #[derive(Debug, Clone)]
 pub(super) struct Changes {
-    begun: ArrayVec<(Feature, Vec3), MOST>,
+    begun: ArrayVec<(Feature, Vec3), MAX_CONTACTS>,
     /// Whether each of them is a single point.
     are_single: bool,
     /// Normals of those that the current stage does not touch any more.
-    gone: ArrayVec<Vec3, MOST>,
+    gone: ArrayVec<Vec3, MAX_CONTACTS>,
     /// First stage at which a contact that waits would press, at which one has ended, at which one has taken the place of another.
     pub(super) onset: Option<usize>,
     pub(super) end: Option<usize>,

@@ -12,7 +12,7 @@
 
 use super::changes::Changes;
 use crate::contact::TOUCH;
-use crate::contact::history::carry;
+use crate::contact::history::transport;
 use crate::contact::{ContactPoint, Feature};
 use crate::ground::NormalElement;
 use crate::rock::Vec3;
@@ -294,7 +294,7 @@ impl<const C: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, 
             let at = ContactPlace {
                 n,
                 penetration: (body.radius - touch.distance_m).max(0.0),
-                shear: carry(three(y, SPRINGS + 3 * place), &memory.n, &n),
+                shear: transport(three(y, SPRINGS + 3 * place), &memory.n, &n),
                 roll: if Self::rolls::<N>() {
                     three(y, SPRINGS + 3 * (C + place))
                 } else {
@@ -305,7 +305,7 @@ impl<const C: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, 
             let Action { normal: [normal_force, pulls], shear, rolling, slip } = action;
             dv += (n * normal_force - shear.force) * by_mass;
             dw += (n.cross(&shear.force) * body.radius - rolling.force) * by_inertia;
-            put(&mut rates.y, SPRINGS + 3 * place, &carry(shear.stretch_rate, &n, &memory.n));
+            put(&mut rates.y, SPRINGS + 3 * place, &transport(shear.stretch_rate, &n, &memory.n));
             if Self::rolls::<N>() {
                 put(&mut rates.y, SPRINGS + 3 * (C + place), &rolling.stretch_rate);
             }
@@ -323,9 +323,9 @@ impl<const C: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, 
             let turn = body.radius * by_inertia;
             rates.kinks[3 * place] =
                 [(normal_force * by_mass).powi(2), (-pulls).max(0.0) * by_mass];
-            rates.kinks[3 * place + 1] = [shear.asked2 * by_mass * by_mass, cap * by_mass];
-            rates.kinks[3 * place + 2] = [rolling.asked2 * turn * turn, most * turn];
-            let slides = law.shear.slides2(shear.asked2, normal_force);
+            rates.kinks[3 * place + 1] = [shear.trial_force2 * by_mass * by_mass, cap * by_mass];
+            rates.kinks[3 * place + 2] = [rolling.trial_force2 * turn * turn, most * turn];
+            let slides = law.shear.slides2(shear.trial_force2, normal_force);
             let pressed = PressedContact { place, touch, at, normal, normal_force, slides };
             self.pressed.push(pressed);
         }

@@ -19,7 +19,7 @@ mod rates;
 use super::dormand_prince::{Attempt, Stages, growth, sum_up};
 use super::plane::{LOCAL, Plane};
 use super::{ImpactEffort, Settled, StepLength};
-use crate::contact::MOST;
+use crate::contact::MAX_CONTACTS;
 use crate::ground::Law;
 use crate::math;
 use crate::rock::Vec3;
@@ -120,7 +120,7 @@ pub(crate) struct FrozenRebound {
     /// Spin (rad/s).
     pub(crate) spin_rad_s: Vec3,
     /// Energy lost (J) by contact and kind, each ≥ 0: together exactly the energy before less that after.
-    pub(crate) loss: [Loss; MOST],
+    pub(crate) loss: [Loss; MAX_CONTACTS],
     /// How it ended.
     pub(crate) settled: Settled,
     /// What it cost.
@@ -147,11 +147,8 @@ const QUIET: f64 = 3.0;
 /// Steps after which it is ended.
 const MOST_STEPS: u32 = 20_000;
 
-/// Follows one rock with velocity `v` (m/s) and spin `w` (rad/s) through an impact on all `contacts` (1 … [`MOST`]) at once, each
-/// of them at penetration zero; `tolerance` is relative to `|v|` (–).
-///
-/// # Panics
-/// Never: contacts beyond [`MOST`] are not looked at.
+/// Follows one rock with velocity `v` (m/s) and spin `w` (rad/s) through an impact on all `contacts` (1 … [`MAX_CONTACTS`], the
+/// others are ignored) at once, each of them at penetration zero; `tolerance` is relative to `|v|` (–).
 ///
 /// Cost: one contact is a closed form and a short integration; several are followed step by step.
 pub(crate) fn throw(
@@ -160,11 +157,12 @@ pub(crate) fn throw(
     (v, w): (&Vec3, &Vec3),
     tolerance: f64,
 ) -> FrozenRebound {
-    let contacts = &contacts[..contacts.len().min(MOST)];
+    const N: usize = MAX_CONTACTS;
+    let contacts = &contacts[..contacts.len().min(N)];
     let same = FrozenRebound {
         velocity_m_s: *v,
         spin_rad_s: *w,
-        loss: [Loss::default(); MOST],
+        loss: [Loss::default(); MAX_CONTACTS],
         settled: Settled::Free,
         effort: ImpactEffort::default(),
     };
@@ -185,7 +183,7 @@ pub(crate) fn throw(
         (3, true) => several::<3, 27, 12, 9>(how, (v, w), same),
         (4, false) => several::<4, 21, 16, 12>(how, (v, w), same),
         (4, true) => several::<4, 33, 16, 12>(how, (v, w), same),
-        _ => several::<MOST, { 9 + 6 * MOST }, { 4 * MOST }, { 3 * MOST }>(how, (v, w), same),
+        _ => several::<N, { 9 + 6 * N }, { 4 * N }, { 3 * N }>(how, (v, w), same),
     }
 }
 

@@ -8,8 +8,8 @@
 use super::assembly::Island;
 use super::body::note_flights;
 use super::outcome::Done;
-use crate::contact::history::carry;
-use crate::contact::pair::{PairHistory, PairImpact, between};
+use crate::contact::history::transport;
+use crate::contact::pair::{PairHistory, PairImpact, normal_and_distance};
 use crate::math;
 use crate::rock::Vec3;
 use crate::solver::loss::{Given, Loss};
@@ -58,14 +58,14 @@ impl Island<'_> {
         let mut pairs = self.pairs.iter().peekable();
         for (k, pair_history) in self.pair_histories.iter_mut().enumerate() {
             let Some(pair) = pairs.next_if(|pair| pair.pair_history == k) else {
-                pair_history.part();
+                pair_history.separate();
                 self.pair_rates[k][0] = Vec3::zeros();
                 continue;
             };
             let [a, b] = pair.ends.map(|k| &self.members[k]);
-            let (_, distance) = between(&a.state.c, &b.state.c);
+            let (_, distance) = normal_and_distance(&a.state.c, &b.state.c);
             let from = if pair_history.is_held() { pair_history.n } else { pair.n };
-            let rate = carry(self.pair_rates[k][last], &from, &pair.n);
+            let rate = transport(self.pair_rates[k][last], &from, &pair.n);
             let stretch = pair.stretch(hh);
             // The spring turns with the two rocks about their line.
             // half the common spin about the normal, over the step: ξ' += ((ω_a + ω_b)·n/2) n × ξ

@@ -9,7 +9,7 @@ use super::body::{BodySlot, IslandBody};
 use super::outcome::Done;
 use super::pair_contact::PairContact;
 use super::rigid::RigidIsland;
-use crate::contact::pair::{PairHistory, between};
+use crate::contact::pair::{PairHistory, normal_and_distance};
 use crate::ground::Law;
 use crate::rock::Vec3;
 use crate::solver::Settings;
@@ -162,7 +162,7 @@ impl<'a> Island<'a> {
         for pair_history in self.pair_histories.iter().filter(|pair_history| pair_history.is_held())
         {
             let [a, b] = [pair_history.a, pair_history.b].map(|k| &self.members[k as usize]);
-            let (_, distance) = between(&a.state.c, &b.state.c);
+            let (_, distance) = normal_and_distance(&a.state.c, &b.state.c);
             before += pair_history.stored_j(distance, a.body.radius + b.body.radius);
         }
         for pair in &self.pairs {

@@ -143,7 +143,7 @@ impl IslandBody {
             impact: state.impact.clone(),
             blow: (state.is_struck, state.struck.to_vec()),
             facets: state.facets.clone(),
-            stems: (state.stem_load.clone(), state.near.gone.clone()),
+            stems: (state.stem_load.clone(), state.near.broken_stems.clone()),
             flying: self.flying,
         }
     }
@@ -160,8 +160,8 @@ impl IslandBody {
         state.facets.clone_from(&memory.facets);
         state.plane.forget();
         state.stem_load.clone_from(&memory.stems.0);
-        if state.near.gone != memory.stems.1 {
-            state.near.gone.clone_from(&memory.stems.1);
+        if state.near.broken_stems != memory.stems.1 {
+            state.near.broken_stems.clone_from(&memory.stems.1);
             state.near.forget();
         }
         state.fresh = false;

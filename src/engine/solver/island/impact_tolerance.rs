@@ -66,15 +66,15 @@ impl Island<'_> {
     fn hold_bonds(&mut self, settings: &Settings) -> bool {
         let mut is_held = false;
         for pair_history in &self.pair_histories {
-            let Some(breaks_m_s) = pair_history.breaks_m_s() else { continue };
+            let Some(breaking_speed_m_s) = pair_history.breaking_speed_m_s() else { continue };
             let ends = [pair_history.a, pair_history.b].map(|end| end as usize);
             let [a, b] = ends.map(|end| &self.members[end]);
-            let vibrates_m_s = pair_history.vibrates_m_s(&(a.state.v - b.state.v));
+            let vibration_speed_m_s = pair_history.vibration_speed_m_s(&(a.state.v - b.state.v));
             for end in ends {
                 let member = &mut *self.members[end];
                 let usual_m_s = lasting_m_s(settings, &member.body);
-                let of_strength_m_s = (BONDED * breaks_m_s).max(WEAKEST * usual_m_s);
-                let of_vibration_m_s = (BONDED * vibrates_m_s).max(SLOWEST * usual_m_s);
+                let of_strength_m_s = (BONDED * breaking_speed_m_s).max(WEAKEST * usual_m_s);
+                let of_vibration_m_s = (BONDED * vibration_speed_m_s).max(SLOWEST * usual_m_s);
                 let bonded_m_s = of_strength_m_s.min(of_vibration_m_s);
                 is_held |= bonded_m_s < usual_m_s;
                 member.lasting_m_s = member.lasting_m_s.min(bonded_m_s);

@@ -95,9 +95,9 @@ impl Linear {
         let ends = pair.ends.map(|k| &motions[k]);
         let (law, speed, trial) = (&pair.law, pair.speed(ends), pair.trial(ends, h));
         let (normal, slider) = if pair.bond.is_some() {
-            (pair.normal.bond(pair.penetration, h), law.shear.bonded(h))
+            (pair.normal.bond(pair.penetration, h), law.shear.bonded_slider(h))
         } else {
-            (pair.line(h), law.shear.left(h, (&pair.shear_force, pair.normal_force)))
+            (pair.line(h), law.shear.stage_slider(h, (&pair.shear_force, pair.normal_force)))
         };
         let still = (Vec3::zeros(), Vec3::zeros());
         // only ends that are sought count in the unknowns: the others stand in the constants

@@ -1,7 +1,7 @@
 //! The contact of two rocks inside one implicit stage: the law of [`StageContact`](crate::solver::law::StageContact) with a second body.
 
 pub(super) use crate::contact::TOUCH;
-use crate::contact::pair::{Bond, PairHistory, PairImpact, between};
+use crate::contact::pair::{Bond, PairHistory, PairImpact, normal_and_distance};
 use crate::ground::{Law, NormalElement, NormalLine};
 use crate::rock::Vec3;
 use crate::solver::body::{Body, Twist};
@@ -53,7 +53,7 @@ impl PairContact {
         at: [&Vec3; 2],
         slack: f64,
     ) -> Option<Self> {
-        let (n, distance) = between(at[0], at[1]);
+        let (n, distance) = normal_and_distance(at[0], at[1]);
         let reach = bodies[0].radius + bodies[1].radius;
         if distance > reach + slack && pair_history.bond.is_none() {
             return None;
@@ -89,7 +89,7 @@ impl PairContact {
         self.captured = fastest_m_s < self.law.capture_m_s;
         self.normal = self.law.normal(self.captured);
         if !self.captured {
-            self.impact = PairImpact::begun(fastest_m_s);
+            self.impact = PairImpact::new(fastest_m_s);
         }
     }
 
@@ -127,7 +127,8 @@ impl PairContact {
 
     /// What the shear spring would hold if it did not slide (N).
     pub(super) fn trial(&self, ends: [&Twist; 2], h: f64) -> Vec3 {
-        self.law.shear.held(self.shear) + self.slip(ends) * self.law.shear.over(h)
+        self.law.shear.spring_force(self.shear)
+            + self.slip(ends) * self.law.shear.stage_stiffness(h)
     }
 
     /// Forces for motions without this contact's own effect, over a stage of length `h`.
@@ -140,10 +141,10 @@ impl PairContact {
                 return;
             }
         }
-        let free = self.trial(ends, h) / (1.0 + h * self.law.shear.over(h) * self.inv_t);
+        let free = self.trial(ends, h) / (1.0 + h * self.law.shear.stage_stiffness(h) * self.inv_t);
         if self.bond.is_some() {
             let line = self.normal.bond(self.penetration, h);
-            self.normal_force = line.pull_or_push(vn, h, self.inv_m);
+            self.normal_force = line.bilateral_force(vn, h, self.inv_m);
             self.shear_force = free;
             return;
         }
@@ -154,7 +155,7 @@ impl PairContact {
     pub(super) fn act_at(&mut self, ends: [&Twist; 2], h: f64) {
         let (speed, stick) = (self.speed(ends), self.trial(ends, h));
         if self.bond.is_some() {
-            self.normal_force = self.normal.pull_or_push(self.pen_at(speed, h), speed);
+            self.normal_force = self.normal.bilateral_force(self.pen_at(speed, h), speed);
             self.shear_force = stick;
         } else {
             self.normal_force = self.line(h).at(speed);
@@ -165,16 +166,16 @@ impl PairContact {
     /// Forces at the present state, for the explicit first stage; gives the rate of the shear spring.
     pub(super) fn act_now(&mut self, ends: [&Twist; 2]) -> Vec3 {
         let (penetration, vn) = (self.penetration, self.speed(ends));
-        let held = self.law.shear.held(self.shear);
-        let stick = held + self.law.shear.damped(self.slip(ends));
+        let held = self.law.shear.spring_force(self.shear);
+        let stick = held + self.law.shear.dashpot_force(self.slip(ends));
         if self.bond.is_some() {
             (self.normal_force, self.shear_force) =
-                (self.normal.pull_or_push(penetration, vn), stick);
+                (self.normal.bilateral_force(penetration, vn), stick);
         } else {
             self.normal_force = self.normal.force(penetration.max(0.0), vn);
             self.shear_force = self.law.shear.capped(stick, self.normal_force);
         }
-        self.law.shear.relaxing(self.shear_force, held)
+        self.law.shear.stretch_rate(self.shear_force, held)
     }
 
     /// Its normal force as a line, in the mode that it is in.

@@ -7,7 +7,7 @@
 
 use super::assembly::Island;
 use super::body::IslandBody;
-use crate::contact::pair::{PairHistory, between};
+use crate::contact::pair::{PairHistory, normal_and_distance};
 use crate::terrain::Terrain;
 
 impl Island<'_> {
@@ -20,8 +20,8 @@ impl Island<'_> {
         for pair_history in pair_histories.iter_mut().filter(|pair| PairHistory::is_held(pair)) {
             let ends = [pair_history.a, pair_history.b].map(|k| k as usize);
             let [a, b] = ends.map(|k| &members[k].state);
-            let (n, _) = between(&a.c, &b.c);
-            is_any |= pair_history.release(-n.dot(&(a.v - b.v)));
+            let (n, _) = normal_and_distance(&a.c, &b.c);
+            is_any |= pair_history.release_if_struck(-n.dot(&(a.v - b.v)));
             for k in ends {
                 touches_others[k] = true;
             }

@@ -26,7 +26,7 @@ mod sweeps;
 use super::body::{BodySlot, IslandBody, note_flights};
 use super::contact_queue::{ContactQueue, ContactsOfRocks};
 use super::outcome::{BlowInStep, Done, Hit};
-use crate::contact::pair::{PairHistory, between};
+use crate::contact::pair::{PairHistory, normal_and_distance};
 use crate::rock::Vec3;
 use crate::solver::body::are_finite;
 use crate::solver::impact::BlowTable;
@@ -143,7 +143,7 @@ impl RigidIsland {
     ) {
         for (pair_history, struck) in pair_histories.iter_mut().zip(&self.struck) {
             let [a, b] = [pair_history.a, pair_history.b].map(|k| &self.balls[k as usize]);
-            let (n, distance) = between(&a.c, &b.c);
+            let (n, distance) = normal_and_distance(&a.c, &b.c);
             // a contact a little apart stays closed: rounding must not open the contacts of a heap
             let reach = a.body.radius + b.body.radius + HELD * a.body.radius.min(b.body.radius);
             pair_history.n = n;

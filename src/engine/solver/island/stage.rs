@@ -11,7 +11,7 @@
 use super::assembly::Island;
 use super::pair_contact::PairContact;
 use super::pair_contact::TOUCH;
-use crate::contact::history::carry;
+use crate::contact::history::transport;
 use crate::rock::Vec3;
 use crate::solver::loss::Given;
 use crate::solver::stage::{AGREED, PASSES};
@@ -114,7 +114,7 @@ impl Island<'_> {
             // base of the stretch: as for places, the state and the earlier stages
             let from_rates = (pair_history.shear, &self.pair_rates[k][..]);
             let shear = tableau.base((i, h), from_rates, |rate| *rate);
-            pair.shear = carry(shear, &from, &pair.n);
+            pair.shear = transport(shear, &from, &pair.n);
             (pair.normal_force, pair.shear_force) = self.pair_forces[k];
             self.pairs.push(pair);
         }
@@ -135,7 +135,7 @@ impl Island<'_> {
             let from = if pair_history.is_held() { pair_history.n } else { pair.n };
             // of the stage, as for place and velocity: the slope that leads from its base to its end
             let rate = (pair.stretch(hh) - pair.shear) / hh;
-            self.pair_rates[pair.pair_history][i] = carry(rate, &pair.n, &from);
+            self.pair_rates[pair.pair_history][i] = transport(rate, &pair.n, &from);
             self.pair_forces[pair.pair_history] = (pair.normal_force, pair.shear_force);
             let power = |k: usize| {
                 let (v, w) = &self.motions[pair.ends[k]];
@@ -181,9 +181,9 @@ impl Island<'_> {
                 pair.begin(approach_m_s, a.struck_m_s.max(b.struck_m_s));
                 pair_history.n = pair.n;
             }
-            pair.shear = carry(pair_history.shear, &pair_history.n, &pair.n);
+            pair.shear = transport(pair_history.shear, &pair_history.n, &pair.n);
             let rate = pair.act_now([&motions[0], &motions[1]]);
-            self.pair_rates[k][0] = carry(rate, &pair.n, &pair_history.n);
+            self.pair_rates[k][0] = transport(rate, &pair.n, &pair_history.n);
             let power = |k: usize| {
                 let (force, rolling_moment) = pair.load(k);
                 -force.dot(&motions[k].0) - rolling_moment.dot(&motions[k].1)

@@ -7,7 +7,7 @@
 use super::assembly::Island;
 use super::body::IslandBody;
 use super::pair_contact::PairContact;
-use crate::contact::pair::{PairHistory, between};
+use crate::contact::pair::{PairHistory, normal_and_distance};
 use crate::solver::contact_state::Onset;
 use crate::solver::law::StageContact;
 use crate::solver::step_control::{
@@ -130,7 +130,7 @@ impl Island<'_> {
         for pair in self.pairs.iter().filter(|pair| pair.waits) {
             let [a, b] = pair.ends.map(|end| &self.members[end]);
             let apart_m_s = self.apart_m_s(pair);
-            let (n, distance) = between(&a.state.c, &b.state.c);
+            let (n, distance) = normal_and_distance(&a.state.c, &b.state.c);
             let gap_m = distance - a.body.radius - b.body.radius;
             let start = (gap_m > 0.0).then(|| (gap_m, -n.dot(&(a.state.v - b.state.v))));
             let end = (pair.pen_at(apart_m_s, hh), -apart_m_s);
@@ -160,7 +160,7 @@ impl Island<'_> {
             let ends = [history.a, history.b].map(|k| &self.members[k as usize]);
             let pulls = |pair: &PairContact| {
                 let apart_m_s = self.apart_m_s(pair);
-                pair.normal.pull_or_push(pair.pen_at(apart_m_s, hh), apart_m_s)
+                pair.normal.bilateral_force(pair.pen_at(apart_m_s, hh), apart_m_s)
             };
             let before = history.normal_force;
             // rocks that are so far apart that they are not asked have been let go halfway
@@ -227,7 +227,7 @@ impl IslandBody {
         let of_contact = |contact: &StageContact| {
             let before = state.histories[contact.history].normal_force;
             let depth_m = contact.pen_at(&end.v, hh);
-            let after = contact.normal.pull_or_push(depth_m, contact.n.dot(&end.v));
+            let after = contact.normal.bilateral_force(depth_m, contact.n.dot(&end.v));
             let (inv_m, omega) = (1.0 / self.body.mass, contact.law.omega_rad_s());
             Kink { forces: (before, after), inv_m, omega, dt }
                 .share(state.impact.speed_m_s, self.allowed_m_s(relative))

@@ -5,7 +5,7 @@
 //! the contact opens: weight presses in little.
 
 use super::body::IslandBody;
-use crate::contact::pair::{PairHistory, between};
+use crate::contact::pair::{PairHistory, normal_and_distance};
 use crate::rock::Vec3;
 use crate::solver::loss::{Given, Loss};
 use crate::terrain::Terrain;
@@ -27,16 +27,16 @@ impl IslandBody {
             state.v += n * (impulse(world.body.mass, n.dot(&state.v), energy_j) / world.body.mass);
             loss.add(&Loss::on_slope([0.0, -energy_j, 0.0]).on(&world, triangle), 1.0);
         }
-        self.forget_springs();
+        self.reset_springs();
         loss
     }
 
     /// Contacts go on with springs at rest.
-    pub fn forget_springs(&mut self) {
+    pub fn reset_springs(&mut self) {
         let state = &mut self.state;
         for history in state.histories.iter_mut() {
             (history.shear, history.roll) = (Vec3::zeros(), Vec3::zeros());
-            (history.normal_force, history.met_m_s) = (0.0, 0.0);
+            (history.normal_force, history.onset_m_s) = (0.0, 0.0);
             (history.captured, history.announced, history.impact) = (true, true, 0);
         }
         state.impact.forget();
@@ -49,10 +49,10 @@ impl IslandBody {
 
 /// Unloads the contact of two rocks; what each gives (J).
 pub fn unload_pair(pair: &mut PairHistory, [a, b]: [&mut IslandBody; 2]) -> [Given; 2] {
-    let (n, distance) = between(&a.state.c, &b.state.c);
+    let (n, distance) = normal_and_distance(&a.state.c, &b.state.c);
     let depth_m = (a.body.radius + b.body.radius - distance).max(0.0);
     let energy_j = if pair.captured { 0.0 } else { pair.law.stored_j(depth_m, 0.0, 0.0) };
-    pair.forget_springs();
+    pair.reset_springs();
     pair.captured = true;
     let mass = a.body.reduced_mass_with(&b.body);
     let push = n * impulse(mass, n.dot(&(a.state.v - b.state.v)), energy_j);

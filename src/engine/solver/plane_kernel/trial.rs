@@ -122,8 +122,9 @@ impl PlaneTrial<'_, '_> {
         if normal_force > 0.0 {
             let (slip, answers) = (slip(body, speed, spin), &by.answers);
             // trial forces: what springs and dashpots would give if nothing slipped
-            let a = [0, 1].map(|k| law.shear.held(base[SHEAR + k]) + slip[k] * answers.kap);
-            let d = [0, 1, 2].map(|k| law.rolling.held(base[ROLL + k]) + spin[k] * answers.kar);
+            let a = [0, 1].map(|k| law.shear.spring_force(base[SHEAR + k]) + slip[k] * answers.kap);
+            let d =
+                [0, 1, 2].map(|k| law.rolling.spring_force(base[ROLL + k]) + spin[k] * answers.kar);
             let caps = law.limits().caps(normal_force);
             (shear_force, rolling_moment) = Pair { answers, a, d, caps }.solve(&mut self.mode);
         }
@@ -132,9 +133,9 @@ impl PlaneTrial<'_, '_> {
         let v = [0, 1, 2].map(|k| speed[k] + dv[k] * hh);
         let dv = [0, 1, 2].map(|k| self.gravity[k] + dv[k]);
         let shear_rate =
-            [0, 1].map(|k| (shear_force[k] - law.shear.held(base[SHEAR + k])) * by.over_s);
-        let roll_rate =
-            [0, 1, 2].map(|k| (rolling_moment[k] - law.rolling.held(base[ROLL + k])) * by.over_r);
+            [0, 1].map(|k| (shear_force[k] - law.shear.spring_force(base[SHEAR + k])) * by.over_s);
+        let roll_rate = [0, 1, 2]
+            .map(|k| (rolling_moment[k] - law.rolling.spring_force(base[ROLL + k])) * by.over_r);
         let rate = state_of([v, dv, dw], shear_rate, roll_rate);
         // stiffly accurate: the last of these ends is that of the step
         self.end = std::array::from_fn(|k| base[k] + rate[k] * hh);
@@ -158,11 +159,11 @@ impl PlaneTrial<'_, '_> {
         if self.near.plane() == Some(self.face) {
             return None;
         }
-        if !self.near.is_over(self.face, &centre) {
+        if !self.near.is_foot_on(self.face, &centre) {
             return Some(TryOutcome::Elsewhere);
         }
         let reach = self.world.body.radius;
-        if self.near.is_alone(self.world.terrain, self.face, (&centre, reach)) {
+        if self.near.is_only_contact(self.world.terrain, self.face, (&centre, reach)) {
             return None;
         }
         // It runs into something: what it meets must be resolved from the start, so come close first.

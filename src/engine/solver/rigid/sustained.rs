@@ -2,7 +2,7 @@
 
 use super::contact::{GroundContact, converge, sustained_m_s};
 use super::{is_coming, remember};
-use crate::contact::{ContactPoint, MOST, TOUCH};
+use crate::contact::{ContactPoint, MAX_CONTACTS, TOUCH};
 use crate::rock::Vec3;
 use crate::solver::body::Twist;
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
@@ -19,7 +19,7 @@ struct HeldStep {
     /// Its length (s).
     dt: f64,
     /// What holds the rock in its middle, with the impulses.
-    contacts: ArrayVec<GroundContact, MOST>,
+    contacts: ArrayVec<GroundContact, MAX_CONTACTS>,
     /// Motion at its end.
     after: Twist,
 }
@@ -60,7 +60,7 @@ pub(super) fn meet(world: &ContactEnvironment, state: &mut ContactState, done: &
         return;
     }
     let held = |touch: &ContactPoint| GroundContact::new(0, touch, world.law(touch.triangle));
-    let mut contacts: ArrayVec<GroundContact, MOST> = touches().map(held).collect();
+    let mut contacts: ArrayVec<GroundContact, MAX_CONTACTS> = touches().map(held).collect();
     let before = (state.v, state.w);
     let after = converge(&mut contacts, &world.body, before, &mut state.sweeps);
     book((world, state), &contacts, [&before, &after], done);

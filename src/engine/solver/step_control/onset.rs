@@ -115,7 +115,7 @@ impl ContactState {
         (end, hh): (&End, f64),
         (allowed, radius_m): (f64, f64),
     ) {
-        let has_come_up = |one: &&StageContact| self.histories[one.history].met_m_s > 0.0;
+        let has_come_up = |one: &&StageContact| self.histories[one.history].onset_m_s > 0.0;
         for contact in self.stage_contacts().iter().filter(has_come_up) {
             let met = (contact.pen_at(&end.v, hh), -contact.n.dot(&end.v));
             begun.see(met, None, (allowed, radius_m));

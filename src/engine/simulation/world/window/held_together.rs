@@ -3,7 +3,7 @@
 use super::super::{BodyState, WorldBody};
 use super::IslandWindow;
 use crate::contact::pair::held_groups;
-use crate::flight::{FlightEnd, Parabola, time_of_impact_past};
+use crate::flight::{FlightEnd, Parabola, time_of_impact_without};
 use crate::rock::Vec3;
 use crate::simulation::Stop;
 
@@ -73,7 +73,7 @@ impl IslandWindow<'_> {
             gravity: self.settings.gravity_m_s2,
             radius: rocks().map(farthest).fold(0.0, f64::max),
         };
-        let flight = time_of_impact_past(terrain, &ball, f64::INFINITY, &[], &mut 0);
+        let flight = time_of_impact_without(terrain, &ball, f64::INFINITY, &[], &mut 0);
         matches!(flight, FlightEnd::Leaves(_))
     }
 }

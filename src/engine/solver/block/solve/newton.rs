@@ -9,7 +9,7 @@
 
 use super::super::rolling::Turning;
 use super::{BlockContact, GivingWay, Mass};
-use crate::contact::block::MOST_TOUCHES;
+use crate::contact::block::MAX_BLOCK_CONTACTS;
 use crate::rock::Vec3;
 use arrayvec::ArrayVec;
 use nalgebra::{Matrix3, Matrix6, Vector6};
@@ -175,7 +175,7 @@ pub(super) fn solve_hard(
         let (dv, dw) = mass.change(contact, &contact.impulse);
         free = (free.0 - dv, free.1 - dw);
     }
-    let mut soft: ArrayVec<BlockContact, MOST_TOUCHES> =
+    let mut soft: ArrayVec<BlockContact, MAX_BLOCK_CONTACTS> =
         contacts.iter().map(BlockContact::giving_way).collect();
     let mut held = turning.giving_way(GIVES_WAY * mass.inverse.trace() / 3.0);
     if !solve_springs(mass, (&mut soft, &mut held), (free, (*v, *w)), rounding_m_s) {

@@ -3,7 +3,7 @@
 use super::BlockContact;
 use crate::rock::Vec3;
 use crate::solver::contact_frame::ContactFrame;
-use crate::solver::law::within;
+use crate::solver::law::clamp_norm;
 use nalgebra::{Matrix2, Matrix3, Vector2};
 
 /// Turns of the direction of friction, at most, and the widest of them (rad).
@@ -92,7 +92,7 @@ impl BlockContact {
             let asked = -(n.dot(u) + to_n.dot(&drag)) / own;
             push = asked.max(0.0);
             let slip = along(&(u + whole * drag + to_n * push));
-            let next = within(drag - slip * rate, self.friction * push);
+            let next = clamp_norm(drag - slip * rate, self.friction * push);
             let change = (next - drag).norm();
             drag = next;
             if change <= NEAR * push {

@@ -12,8 +12,8 @@
 use super::super::{Footing, TOUCH};
 use super::SpringContact;
 use crate::body::Block;
-use crate::contact::block::{BlockTouch, MOST_TOUCHES};
-use crate::contact::history::{SAME_GRIP, carry};
+use crate::contact::block::{BlockContactPoint, MAX_BLOCK_CONTACTS};
+use crate::contact::history::{SAME_CONTACT_COSINE, transport};
 use crate::rock::Vec3;
 use crate::solver::environment::ContactEnvironment;
 use crate::solver::loss::Loss;
@@ -47,7 +47,7 @@ struct ClampedContact {
 }
 
 /// Where the contacts of a clamp are, from the centre of mass (m).
-type Levers = ArrayVec<Vec3, MOST_TOUCHES>;
+type Levers = ArrayVec<Vec3, MAX_BLOCK_CONTACTS>;
 
 /// Contacts that hold each other; none for a block that is not clamped.
 #[derive(Debug, Default)]
@@ -68,14 +68,14 @@ impl ClampedContact {
             n: contact.n,
             stretch: contact.shear - contact.n * contact.penetration,
             captured: contact.captured,
-            stiffness: [normal.stiffness_n_m(1.0), contact.law.shear.held(1.0)],
+            stiffness: [normal.stiffness_n_m(1.0), contact.law.shear.spring_force(1.0)],
             friction: contact.law.friction_coefficient(),
         }
     }
 
     /// Whether this is the touch that it holds.
-    fn is_at(&self, touch: &BlockTouch) -> bool {
-        self.part == touch.part && self.n.dot(&touch.normal) > SAME_GRIP
+    fn is_at(&self, touch: &BlockContactPoint) -> bool {
+        self.part == touch.part && self.n.dot(&touch.normal) > SAME_CONTACT_COSINE
     }
 
     /// Penetration (m), and stretch along the surface (m).
@@ -110,7 +110,7 @@ impl Clamp {
     }
 
     /// Whether a touch is one of its contacts.
-    pub(crate) fn holds(&self, touch: &BlockTouch) -> bool {
+    pub(crate) fn holds(&self, touch: &BlockContactPoint) -> bool {
         self.contacts.iter().any(|one| one.is_at(touch))
     }
 
@@ -122,7 +122,7 @@ impl Clamp {
     }
 
     /// Closes with these contacts, as far as they press, each at its touch.
-    pub(super) fn close(&mut self, contacts: &[SpringContact], touches: &[BlockTouch]) {
+    pub(super) fn close(&mut self, contacts: &[SpringContact], touches: &[BlockContactPoint]) {
         self.open();
         let pressed = contacts.iter().zip(touches).filter(|(one, _)| one.normal_force > 0.0);
         self.contacts.extend(pressed.map(|(one, touch)| ClampedContact::of(one, touch.part)));
@@ -144,14 +144,14 @@ impl Clamp {
     }
 
     /// Gives a contact of a blow what the clamp holds at its touch.
-    pub(super) fn load(&self, contact: &mut SpringContact, touch: &BlockTouch) {
+    pub(super) fn load(&self, contact: &mut SpringContact, touch: &BlockContactPoint) {
         let Some(one) = self.contacts.iter().find(|one| one.is_at(touch)) else { return };
         (contact.penetration, contact.shear) = one.apart();
         (contact.captured, contact.waits) = (one.captured, false);
     }
 
     /// Goes with the touches found; whether all are there still.
-    fn follow(&mut self, found: &[BlockTouch], reach_m: f64, levers: &mut Levers) -> bool {
+    fn follow(&mut self, found: &[BlockContactPoint], reach_m: f64, levers: &mut Levers) -> bool {
         let before = self.contacts.len();
         self.contacts.retain_mut(|one| {
             let near = found.iter().filter(|touch| one.is_at(touch) && touch.gap_m <= reach_m);
@@ -159,7 +159,7 @@ impl Clamp {
                 return false;
             };
             let ((deep, along), n) = (one.apart(), touch.normal);
-            one.stretch = carry(along, &one.n, &n) - n * deep;
+            one.stretch = transport(along, &one.n, &n) - n * deep;
             (one.n, one.triangle) = (n, touch.triangle);
             levers.try_push(touch.lever).is_ok()
         });
@@ -199,8 +199,8 @@ impl Clamp {
 
 impl Footing {
     /// Whether two contacts can hold each other: the line between them lies within both cones of friction.
-    fn can_hold(&self, world: &ContactEnvironment, [one, other]: [&BlockTouch; 2]) -> bool {
-        let bears = |touch: &BlockTouch, way: &Vec3| {
+    fn can_hold(&self, world: &ContactEnvironment, [one, other]: [&BlockContactPoint; 2]) -> bool {
+        let bears = |touch: &BlockContactPoint, way: &Vec3| {
             let (up, law) = (touch.normal.dot(way), world.law(touch.triangle));
             let friction = self.slip.friction(world.ground_of(touch.triangle), law, 0.0);
             up > 0.0 && (way - touch.normal * up).norm() <= friction * up
@@ -225,7 +225,7 @@ impl Footing {
             let joins = touch.gap_m > from_m
                 && touch.gap_m <= to_m
                 && !self.clamp.holds(touch)
-                && self.aside.len() < MOST_TOUCHES
+                && self.aside.len() < MAX_BLOCK_CONTACTS
                 && (0..touching).any(|k| self.can_hold(world, [touch, &self.aside[k]]));
             if joins {
                 self.aside.push(*touch);

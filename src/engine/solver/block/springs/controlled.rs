@@ -6,7 +6,7 @@ use super::onset::Onsets;
 use super::stage::{BlockEnd, StageBase};
 use super::{BlockHistory, BlockRates, Springs};
 use crate::body::Block;
-use crate::contact::history::carry;
+use crate::contact::history::transport;
 use crate::rock::Vec3;
 use crate::solver::environment::ContactEnvironment;
 use crate::solver::plane_ahead::longest_step;
@@ -162,7 +162,7 @@ impl BlockTrial<'_, '_> {
 impl Springs {
     /// What a stage of length `way_s` (s) leaves of the fastest motion of the contacts (–).
     fn left_by_stage(&self, way_s: f64) -> f64 {
-        let left = |one: &BlockHistory| one.law.left_by_stage(one.captured, way_s);
+        let left = |one: &BlockHistory| one.law.stage_amplification(one.captured, way_s);
         self.histories.iter().map(left).fold(1.0, f64::min)
     }
 
@@ -330,7 +330,7 @@ impl Footing {
         for (contact, k) in springs.contacts.iter().zip(0..) {
             let history = &mut springs.histories[contact.history];
             let rate = &mut springs.rates[0].shear[contact.history];
-            *rate = carry(*rate, &history.n, &contact.n);
+            *rate = transport(*rate, &history.n, &contact.n);
             if let Some(touch) = self.touches.found.get(k) {
                 history.follow(touch, &moving.pose.centre);
             }

@@ -11,8 +11,8 @@ use super::super::{Footing, Moving, Stepped, TOUCH};
 use super::stage::{BlockEnd, StageBase};
 use super::{SpringContact, Springs};
 use crate::body::Block;
-use crate::contact::block::BlockTouch;
-use crate::contact::history::SAME_GRIP;
+use crate::contact::block::BlockContactPoint;
+use crate::contact::history::SAME_CONTACT_COSINE;
 use crate::flight::top::Top;
 use crate::rock::Vec3;
 use crate::solver::Settings;
@@ -33,8 +33,9 @@ impl SpringContact {
         let (way, stretched) = (u * b, end - self.shear);
         let closed_m = -self.n.dot(&way);
         let sprung_j = self.law.normal(self.captured).storing_w(pressed_m, closed_m)
-            + self.law.shear.held(end).dot(&stretched);
-        let left_j = if pressed_m > 0.0 { 0.0 } else { 0.5 * self.law.shear.held(end).dot(&end) };
+            + self.law.shear.spring_force(end).dot(&stretched);
+        let left_j =
+            if pressed_m > 0.0 { 0.0 } else { 0.5 * self.law.shear.spring_force(end).dot(&end) };
         let damping_j = self.normal_force * closed_m - sprung_j + left_j;
         self.shear_power(&way, &stretched, damping_j).on(world, self.triangle)
     }
@@ -141,17 +142,17 @@ impl Footing {
         for touch in self.aside.iter().filter(|touch| touch.gap_m < 0.0) {
             let mut known = self.springs.contacts.iter().zip(&self.touches.found);
             let took_part = known.any(|(contact, began)| {
-                began.part == touch.part && contact.n.dot(&touch.normal) > SAME_GRIP
+                began.part == touch.part && contact.n.dot(&touch.normal) > SAME_CONTACT_COSINE
             });
             if !took_part {
                 // as far from it as it was at the step's start
                 let gap_m = touch.gap_m - dt * touch.normal.dot(&mean.at(block, &touch.lever));
-                self.touches.found.push(BlockTouch { gap_m, ..*touch });
+                self.touches.found.push(BlockContactPoint { gap_m, ..*touch });
             }
         }
         if self.touches.found.len() > self.springs.contacts.len() {
             // what has been solved for keeps its place
-            self.touches.found.iter_mut().for_each(|touch| touch.is_past = false);
+            self.touches.found.iter_mut().for_each(|touch| touch.is_past_end = false);
             self.remember(world, (block, mean));
             let springs = &mut self.springs;
             std::mem::swap(&mut springs.contacts, &mut springs.solved);

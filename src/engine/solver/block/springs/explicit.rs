@@ -13,8 +13,8 @@ mod flow;
 use super::super::{Footing, Moving, Stepped, TOUCH, orthonormal};
 use super::impact_energy::gained_j;
 use crate::body::Block;
-use crate::contact::block::{BlockTouch, BlockTouches};
-use crate::contact::pair::LASTS_RAD;
+use crate::contact::block::{BlockContactPoint, BlockContactPoints};
+use crate::contact::pair::IMPACT_DURATION_RAD;
 use crate::ground::Law;
 use crate::solver::environment::ContactEnvironment;
 use crate::solver::explicit_impact::{FIRST, LONGEST_RAD, SHORTEST_RAD, judge};
@@ -63,7 +63,7 @@ impl Footing {
             && springs.histories.iter().any(|one| {
                 one.closed
                     && !one.captured
-                    && one.gone_rad < LASTS_RAD
+                    && one.gone_rad < IMPACT_DURATION_RAD
                     && one.approach_m_s > least_m_s
             })
             // a shear spring without a dashpot has a stretch, not a rate, of its own
@@ -193,8 +193,8 @@ impl Footing {
 
     /// Whether the contacts found at the step's end are those that a look would find now, as the pairs that press have changed.
     fn sees_the_same(&self, block: &Block) -> bool {
-        let BlockTouches { found, held, .. } = &self.touches;
-        let holds = |touch: &BlockTouch| held.contains(&(touch.part, touch.feature));
+        let BlockContactPoints { found, held, .. } = &self.touches;
+        let holds = |touch: &BlockContactPoint| held.contains(&(touch.part, touch.feature));
         found.iter().all(|touch| block.core.is_corner(touch.part) || holds(touch))
     }
 
@@ -215,7 +215,7 @@ impl Footing {
             let own_s = LETS_GO * (clear_m - touch.gap_m).max(0.0) / up_m_s;
             let leaves = contact.normal_force <= 0.0
                 && up_m_s > 0.0
-                && contact.law.lets_go(up_m_s, 2.0 * weight, own_s);
+                && contact.law.stays_open(up_m_s, 2.0 * weight, own_s);
             if !leaves {
                 return 0.0;
             }

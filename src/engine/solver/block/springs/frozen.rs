@@ -19,8 +19,8 @@ mod standstill;
 use super::super::energy::ActingAlong;
 use super::{Footing, Moving, RollingSpring, SpringContact};
 use crate::body::Block;
-use crate::contact::MOST;
-use crate::contact::block::{BlockTouch, MOST_TOUCHES};
+use crate::contact::MAX_CONTACTS;
+use crate::contact::block::{BlockContactPoint, MAX_BLOCK_CONTACTS};
 use crate::rock::Vec3;
 use crate::solver::block::solve::Mass;
 use crate::solver::environment::ContactEnvironment;
@@ -53,7 +53,7 @@ struct FrozenFlow<'a, 'w> {
     block: &'a Block,
     mass: Mass,
     /// What touches, and the contacts with it in the same order; one that has let go `waits`.
-    touches: &'a [BlockTouch],
+    touches: &'a [BlockContactPoint],
     contacts: Vec<SpringContact>,
     rolling: RollingSpring,
     /// Stiffest contact (rad/s), and local error allowed (m/s).
@@ -87,7 +87,7 @@ impl Footing {
         &mut self,
         world: &ContactEnvironment,
         (block, moving): (&Block, &Moving),
-        touches: &[BlockTouch],
+        touches: &[BlockContactPoint],
     ) -> Option<(Moving, Loss)> {
         let mass = moving.mass(block);
         let mut contacts = std::mem::take(&mut self.springs.contacts);
@@ -131,8 +131,13 @@ impl Footing {
             1 => flow.follow::<{ CONTACTS + OWN }, 2>(moving),
             2 => flow.follow::<{ CONTACTS + 2 * OWN }, 4>(moving),
             3..=4 => flow.follow::<{ CONTACTS + 4 * OWN }, 8>(moving),
-            5..=MOST => flow.follow::<{ CONTACTS + OWN * MOST }, { 2 * MOST }>(moving),
-            _ => flow.follow::<{ CONTACTS + OWN * MOST_TOUCHES }, { 2 * MOST_TOUCHES }>(moving),
+            5..=MAX_CONTACTS => {
+                flow.follow::<{ CONTACTS + OWN * MAX_CONTACTS }, { 2 * MAX_CONTACTS }>(moving)
+            }
+            _ => flow
+                .follow::<{ CONTACTS + OWN * MAX_BLOCK_CONTACTS }, { 2 * MAX_BLOCK_CONTACTS }>(
+                    moving,
+                ),
         };
         if end.is_some() {
             self.clamp.open();
@@ -355,7 +360,7 @@ impl<const N: usize, const P: usize> Flow<N, SUMS, P> for FrozenFlow<'_, '_> {
             torque += contact.lever.cross(&force);
             put(&mut to.y, at + 1, &shear.stretch_rate);
             loss.add(&contact.power(self.world, &u, &shear.stretch_rate), 1.0);
-            let kinks = contact.kinks((pulls, shear.asked2), self.mass.mass);
+            let kinks = contact.kinks((pulls, shear.trial_force2), self.mass.mass);
             to.kinks[2 * k..2 * k + 2].copy_from_slice(&kinks);
         }
         if self.rolling.is_on() {

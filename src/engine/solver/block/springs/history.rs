@@ -3,8 +3,8 @@
 use super::super::{Footing, Moving, TOUCH};
 use crate::body::Block;
 use crate::contact::Feature;
-use crate::contact::block::{BlockTouch, SAME_POINT};
-use crate::contact::history::{SAME_GRIP, carry};
+use crate::contact::block::{BlockContactPoint, SAME_POINT};
+use crate::contact::history::{SAME_CONTACT_COSINE, transport};
 use crate::ground::Law;
 use crate::rock::Vec3;
 use crate::solver::block::solve::Mass;
@@ -57,7 +57,7 @@ pub(crate) struct BlockHistory {
 }
 
 impl BlockHistory {
-    pub(super) fn is_of(&self, touch: &BlockTouch) -> bool {
+    pub(super) fn is_of(&self, touch: &BlockContactPoint) -> bool {
         self.part == touch.part && self.feature == touch.feature
     }
 
@@ -87,9 +87,9 @@ impl BlockHistory {
     }
 
     /// Goes on where the contact now is.
-    pub(super) fn follow(&mut self, touch: &BlockTouch, centre: &Vec3) {
+    pub(super) fn follow(&mut self, touch: &BlockContactPoint, centre: &Vec3) {
         (self.part, self.feature, self.triangle) = (touch.part, touch.feature, touch.triangle);
-        self.shear = carry(self.shear, &self.n, &touch.normal);
+        self.shear = transport(self.shear, &self.n, &touch.normal);
         (self.n, self.point) = (touch.normal, centre + touch.lever);
     }
 }
@@ -101,8 +101,8 @@ impl Footing {
     pub(in super::super) fn law_of_touch<'t>(
         world: &ContactEnvironment,
         mass: &Mass,
-        touch: &BlockTouch,
-        (approach_m_s, all): (f64, impl Iterator<Item = &'t BlockTouch>),
+        touch: &BlockContactPoint,
+        (approach_m_s, all): (f64, impl Iterator<Item = &'t BlockContactPoint>),
     ) -> Law {
         Self::law_on(world.law(touch.triangle), mass, touch, (approach_m_s, all))
     }
@@ -111,8 +111,8 @@ impl Footing {
     fn law_on<'t>(
         ground: &Law,
         mass: &Mass,
-        touch: &BlockTouch,
-        (approach_m_s, all): (f64, impl Iterator<Item = &'t BlockTouch>),
+        touch: &BlockContactPoint,
+        (approach_m_s, all): (f64, impl Iterator<Item = &'t BlockContactPoint>),
     ) -> Law {
         let others = all.filter(|other| *other != touch);
         let others = others.map(|other| (other.normal, other.lever));
@@ -159,7 +159,7 @@ impl Footing {
         let (mass, history) = (moving.mass(block), &mut self.springs.histories[k]);
         let lever = history.point - moving.pose.centre;
         let across = mass.moved_by((&history.n, &lever))[1];
-        history.law = history.law.struck_anew(approach_m_s, [across, mass.mass]);
+        history.law = history.law.for_impact_speed(approach_m_s, [across, mass.mass]);
         self.springs.refresh();
     }
 
@@ -220,7 +220,7 @@ impl Footing {
     fn memory_near(
         &self,
         (block, moving): (&Block, &Moving),
-        touch: &BlockTouch,
+        touch: &BlockContactPoint,
         of_touch: &[Option<usize>],
     ) -> Option<usize> {
         let point = moving.pose.centre + touch.lever;
@@ -236,7 +236,7 @@ impl Footing {
     fn springs_parted_from(
         &self,
         world: &ContactEnvironment,
-        touch: &BlockTouch,
+        touch: &BlockContactPoint,
         block: &Block,
     ) -> Option<u32> {
         let rebounds = self.springs.is_rebounding();
@@ -256,7 +256,7 @@ impl Footing {
     fn begin(
         &self,
         world: &ContactEnvironment,
-        touch: &BlockTouch,
+        touch: &BlockContactPoint,
         (block, moving): (&Block, &Moving),
     ) -> BlockHistory {
         let mass = &moving.mass(block);
@@ -302,8 +302,8 @@ impl Footing {
 /// Whether a new contact of an edge or a face of the block goes on for one that is past the ends of its features: with the next feature of the
 /// mesh, or the next part of the block. Both would press else, the new one from where it is: at each joint of a
 /// crest a block that slides along it would sink by what its weight presses in.
-fn goes_on(block: &Block, new: &BlockTouch, before: &BlockTouch) -> bool {
-    !block.core.is_corner(new.part) && before.hands_on(new.part, new.feature)
+fn goes_on(block: &Block, new: &BlockContactPoint, before: &BlockContactPoint) -> bool {
+    !block.core.is_corner(new.part) && before.can_continue_as(new.part, new.feature)
 }
 
 /// The law of a contact with a normal and a lever beside `others`, which begins at a speed of approach (m/s).
@@ -315,7 +315,7 @@ fn law_at(
 ) -> Law {
     let mut law = *ground;
     if approach_m_s >= capture_m_s(&law) {
-        law.struck_at(approach_m_s);
+        law.set_impact_speed(approach_m_s);
     }
     let [along, across] = mass.moved_by((&at.0, &at.1));
     law.for_masses([along * share_of(mass, at, others), across], mass.mass)
@@ -348,12 +348,12 @@ impl super::Springs {
     /// The memory, of those not taken, of a contact that has gone on to a neighbouring feature and is now at `point`.
     fn nearest(
         &self,
-        touch: &BlockTouch,
+        touch: &BlockContactPoint,
         (point, ball_m): (&Vec3, f64),
         is_taken: impl Fn(usize) -> bool,
     ) -> Option<usize> {
         let fits = |(k, history): &(usize, &BlockHistory)| {
-            !is_taken(*k) && history.n.dot(&touch.normal) > SAME_GRIP
+            !is_taken(*k) && history.n.dot(&touch.normal) > SAME_CONTACT_COSINE
         };
         let away = |history: &BlockHistory| (history.point - point).norm();
         let both = self.histories.iter().enumerate().filter(fits);

@@ -90,7 +90,9 @@ impl RollingSpring {
     }
 
     fn stored_j(&self, stretch: &Vec3) -> f64 {
-        self.element.as_ref().map_or(0.0, |element| 0.5 * element.held(*stretch).dot(stretch))
+        self.element
+            .as_ref()
+            .map_or(0.0, |element| 0.5 * element.spring_force(*stretch).dot(stretch))
     }
 
     /// Power that goes into it (W) at a spin (rad/s), what it stores counted in, by the contacts that bear it.
@@ -112,7 +114,7 @@ impl RollingSpring {
         (w, b): (&Vec3, f64),
     ) -> Loss {
         let end = self.stretch_after(b);
-        let sprung = |element: &FrictionElement| element.held(end).dot(&(end - self.base));
+        let sprung = |element: &FrictionElement| element.spring_force(end).dot(&(end - self.base));
         let sprung_j = self.element.as_ref().map_or(0.0, sprung);
         self.borne_by(world, contacts, self.moment.dot(w) * b - sprung_j)
     }

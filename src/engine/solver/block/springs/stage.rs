@@ -7,8 +7,8 @@
 use super::super::{Footing, Moving, ROUNDING_OF_SPEED, TOUCH, orthonormal};
 use super::{BlockRates, SpringContact, turn_by, turning};
 use crate::body::Block;
-use crate::contact::block::{BlockTouch, Pose};
-use crate::contact::history::carry;
+use crate::contact::block::{BlockContactPoint, Pose};
+use crate::contact::history::transport;
 use crate::ground::{Law, SliderForce};
 use crate::rock::Vec3;
 use crate::solver::block::rolling::Turning;
@@ -61,12 +61,12 @@ impl StageBase<'_> {
 impl SpringContact {
     /// The contact of memory `history` where the block just touches, with a coefficient of friction (–).
     pub(super) fn just_touching(
-        (history, touch): (usize, &BlockTouch),
+        (history, touch): (usize, &BlockContactPoint),
         law: &Law,
         friction: f64,
     ) -> Self {
         let mut law = law.of_patch(touch.gain2, 1.0);
-        law.rub_with(friction);
+        law.set_friction(friction);
         Self {
             history,
             law,
@@ -137,7 +137,7 @@ impl Footing {
     fn offset_m(
         &self,
         (start, guess): (&Moving, &Moving),
-        touch: &BlockTouch,
+        touch: &BlockContactPoint,
         (block, history): (&Block, usize),
     ) -> f64 {
         let memory = &self.springs.histories[history];
@@ -179,7 +179,7 @@ impl Footing {
                 penetration: way_s * touch.normal.dot(&guess.at(block, &touch.lever))
                     - touch.gap_m
                     - offset_m,
-                shear: carry(shear_of(self, history), &memory.n, &touch.normal),
+                shear: transport(shear_of(self, history), &memory.n, &touch.normal),
                 ..SpringContact::just_touching((history, touch), &memory.law, friction)
             });
         }
@@ -260,7 +260,7 @@ impl Footing {
         for contact in &springs.contacts {
             let shear_rate = (contact.stretch(way_s) - contact.shear) / way_s;
             let back = &springs.histories[contact.history].n;
-            rate.shear[contact.history] = carry(shear_rate, &contact.n, back);
+            rate.shear[contact.history] = transport(shear_rate, &contact.n, back);
             let u = end.moving.at(block, &contact.lever);
             rate.loss.add(&contact.power_of_stage(world, (block, &u), &shear_rate), 1.0);
         }
@@ -295,7 +295,7 @@ impl Footing {
             rate.v += force / block.mass_kg;
             rate.momentum += contact.lever.cross(&force);
             let back = &springs.histories[contact.history].n;
-            rate.shear[contact.history] = carry(stretch_rate, &n, back);
+            rate.shear[contact.history] = transport(stretch_rate, &n, back);
             rate.loss.add(&contact.power_of_stage(world, (block, &u), &stretch_rate), 1.0);
         }
         let rolling = springs.rolling.press(&springs.contacts, &rate.turned);

@@ -230,7 +230,7 @@ fn edges_and_faces_meet_edges_and_peaks() {
             radius: body.bound_m,
         };
         let top = Top::new(body.inertia_kg_m2, attitude, Vec3::zeros());
-        let tumble = Tumble { block: &body, top, path };
+        let tumble = BlockFlight { block: &body, top, path };
         let mut footing = Footing::default();
         let landing =
             first_touch(&case.terrain, &tumble, 10.0, (&mut footing.near, &mut footing.window));

@@ -1,7 +1,7 @@
 //! Impacts of frozen geometry.
 
 use super::{G, apart, case, ground, motion_j, oracle, uniforms};
-use crate::contact::MOST;
+use crate::contact::MAX_CONTACTS;
 use crate::ground::{Ground, Law};
 use crate::rock::Vec3;
 use crate::solver::body::Body;
@@ -155,8 +155,8 @@ fn walls_at_right_angles_do_not_know_of_each_other() {
 fn restitution_does_not_depend_on_how_many_contacts_there_are() {
     let (body, law) = case(&smooth(0.5), 0.5, 0.0);
     let v = Vec3::new(0.0, 0.0, -5.0);
-    for count in 1..=MOST {
-        let contacts = [slope([0.0, 0.0, 1.0], &law); MOST];
+    for count in 1..=MAX_CONTACTS {
+        let contacts = [slope([0.0, 0.0, 1.0], &law); MAX_CONTACTS];
         let out = throw(&body, &contacts[..count], (&v, &Vec3::zeros()), 1e-9);
         // local errors of 3e-10 add up over a hundred steps
         assert!((out.velocity_m_s.z - 2.5).abs() < 5e-7, "{count}: {}", out.velocity_m_s.z);

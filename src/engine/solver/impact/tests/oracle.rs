@@ -5,7 +5,7 @@ use crate::math;
 use crate::rock::Vec3;
 use crate::solver::body::Body;
 use crate::solver::impact::FrozenContact;
-use crate::solver::law::within;
+use crate::solver::law::clamp_norm;
 
 /// Motion and memory; `way` is that of the centre.
 #[derive(Debug, Clone)]
@@ -70,13 +70,13 @@ fn rate(body: &Body, touches: &[FrozenContact], pressed: &[bool], at: &OracleSta
         let mut shear_force = Vec3::zeros();
         let [p_s, c_s, friction] = law.coefficients().shear;
         if friction > 0.0 {
-            shear_force = within(at.shear[k] * p_s + slip * c_s, friction * force);
+            shear_force = clamp_norm(at.shear[k] * p_s + slip * c_s, friction * force);
             rate.shear[k] = (shear_force - at.shear[k] * p_s) / c_s;
         }
         let mut rolling_moment = Vec3::zeros();
         let [k_r, c_r, rolling_m] = law.coefficients().rolling;
         if k_r > 0.0 {
-            rolling_moment = within(at.roll[k] * k_r + at.w * c_r, rolling_m * force);
+            rolling_moment = clamp_norm(at.roll[k] * k_r + at.w * c_r, rolling_m * force);
             rate.roll[k] = (rolling_moment - at.roll[k] * k_r) / c_r;
         }
         rate.v += (n * force - shear_force) / body.mass;

@@ -103,7 +103,7 @@ fn a_rock_lifts_off_where_the_force_first_falls_to_zero() {
         let force = |share: f64| {
             let part = plane.part(&whole, share);
             let out = plane.pass(&part, (&v, &Vec3::zeros()), &pressed);
-            normal.pull_or_push(out.pressed.unwrap().depth_m, out.velocity_m_s.z)
+            normal.bilateral_force(out.pressed.unwrap().depth_m, out.velocity_m_s.z)
         };
         let start = force(1e-6);
         assert!((1..40).all(|k| force(f64::from(k) / 40.0) > 0.0), "{whole:?}");

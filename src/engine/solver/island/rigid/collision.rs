@@ -15,7 +15,7 @@ use super::blow_start::{BlowStart, WIDEST};
 use super::broken_stems::TakenByTree;
 use super::contacts::{ImpactScene, REBOUNDS_IN_STEP, hit_of};
 use crate::contact::ContactPoint;
-use crate::contact::pair::between;
+use crate::contact::pair::normal_and_distance;
 use crate::rock::Vec3;
 use crate::solver::body::Twist;
 use crate::solver::impact::{
@@ -271,7 +271,7 @@ impl RigidIsland {
         let Some(pair) = blow.pair else { return false };
         let pair = &scene.pair_histories[pair];
         let [a, b] = [pair.a, pair.b].map(|k| k as usize);
-        let (n, _) = between(&self.balls[a].c, &self.balls[b].c);
+        let (n, _) = normal_and_distance(&self.balls[a].c, &self.balls[b].c);
         let masses = [a, b].map(|k| self.balls[k].body.mass);
         let (light, push) = if masses[0] < masses[1] { (a, n) } else { (b, -n) };
         let IslandBody { state, body, .. } = &*scene.members[light];
@@ -299,7 +299,7 @@ impl RigidIsland {
                 let ends = [scene.pair_histories[pair].a, scene.pair_histories[pair].b];
                 let [a, b] = ends.map(|k| &self.balls[k as usize]);
                 let (at, from) = (a.before_end(s), b.before_end(s));
-                let (n, distance) = between(&at.0, &from.0);
+                let (n, distance) = normal_and_distance(&at.0, &from.0);
                 let least = a.body.radius.min(b.body.radius);
                 let room = blow.closes_m(-n.dot(&(at.1 - from.1)), least).max(HELD * least);
                 let is_touch = distance <= a.body.radius + b.body.radius + room;
@@ -328,7 +328,7 @@ impl RigidIsland {
             let pair_history = &scene.pair_histories[pair];
             let place = |end: u32| touching.rocks.iter().position(|rock| *rock == end as usize);
             let (first, second) = (place(pair_history.a)?, place(pair_history.b)?);
-            let (normal, distance) = between(&rocks[first].c, &rocks[second].c);
+            let (normal, distance) = normal_and_distance(&rocks[first].c, &rocks[second].c);
             let radius = |k: usize| self.balls[touching.rocks[k]].body.radius;
             // one common point, as in every contact of two rocks
             let reach = radius(first) + radius(second);

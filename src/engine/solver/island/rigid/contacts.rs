@@ -1,7 +1,7 @@
 //! The rocks of an island inside one rigid step, and the impulses of their contacts.
 
 use crate::contact::ContactPoint;
-use crate::contact::pair::{PairHistory, between};
+use crate::contact::pair::{PairHistory, normal_and_distance};
 use crate::ground::{FrictionLimits, Law};
 use crate::rock::{Motion, Vec3};
 use crate::solver::body::{Body, Twist};
@@ -226,7 +226,7 @@ impl BallContact {
         balls: [&StepBody; 2],
         at: [&Vec3; 2],
     ) -> Self {
-        let (n, distance) = between(at[0], at[1]);
+        let (n, distance) = normal_and_distance(at[0], at[1]);
         let reach = balls[0].body.radius + balls[1].body.radius;
         // one common point: impulses with one line of action conserve angular momentum
         let levers = balls.map(|ball| distance * ball.body.radius / reach);

@@ -6,8 +6,8 @@
 
 use super::RigidIsland;
 use super::contacts::{ImpactScene, OnMesh, StepBody};
-use crate::contact::pair::between;
-use crate::flight::{FlightEnd, Parabola, time_of_impact_past};
+use crate::contact::pair::normal_and_distance;
+use crate::flight::{FlightEnd, Parabola, time_of_impact_without};
 use crate::rock::Vec3;
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
 use crate::solver::island::pair_contact::TOUCH;
@@ -25,7 +25,7 @@ impl RigidIsland {
         let pair_history = &scene.pair_histories[place];
         let [a, b] = [pair_history.a, pair_history.b].map(|k| &self.balls[k as usize]);
         let Some(s) = meeting_before_end_s(a, b) else { return };
-        let (n, _) = between(&(a.c - a.v * s), &(b.c - b.v * s));
+        let (n, _) = normal_and_distance(&(a.c - a.v * s), &(b.c - b.v * s));
         if -n.dot(&(a.v - b.v)) >= capture_m_s(&pair_history.law) {
             self.pending.push((s.to_bits(), Reverse(place), [a.version, b.version]));
         }
@@ -98,8 +98,8 @@ fn first_touch(
         return None;
     }
     let flight = Parabola { start, velocity, gravity, radius };
-    let (gone, mut tested) = (&state.near.gone, 0);
-    let end = time_of_impact_past(world.terrain, &flight, ball.since_s, gone, &mut tested);
+    let (gone, mut tested) = (&state.near.broken_stems, 0);
+    let end = time_of_impact_without(world.terrain, &flight, ball.since_s, gone, &mut tested);
     state.near.tested += tested;
     let FlightEnd::Touch(t) = end else { return None };
     let s = (ball.since_s - t).max(0.0);

@@ -13,7 +13,7 @@ use super::contacts::{BallContact, ImpactScene, OnMesh, REBOUNDS_IN_STEP, StepBo
 use super::expected::NEAR;
 use super::sweeps::FEW;
 use crate::contact::ContactPoint;
-use crate::contact::pair::{PairHistory, between};
+use crate::contact::pair::{PairHistory, normal_and_distance};
 use crate::rock::Vec3;
 use crate::solver::body::Twist;
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
@@ -140,7 +140,7 @@ impl RigidIsland {
         let ends = [pair_history.a as usize, pair_history.b as usize];
         let [a, b] = ends.map(|k| &self.balls[k]);
         let ((at, v), (other, w)) = (a.before_end(s), b.before_end(s));
-        let approach_m_s = -between(&at, &other).0.dot(&(v - w));
+        let approach_m_s = -normal_and_distance(&at, &other).0.dot(&(v - w));
         let lasts_s = BlowStart::lasting_s(&pair_history.law);
         let blow =
             BlowStart { pair: Some(place), turn: None, touches_m: 0.0, approach_m_s, lasts_s };
@@ -191,7 +191,7 @@ impl RigidIsland {
         let Some(touch) = hit else { return ball.note_impact(s) };
         // distances at that instant are known as well as the parabola is the rock's path
         let touches_m = touch.distance_m.max(world.body.radius);
-        state.touches.keep_nearer(touches_m + HELD * world.body.radius);
+        state.touches.retain_nearer(touches_m + HELD * world.body.radius);
         if let Some(broken) = state.broken_by(&world, (&v, &ball.w)) {
             let (after, spin) = broken.motion;
             ball.v += after - v;

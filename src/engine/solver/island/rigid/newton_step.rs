@@ -154,7 +154,7 @@ impl RigidIsland {
 impl GroundContact {
     /// The contact with the mesh as a contact of a stage; signs turn, as there shear forces act against slip.
     fn as_stage_contact(&self, radius: f64, stiffness: f64) -> StageContact {
-        let law = Law::stiff(stiffness, self.limits, radius);
+        let law = Law::penalty(stiffness, self.limits, radius);
         StageContact {
             feature: self.feature,
             triangle: self.triangle,
@@ -187,7 +187,7 @@ impl BallContact {
         bodies: [&Body; 2],
         stiffness: f64,
     ) -> PairContact {
-        let law = Law::stiff(stiffness, self.limits, 1.0);
+        let law = Law::penalty(stiffness, self.limits, 1.0);
         PairContact {
             pair_history: self.pair_history,
             ends: self.ends,

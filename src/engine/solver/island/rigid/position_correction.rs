@@ -6,7 +6,7 @@
 use super::RigidIsland;
 use super::contacts::{ImpactScene, StepBody};
 use crate::contact::TOUCH;
-use crate::contact::pair::{PairHistory, between};
+use crate::contact::pair::{PairHistory, normal_and_distance};
 use crate::rock::Vec3;
 use crate::solver::loss::Given;
 use crate::solver::rigid::way_out;
@@ -43,7 +43,7 @@ impl PairHistory {
     fn allowed_m(&self, balls: [&StepBody; 2]) -> f64 {
         let weight = |ball: &StepBody| ball.body.mass * ball.body.gravity.norm();
         let radius = balls[0].body.radius.min(balls[1].body.radius);
-        let pressed = self.law.pressed_m(LAYERS * (weight(balls[0]) + weight(balls[1])));
+        let pressed = self.law.static_penetration_m(LAYERS * (weight(balls[0]) + weight(balls[1])));
         let slack = pressed.clamp(SLACK.0 * radius, SLACK.1 * radius);
         balls[0].body.radius + balls[1].body.radius - slack
     }
@@ -112,7 +112,7 @@ impl RigidIsland {
             {
                 continue;
             }
-            let (n, distance) = between(&a.c, &b.c);
+            let (n, distance) = normal_and_distance(&a.c, &b.c);
             // each moves in proportion to 1/m: the centre of mass of the two stays
             let slack = a.body.radius + b.body.radius - allowed;
             let missing = (allowed - distance) * (1.0 + beyond.0) + slack * beyond.1;

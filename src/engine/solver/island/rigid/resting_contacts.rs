@@ -9,7 +9,7 @@
 
 use super::RigidIsland;
 use super::contacts::{BallContact, OnMesh, StepBody};
-use crate::contact::pair::{PairHistory, between};
+use crate::contact::pair::{PairHistory, normal_and_distance};
 use crate::rock::Vec3;
 use crate::solver::contact_state::ContactEnvironment;
 use crate::solver::island::body::BodySlot;
@@ -100,7 +100,7 @@ impl RigidIsland {
             if (at[0] - at[1]).norm_squared() > widest * widest {
                 continue;
             }
-            let (n, distance) = between(&at[0], &at[1]);
+            let (n, distance) = normal_and_distance(&at[0], &at[1]);
             let gap = distance - a.body.radius - b.body.radius;
             let speed = n.dot(&(a.v - b.v));
             let start = (gap - 0.5 * dt * speed, speed);

@@ -13,7 +13,7 @@ use super::super::{SpringContact, turn_by, turning};
 use crate::body::Block;
 use crate::contact::Feature;
 use crate::contact::block::Pose;
-use crate::contact::history::carry;
+use crate::contact::history::transport;
 use crate::rock::Vec3;
 use crate::solver::block::{Footing, Moving, TOUCH};
 use crate::solver::environment::ContactEnvironment;
@@ -222,7 +222,7 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
         let (pulls, shear) = contact.press(u);
         let place = contact.history;
         let memory = &self.footing.springs.histories[place];
-        let rate = carry(shear.stretch_rate, &contact.n, &memory.n);
+        let rate = transport(shear.stretch_rate, &contact.n, &memory.n);
         put(&mut rates.y, SPRINGS + 3 * place, &rate);
         let (normal, up) = (contact.law.normal(contact.captured), contact.n.dot(u));
         let penetration = contact.penetration.max(0.0);
@@ -234,7 +234,7 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
         }
         rates.q[LOSSES + place] = normal.storing_w(penetration, -up);
         self.damped[place] = normal.is_damped(self.block.mass_kg);
-        let kinks = contact.kinks((pulls, shear.asked2), self.block.mass_kg);
+        let kinks = contact.kinks((pulls, shear.trial_force2), self.block.mass_kg);
         rates.kinks[2 * place..2 * place + 2].copy_from_slice(&kinks);
         contact.n * contact.normal_force - contact.shear_force
     }

@@ -1,41 +1,47 @@
-//! The first releases, tried out before a run.
+//! Trial releases before a run.
 
-use super::{Frequency, Release, Releases, TriedPlace, Where};
+use super::{Frequency, PlacementAttempt, Release, ReleasePlace, Releases};
 use crate::error::{Error, Result};
 use crate::terrain::Terrain;
 
-/// Releases tried out.
-const TRIED: usize = 1000;
-/// Releases of a source that must be tried before it is refused: large rocks may find no room where smaller ones do.
-const FEWEST_OF_SOURCE: usize = 20;
+/// Number of trial releases.
+const TRIAL_RELEASES: usize = 1000;
+/// Trial releases of a source before it is refused: large rocks may find no room where smaller ones
+/// do.
+const MIN_TRIALS_OF_SOURCE: usize = 20;
 
-/// A rock that is lifted by less than this, over its radius, starts where the scene says (–).
-const LIFT_SAID: f64 = 0.1;
+/// A rock lifted by less than this, over its radius, is not reported (–).
+const REPORTED_LIFT: f64 = 0.1;
 
-/// A centre higher above the ground than this (m) is in other heights than the slope, or beside a cliff.
+/// A centre higher above the ground than this (m) indicates another height datum than that of the
+/// slope, or a place beside a cliff.
 const FAR_ABOVE_M: f64 = 100.0;
 
-/// What the first releases showed.
+/// Result of the trial releases.
 #[derive(Debug)]
-pub struct TriedReleases {
-    /// Those that were made.
+pub struct TrialReleases {
+    /// Those that could be made.
     pub made: Vec<Release>,
-    /// How many are lifted off steep ground, and by how much, in words; none where none is by a tenth of its radius.
+    /// How many are lifted off steep ground, and by how much, in words; `None` if none is lifted by
+    /// a tenth of its radius.
     pub lifted: Option<String>,
 }
 
 impl Releases {
-    /// Tries the first releases out before a run: says which share of the zone has no ground or no room.
+    /// Tries the first releases before a run, and warns which share of the zone has no ground or no
+    /// room.
     ///
     /// # Errors
-    /// If none of them can be made, or none of a source that has a frequency: its events would be missing.
-    pub fn try_out(&self, terrain: &Terrain, warnings: &mut Vec<String>) -> Result<TriedReleases> {
+    /// If none of them can be made, or none of a source that has a frequency: its events would be
+    /// missing.
+    pub fn try_out(&self, terrain: &Terrain, warnings: &mut Vec<String>) -> Result<TrialReleases> {
         let (mut places, mut in_slope, mut made, mut first) = (0, 0, Vec::new(), None);
         let mut lifts_m = Vec::new();
         let sources = self.frequency.as_ref().map_or(&[][..], |frequency| frequency.sources());
         let mut of_source = vec![[0; 2]; sources.len()];
-        for index in 0..TRIED {
-            let TriedPlace { release, drawn, steep, lift_m } = self.place_rock(terrain, index);
+        for index in 0..TRIAL_RELEASES {
+            let PlacementAttempt { release, drawn, steep, lift_m } =
+                self.place_rock(terrain, index);
             (places, in_slope) = (places + drawn, in_slope + steep);
             if let Some(frequency) = &self.frequency {
                 let [tried, released] = &mut of_source[frequency.stratum(index).source];
@@ -43,7 +49,7 @@ impl Releases {
             }
             match release {
                 Ok(release) => {
-                    let is_lifted = lift_m > LIFT_SAID * release.rock.radius_m;
+                    let is_lifted = lift_m > REPORTED_LIFT * release.rock.radius_m;
                     lifts_m.extend(is_lifted.then_some(lift_m));
                     made.push(release);
                 }
@@ -59,20 +65,21 @@ impl Releases {
         let largest_m = lifts_m.iter().copied().reduce(f64::max);
         let lifted = largest_m.map(|largest_m| {
             format!(
-                "{} of {TRIED} releases tried out, over steep ground, by more than a tenth of their radius and up to {largest_m:.2} m, until they just touch: they fall from higher than height_m says",
+                "{} of {TRIAL_RELEASES} releases tried out, over steep ground, by more than a tenth of their radius and up to {largest_m:.2} m, until they just touch: they fall from higher than height_m says",
                 lifts_m.len()
             )
         });
-        Ok(TriedReleases { made, lifted })
+        Ok(TrialReleases { made, lifted })
     }
 
-    /// Refuses a source of which no release tried out could be made; `of_source`: how many were tried, and how many made.
+    /// Refuses a source of which no trial release could be made; `of_source`: how many were tried,
+    /// and how many made.
     fn check_sources(&self, of_source: &[[usize; 2]]) -> Result<()> {
         let sources = self.frequency.iter().flat_map(Frequency::sources);
-        let is_silent =
-            |&[tried, released]: &[usize; 2]| tried >= FEWEST_OF_SOURCE && released == 0;
-        let silent = sources.zip(of_source).find(|(_, counts)| is_silent(counts));
-        silent.map_or(Ok(()), |(source, [tried, _])| {
+        let has_no_release =
+            |&[tried, released]: &[usize; 2]| tried >= MIN_TRIALS_OF_SOURCE && released == 0;
+        let failed = sources.zip(of_source).find(|(_, counts)| has_no_release(counts));
+        failed.map_or(Ok(()), |(source, [tried, _])| {
             let found = format!(
                 "none of its {tried} releases tried out finds a place to start from: its {} events a year would be in no number",
                 source.law.per_year()
@@ -83,12 +90,12 @@ impl Releases {
         })
     }
 
-    /// Whether every place is written, and none drawn.
+    /// Whether all places are given points, and none is drawn.
     pub(crate) fn are_points(&self) -> bool {
-        self.places.iter().all(|place| matches!(place, Where::Points(_)))
+        self.places.iter().all(|place| matches!(place, ReleasePlace::Points(_)))
     }
 
-    /// What to say of places drawn in vain, and of releases that found none.
+    /// Warnings about places drawn in vain, and about releases that found none.
     fn lost_places(&self, (places, in_slope): (usize, usize), made: usize) -> Vec<String> {
         let mut warnings = Vec::new();
         let in_vain = places - made;
@@ -100,21 +107,22 @@ impl Releases {
                 String::new()
             };
             warnings.push(format!(
-                "{} of the places drawn for {TRIED} releases have no ground or no room for the rock (a hole, a tree, the edge of the terrain{steep}): such a place is drawn again",
+                "{} of the places drawn for {TRIAL_RELEASES} releases have no ground or no room for the rock (a hole, a tree, the edge of the terrain{steep}): such a place is drawn again",
                 percent(in_vain)
             ));
         }
-        if made < TRIED {
+        if made < TRIAL_RELEASES {
             warnings.push(format!(
-                "{} of {TRIED} releases tried out find no place to start from: each has a row with the stop reason not_released and counts in no statistic",
-                TRIED - made
+                "{} of {TRIAL_RELEASES} releases tried out find no place to start from: each has a row with the stop reason not_released and counts in no statistic",
+                TRIAL_RELEASES - made
             ));
         }
         warnings
     }
 }
 
-/// What to say of releases of which most start far above the ground: a slope in other heights, or with negated ones, is met by no rock as it should be.
+/// Warning if most releases start far above the ground: a slope with another height datum, or with
+/// negated heights, is not met properly by any rock.
 fn far_above(made: &[Release], terrain: &Terrain) -> Option<String> {
     let above_m = |release: &Release| {
         let centre = release.motion.position_m;

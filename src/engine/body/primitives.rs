@@ -1,4 +1,4 @@
-//! Shapes that are given by a name: boxes, prisms, the test blocks of EOTA, points of an ellipsoid.
+//! Named shapes: boxes, prisms, the test blocks of EOTA, points of an ellipsoid.
 
 use super::hull::Core;
 use super::solid::Surface;
@@ -28,8 +28,8 @@ pub fn box_surface(sides: [f64; 3]) -> Surface {
     surface_of(&(0..8).map(corner).collect::<Vec<_>>())
 }
 
-/// A straight prism over a regular polygon of `count` corners, its axis along z; `ratio` is its height over the diameter of
-/// the circle through its corners.
+/// A straight prism over a regular polygon of `count` corners, its axis along z; `ratio` is its
+/// height over the diameter of the circumscribed circle.
 pub fn prism_surface(count: u32, ratio: f64) -> Surface {
     let corner = |k: u32| {
         let (sin, cos) = math::sin_cos(TAU * f64::from(k / 2) / f64::from(count));
@@ -38,7 +38,8 @@ pub fn prism_surface(count: u32, ratio: f64) -> Surface {
     surface_of(&(0..2 * count).map(corner).collect::<Vec<_>>())
 }
 
-/// The test block of EOTA (ETAG 027) with 26 faces, corners (±1/2, ±1/4, ±1/4) and permutations, stretched to `sides`.
+/// The test block of EOTA (ETAG 027) with 26 faces, corners (±1/2, ±1/4, ±1/4) and permutations,
+/// stretched to `sides`.
 pub fn eota(sides: [f64; 3]) -> Surface {
     let corner = |k: u32| {
         let long = (k / 8) as usize;
@@ -50,7 +51,8 @@ pub fn eota(sides: [f64; 3]) -> Surface {
     surface_of(&(0..24).map(corner).collect::<Vec<_>>())
 }
 
-/// 42 points spread over the unit sphere: the corners of an icosahedron and the middles of its edges, pushed out.
+/// 42 points spread over the unit sphere: the corners of an icosahedron and the midpoints of its
+/// edges, projected to the sphere.
 pub fn sphere_points() -> Vec<Vec3> {
     let golden = 0.5 * (1.0 + 5.0_f64.sqrt());
     let mut points: Vec<Vec3> = Vec::new();
