@@ -5,8 +5,8 @@ mod rest;
 mod stretches;
 mod crossings;
 mod driver;
-mod fall;
-mod form;
+mod sphere;
+mod rock_geometry;
 mod heights;
 mod impacts;
 mod passages;
@@ -28,7 +28,7 @@ use serde::{Deserialize, Serialize};
 
 pub use cells::CellPassage;
 pub use crossings::Crossing;
-pub use recorder::Keep;
+pub use recorder::RecordOptions;
 pub use settings::RunSettings;
 pub use single::{Scratch, simulate, simulate_block, simulate_release};
 pub use stretches::Stretch;
@@ -200,7 +200,7 @@ pub struct Extremes {
 
 /// The shape of one rock, as it was drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct ShapeOf {
+pub struct RockShape {
     /// What it was made from.
     pub kind: ShapeKind,
     /// Second and third side over the first (–).
@@ -209,14 +209,14 @@ pub struct ShapeOf {
     pub attitude: [f64; 4],
 }
 
-impl ShapeOf {
+impl RockShape {
     /// That of a sphere among blocks.
     pub const SPHERE: Self =
         Self { kind: ShapeKind::Sphere, sides: [1.0; 2], attitude: [1.0, 0.0, 0.0, 0.0] };
 
     /// Of a block as it was drawn.
     pub fn new(drawn: &DrawnShape) -> Self {
-        let attitude = form::quaternion(&drawn.attitude);
+        let attitude = rock_geometry::quaternion(&drawn.attitude);
         Self { kind: drawn.kind, sides: drawn.sides, attitude }
     }
 }
@@ -229,7 +229,7 @@ pub struct Trajectory {
     /// The rock.
     pub rock: Rock,
     /// Its shape; none in a scene of spheres.
-    pub shape: Option<ShapeOf>,
+    pub shape: Option<RockShape>,
     /// At release (local coordinates).
     pub start: Motion,
     /// At the end (local coordinates).

@@ -5,9 +5,9 @@
 //! here each rock has one entry a cell, however often it comes back.
 
 use super::contact_heights::StepHeights;
-use super::form::{Form, RockInstant, between, time_share};
 use super::heights::Heights;
 use super::passages::{Passage, Passages};
+use super::rock_geometry::{RockGeometry, RockInstant, hermite_motion, time_share};
 use crate::plan::MapGrid;
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
@@ -43,16 +43,16 @@ impl<'a> CellPassages<'a> {
     /// The speed along a parabola has no largest value inside: the ends of its part in a cell hold it exactly.
     pub(super) fn fly(&mut self, heights: &Heights) {
         let Some(cells) = self.cells else { return };
-        let Heights { terrain, form, flight } = *heights;
-        let rotational_j = form.rotational_j(&flight.at(0.0));
+        let Heights { terrain, geometry, flight } = *heights;
+        let rotational_j = geometry.rotational_j(&flight.at(0.0));
         // m |v|²/2 of the parabola, plus the rotational energy, which no flight changes
         let total_j = |t: f64| {
-            0.5 * form.rock.mass_kg() * flight.path.velocity(t).norm_squared() + rotational_j
+            0.5 * geometry.rock.mass_kg() * flight.path.velocity(t).norm_squared() + rotational_j
         };
         let [from, to] = [0.0, flight.lasts_s].map(|t| flight.path.centre(t));
         // in plan view the flight is straight and even, so a share of the way is the same share of
         // the time
-        walk(cells, [&from, &to], |cell, s0, s1| {
+        for_each_cell(cells, [&from, &to], |cell, s0, s1| {
             let [t0, t1] = [s0, s1].map(|share| share * flight.lasts_s);
             let total_j = total_j(t0).max(total_j(t1));
             let known_m = self.found.known_m(cell);
@@ -69,14 +69,14 @@ impl<'a> CellPassages<'a> {
     }
 
     /// Whether there are any cells.
-    pub(super) fn are_on(&self) -> bool {
+    pub(super) fn are_recorded(&self) -> bool {
         self.cells.is_some()
     }
 
     /// Notes the cells of a step in contact: where it enters and leaves each hold the energy that it has there.
     pub(super) fn step(
         &mut self,
-        (terrain, form): (&Terrain, &Form),
+        (terrain, geometry): (&Terrain, &RockGeometry),
         ends: [&RockInstant; 2],
         heights: &StepHeights,
     ) {
@@ -84,14 +84,15 @@ impl<'a> CellPassages<'a> {
         let [from, to] = ends.map(|end| &end.motion);
         // velocity linear within the step: its square has no largest value inside either
         let total_j = |s: f64| {
-            let at = RockInstant::between(ends, s);
-            at.motion.translational_j(&form.rock) + form.rotational_j(&at)
+            let at = RockInstant::interpolated(ends, s);
+            at.motion.translational_j(&geometry.rock) + geometry.rotational_j(&at)
         };
-        walk(cells, [&from.position_m, &to.position_m], |cell, entered, left| {
+        for_each_cell(cells, [&from.position_m, &to.position_m], |cell, entered, left| {
             let [s0, s1] = [entered, left].map(|share| time_share([from, to], share));
             // looked for once a cell, where the step comes into it: from below the mesh holds a rock too
             let known_m = self.found.known_m(cell);
-            if known_m.is_none() && terrain.is_under_slope(&between(from, to, s1).position_m) {
+            if known_m.is_none() && terrain.is_under_slope(&hermite_motion(from, to, s1).position_m)
+            {
                 return;
             }
             let total_j = total_j(s0).max(total_j(s1));
@@ -102,7 +103,7 @@ impl<'a> CellPassages<'a> {
 }
 
 impl Passage for CellPassage {
-    fn place(&self) -> u32 {
+    fn place_number(&self) -> u32 {
         self.cell
     }
 
@@ -110,7 +111,7 @@ impl Passage for CellPassage {
         self.height_m
     }
 
-    fn join(&mut self, other: &Self) {
+    fn merge(&mut self, other: &Self) {
         self.total_j = self.total_j.max(other.total_j);
         self.height_m = self.height_m.max(other.height_m);
     }
@@ -118,7 +119,7 @@ impl Passage for CellPassage {
 
 /// Calls `pass` with every cell under the straight way between two places and the shares of the way at which it is
 /// entered and left.
-fn walk(cells: &MapGrid, ends: [&Vec3; 2], mut pass: impl FnMut(u32, f64, f64)) {
+fn for_each_cell(cells: &MapGrid, ends: [&Vec3; 2], mut pass: impl FnMut(u32, f64, f64)) {
     cells_under(ends.map(|end| cells.place(end.x, end.y)), |[column, row], entered, leaves| {
         if let Some(cell) = cells.cell(column, row) {
             pass(cell, entered, leaves);
@@ -133,17 +134,17 @@ mod tests {
     const CELLS: MapGrid =
         MapGrid { west_m: -10.0, south_m: 5.0, cell_m: 2.0, columns: 7, rows: 4 };
 
-    fn walked(from: [f64; 2], to: [f64; 2]) -> Vec<(u32, f64, f64)> {
+    fn passed_cells(from: [f64; 2], to: [f64; 2]) -> Vec<(u32, f64, f64)> {
         let mut cells = Vec::new();
         let [from, to] = [from, to].map(|[x, y]| Vec3::new(x, y, 0.0));
-        walk(&CELLS, [&from, &to], |cell, s0, s1| cells.push((cell, s0, s1)));
+        for_each_cell(&CELLS, [&from, &to], |cell, s0, s1| cells.push((cell, s0, s1)));
         cells
     }
 
     /// By hand: from (−9, 6) to (−3, 9) the cells 0, 1, 8, 9, 10 and the corner of 17.
     #[test]
     fn a_way_is_cut_at_the_edges_of_cells() {
-        let found = walked([-9.0, 6.0], [-3.0, 9.0]);
+        let found = passed_cells([-9.0, 6.0], [-3.0, 9.0]);
         let cells: Vec<u32> = found.iter().map(|(cell, ..)| *cell).collect();
         assert_eq!(cells, [0, 1, 8, 9, 10, 17]);
         let cuts: Vec<f64> = found.iter().map(|(_, _, s1)| *s1).collect();
@@ -160,12 +161,12 @@ mod tests {
             let turn = f64::from(k) * 0.37;
             let from = [-3.0 + turn.cos() * 4.0, 9.0 + turn.sin() * 3.0];
             let to = [-3.0 - (2.1 * turn).cos() * 4.0, 9.0 - (1.3 * turn).sin() * 3.0];
-            let found = walked(from, to);
+            let found = passed_cells(from, to);
             assert!(found.windows(2).all(|pair| (pair[0].2 - pair[1].1).abs() < 1e-15));
             let whole: f64 = found.iter().map(|(_, s0, s1)| s1 - s0).sum();
             assert!((whole - 1.0).abs() < 1e-12, "{k}: {found:?}");
         }
-        assert!(walked([100.0, 100.0], [101.0, 120.0]).is_empty());
-        assert_eq!(walked([-9.0, 6.0], [-9.0, 6.0]), [(0, 0.0, 1.0)]);
+        assert!(passed_cells([100.0, 100.0], [101.0, 120.0]).is_empty());
+        assert_eq!(passed_cells([-9.0, 6.0], [-9.0, 6.0]), [(0, 0.0, 1.0)]);
     }
 }

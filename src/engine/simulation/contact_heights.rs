@@ -4,8 +4,8 @@
 //! its lowest point. Contact steps are many and short, so the mesh is searched for few of them: the triangle that was last found
 //! below the centre lies below the ground or is it, and says how high the rock can be at most as long as the centre is over it.
 
-use super::form::{Form, RockInstant};
 use super::heights::{ERROR_M, Heights};
+use super::rock_geometry::{RockGeometry, RockInstant};
 use crate::terrain::Terrain;
 
 /// The triangle below the centre of a rock as last found; none beside the terrain.
@@ -14,26 +14,30 @@ pub(super) struct TriangleBelow(Option<u32>);
 
 impl TriangleBelow {
     /// The most that a rock's height can be at both ends of a step (m); infinite where no triangle says it.
-    pub(super) fn most_m(
+    pub(super) fn height_bound_m(
         &mut self,
-        (terrain, form): (&Terrain, &Form),
+        (terrain, geometry): (&Terrain, &RockGeometry),
         ends: [&RockInstant; 2],
     ) -> f64 {
-        let known_m = self.known_m((terrain, form), ends);
-        if known_m.is_finite() {
-            return known_m;
+        let cached_m = self.cached_bound_m((terrain, geometry), ends);
+        if cached_m.is_finite() {
+            return cached_m;
         }
         self.find(terrain, ends[1]);
-        self.known_m((terrain, form), ends)
+        self.cached_bound_m((terrain, geometry), ends)
     }
 
     /// The same by the triangle that was found last.
-    fn known_m(self, (terrain, form): (&Terrain, &Form), ends: [&RockInstant; 2]) -> f64 {
+    fn cached_bound_m(
+        self,
+        (terrain, geometry): (&Terrain, &RockGeometry),
+        ends: [&RockInstant; 2],
+    ) -> f64 {
         let height_m = |at: &RockInstant| {
             let centre = at.motion.position_m;
             let ground_m = terrain.height_on(self.0?, centre.x, centre.y);
             let is_below = ground_m.is_finite() && ground_m <= centre.z;
-            is_below.then(|| centre.z - form.below_m(at) - ground_m)
+            is_below.then(|| centre.z - geometry.depth_below_centre_m(at) - ground_m)
         };
         let [from, to] = ends.map(height_m);
         from.zip(to).map_or(f64::INFINITY, |(from, to)| from.max(to))
@@ -53,14 +57,14 @@ pub(super) struct StepHeights<'a> {
     /// The way of the step; none where it takes no time.
     pub(super) heights: Option<Heights<'a>>,
     /// The most that the height can be (m).
-    pub(super) most_m: f64,
+    pub(super) height_bound_m: f64,
 }
 
 impl StepHeights<'_> {
     /// Largest height (m) from one share of the step to another, where `known_m` (m) is known of the place: of a
     /// sphere to a millimetre, of a block, which turns within the step, to three.
     pub(super) fn largest_m(&self, shares: [f64; 2], known_m: f64) -> f64 {
-        let Some(heights) = self.heights.filter(|_| self.most_m > known_m + ERROR_M) else {
+        let Some(heights) = self.heights.filter(|_| self.height_bound_m > known_m + ERROR_M) else {
             return known_m;
         };
         let span_s = shares.map(|share| share * heights.flight.lasts_s);

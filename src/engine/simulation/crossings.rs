@@ -2,7 +2,7 @@
 
 mod roots;
 
-use super::form::{Form, RockFlight, RockInstant};
+use super::rock_geometry::{RockFlight, RockGeometry, RockInstant};
 use crate::math;
 use crate::plan::{EvaluationLine, Footprint, LinePiece};
 use crate::rock::{Motion, Vec3};
@@ -48,14 +48,14 @@ impl Crossing {
 #[derive(Debug)]
 pub(super) struct Crossings<'a> {
     terrain: &'a Terrain,
-    form: Form<'a>,
+    geometry: RockGeometry<'a>,
     lines: &'a [EvaluationLine],
     found: Vec<Crossing>,
     /// Work space for where a way meets one line.
-    met: Vec<LineMeeting>,
+    intersections: Vec<LineIntersection>,
     /// South-western and north-eastern corner of a box in plan view in which nothing can be met: most steps are short and
     /// far from all lines. None where nothing is known of it.
-    clear: Option<[Corner; 2]>,
+    clear_box: Option<[Corner; 2]>,
     /// Where the rock starts, in plan view, and whether it has come away from there.
     start_m: Corner,
     has_left: bool,
@@ -69,21 +69,30 @@ pub(super) struct CrossingsMark {
 }
 
 /// A rock is where it starts up to this far away (m): it does not cross a line that it stands on, on whichever side rounding puts it.
-const START_M: f64 = 1e-6;
+const START_RADIUS_M: f64 = 1e-6;
 
 /// What is kept of the room to the next line (–): rounding must not make it too large.
-const KEPT: f64 = 0.999;
+const CLEARANCE_FACTOR: f64 = 0.999;
 
 impl<'a> Crossings<'a> {
     /// None so far, of a rock that starts at `start`.
     pub(super) fn of(
         terrain: &'a Terrain,
-        form: Form<'a>,
+        geometry: RockGeometry<'a>,
         lines: &'a [EvaluationLine],
         start: &Vec3,
     ) -> Self {
-        let (found, met, start_m) = (Vec::new(), Vec::new(), flat(start));
-        Self { terrain, form, lines, found, met, clear: None, start_m, has_left: false }
+        let (found, intersections, start_m) = (Vec::new(), Vec::new(), plan_view(start));
+        Self {
+            terrain,
+            geometry,
+            lines,
+            found,
+            intersections,
+            clear_box: None,
+            start_m,
+            has_left: false,
+        }
     }
 
     /// So far.
@@ -92,9 +101,9 @@ impl<'a> Crossings<'a> {
     }
 
     /// Goes back to what was found before.
-    pub(super) fn go_back(&mut self, mark: &CrossingsMark) {
+    pub(super) fn restore(&mut self, mark: &CrossingsMark) {
         // an object that is no longer known may be met again
-        self.clear = self.clear.filter(|_| self.found.len() == mark.found.len());
+        self.clear_box = self.clear_box.filter(|_| self.found.len() == mark.found.len());
         self.found.clear();
         self.found.extend_from_slice(&mark.found);
         self.has_left = mark.has_left;
@@ -102,7 +111,7 @@ impl<'a> Crossings<'a> {
 
     /// Whether a place is where the rock starts, from where it has not come away so far.
     fn is_at_start(&self, [x, y]: Corner) -> bool {
-        !self.has_left && math::hypot(x - self.start_m[0], y - self.start_m[1]) <= START_M
+        !self.has_left && math::hypot(x - self.start_m[0], y - self.start_m[1]) <= START_RADIUS_M
     }
 
     /// In the order of lines.
@@ -117,8 +126,8 @@ impl<'a> Crossings<'a> {
             return;
         }
         // in plan view a parabola is a straight line: two distances to the line of a piece give the share of the way
-        let [a, b] = [0.0, flight.lasts_s].map(|t| flat(&flight.path.centre(t)));
-        self.pass(
+        let [a, b] = [0.0, flight.lasts_s].map(|t| plan_view(&flight.path.centre(t)));
+        self.find_crossings(
             [a, a, b, b],
             |piece| {
                 // signed distances to the endless line through the piece, positive on its left
@@ -145,17 +154,17 @@ impl<'a> Crossings<'a> {
             to.position_m - to.velocity_m_s * third,
             to.position_m,
         ];
-        let hull = hull.map(|point| flat(&point));
-        self.pass(
+        let hull = hull.map(|point| plan_view(&point));
+        self.find_crossings(
             hull,
             |piece| roots(hull.map(|point| piece.side_m(point))),
-            |s| RockInstant::between(ends, s),
+            |s| RockInstant::interpolated(ends, s),
         );
     }
 
     /// Looks at every line near the way inside `hull`; `when` gives the shares of the way at which it meets the
     /// endless line of a piece, rising, `at` the motion there.
-    fn pass(
+    fn find_crossings(
         &mut self,
         hull: [Corner; 4],
         when: impl Fn(&LinePiece) -> WayShares,
@@ -167,54 +176,57 @@ impl<'a> Crossings<'a> {
         let is_inside = |[west_south, east_north]: &[Corner; 2]| {
             (0..2).all(|k| low[k] >= west_south[k] && high[k] <= east_north[k])
         };
-        if self.clear.as_ref().is_some_and(is_inside) {
+        if self.clear_box.as_ref().is_some_and(is_inside) {
             return;
         }
         for (line, evaluation_line) in self.lines.iter().enumerate() {
             if let Some(footprint) = evaluation_line.footprint {
-                let rim_m = self.form.rim_m();
-                let free = |k: usize| [low[k] - rim_m, high[k] + rim_m];
+                let rim_m = self.geometry.plan_radius_m();
+                let extent = |k: usize| [low[k] - rim_m, high[k] + rim_m];
                 // an object is met by the rim of the rock, not by its centre
-                let ([west, east], [south, north]) = (free(0), free(1));
-                let is_known = self.found.iter().any(|crossing| crossing.line == line);
-                if is_known || !evaluation_line.is_near([west, south], [east, north]) {
+                let ([west, east], [south, north]) = (extent(0), extent(1));
+                let is_recorded = self.found.iter().any(|crossing| crossing.line == line);
+                if is_recorded || !evaluation_line.is_near([west, south], [east, north]) {
                     continue;
                 }
-                if let Some((s, along_m)) = enter((evaluation_line, footprint), rim_m, hull, &at) {
-                    self.note(line, (at(s), along_m), 1);
+                if let Some((s, along_m)) =
+                    first_touch_of_object((evaluation_line, footprint), rim_m, hull, &at)
+                {
+                    self.record(line, (at(s), along_m), 1);
                 }
                 continue;
             }
             if !evaluation_line.is_near(low, high) {
                 continue;
             }
-            let place = |s: f64| flat(&at(s).motion.position_m);
-            meetings(evaluation_line, &when, place, &mut self.met);
-            if !self.has_left && !self.met.is_empty() {
-                let mut met = std::mem::take(&mut self.met);
-                met.retain(|meeting| !self.is_at_start(place(meeting.s)));
-                self.met = met;
+            let place = |s: f64| plan_view(&at(s).motion.position_m);
+            intersect_line(evaluation_line, &when, place, &mut self.intersections);
+            if !self.has_left && !self.intersections.is_empty() {
+                let mut intersections = std::mem::take(&mut self.intersections);
+                intersections.retain(|intersection| !self.is_at_start(place(intersection.s)));
+                self.intersections = intersections;
             }
-            if let Some(&LineMeeting { s, along_m, .. }) = self.met.first() {
-                self.note(line, (at(s), along_m), self.met.len() as u32);
+            if let Some(&LineIntersection { s, along_m, .. }) = self.intersections.first() {
+                self.record(line, (at(s), along_m), self.intersections.len() as u32);
             }
         }
-        self.clear = self.clear_around([low, high]);
+        self.clear_box = self.clear_box_around([low, high]);
         self.has_left = !self.is_at_start(hull[3]);
     }
 
     /// The largest box around another in which nothing can be met: an object counts with the rim of the rock, and not at
     /// all once it is hit.
-    fn clear_around(&self, [low, high]: [Corner; 2]) -> Option<[Corner; 2]> {
-        let room = |(line, evaluation_line): (usize, &EvaluationLine)| {
+    fn clear_box_around(&self, [low, high]: [Corner; 2]) -> Option<[Corner; 2]> {
+        let distance_m = |(line, evaluation_line): (usize, &EvaluationLine)| {
             let apart_m = evaluation_line.apart_m(low, high);
             if evaluation_line.footprint.is_none() {
                 return apart_m;
             }
-            let is_known = self.found.iter().any(|crossing| crossing.line == line);
-            if is_known { f64::INFINITY } else { apart_m - self.form.rim_m() }
+            let is_recorded = self.found.iter().any(|crossing| crossing.line == line);
+            if is_recorded { f64::INFINITY } else { apart_m - self.geometry.plan_radius_m() }
         };
-        let free_m = KEPT * self.lines.iter().enumerate().map(room).fold(f64::INFINITY, f64::min);
+        let free_m = CLEARANCE_FACTOR
+            * self.lines.iter().enumerate().map(distance_m).fold(f64::INFINITY, f64::min);
         let grown = [low.map(|at| at - free_m), high.map(|at| at + free_m)];
         (free_m > 0.0).then_some(grown)
     }
@@ -222,8 +234,8 @@ impl<'a> Crossings<'a> {
     /// Records a crossing, or counts it where the rock has crossed this line before: only the first is kept in full.
     ///
     /// A rock that has fallen through a hole of the mesh and is under the slope has left the terrain: it crosses nothing.
-    fn note(&mut self, line: usize, (instant, along_m): (RockInstant, f64), times: u32) {
-        let (terrain, form) = (self.terrain, self.form);
+    fn record(&mut self, line: usize, (instant, along_m): (RockInstant, f64), times: u32) {
+        let (terrain, geometry) = (self.terrain, self.geometry);
         let centre = instant.motion.position_m;
         if let Some(known) = self.found.iter_mut().find(|crossing| crossing.line == line) {
             known.times += if terrain.is_under_slope(&centre) { 0 } else { times };
@@ -239,12 +251,12 @@ impl<'a> Crossings<'a> {
         // steep slope the second is the clearance a net must have.
         let (height_m, height_normal_m) = below.map_or((f64::NAN, f64::NAN), |(ground, normal)| {
             let over = centre.z - ground;
-            let near = over * normal.z.abs() - form.reach_m(&instant, &-up(normal));
-            (over - form.below_m(&instant), near)
+            let near = over * normal.z.abs() - geometry.support_m(&instant, &-up(normal));
+            (over - geometry.depth_below_centre_m(&instant), near)
         });
-        let over = |(ground, _)| centre.z - ground + form.reach_m(&instant, &Vec3::z());
-        let top_m = form.block.map(|_| below.map_or(f64::NAN, over));
-        let rotational_j = form.rotational_j(&instant);
+        let over = |(ground, _)| centre.z - ground + geometry.support_m(&instant, &Vec3::z());
+        let top_m = geometry.block.map(|_| below.map_or(f64::NAN, over));
+        let rotational_j = geometry.rotational_j(&instant);
         let RockInstant { motion, .. } = instant;
         self.found.push(Crossing {
             line,
@@ -274,7 +286,7 @@ type WayShares = ArrayVec<f64, 3>;
 
 /// Where a way meets a piece of a line.
 #[derive(Debug)]
-struct LineMeeting {
+struct LineIntersection {
     /// Share of the way (–).
     s: f64,
     /// Along the line (m).
@@ -283,7 +295,7 @@ struct LineMeeting {
     corner_m: Option<Corner>,
 }
 
-impl LineMeeting {
+impl LineIntersection {
     /// With a piece that is met at `at_m` after a share `s` of the way; none beyond its ends.
     fn of(piece: &LinePiece, s: f64, at_m: Corner) -> Option<Self> {
         let length_m = piece.length_m();
@@ -308,34 +320,36 @@ impl LineMeeting {
     }
 }
 
-/// Writes over `met` where a way meets a line, in the order of the way: a line may be met several times, at a corner once.
-fn meetings(
+/// Writes over `intersections` where a way meets a line, in the order of the way: a line may be met several times, at a corner once.
+fn intersect_line(
     line: &EvaluationLine,
     when: impl Fn(&LinePiece) -> WayShares,
     at_m: impl Fn(f64) -> Corner,
-    met: &mut Vec<LineMeeting>,
+    intersections: &mut Vec<LineIntersection>,
 ) {
-    met.clear();
+    intersections.clear();
     for piece in &line.pieces {
-        met.extend(when(piece).into_iter().filter_map(|s| LineMeeting::of(piece, s, at_m(s))));
+        intersections.extend(
+            when(piece).into_iter().filter_map(|s| LineIntersection::of(piece, s, at_m(s))),
+        );
     }
     // at one share of the way, in the order of the line
-    met.sort_unstable_by(|one, other| {
+    intersections.sort_unstable_by(|one, other| {
         one.s.total_cmp(&other.s).then(one.along_m.total_cmp(&other.along_m))
     });
-    met.dedup_by(|next, kept| next.is_at_corner_of(kept));
+    intersections.dedup_by(|next, kept| next.is_at_corner_of(kept));
 }
 
 /// Nearer than this (m) touches: a hit is found to 1e-5 m of way, and a rim that comes no deeper over an object than 1e-9 m may be missed.
 const TOUCH_M: f64 = 1e-6;
 /// Shortest way that is gone over at a time (m).
-const SHORTEST_M: f64 = 1e-5;
+const SHORTEST_ADVANCE_M: f64 = 1e-5;
 
 /// The share of a way inside `hull` at which the rim of a rock first comes over an object, and where along the object.
 ///
 /// The way is gone along by what is free each time (conservative advancement): no place on it is farther from the next
 /// than three times the longest side of the hull allows, so the first touch cannot be jumped over.
-fn enter(
+fn first_touch_of_object(
     (evaluation_line, footprint): (&EvaluationLine, Footprint),
     rim_m: f64,
     hull: [Corner; 4],
@@ -347,18 +361,19 @@ fn enter(
     let fastest_m = 3.0 * hull.windows(2).map(side).fold(0.0, f64::max);
     let mut s = 0.0;
     while s <= 1.0 {
-        let (gap_m, along_m) = evaluation_line.gap_m(footprint, flat(&at(s).motion.position_m));
+        let (gap_m, along_m) =
+            evaluation_line.gap_m(footprint, plan_view(&at(s).motion.position_m));
         let free_m = gap_m - rim_m;
         if free_m <= TOUCH_M {
             return Some((s, along_m));
         }
-        // at least `SHORTEST_M` a time: a way along the object's own edge must come to an end
-        s += free_m.max(SHORTEST_M) / fastest_m;
+        // at least `SHORTEST_ADVANCE_M` a time: a way along the object's own edge must come to an end
+        s += free_m.max(SHORTEST_ADVANCE_M) / fastest_m;
     }
     None
 }
 
 /// The point in plan view.
-fn flat(point: &Vec3) -> Corner {
+fn plan_view(point: &Vec3) -> Corner {
     [point.x, point.y]
 }

@@ -33,13 +33,13 @@ pub(super) struct MeshEnergy {
 
 impl MeshEnergy {
     /// That of trees, or that of the slope.
-    fn of(&self, is_tree: bool) -> f64 {
+    fn on(&self, is_tree: bool) -> f64 {
         if is_tree { self.trees_j } else { self.slope_j }
     }
 
     /// What is left without another.
     #[must_use]
-    pub(super) fn less(&self, other: &Self) -> Self {
+    pub(super) fn minus(&self, other: &Self) -> Self {
         Self { slope_j: self.slope_j - other.slope_j, trees_j: self.trees_j - other.trees_j }
     }
 }
@@ -56,7 +56,7 @@ pub(super) struct PatchOwner {
 /// An impact under way, or one that is just over.
 /// Those just over stay for `SAME_IMPACT_S`, so that a patch that closes again finds its row.
 #[derive(Debug, Clone, Copy)]
-struct InHand {
+struct RecentImpact {
     /// Which of the rock's impacts it is, from 1.
     number: u32,
     owner: PatchOwner,
@@ -67,8 +67,8 @@ struct InHand {
     ///
     /// A patch that holds the rock for good (rolling, rest) would never let go: its impact ends by
     /// time.
-    until_s: f64,
-    over_s: Option<f64>,
+    latest_end_s: f64,
+    ended_s: Option<f64>,
 }
 
 /// The impacts of one rock.
@@ -79,27 +79,27 @@ pub(super) struct Impacts {
     /// How many there were.
     pub(super) count: u32,
     keeps_rows: bool,
-    hand: Hand,
+    recent: RecentImpacts,
 }
 
 /// Those under way, without allocation.
 #[derive(Debug, Clone, Copy, Default)]
-struct Hand {
-    list: [Option<InHand>; MOST],
+struct RecentImpacts {
+    slots: [Option<RecentImpact>; MOST],
     /// What had gone into contacts with the mesh when the first of them began, and what of it into soil (J).
     /// The ledger's sums when the group began: the group's loss is the difference at its end.
-    began_j: (MeshEnergy, f64),
+    start_j: (MeshEnergy, f64),
 }
 
-impl Hand {
+impl RecentImpacts {
     /// A place for one more: a free one, else that of the one which began first, of those that are over if there are any.
     /// Eight places, as a rock keeps eight contacts; more at once cannot be.
-    fn place(&mut self) -> &mut Option<InHand> {
-        let age = |place: &Option<InHand>| {
-            place.as_ref().map(|impact| (impact.over_s.is_none(), impact.number))
+    fn free_slot(&mut self) -> &mut Option<RecentImpact> {
+        let rank = |slot: &Option<RecentImpact>| {
+            slot.as_ref().map(|impact| (impact.ended_s.is_none(), impact.number))
         };
-        let first = (0..MOST).min_by_key(|&k| age(&self.list[k])).unwrap_or(0);
-        &mut self.list[first]
+        let oldest = (0..MOST).min_by_key(|&k| rank(&self.slots[k])).unwrap_or(0);
+        &mut self.slots[oldest]
     }
 }
 
@@ -109,64 +109,70 @@ impl Hand {
 pub(super) struct ImpactsMark {
     rows: usize,
     count: u32,
-    hand: Hand,
+    recent: RecentImpacts,
 }
 
 impl Impacts {
-    pub(super) fn kept_if(keeps_rows: bool) -> Self {
+    pub(super) fn new(keeps_rows: bool) -> Self {
         Self { keeps_rows, ..Self::default() }
     }
 
     pub(super) fn mark(&self) -> ImpactsMark {
-        ImpactsMark { rows: self.rows.len(), count: self.count, hand: self.hand }
+        ImpactsMark { rows: self.rows.len(), count: self.count, recent: self.recent }
     }
 
-    pub(super) fn go_back(&mut self, mark: &ImpactsMark) {
+    pub(super) fn restore(&mut self, mark: &ImpactsMark) {
         self.rows.truncate(mark.rows);
-        (self.count, self.hand) = (mark.count, mark.hand);
+        (self.count, self.recent) = (mark.count, mark.recent);
     }
 
     /// Whether any is under way.
     #[inline]
-    pub(super) fn is_any(&self) -> bool {
-        self.lasting().next().is_some()
+    pub(super) fn is_any_active(&self) -> bool {
+        self.active().next().is_some()
     }
 
-    fn lasting(&self) -> impl Iterator<Item = &InHand> {
-        self.hand.list.iter().flatten().filter(|impact| impact.over_s.is_none())
+    fn active(&self) -> impl Iterator<Item = &RecentImpact> {
+        self.recent.slots.iter().flatten().filter(|impact| impact.ended_s.is_none())
     }
 
-    /// Begins one at `now_s` (s) and `speed_m_s`, to end at `until_s` at the latest, or goes on with that of the same patch;
+    /// Begins one at `now_s` (s) and `speed_m_s`, to end at `latest_end_s` at the latest, or goes on with that of the same patch;
     /// `lost_j` is what has gone into contacts with the mesh so far, and what of it into soil. Returns its number, and whether it is a new one.
     pub(super) fn begin(
         &mut self,
         (struck, owner): (&Struck, PatchOwner),
-        (now_s, until_s): (f64, f64),
+        (now_s, latest_end_s): (f64, f64),
         speed_m_s: f64,
         lost_j: (MeshEnergy, f64),
     ) -> (u32, bool) {
-        if !self.is_any() {
-            self.hand.began_j = lost_j;
+        if !self.is_any_active() {
+            self.recent.start_j = lost_j;
         }
         // a speed of 0 must not leave a group without any share
         let weight = struck.approach_m_s.powi(2).max(f64::MIN_POSITIVE);
         // of the same mesh and with nearly the same normal: a rock that rolls over a seam strikes no
         // second patch
-        let is_same = |impact: &&mut InHand| {
-            impact.over_s.is_some_and(|over_s| now_s - over_s <= SAME_IMPACT_S)
+        let is_same = |impact: &&mut RecentImpact| {
+            impact.ended_s.is_some_and(|ended_s| now_s - ended_s <= SAME_IMPACT_S)
                 && impact.owner == owner
                 && impact.normal.dot(&struck.normal) > SAME_GRIP
         };
-        if let Some(impact) = self.hand.list.iter_mut().flatten().find(is_same) {
+        if let Some(impact) = self.recent.slots.iter_mut().flatten().find(is_same) {
             let number = impact.number;
-            *impact = InHand { normal: struck.normal, weight, until_s, over_s: None, ..*impact };
+            *impact = RecentImpact {
+                normal: struck.normal,
+                weight,
+                latest_end_s,
+                ended_s: None,
+                ..*impact
+            };
             return (number, false);
         }
         self.count += 1;
         let number = self.count;
         let normal = struck.normal;
-        let impact = InHand { number, owner, normal, weight, until_s, over_s: None };
-        *self.hand.place() = Some(impact);
+        let impact = RecentImpact { number, owner, normal, weight, latest_end_s, ended_s: None };
+        *self.recent.free_slot() = Some(impact);
         if self.keeps_rows {
             self.rows.push(Impact {
                 time_s: now_s,
@@ -184,9 +190,9 @@ impl Impacts {
 
     /// Ends, at `now_s` (s) and `speed_m_s`, those whose time is over and those whose patch no longer `holds` the rock.
     pub(super) fn end(&mut self, now_s: f64, speed_m_s: f64, holds: impl Fn(u32) -> bool) {
-        for impact in self.hand.list.iter_mut().flatten() {
-            if impact.over_s.is_none() && (now_s >= impact.until_s || !holds(impact.number)) {
-                impact.over_s = Some(now_s);
+        for impact in self.recent.slots.iter_mut().flatten() {
+            if impact.ended_s.is_none() && (now_s >= impact.latest_end_s || !holds(impact.number)) {
+                impact.ended_s = Some(now_s);
                 if self.keeps_rows {
                     // numbers count from 1, rows from 0
                     self.rows[impact.number as usize - 1].speed_out_m_s = speed_m_s;
@@ -198,39 +204,39 @@ impl Impacts {
     /// Once none is in hand any more, books what they took: `lost_j` has gone into contacts with the mesh so far, springs that
     /// are still pressed not counted, and `soil_j` of it into soil.
     pub(super) fn book(&mut self, (lost_j, soil_j): (MeshEnergy, f64)) {
-        if !self.keeps_rows || self.is_any() {
+        if !self.keeps_rows || self.is_any_active() {
             return;
         }
-        let taken_j = lost_j.less(&self.hand.began_j.0);
+        let taken_j = lost_j.minus(&self.recent.start_j.0);
         for is_tree in [false, true] {
             // never less than nothing: a step may gain what it rounds
-            let taken_j = taken_j.of(is_tree).max(0.0);
+            let taken_j = taken_j.on(is_tree).max(0.0);
             // there is no soil on trees
             let most_soil_j = if is_tree { 0.0 } else { taken_j };
-            self.share(is_tree, taken_j, (soil_j - self.hand.began_j.1).clamp(0.0, most_soil_j));
+            self.share(is_tree, taken_j, (soil_j - self.recent.start_j.1).clamp(0.0, most_soil_j));
         }
     }
 
     /// Shares what trees, or the slope, took among the impacts on them; what a patch took that was not struck is in no row.
     fn share(&mut self, is_tree: bool, taken_j: f64, soil_j: f64) {
-        let own = |impact: &&mut InHand| impact.owner.is_tree == is_tree;
-        let weights = self.hand.list.iter_mut().flatten().filter(own);
-        let whole: f64 = weights.map(|impact| impact.weight).sum();
-        if whole <= 0.0 {
+        let is_on_owner = |impact: &&mut RecentImpact| impact.owner.is_tree == is_tree;
+        let weights = self.recent.slots.iter_mut().flatten().filter(is_on_owner);
+        let weight_sum: f64 = weights.map(|impact| impact.weight).sum();
+        if weight_sum <= 0.0 {
             return;
         }
-        for impact in self.hand.list.iter_mut().flatten().filter(own) {
+        for impact in self.recent.slots.iter_mut().flatten().filter(is_on_owner) {
             let row = &mut self.rows[impact.number as usize - 1];
-            row.energy_lost_j += taken_j * impact.weight / whole;
-            row.soil_j += soil_j * impact.weight / whole;
+            row.energy_lost_j += taken_j * impact.weight / weight_sum;
+            row.soil_j += soil_j * impact.weight / weight_sum;
             impact.weight = 0.0;
         }
     }
 
     /// What strikes from now on is another impact, wherever it strikes.
-    pub(super) fn forget_last(&mut self) {
-        for place in &mut self.hand.list {
-            place.take_if(|impact| impact.over_s.is_some());
+    pub(super) fn forget_ended(&mut self) {
+        for slot in &mut self.recent.slots {
+            slot.take_if(|impact| impact.ended_s.is_some());
         }
     }
 }

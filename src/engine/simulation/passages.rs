@@ -7,13 +7,13 @@
 /// One rock in one place.
 pub(super) trait Passage: Copy {
     /// Number of the place.
-    fn place(&self) -> u32;
+    fn place_number(&self) -> u32;
 
     /// Largest height in it (m).
     fn height_m(&self) -> f64;
 
     /// Takes the larger values of another passage of the same place.
-    fn join(&mut self, other: &Self);
+    fn merge(&mut self, other: &Self);
 }
 
 /// The passages of one rock so far.
@@ -31,7 +31,7 @@ impl<T: Passage> Passages<T> {
 
     /// The largest height so far (m) in the place where the rock is, if it is this one: lower ones need no search.
     pub(super) fn known_m(&self, place: u32) -> Option<f64> {
-        self.last().filter(|last| last.place() == place).map(T::height_m)
+        self.last().filter(|last| last.place_number() == place).map(T::height_m)
     }
 
     /// How many there are so far, and the last, which the next may join.
@@ -41,7 +41,7 @@ impl<T: Passage> Passages<T> {
     }
 
     /// Goes back to a mark.
-    pub(super) fn go_back(&mut self, (count, last): (usize, Option<T>)) {
+    pub(super) fn restore(&mut self, (count, last): (usize, Option<T>)) {
         self.0.truncate(count);
         if let (Some(now), Some(last)) = (self.0.last_mut(), last) {
             *now = last;
@@ -50,8 +50,8 @@ impl<T: Passage> Passages<T> {
 
     /// Adds to the last if that is in the same place: most steps stay in theirs.
     pub(super) fn add(&mut self, passage: T) {
-        match self.0.last_mut().filter(|last| last.place() == passage.place()) {
-            Some(last) => last.join(&passage),
+        match self.0.last_mut().filter(|last| last.place_number() == passage.place_number()) {
+            Some(last) => last.merge(&passage),
             None => self.0.push(passage),
         }
     }
@@ -59,11 +59,11 @@ impl<T: Passage> Passages<T> {
     /// One entry a place, in the order of places.
     /// A stable sort, so joining does not depend on anything but the order in which the rock went.
     pub(super) fn into_found(mut self) -> Vec<T> {
-        self.0.sort_by_key(Passage::place);
+        self.0.sort_by_key(Passage::place_number);
         self.0.dedup_by(|next, kept| {
-            let same = next.place() == kept.place();
+            let same = next.place_number() == kept.place_number();
             if same {
-                kept.join(next);
+                kept.merge(next);
             }
             same
         });

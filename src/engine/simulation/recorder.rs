@@ -9,9 +9,9 @@ mod booking;
 use super::cells::{CellPassage, CellPassages};
 use super::contact_heights::{StepHeights, TriangleBelow};
 use super::crossings::{Crossings, CrossingsMark};
-use super::form::{AttitudeOnWay, Form, RockFlight, RockInstant, Turned};
 use super::heights::Heights;
 use super::impacts::{Impacts, ImpactsMark};
+use super::rock_geometry::{AttitudePath, BlockRotation, RockFlight, RockGeometry, RockInstant};
 use super::stretches::{Stretch, Stretches};
 use super::{Effort, Extremes, Ledger, PathPoint, PathState, Stop, Trajectory};
 use crate::flight::Parabola;
@@ -23,7 +23,7 @@ use crate::terrain::Terrain;
 
 /// What to keep of a rock's way.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Keep {
+pub struct RecordOptions {
     /// Time between stored path points (s); `None` keeps no path.
     pub path_step_s: Option<f64>,
     /// Whether the impacts are stored one by one.
@@ -35,11 +35,11 @@ pub struct Keep {
 #[derive(Debug)]
 pub(super) struct Recorder<'a> {
     terrain: &'a Terrain,
-    form: Form<'a>,
-    keep: Keep,
+    geometry: RockGeometry<'a>,
+    keep: RecordOptions,
     pub(super) now: Motion,
     /// How a block is turned now; none for a sphere.
-    pub(super) turned: Option<Turned>,
+    pub(super) rotation: Option<BlockRotation>,
     pub(super) extremes: Extremes,
     pub(super) path: Vec<PathPoint>,
     pub(super) impacts: Impacts,
@@ -47,7 +47,7 @@ pub(super) struct Recorder<'a> {
     pub(super) passages: CellPassages<'a>,
     stretches: Stretches,
     /// Only spares searches: it is not put back.
-    below: TriangleBelow,
+    triangle_below: TriangleBelow,
     pub(super) tree_impact_count: u32,
     pub(super) ledger: Ledger,
     pub(super) effort: Effort,
@@ -59,7 +59,7 @@ pub(super) struct Recorder<'a> {
 #[derive(Debug)]
 pub(super) struct RecorderMark {
     now: Motion,
-    turned: Option<Turned>,
+    rotation: Option<BlockRotation>,
     extremes: Extremes,
     path: usize,
     impacts: ImpactsMark,
@@ -77,23 +77,23 @@ const CLOCK_ROUNDING: f64 = 1e-9;
 impl<'a> Recorder<'a> {
     pub(super) fn new(
         terrain: &'a Terrain,
-        form: Form<'a>,
-        (start, turned): (Motion, Option<Turned>),
-        (keep, recorders): (Keep, Recorders<'a>),
+        geometry: RockGeometry<'a>,
+        (start, rotation): (Motion, Option<BlockRotation>),
+        (keep, recorders): (RecordOptions, Recorders<'a>),
     ) -> Self {
         let mut recorder = Self {
             terrain,
-            form,
+            geometry,
             keep,
             now: start,
-            turned,
+            rotation,
             extremes: Extremes::default(),
             path: Vec::new(),
-            impacts: Impacts::kept_if(keep.impacts),
-            crossings: Crossings::of(terrain, form, recorders.lines, &start.position_m),
+            impacts: Impacts::new(keep.impacts),
+            crossings: Crossings::of(terrain, geometry, recorders.lines, &start.position_m),
             passages: CellPassages::of(recorders.cells),
             stretches: Stretches::of(recorders.profile_step_m, &start),
-            below: TriangleBelow::default(),
+            triangle_below: TriangleBelow::default(),
             tree_impact_count: 0,
             ledger: Ledger::default(),
             effort: Effort::default(),
@@ -112,7 +112,7 @@ impl<'a> Recorder<'a> {
     pub(super) fn mark(&self) -> RecorderMark {
         RecorderMark {
             now: self.now,
-            turned: self.turned,
+            rotation: self.rotation,
             extremes: self.extremes,
             path: self.path.len(),
             impacts: self.impacts.mark(),
@@ -127,14 +127,14 @@ impl<'a> Recorder<'a> {
 
     /// Goes back to `mark`; what was tried in vain was work all the same.
     /// `effort` is not put back.
-    pub(super) fn go_back(&mut self, mark: &RecorderMark) {
+    pub(super) fn restore(&mut self, mark: &RecorderMark) {
         (self.now, self.extremes, self.ledger) = (mark.now, mark.extremes, mark.ledger);
-        self.turned = mark.turned;
+        self.rotation = mark.rotation;
         self.path.truncate(mark.path);
-        self.impacts.go_back(&mark.impacts);
-        self.crossings.go_back(&mark.crossings);
-        self.passages.found.go_back(mark.passages);
-        self.stretches.found.go_back(mark.stretches);
+        self.impacts.restore(&mark.impacts);
+        self.crossings.restore(&mark.crossings);
+        self.passages.found.restore(mark.passages);
+        self.stretches.found.restore(mark.stretches);
         (self.tree_impact_count, self.next_point_s) = (mark.tree_impact_count, mark.next_point_s);
     }
 
@@ -143,24 +143,24 @@ impl<'a> Recorder<'a> {
     /// Called at both ends of every flight and step: speed and energy along a parabola are largest
     /// at an end, and contact steps are short.
     fn note_speed(&mut self) {
-        let one = self.now.translational_j(&self.form.rock);
-        let two = self.form.rotational_j(&self.instant());
-        let most = &mut self.extremes;
-        most.speed_m_s = most.speed_m_s.max(self.now.velocity_m_s.norm());
-        most.translational_j = most.translational_j.max(one);
-        most.rotational_j = most.rotational_j.max(two);
-        most.total_j = most.total_j.max(one + two);
+        let translational_j = self.now.translational_j(&self.geometry.rock);
+        let rotational_j = self.geometry.rotational_j(&self.instant());
+        let extremes = &mut self.extremes;
+        extremes.speed_m_s = extremes.speed_m_s.max(self.now.velocity_m_s.norm());
+        extremes.translational_j = extremes.translational_j.max(translational_j);
+        extremes.rotational_j = extremes.rotational_j.max(rotational_j);
+        extremes.total_j = extremes.total_j.max(translational_j + rotational_j);
     }
 
     /// Goes on from a blow that took no time: the largest speed may be the one right after it.
-    pub(super) fn go_on_with(&mut self, motion: Motion) {
+    pub(super) fn note_velocity_jump(&mut self, motion: Motion) {
         self.now = motion;
         self.note_speed();
     }
 
     /// Motion and turn as of now.
     fn instant(&self) -> RockInstant {
-        RockInstant { motion: self.now, turned: self.turned }
+        RockInstant { motion: self.now, rotation: self.rotation }
     }
 
     /// Vertical distance from the ground below to the lowest point of the rock (m), negative when
@@ -169,7 +169,7 @@ impl<'a> Recorder<'a> {
         let centre = &at.motion.position_m;
         self.terrain
             .ground_under(centre.x, centre.y, centre.z)
-            .map(|ground| centre.z - self.form.below_m(at) - ground)
+            .map(|ground| centre.z - self.geometry.depth_below_centre_m(at) - ground)
     }
 
     /// Notes a height over the ground (m) and where the rock has it.
@@ -181,14 +181,14 @@ impl<'a> Recorder<'a> {
     }
 
     /// Goes along a flight for `dt` (s); a block turns as `top` does.
-    pub(super) fn fly(&mut self, path: &Parabola, top: Option<&Top>, dt: f64) {
-        let turning = top.map(AttitudeOnWay::Top);
+    pub(super) fn record_flight(&mut self, path: &Parabola, top: Option<&Top>, dt: f64) {
+        let turning = top.map(AttitudePath::Top);
         let flight = RockFlight { start: self.now, path, turning, lasts_s: dt };
         // path points at even times, on the parabola itself
         while self.next_point_s <= flight.start.time_s + dt {
             let instant = flight.at(self.next_point_s - flight.start.time_s);
             let motion = Motion { time_s: self.next_point_s, ..instant.motion };
-            self.point(&RockInstant { motion, ..instant }, PathState::Flight);
+            self.push_path_point(&RockInstant { motion, ..instant }, PathState::Flight);
         }
         // lines, cells and stretches each look at the flight as a whole, not at its points
         self.crossings.fly(&flight);
@@ -196,21 +196,21 @@ impl<'a> Recorder<'a> {
         let end = flight.at(dt);
         // the end is computed as the parabola gives it, so that the touch found there holds to the
         // last digit
-        (self.now, self.turned) = (end.motion, end.turned);
+        (self.now, self.rotation) = (end.motion, end.rotation);
         self.note_speed();
     }
 
     /// Notes the heights along a flight, the cells and the stretches below it.
     fn note_heights(&mut self, flight: &RockFlight) {
-        let form = self.form;
-        let heights = Heights { terrain: self.terrain, form: &form, flight };
-        self.note_largest(&heights);
+        let geometry = self.geometry;
+        let heights = Heights { terrain: self.terrain, geometry: &geometry, flight };
+        self.note_largest_height(&heights);
         self.passages.fly(&heights);
         self.stretches.fly(&heights);
     }
 
     /// Notes the largest height on a way.
-    fn note_largest(&mut self, heights: &Heights) {
+    fn note_largest_height(&mut self, heights: &Heights) {
         let flight = heights.flight;
         if let Some(top) = heights.largest([0.0, flight.lasts_s], self.extremes.height_m) {
             self.note_height(&flight.path.centre(top.time_s), top.height_m);
@@ -222,68 +222,68 @@ impl<'a> Recorder<'a> {
     ///
     /// Energies are those of the ends' velocities: a blow in a step that is hardly any moves a rock by more than its velocity says.
     fn note_step(&mut self, ends @ [from, to]: [&RockInstant; 2], is_off_ground: bool) {
-        let (terrain, form) = (self.terrain, self.form);
+        let (terrain, geometry) = (self.terrain, self.geometry);
         let lasts_s = to.motion.time_s - from.motion.time_s;
-        let path = Parabola::between(&from.motion, &to.motion, form.rim_m());
-        let turns = from.turned.as_ref().zip(to.turned.as_ref());
-        let turning = turns.map(|(from, to)| AttitudeOnWay::Step([from, to]));
+        let path = Parabola::between(&from.motion, &to.motion, geometry.plan_radius_m());
+        let turns = from.rotation.as_ref().zip(to.rotation.as_ref());
+        let turning = turns.map(|(from, to)| AttitudePath::Step([from, to]));
         let flight = RockFlight { start: from.motion, path: &path, turning, lasts_s };
-        let heights = Heights { terrain, form: &form, flight: &flight };
+        let heights = Heights { terrain, geometry: &geometry, flight: &flight };
         let heights = Some(heights).filter(|_| lasts_s > 0.0);
-        let are_counted = self.passages.are_on() || self.stretches.are_on();
-        let most_m = match (are_counted, is_off_ground) {
+        let are_heights_needed = self.passages.are_recorded() || self.stretches.are_recorded();
+        let height_bound_m = match (are_heights_needed, is_off_ground) {
             (false, _) => 0.0,
             (true, true) => f64::INFINITY,
-            (true, false) => self.below.most_m((terrain, &form), ends),
+            (true, false) => self.triangle_below.height_bound_m((terrain, &geometry), ends),
         };
-        let at_step = StepHeights { heights, most_m };
-        self.passages.step((terrain, &form), ends, &at_step);
+        let at_step = StepHeights { heights, height_bound_m };
+        self.passages.step((terrain, &geometry), ends, &at_step);
         self.stretches.step(ends.map(|end| &end.motion), &at_step);
         if let Some(heights) = heights {
-            self.note_largest(&heights);
+            self.note_largest_height(&heights);
         }
     }
 
     /// Goes along one step in contact to `to`.
-    pub(super) fn step(&mut self, to: impl Into<RockInstant>, slides: bool) {
-        self.step_as(to, PathState::in_contact(slides), false);
+    pub(super) fn record_step(&mut self, to: impl Into<RockInstant>, slides: bool) {
+        self.record_step_as(to, PathState::in_contact(slides), false);
     }
 
     /// Stays where it is until `now_s` (s): one step at rest, in which the speed with which a rock fell asleep takes it nowhere.
-    pub(super) fn stay(&mut self, now_s: f64) {
+    pub(super) fn record_rest_until(&mut self, now_s: f64) {
         let before = self.now;
         let still = Vec3::zeros();
         self.now = Motion { velocity_m_s: still, spin_rad_s: still, ..before };
-        self.step_as(Motion { time_s: now_s, ..self.now }, PathState::Sticking, false);
+        self.record_step_as(Motion { time_s: now_s, ..self.now }, PathState::Sticking, false);
         self.now = Motion { time_s: now_s, ..before };
     }
 
     /// Goes along one step in `state` to `to`; off the ground a rock has a height above it, also one that others hold.
-    pub(super) fn step_as(
+    pub(super) fn record_step_as(
         &mut self,
         to: impl Into<RockInstant>,
         state: PathState,
         is_off_ground: bool,
     ) {
         let (from, to) = (self.instant(), to.into());
-        (self.now, self.turned) = (to.motion, to.turned);
+        (self.now, self.rotation) = (to.motion, to.rotation);
         // a step in contact is noted from where it began to where it ended
         self.crossings.step([&from, &to]);
         let (from_s, to_s) = (from.motion.time_s, to.motion.time_s);
         let lasts_s = to_s - from_s;
         while self.next_point_s <= to_s {
             let s = if lasts_s > 0.0 { (self.next_point_s - from_s) / lasts_s } else { 1.0 };
-            let mut at = RockInstant::between([&from, &to], s.clamp(0.0, 1.0));
+            let mut at = RockInstant::interpolated([&from, &to], s.clamp(0.0, 1.0));
             at.motion.time_s = self.next_point_s;
-            self.point(&at, state);
+            self.push_path_point(&at, state);
         }
         self.note_step([&from, &to], is_off_ground);
         self.note_speed();
     }
 
-    fn point(&mut self, at: &RockInstant, state: PathState) {
+    fn push_path_point(&mut self, at: &RockInstant, state: PathState) {
         let clearance_m = self.clearance_m(at).unwrap_or(f64::NAN);
-        let attitude = at.turned.map(|turned| turned.quaternion());
+        let attitude = at.rotation.map(|rotation| rotation.quaternion());
         self.path.push(PathPoint { motion: at.motion, clearance_m, state, attitude });
         self.next_point_s += self.keep.path_step_s.unwrap_or(f64::INFINITY);
     }
@@ -330,7 +330,7 @@ impl<'a> Recorder<'a> {
             // one that was due as the rock ends, but for rounding of the clock, is this one
             let end_s = now.motion.time_s;
             self.path.pop_if(|last| end_s - last.motion.time_s < CLOCK_ROUNDING * end_s);
-            self.point(&now, state);
+            self.push_path_point(&now, state);
         }
     }
 }

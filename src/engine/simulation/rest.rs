@@ -22,34 +22,40 @@ use crate::rock::{Motion, Vec3};
 
 /// Growth of the mean speed from one half of the rule's time to the next that is no growth (–, relative to the rule's
 /// speed): rounding and the last creep of a heap.
-const GROWTH: f64 = 0.01;
+const SPEED_GROWTH: f64 = 0.01;
 /// Change of the mean velocity from one half of the rule's time to the next that is still rest (–, relative to the rule's
 /// speed): with the usual rule 0.013 m/s², what a ball has that rolls on 0.1° without rolling friction.
-const TURNS: f64 = 0.1;
+const VELOCITY_CHANGE: f64 = 0.1;
 
 /// Shortest step that is asked for to end with a half of the rule's time (–, relative to that time): what rounding leaves
 /// of a half must not become a step of no length.
-const SHORTEST: f64 = 0.01;
+const SHORTEST_STEP: f64 = 0.01;
 
 /// How calm one rock has been.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct RestCriterion {
     /// Centre when the current half began (m).
-    from_m: Vec3,
+    half_start_m: Vec3,
     /// How far its surface has turned since (m).
-    turned_m: Vec3,
+    rim_displacement_m: Vec3,
     /// How long that is ago (s).
-    half_s: f64,
+    half_elapsed_s: f64,
     /// Mean speed over the half before, and mean velocity of the centre (m/s).
-    before_m_s: Option<(f64, Vec3)>,
-    rests: bool,
+    previous_half_m_s: Option<(f64, Vec3)>,
+    is_at_rest: bool,
 }
 
 impl RestCriterion {
     /// Of a rock that has just been moving.
-    pub(super) fn from(position_m: Vec3) -> Self {
-        let turned_m = Vec3::zeros();
-        Self { from_m: position_m, turned_m, half_s: 0.0, before_m_s: None, rests: false }
+    pub(super) fn new(position_m: Vec3) -> Self {
+        let rim_displacement_m = Vec3::zeros();
+        Self {
+            half_start_m: position_m,
+            rim_displacement_m,
+            half_elapsed_s: 0.0,
+            previous_half_m_s: None,
+            is_at_rest: false,
+        }
     }
 
     /// The longest step (s) from `now` of a rock of this radius (m): to the end of the half that is on.
@@ -57,11 +63,11 @@ impl RestCriterion {
         if !is_slow(now, radius_m, rule) {
             return f64::INFINITY;
         }
-        (0.5 * rule.time_s - self.half_s).max(SHORTEST * rule.time_s)
+        (0.5 * rule.time_s - self.half_elapsed_s).max(SHORTEST_STEP * rule.time_s)
     }
 
     /// Notes a step of `dt` (s) between two instants, of a rock of this radius (m).
-    pub(super) fn note(
+    pub(super) fn add_step(
         &mut self,
         dt: f64,
         [from, to]: [&Motion; 2],
@@ -70,28 +76,30 @@ impl RestCriterion {
     ) {
         // too fast, or only now slow: the clock starts again from here
         if ![from, to].iter().all(|motion| is_slow(motion, radius_m, rule)) {
-            *self = Self::from(to.position_m);
+            *self = Self::new(to.position_m);
             return;
         }
-        self.half_s += dt;
-        self.turned_m += to.spin_rad_s * (radius_m * dt);
+        self.half_elapsed_s += dt;
+        self.rim_displacement_m += to.spin_rad_s * (radius_m * dt);
         // half of the rule's time is over: its mean speed is compared with that of the half before
-        if self.half_s >= 0.5 * rule.time_s {
-            let by_time = 1.0 / self.half_s.max(f64::MIN_POSITIVE);
-            let velocity_m_s = (to.position_m - self.from_m) * by_time;
-            let mean_m_s = velocity_m_s.norm().max(self.turned_m.norm() * by_time);
-            let rests = self.before_m_s.is_some_and(|(speed_before, velocity_before)| {
-                mean_m_s <= speed_before + GROWTH * rule.speed_m_s
-                    && (velocity_m_s - velocity_before).norm() <= TURNS * rule.speed_m_s
-            });
-            let before_m_s = Some((mean_m_s, velocity_m_s));
-            *self = Self { before_m_s, rests, ..Self::from(to.position_m) };
+        if self.half_elapsed_s >= 0.5 * rule.time_s {
+            let per_time = 1.0 / self.half_elapsed_s.max(f64::MIN_POSITIVE);
+            let velocity_m_s = (to.position_m - self.half_start_m) * per_time;
+            let mean_m_s = velocity_m_s.norm().max(self.rim_displacement_m.norm() * per_time);
+            let is_at_rest =
+                self.previous_half_m_s.is_some_and(|(previous_speed, previous_velocity)| {
+                    mean_m_s <= previous_speed + SPEED_GROWTH * rule.speed_m_s
+                        && (velocity_m_s - previous_velocity).norm()
+                            <= VELOCITY_CHANGE * rule.speed_m_s
+                });
+            let previous_half_m_s = Some((mean_m_s, velocity_m_s));
+            *self = Self { previous_half_m_s, is_at_rest, ..Self::new(to.position_m) };
         }
     }
 
     /// Whether it was slow for the rule's time, did not get faster and did not turn round.
-    pub(super) fn rests(&self) -> bool {
-        self.rests
+    pub(super) fn is_at_rest(&self) -> bool {
+        self.is_at_rest
     }
 }
 
@@ -119,14 +127,14 @@ mod tests {
             spin_rad_s: still,
         };
         let mut now = at(0.0, 0.0);
-        let mut calm = RestCriterion::from(still);
+        let mut criterion = RestCriterion::new(still);
         while now.time_s < 1.0 {
-            let dt = most_s.min(calm.longest_s(&now, 0.5, &RULE));
+            let dt = most_s.min(criterion.longest_s(&now, 0.5, &RULE));
             let middle_s = now.time_s + 0.5 * dt;
             let to = at(now.time_s + dt, now.position_m.x + v(middle_s) * dt);
-            calm.note(dt, [&now, &to], 0.5, &RULE);
+            criterion.add_step(dt, [&now, &to], 0.5, &RULE);
             now = to;
-            if calm.rests() {
+            if criterion.is_at_rest() {
                 return Some(now.time_s);
             }
         }
@@ -185,7 +193,7 @@ mod tests {
     fn what_spins_ever_faster_on_its_place_does_not_rest() {
         let rests = |spin: fn(f64) -> f64| {
             let still = Vec3::zeros();
-            let mut calm = RestCriterion::from(still);
+            let mut criterion = RestCriterion::new(still);
             let at = |time_s: f64| Motion {
                 time_s,
                 position_m: still,
@@ -193,8 +201,8 @@ mod tests {
                 spin_rad_s: Vec3::z() * spin(time_s),
             };
             (0..1000).map(|k| 1e-3 * f64::from(k)).any(|time_s| {
-                calm.note(1e-3, [&at(time_s), &at(time_s + 1e-3)], 0.5, &RULE);
-                calm.rests()
+                criterion.add_step(1e-3, [&at(time_s), &at(time_s + 1e-3)], 0.5, &RULE);
+                criterion.is_at_rest()
             })
         };
         assert!(rests(|_| 0.03) && rests(|t| 0.03 - 0.02 * t));

@@ -35,8 +35,8 @@ impl RockInContact<'_, '_> {
     ///
     /// Why the fastest: all contacts that begin at one instant see the same facet of rough ground. Soil and dashpots are those of
     /// every ground that is struck. Speeds are those before the blow.
-    pub(super) fn announce(&mut self) {
-        let Some(fastest) = self.fastest_unannounced() else { return };
+    pub(super) fn begin_impacts(&mut self) {
+        let Some(fastest) = self.fastest_new_contact() else { return };
         let facet = self.next_facet(&fastest);
         // whether a rock rebounds is judged by its approach to the facet
         let to_facet_m_s = facet.map_or(0.0, |(_, approach_m_s)| approach_m_s);
@@ -45,10 +45,10 @@ impl RockInContact<'_, '_> {
         }
         // what contacts that were announced earlier hold in their springs: the new impact must not
         // be charged with it
-        let held_j = self.held_j(|history| history.announced);
-        let until_s = self.recorder.now.time_s + self.impact_time();
+        let held_j = self.spring_energy_j(|history| history.announced);
+        let until_s = self.recorder.now.time_s + self.longest_impact_s();
         self.state.blows.clear();
-        self.announce_all((&fastest, to_facet_m_s), (until_s, &held_j));
+        self.record_new_contacts((&fastest, to_facet_m_s), (until_s, &held_j));
         // The rock is turned instead of the mesh: contact itself stays as it is. What is captured is turned too: the facet
         // takes what it takes.
         if let Some((turn, _)) = facet {
@@ -72,7 +72,7 @@ impl RockInContact<'_, '_> {
     }
 
     /// The fastest of the contacts that have begun.
-    fn fastest_unannounced(&self) -> Option<Blow> {
+    fn fastest_new_contact(&self) -> Option<Blow> {
         let both = self.state.histories.iter().chain(self.state.struck.iter());
         let begun = both.filter(|history| !history.announced).map(|history| Blow {
             approach_m_s: -history.n.dot(&self.recorder.now.velocity_m_s),
@@ -84,7 +84,7 @@ impl RockInContact<'_, '_> {
 
     /// Notes down the contacts that have begun, the `fastest` by its approach to the facet, and the blows of those that rebound.
     /// One that was captured, or is too slow, is announced but is no impact.
-    fn announce_all(
+    fn record_new_contacts(
         &mut self,
         (fastest, to_facet_m_s): (&Blow, f64),
         (until_s, held_j): (f64, &MeshEnergy),
@@ -107,8 +107,9 @@ impl RockInContact<'_, '_> {
             history.impact = if approach_m_s < world.law(history.triangle).capture_m_s {
                 0
             } else {
-                let of = (history.feature, history.triangle);
-                let struck = Struck::by_ball((c, world.body.radius), &history.n, of, approach_m_s);
+                let place = (history.feature, history.triangle);
+                let struck =
+                    Struck::by_ball((c, world.body.radius), &history.n, place, approach_m_s);
                 recorder.begin_impact(&struck, until_s, held_j)
             };
         }
@@ -138,13 +139,13 @@ impl RockInContact<'_, '_> {
         let note = |state: &ContactState, touch: &ContactPoint, (loss, is_new): (&Loss, bool)| {
             let approach_m_s = -touch.normal.dot(&state.v);
             if is_new && approach_m_s >= world.law(touch.triangle).capture_m_s {
-                let of = (touch.feature, touch.triangle);
+                let place = (touch.feature, touch.triangle);
                 let at = (&state.c, world.body.radius);
-                let struck = Struck::by_ball(at, &touch.normal, of, approach_m_s);
+                let struck = Struck::by_ball(at, &touch.normal, place, approach_m_s);
                 let now_s = recorder.now.time_s;
                 recorder.begin_impact(&struck, now_s, &MeshEnergy::default());
             }
-            recorder.pay(loss);
+            recorder.book_losses(loss);
         };
         state.break_stems(world, note);
         // what the stems took is booked: the step begins with what they left
@@ -159,8 +160,8 @@ impl RockInContact<'_, '_> {
         if self.state.facets.is_any_met() {
             return;
         }
-        let rests = |history: &&mut ContactHistory| history.closed && history.announced;
-        let pressed = self.state.histories.iter_mut().filter(rests);
+        let is_persistent = |history: &&mut ContactHistory| history.closed && history.announced;
+        let pressed = self.state.histories.iter_mut().filter(is_persistent);
         let Some(history) =
             // the contact that carries the most load feels the facet
             pressed.max_by(|one, other| one.normal_force.total_cmp(&other.normal_force))
@@ -171,7 +172,7 @@ impl RockInContact<'_, '_> {
             Meeting { n: history.n, triangle: history.triangle, c: self.state.c, v: self.state.v };
         if self.state.facets.meet_next(&self.world, &at) {
             history.announced = false;
-            self.announce();
+            self.begin_impacts();
             // its blow is announced herewith
             self.state.is_struck |= self.state.facets.is_any_met();
         }
@@ -179,7 +180,7 @@ impl RockInContact<'_, '_> {
 
     /// The longest an impact is taken to last (s): in the rigid limit no time at all.
     /// `3 π/ω` of the softest contact.
-    fn impact_time(&self) -> f64 {
+    fn longest_impact_s(&self) -> f64 {
         if !self.has_springs {
             return 0.0;
         }
@@ -199,7 +200,7 @@ impl RockInContact<'_, '_> {
         let (histories, has_springs) = (&self.state.histories, self.has_springs);
         let lasts = |number| !has_springs || histories.iter().any(|one| one.impact == number);
         if self.recorder.end_impacts(lasts) {
-            let held_j = self.held_j(|_| true);
+            let held_j = self.spring_energy_j(|_| true);
             self.recorder.book_impacts(&held_j);
         }
         if self.state.facets.is_met(self.state.is_free(), self.recorder.now.time_s) {
@@ -208,21 +209,21 @@ impl RockInContact<'_, '_> {
     }
 
     /// Energy in the springs of the contacts that `count` (J).
-    fn held_j(&mut self, count: impl Fn(&ContactHistory) -> bool) -> MeshEnergy {
+    fn spring_energy_j(&mut self, counts: impl Fn(&ContactHistory) -> bool) -> MeshEnergy {
         if !self.has_springs {
             return MeshEnergy::default();
         }
         let Self { world, state, .. } = self;
         let is_tree = |history: &ContactHistory| world.terrain.is_tree(history.triangle);
-        let trees_j = state.held_j(world, |history| count(history) && is_tree(history));
-        MeshEnergy { slope_j: state.held_j(world, count) - trees_j, trees_j }
+        let trees_j = state.held_j(world, |history| counts(history) && is_tree(history));
+        MeshEnergy { slope_j: state.held_j(world, counts) - trees_j, trees_j }
     }
 
     /// Turns the rock back, if it is turned.
     pub(super) fn leave_facet(&mut self) {
         if let Some(turn) = self.state.turn_back(&self.world) {
             // a rebound into the mean surface is the next impact
-            self.recorder.impacts.forget_last();
+            self.recorder.impacts.forget_ended();
             // turned, not taken from the state: a step that is not noted yet has changed its speed
             self.recorder.now.turn(&turn);
         }

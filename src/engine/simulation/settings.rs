@@ -57,7 +57,11 @@ impl<'a> RunSettings<'a> {
     }
 
     /// What a rock meets, with these laws of the grounds.
-    pub(super) fn around<'w>(&self, body: Body, laws: &'w [Law]) -> ContactEnvironment<'w>
+    pub(super) fn contact_environment<'w>(
+        &self,
+        body: Body,
+        laws: &'w [Law],
+    ) -> ContactEnvironment<'w>
     where
         'a: 'w,
     {

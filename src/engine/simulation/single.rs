@@ -1,10 +1,10 @@
 //! One rock for itself: its laws, the work space of its thread, and whether it is a sphere or a block.
 
 use super::Trajectory;
-use super::block::follow_block;
-use super::fall::follow_sphere;
-use super::recorder::Keep;
+use super::block::run_block;
+use super::recorder::RecordOptions;
 use super::settings::RunSettings;
+use super::sphere::run_sphere;
 use crate::error::Result;
 use crate::ground::{Damping, Law};
 use crate::plan::{PATH_STEP_S, Part, Plan};
@@ -72,26 +72,26 @@ impl Scratch {
 pub fn simulate(
     settings: &RunSettings,
     release: &Release,
-    keep: Keep,
+    keep: RecordOptions,
     random: RandomStream,
     scratch: &mut Scratch,
 ) -> Trajectory {
     scratch.make_laws(release, settings, false);
     let Scratch { state, scars, slip, laws, .. } = scratch;
-    follow_sphere(settings, release, keep, (laws, random), (state, scars, slip))
+    run_sphere(settings, release, keep, (laws, random), (state, scars, slip))
 }
 
 /// The same for a block.
 pub fn simulate_block(
     settings: &RunSettings,
     (release, drawn): (&Release, &DrawnShape),
-    keep: Keep,
+    keep: RecordOptions,
     random: RandomStream,
     scratch: &mut Scratch,
 ) -> Trajectory {
     scratch.make_laws(release, settings, true);
     let Scratch { laws, footing, scars, .. } = scratch;
-    follow_block(settings, (release, drawn), keep, (laws, random), (footing, scars))
+    run_block(settings, (release, drawn), keep, (laws, random), (footing, scars))
 }
 
 /// Release `index` of a plan, from release to stop; a path is kept for the plan's first releases and for `paths`.
@@ -113,25 +113,29 @@ pub fn simulate_release(
         Ok(release) => release,
         Err(lost) => return Ok(Trajectory::not_released(index, lost.rock, lost.start, lost.why)),
     };
-    let keep = kept(plan, index, paths);
+    let keep = record_options(plan, index, paths);
     let settings = RunSettings::of(plan);
     let random = stream(plan.seed, Purpose::Impacts, index);
-    let fallen = if let Some(drawn) = plan.releases.block(index, &release.rock) {
+    let trajectory = if let Some(drawn) = plan.releases.block(index, &release.rock) {
         simulate_block(&settings, (&release, &drawn), keep, random, scratch)
     } else {
         simulate(&settings, &release, keep, random, scratch)
     };
-    Ok(Trajectory { index, ..fallen })
+    Ok(Trajectory { index, ..trajectory })
 }
 
 /// What to keep of release `index`: a path for the plan's first releases and for `paths`.
 /// A path that is asked for by number is kept even where the plan leaves paths out.
-pub(super) fn kept(plan: &Plan, index: usize, paths: Option<&Range<usize>>) -> Keep {
-    let wanted = paths.is_some_and(|paths| paths.contains(&index));
+pub(super) fn record_options(
+    plan: &Plan,
+    index: usize,
+    paths: Option<&Range<usize>>,
+) -> RecordOptions {
+    let is_requested = paths.is_some_and(|paths| paths.contains(&index));
     let path_step_s = match &plan.paths {
-        Part::Kept(paths) if wanted || index < paths.first => Some(paths.step_s),
-        Part::LeftOut(_) if wanted => Some(PATH_STEP_S),
+        Part::Kept(paths) if is_requested || index < paths.first => Some(paths.step_s),
+        Part::LeftOut(_) if is_requested => Some(PATH_STEP_S),
         _ => None,
     };
-    Keep { path_step_s, impacts: plan.impacts.is_kept() }
+    RecordOptions { path_step_s, impacts: plan.impacts.is_kept() }
 }

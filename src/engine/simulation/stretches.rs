@@ -4,9 +4,9 @@
 //! passes its own stretch again. They make the profiles of speed and height over distance.
 
 use super::contact_heights::StepHeights;
-use super::form::time_share;
 use super::heights::Heights;
 use super::passages::{Passage, Passages};
+use super::rock_geometry::time_share;
 use crate::math;
 use crate::rock::{Motion, Vec3};
 use crate::scene::Corner;
@@ -28,14 +28,14 @@ pub(super) struct Stretches {
     /// Length of a stretch (m); none where nobody asks.
     step_m: Option<f64>,
     /// Release in plan view (m).
-    from_m: Corner,
+    release_m: Corner,
     pub(super) found: Passages<Stretch>,
 }
 
 impl Stretches {
     pub(super) fn of(step_m: Option<f64>, start: &Motion) -> Self {
         let at = start.position_m;
-        Self { step_m, from_m: [at.x, at.y], found: Passages::new() }
+        Self { step_m, release_m: [at.x, at.y], found: Passages::new() }
     }
 
     /// Notes a place with the speed and the height there.
@@ -46,12 +46,12 @@ impl Stretches {
     }
 
     /// Whether they are noted.
-    pub(super) fn are_on(&self) -> bool {
+    pub(super) fn are_recorded(&self) -> bool {
         self.step_m.is_some()
     }
 
     fn number_at(&self, at: &Vec3, step_m: f64) -> u32 {
-        (math::hypot(at.x - self.from_m[0], at.y - self.from_m[1]) / step_m) as u32
+        (math::hypot(at.x - self.release_m[0], at.y - self.release_m[1]) / step_m) as u32
     }
 
     /// Notes a step in contact, how fast and how high it is: the velocity goes evenly in time from that at its start to that at its end.
@@ -64,17 +64,17 @@ impl Stretches {
         if before.is_none_or(|before| before == number) {
             return self.note_part(number, begins_m_s.max(ends_m_s), (heights, [0.0, 1.0]));
         }
-        let [place, way] = self.seen_from_release([&from.position_m, &to.position_m]);
+        let [place, way] = self.relative_to_release([&from.position_m, &to.position_m]);
         let speed_m_s = |s: f64| from.velocity_m_s.lerp(&to.velocity_m_s, s).norm();
-        walk(place, way, step_m, |number, entered, left| {
+        for_each_stretch(place, way, step_m, |number, entered, left| {
             let [s0, s1] = [entered, left].map(|share| time_share([from, to], share));
             self.note_part(number, speed_m_s(s0).max(speed_m_s(s1)), (heights, [entered, left]));
         });
     }
 
     /// Place in plan view as seen from the release, and way from there, of a straight way between two places (m).
-    fn seen_from_release(&self, [from, to]: [&Vec3; 2]) -> [Corner; 2] {
-        [[from.x - self.from_m[0], from.y - self.from_m[1]], [to.x - from.x, to.y - from.y]]
+    fn relative_to_release(&self, [from, to]: [&Vec3; 2]) -> [Corner; 2] {
+        [[from.x - self.release_m[0], from.y - self.release_m[1]], [to.x - from.x, to.y - from.y]]
     }
 
     /// Notes a part of a way, from one share to another.
@@ -96,17 +96,17 @@ impl Stretches {
         let Some(step_m) = self.step_m else { return };
         let flight = heights.flight;
         let [from, to] = [0.0, flight.lasts_s].map(|t| flight.path.centre(t));
-        let [place, way] = self.seen_from_release([&from, &to]);
-        let heights = StepHeights { heights: Some(*heights), most_m: f64::INFINITY };
+        let [place, way] = self.relative_to_release([&from, &to]);
+        let heights = StepHeights { heights: Some(*heights), height_bound_m: f64::INFINITY };
         let speed_m_s = |share: f64| flight.path.velocity(share * flight.lasts_s).norm();
-        walk(place, way, step_m, |number, s0, s1| {
+        for_each_stretch(place, way, step_m, |number, s0, s1| {
             self.note_part(number, speed_m_s(s0).max(speed_m_s(s1)), (&heights, [s0, s1]));
         });
     }
 }
 
 impl Passage for Stretch {
-    fn place(&self) -> u32 {
+    fn place_number(&self) -> u32 {
         self.number
     }
 
@@ -114,7 +114,7 @@ impl Passage for Stretch {
         self.height_m
     }
 
-    fn join(&mut self, other: &Self) {
+    fn merge(&mut self, other: &Self) {
         self.speed_m_s = self.speed_m_s.max(other.speed_m_s);
         self.height_m = self.height_m.max(other.height_m);
     }
@@ -125,7 +125,7 @@ impl Passage for Stretch {
 ///
 /// Where the ring of radius `r` is met: `a s² + 2 b s + c − r² = 0` with `a = |way|²`, `b =
 /// place·way`, `c = |place|²`.
-fn walk(place: Corner, way: Corner, step_m: f64, mut pass: impl FnMut(u32, f64, f64)) {
+fn for_each_stretch(place: Corner, way: Corner, step_m: f64, mut pass: impl FnMut(u32, f64, f64)) {
     let dot = |a: Corner, b: Corner| a[0] * b[0] + a[1] * b[1];
     let (a, b, c) = (dot(way, way), dot(place, way), dot(place, place));
     let number = |s: f64| {
@@ -163,9 +163,9 @@ fn walk(place: Corner, way: Corner, step_m: f64, mut pass: impl FnMut(u32, f64, 
 mod tests {
     use super::*;
 
-    fn walked(place: Corner, way: Corner) -> Vec<(u32, f64, f64)> {
+    fn passed_stretches(place: Corner, way: Corner) -> Vec<(u32, f64, f64)> {
         let mut passed = Vec::new();
-        walk(place, way, 2.0, |number, from, to| passed.push((number, from, to)));
+        for_each_stretch(place, way, 2.0, |number, from, to| passed.push((number, from, to)));
         passed
     }
 
@@ -173,11 +173,11 @@ mod tests {
     #[test]
     fn a_way_is_cut_where_the_distance_passes_a_stretch() {
         assert_eq!(
-            walked([1.0, 0.0], [4.0, 0.0]),
+            passed_stretches([1.0, 0.0], [4.0, 0.0]),
             [(0, 0.0, 0.25), (1, 0.25, 0.75), (2, 0.75, 1.0)]
         );
-        assert_eq!(walked([3.0, 0.0], [0.0, 0.0]), [(1, 0.0, 1.0)]);
-        let past = walked([-4.0, 3.0], [8.0, 0.0]);
+        assert_eq!(passed_stretches([3.0, 0.0], [0.0, 0.0]), [(1, 0.0, 1.0)]);
+        let past = passed_stretches([-4.0, 3.0], [8.0, 0.0]);
         let numbers: Vec<u32> = past.iter().map(|one| one.0).collect();
         assert_eq!(numbers, [2, 1, 1, 2]);
         // the edge at 4 m is met at x = −√7 and √7

@@ -19,11 +19,11 @@ mod prediction;
 mod heaps;
 mod cached_pairs;
 
-use super::form::Form;
-use super::recorder::{Keep, Recorder};
+use super::recorder::{RecordOptions, Recorder};
 use super::rest::RestCriterion;
+use super::rock_geometry::RockGeometry;
 use super::settings::RunSettings;
-use super::single::kept;
+use super::single::record_options;
 use super::{Stop, Trajectory};
 use crate::contact::pair::{Bond, PairHistory, Strength, between};
 use crate::error::{Error, Result};
@@ -51,11 +51,11 @@ pub struct PairMaterial {
 
 /// Rocks nearer than this at the start touch (–, relative to the smaller radius): coordinates are typed with five or
 /// six digits.
-const TOUCHING: f64 = 1e-4;
+const TOUCH_TOLERANCE: f64 = 1e-4;
 
 /// Dashpots that are kept at hand.
 /// Damping for a restitution is a root search; more different ones than this are sought again.
-const KNOWN: usize = 16;
+const CACHED_DAMPINGS: usize = 16;
 
 /// One rock on its way.
 struct WorldBody<'a> {
@@ -64,28 +64,28 @@ struct WorldBody<'a> {
     state: BodyState,
     /// When its flight ends (s), and how.
     /// None for a rock in contact, and for one that has not looked ahead yet.
-    lands: Option<(f64, Option<Stop>)>,
+    flight_end: Option<(f64, Option<Stop>)>,
     /// Whether it is slow and gets no faster.
-    calm: RestCriterion,
+    rest_criterion: RestCriterion,
     /// Step its last island would have tried next (s).
     ///
     /// Error control goes on from it, so that a rock that changes islands need not begin with the
     /// onset of an impact.
-    h: f64,
+    next_step_s: f64,
     /// Velocity when the window began, and the largest change of it since (m/s).
     /// This is what the prediction of meetings is checked by at the window's end.
-    off: (Vec3, f64),
+    deviation: (Vec3, f64),
     /// By how much its velocity changed when these windows were gone through before (m/s).
-    foreseen_m_s: f64,
+    predicted_dv_m_s: f64,
     /// Speed that the springs which press on it may give it (m/s).
     /// `Σ F/(m ω)`: a spring that holds F gives a mass no more than this when it lets go.
-    pressed_m_s: f64,
+    spring_dv_m_s: f64,
     /// Mechanical energy and what others had got of it at the beginning of the contact episode (J).
-    began_j: (f64, f64),
+    episode_start_j: (f64, f64),
     /// Whether its contacts have no springs: in the rigid limit, and in heaps.
     is_unloaded: bool,
     /// When the step began that blows have been gone through of (s), and the mechanical energy then (J).
-    step_began: Option<(f64, f64)>,
+    step_start: Option<(f64, f64)>,
 }
 
 /// Where a rock is in its story.
@@ -97,7 +97,7 @@ enum BodyState {
     /// No island computes it meanwhile.
     Asleep,
     /// No longer in the world.
-    Gone(Stop),
+    Removed(Stop),
 }
 
 /// All releases of a plan whose rocks share one world, in order; `None` if `stop` was raised before the end. A path is
@@ -116,11 +116,11 @@ pub fn simulate_releases_together(
     let releases = plan.world()?;
     let none = Strength { tensile_pa: 0.0, cohesion_pa: 0.0 };
     let strength = if let Part::Kept(strength) = plan.bonds { strength } else { none };
-    let answer = PairMaterial { ground: *ground, strength };
-    let keep = |index| kept(plan, index, paths);
-    let falls =
-        simulate_world(&RunSettings::of(plan), &releases, &answer, keep, Observer::silent(stop));
-    Ok(falls.map(|(falls, _)| falls))
+    let material = PairMaterial { ground: *ground, strength };
+    let keep = |index| record_options(plan, index, paths);
+    let trajectories =
+        simulate_world(&RunSettings::of(plan), &releases, &material, keep, Observer::silent(stop));
+    Ok(trajectories.map(|(trajectories, _)| trajectories))
 }
 
 /// Who asks for a world: told of it window by window, and free to end it.
@@ -146,7 +146,7 @@ pub fn simulate_world(
     settings: &RunSettings,
     releases: &[Release],
     material: &PairMaterial,
-    keep: impl Fn(usize) -> Keep,
+    keep: impl Fn(usize) -> RecordOptions,
     Observer { stop, observe }: Observer<impl FnMut(f64, &WorldStats)>,
 ) -> Option<(Vec<Trajectory>, WorldStats)> {
     // Most scenes give all rocks the same ground: its dashpot is sought once.
@@ -155,7 +155,7 @@ pub fn simulate_world(
         let found = known.iter().find(|one| one.restitution == restitution).copied();
         found.unwrap_or_else(|| {
             known.insert(0, Damping::of(restitution));
-            known.truncate(KNOWN);
+            known.truncate(CACHED_DAMPINGS);
             known[0]
         })
     };
@@ -163,7 +163,7 @@ pub fn simulate_world(
         .iter()
         .enumerate()
         .map(|(k, release)| {
-            let mut body = body(settings, release, keep(k), &mut damping);
+            let mut body = new_body(settings, release, keep(k), &mut damping);
             let random = stream(settings.seed, Purpose::Impacts, k);
             let state = &mut body.member.state;
             state.stem_load.raise(settings.terrain, &random, &mut state.near.gone);
@@ -182,10 +182,10 @@ pub fn simulate_world(
 }
 
 /// One rock at its release: springs at rest, flying until its island says otherwise.
-fn body<'a>(
+fn new_body<'a>(
     settings: &RunSettings<'a>,
     release: &Release,
-    keep: Keep,
+    keep: RecordOptions,
     damping: &mut impl FnMut(Option<f64>) -> Damping,
 ) -> WorldBody<'a> {
     let laws = release.grounds.iter().map(|ground| {
@@ -198,34 +198,34 @@ fn body<'a>(
         member: BodySlot::new(IslandBody::new(body, laws.collect(), start)),
         recorder: Recorder::new(
             settings.terrain,
-            Form { rock: release.rock, block: None },
+            RockGeometry { rock: release.rock, block: None },
             (motion, None),
             (keep, settings.recorders),
         ),
         state: BodyState::Moving,
-        lands: None,
-        calm: RestCriterion::from(motion.position_m),
-        h: f64::INFINITY,
-        off: (Vec3::zeros(), 0.0),
-        foreseen_m_s: 0.0,
-        pressed_m_s: 0.0,
+        flight_end: None,
+        rest_criterion: RestCriterion::new(motion.position_m),
+        next_step_s: f64::INFINITY,
+        deviation: (Vec3::zeros(), 0.0),
+        predicted_dv_m_s: 0.0,
+        spring_dv_m_s: 0.0,
         is_unloaded: !settings.step.scheme.has_springs(),
-        began_j: (0.0, 0.0),
-        step_began: None,
+        episode_start_j: (0.0, 0.0),
+        step_start: None,
     }
 }
 
 /// The contact law of two rocks.
 /// Reduced mass, and the smaller radius as the lever of rolling friction.
-fn law_between(a: &Body, b: &Body, answer: &(Ground, Damping), capture: &Capture) -> Law {
+fn law_between(a: &Body, b: &Body, material: &(Ground, Damping), capture: &Capture) -> Law {
     let mass = a.reduced_mass_with(b);
-    Law::of_mass(&answer.0, &answer.1, (mass, a.radius.min(b.radius)), capture)
+    Law::of_mass(&material.0, &material.1, (mass, a.radius.min(b.radius)), capture)
 }
 
 impl BodyWorld<'_> {
     /// Bonds the rocks that touch at the start; the rigid limit has no springs by which a bond would break, and none.
-    fn bond(&mut self, answer: &PairMaterial) {
-        if !answer.strength.is_some() || self.is_rigid() {
+    fn bond(&mut self, material: &PairMaterial) {
+        if !material.strength.is_some() || self.is_rigid() {
             return;
         }
         // both rocks are in contact from the start: a bonded block begins at rest in itself,
@@ -234,20 +234,20 @@ impl BodyWorld<'_> {
             let [one, two] = [a, b].map(|k| &self.body(k).member);
             let (n, length) = between(&one.state.c, &two.state.c);
             let radius = one.body.radius.min(two.body.radius);
-            let bond = Bond::new(&answer.strength, radius, length);
+            let bond = Bond::new(&material.strength, radius, length);
             let law = self.law(a, b);
-            self.tie(&PairHistory { n, bond: Some(bond), ..PairHistory::new(a, b, law) });
-            self.hold(a);
-            self.hold(b);
+            self.add_pair(&PairHistory { n, bond: Some(bond), ..PairHistory::new(a, b, law) });
+            self.begin_contact_of(a);
+            self.begin_contact_of(b);
         }
     }
 
     /// The journeys, complete.
     pub(super) fn end(self, releases: &[Release]) -> Vec<Trajectory> {
-        let held_j = self.held_by_pairs_j();
+        let held_j = self.pair_spring_energy_j();
         let Self { settings, mut bodies, now_s, .. } = self;
         for (body, held_j) in bodies.iter_mut().flatten().zip(held_j) {
-            body.recorder.hold_for_others(held_j);
+            body.recorder.book_pair_spring_energy(held_j);
         }
         let bodies = bodies.into_iter().flatten().enumerate();
         bodies
@@ -257,7 +257,7 @@ impl BodyWorld<'_> {
     }
 
     /// What springs between rocks hold (J), half of it each rock's. Heaps in the rigid limit have given all of it to the motion.
-    fn held_by_pairs_j(&self) -> Vec<f64> {
+    fn pair_spring_energy_j(&self) -> Vec<f64> {
         let mut held_j = vec![0.0; self.bodies.len()];
         if self.is_rigid() {
             return held_j;

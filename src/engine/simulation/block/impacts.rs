@@ -3,7 +3,7 @@
 
 use super::super::impacts::MeshEnergy;
 use super::super::rock_in_contact::IMPACT_TIMES;
-use super::{Roll, turned};
+use super::{BlockSimulation, rotation};
 use crate::rock::Vec3;
 use crate::solver::block::BlockHistory;
 use crate::solver::law::capture_m_s;
@@ -14,18 +14,18 @@ use crate::solver::struck::Struck;
 use nalgebra::Rotation3;
 use std::f64::consts::PI;
 
-impl Roll<'_> {
+impl BlockSimulation<'_> {
     /// Begins an episode of contact; what its springs hold (J).
-    pub(super) fn begin_contact(&mut self) -> Loss {
+    pub(super) fn begin_springs(&mut self) -> Loss {
         if self.has_springs() {
             let on = (self.block, &self.moving);
             self.footing.begin_springs(&self.world, self.settings.step, on);
         }
-        self.held()
+        self.contact_spring_energy()
     }
 
     /// What springs hold (J).
-    pub(super) fn held(&mut self) -> Loss {
+    pub(super) fn contact_spring_energy(&mut self) -> Loss {
         if self.has_springs() {
             self.footing.springs_j(&self.world, (self.block, &self.moving))
         } else {
@@ -34,7 +34,7 @@ impl Roll<'_> {
     }
 
     /// Ends an episode of contact.
-    pub(super) fn end_contact(&mut self) {
+    pub(super) fn end_springs(&mut self) {
         if self.has_springs() {
             self.recorder.end_all_impacts();
             self.turn_back();
@@ -51,7 +51,7 @@ impl Roll<'_> {
         self.footing.damp_together(&self.world, (self.block, &self.moving));
         let facet = self.next_facet(fastest.triangle, &fastest.n, &fastest.point);
         let until_s = self.recorder.now.time_s + IMPACT_TIMES * PI / self.footing.springs.slowest();
-        let held_j = self.held_j();
+        let held_j = self.spring_energy_j();
         // whether a block rebounds is judged by its approach to the facet
         let capture_m_s = self.world.law(fastest.triangle).capture_m_s;
         let to_facet_m_s = facet.map(|(_, speed)| speed).filter(|speed| *speed >= capture_m_s);
@@ -59,18 +59,18 @@ impl Roll<'_> {
         blows.clear();
         let begin = self.footing.springs.histories.iter().filter(|history| !history.announced);
         for one in begin.filter(|history| to_facet_m_s.is_some() || !history.captured) {
-            blows.push(self.blow_on((one.triangle, one.n), one.approach_m_s));
+            blows.push(self.ground_blow((one.triangle, one.n), one.approach_m_s));
         }
         let histories = &self.footing.springs.histories;
         let mut begun = std::mem::take(&mut self.footing.begun);
         begun.clear();
         begun.extend((0..histories.len()).filter(|k| !histories[*k].announced));
         for k in &begun {
-            self.begin_impact(*k, to_facet_m_s, (until_s, &held_j));
+            self.record_impact(*k, to_facet_m_s, (until_s, &held_j));
         }
         if to_facet_m_s.is_some() || !fastest.captured {
             let facet = facet.map(|(turn, _)| (turn, &fastest));
-            self.dig_and_break(&blows, (&begun, facet), until_s);
+            self.apply_to_soil_and_stems(&blows, (&begun, facet), until_s);
         }
         (self.footing.blows, self.footing.begun) = (blows, begun);
         // what is captured is turned too: the facet takes what it takes
@@ -103,7 +103,7 @@ impl Roll<'_> {
     }
 
     /// Gives the contacts that have begun the dashpots of the speed that soil has left them, and of the facet that the fastest of them meets.
-    fn strike_anew(&mut self, begun: &[usize], facet: Option<(Rotation3<f64>, &BlockHistory)>) {
+    fn reset_dashpots(&mut self, begun: &[usize], facet: Option<(Rotation3<f64>, &BlockHistory)>) {
         let to_facet_m_s = facet
             .map(|(turn, one)| self.meeting(one.triangle, &one.n, &one.point).approach_m_s(&turn));
         for k in begun {
@@ -117,16 +117,16 @@ impl Roll<'_> {
     }
 
     /// What impacts that rebound do to the grounds and to stems; those of contacts that have begun, and the facet that the fastest of them meets.
-    fn dig_and_break(
+    fn apply_to_soil_and_stems(
         &mut self,
         blows: &[GroundBlow],
         (begun, facet): (&[usize], Option<(Rotation3<f64>, &BlockHistory)>),
         until_s: f64,
     ) {
-        self.dig(blows);
+        self.enter_soil(blows);
         // where nothing has changed a contact keeps what it began with
         if facet.is_some() || self.scars.are_any() {
-            self.strike_anew(begun, facet);
+            self.reset_dashpots(begun, facet);
         }
         if self.break_stems() {
             self.footing.springs.refresh();
@@ -135,7 +135,7 @@ impl Roll<'_> {
     }
 
     /// Notes down that contact `k` has begun, if it has not been; on rough ground all rebound with the fastest.
-    fn begin_impact(
+    fn record_impact(
         &mut self,
         k: usize,
         to_facet_m_s: Option<f64>,
@@ -162,14 +162,14 @@ impl Roll<'_> {
     }
 
     /// Ends the impacts that are over, and turns the block back from a facet that is behind it.
-    pub(super) fn leave_impacts(&mut self) {
+    pub(super) fn end_impacts(&mut self) {
         if !self.has_springs() {
             return;
         }
         let springs = &self.footing.springs;
         let lasts = |number| springs.histories.iter().any(|history| history.impact == number);
         if self.recorder.end_impacts(lasts) {
-            let held_j = self.held_j();
+            let held_j = self.spring_energy_j();
             self.recorder.book_impacts(&held_j);
         }
         let now_s = self.recorder.now.time_s;
@@ -180,7 +180,7 @@ impl Roll<'_> {
     }
 
     /// What springs hold.
-    fn held_j(&self) -> MeshEnergy {
+    fn spring_energy_j(&self) -> MeshEnergy {
         let (springs, terrain) = (&self.footing.springs, self.world.terrain);
         let trees_j = springs.held_on_j(|triangle| terrain.is_tree(triangle));
         MeshEnergy { slope_j: springs.held_j() - trees_j, trees_j }
@@ -190,10 +190,10 @@ impl Roll<'_> {
     fn turn_back(&mut self) {
         if self.footing.turn_back(self.block, &mut self.moving) {
             // a rebound into the mean surface is the next impact
-            self.recorder.impacts.forget_last();
+            self.recorder.impacts.forget_ended();
             self.recorder.now.velocity_m_s = self.moving.v;
             self.recorder.now.spin_rad_s = self.moving.spin(self.block);
-            self.recorder.turned = Some(turned(self.block, &self.moving));
+            self.recorder.rotation = Some(rotation(self.block, &self.moving));
         }
     }
 }

@@ -1,4 +1,4 @@
-use super::super::form::{AttitudeOnWay, Turned};
+use super::super::rock_geometry::{AttitudePath, BlockRotation};
 use super::*;
 use crate::body::{Block, Shape, Solid, box_surface, eota};
 use crate::flight::top::Top;
@@ -91,7 +91,7 @@ fn roofs() -> Vec<Facet> {
 struct Flown {
     path: Parabola,
     top: Option<Top>,
-    turns: Option<[Turned; 2]>,
+    turns: Option<[BlockRotation; 2]>,
     lasts_s: f64,
 }
 
@@ -137,7 +137,7 @@ fn thrown(
 
 /// Largest heights of some parts of a flight against the largest of its samples there; how much higher they are (m).
 fn compare(terrain: &Terrain, block: Option<&Block>, flown: &Flown) -> f64 {
-    let form = Form { rock: ROCK, block };
+    let geometry = RockGeometry { rock: ROCK, block };
     let start = Motion {
         time_s: 7.0,
         position_m: flown.path.start,
@@ -145,15 +145,15 @@ fn compare(terrain: &Terrain, block: Option<&Block>, flown: &Flown) -> f64 {
         spin_rad_s: Vec3::zeros(),
     };
     let Flown { path, top, turns, lasts_s } = flown;
-    let step = turns.as_ref().map(|[from, to]| AttitudeOnWay::Step([from, to]));
-    let turning = step.or(top.as_ref().map(AttitudeOnWay::Top));
+    let step = turns.as_ref().map(|[from, to]| AttitudePath::Step([from, to]));
+    let turning = step.or(top.as_ref().map(AttitudePath::Top));
     let flight = RockFlight { start, path, turning, lasts_s: *lasts_s };
-    let heights = Heights { terrain, form: &form, flight: &flight };
+    let heights = Heights { terrain, geometry: &geometry, flight: &flight };
     let sample = |t: f64| {
         let at = flight.at(t);
         let centre = at.motion.position_m;
         let ground = terrain.ground_under(centre.x, centre.y, centre.z)?;
-        Some(centre.z - form.below_m(&at) - ground)
+        Some(centre.z - geometry.depth_below_centre_m(&at) - ground)
     };
     let error_m = if block.is_some() { ERROR_M } else { 0.0 } + ROUNDING_M;
     let mut more_m = 0.0_f64;
@@ -259,8 +259,8 @@ fn no_sample_of_a_step_in_contact_is_higher() {
             UnitQuaternion::new(Vec3::from(axis) * size).to_rotation_matrix()
         };
         let attitude = turn(&mut chance, 6.0);
-        let turned = |attitude| Turned { attitude, rotational_j: 0.0 };
-        let turns = [turned(attitude), turned(turn(&mut chance, 0.35) * attitude)];
+        let rotation = |attitude| BlockRotation { attitude, rotational_j: 0.0 };
+        let turns = [rotation(attitude), rotation(turn(&mut chance, 0.35) * attitude)];
         let lasts_s = flown.lasts_s.min(0.03);
         compare(&terrain, Some(&block), &Flown { top: None, turns: Some(turns), lasts_s, ..flown });
         seen += 1;
@@ -270,11 +270,12 @@ fn no_sample_of_a_step_in_contact_is_higher() {
 /// Of a sphere over a terrain, whose coordinates are those of its facets.
 fn sphere(terrain: &Terrain, path: &Parabola, lasts_s: f64) -> Option<HighPoint> {
     let path = &Parabola { start: path.start - terrain.origin_m, ..*path };
-    let form = Form { rock: ROCK, block: None };
+    let geometry = RockGeometry { rock: ROCK, block: None };
     let (position_m, velocity_m_s) = (path.start, path.velocity);
     let start = Motion { time_s: 0.0, position_m, velocity_m_s, spin_rad_s: Vec3::zeros() };
     let flight = RockFlight { start, path, turning: None, lasts_s };
-    Heights { terrain, form: &form, flight: &flight }.largest([0.0, lasts_s], f64::NEG_INFINITY)
+    Heights { terrain, geometry: &geometry, flight: &flight }
+        .largest([0.0, lasts_s], f64::NEG_INFINITY)
 }
 
 /// Straight up and down over a corner, along an edge, over a fan of more triangles than are looked at together, without gravity, and where

@@ -8,10 +8,11 @@
 
 use super::cached_pairs::CachedPairs;
 use super::prediction::{
-    Meetings, PredictedRock, is_busy, meetings_in_passing, meetings_of_islands, place_of, places_in,
+    ContactCandidates, PredictedRock, candidates_on_straight_paths, candidates_within_islands,
+    is_busy, island_of_each, predicted_rock,
 };
 use super::window::IslandWindow;
-use super::{BodyState, PairMaterial, TOUCHING, WorldBody, WorldStats, law_between};
+use super::{BodyState, PairMaterial, TOUCH_TOLERANCE, WorldBody, WorldStats, law_between};
 use crate::contact::pair::PairHistory;
 use crate::ground::{Capture, Damping, Ground, Law};
 use crate::simulation::settings::RunSettings;
@@ -26,18 +27,18 @@ use std::sync::atomic::{AtomicBool, Ordering};
 ///
 /// A rock cannot cross another one unseen: two that fly at each other close a fifth of a radius a
 /// window.
-const WAY: f64 = 0.1;
+const WINDOW_TRAVEL: f64 = 0.1;
 /// Longest window (s).
-const LONGEST_S: f64 = 0.02;
+const LONGEST_WINDOW_S: f64 = 0.02;
 /// Shortest window (s): one very small and fast rock must not stop the world.
-const SHORTEST_S: f64 = 1e-5;
+const SHORTEST_WINDOW_S: f64 = 1e-5;
 /// Times that the world goes back to one moment, each time knowing of throws twice as fast: enough for a rock of a
 /// billionth of the mass along ten ever heavier ones.
-const RETURNS: usize = 16;
+const MAX_WORLD_RETURNS: usize = 16;
 /// Windows after which a new moment is kept to go back to.
-const WINDOWS: usize = 64;
+const WINDOWS_PER_SNAPSHOT: usize = 64;
 /// The same in the rigid limit, where a window costs much and a snapshot little.
-const WINDOWS_RIGID: usize = 8;
+const WINDOWS_PER_SNAPSHOT_RIGID: usize = 8;
 
 /// All rocks of a world.
 pub(super) struct BodyWorld<'a> {
@@ -46,7 +47,7 @@ pub(super) struct BodyWorld<'a> {
     /// The same for heaps that go on in the rigid limit, if they do.
     pub(super) heaps: Option<&'a RunSettings<'a>>,
     /// What contacts between two rocks are made of: springs, friction, and the damping of their restitution.
-    answer: (Ground, Damping),
+    pair_ground: (Ground, Damping),
     /// Impacts slower than this rule says do not rebound.
     capture: Capture,
     /// The rocks by number; `None` while an island computes them.
@@ -54,7 +55,7 @@ pub(super) struct BodyWorld<'a> {
     /// Contacts and bonds, in the order of the numbers of their rocks.
     pub(super) pair_histories: Vec<PairHistory>,
     /// Who was near whom when that was asked last.
-    wide: CachedPairs,
+    cached_pairs: CachedPairs,
     /// Start of the next window (s).
     pub(super) now_s: f64,
     /// What the world has cost so far, counted.
@@ -62,28 +63,28 @@ pub(super) struct BodyWorld<'a> {
     /// Blows between two of its rocks, in the rigid limit.
     blows: Option<Arc<BlowTable>>,
     /// Work space of islands: the first island is given what the first had before.
-    spare: Vec<RigidIsland>,
+    spare_workspaces: Vec<RigidIsland>,
 }
 
 impl<'a> BodyWorld<'a> {
     /// A world at time 0, with no contacts and no bonds.
     pub(super) fn new(
         (settings, heaps): (&'a RunSettings<'a>, Option<&'a RunSettings<'a>>),
-        answer: &PairMaterial,
+        material: &PairMaterial,
         bodies: Vec<Option<Box<WorldBody<'a>>>>,
     ) -> Self {
         let mut world = Self {
             settings,
             heaps,
-            answer: (answer.ground, Damping::of(answer.ground.restitution)),
+            pair_ground: (material.ground, Damping::of(material.ground.restitution)),
             capture: settings.capture(None),
             bodies,
             pair_histories: Vec::new(),
-            wide: CachedPairs::default(),
+            cached_pairs: CachedPairs::default(),
             now_s: 0.0,
             statistics: WorldStats::default(),
             blows: None,
-            spare: Vec::new(),
+            spare_workspaces: Vec::new(),
         };
         if (world.is_rigid() || heaps.is_some()) && world.bodies.len() > 1 {
             let [a, b] = [0, 1].map(|k| &world.body(k).member.body);
@@ -106,11 +107,11 @@ impl<'a> BodyWorld<'a> {
     /// The contact law of two rocks: two springs in series on their reduced mass `m_a m_b/(m_a + m_b)`.
     pub(super) fn law(&self, a: u32, b: u32) -> Law {
         let [a, b] = [a, b].map(|k| &self.body(k).member.body);
-        law_between(a, b, &self.answer, &self.capture)
+        law_between(a, b, &self.pair_ground, &self.capture)
     }
 
     /// Adds a pair, at its place in the order of numbers: a binary search in O(log n), a shift in O(n).
-    pub(super) fn tie(&mut self, pair_history: &PairHistory) {
+    pub(super) fn add_pair(&mut self, pair_history: &PairHistory) {
         let place = self
             .pair_histories
             .partition_point(|known| (known.a, known.b) < (pair_history.a, pair_history.b));
@@ -118,7 +119,7 @@ impl<'a> BodyWorld<'a> {
     }
 
     /// A bonded rock does not fly: its contacts begin with the world.
-    pub(super) fn hold(&mut self, k: u32) {
+    pub(super) fn begin_contact_of(&mut self, k: u32) {
         let settings = self.settings;
         if let Some(body) = self.bodies[k as usize].as_mut().filter(|body| body.member.flying) {
             body.land(settings);
@@ -129,25 +130,29 @@ impl<'a> BodyWorld<'a> {
     pub(super) fn touching_at_start(&self) -> Vec<(u32, u32)> {
         let ball = |body: &WorldBody| Ball {
             centre: body.member.state.c,
-            radius: body.member.body.radius * (1.0 + TOUCHING),
+            radius: body.member.body.radius * (1.0 + TOUCH_TOLERANCE),
         };
         overlapping(&self.bodies.iter().flatten().map(|body| ball(body)).collect::<Vec<_>>())
     }
 
-    /// Goes through windows until nothing moves or time is up; false if `stop` was raised. After each window `see` is told
+    /// Goes through windows until nothing moves or time is up; false if `stop` was raised. After each window `observe` is told
     /// the time (s) and the counts so far; where the world goes back, so does the time.
-    pub(super) fn run(&mut self, stop: &AtomicBool, mut see: impl FnMut(f64, &WorldStats)) -> bool {
+    pub(super) fn run(
+        &mut self,
+        stop: &AtomicBool,
+        mut observe: impl FnMut(f64, &WorldStats),
+    ) -> bool {
         while self.is_under_way() {
             let snapshot = self.snapshot();
-            for tried in 0..=RETURNS {
-                let Some(missed) = self.windows(stop, &mut see) else { return false };
-                if !missed || tried == RETURNS {
+            for tried in 0..=MAX_WORLD_RETURNS {
+                let Some(missed) = self.run_windows(stop, &mut observe) else { return false };
+                if !missed || tried == MAX_WORLD_RETURNS {
                     break;
                 }
-                self.go_back(&snapshot);
+                self.restore(&snapshot);
                 self.statistics.returns += 1;
             }
-            self.bodies.iter_mut().flatten().for_each(|body| body.foreseen_m_s = 0.0);
+            self.bodies.iter_mut().flatten().for_each(|body| body.predicted_dv_m_s = 0.0);
         }
         true
     }
@@ -160,21 +165,22 @@ impl<'a> BodyWorld<'a> {
 
     /// Goes through the next windows, up to one in which a rock may have met one that it was not compared with; whether
     /// there was such a one, `None` if `stop` was raised.
-    fn windows(
+    fn run_windows(
         &mut self,
         stop: &AtomicBool,
-        see: &mut impl FnMut(f64, &WorldStats),
+        observe: &mut impl FnMut(f64, &WorldStats),
     ) -> Option<bool> {
         // the flag is read between windows only: an island that has begun is finished
-        for _ in 0..if self.is_rigid() { WINDOWS_RIGID } else { WINDOWS } {
+        for _ in 0..if self.is_rigid() { WINDOWS_PER_SNAPSHOT_RIGID } else { WINDOWS_PER_SNAPSHOT }
+        {
             if !self.is_under_way() {
                 break;
             }
             if stop.load(Ordering::Relaxed) {
                 return None;
             }
-            let missed = self.window();
-            see(self.now_s, &self.statistics);
+            let missed = self.run_window();
+            observe(self.now_s, &self.statistics);
             if missed {
                 return Some(true);
             }
@@ -184,39 +190,39 @@ impl<'a> BodyWorld<'a> {
 
     /// One window: islands, each on its own. Whether a rock was deviated further than was allowed for and may have met
     /// one of another island.
-    fn window(&mut self) -> bool {
+    fn run_window(&mut self) -> bool {
         let length = self.window_length();
         // the last window ends with the time limit of the scene
         let end_s = (self.now_s + length).min(self.settings.longest_s);
         // what each does from here on is measured against its flight
         let (settings, now_s) = (self.settings, self.now_s);
         self.bodies.iter_mut().flatten().for_each(|body| {
-            body.watch_from(settings, now_s);
+            body.start_deviation(settings, now_s);
         });
         let present: Vec<u32> = self.present();
         let dt = end_s - self.now_s;
-        let place = |&k: &u32| place_of(self.body(k), self.settings, (self.now_s, dt));
-        let places: Vec<PredictedRock> = present.iter().map(place).collect();
-        let mut wide = std::mem::take(&mut self.wide);
+        let predict = |&k: &u32| predicted_rock(self.body(k), self.settings, (self.now_s, dt));
+        let rocks: Vec<PredictedRock> = present.iter().map(predict).collect();
+        let mut cached_pairs = std::mem::take(&mut self.cached_pairs);
         // broad phase: pairs whose swept balls overlap, O(n log n) in the number of rocks
-        let mut meetings = self.meetings(&mut wide, &present, &places, dt);
-        self.wide = wide;
-        let jobs = self.jobs(&present, &mut meetings, end_s);
-        let done: Vec<IslandWindow> = jobs
+        let mut candidates = self.candidates(&mut cached_pairs, &present, &rocks, dt);
+        self.cached_pairs = cached_pairs;
+        let islands = self.lend_islands(&present, &mut candidates, end_s);
+        let done: Vec<IslandWindow> = islands
             // the order of the results is that of the jobs, not of the threads: sums come out with the same bits
             .into_par_iter()
-            .map(|mut job| {
-                job.run();
-                job
+            .map(|mut island| {
+                island.run();
+                island
             })
             .collect();
         let mut missed = false;
         // what was not lent stays
         self.pair_histories.retain(|pair_history| pair_history.a != pair_history.b);
-        for job in done.into_iter().rev() {
-            missed |= job.missed;
-            self.statistics.add(&job.statistics);
-            self.take_back(job);
+        for island in done.into_iter().rev() {
+            missed |= island.missed;
+            self.statistics.add(&island.statistics);
+            self.take_back(island);
         }
         // islands give back in any order of pairs; the order of numbers makes the next window independent of it
         // (each rises by itself, and a stable sort merges what rises)
@@ -226,12 +232,12 @@ impl<'a> BodyWorld<'a> {
         // where each rock really came to, and by how much its velocity changed on the way
         let after = |k: usize| {
             let body = self.body(present[k]);
-            (body.position_at(self.settings, end_s), body.off.1)
+            (body.position_at(self.settings, end_s), body.deviation.1)
         };
         // rocks that left the tube in which they were looked for, checked against all others at their true places
-        let deviated = meetings.missed(&places, dt, after, |deviation_m| {
+        let deviated = candidates.missed(&rocks, dt, after, |deviation_m| {
             overlapping(
-                &places
+                &rocks
                     .iter()
                     .zip(deviation_m)
                     .map(|(p, off)| p.swept(*off, dt))
@@ -240,7 +246,7 @@ impl<'a> BodyWorld<'a> {
         });
         for &k in &deviated {
             if let Some(body) = &mut self.bodies[present[k] as usize] {
-                body.foresee();
+                body.raise_predicted_dv();
             }
         }
         missed || !deviated.is_empty()
@@ -249,31 +255,31 @@ impl<'a> BodyWorld<'a> {
     /// The rocks that are in the world, asleep or moving; the lists of a window count places among these.
     fn present(&self) -> Vec<u32> {
         let count = self.bodies.len() as u32;
-        (0..count).filter(|&k| !matches!(self.body(k).state, BodyState::Gone(_))).collect()
+        (0..count).filter(|&k| !matches!(self.body(k).state, BodyState::Removed(_))).collect()
     }
 
     /// Length of the next window (s): the way of the fastest rock over its radius, between two bounds.
     fn window_length(&self) -> f64 {
         // 1e-9 m/s keeps a rock that stands still from dividing by nothing; the longest window decides then
-        let mut length = LONGEST_S;
+        let mut length = LONGEST_WINDOW_S;
         // In the rigid limit nothing happens between the steps: a window is one.
-        let way = if self.is_rigid() { TRAVEL } else { WAY };
+        let way = if self.is_rigid() { TRAVEL } else { WINDOW_TRAVEL };
         // way R/|v|: the window of the smallest fast rock is that of all
         for body in self.bodies.iter().flatten().filter(|body| body.state == BodyState::Moving) {
             let speed = body.velocity_at(self.settings, self.now_s).norm();
             length = length.min(way * body.member.body.radius / speed.max(1e-9));
         }
-        length.max(SHORTEST_S)
+        length.max(SHORTEST_WINDOW_S)
     }
 
     /// Who may meet whom; numbers are places in `present`.
-    fn meetings(
+    fn candidates(
         &self,
-        wide: &mut CachedPairs,
+        cached_pairs: &mut CachedPairs,
         present: &[u32],
-        places: &[PredictedRock],
+        rocks: &[PredictedRock],
         dt: f64,
-    ) -> Meetings {
+    ) -> ContactCandidates {
         // held and bonded pairs stay together in one island however small the window
         let at = |k: u32| present.binary_search(&k).unwrap_or_default() as u32;
         let held: Vec<(u32, u32)> = self
@@ -282,12 +288,12 @@ impl<'a> BodyWorld<'a> {
             .map(|pair_history| (at(pair_history.a), at(pair_history.b)))
             .collect();
         if self.is_rigid() {
-            return meetings_in_passing(places, dt, &held, |reaches| {
-                wide.overlapping(places, reaches)
+            return candidates_on_straight_paths(rocks, dt, &held, |reaches| {
+                cached_pairs.overlapping(rocks, reaches)
             });
         }
-        meetings_of_islands(places, dt, |reaches| {
-            let mut pairs = wide.overlapping(places, reaches);
+        candidates_within_islands(rocks, dt, |reaches| {
+            let mut pairs = cached_pairs.overlapping(rocks, reaches);
             if !held.is_empty() {
                 pairs.extend(&held);
                 pairs.sort_unstable();
@@ -299,18 +305,18 @@ impl<'a> BodyWorld<'a> {
 
     /// Takes every island in which something may happen before `end_s` out of the world.
     /// Rocks are moved, not copied; what stays behind is the empty place.
-    fn jobs(
+    fn lend_islands(
         &mut self,
         present: &[u32],
-        meetings: &mut Meetings,
+        candidates: &mut ContactCandidates,
         end_s: f64,
     ) -> Vec<IslandWindow<'a>> {
         // an island in which nothing moves, lands or meets is left as it is: its rocks sleep or fly through
-        let mut lists = meetings.islands.lists();
+        let mut lists = candidates.islands.lists();
         lists.retain(|list| is_busy(list.iter().map(|&k| self.body(present[k as usize])), end_s));
-        let part = places_in(&lists, present.len());
+        let part = island_of_each(&lists, present.len());
         let mut counts = vec![0; lists.len()];
-        for &(a, _) in &meetings.pairs {
+        for &(a, _) in &candidates.pairs {
             if let Some(count) = counts.get_mut(part[a as usize].0) {
                 *count += 1;
             }
@@ -319,7 +325,7 @@ impl<'a> BodyWorld<'a> {
             counts.into_iter().map(Vec::with_capacity).collect();
         // both lists of pairs rise: one pass over both finds what is known of each pair
         let mut known = 0;
-        for &(a, b) in &meetings.pairs {
+        for &(a, b) in &candidates.pairs {
             let (number, place) = part[a as usize];
             if number == usize::MAX {
                 continue;
@@ -352,29 +358,31 @@ impl<'a> BodyWorld<'a> {
                 ..pair_history
             });
         }
-        let mut jobs = Vec::with_capacity(lists.len());
+        let mut islands = Vec::with_capacity(lists.len());
         for (list, pair_histories) in lists.into_iter().zip(pair_histories) {
             // rocks move by pointer into the island: nothing is copied
             let ids: Vec<u32> = list.iter().map(|&k| present[k as usize]).collect();
             let settings = self.settings_of(&ids, &pair_histories);
             let bodies = ids.iter().filter_map(|&k| self.bodies[k as usize].take()).collect();
             let times_s = (self.now_s, end_s);
-            let mut job = IslandWindow::new(settings, ids, bodies, pair_histories, times_s);
-            job.rigid =
-                self.spare.pop().unwrap_or_else(|| RigidIsland::of_material(self.blows.clone()));
-            jobs.push(job);
+            let mut island = IslandWindow::new(settings, ids, bodies, pair_histories, times_s);
+            island.rigid = self
+                .spare_workspaces
+                .pop()
+                .unwrap_or_else(|| RigidIsland::of_material(self.blows.clone()));
+            islands.push(island);
         }
-        jobs
+        islands
     }
 
     /// Puts rocks and held pairs of an island back; pairs that have let go, and those of rocks that left, are
     /// forgotten.
-    fn take_back(&mut self, mut job: IslandWindow<'a>) {
-        self.spare.push(std::mem::take(&mut job.rigid));
-        let (ids, bodies, pair_histories) = job.into_parts();
+    fn take_back(&mut self, mut island: IslandWindow<'a>) {
+        self.spare_workspaces.push(std::mem::take(&mut island.rigid));
+        let (ids, bodies, pair_histories) = island.into_parts();
         for pair_history in pair_histories.into_iter().filter(PairHistory::is_held) {
             let (a, b) = (ids[pair_history.a as usize], ids[pair_history.b as usize]);
-            let gone = |k: u32| matches!(bodies[k as usize].state, BodyState::Gone(_));
+            let gone = |k: u32| matches!(bodies[k as usize].state, BodyState::Removed(_));
             if !gone(pair_history.a) && !gone(pair_history.b) {
                 self.pair_histories.push(PairHistory { a, b, ..pair_history });
             }

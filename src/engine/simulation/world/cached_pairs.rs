@@ -12,7 +12,7 @@ use crate::solver::island::broad_phase::{Ball, overlapping};
 ///
 /// Passes ask with growing reaches within one window; half as much again usually serves all of
 /// them.
-const SPARE: f64 = 0.5;
+const REACH_MARGIN: f64 = 0.5;
 
 /// Way that each rock may go besides before all are looked for anew (–, relative to its radius).
 const SKIN: f64 = 0.25;
@@ -28,45 +28,49 @@ pub(super) struct CachedPairs {
 
 impl CachedPairs {
     /// Mean way of all rocks since the list was made (m): rocks that fall together keep it.
-    fn common_way(&self, places: &[PredictedRock]) -> Vec3 {
-        let ways = places.iter().zip(&self.centres).map(|(place, centre)| place.centre - centre);
-        ways.fold(Vec3::zeros(), |sum, way| sum + way) / places.len().max(1) as f64
+    fn mean_displacement(&self, rocks: &[PredictedRock]) -> Vec3 {
+        let displacements =
+            rocks.iter().zip(&self.centres).map(|(rock, centre)| rock.centre - centre);
+        displacements.fold(Vec3::zeros(), |sum, displacement| sum + displacement)
+            / rocks.len().max(1) as f64
     }
 
     /// Pairs that overlap or touch if each rock may be anywhere within so far of its centre (m), in ascending order.
     pub(super) fn overlapping(
         &mut self,
-        places: &[PredictedRock],
+        rocks: &[PredictedRock],
         reaches: &[f64],
     ) -> Vec<(u32, u32)> {
         // a ball of the reach asked, at the present centre, lies inside the ball that the list was
         // made for; what all have gone together brings none nearer to another
-        let common = self.common_way(places);
-        let fits = |(k, asked): (usize, &f64)| {
-            let room = self.reaches[k] - asked;
-            let off = places[k].centre - self.centres[k] - common;
-            room >= 0.0 && off.norm_squared() <= room * room
+        let mean_displacement = self.mean_displacement(rocks);
+        let fits = |(k, requested): (usize, &f64)| {
+            let slack = self.reaches[k] - requested;
+            let displacement = rocks[k].centre - self.centres[k] - mean_displacement;
+            slack >= 0.0 && displacement.norm_squared() <= slack * slack
         };
         let fits = self.reaches.len() == reaches.len() && reaches.iter().enumerate().all(fits);
         if !fits {
             self.centres.clear();
-            self.centres.extend(places.iter().map(|place| place.centre));
-            let ways = places.iter().zip(reaches);
-            self.reaches = ways
-                .map(|(place, reach)| reach + SPARE * (reach - place.radius) + SKIN * place.radius)
+            self.centres.extend(rocks.iter().map(|rock| rock.centre));
+            let with_reach = rocks.iter().zip(reaches);
+            self.reaches = with_reach
+                .map(|(rock, reach)| {
+                    reach + REACH_MARGIN * (reach - rock.radius) + SKIN * rock.radius
+                })
                 .collect();
-            let ball = |(place, reach): (&PredictedRock, &f64)| Ball {
-                centre: place.centre,
+            let ball = |(rock, reach): (&PredictedRock, &f64)| Ball {
+                centre: rock.centre,
                 radius: *reach,
             };
-            let balls: Vec<Ball> = places.iter().zip(&self.reaches).map(ball).collect();
+            let balls: Vec<Ball> = rocks.iter().zip(&self.reaches).map(ball).collect();
             self.pairs = overlapping(&balls);
         }
         // what the list holds is too much; the distance decides
         let near = |&&(a, b): &&(u32, u32)| {
             let [a, b] = [a, b].map(|k| k as usize);
             let reach = reaches[a] + reaches[b];
-            (places[a].centre - places[b].centre).norm_squared() <= reach * reach
+            (rocks[a].centre - rocks[b].centre).norm_squared() <= reach * reach
         };
         let mut pairs = Vec::with_capacity(self.pairs.len());
         pairs.extend(self.pairs.iter().filter(near));

@@ -18,8 +18,8 @@ use crate::solver::loss::Given;
 use crate::solver::{MOST_WITH_SPRINGS, Settings};
 
 /// The step of heaps where they go on in the rigid limit: not where bonds are to break, as those have springs.
-pub(super) fn step_in_heaps(step: &Settings, answer: &PairMaterial) -> Option<Settings> {
-    (step.rigid_heaps && !answer.strength.is_some()).then(|| step.in_rigid_limit())
+pub(super) fn step_in_heaps(step: &Settings, material: &PairMaterial) -> Option<Settings> {
+    (step.rigid_heaps && !material.strength.is_some()).then(|| step.in_rigid_limit())
 }
 
 impl<'a> BodyWorld<'a> {
@@ -83,8 +83,8 @@ impl IslandWindow<'_> {
             // a pair that is held has been in one island
             if !a.is_unloaded {
                 let given = unload_pair(pair, [&mut a.member, &mut b.member]);
-                a.go_on_unloaded(&given[0]);
-                b.go_on_unloaded(&given[1]);
+                a.continue_unloaded(&given[0]);
+                b.continue_unloaded(&given[1]);
             }
         }
     }
@@ -105,17 +105,17 @@ impl WorldBody<'_> {
     fn unload(&mut self, settings: &RunSettings) {
         self.in_contact(settings).leave_facet();
         let loss = self.member.unload(settings.terrain);
-        self.recorder.pay(&loss);
-        self.go_on_unloaded(&Given::default());
+        self.recorder.book_losses(&loss);
+        self.continue_unloaded(&Given::default());
         self.recorder.end_all_impacts();
     }
 
     /// Goes on with the motion that springs have given it.
-    fn go_on_unloaded(&mut self, given: &Given) {
-        self.give(given);
+    fn continue_unloaded(&mut self, given: &Given) {
+        self.book_given(given);
         let (velocity_m_s, spin_rad_s) = (self.member.state.v, self.member.state.w);
-        self.recorder.go_on_with(Motion { velocity_m_s, spin_rad_s, ..self.recorder.now });
-        self.watch();
+        self.recorder.note_velocity_jump(Motion { velocity_m_s, spin_rad_s, ..self.recorder.now });
+        self.update_deviation();
     }
 }
 

@@ -26,13 +26,13 @@ use crate::solver::step_control::{ONSET, StepError};
 const GAP_ROUNDING: f64 = 1e-11;
 
 /// A time that is nothing (s): the clock cannot tell less after an hour.
-const SOON_S: f64 = 1e-12;
+const TIME_ROUNDING_S: f64 = 1e-12;
 
 /// Rocks on their way. They are handed on between islands, and a pointer moves faster than a journey.
 type Bodies<'a> = Vec<Box<WorldBody<'a>>>;
 
 /// How a rock notes a step with its losses (J), what it gave to others (J), and whether it slides.
-type Going<'a> = fn(&mut WorldBody<'a>, &RunSettings, f64, (Loss, Given), bool);
+type RecordStep<'a> = fn(&mut WorldBody<'a>, &RunSettings, f64, (Loss, Given), bool);
 
 /// One island and its window.
 pub(super) struct IslandWindow<'a> {
@@ -49,7 +49,7 @@ pub(super) struct IslandWindow<'a> {
     /// End of the window (s); nothing of the island is computed beyond it.
     pub(super) end_s: f64,
     /// Whether it goes back by itself where a rock was deviated further than was allowed for.
-    pub(super) goes_back: bool,
+    pub(super) may_repeat: bool,
     /// Whether a rock was deviated so far that it may have met one of another island.
     pub(super) missed: bool,
     /// What the island cost, counted.
@@ -74,7 +74,7 @@ impl<'a> IslandWindow<'a> {
             pair_histories,
             now_s,
             end_s,
-            goes_back: true,
+            may_repeat: true,
             missed: false,
             statistics: WorldStats::default(),
             rigid: RigidIsland::default(),
@@ -103,7 +103,7 @@ impl<'a> IslandWindow<'a> {
                 }
                 self.fly_to(next_s);
                 self.begin_contacts();
-            } else if !self.steps(next_s) {
+            } else if !self.step_until(next_s) {
                 return;
             }
         }
@@ -113,7 +113,8 @@ impl<'a> IslandWindow<'a> {
     /// O(n + pairs): it is asked again after every event.
     pub(super) fn next_event_s(&self) -> f64 {
         let flying = self.bodies.iter().filter(|body| body.member.flying);
-        let landings = flying.filter_map(|body| body.lands.as_ref().map(|(time_s, _)| *time_s));
+        let landings =
+            flying.filter_map(|body| body.flight_end.as_ref().map(|(time_s, _)| *time_s));
         // both kinds of events are closed forms: the landing was found when the flight began, the meeting is a
         // quadratic
         let first = landings.fold(f64::INFINITY, f64::min);
@@ -152,7 +153,7 @@ impl<'a> IslandWindow<'a> {
         self.meeting_s(pair_history)
             // a root just ahead of the clock, or a gap that rounding has left open: without the second test the same
             // event would be found again and again
-            .is_some_and(|t| t - self.now_s <= SOON_S || touching(pair_history))
+            .is_some_and(|t| t - self.now_s <= TIME_ROUNDING_S || touching(pair_history))
     }
 
     /// Moves flying rocks along their parabolas.
@@ -173,7 +174,7 @@ impl<'a> IslandWindow<'a> {
         for (k, _) in due.iter().enumerate().filter(|(_, due)| **due) {
             let ends = [self.pair_histories[k].a as usize, self.pair_histories[k].b as usize];
             for end in ends {
-                self.bodies[end].begin(self.settings);
+                self.bodies[end].begin_contact(self.settings);
             }
             let [a, b] = ends.map(|end| &self.bodies[end].member.state);
             let pair_history = &mut self.pair_histories[k];
@@ -188,14 +189,14 @@ impl<'a> IslandWindow<'a> {
                 // the first step of an impact resolves the onset of its spring, whatever step the island had before
                 let h = ONSET / pair_history.law.omega_rad_s();
                 for end in ends {
-                    self.bodies[end].h = self.bodies[end].h.min(h);
+                    self.bodies[end].next_step_s = self.bodies[end].next_step_s.min(h);
                 }
             }
         }
         for body in self.bodies.iter_mut().filter(|body| body.member.flying) {
-            let due = body.lands.as_ref().is_some_and(|(time_s, _)| *time_s <= self.now_s);
-            match body.lands.take_if(|_| due) {
-                Some((_, Some(stop))) => body.leave(stop),
+            let due = body.flight_end.as_ref().is_some_and(|(time_s, _)| *time_s <= self.now_s);
+            match body.flight_end.take_if(|_| due) {
+                Some((_, Some(stop))) => body.remove(stop),
                 Some((_, None)) => body.land(self.settings),
                 None => {}
             }
@@ -203,31 +204,31 @@ impl<'a> IslandWindow<'a> {
     }
 
     /// Steps the island until a flying rock is due, all fly, or the window is over; whether it goes on.
-    fn steps(&mut self, until_s: f64) -> bool {
+    fn step_until(&mut self, until_s: f64) -> bool {
         let now_s = self.now_s;
         self.bodies.iter_mut().for_each(|body| body.fly_to(self.settings, now_s));
-        let mut island = self.cluster();
+        let mut island = self.lend_to_solver();
         let mut goes_on = true;
         while self.now_s < until_s {
             // no step passes the next event, the end of the window, or the end of a facet of rough ground
-            let room = (until_s - self.now_s).min(self.before_step(&mut island));
+            let longest_s = (until_s - self.now_s).min(self.before_step(&mut island));
             let spent = (island.sweeps, island.jumps);
-            let Some(done) = self.advance(&mut island, room) else {
+            let Some(done) = self.advance(&mut island, longest_s) else {
                 goes_on = false;
                 break;
             };
             let left_s = until_s - self.now_s;
             // the last step ends exactly at the event: a remainder of rounding would make an empty step of its own
             self.now_s = if done.dt >= left_s { until_s } else { self.now_s + done.dt };
-            let all_fly = self.note(&mut island, &done, (spent, WorldBody::step));
+            let all_fly = self.record_step(&mut island, &done, (spent, WorldBody::record_step));
             if all_fly {
                 break;
             }
         }
-        self.dissolve(island);
+        self.take_back(island);
         if self.now_s >= self.end_s {
-            self.leave_terrain();
-            self.fall_asleep();
+            self.remove_past_border();
+            self.put_to_sleep();
             return false;
         }
         if goes_on {
@@ -236,21 +237,21 @@ impl<'a> IslandWindow<'a> {
         goes_on
     }
 
-    /// One step of at most `room` (s); none where it fails: it is that of all rocks of the island, and none may go on from a guess.
-    fn advance(&mut self, island: &mut Island<'a>, room: f64) -> Option<Done> {
+    /// One step of at most `longest_s` (s); none where it fails: it is that of all rocks of the island, and none may go on from a guess.
+    fn advance(&mut self, island: &mut Island<'a>, longest_s: f64) -> Option<Done> {
         let step = self.settings.step;
         // three drivers of one system: error control, the fixed step of the paper, velocity stepping without
         // springs
         let tried = if step.scheme.controls_error() {
-            island.advance(step, room)
+            island.advance(step, longest_s)
         } else if step.scheme.has_springs() {
-            island.advance_fixed(step, room)
+            island.advance_fixed(step, longest_s)
         } else {
-            island.advance_rigid(step.step_s, room)
+            island.advance_rigid(step.step_s, longest_s)
         };
-        let failed = |stuck: StepError| {
+        let failed = |error: StepError| {
             for body in &mut self.bodies {
-                body.leave(Stop::Failed(stuck.to_string()));
+                body.remove(Stop::Failed(error.to_string()));
             }
         };
         tried.map_err(failed).ok()
@@ -277,9 +278,9 @@ impl<'a> IslandWindow<'a> {
     }
 
     /// The island as the solver sees it.
-    fn cluster(&mut self) -> Island<'a> {
+    fn lend_to_solver(&mut self) -> Island<'a> {
         // the stiffest of the rocks in contact decides the step of all
-        let h = self.bodies.iter().filter(|body| !body.member.flying).map(|body| body.h);
+        let h = self.bodies.iter().filter(|body| !body.member.flying).map(|body| body.next_step_s);
         let h = h.fold(f64::INFINITY, f64::min);
         // the solver borrows the rocks' state; the journeys stay here
         let members = self.bodies.iter_mut().map(|body| body.member.lend()).collect();
@@ -292,29 +293,29 @@ impl<'a> IslandWindow<'a> {
 
     /// Takes rocks and pairs back from the solver, with the step that each may begin with next time, and the speed
     /// (m/s) `F/(m ω)` that its pressed springs could give it: how far it might be thrown when a neighbour lets go.
-    fn dissolve(&mut self, island: Island<'a>) {
+    fn take_back(&mut self, island: Island<'a>) {
         (self.pair_histories, self.rigid) = (island.pair_histories, island.rigid);
         for (body, member) in self.bodies.iter_mut().zip(island.members) {
-            body.h = if member.flying { f64::INFINITY } else { island.h };
-            body.pressed_m_s = member.pressed_m_s(self.settings.terrain);
+            body.next_step_s = if member.flying { f64::INFINITY } else { island.h };
+            body.spring_dv_m_s = member.pressed_m_s(self.settings.terrain);
             body.member = member;
         }
         for pair_history in self.pair_histories.iter().filter(|pair_history| pair_history.is_held())
         {
             for k in [pair_history.a, pair_history.b] {
                 let body = &mut self.bodies[k as usize];
-                body.pressed_m_s += pair_history.normal_force.abs()
+                body.spring_dv_m_s += pair_history.normal_force.abs()
                     / (body.member.body.mass * pair_history.law.omega_rad_s());
             }
         }
     }
 
     /// Writes one step into the journeys; whether all rocks fly now.
-    fn note(
+    fn record_step(
         &mut self,
         island: &mut Island<'a>,
         done: &Done,
-        ((swept, jumped), go): ((u64, u64), Going<'a>),
+        ((swept, jumped), record): ((u64, u64), RecordStep<'a>),
     ) -> bool {
         let (sweeps, jumps) = (island.sweeps - swept, island.jumps - jumped);
         let rocks = self.bodies.len() as u64;
@@ -344,7 +345,7 @@ impl<'a> IslandWindow<'a> {
             std::mem::swap(&mut body.member, &mut island.members[k]);
             while let Some(blow) = blows.next_if(|blow| blow.rock == k) {
                 let (own, others) = hits.split_at(blow.hits);
-                body.pass(self.settings, (blow, own), (self.now_s, slides[k]));
+                body.record_blow(self.settings, (blow, own), (self.now_s, slides[k]));
                 hits = others;
             }
             let effort = &mut body.recorder.effort;
@@ -354,8 +355,8 @@ impl<'a> IslandWindow<'a> {
             effort.sweeps += sweeps + jumps;
             effort.unsettled += u64::from(done.unsettled);
             let given = (done.losses[k], done.given[k]);
-            go(body, self.settings, self.now_s, given, slides[k]);
-            body.spend(self.settings);
+            record(body, self.settings, self.now_s, given, slides[k]);
+            body.check_budget(self.settings);
             std::mem::swap(&mut body.member, &mut island.members[k]);
         }
         island.members.iter().all(|member| member.flying)

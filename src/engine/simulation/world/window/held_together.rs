@@ -9,21 +9,23 @@ use crate::simulation::Stop;
 
 impl IslandWindow<'_> {
     /// The rocks that hold each other, by their places in the island.
-    fn held_together(&self) -> Vec<Vec<u32>> {
+    fn groups_in_contact(&self) -> Vec<Vec<u32>> {
         held_groups(self.bodies.len(), &self.pair_histories).lists()
     }
 
     /// Puts to sleep what has been quiet for long enough together with all that it touches.
-    pub(super) fn fall_asleep(&mut self) {
-        let quiet = |body: &WorldBody| {
-            body.state == BodyState::Moving && !body.member.flying && body.calm.rests()
+    pub(super) fn put_to_sleep(&mut self) {
+        let is_quiet = |body: &WorldBody| {
+            body.state == BodyState::Moving
+                && !body.member.flying
+                && body.rest_criterion.is_at_rest()
         };
-        if !self.bodies.iter().any(|body| quiet(body)) {
+        if !self.bodies.iter().any(|body| is_quiet(body)) {
             return;
         }
         // rocks that hold each other fall asleep together or not at all: one that still moves would pull on the others
-        for list in self.held_together() {
-            if list.iter().all(|k| quiet(&self.bodies[*k as usize])) {
+        for list in self.groups_in_contact() {
+            if list.iter().all(|k| is_quiet(&self.bodies[*k as usize])) {
                 for k in list {
                     self.bodies[k as usize].state = BodyState::Asleep;
                 }
@@ -33,14 +35,14 @@ impl IslandWindow<'_> {
 
     /// Takes bonded rocks out of the world that have passed the border of the terrain: each alone ends where its last flight passes the last
     /// ground, but what is bonded does not fly.
-    pub(super) fn leave_terrain(&mut self) {
+    pub(super) fn remove_past_border(&mut self) {
         if self.pair_histories.iter().all(|pair_history| pair_history.bond.is_none()) {
             return;
         }
-        for list in self.held_together() {
+        for list in self.groups_in_contact() {
             if list.len() > 1 && self.is_past_border(&list) {
                 for k in list {
-                    self.bodies[k as usize].leave(Stop::LeftTerrain);
+                    self.bodies[k as usize].remove(Stop::LeftTerrain);
                 }
             }
         }

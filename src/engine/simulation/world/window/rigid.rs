@@ -19,28 +19,29 @@ impl IslandWindow<'_> {
             body.wake(settings, now_s);
             body.fly_to(settings, now_s);
         }
-        let mut island = self.cluster();
+        let mut island = self.lend_to_solver();
         while self.now_s < self.end_s {
-            let room = self.end_s - self.now_s;
+            let longest_s = self.end_s - self.now_s;
             let spent = (island.sweeps, island.jumps);
-            let Some(done) = self.advance(&mut island, room) else { break };
+            let Some(done) = self.advance(&mut island, longest_s) else { break };
             // a step that takes all the room ends exactly at the window's end
-            self.now_s = if done.dt >= room { self.end_s } else { self.now_s + done.dt };
-            self.note(&mut island, &done, (spent, WorldBody::stride));
+            self.now_s = if done.dt >= longest_s { self.end_s } else { self.now_s + done.dt };
+            self.record_step(&mut island, &done, (spent, WorldBody::record_rigid_step));
         }
-        self.dissolve(island);
-        self.let_go();
-        self.fall_asleep();
+        self.take_back(island);
+        self.remove_departed();
+        self.put_to_sleep();
     }
 
     /// Lets go of the rocks whose flight has left the terrain.
-    fn let_go(&mut self) {
+    fn remove_departed(&mut self) {
         for body in self.bodies.iter_mut().filter(|body| body.member.flying) {
             let now_s = self.now_s;
-            if let Some((_, Some(stop))) =
-                body.lands.take_if(|lands| lands.0 <= now_s && lands.1.is_some())
+            if let Some((_, Some(stop))) = body
+                .flight_end
+                .take_if(|flight_end| flight_end.0 <= now_s && flight_end.1.is_some())
             {
-                body.leave(stop);
+                body.remove(stop);
             }
         }
     }

@@ -1,8 +1,8 @@
 //! A sphere on its way: what it meets, what it is, what is noted down of it.
 
-use super::driver::{Falling, follow};
-use super::form::{Form, RockInstant};
-use super::recorder::{Keep, Recorder};
+use super::driver::{RockSimulation, run_to_stop};
+use super::recorder::{RecordOptions, Recorder};
+use super::rock_geometry::{RockGeometry, RockInstant};
 use super::rock_in_contact::RockInContact;
 use super::settings::RunSettings;
 use super::{Stop, Trajectory};
@@ -25,7 +25,7 @@ use crate::stopwatch::TimedPiece;
 
 /// One sphere.
 /// Everything that a journey needs and nothing that outlives it.
-pub(super) struct Fall<'a> {
+pub(super) struct SphereSimulation<'a> {
     pub(super) settings: &'a RunSettings<'a>,
     pub(super) body: Body,
     /// Those in force: soil and the speed of impacts change them on the way.
@@ -36,10 +36,10 @@ pub(super) struct Fall<'a> {
 }
 
 /// Follows one sphere from its release to its stop; `laws` are those of the grounds for it.
-pub(super) fn follow_sphere(
+pub(super) fn run_sphere(
     settings: &RunSettings,
     release: &Release,
-    keep: Keep,
+    keep: RecordOptions,
     (laws, random): (&mut [Law], RandomStream),
     (state, scars, slip): (&mut ContactState, &mut Scars, &mut Slip),
 ) -> Trajectory {
@@ -48,34 +48,34 @@ pub(super) fn follow_sphere(
     state.stem_load.raise(settings.terrain, &random, &mut state.near.gone);
     state.facets = RoughFacets::of(random, laws);
     slip.begin(&release.grounds);
-    let form = Form { rock: release.rock, block: None };
-    let kept = (keep, settings.recorders);
-    let mut fall = Fall {
+    let geometry = RockGeometry { rock: release.rock, block: None };
+    let records = (keep, settings.recorders);
+    let mut rock = SphereSimulation {
         settings,
         body: Body::new(&release.rock, settings.gravity_m_s2),
         laws,
         soil: Soil::new(scars, slip),
         state,
-        recorder: Recorder::new(settings.terrain, form, (release.motion, None), kept),
+        recorder: Recorder::new(settings.terrain, geometry, (release.motion, None), records),
     };
-    let pressed = fall.is_pressed();
-    let stop = follow(&mut fall, pressed);
-    fall.end(release, stop)
+    let penetrates = rock.is_penetrating();
+    let stop = run_to_stop(&mut rock, penetrates);
+    rock.end(release, stop)
 }
 
-impl<'a> Fall<'a> {
+impl<'a> SphereSimulation<'a> {
     /// Whether the rock is in contact with something it is pressed into.
-    fn is_pressed(&mut self) -> bool {
-        self.look();
+    fn is_penetrating(&mut self) -> bool {
+        self.find_contacts();
         self.state.touches.iter().any(|touch| touch.distance_m < self.body.radius)
     }
 
     /// Begins contact anew where it is.
-    fn look(&mut self) {
+    fn find_contacts(&mut self) {
         let Motion { position_m: c, velocity_m_s: v, spin_rad_s: w, .. } = self.recorder.now;
-        let world = self.settings.around(self.body, self.laws);
-        let together = if self.is_rigid() { STRUCK_TOGETHER } else { TOUCH };
-        self.state.begin_within(&world, (c, v, w), together);
+        let world = self.settings.contact_environment(self.body, self.laws);
+        let search_distance = if self.is_rigid() { STRUCK_TOGETHER } else { TOUCH };
+        self.state.begin_within(&world, (c, v, w), search_distance);
     }
 
     /// The journey, complete.
@@ -96,12 +96,17 @@ impl<'a> Fall<'a> {
     pub(super) fn in_contact(&mut self) -> RockInContact<'_, 'a> {
         let has_springs = !self.is_rigid();
         let Self { settings, body, laws, state, recorder, .. } = self;
-        RockInContact { world: settings.around(*body, laws), state, recorder, has_springs }
+        RockInContact {
+            world: settings.contact_environment(*body, laws),
+            state,
+            recorder,
+            has_springs,
+        }
     }
 }
 
-impl<'a> Falling<'a> for Fall<'a> {
-    type Stepping = Stepper;
+impl<'a> RockSimulation<'a> for SphereSimulation<'a> {
+    type StepperState = Stepper;
 
     fn settings(&self) -> &'a RunSettings<'a> {
         self.settings
@@ -111,11 +116,11 @@ impl<'a> Falling<'a> for Fall<'a> {
         &mut self.recorder
     }
 
-    fn ball(&self) -> (Vec3, f64) {
+    fn bounding_sphere(&self) -> (Vec3, f64) {
         (self.state.c, self.body.radius)
     }
 
-    fn total_j(&self) -> f64 {
+    fn mechanical_energy_j(&self) -> f64 {
         self.state.motion_j(&self.body) - self.body.mass * self.body.gravity.dot(&self.state.c)
     }
 
@@ -123,13 +128,13 @@ impl<'a> Falling<'a> for Fall<'a> {
     fn fly(&mut self) -> Option<Stop> {
         let now = self.recorder.now;
         let flight = Parabola::of(&now, self.settings.gravity_m_s2, self.body.radius);
-        let left = self.settings.longest_s - now.time_s;
+        let time_left_s = self.settings.longest_s - now.time_s;
         let begun = self.state.stopwatches.now();
         // stems that this rock has broken are no longer in its way
         let end = time_of_impact_past(
             self.settings.terrain,
             &flight,
-            left,
+            time_left_s,
             &self.state.near.gone,
             &mut self.recorder.effort.triangles,
         );
@@ -138,41 +143,46 @@ impl<'a> Falling<'a> for Fall<'a> {
         let (dt, stop) = self.settings.end_of_flight(&end, now.time_s, &self.recorder.effort);
         self.state.stopwatches.stop(TimedPiece::Leap, begun);
         let begun = self.state.stopwatches.now();
-        self.recorder.fly(&flight, None, dt);
-        let kept = self.soil.fly(&self.body, &self.recorder.now.velocity_m_s, dt);
-        self.recorder.slow_in_flight(kept);
+        self.recorder.record_flight(&flight, None, dt);
+        let speed_factor = self.soil.fly(&self.body, &self.recorder.now.velocity_m_s, dt);
+        self.recorder.slow_in_soil_in_flight(speed_factor);
         self.state.stopwatches.stop(TimedPiece::NotesInFlight, begun);
         stop
     }
 
-    fn begin(&mut self) -> (Stepper, Loss) {
-        self.look();
-        self.in_contact().announce();
+    fn begin_contact(&mut self) -> (Stepper, Loss) {
+        self.find_contacts();
+        self.in_contact().begin_impacts();
         // soil takes speed out of the blow before any spring answers
-        let kept = self.answer_blows();
-        self.recorder.now.velocity_m_s *= kept;
-        let world = self.settings.around(self.body, self.laws);
-        let held = if self.is_rigid() { Loss::default() } else { self.state.stored_j(&world) };
-        (Stepper::new(self.settings.step, &world, self.state), held)
+        let speed_factor = self.apply_blows();
+        self.recorder.now.velocity_m_s *= speed_factor;
+        let world = self.settings.contact_environment(self.body, self.laws);
+        let spring_energy =
+            if self.is_rigid() { Loss::default() } else { self.state.stored_j(&world) };
+        (Stepper::new(self.settings.step, &world, self.state), spring_energy)
     }
 
     /// What a sphere strikes its step says.
-    fn meet(&mut self) -> bool {
+    fn resolve_impacts(&mut self) -> bool {
         false
     }
 
-    fn longest_s(&mut self) -> f64 {
+    fn prepare_step(&mut self) -> f64 {
         self.before_step()
     }
 
-    fn step(&mut self, stepper: &mut Stepper, most_s: f64) -> Result<(Advance, bool), StepError> {
+    fn step(
+        &mut self,
+        stepper: &mut Stepper,
+        longest_s: f64,
+    ) -> Result<(Advance, bool), StepError> {
         let before = self.state.c;
-        let world = self.settings.around(self.body, self.laws);
-        let mut done = solver::advance(stepper, &world, self.state, most_s)?;
-        self.in_contact().announce();
+        let world = self.settings.contact_environment(self.body, self.laws);
+        let mut done = solver::advance(stepper, &world, self.state, longest_s)?;
+        self.in_contact().begin_impacts();
         self.soil_after_step(&before, done.dt);
-        self.answer_blows();
-        let world = self.settings.around(self.body, self.laws);
+        self.apply_blows();
+        let world = self.settings.contact_environment(self.body, self.laws);
         // a stem has given way: stiffness and contacts changed, so the stepper forgets its factors and its step
         if self.state.bend(&world, !self.is_rigid(), &mut done.loss) {
             *stepper = Stepper::new(self.settings.step, &world, self.state);
@@ -186,24 +196,24 @@ impl<'a> Falling<'a> for Fall<'a> {
         Motion { time_s, position_m, velocity_m_s, spin_rad_s }.into()
     }
 
-    fn note(&mut self, to: RockInstant, slides: bool) -> bool {
+    fn record_step(&mut self, to: RockInstant, slides: bool) -> bool {
         let begun = self.state.stopwatches.now();
-        self.recorder.step(to, slides);
+        self.recorder.record_step(to, slides);
         self.in_contact().end_impacts();
         self.state.stopwatches.stop(TimedPiece::NotesInContact, begun);
         self.state.is_free()
     }
 
     /// Only a fixed step leaves some in those of a free rock.
-    fn stored(&mut self) -> Loss {
-        let left = self.state.is_free() && !self.settings.step.scheme.has_fixed_step();
-        if left || self.is_rigid() {
+    fn spring_energy(&mut self) -> Loss {
+        let is_relaxed = self.state.is_free() && !self.settings.step.scheme.has_fixed_step();
+        if is_relaxed || self.is_rigid() {
             return Loss::default();
         }
-        self.state.springs_j(&self.settings.around(self.body, self.laws))
+        self.state.springs_j(&self.settings.contact_environment(self.body, self.laws))
     }
 
-    fn leave(&mut self) {
+    fn end_contact(&mut self) {
         self.recorder.end_all_impacts();
         self.in_contact().leave_facet();
     }
@@ -215,7 +225,7 @@ pub(super) struct Soil<'a> {
     pub(super) scars: &'a mut Scars,
     pub(super) slip: &'a mut Slip,
     /// Where it slips fastest since the step in hand began.
-    pub(super) slips: Option<Slips>,
+    pub(super) fastest_slip: Option<SlippingContact>,
     /// How long the step before was (s), 0 after a flight.
     pub(super) last_step_s: f64,
 }
@@ -225,7 +235,7 @@ pub(super) struct Soil<'a> {
 /// Speed of the contact point along the surface, normal of the contact, and the ground on which it
 /// slips.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Slips {
+pub(super) struct SlippingContact {
     pub(super) speed_m_s: f64,
     pub(super) n: Vec3,
     pub(super) ground: u16,
@@ -234,7 +244,7 @@ pub(super) struct Slips {
 impl<'a> Soil<'a> {
     /// Of a rock that has not moved yet.
     pub(super) fn new(scars: &'a mut Scars, slip: &'a mut Slip) -> Self {
-        Self { scars, slip, slips: None, last_step_s: 0.0 }
+        Self { scars, slip, fastest_slip: None, last_step_s: 0.0 }
     }
 
     /// Flies for so long (s) and ends at a velocity; what the rock keeps of that (–).

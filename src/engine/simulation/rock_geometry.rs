@@ -13,7 +13,7 @@ use nalgebra::{Quaternion, Rotation3, UnitQuaternion};
 
 /// How a block is turned, and the energy of its rotation.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Turned {
+pub(super) struct BlockRotation {
     /// From the block's principal frame to the world.
     pub(super) attitude: Rotation3<f64>,
     /// Rotational energy (J).
@@ -25,16 +25,16 @@ pub(super) struct Turned {
 pub(super) struct RockInstant {
     pub(super) motion: Motion,
     /// None for a sphere.
-    pub(super) turned: Option<Turned>,
+    pub(super) rotation: Option<BlockRotation>,
 }
 
 /// How a block turns on its way.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum AttitudeOnWay<'a> {
+pub(super) enum AttitudePath<'a> {
     /// Freely.
     Top(&'a Top),
     /// Through a step in contact, from one attitude to the other.
-    Step([&'a Turned; 2]),
+    Step([&'a BlockRotation; 2]),
 }
 
 /// A rock in free flight, or on the way of a step in contact.
@@ -45,20 +45,20 @@ pub(super) struct RockFlight<'a> {
     /// Way of its centre.
     pub(super) path: &'a Parabola,
     /// How a block turns; none for a sphere.
-    pub(super) turning: Option<AttitudeOnWay<'a>>,
+    pub(super) turning: Option<AttitudePath<'a>>,
     /// How long it flies (s).
     pub(super) lasts_s: f64,
 }
 
 /// The rock itself.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Form<'a> {
+pub(super) struct RockGeometry<'a> {
     pub(super) rock: Rock,
     /// None for a sphere.
     pub(super) block: Option<&'a Block>,
 }
 
-impl Turned {
+impl BlockRotation {
     /// The turn as a unit quaternion w, x, y, z with w ≥ 0.
     pub(super) fn quaternion(&self) -> [f64; 4] {
         quaternion(&self.attitude)
@@ -67,8 +67,8 @@ impl Turned {
     /// At share `s` of a step in contact. It turns a block by hardly a tenth of a radian: there the
     /// normed mean of the two quaternions is the turn about a fixed axis to 2e-5 rad, and takes
     /// no sine, whose bits would differ from machine to machine. The energy is linear.
-    fn between([from, to]: [&Self; 2], s: f64) -> Self {
-        let (a, b) = Self::nearer([from, to]);
+    fn interpolated([from, to]: [&Self; 2], s: f64) -> Self {
+        let (a, b) = Self::quaternions([from, to]);
         Self {
             attitude: UnitQuaternion::new_normalize(a.lerp(&b, s)).to_rotation_matrix(),
             rotational_j: from.rotational_j + (to.rotational_j - from.rotational_j) * s,
@@ -78,14 +78,14 @@ impl Turned {
     /// How far it turns per unit of share, at share `s` of a step in contact (rad, as a vector along the axis).
     ///
     /// `2 vec(q′ q̄)` of `q = p/|p|` with `p = a + s (b − a)`: what norms `p` has no part along the axis.
-    fn turning(ends: [&Self; 2], s: f64) -> Vec3 {
-        let (a, b) = Self::nearer(ends);
+    fn angular_rate(ends: [&Self; 2], s: f64) -> Vec3 {
+        let (a, b) = Self::quaternions(ends);
         let (at, length) = UnitQuaternion::new_and_get(a.lerp(&b, s));
         ((b - a) * at.conjugate().into_inner()).imag() * (2.0 / length)
     }
 
     /// The quaternions of two attitudes; `q` and `−q` are the same turn, so the second is the nearer one.
-    fn nearer(ends: [&Self; 2]) -> (Quaternion<f64>, Quaternion<f64>) {
+    fn quaternions(ends: [&Self; 2]) -> (Quaternion<f64>, Quaternion<f64>) {
         let [a, b] =
             ends.map(|end| UnitQuaternion::from_rotation_matrix(&end.attitude).into_inner());
         (a, if a.dot(&b) < 0.0 { -b } else { b })
@@ -105,28 +105,31 @@ pub(super) fn quaternion(turn: &Rotation3<f64>) -> [f64; 4] {
 impl RockFlight<'_> {
     /// The rock after `t` (s).
     pub(super) fn at(&self, t: f64) -> RockInstant {
-        let turned = self.turning.map(|turning| self.turned(turning, t));
+        let rotation = self.turning.map(|turning| self.rotation(turning, t));
         let motion = Motion {
             time_s: self.start.time_s + t,
             position_m: self.path.centre(t),
             velocity_m_s: self.path.velocity(t),
             // a sphere keeps its spin in flight: nothing turns it
-            spin_rad_s: turned.map_or(self.start.spin_rad_s, |(spin, _)| spin),
+            spin_rad_s: rotation.map_or(self.start.spin_rad_s, |(spin, _)| spin),
         };
-        RockInstant { motion, turned: turned.map(|(_, turned)| turned) }
+        RockInstant { motion, rotation: rotation.map(|(_, rotation)| rotation) }
     }
 
     /// Spin (rad/s) and turn of a block after `t` (s).
-    fn turned(&self, turning: AttitudeOnWay, t: f64) -> (Vec3, Turned) {
+    fn rotation(&self, turning: AttitudePath, t: f64) -> (Vec3, BlockRotation) {
         match turning {
             // the attitude is a closed form of the time (`Top`); the energy of rotation is constant in flight
-            AttitudeOnWay::Top(top) => {
+            AttitudePath::Top(top) => {
                 let attitude = top.attitude(t);
-                (top.spin(&attitude), Turned { attitude, rotational_j: top.energy_j() })
+                (top.spin(&attitude), BlockRotation { attitude, rotational_j: top.energy_j() })
             }
-            AttitudeOnWay::Step(ends) => {
+            AttitudePath::Step(ends) => {
                 let s = t / self.lasts_s;
-                (Turned::turning(ends, s) / self.lasts_s, Turned::between(ends, s))
+                (
+                    BlockRotation::angular_rate(ends, s) / self.lasts_s,
+                    BlockRotation::interpolated(ends, s),
+                )
             }
         }
     }
@@ -135,11 +138,11 @@ impl RockFlight<'_> {
     ///
     /// In a step the spin is largest in its middle, and by `ω = 4 S h/(h² + u²)` with the sine `S` and the cosine `h` of a fourth of
     /// the angle and `|u| ≤ S` it changes by no more than `ω³ dt/4` per second.
-    pub(super) fn bend(&self) -> Option<f64> {
+    pub(super) fn point_acceleration_per_m(&self) -> Option<f64> {
         Some(match self.turning? {
-            AttitudeOnWay::Top(top) => top.bends().bend,
-            AttitudeOnWay::Step(ends) => {
-                let spin = Turned::turning(ends, 0.5).norm() / self.lasts_s;
+            AttitudePath::Top(top) => top.bends().bend,
+            AttitudePath::Step(ends) => {
+                let spin = BlockRotation::angular_rate(ends, 0.5).norm() / self.lasts_s;
                 spin * spin * (1.0 + 0.25 * spin * self.lasts_s)
             }
         })
@@ -148,12 +151,12 @@ impl RockFlight<'_> {
 
 impl RockInstant {
     /// The rock at share `s` of a step in contact between two instants: see [`between`] and
-    /// [`Turned::between`].
-    pub(super) fn between([from, to]: [&Self; 2], s: f64) -> Self {
-        let turns = from.turned.zip(to.turned);
+    /// [`BlockRotation::interpolated`].
+    pub(super) fn interpolated([from, to]: [&Self; 2], s: f64) -> Self {
+        let turns = from.rotation.zip(to.rotation);
         Self {
-            motion: between(&from.motion, &to.motion, s),
-            turned: turns.map(|(from, to)| Turned::between([&from, &to], s)),
+            motion: hermite_motion(&from.motion, &to.motion, s),
+            rotation: turns.map(|(from, to)| BlockRotation::interpolated([&from, &to], s)),
         }
     }
 }
@@ -161,16 +164,16 @@ impl RockInstant {
 impl From<Motion> for RockInstant {
     /// A sphere.
     fn from(motion: Motion) -> Self {
-        Self { motion, turned: None }
+        Self { motion, rotation: None }
     }
 }
 
-impl Form<'_> {
+impl RockGeometry<'_> {
     /// How far the rock reaches from its centre along a unit direction (m).
-    pub(super) fn reach_m(&self, at: &RockInstant, along: &Vec3) -> f64 {
-        match (self.block, &at.turned) {
-            (Some(block), Some(turned)) => {
-                block.support_m(&turned.attitude.inverse_transform_vector(along))
+    pub(super) fn support_m(&self, at: &RockInstant, along: &Vec3) -> f64 {
+        match (self.block, &at.rotation) {
+            (Some(block), Some(rotation)) => {
+                block.support_m(&rotation.attitude.inverse_transform_vector(along))
             }
             _ => self.rock.radius_m,
         }
@@ -178,22 +181,22 @@ impl Form<'_> {
 
     /// How far the lowest point lies below the centre (m).
     /// The radius of a sphere; for a block the support downwards.
-    pub(super) fn below_m(&self, at: &RockInstant) -> f64 {
-        self.reach_m(at, &-Vec3::z())
+    pub(super) fn depth_below_centre_m(&self, at: &RockInstant) -> f64 {
+        self.support_m(at, &-Vec3::z())
     }
 
     /// How far the lowest point lies below the centre at least, however it is turned (m).
-    pub(super) fn least_below_m(&self) -> f64 {
+    pub(super) fn least_depth_below_centre_m(&self) -> f64 {
         self.block.map_or(self.rock.radius_m, Block::least_support_m)
     }
 
     /// How far the lowest corner of a block lies below the centre (m), and how fast it sinks against it (m/s).
-    pub(super) fn sinking(block: &Block, at: &RockInstant) -> Option<(f64, f64)> {
-        let turned = at.turned.as_ref()?;
-        let down = turned.attitude.inverse_transform_vector(&-Vec3::z());
+    pub(super) fn lowest_corner(block: &Block, at: &RockInstant) -> Option<(f64, f64)> {
+        let rotation = at.rotation.as_ref()?;
+        let down = rotation.attitude.inverse_transform_vector(&-Vec3::z());
         let corners = block.core.corners.iter().map(|corner| (corner.dot(&down), corner));
         let (below_m, lowest) = corners.max_by(|a, b| a.0.total_cmp(&b.0))?;
-        let sinks_m_s = -at.motion.spin_rad_s.cross(&(turned.attitude * lowest)).z;
+        let sinks_m_s = -at.motion.spin_rad_s.cross(&(rotation.attitude * lowest)).z;
         Some((below_m + block.ball_m, sinks_m_s))
     }
 
@@ -201,13 +204,14 @@ impl Form<'_> {
     ///
     /// That of the ball around a block, whichever way it is turned: on the map a block may turn as
     /// it passes.
-    pub(super) fn rim_m(&self) -> f64 {
+    pub(super) fn plan_radius_m(&self) -> f64 {
         self.block.map_or(self.rock.radius_m, |block| block.bound_m)
     }
 
     /// Rotational energy (J).
     pub(super) fn rotational_j(&self, at: &RockInstant) -> f64 {
-        at.turned.map_or_else(|| at.motion.rotational_j(&self.rock), |turned| turned.rotational_j)
+        at.rotation
+            .map_or_else(|| at.motion.rotational_j(&self.rock), |rotation| rotation.rotational_j)
     }
 }
 
@@ -216,7 +220,7 @@ impl Form<'_> {
 /// Hermite's cubic through positions and velocities at both ends: it leaves and arrives with the
 /// velocities of the step, and its error is of fourth order in the step. `bend` is what it differs
 /// from the straight way by; 0 for a constant velocity.
-pub(super) fn between(from: &Motion, to: &Motion, s: f64) -> Motion {
+pub(super) fn hermite_motion(from: &Motion, to: &Motion, s: f64) -> Motion {
     let dt = to.time_s - from.time_s;
     let way = to.position_m - from.position_m;
     let (v0, v1) = (from.velocity_m_s * dt - way, to.velocity_m_s * dt - way);
@@ -230,7 +234,7 @@ pub(super) fn between(from: &Motion, to: &Motion, s: f64) -> Motion {
 }
 
 /// Halvings of a step to find when it has come so far: 2⁻⁴⁰ is rounding.
-const TIMES_HALVED: u32 = 40;
+const TIME_BISECTIONS: u32 = 40;
 
 /// The share of a step's time at which it has come a share of its way in plan view, on the cubic of [`between`]: a rock that slows down has most of
 /// its way behind it at half of its time.
@@ -242,8 +246,8 @@ pub(super) fn time_share([from, to]: [&Motion; 2], way_share: f64) -> f64 {
     }
     let along = |motion: &Motion| motion.velocity_m_s.xy().dot(&way) * (dt / way2) - 1.0;
     let (a, b) = (along(from), along(to));
-    let come = |s: f64| s + (a * (1.0 - s) - b * s) * (s * (1.0 - s));
-    math::bisected([0.0, 1.0], TIMES_HALVED, |s| come(s) <= way_share)[0]
+    let way_share_at = |s: f64| s + (a * (1.0 - s) - b * s) * (s * (1.0 - s));
+    math::bisected([0.0, 1.0], TIME_BISECTIONS, |s| way_share_at(s) <= way_share)[0]
 }
 
 #[cfg(test)]
@@ -262,7 +266,7 @@ mod tests {
         let (from, to) = (at(5.0, 1.0, 3.0), at(7.0, 4.0, 0.0));
         let half = time_share([&from, &to], 0.5);
         assert!((half - (1.0 - 0.5_f64.sqrt())).abs() < 1e-11, "{half}");
-        assert!((between(&from, &to, half).velocity_m_s.x - 4.5_f64.sqrt()).abs() < 1e-10);
+        assert!((hermite_motion(&from, &to, half).velocity_m_s.x - 4.5_f64.sqrt()).abs() < 1e-10);
         for share in [0.0, 1.0] {
             assert!((time_share([&from, &to], share) - share).abs() < 1e-15);
         }
@@ -274,10 +278,10 @@ mod tests {
         let axis = nalgebra::Unit::new_normalize(Vec3::new(0.3, -0.5, 0.8));
         // far round, so that the quaternions of both ends lie on both sides of w = 0
         let turn = |angle: f64| Rotation3::from_axis_angle(&axis, 3.1 + angle);
-        let end = |angle: f64, rotational_j| Turned { attitude: turn(angle), rotational_j };
+        let end = |angle: f64, rotational_j| BlockRotation { attitude: turn(angle), rotational_j };
         let ends = [&end(0.0, 2.0), &end(0.1, 4.0)];
         for s in [0.0, 0.25, 0.5, 0.9, 1.0] {
-            let at = Turned::between(ends, s);
+            let at = BlockRotation::interpolated(ends, s);
             assert!(at.attitude.angle_to(&turn(0.1 * s)) < 2e-5, "{s}");
             assert!((at.rotational_j - 2.0 - 2.0 * s).abs() < 1e-15);
         }
