@@ -1,9 +1,10 @@
-//! The fall of a block: tumble, touch, step, stop.
+//! The simulation of one block: free rotation, contact, time step, stop.
 //!
-//! A block is a convex core with rounded corners. In flight it turns as a free rigid body (Euler's equations, solved
-//! by [`Top`]) while its centre follows a parabola; the first touch is found by conservative advancement, since no
-//! closed form exists for a tumbling body. In contact a scheme with springs follows every impact in its time; in the rigid limit
-//! velocities are stepped with impulses that keep the bodies apart under Coulomb's law (Moreau 1988).
+//! A block is a convex core with rounded corners. In flight it rotates as a free rigid body
+//! (Euler's equations, solved by [`Top`]) while its centre follows a parabola. The first contact is
+//! found by conservative advancement, since no closed form exists for a rotating body. In contact a
+//! scheme with springs resolves every impact in time. In the rigid limit velocities are stepped
+//! with impulses that keep the bodies apart under Coulomb's law (Moreau 1988).
 
 mod impacts;
 
@@ -32,32 +33,32 @@ use crate::solver::scar::{GroundBlow, Scars};
 use crate::solver::step_control::{Advance, StepError};
 use crate::solver::struck::Struck;
 
-/// One block on its way.
+/// One block during its simulation.
 struct BlockSimulation<'a> {
     /// Scheme, terrain, recorders and limits.
     settings: &'a RunSettings<'a>,
-    /// Terrain, mass and laws as the contact solver wants them.
+    /// Terrain, body and laws, as the contact solver needs them.
     world: ContactEnvironment<'a>,
     /// Its shape, mass and moments of inertia.
     block: &'a Block,
-    /// Contacts found at the last look, with the work space of the solver.
+    /// Contacts found by the last detection, with the work space of the solver.
     footing: &'a mut Footing,
-    /// What it has dug into soil.
+    /// Scars that the block has made in soil.
     scars: &'a mut Scars,
-    /// Pose, velocity and angular momentum. Momentum, not spin, is kept: it is constant in flight while the spin
-    /// turns.
+    /// Pose, velocity and angular momentum. The state variable is momentum, not spin: in flight
+    /// momentum is constant, while the spin changes direction.
     moving: Moving,
-    /// What is written down of its way.
+    /// Recorder of the trajectory.
     recorder: Recorder<'a>,
-    /// Whether nothing held it at the end of its last step.
+    /// Whether no contact held it at the end of its last step.
     is_free: bool,
 }
 
-/// Follows one block from its release to its stop; `laws` are those of the grounds for it.
+/// Simulates one block from its release to its stop; `laws` are the laws of the grounds for it.
 pub(super) fn run_block(
     settings: &RunSettings,
     (release, drawn): (&Release, &DrawnShape),
-    keep: RecordOptions,
+    options: RecordOptions,
     (laws, random): (&[Law], RandomStream),
     (footing, scars): (&mut Footing, &mut Scars),
 ) -> Trajectory {
@@ -72,21 +73,21 @@ pub(super) fn run_block(
     let geometry = RockGeometry { rock: release.rock, block: Some(block) };
     let rotation = rotation(block, &moving);
     let start = (release.motion, Some(rotation));
-    let recorder = Recorder::new(settings.terrain, geometry, start, (keep, settings.recorders));
-    let mut roll =
+    let recorder = Recorder::new(settings.terrain, geometry, start, (options, settings.recorders));
+    let mut rock =
         BlockSimulation { settings, world, block, footing, scars, moving, recorder, is_free: true };
-    let stop = run_to_stop(&mut roll, false);
-    roll.end((release, drawn), stop)
+    let stop = run_to_stop(&mut rock, false);
+    rock.end((release, drawn), stop)
 }
 
-/// Attitude and rotational energy `ω·L/2` (J) for the record.
+/// Attitude and rotational energy `ω·L/2` (J), for the recorder.
 fn rotation(block: &Block, moving: &Moving) -> BlockRotation {
     let rotational_j = 0.5 * moving.spin(block).dot(&moving.momentum);
     BlockRotation { attitude: moving.pose.attitude, rotational_j }
 }
 
 impl<'a> RockSimulation<'a> for BlockSimulation<'a> {
-    /// Springs are kept with the contacts.
+    /// None: the springs are stored with the contacts.
     type StepperState = ();
 
     fn settings(&self) -> &'a RunSettings<'a> {
@@ -97,7 +98,8 @@ impl<'a> RockSimulation<'a> for BlockSimulation<'a> {
         &mut self.recorder
     }
 
-    /// The ball around the block: what it does not touch, the block does not touch; and a corner must not move either where it rests.
+    /// The bounding sphere of the block: what the sphere does not touch, the block does not touch.
+    /// At rest no corner may move either.
     fn bounding_sphere(&self) -> (Vec3, f64) {
         (self.moving.pose.centre, self.block.bound_m)
     }
@@ -128,7 +130,11 @@ impl<'a> RockSimulation<'a> for BlockSimulation<'a> {
     }
 
     fn begin_contact(&mut self) -> ((), Loss) {
-        ((), self.begin_springs())
+        if self.has_springs() {
+            let on = (self.block, &self.moving);
+            self.footing.begin_springs(&self.world, self.settings.step, on);
+        }
+        ((), self.spring_energy())
     }
 
     fn resolve_impacts(&mut self) -> bool {
@@ -136,7 +142,7 @@ impl<'a> RockSimulation<'a> for BlockSimulation<'a> {
             self.begin_impacts();
             return false;
         }
-        // contacts are looked for anew in every step: the block turns, and other corners come near
+        // contacts are detected anew in every step: the block rotates, and other corners come near
         let pose = self.moving.pose;
         self.footing.look(&self.world, self.block, &pose, self.block.ball_m);
         self.resolve_impact()
@@ -156,7 +162,7 @@ impl<'a> RockSimulation<'a> for BlockSimulation<'a> {
         self.footing.bend_stems(&self.world, (self.block, &mut self.moving), &mut done.loss);
         self.plough(&from, done.is_free);
         self.is_free = done.is_free;
-        // an attitude that is no longer a rotation shows as NaN here, before it can reach a table
+        // an attitude that is no rotation any more gives NaN here, before it can reach a table
         let spin_rad_s = self.moving.spin(self.block);
         if !self.moving.pose.centre.iter().chain(spin_rad_s.iter()).all(|x| x.is_finite()) {
             return Err(StepError::NotFinite);
@@ -182,7 +188,11 @@ impl<'a> RockSimulation<'a> for BlockSimulation<'a> {
     }
 
     fn spring_energy(&mut self) -> Loss {
-        self.contact_spring_energy()
+        if self.has_springs() {
+            self.footing.springs_j(&self.world, (self.block, &self.moving))
+        } else {
+            self.footing.clamp.stored(&self.world)
+        }
     }
 
     fn end_contact(&mut self) {
@@ -196,7 +206,7 @@ impl BlockSimulation<'_> {
         self.settings.step.scheme.has_springs()
     }
 
-    /// One step of at most `longest_s` (s), and how many were thrown away.
+    /// One step of at most `longest_s` (s), and the number of rejected steps.
     fn advance(&mut self, longest_s: f64) -> Result<(Stepped, u64), StepError> {
         let (settings, block) = (self.settings.step, self.block);
         if !self.has_springs() {
@@ -207,18 +217,20 @@ impl BlockSimulation<'_> {
         self.footing.step_on_springs(&self.world, settings, on, longest_s)
     }
 
-    /// Resolves the impact of the contacts that touch, if there is one; whether it has thrown the block off.
+    /// Resolves the impact of the touching contacts, if there is one. Returns whether it has thrown
+    /// the block off.
     fn resolve_impact(&mut self) -> bool {
         let (block, now_s) = (self.block, self.recorder.now.time_s);
-        // touching contacts that approach faster than their ground captures: one impact, resolved together
+        // touching contacts whose approach is faster than the capture speed of their ground: one
+        // impact, solved together
         let mut struck = std::mem::take(&mut self.footing.aside);
         struck.clear();
         let is_struck =
             |touch: &&BlockTouch| Footing::is_struck(&self.world, (block, &self.moving), touch);
         struck.extend(self.footing.touching(block).filter(is_struck));
-        // as many have a row as there is room for at a time
+        // at most as many rows as impacts can be recorded at a time
         for touch in struck.iter().take(MOST) {
-            // of the touching point, spin included: v + ω × r
+            // velocity of the contact point, spin included: v + ω × r
             let velocity = self.moving.at(block, &touch.lever);
             let struck = Struck {
                 point_m: self.moving.pose.centre + touch.lever,
@@ -253,14 +265,14 @@ impl BlockSimulation<'_> {
         is_free
     }
 
-    /// Breaks the stems that cannot take the current blow; whether one could not.
+    /// Breaks the stems that the current impact overloads; returns whether there was one.
     fn break_stems(&mut self) -> bool {
         let lost = self.footing.break_stems(&self.world, self.block, &mut self.moving);
         self.recorder.book_losses(&lost.unwrap_or_default());
         lost.is_some()
     }
 
-    /// Digs into the soil of what is struck.
+    /// Enters the soil at the contacts that are hit.
     fn enter_soil_at(&mut self, struck: &[BlockTouch]) {
         if !self.scars.are_any() {
             return;
@@ -275,13 +287,14 @@ impl BlockSimulation<'_> {
         self.footing.blows = blows;
     }
 
-    /// What strikes a triangle with a normal, with this approach of the point that touches (m/s).
+    /// The impact on a triangle with this normal, given the approach speed of the contact point
+    /// (m/s).
     fn ground_blow(&self, (triangle, normal): (u32, Vec3), of_point_m_s: f64) -> GroundBlow {
         let approach_m_s = -normal.dot(&self.moving.v);
         GroundBlow { ground: self.world.ground_of(triangle), normal, approach_m_s, of_point_m_s }
     }
 
-    /// Digs into the soil of the blows, as fast as the centre comes to it.
+    /// Enters the soil at these impacts; the depth follows from the approach speed of the centre.
     fn enter_soil(&mut self, blows: &[GroundBlow]) {
         let holding = self.footing.touching(self.block).map(|touch| touch.triangle);
         let in_soil = self.scars.holds(&self.world, holding);
@@ -290,7 +303,8 @@ impl BlockSimulation<'_> {
         self.slow(speed_factor);
     }
 
-    /// Ploughs on from where the step began, and leaves the scar if it is free.
+    /// Ploughs the soil along the step that began at `from`, and leaves the scar if the block is
+    /// free.
     fn plough(&mut self, from: &Vec3, is_free: bool) {
         let contacts =
             self.footing.touching(self.block).map(|touch| (touch.triangle, touch.normal));
@@ -302,7 +316,7 @@ impl BlockSimulation<'_> {
         self.slow(speed_factor);
     }
 
-    /// Takes a share of the speed of the centre; the soil has it.
+    /// Multiplies the velocity of the centre by `speed_factor`; the energy goes to the soil.
     fn slow(&mut self, speed_factor: f64) {
         if speed_factor >= 1.0 {
             return;
@@ -311,7 +325,7 @@ impl BlockSimulation<'_> {
         self.footing.springs.refresh();
     }
 
-    /// The journey, complete, with the shape as it was drawn.
+    /// The complete trajectory, with the shape as drawn.
     fn end(mut self, (release, drawn): (&Release, &DrawnShape), stop: Stop) -> Trajectory {
         let start =
             Moving::new(self.block, (release.motion.position_m, drawn.attitude), &release.motion);

@@ -1,13 +1,13 @@
-//! Which cells of the maps a rock passes, with its largest energy and height in each.
+//! The cells of the maps that a rock passes, with its largest energy and height in each.
 //!
-//! Cells are numbered in plan view, whatever the rock's height over them. What a map shows of many
-//! rocks (how many passed, percentiles of energy and height) is made elsewhere from these passages;
-//! here each rock has one entry a cell, however often it comes back.
+//! Cells are numbered in plan view, whatever the height of the rock. Map values over many rocks
+//! (how many passed, percentiles of energy and height) are computed elsewhere from these passages.
+//! Here each rock has one entry per cell, however often it comes back.
 
 use super::contact_heights::StepHeights;
 use super::heights::Heights;
 use super::passages::{Passage, Passages};
-use super::rock_geometry::{RockGeometry, RockInstant, hermite_motion, time_share};
+use super::rock_geometry::{RockGeometry, RockInstant, hermite_motion, time_fraction};
 use crate::plan::MapGrid;
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
@@ -20,12 +20,12 @@ pub struct CellPassage {
     pub cell: u32,
     /// Largest sum of translational and rotational energy in the cell (J).
     pub total_j: f64,
-    /// Largest vertical distance from the ground below to the lowest point of the rock in the cell (m), 0 or more.
+    /// Largest vertical distance from the ground below to the lowest point of the rock in the cell
+    /// (m), 0 or more.
     pub height_m: f64,
 }
 
-/// The cells of one rock so far.
-/// Memory grows with the cells passed, not with the size of the grid.
+/// The cells of one rock so far. Memory grows with the cells passed, not with the size of the grid.
 #[derive(Debug)]
 pub(super) struct CellPassages<'a> {
     /// None where the plan keeps no maps: then nothing below costs anything.
@@ -38,27 +38,27 @@ impl<'a> CellPassages<'a> {
         Self { cells, found: Passages::new() }
     }
 
-    /// Notes the cells below a flight.
+    /// Records the cells below a flight.
     ///
-    /// The speed along a parabola has no largest value inside: the ends of its part in a cell hold it exactly.
+    /// The speed along a parabola has no maximum inside: the largest is at an end of its part in a
+    /// cell.
     pub(super) fn fly(&mut self, heights: &Heights) {
         let Some(cells) = self.cells else { return };
         let Heights { terrain, geometry, flight } = *heights;
         let rotational_j = geometry.rotational_j(&flight.at(0.0));
-        // m |v|²/2 of the parabola, plus the rotational energy, which no flight changes
+        // m |v|²/2 of the parabola, plus the rotational energy, which is constant in flight
         let total_j = |t: f64| {
             0.5 * geometry.rock.mass_kg() * flight.path.velocity(t).norm_squared() + rotational_j
         };
-        let [from, to] = [0.0, flight.lasts_s].map(|t| flight.path.centre(t));
-        // in plan view the flight is straight and even, so a share of the way is the same share of
-        // the time
+        let [from, to] = [0.0, flight.duration_s].map(|t| flight.path.centre(t));
+        // in plan view a flight is straight and uniform: equal fractions of distance and of time
         for_each_cell(cells, [&from, &to], |cell, s0, s1| {
-            let [t0, t1] = [s0, s1].map(|share| share * flight.lasts_s);
+            let [t0, t1] = [s0, s1].map(|share| share * flight.duration_s);
             let total_j = total_j(t0).max(total_j(t1));
             let known_m = self.found.known_m(cell);
             let top = heights.largest([t0, t1], known_m.unwrap_or(f64::NEG_INFINITY));
-            // where there is no ground there is no height; fallen through a hole of the mesh, it
-            // passes no cell any more
+            // without ground below there is no height; a rock that has fallen through a hole of the
+            // mesh passes no cell any more
             let is_lost = || terrain.is_under_slope(&flight.path.centre(0.5 * (t0 + t1)));
             if top.is_none() && known_m.is_none() && is_lost() {
                 return;
@@ -68,12 +68,13 @@ impl<'a> CellPassages<'a> {
         });
     }
 
-    /// Whether there are any cells.
+    /// Whether cells are recorded.
     pub(super) fn are_recorded(&self) -> bool {
         self.cells.is_some()
     }
 
-    /// Notes the cells of a step in contact: where it enters and leaves each hold the energy that it has there.
+    /// Records the cells of a step in contact, with the energies at which the step enters and
+    /// leaves each.
     pub(super) fn step(
         &mut self,
         (terrain, geometry): (&Terrain, &RockGeometry),
@@ -82,14 +83,15 @@ impl<'a> CellPassages<'a> {
     ) {
         let Some(cells) = self.cells else { return };
         let [from, to] = ends.map(|end| &end.motion);
-        // velocity linear within the step: its square has no largest value inside either
+        // velocity is linear within the step: its square has no maximum inside either
         let total_j = |s: f64| {
             let at = RockInstant::interpolated(ends, s);
             at.motion.translational_j(&geometry.rock) + geometry.rotational_j(&at)
         };
         for_each_cell(cells, [&from.position_m, &to.position_m], |cell, entered, left| {
-            let [s0, s1] = [entered, left].map(|share| time_share([from, to], share));
-            // looked for once a cell, where the step comes into it: from below the mesh holds a rock too
+            let [s0, s1] = [entered, left].map(|share| time_fraction([from, to], share));
+            // tested once per cell, where the step enters it: a rock below the mesh may be held by
+            // it too
             let known_m = self.found.known_m(cell);
             if known_m.is_none() && terrain.is_under_slope(&hermite_motion(from, to, s1).position_m)
             {
@@ -117,8 +119,8 @@ impl Passage for CellPassage {
     }
 }
 
-/// Calls `pass` with every cell under the straight way between two places and the shares of the way at which it is
-/// entered and left.
+/// Calls `pass` with every cell under the straight line between two positions, and with the
+/// fractions of the line at which the cell is entered and left.
 fn for_each_cell(cells: &MapGrid, ends: [&Vec3; 2], mut pass: impl FnMut(u32, f64, f64)) {
     cells_under(ends.map(|end| cells.place(end.x, end.y)), |[column, row], entered, leaves| {
         if let Some(cell) = cells.cell(column, row) {
@@ -154,7 +156,8 @@ mod tests {
         }
     }
 
-    /// However it runs, a way is covered once, without gaps, and what lies outside has no cell.
+    /// Whatever its direction, a line is covered once and without gaps; what lies outside the grid
+    /// has no cell.
     #[test]
     fn parts_join_without_gaps() {
         for k in 0..500 {

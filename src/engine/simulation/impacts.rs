@@ -1,13 +1,14 @@
-//! The impacts of one rock: one row for every patch that it strikes.
+//! The impacts of one rock: one row for every patch that it hits.
 //!
-//! A rock may strike several patches at once, or one while it is still pressed into another. Each has its own approach, its own
-//! end and its own speed after it. What trees take while several are under way is shared by those on trees, what the slope takes by
-//! those on the slope, each by the squares of their approach speeds, for the energy that each would bring to rest. A patch that opens
-//! for an instant and closes again is still the same impact.
+//! A rock may hit several patches at once, or hit one while it is still pressed into another. Each
+//! has its own approach speed, its own end and its own speed afterwards. While several are active,
+//! impacts on trees share what trees take, and impacts on the slope share what the slope takes.
+//! Each share is proportional to the square of the approach speed, that is, to the energy that the
+//! approach brings. A patch that opens for an instant and closes again is still the same impact.
 //!
-//! Why a share by squares: two contacts struck at once are followed as one event, and what each
-//! took by itself is not known. The energy `m (n·v)²/2` that an approach along its normal brings
-//! is, and it is what a dashpot takes from.
+//! Why a share by squares: two contacts hit at once are followed as one event, and what each took
+//! by itself is not known. The energy `m (n·v)²/2` of an approach along its normal is known, and it
+//! is what a dashpot takes from.
 
 use super::Impact;
 use crate::contact::MOST;
@@ -15,14 +16,14 @@ use crate::contact::history::SAME_GRIP;
 use crate::rock::Vec3;
 use crate::solver::struck::Struck;
 
-/// A patch struck again so soon after it has let go (s) is the same impact: its springs opened for an instant, or the rock went
-/// on over the side of a triangle.
+/// A patch hit again within this time after it has opened (s) is the same impact: its springs
+/// opened for an instant, or the rock crossed the edge of a triangle.
 ///
 /// Contact times are `π/ω`: 4 ms for a block of 1400 kg on 1e9 N/m, so a millisecond is short
 /// against an impact and long against a step.
 const SAME_IMPACT_S: f64 = 1e-3;
 
-/// Energy by what of the mesh has it (J).
+/// Energy by owner of the mesh (J).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct MeshEnergy {
     /// The slope.
@@ -32,40 +33,41 @@ pub(super) struct MeshEnergy {
 }
 
 impl MeshEnergy {
-    /// That of trees, or that of the slope.
+    /// Energy of trees, or of the slope.
     fn on(&self, is_tree: bool) -> f64 {
         if is_tree { self.trees_j } else { self.slope_j }
     }
 
-    /// What is left without another.
+    /// Difference from another.
     #[must_use]
     pub(super) fn minus(&self, other: &Self) -> Self {
         Self { slope_j: self.slope_j - other.slope_j, trees_j: self.trees_j - other.trees_j }
     }
 }
 
-/// What of the mesh a patch is on.
+/// The part of the mesh to which a patch belongs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct PatchOwner {
     pub(super) sheet: u16,
     pub(super) is_tree: bool,
-    /// Which stem, where trees may break: two that stand side by side are struck one after the other.
+    /// Number of the stem, where trees may break: two that stand side by side are hit one after the
+    /// other.
     pub(super) stem: Option<u32>,
 }
 
-/// An impact under way, or one that is just over.
-/// Those just over stay for `SAME_IMPACT_S`, so that a patch that closes again finds its row.
+/// An active impact, or one that has just ended. Ended impacts stay for `SAME_IMPACT_S`, so that a
+/// patch that closes again finds its row.
 #[derive(Debug, Clone, Copy)]
 struct RecentImpact {
-    /// Which of the rock's impacts it is, from 1.
+    /// Number among the impacts of the rock, from 1.
     number: u32,
     owner: PatchOwner,
     normal: Vec3,
-    /// Its share of what is lost while it lasts (m²/s²).
+    /// Weight of its share of the energy lost while it is active (m²/s²).
     weight: f64,
-    /// When it is over at the latest (s), and when its patch let go.
+    /// Latest time of its end (s), and time at which its patch opened (s).
     ///
-    /// A patch that holds the rock for good (rolling, rest) would never let go: its impact ends by
+    /// A patch that holds the rock for good (rolling, rest) would never open: its impact ends by
     /// time.
     latest_end_s: f64,
     ended_s: Option<f64>,
@@ -74,26 +76,28 @@ struct RecentImpact {
 /// The impacts of one rock.
 #[derive(Debug, Default)]
 pub(super) struct Impacts {
-    /// The rows, if they are kept.
+    /// Rows, if they are kept.
     pub(super) rows: Vec<Impact>,
-    /// How many there were.
+    /// Number of impacts so far.
     pub(super) count: u32,
     keeps_rows: bool,
     recent: RecentImpacts,
 }
 
-/// Those under way, without allocation.
+/// Active impacts and those just ended, without allocation.
 #[derive(Debug, Clone, Copy, Default)]
 struct RecentImpacts {
     slots: [Option<RecentImpact>; MOST],
-    /// What had gone into contacts with the mesh when the first of them began, and what of it into soil (J).
-    /// The ledger's sums when the group began: the group's loss is the difference at its end.
+    /// Energy that had gone into contacts with the mesh when the first impact of the group began,
+    /// and the part of it that went into soil (J): sums of the energy balance. The loss of the
+    /// group is the difference at its end.
     start_j: (MeshEnergy, f64),
 }
 
 impl RecentImpacts {
-    /// A place for one more: a free one, else that of the one which began first, of those that are over if there are any.
-    /// Eight places, as a rock keeps eight contacts; more at once cannot be.
+    /// A slot for one more impact: a free one, else that of the impact that began first, among
+    /// ended impacts if there are any. There are as many slots as a rock has contacts; more at once
+    /// cannot be.
     fn free_slot(&mut self) -> &mut Option<RecentImpact> {
         let rank = |slot: &Option<RecentImpact>| {
             slot.as_ref().map(|impact| (impact.ended_s.is_none(), impact.number))
@@ -103,8 +107,7 @@ impl RecentImpacts {
     }
 }
 
-/// The impacts at a moment, to go back to.
-/// Rows only grow, so their number will do.
+/// State of the impacts at an instant, to restore. Rows only grow, so their number suffices.
 #[derive(Debug)]
 pub(super) struct ImpactsMark {
     rows: usize,
@@ -126,7 +129,7 @@ impl Impacts {
         (self.count, self.recent) = (mark.count, mark.recent);
     }
 
-    /// Whether any is under way.
+    /// Whether any impact is active.
     #[inline]
     pub(super) fn is_any_active(&self) -> bool {
         self.active().next().is_some()
@@ -136,8 +139,10 @@ impl Impacts {
         self.recent.slots.iter().flatten().filter(|impact| impact.ended_s.is_none())
     }
 
-    /// Begins one at `now_s` (s) and `speed_m_s`, to end at `latest_end_s` at the latest, or goes on with that of the same patch;
-    /// `lost_j` is what has gone into contacts with the mesh so far, and what of it into soil. Returns its number, and whether it is a new one.
+    /// Begins an impact at `now_s` (s) and `speed_m_s`, to end at `latest_end_s` (s) at the latest,
+    /// or continues that of the same patch. `lost_j` is the energy that has gone into contacts with
+    /// the mesh so far, and the part of it that went into soil. Returns its number, and whether it
+    /// is new.
     pub(super) fn begin(
         &mut self,
         (struck, owner): (&Struck, PatchOwner),
@@ -148,10 +153,9 @@ impl Impacts {
         if !self.is_any_active() {
             self.recent.start_j = lost_j;
         }
-        // a speed of 0 must not leave a group without any share
+        // a speed of 0 must not leave a group without any weight
         let weight = struck.approach_m_s.powi(2).max(f64::MIN_POSITIVE);
-        // of the same mesh and with nearly the same normal: a rock that rolls over a seam strikes no
-        // second patch
+        // same mesh and nearly the same normal: a rock that rolls over a seam hits no second patch
         let is_same = |impact: &&mut RecentImpact| {
             impact.ended_s.is_some_and(|ended_s| now_s - ended_s <= SAME_IMPACT_S)
                 && impact.owner == owner
@@ -188,7 +192,8 @@ impl Impacts {
         (number, true)
     }
 
-    /// Ends, at `now_s` (s) and `speed_m_s`, those whose time is over and those whose patch no longer `holds` the rock.
+    /// Ends, at `now_s` (s) and `speed_m_s`, the impacts whose time is over and those whose patch
+    /// no longer `holds` the rock.
     pub(super) fn end(&mut self, now_s: f64, speed_m_s: f64, holds: impl Fn(u32) -> bool) {
         for impact in self.recent.slots.iter_mut().flatten() {
             if impact.ended_s.is_none() && (now_s >= impact.latest_end_s || !holds(impact.number)) {
@@ -201,15 +206,16 @@ impl Impacts {
         }
     }
 
-    /// Once none is in hand any more, books what they took: `lost_j` has gone into contacts with the mesh so far, springs that
-    /// are still pressed not counted, and `soil_j` of it into soil.
+    /// Books the energy of a group once none of its impacts is active any more. `lost_j` has gone
+    /// into contacts with the mesh so far, without what springs still hold; `soil_j` of it went
+    /// into soil.
     pub(super) fn book(&mut self, (lost_j, soil_j): (MeshEnergy, f64)) {
         if !self.keeps_rows || self.is_any_active() {
             return;
         }
         let taken_j = lost_j.minus(&self.recent.start_j.0);
         for is_tree in [false, true] {
-            // never less than nothing: a step may gain what it rounds
+            // never negative: rounding of a step may be a gain
             let taken_j = taken_j.on(is_tree).max(0.0);
             // there is no soil on trees
             let most_soil_j = if is_tree { 0.0 } else { taken_j };
@@ -217,7 +223,8 @@ impl Impacts {
         }
     }
 
-    /// Shares what trees, or the slope, took among the impacts on them; what a patch took that was not struck is in no row.
+    /// Distributes what trees, or the slope, took among the impacts on them. What a patch without
+    /// an impact took is in no row.
     fn share(&mut self, is_tree: bool, taken_j: f64, soil_j: f64) {
         let is_on_owner = |impact: &&mut RecentImpact| impact.owner.is_tree == is_tree;
         let weights = self.recent.slots.iter_mut().flatten().filter(is_on_owner);
@@ -233,7 +240,7 @@ impl Impacts {
         }
     }
 
-    /// What strikes from now on is another impact, wherever it strikes.
+    /// Forgets ended impacts: a contact from now on is another impact, wherever it is.
     pub(super) fn forget_ended(&mut self) {
         for slot in &mut self.recent.slots {
             slot.take_if(|impact| impact.ended_s.is_some());

@@ -1,8 +1,8 @@
-//! What a rock looks like to those who note its way: a ball, or a block that is turned somehow.
+//! The geometry of a rock as the recorders see it: a sphere, or a block with an attitude.
 //!
-//! A sphere is the same from all sides; for a block heights and crossings depend on how it is
-//! turned, so these are asked here and nowhere by radius. The support of a block along a direction
-//! is `max_k ρ_k·d + r`, over its corners `ρ_k` with balls of radius `r`.
+//! A sphere is the same from all sides. For a block heights and crossings depend on its attitude,
+//! so they are asked of this module and never computed from a radius. The support of a block along
+//! a direction is `max_k ρ_k·d + r`, over its corners `ρ_k` with spheres of radius `r`.
 
 use crate::body::Block;
 use crate::flight::Parabola;
@@ -11,7 +11,7 @@ use crate::math;
 use crate::rock::{Motion, Rock, Vec3};
 use nalgebra::{Quaternion, Rotation3, UnitQuaternion};
 
-/// How a block is turned, and the energy of its rotation.
+/// Attitude and rotational energy of a block.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct BlockRotation {
     /// From the block's principal frame to the world.
@@ -28,29 +28,29 @@ pub(super) struct RockInstant {
     pub(super) rotation: Option<BlockRotation>,
 }
 
-/// How a block turns on its way.
+/// Attitude of a block over the time of a flight or a step.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum AttitudePath<'a> {
-    /// Freely.
+    /// Free rotation.
     Top(&'a Top),
-    /// Through a step in contact, from one attitude to the other.
+    /// Over a step in contact, from one attitude to the other.
     Step([&'a BlockRotation; 2]),
 }
 
-/// A rock in free flight, or on the way of a step in contact.
+/// A rock in free flight, or on the path of a step in contact.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct RockFlight<'a> {
-    /// How it began.
+    /// Motion at its start.
     pub(super) start: Motion,
-    /// Way of its centre.
+    /// Path of the centre.
     pub(super) path: &'a Parabola,
-    /// How a block turns; none for a sphere.
+    /// Attitude over time of a block; none for a sphere.
     pub(super) turning: Option<AttitudePath<'a>>,
-    /// How long it flies (s).
-    pub(super) lasts_s: f64,
+    /// Duration (s).
+    pub(super) duration_s: f64,
 }
 
-/// The rock itself.
+/// Size and shape of a rock.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct RockGeometry<'a> {
     pub(super) rock: Rock,
@@ -59,14 +59,15 @@ pub(super) struct RockGeometry<'a> {
 }
 
 impl BlockRotation {
-    /// The turn as a unit quaternion w, x, y, z with w ≥ 0.
+    /// The attitude as a unit quaternion w, x, y, z with w ≥ 0.
     pub(super) fn quaternion(&self) -> [f64; 4] {
         quaternion(&self.attitude)
     }
 
-    /// At share `s` of a step in contact. It turns a block by hardly a tenth of a radian: there the
-    /// normed mean of the two quaternions is the turn about a fixed axis to 2e-5 rad, and takes
-    /// no sine, whose bits would differ from machine to machine. The energy is linear.
+    /// At fraction `s` of a step in contact. A step rotates a block by hardly a tenth of a radian.
+    /// For that the normalised mean of the two quaternions equals the rotation about a fixed axis
+    /// to 2e-5 rad, and needs no sine, whose bits would differ from machine to machine. The energy
+    /// is linear.
     fn interpolated([from, to]: [&Self; 2], s: f64) -> Self {
         let (a, b) = Self::quaternions([from, to]);
         Self {
@@ -75,16 +76,19 @@ impl BlockRotation {
         }
     }
 
-    /// How far it turns per unit of share, at share `s` of a step in contact (rad, as a vector along the axis).
+    /// Rotation per unit of `s` at fraction `s` of a step in contact (rad, as a vector along the
+    /// axis).
     ///
-    /// `2 vec(q′ q̄)` of `q = p/|p|` with `p = a + s (b − a)`: what norms `p` has no part along the axis.
+    /// `2 vec(q′ q̄)` of `q = p/|p|` with `p = a + s (b − a)`: normalising `p` adds no part along
+    /// the axis.
     fn angular_rate(ends: [&Self; 2], s: f64) -> Vec3 {
         let (a, b) = Self::quaternions(ends);
         let (at, length) = UnitQuaternion::new_and_get(a.lerp(&b, s));
         ((b - a) * at.conjugate().into_inner()).imag() * (2.0 / length)
     }
 
-    /// The quaternions of two attitudes; `q` and `−q` are the same turn, so the second is the nearer one.
+    /// The quaternions of two attitudes. `q` and `−q` are the same rotation; of these the second
+    /// result is the one nearer to the first.
     fn quaternions(ends: [&Self; 2]) -> (Quaternion<f64>, Quaternion<f64>) {
         let [a, b] =
             ends.map(|end| UnitQuaternion::from_rotation_matrix(&end.attitude).into_inner());
@@ -92,10 +96,10 @@ impl BlockRotation {
     }
 }
 
-/// A turn as a unit quaternion w, x, y, z with w ≥ 0.
+/// A rotation as a unit quaternion w, x, y, z with w ≥ 0.
 ///
-/// `q` and `−q` are the same turn; the sign is fixed, so that files do not depend on how the matrix
-/// came about.
+/// `q` and `−q` are the same rotation. The sign is fixed, so that files do not depend on how the
+/// matrix was computed.
 pub(super) fn quaternion(turn: &Rotation3<f64>) -> [f64; 4] {
     let turn = UnitQuaternion::from_rotation_matrix(turn);
     let sign = if turn.w < 0.0 { -1.0 } else { 1.0 };
@@ -103,55 +107,58 @@ pub(super) fn quaternion(turn: &Rotation3<f64>) -> [f64; 4] {
 }
 
 impl RockFlight<'_> {
-    /// The rock after `t` (s).
+    /// State of the rock after `t` (s).
     pub(super) fn at(&self, t: f64) -> RockInstant {
         let rotation = self.turning.map(|turning| self.rotation(turning, t));
         let motion = Motion {
             time_s: self.start.time_s + t,
             position_m: self.path.centre(t),
             velocity_m_s: self.path.velocity(t),
-            // a sphere keeps its spin in flight: nothing turns it
+            // a sphere keeps its spin in flight: no torque acts on it
             spin_rad_s: rotation.map_or(self.start.spin_rad_s, |(spin, _)| spin),
         };
         RockInstant { motion, rotation: rotation.map(|(_, rotation)| rotation) }
     }
 
-    /// Spin (rad/s) and turn of a block after `t` (s).
+    /// Spin (rad/s) and attitude of a block after `t` (s).
     fn rotation(&self, turning: AttitudePath, t: f64) -> (Vec3, BlockRotation) {
         match turning {
-            // the attitude is a closed form of the time (`Top`); the energy of rotation is constant in flight
+            // the attitude is a closed form of time (`Top`); rotational energy is constant in
+            // flight
             AttitudePath::Top(top) => {
                 let attitude = top.attitude(t);
                 (top.spin(&attitude), BlockRotation { attitude, rotational_j: top.energy_j() })
             }
             AttitudePath::Step(ends) => {
-                let s = t / self.lasts_s;
+                let s = t / self.duration_s;
                 (
-                    BlockRotation::angular_rate(ends, s) / self.lasts_s,
+                    BlockRotation::angular_rate(ends, s) / self.duration_s,
                     BlockRotation::interpolated(ends, s),
                 )
             }
         }
     }
 
-    /// Largest size of `ω × (ω × ρ) + ω̇ × ρ` over the length of `ρ` (1/s²), see [`Top::bends`]; none for a sphere.
+    /// Bound of `|ω × (ω × ρ) + ω̇ × ρ|/|ρ|`, the acceleration of a point relative to the centre
+    /// over its distance from it (1/s²), see [`Top::bends`]; none for a sphere.
     ///
-    /// In a step the spin is largest in its middle, and by `ω = 4 S h/(h² + u²)` with the sine `S` and the cosine `h` of a fourth of
-    /// the angle and `|u| ≤ S` it changes by no more than `ω³ dt/4` per second.
+    /// In a step the spin is largest in its middle. By `ω = 4 S h/(h² + u²)`, with the sine `S` and
+    /// the cosine `h` of a fourth of the angle and `|u| ≤ S`, it changes by no more than `ω³ dt/4`
+    /// per second.
     pub(super) fn point_acceleration_per_m(&self) -> Option<f64> {
         Some(match self.turning? {
             AttitudePath::Top(top) => top.bends().bend,
             AttitudePath::Step(ends) => {
-                let spin = BlockRotation::angular_rate(ends, 0.5).norm() / self.lasts_s;
-                spin * spin * (1.0 + 0.25 * spin * self.lasts_s)
+                let spin = BlockRotation::angular_rate(ends, 0.5).norm() / self.duration_s;
+                spin * spin * (1.0 + 0.25 * spin * self.duration_s)
             }
         })
     }
 }
 
 impl RockInstant {
-    /// The rock at share `s` of a step in contact between two instants: see [`between`] and
-    /// [`BlockRotation::interpolated`].
+    /// The rock at fraction `s` of a step in contact between two instants: see [`hermite_motion`]
+    /// and [`BlockRotation::interpolated`].
     pub(super) fn interpolated([from, to]: [&Self; 2], s: f64) -> Self {
         let turns = from.rotation.zip(to.rotation);
         Self {
@@ -169,7 +176,8 @@ impl From<Motion> for RockInstant {
 }
 
 impl RockGeometry<'_> {
-    /// How far the rock reaches from its centre along a unit direction (m).
+    /// Support of the rock: distance from its centre to its farthest point along a unit direction
+    /// (m).
     pub(super) fn support_m(&self, at: &RockInstant, along: &Vec3) -> f64 {
         match (self.block, &at.rotation) {
             (Some(block), Some(rotation)) => {
@@ -179,18 +187,19 @@ impl RockGeometry<'_> {
         }
     }
 
-    /// How far the lowest point lies below the centre (m).
-    /// The radius of a sphere; for a block the support downwards.
+    /// Depth of the lowest point below the centre (m): the radius of a sphere; for a block the
+    /// support downwards.
     pub(super) fn depth_below_centre_m(&self, at: &RockInstant) -> f64 {
         self.support_m(at, &-Vec3::z())
     }
 
-    /// How far the lowest point lies below the centre at least, however it is turned (m).
+    /// Least depth of the lowest point below the centre over all attitudes (m).
     pub(super) fn least_depth_below_centre_m(&self) -> f64 {
         self.block.map_or(self.rock.radius_m, Block::least_support_m)
     }
 
-    /// How far the lowest corner of a block lies below the centre (m), and how fast it sinks against it (m/s).
+    /// Depth of the lowest corner of a block below the centre (m), and the speed at which it sinks
+    /// relative to the centre (m/s).
     pub(super) fn lowest_corner(block: &Block, at: &RockInstant) -> Option<(f64, f64)> {
         let rotation = at.rotation.as_ref()?;
         let down = rotation.attitude.inverse_transform_vector(&-Vec3::z());
@@ -200,10 +209,10 @@ impl RockGeometry<'_> {
         Some((below_m + block.ball_m, sinks_m_s))
     }
 
-    /// Radius of the circle that it may cover on the map (m).
+    /// Radius of the circle that it may cover in plan view (m).
     ///
-    /// That of the ball around a block, whichever way it is turned: on the map a block may turn as
-    /// it passes.
+    /// For a block that of its bounding sphere, whatever its attitude: a block may rotate as it
+    /// passes.
     pub(super) fn plan_radius_m(&self) -> f64 {
         self.block.map_or(self.rock.radius_m, |block| block.bound_m)
     }
@@ -215,11 +224,11 @@ impl RockGeometry<'_> {
     }
 }
 
-/// The motion a share `s` of a step after its start: cubic in position, linear in velocity and spin.
+/// The motion at fraction `s` of a step: cubic in position, linear in velocity and spin.
 ///
-/// Hermite's cubic through positions and velocities at both ends: it leaves and arrives with the
-/// velocities of the step, and its error is of fourth order in the step. `bend` is what it differs
-/// from the straight way by; 0 for a constant velocity.
+/// Hermite's cubic through positions and velocities at both ends: its velocities at the ends are
+/// those of the step, and its error is of fourth order in the step. `bend` is its deviation from
+/// the straight path; 0 for a constant velocity.
 pub(super) fn hermite_motion(from: &Motion, to: &Motion, s: f64) -> Motion {
     let dt = to.time_s - from.time_s;
     let way = to.position_m - from.position_m;
@@ -233,28 +242,30 @@ pub(super) fn hermite_motion(from: &Motion, to: &Motion, s: f64) -> Motion {
     }
 }
 
-/// Halvings of a step to find when it has come so far: 2⁻⁴⁰ is rounding.
+/// Bisections of a step to find the time of a position: 2⁻⁴⁰ is rounding.
 const TIME_BISECTIONS: u32 = 40;
 
-/// The share of a step's time at which it has come a share of its way in plan view, on the cubic of [`between`]: a rock that slows down has most of
-/// its way behind it at half of its time.
-pub(super) fn time_share([from, to]: [&Motion; 2], way_share: f64) -> f64 {
+/// The fraction of a step's time after which a fraction `distance_fraction` of its distance in plan
+/// view is covered, on the cubic of [`hermite_motion`]. A rock that slows down has most of its
+/// distance behind it at half of its time.
+pub(super) fn time_fraction([from, to]: [&Motion; 2], distance_fraction: f64) -> f64 {
     let way = (to.position_m - from.position_m).xy();
     let (dt, way2) = (to.time_s - from.time_s, way.norm_squared());
-    if way2 == 0.0 || way_share <= 0.0 || way_share >= 1.0 {
-        return way_share;
+    if way2 == 0.0 || distance_fraction <= 0.0 || distance_fraction >= 1.0 {
+        return distance_fraction;
     }
     let along = |motion: &Motion| motion.velocity_m_s.xy().dot(&way) * (dt / way2) - 1.0;
     let (a, b) = (along(from), along(to));
-    let way_share_at = |s: f64| s + (a * (1.0 - s) - b * s) * (s * (1.0 - s));
-    math::bisected([0.0, 1.0], TIME_BISECTIONS, |s| way_share_at(s) <= way_share)[0]
+    let distance_fraction_at = |s: f64| s + (a * (1.0 - s) - b * s) * (s * (1.0 - s));
+    math::bisected([0.0, 1.0], TIME_BISECTIONS, |s| distance_fraction_at(s) <= distance_fraction)[0]
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// Constant braking from 3 m/s to rest within 2 s: `x = 3 t − 0.75 t²`, so that half of the way of 3 m is behind after `2 − √2` s.
+    /// Constant braking from 3 m/s to rest within 2 s: `x = 3 t − 0.75 t²`, so that half of the
+    /// distance of 3 m is covered after `2 − √2` s.
     #[test]
     fn a_rock_that_slows_down_is_early_half_way() {
         let at = |time_s: f64, x: f64, speed: f64| Motion {
@@ -264,19 +275,19 @@ mod tests {
             spin_rad_s: Vec3::zeros(),
         };
         let (from, to) = (at(5.0, 1.0, 3.0), at(7.0, 4.0, 0.0));
-        let half = time_share([&from, &to], 0.5);
+        let half = time_fraction([&from, &to], 0.5);
         assert!((half - (1.0 - 0.5_f64.sqrt())).abs() < 1e-11, "{half}");
         assert!((hermite_motion(&from, &to, half).velocity_m_s.x - 4.5_f64.sqrt()).abs() < 1e-10);
         for share in [0.0, 1.0] {
-            assert!((time_share([&from, &to], share) - share).abs() < 1e-15);
+            assert!((time_fraction([&from, &to], share) - share).abs() < 1e-15);
         }
-        assert!((time_share([&from, &from], 0.3) - 0.3).abs() < 1e-15);
+        assert!((time_fraction([&from, &from], 0.3) - 0.3).abs() < 1e-15);
     }
 
     #[test]
     fn within_a_step_a_block_turns_from_one_attitude_to_the_other() {
         let axis = nalgebra::Unit::new_normalize(Vec3::new(0.3, -0.5, 0.8));
-        // far round, so that the quaternions of both ends lie on both sides of w = 0
+        // a large angle, so that the quaternions of both ends lie on both sides of w = 0
         let turn = |angle: f64| Rotation3::from_axis_angle(&axis, 3.1 + angle);
         let end = |angle: f64, rotational_j| BlockRotation { attitude: turn(angle), rotational_j };
         let ends = [&end(0.0, 2.0), &end(0.1, 4.0)];

@@ -1,4 +1,4 @@
-//! A sphere on its way: what it meets, what it is, what is noted down of it.
+//! The simulation of one sphere: its state, its environment and its record.
 
 use super::driver::{RockSimulation, run_to_stop};
 use super::recorder::{RecordOptions, Recorder};
@@ -23,23 +23,23 @@ use crate::solver::step_control::{Advance, StepError};
 use crate::solver::{self, Stepper};
 use crate::stopwatch::TimedPiece;
 
-/// One sphere.
-/// Everything that a journey needs and nothing that outlives it.
+/// One sphere during its simulation. Everything that a trajectory needs and nothing that outlives
+/// it.
 pub(super) struct SphereSimulation<'a> {
     pub(super) settings: &'a RunSettings<'a>,
     pub(super) body: Body,
-    /// Those in force: soil and the speed of impacts change them on the way.
+    /// Laws in force: soil and impact speed change them during the simulation.
     pub(super) laws: &'a mut [Law],
     pub(super) soil: Soil<'a>,
     pub(super) state: &'a mut ContactState,
     pub(super) recorder: Recorder<'a>,
 }
 
-/// Follows one sphere from its release to its stop; `laws` are those of the grounds for it.
+/// Simulates one sphere from its release to its stop; `laws` are the laws of the grounds for it.
 pub(super) fn run_sphere(
     settings: &RunSettings,
     release: &Release,
-    keep: RecordOptions,
+    options: RecordOptions,
     (laws, random): (&mut [Law], RandomStream),
     (state, scars, slip): (&mut ContactState, &mut Scars, &mut Slip),
 ) -> Trajectory {
@@ -49,7 +49,7 @@ pub(super) fn run_sphere(
     state.facets = RoughFacets::of(random, laws);
     slip.begin(&release.grounds);
     let geometry = RockGeometry { rock: release.rock, block: None };
-    let records = (keep, settings.recorders);
+    let records = (options, settings.recorders);
     let mut rock = SphereSimulation {
         settings,
         body: Body::new(&release.rock, settings.gravity_m_s2),
@@ -64,13 +64,13 @@ pub(super) fn run_sphere(
 }
 
 impl<'a> SphereSimulation<'a> {
-    /// Whether the rock is in contact with something it is pressed into.
+    /// Whether the rock penetrates the mesh.
     fn is_penetrating(&mut self) -> bool {
         self.find_contacts();
         self.state.touches.iter().any(|touch| touch.distance_m < self.body.radius)
     }
 
-    /// Begins contact anew where it is.
+    /// Detects the contacts at the present position; all histories start anew.
     fn find_contacts(&mut self) {
         let Motion { position_m: c, velocity_m_s: v, spin_rad_s: w, .. } = self.recorder.now;
         let world = self.settings.contact_environment(self.body, self.laws);
@@ -78,7 +78,7 @@ impl<'a> SphereSimulation<'a> {
         self.state.begin_within(&world, (c, v, w), search_distance);
     }
 
-    /// The journey, complete.
+    /// The complete trajectory.
     fn end(mut self, release: &Release, stop: Stop) -> Trajectory {
         self.recorder.effort.sweeps += self.state.sweeps;
         self.recorder.effort.triangles += self.state.near.tested;
@@ -87,12 +87,13 @@ impl<'a> SphereSimulation<'a> {
         self.recorder.into_trajectory(release, stop, energies)
     }
 
-    /// Whether contacts have no springs: those of the rigid limit hold nothing, whatever the depth that rounding leaves.
+    /// Whether contacts have no springs. Contacts of the rigid limit hold no energy, whatever
+    /// penetration rounding leaves.
     pub(super) fn is_rigid(&self) -> bool {
         !self.settings.step.scheme.has_springs()
     }
 
-    /// The rock and its notes.
+    /// The rock in contact and its recorder.
     pub(super) fn in_contact(&mut self) -> RockInContact<'_, 'a> {
         let has_springs = !self.is_rigid();
         let Self { settings, body, laws, state, recorder, .. } = self;
@@ -129,8 +130,8 @@ impl<'a> RockSimulation<'a> for SphereSimulation<'a> {
         let now = self.recorder.now;
         let flight = Parabola::of(&now, self.settings.gravity_m_s2, self.body.radius);
         let time_left_s = self.settings.longest_s - now.time_s;
-        let begun = self.state.stopwatches.now();
-        // stems that this rock has broken are no longer in its way
+        let started = self.state.stopwatches.now();
+        // stems that this rock has broken are no obstacles any more
         let end = time_of_impact_past(
             self.settings.terrain,
             &flight,
@@ -138,22 +139,22 @@ impl<'a> RockSimulation<'a> for SphereSimulation<'a> {
             &self.state.near.gone,
             &mut self.recorder.effort.triangles,
         );
-        // a flight counts as one leap, however long
+        // a flight counts as one, however long
         self.recorder.effort.leaps += 1;
         let (dt, stop) = self.settings.end_of_flight(&end, now.time_s, &self.recorder.effort);
-        self.state.stopwatches.stop(TimedPiece::Leap, begun);
-        let begun = self.state.stopwatches.now();
+        self.state.stopwatches.stop(TimedPiece::Leap, started);
+        let started = self.state.stopwatches.now();
         self.recorder.record_flight(&flight, None, dt);
         let speed_factor = self.soil.fly(&self.body, &self.recorder.now.velocity_m_s, dt);
         self.recorder.slow_in_soil_in_flight(speed_factor);
-        self.state.stopwatches.stop(TimedPiece::NotesInFlight, begun);
+        self.state.stopwatches.stop(TimedPiece::NotesInFlight, started);
         stop
     }
 
     fn begin_contact(&mut self) -> (Stepper, Loss) {
         self.find_contacts();
         self.in_contact().begin_impacts();
-        // soil takes speed out of the blow before any spring answers
+        // soil slows the rock down before any spring acts
         let speed_factor = self.apply_blows();
         self.recorder.now.velocity_m_s *= speed_factor;
         let world = self.settings.contact_environment(self.body, self.laws);
@@ -162,7 +163,7 @@ impl<'a> RockSimulation<'a> for SphereSimulation<'a> {
         (Stepper::new(self.settings.step, &world, self.state), spring_energy)
     }
 
-    /// What a sphere strikes its step says.
+    /// Nothing to do: the step of a sphere finds its impacts.
     fn resolve_impacts(&mut self) -> bool {
         false
     }
@@ -183,7 +184,8 @@ impl<'a> RockSimulation<'a> for SphereSimulation<'a> {
         self.soil_after_step(&before, done.dt);
         self.apply_blows();
         let world = self.settings.contact_environment(self.body, self.laws);
-        // a stem has given way: stiffness and contacts changed, so the stepper forgets its factors and its step
+        // a stem has yielded: stiffness and contacts have changed, so the stepper discards its
+        // factorisation and its step size
         if self.state.bend(&world, !self.is_rigid(), &mut done.loss) {
             *stepper = Stepper::new(self.settings.step, &world, self.state);
         }
@@ -197,14 +199,14 @@ impl<'a> RockSimulation<'a> for SphereSimulation<'a> {
     }
 
     fn record_step(&mut self, to: RockInstant, slides: bool) -> bool {
-        let begun = self.state.stopwatches.now();
+        let started = self.state.stopwatches.now();
         self.recorder.record_step(to, slides);
         self.in_contact().end_impacts();
-        self.state.stopwatches.stop(TimedPiece::NotesInContact, begun);
+        self.state.stopwatches.stop(TimedPiece::NotesInContact, started);
         self.state.is_free()
     }
 
-    /// Only a fixed step leaves some in those of a free rock.
+    /// Only a fixed step leaves elastic energy in the springs of a free rock.
     fn spring_energy(&mut self) -> Loss {
         let is_relaxed = self.state.is_free() && !self.settings.step.scheme.has_fixed_step();
         if is_relaxed || self.is_rigid() {
@@ -219,21 +221,19 @@ impl<'a> RockSimulation<'a> for SphereSimulation<'a> {
     }
 }
 
-/// What a sphere does to soil.
-/// All of it is changed between steps, so a step itself sees constant laws.
+/// Interaction of a sphere with soil. It changes between steps only, so the laws are constant
+/// within a step.
 pub(super) struct Soil<'a> {
     pub(super) scars: &'a mut Scars,
     pub(super) slip: &'a mut Slip,
-    /// Where it slips fastest since the step in hand began.
+    /// The contact that slips fastest, at the start of the current step.
     pub(super) fastest_slip: Option<SlippingContact>,
-    /// How long the step before was (s), 0 after a flight.
+    /// Length of the step before (s), 0 after a flight.
     pub(super) last_step_s: f64,
 }
 
-/// A contact that slips.
-///
-/// Speed of the contact point along the surface, normal of the contact, and the ground on which it
-/// slips.
+/// A contact that slips: slip speed along the surface (m/s), contact normal, and number of the
+/// ground on which it slips.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SlippingContact {
     pub(super) speed_m_s: f64,
@@ -242,12 +242,13 @@ pub(super) struct SlippingContact {
 }
 
 impl<'a> Soil<'a> {
-    /// Of a rock that has not moved yet.
+    /// For a rock that has not moved yet.
     pub(super) fn new(scars: &'a mut Scars, slip: &'a mut Slip) -> Self {
         Self { scars, slip, fastest_slip: None, last_step_s: 0.0 }
     }
 
-    /// Flies for so long (s) and ends at a velocity; what the rock keeps of that (–).
+    /// Records a flight of `flight_s` (s) that ends with velocity `v`. Returns the fraction of the
+    /// speed that the rock keeps (–).
     pub(super) fn fly(&mut self, body: &Body, v: &Vec3, flight_s: f64) -> f64 {
         self.slip.fly(flight_s);
         self.last_step_s = 0.0;

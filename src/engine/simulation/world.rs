@@ -1,13 +1,14 @@
-//! Many rocks in one world: short windows of time in which those that may meet form islands.
+//! Many rocks in one world: in short windows of time, rocks that may meet form islands.
 //!
-//! Rocks in flight leap, also past each other: their meeting is a quadratic. An island has its own step; where all of
-//! it is quiet it sleeps until something comes near. Windows, islands and contacts stand in a fixed order, so the
-//! number of threads changes nothing.
+//! Rocks in flight follow parabolas, also past each other: the time of a collision in flight is the
+//! root of a quadratic. An island has its own time step. An island in which all is quiet sleeps
+//! until something comes near. Windows, islands and contacts have a fixed order, so the number of
+//! threads changes nothing.
 //!
 //! Every rock is advanced by the scheme of the scene as if it were alone, until a window shows that
-//! it may meet another; so a world of rocks that never meet gives the paths of single rocks. The
-//! springs between two rocks carry the rocks' own law (`PairMaterial`), the masses of a pair
-//! entering as `m_a m_b/(m_a + m_b)`.
+//! it may meet another; so a world of rocks that never meet gives the trajectories of single rocks.
+//! The springs between two rocks follow a law of their own (`PairMaterial`), with the mass `m_a
+//! m_b/(m_a + m_b)` of the pair.
 
 mod statistics;
 mod bodies;
@@ -40,71 +41,70 @@ pub use statistics::WorldStats;
 use std::ops::Range;
 use std::sync::atomic::AtomicBool;
 
-/// How the rocks of a scene answer each other.
+/// Material of the contacts between rocks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PairMaterial {
-    /// Springs, friction and restitution, as of a ground.
+    /// Springs, friction and restitution, as for a ground.
     pub ground: Ground,
     /// Bonds between rocks that touch at the start.
     pub strength: Strength,
 }
 
-/// Rocks nearer than this at the start touch (–, relative to the smaller radius): coordinates are typed with five or
-/// six digits.
+/// Rocks with a gap below this at the start touch (–, relative to the smaller radius): coordinates
+/// are typed with five or six digits.
 const TOUCH_TOLERANCE: f64 = 1e-4;
 
-/// Dashpots that are kept at hand.
-/// Damping for a restitution is a root search; more different ones than this are sought again.
+/// Number of dampings that are cached. The damping of a restitution needs a root search; with more
+/// different ones than this some are computed again.
 const CACHED_DAMPINGS: usize = 16;
 
-/// One rock on its way.
+/// One rock of a world during the simulation.
 struct WorldBody<'a> {
     member: BodySlot,
     recorder: Recorder<'a>,
     state: BodyState,
-    /// When its flight ends (s), and how.
-    /// None for a rock in contact, and for one that has not looked ahead yet.
+    /// Time at which its flight ends (s), and why the rock stops there, if it does. None for a rock
+    /// in contact, and for one whose flight has not been searched yet.
     flight_end: Option<(f64, Option<Stop>)>,
-    /// Whether it is slow and gets no faster.
+    /// Criterion of rest.
     rest_criterion: RestCriterion,
-    /// Step its last island would have tried next (s).
+    /// Step that its last island would have tried next (s).
     ///
-    /// Error control goes on from it, so that a rock that changes islands need not begin with the
-    /// onset of an impact.
+    /// Step control continues with it, so that a rock that changes islands need not begin with the
+    /// step of the onset of an impact.
     next_step_s: f64,
-    /// Velocity when the window began, and the largest change of it since (m/s).
-    /// This is what the prediction of meetings is checked by at the window's end.
+    /// Velocity at the start of the window, and the largest deviation from it since (m/s). The
+    /// prediction of collisions is checked against this at the end of the window.
     deviation: (Vec3, f64),
-    /// By how much its velocity changed when these windows were gone through before (m/s).
+    /// Velocity change expected from the last pass through these windows (m/s), 0 in the first.
     predicted_dv_m_s: f64,
-    /// Speed that the springs which press on it may give it (m/s).
-    /// `Σ F/(m ω)`: a spring that holds F gives a mass no more than this when it lets go.
+    /// Speed that the compressed springs may give it (m/s). `Σ F/(m ω)`: a spring with force F
+    /// gives a mass no more than this when it relaxes.
     spring_dv_m_s: f64,
-    /// Mechanical energy and what others had got of it at the beginning of the contact episode (J).
+    /// Mechanical energy, and the energy given to others, at the start of the contact episode (J).
     episode_start_j: (f64, f64),
     /// Whether its contacts have no springs: in the rigid limit, and in heaps.
     is_unloaded: bool,
-    /// When the step began that blows have been gone through of (s), and the mechanical energy then (J).
+    /// Start of the step whose impacts are being recorded (s), and the mechanical energy then (J).
     step_start: Option<(f64, f64)>,
 }
 
-/// Where a rock is in its story.
+/// State of a rock in a world.
 #[derive(Debug, Clone, PartialEq)]
 enum BodyState {
-    /// Under way.
+    /// Simulated.
     Moving,
-    /// At rest until something comes near.
-    /// No island computes it meanwhile.
+    /// At rest until something comes near; no island computes it meanwhile.
     Asleep,
-    /// No longer in the world.
+    /// Removed from the world.
     Removed(Stop),
 }
 
-/// All releases of a plan whose rocks share one world, in order; `None` if `stop` was raised before the end. A path is
-/// kept for the plan's first releases and for `paths`.
+/// Simulates all releases of a plan whose rocks share one world, in order; `None` if `stop` was
+/// raised before the end. A path is kept for the first releases of the plan and for `paths`.
 ///
-/// # Errors
-/// A release that cannot be made, rocks that overlap at the start, a plan without contact between rocks.
+/// # Errors A release that cannot be made, rocks that overlap at the start, a plan without contact
+/// between rocks.
 pub fn simulate_releases_together(
     plan: &Plan,
     paths: Option<&Range<usize>>,
@@ -117,39 +117,44 @@ pub fn simulate_releases_together(
     let none = Strength { tensile_pa: 0.0, cohesion_pa: 0.0 };
     let strength = if let Part::Kept(strength) = plan.bonds { strength } else { none };
     let material = PairMaterial { ground: *ground, strength };
-    let keep = |index| record_options(plan, index, paths);
-    let trajectories =
-        simulate_world(&RunSettings::of(plan), &releases, &material, keep, Observer::silent(stop));
+    let options_of = |index| record_options(plan, index, paths);
+    let trajectories = simulate_world(
+        &RunSettings::of(plan),
+        &releases,
+        &material,
+        options_of,
+        Observer::silent(stop),
+    );
     Ok(trajectories.map(|(trajectories, _)| trajectories))
 }
 
-/// Who asks for a world: told of it window by window, and free to end it.
+/// Observer of a world: called after each window, and free to stop the simulation.
 #[derive(Debug)]
 pub struct Observer<'a, F> {
     /// Raised when the run shall end.
     pub stop: &'a AtomicBool,
-    /// Told the end of each window of time (s) and the counts so far. The world may go back to an earlier time, and goes
-    /// on from there.
+    /// Called with the end of each window (s) and the counts so far. The world may return to an
+    /// earlier time and continue from there.
     pub observe: F,
 }
 
 impl<'a> Observer<'a, fn(f64, &WorldStats)> {
-    /// Told nothing.
+    /// An observer that observes nothing.
     pub fn silent(stop: &'a AtomicBool) -> Self {
         Self { stop, observe: |_, _| () }
     }
 }
 
-/// Follows all rocks of one world to their stops, in the order of the releases, with what it took; `None` if it was
-/// stopped. `keep` says what to keep of each rock's way.
+/// Simulates all rocks of one world until they stop; returns the trajectories in the order of the
+/// releases, and the counts. `None` if it was stopped. `options` says what to record of each rock.
 pub fn simulate_world(
     settings: &RunSettings,
     releases: &[Release],
     material: &PairMaterial,
-    keep: impl Fn(usize) -> RecordOptions,
+    options_of: impl Fn(usize) -> RecordOptions,
     Observer { stop, observe }: Observer<impl FnMut(f64, &WorldStats)>,
 ) -> Option<(Vec<Trajectory>, WorldStats)> {
-    // Most scenes give all rocks the same ground: its dashpot is sought once.
+    // Most scenes give all rocks the same ground: its damping is computed once.
     let mut known: Vec<Damping> = Vec::new();
     let mut damping = |restitution| {
         let found = known.iter().find(|one| one.restitution == restitution).copied();
@@ -163,7 +168,7 @@ pub fn simulate_world(
         .iter()
         .enumerate()
         .map(|(k, release)| {
-            let mut body = new_body(settings, release, keep(k), &mut damping);
+            let mut body = new_body(settings, release, options_of(k), &mut damping);
             let random = stream(settings.seed, Purpose::Impacts, k);
             let state = &mut body.member.state;
             state.stem_load.raise(settings.terrain, &random, &mut state.near.gone);
@@ -181,11 +186,11 @@ pub fn simulate_world(
     })
 }
 
-/// One rock at its release: springs at rest, flying until its island says otherwise.
+/// One rock at its release: springs relaxed, in flight until its island finds a contact.
 fn new_body<'a>(
     settings: &RunSettings<'a>,
     release: &Release,
-    keep: RecordOptions,
+    options: RecordOptions,
     damping: &mut impl FnMut(Option<f64>) -> Damping,
 ) -> WorldBody<'a> {
     let laws = release.grounds.iter().map(|ground| {
@@ -200,7 +205,7 @@ fn new_body<'a>(
             settings.terrain,
             RockGeometry { rock: release.rock, block: None },
             (motion, None),
-            (keep, settings.recorders),
+            (options, settings.recorders),
         ),
         state: BodyState::Moving,
         flight_end: None,
@@ -215,20 +220,21 @@ fn new_body<'a>(
     }
 }
 
-/// The contact law of two rocks.
-/// Reduced mass, and the smaller radius as the lever of rolling friction.
+/// The contact law of two rocks, with the reduced mass, and the smaller radius as the lever of
+/// rolling friction.
 fn law_between(a: &Body, b: &Body, material: &(Ground, Damping), capture: &Capture) -> Law {
     let mass = a.reduced_mass_with(b);
     Law::of_mass(&material.0, &material.1, (mass, a.radius.min(b.radius)), capture)
 }
 
 impl BodyWorld<'_> {
-    /// Bonds the rocks that touch at the start; the rigid limit has no springs by which a bond would break, and none.
+    /// Bonds the rocks that touch at the start. The rigid limit has no bonds, because it has no
+    /// springs by which a bond could break.
     fn bond(&mut self, material: &PairMaterial) {
         if !material.strength.is_some() || self.is_rigid() {
             return;
         }
-        // both rocks are in contact from the start: a bonded block begins at rest in itself,
+        // both rocks are in contact from the start: a bonded block begins free of internal stress,
         // whatever its weight then does to it
         for (a, b) in self.touching_at_start() {
             let [one, two] = [a, b].map(|k| &self.body(k).member);
@@ -242,7 +248,7 @@ impl BodyWorld<'_> {
         }
     }
 
-    /// The journeys, complete.
+    /// The complete trajectories.
     pub(super) fn end(self, releases: &[Release]) -> Vec<Trajectory> {
         let held_j = self.pair_spring_energy_j();
         let Self { settings, mut bodies, now_s, .. } = self;
@@ -256,13 +262,14 @@ impl BodyWorld<'_> {
             .collect()
     }
 
-    /// What springs between rocks hold (J), half of it each rock's. Heaps in the rigid limit have given all of it to the motion.
+    /// Elastic energy of the contacts between rocks (J), half of it to each rock. Heaps in the
+    /// rigid limit have released it all into motion.
     fn pair_spring_energy_j(&self) -> Vec<f64> {
         let mut held_j = vec![0.0; self.bodies.len()];
         if self.is_rigid() {
             return held_j;
         }
-        // both ends are of one island
+        // both rocks of a pair are in the same island
         let is_held = |pair: &&PairHistory| pair.is_held() && !self.body(pair.a).is_unloaded;
         for pair in self.pair_histories.iter().filter(is_held) {
             let [one, two] = [pair.a, pair.b].map(|k| &self.body(k).member);

@@ -1,8 +1,9 @@
-//! A snapshot of a world, kept to go back to: a rock that was deviated further than its island allowed for may have run
-//! into another island that knew nothing of it.
+//! A snapshot of a world, to restore: a rock that deviated further than its island allowed for may
+//! have hit a rock of another island, which took no account of it.
 //!
-//! Only what later windows depend on is kept: motions, memories of contacts, random streams, and
-//! how long the recorders' lists were. Geometry and scratch space are found again. Cost: O(n) in the rocks that are left.
+//! Only what later windows depend on is stored: motions, contact histories, random streams, and the
+//! lengths of the recorders' lists. Geometry and scratch space are computed again. Cost: O(n) in
+//! the rocks that are left.
 
 use super::bodies::BodyWorld;
 use super::{BodyState, Stop, WorldBody};
@@ -18,7 +19,7 @@ pub(super) struct Snapshot {
     now_s: f64,
 }
 
-/// One rock of it.
+/// Snapshot of one rock.
 pub(super) struct BodySnapshot {
     memory: Memory,
     mark: RecorderMark,
@@ -32,7 +33,7 @@ pub(super) struct BodySnapshot {
 }
 
 impl WorldBody<'_> {
-    /// What the rock is now, as far as later windows depend on it.
+    /// State of the rock, as far as later windows depend on it.
     pub(super) fn snapshot(&self) -> BodySnapshot {
         BodySnapshot {
             memory: self.member.memory(),
@@ -47,7 +48,7 @@ impl WorldBody<'_> {
         }
     }
 
-    /// To the bit what it was; only its effort and what is foreseen of it stay.
+    /// Restores the state to the bit; effort and predicted velocity change are not restored.
     pub(super) fn restore(&mut self, saved: &BodySnapshot) {
         self.member.recall(&saved.memory);
         self.recorder.restore(&saved.mark);
@@ -58,9 +59,10 @@ impl WorldBody<'_> {
         (self.spring_dv_m_s, self.is_unloaded) = (saved.spring_dv_m_s, saved.is_unloaded);
     }
 
-    /// When this is gone through again, it is known how far the rock was deviated.
+    /// Raises the predicted velocity change to the deviation that was found, for the repeated
+    /// computation.
     ///
-    /// Twice the change that was seen: each return at least doubles the bound, so few returns
+    /// Twice the change that occurred: each return at least doubles the bound, so few returns
     /// suffice.
     pub(super) fn raise_predicted_dv(&mut self) {
         self.predicted_dv_m_s = self.predicted_dv_m_s.max(2.0 * self.deviation.1);
@@ -68,9 +70,9 @@ impl WorldBody<'_> {
 }
 
 impl BodyWorld<'_> {
-    /// Keeps the present.
+    /// Takes a snapshot of the present.
     pub(super) fn snapshot(&self) -> Snapshot {
-        // What is gone does not come back.
+        // removed rocks do not come back
         let saved = |body: &WorldBody| {
             (!matches!(body.state, BodyState::Removed(_))).then(|| body.snapshot())
         };
@@ -81,9 +83,9 @@ impl BodyWorld<'_> {
         }
     }
 
-    /// Goes back to a moment that was kept.
+    /// Restores a snapshot.
     ///
-    /// Rocks that had left before then stay gone: nothing of theirs was kept.
+    /// Rocks removed before it was taken stay removed: it holds nothing of them.
     pub(super) fn restore(&mut self, snapshot: &Snapshot) {
         for (body, saved) in self.bodies.iter_mut().zip(&snapshot.bodies) {
             if let (Some(body), Some(saved)) = (body, saved) {

@@ -1,10 +1,11 @@
-//! An island whose rocks mostly do not meet in a much shorter window is taken apart: each part goes through that on its
-//! own.
+//! Subdivision of an island: if most of its rocks do not meet in a much shorter window, each part
+//! is advanced through that window separately.
 //!
-//! A window of the world is as long as the fastest rock's way allows; inside a heap hits travel
-//! through many rocks in that time, so the prediction joins all of it. In a window of a radian or
-//! so of the stiffest contact a hit reaches only the next rocks, and a loose heap falls into parts
-//! that are cheap: the cost of an island's step grows faster than its number of rocks.
+//! A window of the world is as long as the distance of the fastest rock allows. Inside a heap an
+//! impact travels through many rocks in that time, so the prediction joins all of the heap. In a
+//! window of about a radian of the stiffest contact an impact reaches only the next rocks, and a
+//! loose heap separates into parts. Parts are cheap: the cost of an island's step grows faster than
+//! its number of rocks.
 
 use super::WorldBody;
 use super::prediction::{
@@ -17,25 +18,26 @@ use crate::contact::pair::PairHistory;
 use crate::rock::Vec3;
 use rayon::prelude::*;
 
-/// An island of no more rocks than this is stepped as a whole.
-/// Taking apart costs a search and copies; below this it saves nothing.
+/// An island of no more rocks than this is stepped as a whole: subdivision costs a search and
+/// copies, and saves nothing below this.
 const SMALL_ISLAND: usize = 4;
-/// In how many windows one is cut in which most of an island's rocks cannot meet.
+/// Number of shorter windows into which a window is cut at a time.
 const CUT_FACTOR: u32 = 4;
-/// Shortest of them, in radians of the stiffest contact (–): less than a step of a quiet heap.
-/// Radians of a contact are `ω t` with `ω = √(p_N/m)`: a spring turns a hit round in π of them.
+/// Shortest window, in radians of the stiffest contact (–): less than a step of a quiet heap. The
+/// radians of a contact are `ω t` with `ω = √(p_N/m)`: a spring reverses an impact in π of them.
 const SHORTEST_CUT_RAD: f64 = 1.5;
-/// Within so many radians of the stiffest contact a hit is handed on to the next few rocks only (–).
+/// Longest window in which an impact is transmitted to the next few rocks only, in radians of the
+/// stiffest contact (–).
 const NEIGHBOUR_SPREAD_RAD: f64 = 12.0;
-/// Times that a window is gone through again because a rock was deviated further than was allowed for, before that is left
-/// to the whole world.
+/// Number of times that an island repeats a window in which a rock deviated further than was
+/// allowed for, before that is left to the world.
 const MAX_ISLAND_RETURNS: usize = 6;
 
 impl IslandWindow<'_> {
-    /// Takes the island to the end of its window.
+    /// Advances the island to the end of its window.
     ///
-    /// From cheap to dear: all fly and nothing happens; a rigid heap; parts that do not meet; all
-    /// of it together.
+    /// In the order of cost: all fly and nothing happens; a rigid heap; parts that do not meet; all
+    /// together.
     pub(super) fn run(&mut self) {
         self.load_or_unload();
         if self.is_rigid_heap() {
@@ -47,16 +49,13 @@ impl IslandWindow<'_> {
         }
         // the contact between rocks with the highest frequency; contacts with the mesh join no
         // rocks
-        let stiffest = self
-            .pair_histories
-            .iter()
-            .map(|pair_history| pair_history.law.omega_rad_s())
-            .fold(0.0, f64::max);
+        let stiffest =
+            self.pair_histories.iter().map(|pair| pair.law.omega_rad_s()).fold(0.0, f64::max);
         let Some(cuts) = self.useful_cuts(stiffest) else {
             self.run_whole();
             return;
         };
-        // `end_s` moves from cut to cut, so that no part goes beyond its cut
+        // `end_s` moves from cut to cut, so that no part is advanced beyond its cut
         let (start_s, end_s) = (self.now_s, self.end_s);
         for k in 1..=cuts {
             let part = f64::from(k) / f64::from(cuts);
@@ -70,20 +69,18 @@ impl IslandWindow<'_> {
         }
     }
 
-    /// Whether all of the island flies and neither meets nor lands before the end of its window.
+    /// Whether all rocks of the island fly and neither collide nor land before the end of its
+    /// window.
     fn flies_through(&self) -> bool {
-        let flies_on = |body: &WorldBody| {
-            let flight_end = body.flight_end.as_ref();
-            body.member.flying && flight_end.is_some_and(|(time_s, _)| *time_s > self.end_s)
-        };
-        self.bodies.iter().all(|body| flies_on(body)) && self.next_event_s() > self.end_s
+        self.bodies.iter().all(|body| body.flies_beyond(self.end_s))
+            && self.next_event_s() > self.end_s
     }
 
-    /// In how many much shorter windows most of the island's rocks are not joined: then those are cheaper than stepping
-    /// all together.
+    /// Number of shorter windows in which most of the island's rocks are not joined, so that these
+    /// are cheaper than stepping all together.
     ///
-    /// Tried from few cuts to many: the first that lets no part be larger than three quarters of
-    /// the island.
+    /// Tries few cuts first: the result is the first number for which no part is larger than three
+    /// quarters of the island.
     fn useful_cuts(&self, stiffest: f64) -> Option<u32> {
         let (count, length) = (self.bodies.len(), self.end_s - self.now_s);
         let mut cuts = CUT_FACTOR;
@@ -99,13 +96,13 @@ impl IslandWindow<'_> {
         None
     }
 
-    /// Where its rocks are, and what each may do within `dt` (s).
+    /// State of its rocks, and bounds of their motion within `dt` (s).
     fn predicted_rocks(&self, dt: f64) -> Vec<PredictedRock> {
         let predict = |body: &WorldBody| predicted_rock(body, self.settings, (self.now_s, dt));
         self.bodies.iter().map(|body| predict(body)).collect()
     }
 
-    /// Who may meet whom within `dt` (s).
+    /// Predicts who may meet whom within `dt` (s).
     fn candidates(&self, rocks: &[PredictedRock], (dt, stiffest): (f64, f64)) -> ContactCandidates {
         let spread = if dt * stiffest > NEIGHBOUR_SPREAD_RAD {
             HitSpread::Island
@@ -115,12 +112,12 @@ impl IslandWindow<'_> {
         candidates_among_pairs(&self.pair_histories, rocks, PredictionWindow { dt, spread })
     }
 
-    /// Takes the parts there, and again if a rock was deviated further than was allowed for.
+    /// Advances the parts, and repeats that if a rock deviated further than was allowed for.
     ///
     /// As the world does with its windows (`bodies`), on a smaller scale: a return here costs this
     /// island alone.
     fn run_parts_with_repeats(&mut self, stiffest: f64) {
-        // as the world keeps a snapshot before its windows
+        // as the world takes a snapshot before its windows
         let snapshots: Vec<BodySnapshot> = self.bodies.iter().map(|body| body.snapshot()).collect();
         let pair_histories = self.pair_histories.clone();
         for _ in 0..MAX_ISLAND_RETURNS {
@@ -137,8 +134,8 @@ impl IslandWindow<'_> {
         self.run_parts(stiffest);
     }
 
-    /// Takes the parts that cannot meet before the end of the window there, each on its own; whether some may have met
-    /// after all.
+    /// Advances the parts that cannot meet to the end of the window, each separately; returns
+    /// whether some may have met after all.
     fn run_parts(&mut self, stiffest: f64) -> bool {
         let dt = self.end_s - self.now_s;
         let rocks = self.predicted_rocks(dt);
@@ -154,12 +151,9 @@ impl IslandWindow<'_> {
             let body = &self.bodies[k];
             (body.position_at(self.settings, self.end_s), body.deviation.1)
         };
-        // Pairs without a history are looked at by the island that this one is a part of.
+        // Pairs without a history are checked by the island of which this one is a part.
         let deviated = candidates.missed(&rocks, dt, after, |_| {
-            self.pair_histories
-                .iter()
-                .map(|pair_history| (pair_history.a, pair_history.b))
-                .collect()
+            self.pair_histories.iter().map(|pair| (pair.a, pair.b)).collect()
         });
         for &k in &deviated {
             self.bodies[k].raise_predicted_dv();
@@ -173,8 +167,8 @@ impl IslandWindow<'_> {
 }
 
 impl<'a> IslandWindow<'a> {
-    /// Makes a window of every part in which something may happen; the other rocks stay in `slots`, and pairs between parts
-    /// with the island.
+    /// Makes a window of every part in which something may happen. The other rocks stay in `slots`,
+    /// and pairs between parts stay with the island.
     fn split(
         &mut self,
         candidates: &mut ContactCandidates,
@@ -182,20 +176,20 @@ impl<'a> IslandWindow<'a> {
     ) -> Vec<Self> {
         let mut lists = candidates.islands.lists();
         lists.retain(|list| is_busy(list.iter().map(|&k| &*self.bodies[k as usize]), self.end_s));
-        let part = island_of_each(&lists, self.bodies.len());
+        let membership = island_of_each(&lists, self.bodies.len());
         let mut pair_histories: Vec<Vec<PairHistory>> = lists.iter().map(|_| Vec::new()).collect();
         let mut pairs = candidates.pairs.iter().peekable();
-        // a pair goes with its part if both ends are in it; pairs between parts wait with the
-        // island until the parts are joined again
-        self.pair_histories.retain(|pair_history| {
-            let (number, a) = part[pair_history.a as usize];
-            let meets = pairs.next_if(|pair| **pair == (pair_history.a, pair_history.b)).is_some();
+        // a pair goes with its part if both ends are in it; pairs between parts stay with the
+        // island until the parts are merged
+        self.pair_histories.retain(|pair| {
+            let (number, a) = membership[pair.a as usize];
+            let meets = pairs.next_if(|ends| **ends == (pair.a, pair.b)).is_some();
             let goes = meets && number != usize::MAX;
             if goes {
                 pair_histories[number].push(PairHistory {
                     a,
-                    b: part[pair_history.b as usize].1,
-                    ..*pair_history
+                    b: membership[pair.b as usize].1,
+                    ..*pair
                 });
             }
             !goes
@@ -217,19 +211,17 @@ impl<'a> IslandWindow<'a> {
             self.missed |= island.missed;
             self.statistics.add(&island.statistics);
             let (list, bodies, pair_histories) = island.into_parts();
-            self.pair_histories.extend(pair_histories.into_iter().map(|pair_history| {
-                PairHistory {
-                    a: list[pair_history.a as usize],
-                    b: list[pair_history.b as usize],
-                    ..pair_history
-                }
+            self.pair_histories.extend(pair_histories.into_iter().map(|pair| PairHistory {
+                a: list[pair.a as usize],
+                b: list[pair.b as usize],
+                ..pair
             }));
             for (&k, body) in list.iter().zip(bodies) {
                 slots[k as usize] = Some(body);
             }
         }
-        // ascending order again: what follows must not depend on how the island was cut
-        self.pair_histories.sort_unstable_by_key(|pair_history| (pair_history.a, pair_history.b));
+        // ascending order again: the result must not depend on how the island was cut
+        self.pair_histories.sort_unstable_by_key(|pair| (pair.a, pair.b));
         self.bodies.extend(slots.into_iter().flatten());
     }
 }
