@@ -123,7 +123,7 @@ impl<'a> RockSimulation<'a> for BlockSimulation<'a> {
         self.recorder.record_flight(&path, Some(&tumble.top), dt);
         self.footing.slip.fly(dt);
         let speed_factor = self.scars.fly(&self.world.body, &self.recorder.now.velocity_m_s, dt);
-        self.recorder.slow_in_soil_in_flight(speed_factor);
+        self.recorder.slow_in_soil_after_flight(speed_factor);
         self.moving.pose = tumble.pose(dt);
         self.moving.v = self.recorder.now.velocity_m_s;
         stop
@@ -260,7 +260,11 @@ impl BlockSimulation<'_> {
         }
         let (velocity_m_s, spin_rad_s) = (self.moving.v, self.moving.spin(block));
         self.recorder.rotation = Some(rotation(block, &self.moving));
-        self.recorder.note_velocity_jump(Motion { velocity_m_s, spin_rad_s, ..self.recorder.now });
+        self.recorder.record_velocity_jump(Motion {
+            velocity_m_s,
+            spin_rad_s,
+            ..self.recorder.now
+        });
         self.recorder.end_all_impacts();
         is_free
     }
@@ -321,7 +325,7 @@ impl BlockSimulation<'_> {
         if speed_factor >= 1.0 {
             return;
         }
-        self.moving.v = self.recorder.book_soil_drag(&self.moving.v, speed_factor);
+        self.moving.v = self.recorder.slow_in_soil(&self.moving.v, speed_factor);
         self.footing.springs.refresh();
     }
 

@@ -42,7 +42,7 @@ impl<'a> CellPassages<'a> {
     ///
     /// The speed along a parabola has no maximum inside: the largest is at an end of its part in a
     /// cell.
-    pub(super) fn fly(&mut self, heights: &Heights) {
+    pub(super) fn record_flight(&mut self, heights: &Heights) {
         let Some(cells) = self.cells else { return };
         let Heights { terrain, geometry, flight } = *heights;
         let rotational_j = geometry.rotational_j(&flight.at(0.0));
@@ -75,7 +75,7 @@ impl<'a> CellPassages<'a> {
 
     /// Records the cells of a step in contact, with the energies at which the step enters and
     /// leaves each.
-    pub(super) fn step(
+    pub(super) fn record_step(
         &mut self,
         (terrain, geometry): (&Terrain, &RockGeometry),
         ends: [&RockInstant; 2],

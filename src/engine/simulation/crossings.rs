@@ -126,7 +126,7 @@ impl<'a> Crossings<'a> {
 
     /// Records the lines that a flight crosses. In plan view it is straight and uniform: the time
     /// follows from one division.
-    pub(super) fn fly(&mut self, flight: &RockFlight) {
+    pub(super) fn record_flight(&mut self, flight: &RockFlight) {
         if self.lines.is_empty() {
             return;
         }
@@ -148,7 +148,7 @@ impl<'a> Crossings<'a> {
     }
 
     /// Records the lines that a step in contact crosses.
-    pub(super) fn step(&mut self, ends: [&RockInstant; 2]) {
+    pub(super) fn record_step(&mut self, ends: [&RockInstant; 2]) {
         if self.lines.is_empty() {
             return;
         }
@@ -344,9 +344,8 @@ fn intersect_line(
         );
     }
     // at the same fraction of the path, in the order of the line
-    intersections.sort_unstable_by(|one, other| {
-        one.s.total_cmp(&other.s).then(one.along_m.total_cmp(&other.along_m))
-    });
+    intersections
+        .sort_unstable_by(|a, b| a.s.total_cmp(&b.s).then(a.along_m.total_cmp(&b.along_m)));
     intersections.dedup_by(|next, kept| next.is_at_corner_of(kept));
 }
 

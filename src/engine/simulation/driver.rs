@@ -49,10 +49,11 @@ pub(super) trait RockSimulation<'a> {
     /// One step of at most `longest_s` (s), with its effects on soil and stems; also returns
     /// whether a contact slides.
     ///
-    /// # Errors [`StepError`] if no step, however short, converges.
+    /// # Errors
+    /// [`StepError`] if no step, however short, converges.
     fn step(
         &mut self,
-        stepping: &mut Self::StepperState,
+        stepper: &mut Self::StepperState,
         longest_s: f64,
     ) -> Result<(Advance, bool), StepError>;
 
@@ -90,9 +91,9 @@ pub(super) fn run_to_stop<'a>(rock: &mut impl RockSimulation<'a>, penetrates: bo
 fn contact_episode<'a>(rock: &mut impl RockSimulation<'a>) -> Option<Stop> {
     // a rock that penetrates at release, or never separated, starts with elastic energy: it is
     // booked as brought into the episode
-    let (mut stepping, spring_energy_before) = rock.begin_contact();
+    let (mut stepper, spring_energy_before) = rock.begin_contact();
     let (before_j, lost_before_j) = (rock.mechanical_energy_j(), rock.recorder().lost_j());
-    let stop = contact_steps(rock, &mut stepping);
+    let stop = contact_steps(rock, &mut stepper);
     // ΔE of motion and gravity; with losses ≥ 0 and relaxed springs at both ends it is −(losses) up
     // to the numerical error, the remainder
     let rise_j = rock.mechanical_energy_j() - before_j;
@@ -108,9 +109,9 @@ fn contact_episode<'a>(rock: &mut impl RockSimulation<'a>) -> Option<Stop> {
 ///
 /// Order of each step: changes that the ground makes, the step of the scheme, new impacts, the
 /// record. The order matters: impacts are recorded with the speed before their losses are booked.
-fn contact_steps<'a, F: RockSimulation<'a>>(
-    rock: &mut F,
-    stepping: &mut F::StepperState,
+fn contact_steps<'a, R: RockSimulation<'a>>(
+    rock: &mut R,
+    stepper: &mut R::StepperState,
 ) -> Option<Stop> {
     let settings = rock.settings();
     let (centre, radius_m) = rock.bounding_sphere();
@@ -125,7 +126,7 @@ fn contact_steps<'a, F: RockSimulation<'a>>(
         // the shortest of the time left, the half of the rest rule, and the time until the law
         // changes
         let longest_s = time_left_s.min(rest_s).min(rock.prepare_step());
-        let (done, slides) = match rock.step(stepping, longest_s) {
+        let (done, slides) = match rock.step(stepper, longest_s) {
             Ok(done) => done,
             Err(error) => return Some(Stop::Failed(error.to_string())),
         };

@@ -151,8 +151,8 @@ impl Heights<'_> {
         };
         let HighPoint { time_s, height_m: most_m } = highest;
         // distance between bound and lowest point: 0 for a sphere
-        let room_m = bound.centre(time_s).z - self.lowest_m(time_s);
-        top.raise_to(HighPoint { time_s, height_m: most_m - room_m });
+        let slack_m = bound.centre(time_s).z - self.lowest_m(time_s);
+        top.raise_to(HighPoint { time_s, height_m: most_m - slack_m });
         if most_m > top.height_m + ERROR_M {
             // the half with the greater bound first: what is found there rules out most of the
             // other half
@@ -190,16 +190,16 @@ impl Heights<'_> {
         let mut path = *self.flight.path;
         let least_m = self.geometry.least_depth_below_centre_m();
         path.start.z -= least_m;
-        if let (Some(bend), Some(block)) =
+        if let (Some(acceleration_per_m), Some(block)) =
             (self.flight.point_acceleration_per_m(), self.geometry.block)
         {
             let (middle_s, half_s) = (0.5 * (from_s + to_s), 0.5 * (to_s - from_s));
-            let bend_m = 0.5 * bend * block.bound_m * half_s * half_s;
-            if bend_m < block.bound_m - least_m
+            let curvature_m = 0.5 * acceleration_per_m * block.bound_m * half_s * half_s;
+            if curvature_m < block.bound_m - least_m
                 && let Some((below_m, sinks_m_s)) =
                     RockGeometry::lowest_corner(block, &self.flight.at(middle_s))
             {
-                path.start.z += least_m - below_m + bend_m + sinks_m_s * middle_s;
+                path.start.z += least_m - below_m + curvature_m + sinks_m_s * middle_s;
                 path.velocity.z -= sinks_m_s;
             }
         }

@@ -101,11 +101,11 @@ impl<'a> Recorder<'a> {
             next_point_s: if options.path_step_s.is_some() { 0.0 } else { f64::INFINITY },
         };
         // the release itself counts: a rock thrown at 20 m/s has had 20 m/s, whatever follows
-        recorder.note_speed();
+        recorder.update_extremes();
         let height_m = recorder.clearance_m(&recorder.instant()).unwrap_or(0.0);
-        recorder.note_height(&start.position_m, height_m);
+        recorder.update_largest_height(&start.position_m, height_m);
         let (at, speed_m_s) = (start.position_m, start.velocity_m_s.norm());
-        recorder.stretches.note(&at, speed_m_s, recorder.extremes.height_m);
+        recorder.stretches.record(&at, speed_m_s, recorder.extremes.height_m);
         recorder
     }
 
@@ -143,7 +143,7 @@ impl<'a> Recorder<'a> {
     ///
     /// Called at both ends of every flight and step: speed and energy along a parabola are largest
     /// at an end, and contact steps are short.
-    fn note_speed(&mut self) {
+    fn update_extremes(&mut self) {
         let translational_j = self.now.translational_j(&self.geometry.rock);
         let rotational_j = self.geometry.rotational_j(&self.instant());
         let extremes = &mut self.extremes;
@@ -155,9 +155,9 @@ impl<'a> Recorder<'a> {
 
     /// Continues with the motion after an instantaneous impact: the speed right after it may be the
     /// largest.
-    pub(super) fn note_velocity_jump(&mut self, motion: Motion) {
+    pub(super) fn record_velocity_jump(&mut self, motion: Motion) {
         self.now = motion;
-        self.note_speed();
+        self.update_extremes();
     }
 
     /// Present motion and attitude.
@@ -176,17 +176,17 @@ impl<'a> Recorder<'a> {
 
     /// Updates the largest height with a height over the ground (m) and the position of the rock
     /// there.
-    fn note_height(&mut self, at: &Vec3, height_m: f64) {
+    fn update_largest_height(&mut self, at: &Vec3, height_m: f64) {
         if height_m > self.extremes.height_m {
             self.extremes.height_m = height_m;
-            self.stretches.note(at, 0.0, height_m);
+            self.stretches.record(at, 0.0, height_m);
         }
     }
 
     /// Records a flight of `dt` (s); a block rotates as given by `top`.
     pub(super) fn record_flight(&mut self, path: &Parabola, top: Option<&Top>, dt: f64) {
-        let turning = top.map(AttitudePath::Top);
-        let flight = RockFlight { start: self.now, path, turning, duration_s: dt };
+        let attitude_path = top.map(AttitudePath::Top);
+        let flight = RockFlight { start: self.now, path, attitude_path, duration_s: dt };
         // path points at regular times, on the parabola itself
         while self.next_point_s <= flight.start.time_s + dt {
             let instant = flight.at(self.next_point_s - flight.start.time_s);
@@ -194,29 +194,29 @@ impl<'a> Recorder<'a> {
             self.push_path_point(&RockInstant { motion, ..instant }, PathState::Flight);
         }
         // lines, cells and stretches evaluate the flight as a whole, not its points
-        self.crossings.fly(&flight);
-        self.note_heights(&flight);
+        self.crossings.record_flight(&flight);
+        self.record_flight_heights(&flight);
         let end = flight.at(dt);
         // the end is evaluated on the parabola, so that the contact found there holds to the last
         // digit
         (self.now, self.rotation) = (end.motion, end.rotation);
-        self.note_speed();
+        self.update_extremes();
     }
 
     /// Records the heights along a flight, and the cells and stretches below it.
-    fn note_heights(&mut self, flight: &RockFlight) {
+    fn record_flight_heights(&mut self, flight: &RockFlight) {
         let geometry = self.geometry;
         let heights = Heights { terrain: self.terrain, geometry: &geometry, flight };
-        self.note_largest_height(&heights);
-        self.passages.fly(&heights);
-        self.stretches.fly(&heights);
+        self.find_largest_height(&heights);
+        self.passages.record_flight(&heights);
+        self.stretches.record_flight(&heights);
     }
 
     /// Updates the largest height with that along a flight or a step.
-    fn note_largest_height(&mut self, heights: &Heights) {
+    fn find_largest_height(&mut self, heights: &Heights) {
         let flight = heights.flight;
         if let Some(top) = heights.largest([0.0, flight.duration_s], self.extremes.height_m) {
-            self.note_height(&flight.path.centre(top.time_s), top.height_m);
+            self.update_largest_height(&flight.path.centre(top.time_s), top.height_m);
         }
     }
 
@@ -226,13 +226,13 @@ impl<'a> Recorder<'a> {
     ///
     /// Energies are those of the velocities at the ends: an impact within a very short step moves a
     /// rock by more than its velocity says.
-    fn note_step(&mut self, ends @ [from, to]: [&RockInstant; 2], is_off_ground: bool) {
+    fn record_step_heights(&mut self, ends @ [from, to]: [&RockInstant; 2], is_off_ground: bool) {
         let (terrain, geometry) = (self.terrain, self.geometry);
         let duration_s = to.motion.time_s - from.motion.time_s;
         let path = Parabola::between(&from.motion, &to.motion, geometry.plan_radius_m());
-        let turns = from.rotation.as_ref().zip(to.rotation.as_ref());
-        let turning = turns.map(|(from, to)| AttitudePath::Step([from, to]));
-        let flight = RockFlight { start: from.motion, path: &path, turning, duration_s };
+        let rotations = from.rotation.as_ref().zip(to.rotation.as_ref());
+        let attitude_path = rotations.map(|(from, to)| AttitudePath::Step([from, to]));
+        let flight = RockFlight { start: from.motion, path: &path, attitude_path, duration_s };
         let heights = Heights { terrain, geometry: &geometry, flight: &flight };
         let heights = Some(heights).filter(|_| duration_s > 0.0);
         let are_heights_needed = self.passages.are_recorded() || self.stretches.are_recorded();
@@ -242,10 +242,10 @@ impl<'a> Recorder<'a> {
             (true, false) => self.triangle_below.height_bound_m((terrain, &geometry), ends),
         };
         let at_step = StepHeights { heights, height_bound_m };
-        self.passages.step((terrain, &geometry), ends, &at_step);
-        self.stretches.step(ends.map(|end| &end.motion), &at_step);
+        self.passages.record_step((terrain, &geometry), ends, &at_step);
+        self.stretches.record_step(ends.map(|end| &end.motion), &at_step);
         if let Some(heights) = heights {
-            self.note_largest_height(&heights);
+            self.find_largest_height(&heights);
         }
     }
 
@@ -275,7 +275,7 @@ impl<'a> Recorder<'a> {
         let (from, to) = (self.instant(), to.into());
         (self.now, self.rotation) = (to.motion, to.rotation);
         // a step in contact is recorded from its start to its end
-        self.crossings.step([&from, &to]);
+        self.crossings.record_step([&from, &to]);
         let (from_s, to_s) = (from.motion.time_s, to.motion.time_s);
         let duration_s = to_s - from_s;
         while self.next_point_s <= to_s {
@@ -284,8 +284,8 @@ impl<'a> Recorder<'a> {
             at.motion.time_s = self.next_point_s;
             self.push_path_point(&at, state);
         }
-        self.note_step([&from, &to], is_off_ground);
-        self.note_speed();
+        self.record_step_heights([&from, &to], is_off_ground);
+        self.update_extremes();
     }
 
     fn push_path_point(&mut self, at: &RockInstant, state: PathState) {
@@ -304,7 +304,7 @@ impl<'a> Recorder<'a> {
         (weight_n, kinetic_j): (f64, f64),
     ) -> Trajectory {
         self.end_path();
-        let fallen_m = release.motion.position_m.z - self.now.position_m.z;
+        let drop_m = release.motion.position_m.z - self.now.position_m.z;
         Trajectory {
             // the caller fills in number and shape
             index: 0,
@@ -322,7 +322,7 @@ impl<'a> Recorder<'a> {
             passages: self.passages.found.into_found(),
             stretches: self.stretches.found.into_found(),
             ledger: self.ledger.without_gains(),
-            released_j: weight_n * fallen_m + kinetic_j,
+            released_j: weight_n * drop_m + kinetic_j,
             effort: self.effort,
         }
     }

@@ -45,7 +45,7 @@ pub(super) struct RockFlight<'a> {
     /// Path of the centre.
     pub(super) path: &'a Parabola,
     /// Attitude over time of a block; none for a sphere.
-    pub(super) turning: Option<AttitudePath<'a>>,
+    pub(super) attitude_path: Option<AttitudePath<'a>>,
     /// Duration (s).
     pub(super) duration_s: f64,
 }
@@ -109,7 +109,7 @@ pub(super) fn quaternion(turn: &Rotation3<f64>) -> [f64; 4] {
 impl RockFlight<'_> {
     /// State of the rock after `t` (s).
     pub(super) fn at(&self, t: f64) -> RockInstant {
-        let rotation = self.turning.map(|turning| self.rotation(turning, t));
+        let rotation = self.attitude_path.map(|attitude_path| self.rotation(attitude_path, t));
         let motion = Motion {
             time_s: self.start.time_s + t,
             position_m: self.path.centre(t),
@@ -121,8 +121,8 @@ impl RockFlight<'_> {
     }
 
     /// Spin (rad/s) and attitude of a block after `t` (s).
-    fn rotation(&self, turning: AttitudePath, t: f64) -> (Vec3, BlockRotation) {
-        match turning {
+    fn rotation(&self, attitude_path: AttitudePath, t: f64) -> (Vec3, BlockRotation) {
+        match attitude_path {
             // the attitude is a closed form of time (`Top`); rotational energy is constant in
             // flight
             AttitudePath::Top(top) => {
@@ -146,7 +146,7 @@ impl RockFlight<'_> {
     /// the cosine `h` of a fourth of the angle and `|u| ≤ S`, it changes by no more than `ω³ dt/4`
     /// per second.
     pub(super) fn point_acceleration_per_m(&self) -> Option<f64> {
-        Some(match self.turning? {
+        Some(match self.attitude_path? {
             AttitudePath::Top(top) => top.bends().bend,
             AttitudePath::Step(ends) => {
                 let spin = BlockRotation::angular_rate(ends, 0.5).norm() / self.duration_s;
@@ -160,10 +160,10 @@ impl RockInstant {
     /// The rock at fraction `s` of a step in contact between two instants: see [`hermite_motion`]
     /// and [`BlockRotation::interpolated`].
     pub(super) fn interpolated([from, to]: [&Self; 2], s: f64) -> Self {
-        let turns = from.rotation.zip(to.rotation);
+        let rotations = from.rotation.zip(to.rotation);
         Self {
             motion: hermite_motion(&from.motion, &to.motion, s),
-            rotation: turns.map(|(from, to)| BlockRotation::interpolated([&from, &to], s)),
+            rotation: rotations.map(|(from, to)| BlockRotation::interpolated([&from, &to], s)),
         }
     }
 }
@@ -231,12 +231,12 @@ impl RockGeometry<'_> {
 /// the straight path; 0 for a constant velocity.
 pub(super) fn hermite_motion(from: &Motion, to: &Motion, s: f64) -> Motion {
     let dt = to.time_s - from.time_s;
-    let way = to.position_m - from.position_m;
-    let (v0, v1) = (from.velocity_m_s * dt - way, to.velocity_m_s * dt - way);
+    let displacement = to.position_m - from.position_m;
+    let (v0, v1) = (from.velocity_m_s * dt - displacement, to.velocity_m_s * dt - displacement);
     let bend = (v0 * (1.0 - s) - v1 * s) * (s * (1.0 - s));
     Motion {
         time_s: from.time_s + s * dt,
-        position_m: from.position_m + way * s + bend,
+        position_m: from.position_m + displacement * s + bend,
         velocity_m_s: from.velocity_m_s.lerp(&to.velocity_m_s, s),
         spin_rad_s: from.spin_rad_s.lerp(&to.spin_rad_s, s),
     }
@@ -249,12 +249,13 @@ const TIME_BISECTIONS: u32 = 40;
 /// view is covered, on the cubic of [`hermite_motion`]. A rock that slows down has most of its
 /// distance behind it at half of its time.
 pub(super) fn time_fraction([from, to]: [&Motion; 2], distance_fraction: f64) -> f64 {
-    let way = (to.position_m - from.position_m).xy();
-    let (dt, way2) = (to.time_s - from.time_s, way.norm_squared());
-    if way2 == 0.0 || distance_fraction <= 0.0 || distance_fraction >= 1.0 {
+    let displacement = (to.position_m - from.position_m).xy();
+    let (dt, distance2) = (to.time_s - from.time_s, displacement.norm_squared());
+    if distance2 == 0.0 || distance_fraction <= 0.0 || distance_fraction >= 1.0 {
         return distance_fraction;
     }
-    let along = |motion: &Motion| motion.velocity_m_s.xy().dot(&way) * (dt / way2) - 1.0;
+    let along =
+        |motion: &Motion| motion.velocity_m_s.xy().dot(&displacement) * (dt / distance2) - 1.0;
     let (a, b) = (along(from), along(to));
     let distance_fraction_at = |s: f64| s + (a * (1.0 - s) - b * s) * (s * (1.0 - s));
     math::bisected([0.0, 1.0], TIME_BISECTIONS, |s| distance_fraction_at(s) <= distance_fraction)[0]

@@ -80,7 +80,7 @@ impl RockInContact<'_, '_> {
             n: history.n,
             triangle: history.triangle,
         });
-        begun.reduce(|one, other| if other.approach_m_s > one.approach_m_s { other } else { one })
+        begun.reduce(|a, b| if b.approach_m_s > a.approach_m_s { b } else { a })
     }
 
     /// Records the contacts that have begun and the impacts of those that rebound; the approach
@@ -168,7 +168,7 @@ impl RockInContact<'_, '_> {
         let pressed = self.state.histories.iter_mut().filter(is_persistent);
         let Some(history) =
             // the contact with the largest normal force feels the facet
-            pressed.max_by(|one, other| one.normal_force.total_cmp(&other.normal_force))
+            pressed.max_by(|a, b| a.normal_force.total_cmp(&b.normal_force))
         else {
             return;
         };
@@ -202,7 +202,8 @@ impl RockInContact<'_, '_> {
         }
         // the rigid limit has no history of a contact that has closed and opened within a step
         let (histories, has_springs) = (&self.state.histories, self.has_springs);
-        let lasts = |number| !has_springs || histories.iter().any(|one| one.impact == number);
+        let lasts =
+            |number| !has_springs || histories.iter().any(|history| history.impact == number);
         if self.recorder.end_impacts(lasts) {
             let held_j = self.spring_energy_j(|_| true);
             self.recorder.book_impacts(&held_j);

@@ -100,7 +100,8 @@ pub fn simulate_block(
 /// A release that cannot be made (off the terrain, or inside the ground) ends at its start
 /// position.
 ///
-/// # Errors None today; a caller must be ready for one.
+/// # Errors
+/// None today; a caller must be ready for one.
 ///
 /// The random stream depends on seed, purpose and number alone: rock 137 is the same alone,
 /// resumed, or among a million.

@@ -51,7 +51,7 @@ impl SphereSimulation<'_> {
             self.state.blows.iter().map(ground_and_speed).collect();
         self.state.blows.clear();
         // the fastest on each ground comes last
-        struck.sort_by(|one, other| one.1.total_cmp(&other.1));
+        struck.sort_by(|a, b| a.1.total_cmp(&b.1));
         for (ground, approach_m_s) in struck {
             self.laws[usize::from(ground)].struck_at(approach_m_s);
         }
@@ -122,7 +122,7 @@ impl SphereSimulation<'_> {
         if speed_factor >= 1.0 {
             return;
         }
-        let v = self.recorder.book_soil_drag(&self.state.v, speed_factor);
+        let v = self.recorder.slow_in_soil(&self.state.v, speed_factor);
         let world = self.settings.contact_environment(self.body, self.laws);
         self.state.redirect(&world, v, self.state.w);
     }

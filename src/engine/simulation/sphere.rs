@@ -146,7 +146,7 @@ impl<'a> RockSimulation<'a> for SphereSimulation<'a> {
         let started = self.state.stopwatches.now();
         self.recorder.record_flight(&flight, None, dt);
         let speed_factor = self.soil.fly(&self.body, &self.recorder.now.velocity_m_s, dt);
-        self.recorder.slow_in_soil_in_flight(speed_factor);
+        self.recorder.slow_in_soil_after_flight(speed_factor);
         self.state.stopwatches.stop(TimedPiece::NotesInFlight, started);
         stop
     }

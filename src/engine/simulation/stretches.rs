@@ -40,7 +40,7 @@ impl Stretches {
     }
 
     /// Records speed and height at a position. The number of the stretch is `⌊distance/step⌋`.
-    pub(super) fn note(&mut self, at: &Vec3, speed_m_s: f64, height_m: f64) {
+    pub(super) fn record(&mut self, at: &Vec3, speed_m_s: f64, height_m: f64) {
         let Some(step_m) = self.step_m else { return };
         self.found.add(Stretch { number: self.number_at(at, step_m), speed_m_s, height_m });
     }
@@ -56,20 +56,20 @@ impl Stretches {
 
     /// Records speed and height of a step in contact: the velocity is linear in time between its
     /// values at both ends.
-    pub(super) fn step(&mut self, [from, to]: [&Motion; 2], heights: &StepHeights) {
+    pub(super) fn record_step(&mut self, [from, to]: [&Motion; 2], heights: &StepHeights) {
         let Some(step_m) = self.step_m else { return };
         let [begins_m_s, ends_m_s] = [from, to].map(|at| at.velocity_m_s.norm());
         let number = self.number_at(&to.position_m, step_m);
         // steps are shorter than stretches as a rule: most stay within one
         let before = self.found.last().map(|last| last.number);
         if before.is_none_or(|before| before == number) {
-            return self.note_part(number, begins_m_s.max(ends_m_s), (heights, [0.0, 1.0]));
+            return self.record_part(number, begins_m_s.max(ends_m_s), (heights, [0.0, 1.0]));
         }
         let [place, way] = self.relative_to_release([&from.position_m, &to.position_m]);
         let speed_m_s = |s: f64| from.velocity_m_s.lerp(&to.velocity_m_s, s).norm();
         for_each_stretch(place, way, step_m, |number, entered, left| {
             let [s0, s1] = [entered, left].map(|share| time_fraction([from, to], share));
-            self.note_part(number, speed_m_s(s0).max(speed_m_s(s1)), (heights, [entered, left]));
+            self.record_part(number, speed_m_s(s0).max(speed_m_s(s1)), (heights, [entered, left]));
         });
     }
 
@@ -80,7 +80,7 @@ impl Stretches {
     }
 
     /// Records the part of a path between two fractions of it.
-    fn note_part(
+    fn record_part(
         &mut self,
         number: u32,
         speed_m_s: f64,
@@ -95,7 +95,7 @@ impl Stretches {
     ///
     /// The speed along a parabola has no maximum inside: the largest is at an end of its part in a
     /// stretch.
-    pub(super) fn fly(&mut self, heights: &Heights) {
+    pub(super) fn record_flight(&mut self, heights: &Heights) {
         let Some(step_m) = self.step_m else { return };
         let flight = heights.flight;
         let [from, to] = [0.0, flight.duration_s].map(|t| flight.path.centre(t));
@@ -103,7 +103,7 @@ impl Stretches {
         let heights = StepHeights { heights: Some(*heights), height_bound_m: f64::INFINITY };
         let speed_m_s = |share: f64| flight.path.velocity(share * flight.duration_s).norm();
         for_each_stretch(place, way, step_m, |number, s0, s1| {
-            self.note_part(number, speed_m_s(s0).max(speed_m_s(s1)), (&heights, [s0, s1]));
+            self.record_part(number, speed_m_s(s0).max(speed_m_s(s1)), (&heights, [s0, s1]));
         });
     }
 }
@@ -198,7 +198,7 @@ mod tests {
         let start = Motion { time_s: 0.0, position_m: start, velocity_m_s: rest, spin_rad_s: rest };
         let mut all = Stretches::of(Some(1.0), &start);
         for (x, speed, height) in [(0.5, 1.0, 0.2), (1.5, 3.0, 0.0), (0.7, 2.0, 0.1)] {
-            all.note(&Vec3::new(x, 0.0, 9.0), speed, height);
+            all.record(&Vec3::new(x, 0.0, 9.0), speed, height);
         }
         let stretch = |number, speed_m_s, height_m| Stretch { number, speed_m_s, height_m };
         assert_eq!(all.found.into_found(), [stretch(0, 2.0, 0.2), stretch(1, 3.0, 0.0)]);

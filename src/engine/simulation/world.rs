@@ -103,7 +103,8 @@ enum BodyState {
 /// Simulates all releases of a plan whose rocks share one world, in order; `None` if `stop` was
 /// raised before the end. A path is kept for the first releases of the plan and for `paths`.
 ///
-/// # Errors A release that cannot be made, rocks that overlap at the start, a plan without contact
+/// # Errors
+/// A release that cannot be made, rocks that overlap at the start, a plan without contact
 /// between rocks.
 pub fn simulate_releases_together(
     plan: &Plan,
@@ -146,7 +147,7 @@ impl<'a> Observer<'a, fn(f64, &WorldStats)> {
 }
 
 /// Simulates all rocks of one world until they stop; returns the trajectories in the order of the
-/// releases, and the counts. `None` if it was stopped. `options` says what to record of each rock.
+/// releases, and the counts. `None` if it was stopped. `options_of` says what to record of each rock.
 pub fn simulate_world(
     settings: &RunSettings,
     releases: &[Release],
@@ -155,13 +156,13 @@ pub fn simulate_world(
     Observer { stop, observe }: Observer<impl FnMut(f64, &WorldStats)>,
 ) -> Option<(Vec<Trajectory>, WorldStats)> {
     // Most scenes give all rocks the same ground: its damping is computed once.
-    let mut known: Vec<Damping> = Vec::new();
+    let mut cache: Vec<Damping> = Vec::new();
     let mut damping = |restitution| {
-        let found = known.iter().find(|one| one.restitution == restitution).copied();
+        let found = cache.iter().find(|cached| cached.restitution == restitution).copied();
         found.unwrap_or_else(|| {
-            known.insert(0, Damping::of(restitution));
-            known.truncate(CACHED_DAMPINGS);
-            known[0]
+            cache.insert(0, Damping::of(restitution));
+            cache.truncate(CACHED_DAMPINGS);
+            cache[0]
         })
     };
     let bodies = releases
@@ -237,9 +238,9 @@ impl BodyWorld<'_> {
         // both rocks are in contact from the start: a bonded block begins free of internal stress,
         // whatever its weight then does to it
         for (a, b) in self.touching_at_start() {
-            let [one, two] = [a, b].map(|k| &self.body(k).member);
-            let (n, length) = between(&one.state.c, &two.state.c);
-            let radius = one.body.radius.min(two.body.radius);
+            let [member_a, member_b] = [a, b].map(|k| &self.body(k).member);
+            let (n, length) = between(&member_a.state.c, &member_b.state.c);
+            let radius = member_a.body.radius.min(member_b.body.radius);
             let bond = Bond::new(&material.strength, radius, length);
             let law = self.law(a, b);
             self.add_pair(&PairHistory { n, bond: Some(bond), ..PairHistory::new(a, b, law) });
@@ -272,9 +273,9 @@ impl BodyWorld<'_> {
         // both rocks of a pair are in the same island
         let is_held = |pair: &&PairHistory| pair.is_held() && !self.body(pair.a).is_unloaded;
         for pair in self.pair_histories.iter().filter(is_held) {
-            let [one, two] = [pair.a, pair.b].map(|k| &self.body(k).member);
-            let (_, distance) = between(&one.state.c, &two.state.c);
-            let stored_j = pair.stored_j(distance, one.body.radius + two.body.radius);
+            let [member_a, member_b] = [pair.a, pair.b].map(|k| &self.body(k).member);
+            let (_, distance) = between(&member_a.state.c, &member_b.state.c);
+            let stored_j = pair.stored_j(distance, member_a.body.radius + member_b.body.radius);
             for k in [pair.a, pair.b] {
                 held_j[k as usize] += 0.5 * stored_j;
             }

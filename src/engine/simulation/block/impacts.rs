@@ -29,7 +29,7 @@ impl BlockSimulation<'_> {
         self.footing.meet_next_facet(&self.world, (self.block, &self.moving));
         let springs = &self.footing.springs;
         let new = springs.histories.iter().filter(|history| !history.announced);
-        let fastest = new.max_by(|one, other| one.approach_m_s.total_cmp(&other.approach_m_s));
+        let fastest = new.max_by(|a, b| a.approach_m_s.total_cmp(&b.approach_m_s));
         let Some(fastest) = fastest.copied() else { return };
         self.footing.damp_together(&self.world, (self.block, &self.moving));
         let facet = self.next_facet(fastest.triangle, &fastest.n, &fastest.point);
@@ -41,8 +41,8 @@ impl BlockSimulation<'_> {
         let mut blows = std::mem::take(&mut self.footing.blows);
         blows.clear();
         let begin = self.footing.springs.histories.iter().filter(|history| !history.announced);
-        for one in begin.filter(|history| to_facet_m_s.is_some() || !history.captured) {
-            blows.push(self.ground_blow((one.triangle, one.n), one.approach_m_s));
+        for history in begin.filter(|history| to_facet_m_s.is_some() || !history.captured) {
+            blows.push(self.ground_blow((history.triangle, history.n), history.approach_m_s));
         }
         let histories = &self.footing.springs.histories;
         let mut begun = std::mem::take(&mut self.footing.begun);
@@ -89,13 +89,15 @@ impl BlockSimulation<'_> {
     /// Recomputes the dashpots of the contacts that have begun, from the speed that soil has left
     /// them and from the facet that the fastest of them meets.
     fn reset_dashpots(&mut self, begun: &[usize], facet: Option<(Rotation3<f64>, &BlockHistory)>) {
-        let to_facet_m_s = facet
-            .map(|(turn, one)| self.meeting(one.triangle, &one.n, &one.point).approach_m_s(&turn));
+        let to_facet_m_s = facet.map(|(turn, history)| {
+            self.meeting(history.triangle, &history.n, &history.point).approach_m_s(&turn)
+        });
         for k in begun {
-            let one = self.footing.springs.histories[*k];
-            let own_m_s = -one.n.dot(&self.meeting(one.triangle, &one.n, &one.point).v);
+            let history = self.footing.springs.histories[*k];
+            let own_m_s =
+                -history.n.dot(&self.meeting(history.triangle, &history.n, &history.point).v);
             let approach_m_s = to_facet_m_s.map_or(own_m_s, |facet| facet.max(own_m_s));
-            if !one.captured && approach_m_s >= capture_m_s(&one.law) {
+            if !history.captured && approach_m_s >= capture_m_s(&history.law) {
                 self.footing.strike_anew(*k, (self.block, &self.moving), approach_m_s);
             }
         }

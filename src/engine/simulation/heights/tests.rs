@@ -153,8 +153,8 @@ fn compare(terrain: &Terrain, block: Option<&Block>, flown: &Flown) -> f64 {
     };
     let Flown { path, top, turns, duration_s } = flown;
     let step = turns.as_ref().map(|[from, to]| AttitudePath::Step([from, to]));
-    let turning = step.or(top.as_ref().map(AttitudePath::Top));
-    let flight = RockFlight { start, path, turning, duration_s: *duration_s };
+    let attitude_path = step.or(top.as_ref().map(AttitudePath::Top));
+    let flight = RockFlight { start, path, attitude_path, duration_s: *duration_s };
     let heights = Heights { terrain, geometry: &geometry, flight: &flight };
     let sample = |t: f64| {
         let at = flight.at(t);
@@ -285,7 +285,7 @@ fn sphere(terrain: &Terrain, path: &Parabola, duration_s: f64) -> Option<HighPoi
     let geometry = RockGeometry { rock: ROCK, block: None };
     let (position_m, velocity_m_s) = (path.start, path.velocity);
     let start = Motion { time_s: 0.0, position_m, velocity_m_s, spin_rad_s: Vec3::zeros() };
-    let flight = RockFlight { start, path, turning: None, duration_s };
+    let flight = RockFlight { start, path, attitude_path: None, duration_s };
     Heights { terrain, geometry: &geometry, flight: &flight }
         .largest([0.0, duration_s], f64::NEG_INFINITY)
 }

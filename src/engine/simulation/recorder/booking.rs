@@ -54,18 +54,20 @@ impl Recorder<'_> {
         }
     }
 
-    /// Velocity (m/s) that is left of `v` to a rock that keeps a fraction `kept` of its speed (–);
-    /// the energy of the rest is booked to soil.
-    pub(in crate::simulation) fn book_soil_drag(&mut self, v: &Vec3, kept: f64) -> Vec3 {
-        self.ledger.soil_j +=
-            0.5 * self.geometry.rock.mass_kg() * v.norm_squared() * (1.0 - kept * kept);
-        v * kept
+    /// Velocity (m/s) left to a rock of velocity `v` that keeps a fraction `speed_factor` of its
+    /// speed (–); books the energy of the rest to soil.
+    pub(in crate::simulation) fn slow_in_soil(&mut self, v: &Vec3, speed_factor: f64) -> Vec3 {
+        self.ledger.soil_j += 0.5
+            * self.geometry.rock.mass_kg()
+            * v.norm_squared()
+            * (1.0 - speed_factor * speed_factor);
+        v * speed_factor
     }
 
     /// The same for its velocity at the end of a flight.
-    pub(in crate::simulation) fn slow_in_soil_in_flight(&mut self, kept: f64) {
+    pub(in crate::simulation) fn slow_in_soil_after_flight(&mut self, speed_factor: f64) {
         let v = self.now.velocity_m_s;
-        self.now.velocity_m_s = self.book_soil_drag(&v, kept);
+        self.now.velocity_m_s = self.slow_in_soil(&v, speed_factor);
     }
 
     /// Books losses in the energy balance, the energy that springs take up included.

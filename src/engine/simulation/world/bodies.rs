@@ -243,7 +243,7 @@ impl<'a> BodyWorld<'a> {
                 &rocks
                     .iter()
                     .zip(deviation_m)
-                    .map(|(p, off)| p.swept(*off, dt))
+                    .map(|(rock, deviation_m)| rock.swept(*deviation_m, dt))
                     .collect::<Vec<_>>(),
             )
         });
@@ -268,11 +268,11 @@ impl<'a> BodyWorld<'a> {
         // 1e-9 m/s avoids a division by zero; the longest window decides then
         let mut length = LONGEST_WINDOW_S;
         // In the rigid limit nothing happens between the steps: a window is one step.
-        let way = if self.is_rigid() { TRAVEL } else { WINDOW_TRAVEL };
-        // way R/|v|: the smallest fast rock decides the window of all
+        let travel = if self.is_rigid() { TRAVEL } else { WINDOW_TRAVEL };
+        // travel R/|v|: the smallest fast rock decides the window of all
         for body in self.bodies.iter().flatten().filter(|body| body.state == BodyState::Moving) {
             let speed = body.velocity_at(self.settings, self.now_s).norm();
-            length = length.min(way * body.member.body.radius / speed.max(1e-9));
+            length = length.min(travel * body.member.body.radius / speed.max(1e-9));
         }
         length.max(SHORTEST_WINDOW_S)
     }
@@ -333,19 +333,19 @@ impl<'a> BodyWorld<'a> {
             if number == usize::MAX {
                 continue;
             }
-            let [one, two] = [a, b].map(|k| present[k as usize]);
-            let before = |pair: &PairHistory| (pair.a, pair.b) < (one, two);
+            let [id_a, id_b] = [a, b].map(|k| present[k as usize]);
+            let before = |pair: &PairHistory| (pair.a, pair.b) < (id_a, id_b);
             while self.pair_histories.get(known).is_some_and(before) {
                 known += 1;
             }
             let lent =
-                self.pair_histories.get_mut(known).filter(|pair| (pair.a, pair.b) == (one, two));
+                self.pair_histories.get_mut(known).filter(|pair| (pair.a, pair.b) == (id_a, id_b));
             let pair = if let Some(pair) = lent {
                 // marks the slot of a lent pair: both ends are the same rock
                 let stays = PairHistory { b: pair.a, ..*pair };
                 std::mem::replace(pair, stays)
             } else {
-                PairHistory::new(one, two, self.law(one, two))
+                PairHistory::new(id_a, id_b, self.law(id_a, id_b))
             };
             // the marked slot keeps the order of the list
             known +=

@@ -53,11 +53,11 @@ impl<'a> WorldBody<'a> {
     }
 
     /// Resumes the deviation that was tracked before.
-    pub(super) fn resume_deviation(&mut self, (velocity, off): (Vec3, f64)) {
+    pub(super) fn resume_deviation(&mut self, (reference, largest): (Vec3, f64)) {
         // triangle inequality: the deviation from the older reference is at most the sum of both
         // distances
-        let since = (self.deviation.0 - velocity).norm() + self.deviation.1;
-        self.deviation = (velocity, off.max(since));
+        let since = (self.deviation.0 - reference).norm() + self.deviation.1;
+        self.deviation = (reference, largest.max(since));
     }
 
     /// Wakes a sleeping rock and brings its record to `now_s`; finds the end of its flight if that
@@ -136,7 +136,7 @@ impl<'a> WorldBody<'a> {
             self.member.state.stored = 0.0;
             // energy at the start of the episode, from which its largest rise is measured at the
             // end
-            self.episode_start_j = (self.total_j(settings), self.given_j());
+            self.episode_start_j = (self.mechanical_energy_j(settings), self.given_j());
         }
     }
 
@@ -171,7 +171,7 @@ impl<'a> WorldBody<'a> {
 
     /// Mechanical energy (J): `m v²/2 + I ω²/2 + m g z`, without elastic energy, which
     /// [`Self::end_episode`] adds.
-    pub(super) fn total_j(&self, settings: &RunSettings) -> f64 {
+    pub(super) fn mechanical_energy_j(&self, settings: &RunSettings) -> f64 {
         let now = &self.recorder.now;
         let body = &self.member.body;
         body.motion_j((&now.velocity_m_s, &now.spin_rad_s))
@@ -258,7 +258,7 @@ impl<'a> WorldBody<'a> {
         }
         let flies = self.member.flew || self.step_start.is_some();
         let now_s = self.recorder.now.time_s;
-        self.step_start = self.step_start.or(Some((now_s, self.total_j(settings))));
+        self.step_start = self.step_start.or(Some((now_s, self.mechanical_energy_j(settings))));
         // rounding may have put the time before the start of the step
         let time_of = |motion: Motion| (time_s + motion.time_s).max(now_s);
         let [before, after] = blow.motions.map(|at| Motion { time_s: time_of(at), ..at });
@@ -267,7 +267,7 @@ impl<'a> WorldBody<'a> {
         for hit in hits {
             self.recorder.begin_impact(&hit.struck, before.time_s, &MeshEnergy::default());
         }
-        self.recorder.note_velocity_jump(after);
+        self.recorder.record_velocity_jump(after);
         let _ = self.recorder.end_impacts(|_| false);
     }
 
@@ -294,7 +294,8 @@ impl<'a> WorldBody<'a> {
     ) {
         let from = self.recorder.now;
         let began = self.step_start.take();
-        let (began_s, before_j) = began.unwrap_or_else(|| (from.time_s, self.total_j(settings)));
+        let (began_s, before_j) =
+            began.unwrap_or_else(|| (from.time_s, self.mechanical_energy_j(settings)));
         let dt = to.time_s - began_s;
         // one slipping contact, with mesh or rock, makes the step "sliding"
         let slides = slides || self.member.state.histories.iter().any(|history| history.slides);
@@ -305,7 +306,7 @@ impl<'a> WorldBody<'a> {
         self.book_given(&given);
         // energy balance of the step: what motion, friction, dashpots and other rocks do not
         // account for is numerical error
-        let change = self.total_j(settings) - before_j + loss.sum() + given.sum();
+        let change = self.mechanical_energy_j(settings) - before_j + loss.sum() + given.sum();
         self.recorder.ledger.remainder_j -= change;
         self.in_contact(settings).end_impacts();
         self.update_deviation();
@@ -337,7 +338,8 @@ impl<'a> WorldBody<'a> {
         self.recorder.book_spring_energy(&stored, &Loss::default());
         self.recorder.end_all_impacts();
         self.in_contact(settings).leave_facet();
-        let rise_j = self.total_j(settings) - self.episode_start_j.0 + given_j + stored.sum();
+        let rise_j =
+            self.mechanical_energy_j(settings) - self.episode_start_j.0 + given_j + stored.sum();
         // without numerical error it is 0 or less: contacts only dissipate
         self.recorder.ledger.rise_j = self.recorder.ledger.rise_j.max(rise_j);
     }

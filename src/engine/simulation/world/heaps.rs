@@ -121,7 +121,11 @@ impl WorldBody<'_> {
     fn continue_unloaded(&mut self, given: &Given) {
         self.book_given(given);
         let (velocity_m_s, spin_rad_s) = (self.member.state.v, self.member.state.w);
-        self.recorder.note_velocity_jump(Motion { velocity_m_s, spin_rad_s, ..self.recorder.now });
+        self.recorder.record_velocity_jump(Motion {
+            velocity_m_s,
+            spin_rad_s,
+            ..self.recorder.now
+        });
         self.update_deviation();
     }
 }

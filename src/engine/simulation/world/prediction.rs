@@ -151,9 +151,9 @@ impl ContactCandidates {
         // The deviation from the straight path is at most half the sum of the deviation at the end
         // and of the largest velocity change times the window.
         let deviation_m = |(k, rock): (usize, &PredictedRock)| {
-            let (end, off) = after(k);
+            let (end, dv) = after(k);
             let straight = rock.centre + rock.velocity * dt;
-            0.5 * ((end - straight).norm() + off.max(rock.dv_bound) * dt)
+            0.5 * ((end - straight).norm() + dv.max(rock.dv_bound) * dt)
         };
         let deviation_m: Vec<f64> = rocks.iter().enumerate().map(deviation_m).collect();
         let mut missed = Vec::new();
@@ -199,13 +199,13 @@ pub(super) fn candidates_within_islands(
         pairs = near(&rocks.iter().zip(&allowed_dv).map(reach).collect::<Vec<_>>());
         islands = Groups::of_pairs(rocks.len(), pairs.iter().copied());
         // the largest speed of every island, then given to all of its rocks
-        let mut most = vec![0.0f64; rocks.len()];
+        let mut largest_speed = vec![0.0f64; rocks.len()];
         for (rock, k) in rocks.iter().zip(0..) {
             let root = islands.lowest(k) as usize;
-            most[root] = most[root].max(HIT_SPEED_FACTOR * rock.speed());
+            largest_speed[root] = largest_speed[root].max(HIT_SPEED_FACTOR * rock.speed());
         }
         for (speed, k) in fastest.iter_mut().zip(0..) {
-            *speed = most[islands.lowest(k) as usize];
+            *speed = largest_speed[islands.lowest(k) as usize];
         }
     }
     ContactCandidates { pairs, islands, allowed_dv }

@@ -21,7 +21,8 @@ use rayon::prelude::*;
 /// An island of no more rocks than this is stepped as a whole: subdivision costs a search and
 /// copies, and saves nothing below this.
 const SMALL_ISLAND: usize = 4;
-/// Number of shorter windows into which a window is cut at a time.
+/// Smallest number of shorter windows into which a window is cut, and the factor to the next
+/// number.
 const CUT_FACTOR: u32 = 4;
 /// Shortest window, in radians of the stiffest contact (–): less than a step of a quiet heap. The
 /// radians of a contact are `ω t` with `ω = √(p_N/m)`: a spring reverses an impact in π of them.

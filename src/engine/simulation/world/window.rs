@@ -112,8 +112,9 @@ impl<'a> IslandWindow<'a> {
         }
     }
 
-    /// Time at which the next flying rock touches the mesh or another flying rock (s). O(n +
-    /// pairs): it is computed again after every event.
+    /// Time at which the next flying rock touches the mesh or another flying rock (s).
+    ///
+    /// Cost O(n + pairs): it is computed again after every event.
     pub(super) fn next_event_s(&self) -> f64 {
         let flying = self.bodies.iter().filter(|body| body.member.flying);
         let landings =
@@ -212,14 +213,14 @@ impl<'a> IslandWindow<'a> {
         let now_s = self.now_s;
         self.bodies.iter_mut().for_each(|body| body.fly_to(self.settings, now_s));
         let mut island = self.lend_to_solver();
-        let mut goes_on = true;
+        let mut continues = true;
         while self.now_s < until_s {
             // no step passes the next event, the end of the window, or the end of a facet of rough
             // ground
             let longest_s = (until_s - self.now_s).min(self.before_step(&mut island));
             let spent = (island.sweeps, island.jumps);
             let Some(done) = self.advance(&mut island, longest_s) else {
-                goes_on = false;
+                continues = false;
                 break;
             };
             let left_s = until_s - self.now_s;
@@ -237,10 +238,10 @@ impl<'a> IslandWindow<'a> {
             self.put_to_sleep();
             return false;
         }
-        if goes_on {
+        if continues {
             self.begin_contacts();
         }
-        goes_on
+        continues
     }
 
     /// One step of at most `longest_s` (s). None where it fails: the step is that of all rocks of
