@@ -37,8 +37,9 @@ impl SphereSimulation<'_> {
         for blow in &self.state.blows {
             // a contact that persists beside it keeps its own damping
             let ratio = world.law(blow.triangle).ratio_at(speed_factor * blow.approach_m_s);
-            let is_struck =
-                |one: &&mut ContactHistory| (one.triangle, one.n) == (blow.triangle, blow.n);
+            let is_struck = |history: &&mut ContactHistory| {
+                (history.triangle, history.n) == (blow.triangle, blow.n)
+            };
             if let Some((ratio, history)) =
                 ratio.zip(self.state.histories.iter_mut().find(is_struck))
             {
@@ -151,8 +152,8 @@ impl SphereSimulation<'_> {
             let speed_m_s = self.body.slip(&history.n, &self.state.v, &self.state.w).norm();
             SlippingContact { speed_m_s, n: history.n, ground: world.ground_of(history.triangle) }
         };
-        let fastest = |one: SlippingContact, other: SlippingContact| {
-            if other.speed_m_s > one.speed_m_s { other } else { one }
+        let fastest = |a: SlippingContact, b: SlippingContact| {
+            if b.speed_m_s > a.speed_m_s { b } else { a }
         };
         self.state.histories.iter().map(slip_of).reduce(fastest)
     }

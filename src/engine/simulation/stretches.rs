@@ -65,9 +65,9 @@ impl Stretches {
         if before.is_none_or(|before| before == number) {
             return self.record_part(number, begins_m_s.max(ends_m_s), (heights, [0.0, 1.0]));
         }
-        let [place, way] = self.relative_to_release([&from.position_m, &to.position_m]);
+        let [start, displacement] = self.relative_to_release([&from.position_m, &to.position_m]);
         let speed_m_s = |s: f64| from.velocity_m_s.lerp(&to.velocity_m_s, s).norm();
-        for_each_stretch(place, way, step_m, |number, entered, left| {
+        for_each_stretch(start, displacement, step_m, |number, entered, left| {
             let [s0, s1] = [entered, left].map(|share| time_fraction([from, to], share));
             self.record_part(number, speed_m_s(s0).max(speed_m_s(s1)), (heights, [entered, left]));
         });
@@ -99,10 +99,10 @@ impl Stretches {
         let Some(step_m) = self.step_m else { return };
         let flight = heights.flight;
         let [from, to] = [0.0, flight.duration_s].map(|t| flight.path.centre(t));
-        let [place, way] = self.relative_to_release([&from, &to]);
+        let [start, displacement] = self.relative_to_release([&from, &to]);
         let heights = StepHeights { heights: Some(*heights), height_bound_m: f64::INFINITY };
         let speed_m_s = |share: f64| flight.path.velocity(share * flight.duration_s).norm();
-        for_each_stretch(place, way, step_m, |number, s0, s1| {
+        for_each_stretch(start, displacement, step_m, |number, s0, s1| {
             self.record_part(number, speed_m_s(s0).max(speed_m_s(s1)), (&heights, [s0, s1]));
         });
     }
@@ -127,13 +127,18 @@ impl Passage for Stretch {
 /// the path at which the stretch is entered and left. The distance from the release falls up to the
 /// nearest point of the path and rises behind it.
 ///
-/// A ring of radius `r` is met where `a s² + 2 b s + c − r² = 0`, with `a = |way|²`, `b =
-/// place·way`, `c = |place|²`.
-fn for_each_stretch(place: Corner, way: Corner, step_m: f64, mut pass: impl FnMut(u32, f64, f64)) {
+/// A ring of radius `r` is met where `a s² + 2 b s + c − r² = 0`, with `a = |displacement|²`,
+/// `b = start·displacement`, `c = |start|²`.
+fn for_each_stretch(
+    start: Corner,
+    displacement: Corner,
+    step_m: f64,
+    mut pass: impl FnMut(u32, f64, f64),
+) {
     let dot = |a: Corner, b: Corner| a[0] * b[0] + a[1] * b[1];
-    let (a, b, c) = (dot(way, way), dot(place, way), dot(place, place));
+    let (a, b, c) = (dot(displacement, displacement), dot(start, displacement), dot(start, start));
     let number_at = |s: f64| {
-        let at = [0, 1].map(|k| place[k] + s * way[k]);
+        let at = [0, 1].map(|k| start[k] + s * displacement[k]);
         (dot(at, at).sqrt() / step_m) as u32
     };
     // no displacement in plan view
@@ -167,9 +172,11 @@ fn for_each_stretch(place: Corner, way: Corner, step_m: f64, mut pass: impl FnMu
 mod tests {
     use super::*;
 
-    fn passed_stretches(place: Corner, way: Corner) -> Vec<(u32, f64, f64)> {
+    fn passed_stretches(start: Corner, displacement: Corner) -> Vec<(u32, f64, f64)> {
         let mut passed = Vec::new();
-        for_each_stretch(place, way, 2.0, |number, from, to| passed.push((number, from, to)));
+        for_each_stretch(start, displacement, 2.0, |number, from, to| {
+            passed.push((number, from, to));
+        });
         passed
     }
 

@@ -7,8 +7,8 @@
 //!
 //! Every rock is advanced by the scheme of the scene as if it were alone, until a window shows that
 //! it may meet another; so a world of rocks that never meet gives the trajectories of single rocks.
-//! The springs between two rocks follow a law of their own (`PairMaterial`), with the mass `m_a
-//! m_b/(m_a + m_b)` of the pair.
+//! The springs between two rocks follow a law of their own (`PairMaterial`), with the reduced mass
+//! `m_a m_b/(m_a + m_b)`.
 
 mod statistics;
 mod bodies;
