@@ -15,7 +15,7 @@ use rockfall::body::{Block, Shape, ShapeKind, Solid, eota};
 use rockfall::ground::Ground;
 use rockfall::hazard::{Barrier, CrossingRow, annual};
 use rockfall::release::DrawnShape;
-use rockfall::simulation::{Keep, RunSettings, Scratch, Stop, simulate, simulate_block};
+use rockfall::simulation::{RecordOptions, RunSettings, Scratch, Stop, simulate, simulate_block};
 use rockfall::solver::Scheme;
 use rockfall::study::bench::settings;
 use slope::{SCHEMES, Slope};
@@ -48,7 +48,7 @@ fn no_memory_is_taken_while_a_rock_falls() {
         for index in WARM..WARM + rocks {
             let release = slope.release(index);
             let random = rockfall::random::stream(7, rockfall::random::Purpose::Impacts, index);
-            let keep = Keep { path_step_s: None, impacts: false };
+            let keep = RecordOptions { path_step_s: None, impacts: false };
             let mut fallen = None;
             let taken = measure(|| {
                 fallen = Some(simulate(&course, &release, keep, random, &mut scratch));
@@ -98,7 +98,7 @@ fn no_memory_is_taken_while_a_block_falls() {
             let attitude = Rotation3::from_euler_angles(index as f64, 0.7, 0.3);
             let drawn = DrawnShape { kind: ShapeKind::Eota221, sides: [1.0; 2], block, attitude };
             let random = rockfall::random::stream(7, rockfall::random::Purpose::Impacts, index);
-            let keep = Keep { path_step_s: None, impacts: false };
+            let keep = RecordOptions { path_step_s: None, impacts: false };
             let mut steps = 0;
             let taken = measure(|| {
                 let fallen =
@@ -128,7 +128,7 @@ fn a_kept_path_takes_memory() {
     let step = settings(SCHEMES[0].0, SCHEMES[0].1, None);
     let (course, release) = (slope.course(&step), slope.release(0));
     let random = rockfall::random::stream(7, rockfall::random::Purpose::Impacts, 0);
-    let keep = Keep { path_step_s: Some(0.05), impacts: false };
+    let keep = RecordOptions { path_step_s: Some(0.05), impacts: false };
     let mut scratch = Scratch::default();
     let taken = measure(|| {
         drop(simulate(&course, &release, keep, random, &mut scratch));

@@ -10,7 +10,7 @@ use rockfall::ground::{Ground, Scar, SlipFriction};
 use rockfall::random::{Purpose, stream, unit};
 use rockfall::release::DrawnShape;
 use rockfall::rock::Vec3;
-use rockfall::simulation::{Keep, RunSettings, Scratch, Trajectory, simulate_block};
+use rockfall::simulation::{RecordOptions, RunSettings, Scratch, Trajectory, simulate_block};
 use std::f64::consts::PI;
 
 /// Radius of the corners over that of the sphere of equal volume (–).
@@ -115,7 +115,7 @@ pub fn fall(
     let attitude = UnitQuaternion::from_quaternion(Quaternion::from(turn)).to_rotation_matrix();
     let drawn = DrawnShape { kind, sides: [1.0; 2], block, attitude };
     let random = stream(SEED, Purpose::Impacts, index);
-    let keep = Keep { path_step_s: None, impacts: false };
+    let keep = RecordOptions { path_step_s: None, impacts: false };
     let fallen = simulate_block(course, (&release, &drawn), keep, random, scratch);
     Trajectory { index, ..fallen }
 }

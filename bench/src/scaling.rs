@@ -8,7 +8,8 @@ use rockfall::plan::{Recorders, RestRule};
 use rockfall::release::Release;
 use rockfall::rock::{Motion, Rock, Vec3};
 use rockfall::simulation::{
-    Keep, Observer, PairMaterial, RunSettings, Stop, Trajectory, WorldStats, simulate_world,
+    Observer, PairMaterial, RecordOptions, RunSettings, Stop, Trajectory, WorldStats,
+    simulate_world,
 };
 use rockfall::solver::{RIGID_STEP_S, Scheme, Settings};
 use rockfall::study::bench::{GRAVITY_M_S2, terrain};
@@ -198,11 +199,9 @@ pub fn world(scheme: Scheme, spheres: usize, (longest_s, before): (f64, Option<u
         seed: 1,
     };
     let releases = heap(spheres, size, terrain.origin_m);
-    let answer = PairMaterial {
-        ground: GROUND,
-        strength: BondStrength { tensile_pa: 0.0, cohesion_pa: 0.0 },
-    };
-    let keep = |_| Keep { path_step_s: None, impacts: false };
+    let answer =
+        PairMaterial { ground: GROUND, strength: Strength { tensile_pa: 0.0, cohesion_pa: 0.0 } };
+    let keep = |_| RecordOptions { path_step_s: None, impacts: false };
     let never = AtomicBool::new(false);
     // Linux forgets the largest memory so far when asked to; where it cannot, the number is left out.
     let forgot = fs::write("/proc/self/clear_refs", "5").is_ok();

@@ -1,12 +1,12 @@
-//! One rock from release to rest: leap, touch, step, stop.
+//! The simulation of one rock from release to rest: free flight, contact, time step, stop.
 
 mod block;
 mod rest;
 mod stretches;
 mod crossings;
 mod driver;
-mod fall;
-mod form;
+mod sphere;
+mod rock_geometry;
 mod heights;
 mod impacts;
 mod passages;
@@ -28,55 +28,56 @@ use serde::{Deserialize, Serialize};
 
 pub use cells::CellPassage;
 pub use crossings::Crossing;
-pub use recorder::Keep;
+pub use recorder::RecordOptions;
 pub use settings::RunSettings;
 pub use single::{Scratch, simulate, simulate_block, simulate_release};
 pub use stretches::Stretch;
 pub use world::{Observer, PairMaterial, WorldStats, simulate_releases_together, simulate_world};
 
-/// Why a rock's journey ended.
+/// Why the trajectory of a rock ended.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Stop {
     /// Slower than the rest speed for the rest time, in contact.
     AtRest,
-    /// Flew out of the box of the meshes.
+    /// Left the bounding box of the meshes.
     LeftTerrain,
     /// Still moving at the longest simulated time.
     TimeUp,
-    /// Still moving when its budget of work was spent, see [`Effort::work`].
+    /// Still moving when its budget of computation was used up, see [`Effort::work`].
     OverBudget,
-    /// Never began: no place was found where it could start; the reason is kept and counted.
+    /// Not released: no admissible start position was found. The reason is kept and counted.
     NotReleased(&'static str),
-    /// The computation could not go on; the reason is kept and counted.
+    /// The computation failed; the reason is kept and counted.
     Failed(String),
 }
 
-/// What the computation cost, counted (no clock: the same on every machine).
+/// Cost of the computation in counts (no clock: the same on every machine).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Effort {
     /// Accepted contact steps.
     pub steps: u64,
     /// Rejected contact steps.
     pub rejected: u64,
-    /// Free flights leapt over.
+    /// Free flights, each computed in closed form.
     pub leaps: u64,
     /// Passes over the contacts (open–close iterations, Newton or Gauss–Seidel passes).
     pub sweeps: u64,
-    /// Triangles tested by leaps and contact queries.
+    /// Triangles tested in searches for the end of a flight and for contacts.
     pub triangles: u64,
-    /// Steps whose contact states did not settle (`dda`).
+    /// Steps whose contact states did not converge (`dda`).
     pub unsettled: u64,
 }
 
 impl Effort {
-    /// What is held against a rock's budget: steps, accepted or not, and flights.
+    /// Work counted against the budget of a rock: steps, accepted or rejected, and flights.
     pub fn work(&self) -> u64 {
         self.steps + self.rejected + self.leaps
     }
 
-    /// Adds what another rock cost. Every field is named, so that a new counter does not compile until it is summed.
-    pub fn add(&mut self, one: &Self) {
-        let Self { steps, rejected, leaps, sweeps, triangles, unsettled } = *one;
+    /// Adds the cost of another rock. Every field is named, so that a new counter does not compile
+    /// until it is summed.
+    pub fn add(&mut self, other: &Self) {
+        let Self { steps, rejected, leaps, sweeps, triangles, unsettled } = *other;
         self.steps += steps;
         self.rejected += rejected;
         self.leaps += leaps;
@@ -86,8 +87,8 @@ impl Effort {
     }
 }
 
-/// Where the energy went (J): all but `rise_j` add up to what the rock lost. All entries but `passed_on_j` and
-/// `remainder_j` are ≥ 0.
+/// Energy balance of a rock (J). All entries except `rise_j` add up to the energy that the rock
+/// lost. All entries except `passed_on_j` and `remainder_j` are ≥ 0.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Ledger {
     /// Sliding friction against the slope.
@@ -98,27 +99,30 @@ pub struct Ledger {
     pub rolling_j: f64,
     /// Everything lost in contacts with trees.
     pub trees_j: f64,
-    /// Drag of soil that gives way.
+    /// Drag of soil that yields.
     #[serde(default)]
     pub soil_j: f64,
-    /// Lost in contacts with other rocks, half of what each takes; 0 for a rock alone.
+    /// Lost in contacts with other rocks: half of the loss of each contact. 0 for a rock alone.
     #[serde(default)]
     pub others_j: f64,
-    /// Handed on to other rocks, negative if received; 0 for a rock alone, and in sum over a world.
+    /// Transferred to other rocks, negative if received. 0 for a rock alone, and 0 in the sum over
+    /// a world.
     #[serde(default)]
     pub passed_on_j: f64,
-    /// What the springs of its contacts hold at the end more than at release, half of those with other rocks: not lost, but no motion either.
+    /// Elastic energy of its contacts at the end less that at release; of contacts with other
+    /// rocks, half. It is not lost, but it is no motion either.
     #[serde(default)]
     pub springs_j: f64,
-    /// What the numerics lost (positive) or gained (negative).
+    /// Numerical error: energy lost (positive) or gained (negative).
     pub remainder_j: f64,
-    /// Largest rise of mechanical energy seen over one contact episode (J), ≥ 0; 0 in exact arithmetic.
+    /// Largest rise of mechanical energy over one contact episode (J), ≥ 0; 0 in exact arithmetic.
     pub rise_j: f64,
 }
 
 impl Ledger {
-    /// The same with no loss below 0: friction that turns round within a step may seem to work, and springs to give back more than they
-    /// took, which is the numerics' gain and stands in the remainder.
+    /// The same balance with no negative loss. Friction that reverses within a step may seem to do
+    /// work, and springs may seem to return more than they took. Such a gain is numerical and is
+    /// moved to the remainder.
     fn without_gains(mut self) -> Self {
         let Self { friction_j, damping_j, rolling_j, trees_j, remainder_j, .. } = &mut self;
         for loss_j in [friction_j, damping_j, rolling_j, trees_j] {
@@ -129,20 +133,22 @@ impl Ledger {
     }
 }
 
-/// What a kept path records of one instant.
+/// One recorded point of a path.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PathPoint {
     /// Motion (local coordinates).
     pub motion: Motion,
-    /// Vertical distance from the ground below to the lowest point of the rock (m); NaN where there is none.
+    /// Vertical distance from the ground below to the lowest point of the rock (m); NaN where there
+    /// is none.
     pub clearance_m: f64,
     /// Flight, sliding or sticking.
     pub state: PathState,
-    /// How a block is turned, from its principal frame to the world, as a unit quaternion w, x, y, z; none for a sphere.
+    /// Attitude of a block: the rotation from its principal frame to the world, as a unit
+    /// quaternion w, x, y, z; none for a sphere.
     pub attitude: Option<[f64; 4]>,
 }
 
-/// State of a rock on its path.
+/// Contact state of a rock on its path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum PathState {
@@ -155,35 +161,36 @@ pub enum PathState {
 }
 
 impl PathState {
-    /// Of a rock in contact.
+    /// State of a rock in contact.
     pub(crate) fn in_contact(slides: bool) -> Self {
         if slides { Self::Sliding } else { Self::Sticking }
     }
 }
 
-/// One impact: a touch with a normal approach speed above the capture speed.
+/// One impact: a contact that begins with a normal approach speed above the capture speed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Impact {
-    /// Time of first touch (s).
+    /// Time at which the contact begins (s).
     pub time_s: f64,
-    /// Touched point (m, local coordinates).
+    /// Contact point (m, local coordinates).
     pub point_m: Vec3,
-    /// What was touched.
+    /// Feature of the mesh that was hit.
     pub feature: FeatureKind,
     /// Index into `Terrain::sheets`.
     pub sheet: u16,
     /// Speed of the centre before (m/s).
     pub speed_in_m_s: f64,
-    /// Speed of the centre when its patch lets go, or when its time is up (m/s).
+    /// Speed of the centre when the contact opens, or when the longest duration of an impact is
+    /// over (m/s).
     pub speed_out_m_s: f64,
-    /// Energy that went into contacts with the mesh (J), ≥ 0; impacts at the same time share it by the squares of their
-    /// approach speeds.
+    /// Energy lost in contacts with the mesh (J), ≥ 0. Impacts at the same time share it in
+    /// proportion to the squares of their approach speeds.
     pub energy_lost_j: f64,
-    /// What of it the drag of soil took (J).
+    /// Part of it that the drag of soil took (J).
     pub soil_j: f64,
 }
 
-/// Largest values along a journey.
+/// Largest values along a trajectory.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Extremes {
     /// Speed of the centre (m/s).
@@ -198,30 +205,31 @@ pub struct Extremes {
     pub height_m: f64,
 }
 
-/// The shape of one rock, as it was drawn.
+/// Shape of one rock, as drawn from the distribution of the scene.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct ShapeOf {
-    /// What it was made from.
+pub struct RockShape {
+    /// Kind of shape.
     pub kind: ShapeKind,
     /// Second and third side over the first (–).
     pub sides: [f64; 2],
-    /// How it was turned at release, from its principal frame to the world: a unit quaternion w, x, y, z.
+    /// Attitude at release: the rotation from its principal frame to the world, as a unit
+    /// quaternion w, x, y, z.
     pub attitude: [f64; 4],
 }
 
-impl ShapeOf {
-    /// That of a sphere among blocks.
+impl RockShape {
+    /// Shape of a sphere in a scene that also has blocks.
     pub const SPHERE: Self =
         Self { kind: ShapeKind::Sphere, sides: [1.0; 2], attitude: [1.0, 0.0, 0.0, 0.0] };
 
-    /// Of a block as it was drawn.
+    /// Shape of a block as drawn.
     pub fn new(drawn: &DrawnShape) -> Self {
-        let attitude = form::quaternion(&drawn.attitude);
+        let attitude = rock_geometry::quaternion(&drawn.attitude);
         Self { kind: drawn.kind, sides: drawn.sides, attitude }
     }
 }
 
-/// One rock's journey, complete.
+/// The complete trajectory of one rock.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trajectory {
     /// Release number, from 0.
@@ -229,7 +237,7 @@ pub struct Trajectory {
     /// The rock.
     pub rock: Rock,
     /// Its shape; none in a scene of spheres.
-    pub shape: Option<ShapeOf>,
+    pub shape: Option<RockShape>,
     /// At release (local coordinates).
     pub start: Motion,
     /// At the end (local coordinates).
@@ -248,20 +256,22 @@ pub struct Trajectory {
     pub path: Vec<PathPoint>,
     /// First crossings of the plan's lines, in the order of lines.
     pub crossings: Vec<Crossing>,
-    /// Cells of the plan's maps that it passed, in the order of cells.
+    /// Cells of the plan's maps that the rock passed, in the order of cell numbers.
     pub passages: Vec<CellPassage>,
-    /// Stretches of distance from its release that it passed, in their order.
+    /// Stretches of distance from the release that the rock passed, in the order of their numbers.
     pub stretches: Vec<Stretch>,
-    /// Energy ledger.
+    /// Energy balance.
     pub ledger: Ledger,
-    /// Potential energy released plus kinetic energy at the start (J): the scale of the ledger of a rock alone.
+    /// Potential energy released plus kinetic energy at the start (J): the scale of the energy
+    /// balance of a rock alone.
     pub released_j: f64,
     /// Cost.
     pub effort: Effort,
 }
 
 impl Trajectory {
-    /// A release that could not be made: a row like any other, with nothing in it but the rock and its place.
+    /// Result of a release that could not be made: a row like any other, with nothing but the rock
+    /// and its place.
     pub fn not_released(index: usize, rock: Rock, start: Motion, why: &'static str) -> Self {
         Self {
             index,
@@ -286,8 +296,8 @@ impl Trajectory {
 
     /// Horizontal distance from release to end (m).
     pub fn runout_m(&self) -> f64 {
-        let way = self.end.position_m - self.start.position_m;
-        math::hypot(way.x, way.y)
+        let displacement_m = self.end.position_m - self.start.position_m;
+        math::hypot(displacement_m.x, displacement_m.y)
     }
 
     /// Height lost from release to end (m), positive downwards.
@@ -300,29 +310,31 @@ impl Trajectory {
         math::atan2(self.drop_m(), self.runout_m()).to_degrees()
     }
 
-    /// `|numerical remainder| / energy released` (–); of a rock that owes most of its energy to others, over what it had at
-    /// its disposal.
+    /// `|numerical remainder| / energy released` (–). For a rock that received most of its energy
+    /// from other rocks, the divisor is the energy that was available to it.
     pub fn energy_balance_error(&self) -> f64 {
         let remainder_j = self.ledger.remainder_j.abs();
-        match self.disposal_j() {
-            disposal_j if disposal_j > 0.0 => remainder_j / disposal_j,
-            // rounding of a rock that neither fell nor was struck is no error of what it had
-            _ if remainder_j == 0.0 || self.is_by_itself() => 0.0,
+        match self.available_j() {
+            available_j if available_j > 0.0 => remainder_j / available_j,
+            // rounding errors of a rock that neither fell nor was hit are no error of its energy
+            _ if remainder_j == 0.0 || self.is_isolated() => 0.0,
             _ => 1.0,
         }
     }
 
-    /// Energy released (J), where others gave less; else with what it received, or the largest it had where that is more:
-    /// one that is struck and strikes on keeps nothing of what went through it.
-    fn disposal_j(&self) -> f64 {
+    /// Energy that was available to the rock (J). This is the energy released if other rocks gave
+    /// less than that. Otherwise it is the sum of the energy released and received, or the largest
+    /// kinetic energy where that is larger: a rock that is hit and hits another passes on all that
+    /// it received.
+    fn available_j(&self) -> f64 {
         let received_j = (-self.ledger.passed_on_j).max(0.0);
-        let most_j = (self.released_j.max(0.0) + received_j).max(self.extremes.total_j);
-        let is_own = self.is_by_itself() || 2.0 * self.released_j >= most_j;
-        if is_own { self.released_j } else { most_j }
+        let largest_j = (self.released_j.max(0.0) + received_j).max(self.extremes.total_j);
+        let is_own = self.is_isolated() || 2.0 * self.released_j >= largest_j;
+        if is_own { self.released_j } else { largest_j }
     }
 
-    /// Whether it met no other rock.
-    fn is_by_itself(&self) -> bool {
+    /// Whether it exchanged no energy with other rocks.
+    fn is_isolated(&self) -> bool {
         self.ledger.passed_on_j == 0.0 && self.ledger.others_j == 0.0
     }
 }

@@ -1,7 +1,7 @@
 //! One released rock as a row of numbers: the only way into the statistics, from a run as from a file.
 
 use crate::rock::Vec3;
-use crate::simulation::{ShapeOf, Stop, Trajectory};
+use crate::simulation::{RockShape, Stop, Trajectory};
 use serde::{Deserialize, Serialize};
 
 /// One row of `releases.csv`; positions in map coordinates.
@@ -72,7 +72,7 @@ pub struct Row {
     pub springs_j: f64,
     /// Its shape; none in a scene of spheres, where the file has no such columns.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub shape: Option<ShapeOf>,
+    pub shape: Option<RockShape>,
     /// Energy lost to the drag of soil (J); none where no ground has a scar layer and the file has no such column.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub soil_j: Option<f64>,

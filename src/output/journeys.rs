@@ -3,7 +3,7 @@
 use super::{ImpactRow, Output, PathRow};
 use crate::error::Result;
 use crate::hazard::CrossingRow;
-use crate::simulation::{ShapeOf, Trajectory};
+use crate::simulation::{RockShape, Trajectory};
 
 impl Output {
     pub(super) fn write_path(&mut self, fall: &Trajectory) -> Result<()> {
@@ -12,7 +12,7 @@ impl Output {
         fall.path.iter().try_for_each(|point| {
             let mut row = PathRow::of(fall.index, point, origin_m);
             if has_blocks {
-                row.attitude.get_or_insert(ShapeOf::SPHERE.attitude);
+                row.attitude.get_or_insert(RockShape::SPHERE.attitude);
             }
             table.write(&row)
         })

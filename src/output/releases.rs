@@ -4,7 +4,7 @@ use super::{Output, RELEASES, RunInfo, table};
 use crate::error::Result;
 use crate::frequency::Frequency;
 use crate::hazard::Row;
-use crate::simulation::{ShapeOf, Trajectory};
+use crate::simulation::{RockShape, Trajectory};
 use serde::Serialize;
 use std::path::Path;
 
@@ -58,7 +58,7 @@ impl Output {
     pub(super) fn write_release(&mut self, fall: &Trajectory) -> Result<Row> {
         let mut row = Row::of(fall, self.info.origin_m);
         if self.info.has_blocks {
-            row.shape.get_or_insert(ShapeOf::SPHERE);
+            row.shape.get_or_insert(RockShape::SPHERE);
         }
         row.soil_j = self.info.has_scars.then_some(fall.ledger.soil_j);
         match self.info.asked.frequency.as_ref().filter(|_| self.tells_class) {

@@ -7,7 +7,9 @@ use crate::plan::RestRule;
 use crate::random::{Purpose, stream};
 use crate::release::{DrawnShape, Release};
 use crate::rock::{Motion, Rock, Vec3};
-use crate::simulation::{Keep, RunSettings, Scratch, Trajectory, simulate, simulate_block};
+use crate::simulation::{
+    RecordOptions, RunSettings, Scratch, Trajectory, simulate, simulate_block,
+};
 use crate::solver::{CORNER_WAY, Scheme, Settings};
 use crate::terrain::stl::{Facet, Soup};
 use crate::terrain::weld::{Piece, Up, weld};
@@ -156,7 +158,7 @@ impl Setup {
         };
         let release = Release { rock: self.rock, motion, grounds: vec![self.ground] };
         let random = stream(1, Purpose::Impacts, 0);
-        let keep = Keep { path_step_s: self.path_step_s, impacts: true };
+        let keep = RecordOptions { path_step_s: self.path_step_s, impacts: true };
         let drawn = self.block.map(|block| block.drawn(&self.rock));
         let mut fallen = match &drawn {
             Some(drawn) => simulate_block(&course, (&release, drawn), keep, random, scratch),

@@ -17,7 +17,9 @@ use rockfall::random::{Purpose, stream};
 use rockfall::release::Release;
 use rockfall::rock::{Motion, Rock, Vec3};
 use rockfall::scene::Scene;
-use rockfall::simulation::{Keep, RunSettings, Scratch, Trajectory, simulate, simulate_release};
+use rockfall::simulation::{
+    RecordOptions, RunSettings, Scratch, Trajectory, simulate, simulate_release,
+};
 use rockfall::solver::{Scheme, Settings};
 use rockfall::terrain::stl::{Facet, Soup};
 use rockfall::terrain::weld::{Piece, Up, weld};
@@ -158,7 +160,7 @@ impl Case {
         let grounds = [self.ground].into_iter().chain(self.other).collect();
         let release = Release { rock: self.rock, motion, grounds };
         let random = stream(seed, Purpose::Impacts, 0);
-        let keep = Keep { path_step_s: self.path_step_s, impacts: true };
+        let keep = RecordOptions { path_step_s: self.path_step_s, impacts: true };
         let mut fallen = simulate(&course, &release, keep, random, &mut Scratch::default());
         fallen.start.position_m += terrain.origin_m;
         fallen.end.position_m += terrain.origin_m;

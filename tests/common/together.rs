@@ -7,7 +7,8 @@ use rockfall::plan::{MapGrid, Recorders, RestRule};
 use rockfall::release::Release;
 use rockfall::rock::{Motion, Rock, Vec3};
 use rockfall::simulation::{
-    Keep, Observer, PairMaterial, RunSettings, Stop, Trajectory, WorldStats, simulate_world,
+    Observer, PairMaterial, RecordOptions, RunSettings, Stop, Trajectory, WorldStats,
+    simulate_world,
 };
 use rockfall::solver::{Scheme, Settings};
 use rockfall::terrain::Terrain;
@@ -101,7 +102,7 @@ impl World {
             ..GROUND
         };
         let answer = PairMaterial { ground, strength: self.strength };
-        let keep = |_| Keep { path_step_s: None, impacts: true };
+        let keep = |_| RecordOptions { path_step_s: None, impacts: true };
         let never = AtomicBool::new(false);
         let (falls, census) =
             simulate_world(&course, &releases, &answer, keep, Observer::silent(&never)).unwrap();

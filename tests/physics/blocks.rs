@@ -15,7 +15,7 @@ use rockfall::random::{Purpose, stream, unit};
 use rockfall::release::{DrawnShape, Release};
 use rockfall::rock::{Motion, Vec3};
 use rockfall::simulation::{
-    Keep, RunSettings, Scratch, Stop, Trajectory, simulate, simulate_block,
+    RecordOptions, RunSettings, Scratch, Stop, Trajectory, simulate, simulate_block,
 };
 use rockfall::solver::Scheme;
 use rockfall::study::bench::settings;
@@ -152,7 +152,7 @@ fn fall(terrain: &Terrain, series: &Series, index: usize, within: Within) -> Tra
         recorders: Recorders::default(),
         seed: 1,
     };
-    let keep = Keep { path_step_s: None, impacts: false };
+    let keep = RecordOptions { path_step_s: None, impacts: false };
     let random = stream(SEED, Purpose::Impacts, index);
     let Some(block) = block else { return simulate(&course, &release, keep, random, scratch) };
     let drawn = DrawnShape { kind, sides: [1.0; 2], block, attitude };

@@ -13,7 +13,7 @@ use rockfall::random::{Purpose, stream, unit};
 use rockfall::release::{DrawnShape, Release};
 use rockfall::rock::{Motion, Rock, Vec3};
 use rockfall::simulation::{
-    Keep, PathPoint, PathState, RunSettings, Scratch, Trajectory, simulate_block,
+    PathPoint, PathState, RecordOptions, RunSettings, Scratch, Trajectory, simulate_block,
 };
 use rockfall::solver::Scheme;
 use rockfall::study::bench::settings;
@@ -102,7 +102,7 @@ fn follow(
         recorders: Recorders::default(),
         seed: 1,
     };
-    let keep = Keep { path_step_s: Some(path_step_s), impacts: false };
+    let keep = RecordOptions { path_step_s: Some(path_step_s), impacts: false };
     let random = stream(5, Purpose::Impacts, index);
     simulate_block(&course, (&release, &drawn), keep, random, scratch)
 }

@@ -8,7 +8,9 @@ use rockfall::plan::{Recorders, RestRule};
 use rockfall::random::{Distribution, Purpose, stream};
 use rockfall::release::Release;
 use rockfall::rock::{Motion, Rock, Vec3};
-use rockfall::simulation::{Impact, Keep, RunSettings, Scratch, Stop, Trajectory, simulate};
+use rockfall::simulation::{
+    Impact, RecordOptions, RunSettings, Scratch, Stop, Trajectory, simulate,
+};
 use rockfall::solver::{Scheme, Settings};
 use rockfall::terrain::make::{Stem, jittered_plane, square_stem, v_groove};
 use rockfall::terrain::stems::Stems;
@@ -250,7 +252,7 @@ fn a_breaking_stem_spins_the_rock_no_more_than_it_can() {
             spin_rad_s: Vec3::zeros(),
         };
         let release = Release { rock: ROCK, motion, grounds: vec![GROUND; 2] };
-        let keep = Keep { path_step_s: None, impacts: true };
+        let keep = RecordOptions { path_step_s: None, impacts: true };
         let random = stream(1, Purpose::Impacts, 0);
         simulate(&settings, &release, keep, random, &mut Scratch::default())
     };

@@ -11,7 +11,8 @@ use rockfall::plan::{Recorders, RestRule};
 use rockfall::release::Release;
 use rockfall::rock::{Motion, Rock, Vec3};
 use rockfall::simulation::{
-    Keep, Observer, PairMaterial, RunSettings, Stop, Trajectory, WorldStats, simulate_world,
+    Observer, PairMaterial, RecordOptions, RunSettings, Stop, Trajectory, WorldStats,
+    simulate_world,
 };
 use rockfall::solver::{Scheme, Settings};
 use rockfall::terrain::Terrain;
@@ -79,7 +80,7 @@ impl World {
         let releases: Vec<Release> = spheres.iter().map(release).collect();
         let ground = Ground { restitution: self.restitution, ..GROUND };
         let answer = PairMaterial { ground, strength: self.strength };
-        let keep = |_| Keep { path_step_s: None, impacts: false };
+        let keep = |_| RecordOptions { path_step_s: None, impacts: false };
         let never = AtomicBool::new(false);
         let (falls, census) =
             simulate_world(&course, &releases, &answer, keep, Observer::silent(&never)).unwrap();

@@ -9,7 +9,7 @@ use rockfall::plan::{Recorders, RestRule};
 use rockfall::random::{Purpose, stream};
 use rockfall::release::{DrawnShape, Release};
 use rockfall::rock::{Motion, Rock, Vec3};
-use rockfall::simulation::{Keep, RunSettings, Scratch, simulate_block};
+use rockfall::simulation::{RecordOptions, RunSettings, Scratch, simulate_block};
 use rockfall::solver::Scheme;
 use rockfall::study::bench::settings;
 
@@ -46,7 +46,7 @@ fn slap(scheme: Scheme, e: f64, friction_angle_rad: f64) -> [[f64; 3]; 2] {
         recorders: Recorders::default(),
         seed: 1,
     };
-    let keep = Keep { path_step_s: Some(1e-3), impacts: false };
+    let keep = RecordOptions { path_step_s: Some(1e-3), impacts: false };
     let random = stream(1, Purpose::Impacts, 0);
     let fall = simulate_block(&course, (&release, &drawn), keep, random, &mut Scratch::default());
     let motion = fall.path.iter().map(|point| {

@@ -17,7 +17,7 @@ use rockfall::plan::{Recorders, RestRule};
 use rockfall::random::{Distribution, Purpose, stream};
 use rockfall::release::Release;
 use rockfall::rock::{Motion, Vec3};
-use rockfall::simulation::{Keep, RunSettings, Scratch, Stop, Trajectory, simulate};
+use rockfall::simulation::{RecordOptions, RunSettings, Scratch, Stop, Trajectory, simulate};
 use rockfall::solver::{Scheme, Settings};
 use rockfall::terrain::make::{Stem, square_stem};
 use rockfall::terrain::stems::Stems;
@@ -92,7 +92,7 @@ pub(crate) fn shoot_from(
     };
     let grounds = vec![GROUND; 2];
     let release = Release { rock: ROCK, motion, grounds };
-    let keep = Keep { path_step_s: None, impacts: true };
+    let keep = RecordOptions { path_step_s: None, impacts: true };
     simulate(&course, &release, keep, stream(1, Purpose::Impacts, 0), scratch)
 }
 

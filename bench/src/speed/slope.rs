@@ -5,7 +5,7 @@ use rockfall::plan::{Recorders, RestRule};
 use rockfall::random::{Purpose, stream, unit};
 use rockfall::release::Release;
 use rockfall::rock::{Motion, Rock, Vec3};
-use rockfall::simulation::{Keep, RunSettings, Scratch, Trajectory, simulate};
+use rockfall::simulation::{RecordOptions, RunSettings, Scratch, Trajectory, simulate};
 use rockfall::solver::{Scheme, Settings};
 use rockfall::terrain::make::natural_slope;
 use rockfall::terrain::stl::{Facet, Soup};
@@ -115,7 +115,7 @@ impl Slope {
     pub fn fall(&self, step: &Settings, index: usize, scratch: &mut Scratch) -> Trajectory {
         let release = self.release(index);
         let random = stream(SEED, Purpose::Impacts, index);
-        let keep = Keep { path_step_s: None, impacts: false };
+        let keep = RecordOptions { path_step_s: None, impacts: false };
         let fallen = simulate(&self.course(step), &release, keep, random, scratch);
         Trajectory { index, ..fallen }
     }

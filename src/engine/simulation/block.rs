@@ -1,18 +1,19 @@
-//! The fall of a block: tumble, touch, step, stop.
+//! The simulation of one block: free rotation, contact, time step, stop.
 //!
-//! A block is a convex core with rounded corners. In flight it turns as a free rigid body (Euler's equations, solved
-//! by [`Top`]) while its centre follows a parabola; the first touch is found by conservative advancement, since no
-//! closed form exists for a tumbling body. In contact a scheme with springs follows every impact in its time; in the rigid limit
-//! velocities are stepped with impulses that keep the bodies apart under Coulomb's law (Moreau 1988).
+//! A block is a convex core with rounded corners. In flight it rotates as a free rigid body
+//! (Euler's equations, solved by [`Top`]) while its centre follows a parabola. The first contact is
+//! found by conservative advancement, since no closed form exists for a rotating body. In contact a
+//! scheme with springs resolves every impact in time. In the rigid limit velocities are stepped
+//! with impulses that keep the bodies apart under Coulomb's law (Moreau 1988).
 
 mod impacts;
 
-use super::driver::{Falling, follow};
-use super::form::{Form, RockInstant, Turned};
+use super::driver::{RockSimulation, run_to_stop};
 use super::impacts::MeshEnergy;
-use super::recorder::{Keep, Recorder};
+use super::recorder::{RecordOptions, Recorder};
+use super::rock_geometry::{BlockRotation, RockGeometry, RockInstant};
 use super::settings::RunSettings;
-use super::{ShapeOf, Stop, Trajectory};
+use super::{RockShape, Stop, Trajectory};
 use crate::body::Block;
 use crate::contact::MAX_CONTACTS;
 use crate::contact::block::BlockContactPoint;
@@ -32,61 +33,62 @@ use crate::solver::scar::{GroundBlow, Scars};
 use crate::solver::step_control::{Advance, StepError};
 use crate::solver::struck::Struck;
 
-/// One block on its way.
-struct Roll<'a> {
+/// One block during its simulation.
+struct BlockSimulation<'a> {
     /// Scheme, terrain, recorders and limits.
     settings: &'a RunSettings<'a>,
-    /// Terrain, mass and laws as the contact solver wants them.
+    /// Terrain, body and laws, as the contact solver needs them.
     world: ContactEnvironment<'a>,
     /// Its shape, mass and moments of inertia.
     block: &'a Block,
-    /// Contacts found at the last look, with the work space of the solver.
+    /// Contacts found by the last detection, with the work space of the solver.
     footing: &'a mut Footing,
-    /// What it has dug into soil.
+    /// Scars that the block has made in soil.
     scars: &'a mut Scars,
-    /// Pose, velocity and angular momentum. Momentum, not spin, is kept: it is constant in flight while the spin
-    /// turns.
+    /// Pose, velocity and angular momentum. The state variable is momentum, not spin: in flight
+    /// momentum is constant, while the spin changes direction.
     moving: Moving,
-    /// What is written down of its way.
+    /// Recorder of the trajectory.
     recorder: Recorder<'a>,
-    /// Whether nothing held it at the end of its last step.
+    /// Whether no contact held it at the end of its last step.
     is_free: bool,
 }
 
-/// Follows one block from its release to its stop; `laws` are those of the grounds for it.
-pub(super) fn follow_block(
+/// Simulates one block from its release to its stop; `laws` are the laws of the grounds for it.
+pub(super) fn run_block(
     settings: &RunSettings,
     (release, drawn): (&Release, &DrawnShape),
-    keep: Keep,
+    options: RecordOptions,
     (laws, random): (&[Law], RandomStream),
     (footing, scars): (&mut Footing, &mut Scars),
 ) -> Trajectory {
     let block = &drawn.block;
-    let world = settings.around(Body::of_block(block, settings.gravity_m_s2), laws);
+    let world = settings.contact_environment(Body::of_block(block, settings.gravity_m_s2), laws);
     footing.forget();
     footing.stem_load.raise(settings.terrain, &random, &mut footing.near.broken_stems);
     (footing.near.tested, footing.sweeps) = (0, 0);
     footing.facets = RoughFacets::of(random, laws);
     footing.slip.begin(&release.grounds);
     let moving = Moving::new(block, (release.motion.position_m, drawn.attitude), &release.motion);
-    let form = Form { rock: release.rock, block: Some(block) };
-    let turned = turned(block, &moving);
-    let start = (release.motion, Some(turned));
-    let recorder = Recorder::new(settings.terrain, form, start, (keep, settings.recorders));
-    let mut roll = Roll { settings, world, block, footing, scars, moving, recorder, is_free: true };
-    let stop = follow(&mut roll, false);
-    roll.end((release, drawn), stop)
+    let geometry = RockGeometry { rock: release.rock, block: Some(block) };
+    let rotation = rotation(block, &moving);
+    let start = (release.motion, Some(rotation));
+    let recorder = Recorder::new(settings.terrain, geometry, start, (options, settings.recorders));
+    let mut rock =
+        BlockSimulation { settings, world, block, footing, scars, moving, recorder, is_free: true };
+    let stop = run_to_stop(&mut rock, false);
+    rock.end((release, drawn), stop)
 }
 
-/// Attitude and rotational energy `ω·L/2` (J) for the record.
-fn turned(block: &Block, moving: &Moving) -> Turned {
+/// Attitude and rotational energy `ω·L/2` (J), for the recorder.
+fn rotation(block: &Block, moving: &Moving) -> BlockRotation {
     let rotational_j = 0.5 * moving.spin(block).dot(&moving.momentum);
-    Turned { attitude: moving.pose.attitude, rotational_j }
+    BlockRotation { attitude: moving.pose.attitude, rotational_j }
 }
 
-impl<'a> Falling<'a> for Roll<'a> {
-    /// Springs are kept with the contacts.
-    type Stepping = ();
+impl<'a> RockSimulation<'a> for BlockSimulation<'a> {
+    /// None: the springs are stored with the contacts.
+    type StepperState = ();
 
     fn settings(&self) -> &'a RunSettings<'a> {
         self.settings
@@ -96,12 +98,13 @@ impl<'a> Falling<'a> for Roll<'a> {
         &mut self.recorder
     }
 
-    /// The ball around the block: what it does not touch, the block does not touch; and a corner must not move either where it rests.
-    fn ball(&self) -> (Vec3, f64) {
+    /// The bounding sphere of the block: what the sphere does not touch, the block does not touch.
+    /// At rest no corner may move either.
+    fn bounding_sphere(&self) -> (Vec3, f64) {
         (self.moving.pose.centre, self.block.bound_m)
     }
 
-    fn total_j(&self) -> f64 {
+    fn mechanical_energy_j(&self) -> f64 {
         let weight: Vec3 = self.world.body.gravity * self.block.mass_kg;
         self.moving.motion_j(self.block) - weight.dot(&self.moving.pose.centre)
     }
@@ -111,51 +114,55 @@ impl<'a> Falling<'a> for Roll<'a> {
         let block = self.block;
         let path = Parabola::of(&self.recorder.now, self.settings.gravity_m_s2, block.bound_m);
         let top = Top::new(block.inertia_kg_m2, self.moving.pose.attitude, self.moving.momentum);
-        let left = self.settings.longest_s - time_s;
+        let time_left_s = self.settings.longest_s - time_s;
         let tumble = BlockFlight { block, top, path };
         let scratch = (&mut self.footing.near, &mut self.footing.window);
-        let landing = first_touch(self.settings.terrain, &tumble, left, scratch);
+        let landing = first_touch(self.settings.terrain, &tumble, time_left_s, scratch);
         self.recorder.effort.leaps += 1;
         let (dt, stop) = self.settings.end_of_flight(&landing, time_s, &self.recorder.effort);
-        self.recorder.fly(&path, Some(&tumble.top), dt);
+        self.recorder.record_flight(&path, Some(&tumble.top), dt);
         self.footing.slip.fly(dt);
-        let kept = self.scars.fly(&self.world.body, &self.recorder.now.velocity_m_s, dt);
-        self.recorder.slow_in_flight(kept);
+        let speed_factor = self.scars.fly(&self.world.body, &self.recorder.now.velocity_m_s, dt);
+        self.recorder.slow_in_soil_after_flight(speed_factor);
         self.moving.pose = tumble.pose(dt);
         self.moving.v = self.recorder.now.velocity_m_s;
         stop
     }
 
-    fn begin(&mut self) -> ((), Loss) {
-        ((), self.begin_contact())
+    fn begin_contact(&mut self) -> ((), Loss) {
+        if self.has_springs() {
+            let on = (self.block, &self.moving);
+            self.footing.begin_springs(&self.world, self.settings.step, on);
+        }
+        ((), self.spring_energy())
     }
 
-    fn meet(&mut self) -> bool {
+    fn resolve_impacts(&mut self) -> bool {
         if self.has_springs() {
             self.begin_impacts();
             return false;
         }
-        // contacts are looked for anew in every step: the block turns, and other corners come near
+        // contacts are detected anew in every step: the block rotates, and other corners come near
         let pose = self.moving.pose;
         self.footing.look(&self.world, self.block, &pose, self.block.ball_m);
-        self.strike()
+        self.resolve_impact()
     }
 
-    fn longest_s(&mut self) -> f64 {
-        let kept = self.scars.plough_ahead();
-        self.slow(kept);
+    fn prepare_step(&mut self) -> f64 {
+        let speed_factor = self.scars.plough_ahead();
+        self.slow(speed_factor);
         let apart_s = self.footing.longest_apart_s(&self.world, (self.block, &self.moving));
         self.scars.longest_s(self.moving.v.norm()).min(apart_s)
     }
 
-    fn step(&mut self, (): &mut (), most_s: f64) -> Result<(Advance, bool), StepError> {
+    fn step(&mut self, (): &mut (), longest_s: f64) -> Result<(Advance, bool), StepError> {
         let from = self.moving.pose.centre;
         self.footing.press_stems(&self.world, (self.block, &self.moving));
-        let (mut done, rejected) = self.advance(most_s)?;
+        let (mut done, rejected) = self.advance(longest_s)?;
         self.footing.bend_stems(&self.world, (self.block, &mut self.moving), &mut done.loss);
         self.plough(&from, done.is_free);
         self.is_free = done.is_free;
-        // an attitude that is no longer a rotation shows as NaN here, before it can reach a table
+        // an attitude that is no rotation any more gives NaN here, before it can reach a table
         let spin_rad_s = self.moving.spin(self.block);
         if !self.moving.pose.centre.iter().chain(spin_rad_s.iter()).all(|x| x.is_finite()) {
             return Err(StepError::NotFinite);
@@ -171,54 +178,60 @@ impl<'a> Falling<'a> for Roll<'a> {
             velocity_m_s: self.moving.v,
             spin_rad_s: self.moving.spin(self.block),
         };
-        RockInstant { motion, turned: Some(turned(self.block, &self.moving)) }
+        RockInstant { motion, rotation: Some(rotation(self.block, &self.moving)) }
     }
 
-    fn note(&mut self, to: RockInstant, slides: bool) -> bool {
-        self.recorder.step(to, slides);
-        self.leave_impacts();
+    fn record_step(&mut self, to: RockInstant, slides: bool) -> bool {
+        self.recorder.record_step(to, slides);
+        self.end_impacts();
         self.is_free
     }
 
-    fn stored(&mut self) -> Loss {
-        self.held()
+    fn spring_energy(&mut self) -> Loss {
+        if self.has_springs() {
+            self.footing.springs_j(&self.world, (self.block, &self.moving))
+        } else {
+            self.footing.clamp.stored(&self.world)
+        }
     }
 
-    fn leave(&mut self) {
-        self.end_contact();
+    fn end_contact(&mut self) {
+        self.end_springs();
     }
 }
 
-impl Roll<'_> {
+impl BlockSimulation<'_> {
     /// Whether contacts have springs.
     fn has_springs(&self) -> bool {
         self.settings.step.scheme.has_springs()
     }
 
-    /// One step of at most `most_s` (s), and how many were thrown away.
-    fn advance(&mut self, most_s: f64) -> Result<(Stepped, u64), StepError> {
+    /// One step of at most `longest_s` (s), and the number of rejected steps.
+    fn advance(&mut self, longest_s: f64) -> Result<(Stepped, u64), StepError> {
         let (settings, block) = (self.settings.step, self.block);
         if !self.has_springs() {
-            let most = (settings.step_s.min(most_s), settings.corner_way);
+            let most = (settings.step_s.min(longest_s), settings.corner_way);
             return Ok((self.footing.step(&self.world, block, &mut self.moving, most), 0));
         }
         let on = (block, &mut self.moving);
-        self.footing.step_on_springs(&self.world, settings, on, most_s)
+        self.footing.step_on_springs(&self.world, settings, on, longest_s)
     }
 
-    /// Resolves the impact of the contacts that touch, if there is one; whether it has thrown the block off.
-    fn strike(&mut self) -> bool {
+    /// Resolves the impact of the touching contacts, if there is one. Returns whether it has thrown
+    /// the block off.
+    fn resolve_impact(&mut self) -> bool {
         let (block, now_s) = (self.block, self.recorder.now.time_s);
-        // touching contacts that approach faster than their ground captures: one impact, resolved together
+        // touching contacts whose approach is faster than the capture speed of their ground: one
+        // impact, solved together
         let mut struck = std::mem::take(&mut self.footing.aside);
         struck.clear();
         let is_struck = |touch: &&BlockContactPoint| {
             Footing::is_struck(&self.world, (block, &self.moving), touch)
         };
         struck.extend(self.footing.touching(block).filter(is_struck));
-        // as many have a row as there is room for at a time
+        // at most as many rows as impacts can be recorded at a time
         for touch in struck.iter().take(MAX_CONTACTS) {
-            // of the touching point, spin included: v + ω × r
+            // velocity of the contact point, spin included: v + ω × r
             let velocity = self.moving.at(block, &touch.lever);
             let struck = Struck {
                 point_m: self.moving.pose.centre + touch.lever,
@@ -229,7 +242,7 @@ impl Roll<'_> {
             };
             self.recorder.begin_impact(&struck, now_s, &MeshEnergy::default());
         }
-        self.dig_where(&struck);
+        self.enter_soil_at(&struck);
         self.footing.aside = struck;
         let broken = self.break_stems();
         self.footing.press_stems(&self.world, (block, &self.moving));
@@ -240,28 +253,32 @@ impl Roll<'_> {
         self.recorder.effort.unsettled += u64::from(loss.is_some() && self.footing.unsettled);
         let mut loss = loss.unwrap_or_default();
         self.footing.bend_stems(&self.world, (block, &mut self.moving), &mut loss);
-        self.recorder.pay(&loss);
+        self.recorder.book_losses(&loss);
         let is_free = !self.footing.holds(&self.world, (block, &self.moving), true);
         if is_free {
-            let kept = self.scars.leave(&self.world.body, &self.moving.v);
-            self.slow(kept);
+            let speed_factor = self.scars.leave(&self.world.body, &self.moving.v);
+            self.slow(speed_factor);
         }
         let (velocity_m_s, spin_rad_s) = (self.moving.v, self.moving.spin(block));
-        self.recorder.turned = Some(turned(block, &self.moving));
-        self.recorder.go_on_with(Motion { velocity_m_s, spin_rad_s, ..self.recorder.now });
+        self.recorder.rotation = Some(rotation(block, &self.moving));
+        self.recorder.record_velocity_jump(Motion {
+            velocity_m_s,
+            spin_rad_s,
+            ..self.recorder.now
+        });
         self.recorder.end_all_impacts();
         is_free
     }
 
-    /// Breaks the stems that cannot take the current blow; whether one could not.
+    /// Breaks the stems that the current impact overloads; returns whether there was one.
     fn break_stems(&mut self) -> bool {
         let lost = self.footing.break_stems(&self.world, self.block, &mut self.moving);
-        self.recorder.pay(&lost.unwrap_or_default());
+        self.recorder.book_losses(&lost.unwrap_or_default());
         lost.is_some()
     }
 
-    /// Digs into the soil of what is struck.
-    fn dig_where(&mut self, struck: &[BlockContactPoint]) {
+    /// Enters the soil at the contacts that are hit.
+    fn enter_soil_at(&mut self, struck: &[BlockContactPoint]) {
         if !self.scars.are_any() {
             return;
         }
@@ -269,48 +286,51 @@ impl Roll<'_> {
         blows.clear();
         blows.extend(struck.iter().map(|touch| {
             let of_point_m_s = self.moving.approach_m_s(self.block, touch);
-            self.blow_on((touch.triangle, touch.normal), of_point_m_s)
+            self.ground_blow((touch.triangle, touch.normal), of_point_m_s)
         }));
-        self.dig(&blows);
+        self.enter_soil(&blows);
         self.footing.blows = blows;
     }
 
-    /// What strikes a triangle with a normal, with this approach of the point that touches (m/s).
-    fn blow_on(&self, (triangle, normal): (u32, Vec3), of_point_m_s: f64) -> GroundBlow {
+    /// The impact on a triangle with this normal, given the approach speed of the contact point
+    /// (m/s).
+    fn ground_blow(&self, (triangle, normal): (u32, Vec3), of_point_m_s: f64) -> GroundBlow {
         let approach_m_s = -normal.dot(&self.moving.v);
         GroundBlow { ground: self.world.ground_of(triangle), normal, approach_m_s, of_point_m_s }
     }
 
-    /// Digs into the soil of the blows, as fast as the centre comes to it.
-    fn dig(&mut self, blows: &[GroundBlow]) {
+    /// Enters the soil at these impacts; the depth follows from the approach speed of the centre.
+    fn enter_soil(&mut self, blows: &[GroundBlow]) {
         let holding = self.footing.touching(self.block).map(|touch| touch.triangle);
         let in_soil = self.scars.holds(&self.world, holding);
-        let how = (self.moving.v.norm(), in_soil);
-        let kept = self.scars.enter(&self.world.body, blows, how);
-        self.slow(kept);
+        let speed_and_soil = (self.moving.v.norm(), in_soil);
+        let speed_factor = self.scars.enter(&self.world.body, blows, speed_and_soil);
+        self.slow(speed_factor);
     }
 
-    /// Ploughs on from where the step began, and leaves the scar if it is free.
+    /// Ploughs the soil along the step that began at `from`, and leaves the scar if the block is
+    /// free.
     fn plough(&mut self, from: &Vec3, is_free: bool) {
         let contacts =
             self.footing.touching(self.block).map(|touch| (touch.triangle, touch.normal));
         let floor = self.scars.floor(&self.world, contacts);
-        let way_m = (self.moving.pose.centre - from).norm();
-        let ends = is_free.then_some(self.moving.v);
-        let kept = self.scars.plough(&self.world.body, (way_m, floor), ends);
-        self.slow(kept);
+        let path_length_m = (self.moving.pose.centre - from).norm();
+        let velocity_if_free = is_free.then_some(self.moving.v);
+        let speed_factor =
+            self.scars.plough(&self.world.body, (path_length_m, floor), velocity_if_free);
+        self.slow(speed_factor);
     }
 
-    /// Takes a share of the speed of the centre; the soil has it.
-    fn slow(&mut self, kept: f64) {
-        if kept >= 1.0 {
+    /// Multiplies the velocity of the centre by `speed_factor`; the energy goes to the soil.
+    fn slow(&mut self, speed_factor: f64) {
+        if speed_factor >= 1.0 {
             return;
         }
-        self.moving.v = self.recorder.slowed_in_soil(&self.moving.v, kept);
+        self.moving.v = self.recorder.slow_in_soil(&self.moving.v, speed_factor);
         self.footing.springs.refresh();
     }
 
-    /// The journey, complete, with the shape as it was drawn.
+    /// The complete trajectory, with the shape as drawn.
     fn end(mut self, (release, drawn): (&Release, &DrawnShape), stop: Stop) -> Trajectory {
         let start =
             Moving::new(self.block, (release.motion.position_m, drawn.attitude), &release.motion);
@@ -318,7 +338,7 @@ impl Roll<'_> {
         self.recorder.effort.triangles += self.footing.near.tested;
         let weight_n = self.block.mass_kg * self.settings.gravity_m_s2;
         let energies = (weight_n, start.motion_j(self.block));
-        let shape = Some(ShapeOf::new(drawn));
+        let shape = Some(RockShape::new(drawn));
         Trajectory { shape, ..self.recorder.into_trajectory(release, stop, energies) }
     }
 }

@@ -1,45 +1,52 @@
-//! How high a rock in contact stands over the ground straight below it.
+//! Height of a rock in contact over the ground vertically below it.
 //!
-//! On a slope that is lower than the ground that it touches: a sphere that rolls on even ground of inclination θ has `R (1/cos θ − 1)` below
-//! its lowest point. Contact steps are many and short, so the mesh is searched for few of them: the triangle that was last found
-//! below the centre lies below the ground or is it, and says how high the rock can be at most as long as the centre is over it.
+//! On a slope that ground is lower than the ground that the rock touches: a sphere that rolls on
+//! even ground of inclination θ has `R (1/cos θ − 1)` below its lowest point. Contact steps are
+//! many and short, so the mesh is searched in few of them only. The triangle last found below the
+//! centre is the ground or lies below it; as long as the centre is over that triangle, it bounds
+//! the height from above.
 
-use super::form::{Form, RockInstant};
 use super::heights::{ERROR_M, Heights};
+use super::rock_geometry::{RockGeometry, RockInstant};
 use crate::terrain::Terrain;
 
-/// The triangle below the centre of a rock as last found; none beside the terrain.
+/// The triangle last found below the centre of a rock; none beside the terrain.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct TriangleBelow(Option<u32>);
 
 impl TriangleBelow {
-    /// The most that a rock's height can be at both ends of a step (m); infinite where no triangle says it.
-    pub(super) fn most_m(
+    /// Upper bound of the height of a rock at both ends of a step (m); infinite where no triangle
+    /// gives one.
+    pub(super) fn height_bound_m(
         &mut self,
-        (terrain, form): (&Terrain, &Form),
+        (terrain, geometry): (&Terrain, &RockGeometry),
         ends: [&RockInstant; 2],
     ) -> f64 {
-        let known_m = self.known_m((terrain, form), ends);
-        if known_m.is_finite() {
-            return known_m;
+        let cached_m = self.cached_bound_m((terrain, geometry), ends);
+        if cached_m.is_finite() {
+            return cached_m;
         }
         self.find(terrain, ends[1]);
-        self.known_m((terrain, form), ends)
+        self.cached_bound_m((terrain, geometry), ends)
     }
 
-    /// The same by the triangle that was found last.
-    fn known_m(self, (terrain, form): (&Terrain, &Form), ends: [&RockInstant; 2]) -> f64 {
+    /// The same bound from the triangle found last.
+    fn cached_bound_m(
+        self,
+        (terrain, geometry): (&Terrain, &RockGeometry),
+        ends: [&RockInstant; 2],
+    ) -> f64 {
         let height_m = |at: &RockInstant| {
             let centre = at.motion.position_m;
             let ground_m = terrain.height_on(self.0?, centre.x, centre.y);
             let is_below = ground_m.is_finite() && ground_m <= centre.z;
-            is_below.then(|| centre.z - form.below_m(at) - ground_m)
+            is_below.then(|| centre.z - geometry.depth_below_centre_m(at) - ground_m)
         };
         let [from, to] = ends.map(height_m);
         from.zip(to).map_or(f64::INFINITY, |(from, to)| from.max(to))
     }
 
-    /// Looks for it anew.
+    /// Searches for the triangle.
     fn find(&mut self, terrain: &Terrain, at: &RockInstant) {
         let centre = at.motion.position_m;
         let found = terrain.triangle_under(centre.x, centre.y, centre.z);
@@ -47,23 +54,24 @@ impl TriangleBelow {
     }
 }
 
-/// A step in contact over the ground.
+/// The heights of a step in contact.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct StepHeights<'a> {
-    /// The way of the step; none where it takes no time.
+    /// Path of the step over the ground; none where it takes no time.
     pub(super) heights: Option<Heights<'a>>,
-    /// The most that the height can be (m).
-    pub(super) most_m: f64,
+    /// Upper bound of the height (m).
+    pub(super) height_bound_m: f64,
 }
 
 impl StepHeights<'_> {
-    /// Largest height (m) from one share of the step to another, where `known_m` (m) is known of the place: of a
-    /// sphere to a millimetre, of a block, which turns within the step, to three.
+    /// Largest height (m) between two fractions of the step, where a height of `known_m` (m) is
+    /// known already. Accurate to a millimetre for a sphere, and to three for a block, which
+    /// rotates within the step.
     pub(super) fn largest_m(&self, shares: [f64; 2], known_m: f64) -> f64 {
-        let Some(heights) = self.heights.filter(|_| self.most_m > known_m + ERROR_M) else {
+        let Some(heights) = self.heights.filter(|_| self.height_bound_m > known_m + ERROR_M) else {
             return known_m;
         };
-        let span_s = shares.map(|share| share * heights.flight.lasts_s);
+        let span_s = shares.map(|share| share * heights.flight.duration_s);
         heights.largest(span_s, known_m).map_or(known_m, |top| top.height_m)
     }
 }

@@ -1,103 +1,114 @@
-//! The rest rule: slow for long enough, not getting faster and not turning round.
+//! The criterion of rest: slow for long enough, not getting faster and not turning round.
 //!
-//! A ball beside the top of a ridge and a heap that begins to slide are slow for a while. What tells them from rest is that
-//! they speed up. A ball that has rolled up a gentle slope or to and fro in a bowl is slow where it turns round: what tells it
-//! from rest is that its velocity goes on changing. A rock in a settled heap jitters, but goes nowhere; so what is compared is
-//! not the speed at two instants but the mean velocity over the two halves of the rule's time.
+//! A ball beside the top of a ridge and a heap that begins to slide are slow for a while; unlike a
+//! rock at rest they speed up. A ball that has rolled up a gentle slope, or to and fro in a bowl,
+//! is slow where it turns round; unlike a rock at rest its velocity keeps changing. A rock in a
+//! settled heap jitters but goes nowhere. So the criterion does not compare the speed at two
+//! instants, but the mean velocity over the two halves of the rule's time.
 //!
 //! ```text
 //! slow:     max(|v|, R |ω|) < speed of the rule, over the whole time of the rule
 //! no gain:  mean speed of the second half ≤ mean speed of the first half + 1 % of the rule's speed
 //! no turn:  mean velocities of the centre over the halves differ by ≤ 10 % of the rule's speed
-//! mean:     way of the centre, or of the rim by rotation, over the time of the half
+//! mean:     displacement of the centre, or of the rim by rotation, over the time of the half
 //! ```
 //!
-//! Ways are counted as vectors, so a jitter to and fro adds up to nothing.
+//! Displacements are vectors, so that jitter adds up to nothing.
 //!
-//! Steps over a plane may be far longer than the time of the rule. A rock that is slow therefore takes none beyond the half
-//! that it is in, and a step in which it has become slow is no part of it: rest comes when it is due, whatever the steps.
+//! Steps over a plane may be far longer than the time of the rule. Therefore a slow rock takes no
+//! step beyond the current half, and a step within which it became slow does not count. So rest is
+//! found when it is due, whatever the steps.
 
 use crate::plan::RestRule;
 use crate::rock::{Motion, Vec3};
 
-/// Growth of the mean speed from one half of the rule's time to the next that is no growth (–, relative to the rule's
-/// speed): rounding and the last creep of a heap.
-const GROWTH: f64 = 0.01;
-/// Change of the mean velocity from one half of the rule's time to the next that is still rest (–, relative to the rule's
-/// speed): with the usual rule 0.013 m/s², what a ball has that rolls on 0.1° without rolling friction.
-const TURNS: f64 = 0.1;
+/// Growth of the mean speed from one half of the rule's time to the next that still counts as none
+/// (–, relative to the rule's speed): rounding, and the last creep of a heap.
+const SPEED_GROWTH: f64 = 0.01;
+/// Change of the mean velocity from one half of the rule's time to the next that is still rest (–,
+/// relative to the rule's speed). With the usual rule this is 0.013 m/s², the acceleration of a
+/// ball that rolls on 0.1° without rolling friction.
+const VELOCITY_CHANGE: f64 = 0.1;
 
-/// Shortest step that is asked for to end with a half of the rule's time (–, relative to that time): what rounding leaves
-/// of a half must not become a step of no length.
-const SHORTEST: f64 = 0.01;
+/// Shortest step that is requested to end with a half of the rule's time (–, relative to that
+/// time): rounding must not leave a step of zero length.
+const SHORTEST_STEP: f64 = 0.01;
 
-/// How calm one rock has been.
+/// State of the criterion for one rock.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct RestCriterion {
-    /// Centre when the current half began (m).
-    from_m: Vec3,
-    /// How far its surface has turned since (m).
-    turned_m: Vec3,
-    /// How long that is ago (s).
-    half_s: f64,
+    /// Centre at the start of the current half (m).
+    half_start_m: Vec3,
+    /// Displacement of the rim by rotation since then (m).
+    rim_displacement_m: Vec3,
+    /// Time since then (s).
+    half_elapsed_s: f64,
     /// Mean speed over the half before, and mean velocity of the centre (m/s).
-    before_m_s: Option<(f64, Vec3)>,
-    rests: bool,
+    previous_half_m_s: Option<(f64, Vec3)>,
+    is_at_rest: bool,
 }
 
 impl RestCriterion {
-    /// Of a rock that has just been moving.
-    pub(super) fn from(position_m: Vec3) -> Self {
-        let turned_m = Vec3::zeros();
-        Self { from_m: position_m, turned_m, half_s: 0.0, before_m_s: None, rests: false }
+    /// For a rock that was moving until now.
+    pub(super) fn new(position_m: Vec3) -> Self {
+        let rim_displacement_m = Vec3::zeros();
+        Self {
+            half_start_m: position_m,
+            rim_displacement_m,
+            half_elapsed_s: 0.0,
+            previous_half_m_s: None,
+            is_at_rest: false,
+        }
     }
 
-    /// The longest step (s) from `now` of a rock of this radius (m): to the end of the half that is on.
+    /// Longest step (s) from `now` of a rock of this radius (m): to the end of the current half.
     pub(super) fn longest_s(&self, now: &Motion, radius_m: f64, rule: &RestRule) -> f64 {
         if !is_slow(now, radius_m, rule) {
             return f64::INFINITY;
         }
-        (0.5 * rule.time_s - self.half_s).max(SHORTEST * rule.time_s)
+        (0.5 * rule.time_s - self.half_elapsed_s).max(SHORTEST_STEP * rule.time_s)
     }
 
-    /// Notes a step of `dt` (s) between two instants, of a rock of this radius (m).
-    pub(super) fn note(
+    /// Adds a step of `dt` (s) between two instants, of a rock of this radius (m).
+    pub(super) fn add_step(
         &mut self,
         dt: f64,
         [from, to]: [&Motion; 2],
         radius_m: f64,
         rule: &RestRule,
     ) {
-        // too fast, or only now slow: the clock starts again from here
+        // too fast at one end: the rule's time starts again from here
         if ![from, to].iter().all(|motion| is_slow(motion, radius_m, rule)) {
-            *self = Self::from(to.position_m);
+            *self = Self::new(to.position_m);
             return;
         }
-        self.half_s += dt;
-        self.turned_m += to.spin_rad_s * (radius_m * dt);
-        // half of the rule's time is over: its mean speed is compared with that of the half before
-        if self.half_s >= 0.5 * rule.time_s {
-            let by_time = 1.0 / self.half_s.max(f64::MIN_POSITIVE);
-            let velocity_m_s = (to.position_m - self.from_m) * by_time;
-            let mean_m_s = velocity_m_s.norm().max(self.turned_m.norm() * by_time);
-            let rests = self.before_m_s.is_some_and(|(speed_before, velocity_before)| {
-                mean_m_s <= speed_before + GROWTH * rule.speed_m_s
-                    && (velocity_m_s - velocity_before).norm() <= TURNS * rule.speed_m_s
-            });
-            let before_m_s = Some((mean_m_s, velocity_m_s));
-            *self = Self { before_m_s, rests, ..Self::from(to.position_m) };
+        self.half_elapsed_s += dt;
+        self.rim_displacement_m += to.spin_rad_s * (radius_m * dt);
+        // half of the rule's time is over: compare its mean velocity with that of the half before
+        if self.half_elapsed_s >= 0.5 * rule.time_s {
+            let per_time = 1.0 / self.half_elapsed_s.max(f64::MIN_POSITIVE);
+            let velocity_m_s = (to.position_m - self.half_start_m) * per_time;
+            let mean_m_s = velocity_m_s.norm().max(self.rim_displacement_m.norm() * per_time);
+            let is_at_rest =
+                self.previous_half_m_s.is_some_and(|(previous_speed, previous_velocity)| {
+                    mean_m_s <= previous_speed + SPEED_GROWTH * rule.speed_m_s
+                        && (velocity_m_s - previous_velocity).norm()
+                            <= VELOCITY_CHANGE * rule.speed_m_s
+                });
+            let previous_half_m_s = Some((mean_m_s, velocity_m_s));
+            *self = Self { previous_half_m_s, is_at_rest, ..Self::new(to.position_m) };
         }
     }
 
-    /// Whether it was slow for the rule's time, did not get faster and did not turn round.
-    pub(super) fn rests(&self) -> bool {
-        self.rests
+    /// Whether the rock was slow for the rule's time, did not get faster and did not turn round.
+    pub(super) fn is_at_rest(&self) -> bool {
+        self.is_at_rest
     }
 }
 
 /// Whether a rock is slower than the rule's speed.
 fn is_slow(motion: &Motion, radius_m: f64, rule: &RestRule) -> bool {
-    // a rock that spins on the spot moves at its rim: it does not rest
+    // a rock that spins on the spot moves at its rim: it is not at rest
     let rim_m_s = radius_m * motion.spin_rad_s.norm();
     motion.velocity_m_s.norm().max(rim_m_s) < rule.speed_m_s
 }
@@ -108,8 +119,8 @@ mod tests {
 
     const RULE: RestRule = RestRule { speed_m_s: 0.02, time_s: 0.3 };
 
-    /// Time after which a rock with velocity `v(t)` is at rest, within 1 s, in steps as long as it may take and no longer
-    /// than `most_s`.
+    /// Time after which a rock with velocity `v(t)` is at rest, if within 1 s, in the longest steps
+    /// allowed that are no longer than `most_s`.
     fn rests_in(most_s: f64, v: impl Fn(f64) -> f64) -> Option<f64> {
         let still = Vec3::zeros();
         let at = |time_s: f64, x: f64| Motion {
@@ -119,14 +130,14 @@ mod tests {
             spin_rad_s: still,
         };
         let mut now = at(0.0, 0.0);
-        let mut calm = RestCriterion::from(still);
+        let mut criterion = RestCriterion::new(still);
         while now.time_s < 1.0 {
-            let dt = most_s.min(calm.longest_s(&now, 0.5, &RULE));
+            let dt = most_s.min(criterion.longest_s(&now, 0.5, &RULE));
             let middle_s = now.time_s + 0.5 * dt;
             let to = at(now.time_s + dt, now.position_m.x + v(middle_s) * dt);
-            calm.note(dt, [&now, &to], 0.5, &RULE);
+            criterion.add_step(dt, [&now, &to], 0.5, &RULE);
             now = to;
-            if calm.rests() {
+            if criterion.is_at_rest() {
                 return Some(now.time_s);
             }
         }
@@ -137,8 +148,9 @@ mod tests {
         rests_in(1e-3, v)
     }
 
-    /// However long the steps could be: a rock that stands rests when the rule's time is over, and one that comes to a stand
-    /// within a step of 0.2 s when it is over from the end of that step.
+    /// However long the steps could be: a rock that stands is at rest when the rule's time is over.
+    /// One that stops within a step of 0.2 s is at rest when the rule's time is over, counted from
+    /// the end of that step.
     #[test]
     fn long_steps_put_rest_off_by_no_more_than_the_one_that_stops_the_rock() {
         assert!((rests_in(10.0, |_| 0.0).unwrap() - 0.3).abs() < 1e-12);
@@ -150,8 +162,8 @@ mod tests {
         }
     }
 
-    /// Constant, slowing down, jittering: at rest after the rule's time. Speeding up, even by a five-hundredth of gravity:
-    /// not.
+    /// Constant, slowing down, jittering: at rest after the rule's time. Speeding up, even by a
+    /// five-hundredth of gravity: not.
     #[test]
     fn what_speeds_up_does_not_rest() {
         for v in
@@ -164,28 +176,30 @@ mod tests {
         assert_eq!(rests_after(|t| 0.001 * (3.0 * t).exp()), None);
     }
 
-    /// A ball that rolls up 0.5° and down again, slow for 0.65 s while it turns round: not. What friction brings to a stop: at
-    /// rest as soon as it stands.
+    /// A ball that rolls up 0.5° and down again, slow for 0.65 s while it turns round: not at rest.
+    /// A ball that friction stops: at rest as soon as it stands.
     #[test]
     fn what_turns_round_does_not_rest() {
         assert_eq!(rests_after(|t| 0.03 - 0.061 * t), None);
         assert!(rests_after(|t| (0.03 - 0.061 * t).max(0.0)).unwrap() < 0.8);
     }
 
-    /// A ball that slows down by 0.02 m/s² and gets faster as much the other way, never faster than a quarter of the rule's speed, does not rest;
-    /// one that does so by half of that does, as on 0.1°.
+    /// A ball that slows down by 0.02 m/s² and then gets faster in the other direction is not at
+    /// rest, though it is never faster than a quarter of the rule's speed. With half that
+    /// deceleration, as on 0.1°, it is.
     #[test]
     fn a_slow_turn_is_told_by_its_deceleration() {
         assert_eq!(rests_after(|t| 0.02 * (0.15 - t)), None);
         assert!((rests_after(|t| 0.01 * (0.15 - t)).unwrap() - 0.3).abs() < 2e-3);
     }
 
-    /// A rock that spins ever faster on its place, slower than the rule's speed on its rim, does not rest; one that spins on as fast does.
+    /// A rock that spins ever faster on the spot, its rim slower than the rule's speed, is not at
+    /// rest; one whose spin does not grow is.
     #[test]
     fn what_spins_ever_faster_on_its_place_does_not_rest() {
         let rests = |spin: fn(f64) -> f64| {
             let still = Vec3::zeros();
-            let mut calm = RestCriterion::from(still);
+            let mut criterion = RestCriterion::new(still);
             let at = |time_s: f64| Motion {
                 time_s,
                 position_m: still,
@@ -193,8 +207,8 @@ mod tests {
                 spin_rad_s: Vec3::z() * spin(time_s),
             };
             (0..1000).map(|k| 1e-3 * f64::from(k)).any(|time_s| {
-                calm.note(1e-3, [&at(time_s), &at(time_s + 1e-3)], 0.5, &RULE);
-                calm.rests()
+                criterion.add_step(1e-3, [&at(time_s), &at(time_s + 1e-3)], 0.5, &RULE);
+                criterion.is_at_rest()
             })
         };
         assert!(rests(|_| 0.03) && rests(|t| 0.03 - 0.02 * t));

@@ -1,7 +1,7 @@
-//! A rock in contact with the mesh, alone or among others: its impacts are noted down as they begin and end, and on rough
-//! ground it is turned against the facets that it meets.
+//! A rock in contact with the mesh, alone or among others. Its impacts are recorded as they begin
+//! and end; on rough ground it is rotated relative to the facets that it meets.
 //!
-//! An impact here is a contact that begins with an approach above the capture speed: only those
+//! An impact here is a contact that begins with an approach above the capture speed. Only these
 //! rebound, are counted and get a row.
 
 use super::impacts::MeshEnergy;
@@ -15,50 +15,51 @@ use crate::solver::struck::{Blow, Struck};
 use nalgebra::Rotation3;
 use std::f64::consts::PI;
 
-/// An impact is over after so many contact times (–), whether the rock has left or not.
+/// An impact is over after this many contact times (–), whether the rock has separated or not.
 ///
-/// Without weight a contact lasts `π/ω` at most; weight prolongs it, but threefold only where the
+/// Without gravity a contact lasts `π/ω` at most. Gravity prolongs it, but threefold only where the
 /// rock is about to stay.
 pub(super) const IMPACT_TIMES: f64 = 3.0;
 
-/// A rock in contact and its notes.
+/// A rock in contact and its recorder.
 pub(super) struct RockInContact<'r, 'a> {
     pub(super) world: ContactEnvironment<'r>,
     pub(super) state: &'r mut ContactState,
     pub(super) recorder: &'r mut Recorder<'a>,
-    /// Whether contacts have springs, and impacts take time.
+    /// Whether contacts have springs, so that impacts take time.
     pub(super) has_springs: bool,
 }
 
 impl RockInContact<'_, '_> {
-    /// Notes down impacts that have just begun, and turns the rock against the facet of the fastest.
+    /// Records impacts that have just begun, and rotates the rock relative to the facet of the
+    /// fastest.
     ///
-    /// Why the fastest: all contacts that begin at one instant see the same facet of rough ground. Soil and dashpots are those of
-    /// every ground that is struck. Speeds are those before the blow.
-    pub(super) fn announce(&mut self) {
-        let Some(fastest) = self.fastest_unannounced() else { return };
+    /// Why the fastest: all contacts that begin at one instant see the same facet of rough ground.
+    /// Soil and dashpots are those of every ground that is hit. Speeds are those before the impact.
+    pub(super) fn begin_impacts(&mut self) {
+        let Some(fastest) = self.fastest_new_contact() else { return };
         let facet = self.next_facet(&fastest);
-        // whether a rock rebounds is judged by its approach to the facet
+        // whether a rock rebounds depends on its approach speed towards the facet
         let to_facet_m_s = facet.map_or(0.0, |(_, approach_m_s)| approach_m_s);
         if to_facet_m_s >= self.world.law(fastest.triangle).capture_m_s {
             self.state.rebound(&self.world, to_facet_m_s);
         }
-        // what contacts that were announced earlier hold in their springs: the new impact must not
-        // be charged with it
-        let held_j = self.held_j(|history| history.announced);
-        let until_s = self.recorder.now.time_s + self.impact_time();
+        // elastic energy of contacts recorded earlier: it must not be charged to the new impact
+        let held_j = self.spring_energy_j(|history| history.announced);
+        let until_s = self.recorder.now.time_s + self.longest_impact_s();
         self.state.blows.clear();
-        self.announce_all((&fastest, to_facet_m_s), (until_s, &held_j));
-        // The rock is turned instead of the mesh: contact itself stays as it is. What is captured is turned too: the facet
-        // takes what it takes.
+        self.record_new_contacts((&fastest, to_facet_m_s), (until_s, &held_j));
+        // The rock is rotated instead of the mesh, so that contact detection stays as it is. A
+        // captured rock is rotated too: the facet takes its share of the energy.
         if let Some((turn, _)) = facet {
             self.state.turn_against(&self.world, turn, until_s);
             self.recorder.now.turn(&turn.inverse());
         }
     }
 
-    /// The facet that a rock meets which strikes the surface so, and its approach to it (m/s), if it meets a new one.
-    /// One that it is turned against belongs to the place before: it is turned back first.
+    /// The facet that the rock meets in this impact, and the approach speed towards it (m/s), if
+    /// this is a new facet. A facet relative to which the rock is rotated belongs to the place
+    /// before: that rotation is undone first.
     fn next_facet(&mut self, blow: &Blow) -> Option<(Rotation3<f64>, f64)> {
         let Blow { n, triangle, .. } = *blow;
         let at = |state: &ContactState| Meeting { n, triangle, c: state.c, v: state.v };
@@ -71,54 +72,57 @@ impl RockInContact<'_, '_> {
         Some((turn, at.approach_m_s(&turn)))
     }
 
-    /// The fastest of the contacts that have begun.
-    fn fastest_unannounced(&self) -> Option<Blow> {
+    /// The fastest of the contacts that have begun and are not recorded yet.
+    fn fastest_new_contact(&self) -> Option<Blow> {
         let both = self.state.histories.iter().chain(self.state.struck.iter());
         let begun = both.filter(|history| !history.announced).map(|history| Blow {
             approach_m_s: -history.n.dot(&self.recorder.now.velocity_m_s),
             n: history.n,
             triangle: history.triangle,
         });
-        begun.reduce(|one, other| if other.approach_m_s > one.approach_m_s { other } else { one })
+        begun.reduce(|a, b| if b.approach_m_s > a.approach_m_s { b } else { a })
     }
 
-    /// Notes down the contacts that have begun, the `fastest` by its approach to the facet, and the blows of those that rebound.
-    /// One that was captured, or is too slow, is announced but is no impact.
-    fn announce_all(
+    /// Records the contacts that have begun and the impacts of those that rebound; the approach
+    /// speed of the `fastest` is that towards the facet. A captured contact, or one that is too
+    /// slow, is recorded but is no impact.
+    fn record_new_contacts(
         &mut self,
         (fastest, to_facet_m_s): (&Blow, f64),
         (until_s, held_j): (f64, &MeshEnergy),
     ) {
         let Self { world, state, recorder, .. } = self;
         let ContactState { c, histories, struck, blows, .. } = &mut **state;
-        // in the rigid limit what is about to be struck stands in a list of its own
+        // in the rigid limit contacts of an impact that is still to be solved have a list of their
+        // own
         for history in histories.iter_mut().chain(struck.iter_mut()) {
             if std::mem::replace(&mut history.announced, true) || history.captured {
                 continue;
             }
             let own_m_s = -history.n.dot(&recorder.now.velocity_m_s);
-            // the facet counts for the contact that it was drawn for
+            // the facet counts only for the contact for which it was drawn
             let is_fastest = history.n == fastest.n;
             let approach_m_s = if is_fastest { own_m_s.max(to_facet_m_s) } else { own_m_s };
             let (n, triangle) = (history.n, history.triangle);
-            // none is left out: as many contacts as a rock has at once
+            // none is left out: the capacity is the largest number of contacts of a rock
             blows.try_push(Blow { approach_m_s, n, triangle }).ok();
-            // what comes too slowly is no impact
+            // below the capture speed it is no impact
             history.impact = if approach_m_s < world.law(history.triangle).capture_m_s {
                 0
             } else {
-                let of = (history.feature, history.triangle);
-                let struck = Struck::by_ball((c, world.body.radius), &history.n, of, approach_m_s);
+                let place = (history.feature, history.triangle);
+                let struck =
+                    Struck::by_ball((c, world.body.radius), &history.n, place, approach_m_s);
                 recorder.begin_impact(&struck, until_s, held_j)
             };
         }
     }
 
-    /// Breaks the stems that cannot take the current blow, and meets the next facet if it is time for it; returns the longest
-    /// step (s) in which no stem takes more than it can.
+    /// Breaks the stems that the current impact overloads, and meets the next facet when it is due.
+    /// Returns the longest step (s) within which no stem is loaded beyond its strength.
     ///
-    /// With springs a stem gives way in the course of steps, so the step is limited; in the rigid
-    /// limit it gives way at once.
+    /// With springs a stem yields in the course of steps, so the step is limited; in the rigid
+    /// limit it yields at once.
     pub(super) fn before_step(&mut self) -> f64 {
         let longest_s = if self.has_springs {
             self.state.longest_before_yield_s(&self.world)
@@ -138,32 +142,33 @@ impl RockInContact<'_, '_> {
         let note = |state: &ContactState, touch: &ContactPoint, (loss, is_new): (&Loss, bool)| {
             let approach_m_s = -touch.normal.dot(&state.v);
             if is_new && approach_m_s >= world.law(touch.triangle).capture_m_s {
-                let of = (touch.feature, touch.triangle);
+                let place = (touch.feature, touch.triangle);
                 let at = (&state.c, world.body.radius);
-                let struck = Struck::by_ball(at, &touch.normal, of, approach_m_s);
+                let struck = Struck::by_ball(at, &touch.normal, place, approach_m_s);
                 let now_s = recorder.now.time_s;
                 recorder.begin_impact(&struck, now_s, &MeshEnergy::default());
             }
-            recorder.pay(loss);
+            recorder.book_losses(loss);
         };
         state.break_stems(world, note);
-        // what the stems took is booked: the step begins with what they left
+        // the energy that the stems took is booked: the step begins with what is left
         (recorder.now.velocity_m_s, recorder.now.spin_rad_s) = (state.v, state.w);
     }
 
-    /// A rock that slides or rolls on rough ground meets the next facet once the last is behind it.
+    /// A rock that slides or rolls on rough ground meets the next facet when it has left the last
+    /// behind.
     ///
-    /// Roughness is a property of the way covered, not of the number of contact events: see
+    /// Roughness is a property of the distance covered, not of the number of contact events: see
     /// `solver::roughness`.
     fn meet_next_facet(&mut self) {
         if self.state.facets.is_any_met() {
             return;
         }
-        let rests = |history: &&mut ContactHistory| history.closed && history.announced;
-        let pressed = self.state.histories.iter_mut().filter(rests);
+        let is_persistent = |history: &&mut ContactHistory| history.closed && history.announced;
+        let pressed = self.state.histories.iter_mut().filter(is_persistent);
         let Some(history) =
-            // the contact that carries the most load feels the facet
-            pressed.max_by(|one, other| one.normal_force.total_cmp(&other.normal_force))
+            // the contact with the largest normal force feels the facet
+            pressed.max_by(|a, b| a.normal_force.total_cmp(&b.normal_force))
         else {
             return;
         };
@@ -171,15 +176,14 @@ impl RockInContact<'_, '_> {
             Meeting { n: history.n, triangle: history.triangle, c: self.state.c, v: self.state.v };
         if self.state.facets.meet_next(&self.world, &at) {
             history.announced = false;
-            self.announce();
-            // its blow is announced herewith
+            self.begin_impacts();
+            // its impact is recorded herewith
             self.state.is_struck |= self.state.facets.is_any_met();
         }
     }
 
-    /// The longest an impact is taken to last (s): in the rigid limit no time at all.
-    /// `3 π/ω` of the softest contact.
-    fn impact_time(&self) -> f64 {
+    /// Longest duration of an impact (s): `3 π/ω` of the softest contact; in the rigid limit 0.
+    fn longest_impact_s(&self) -> f64 {
         if !self.has_springs {
             return 0.0;
         }
@@ -189,17 +193,19 @@ impl RockInContact<'_, '_> {
         IMPACT_TIMES * PI / slowest
     }
 
-    /// Ends the impacts whose patch has let go or whose time is up, and turns the rock back from a facet that is behind it.
+    /// Ends the impacts whose contact has opened or whose longest duration is over, and undoes the
+    /// rotation of a facet that the rock has left behind.
     pub(super) fn end_impacts(&mut self) {
-        // a blow of the rigid limit is announced first and falls with the next step
+        // an impact of the rigid limit is recorded first and solved in the next step
         if !self.has_springs && self.state.is_struck {
             return;
         }
-        // the rigid limit keeps no memory of what has hit and left again within a step
+        // the rigid limit has no history of a contact that has closed and opened within a step
         let (histories, has_springs) = (&self.state.histories, self.has_springs);
-        let lasts = |number| !has_springs || histories.iter().any(|one| one.impact == number);
+        let lasts =
+            |number| !has_springs || histories.iter().any(|history| history.impact == number);
         if self.recorder.end_impacts(lasts) {
-            let held_j = self.held_j(|_| true);
+            let held_j = self.spring_energy_j(|_| true);
             self.recorder.book_impacts(&held_j);
         }
         if self.state.facets.is_met(self.state.is_free(), self.recorder.now.time_s) {
@@ -207,23 +213,24 @@ impl RockInContact<'_, '_> {
         }
     }
 
-    /// Energy in the springs of the contacts that `count` (J).
-    fn held_j(&mut self, count: impl Fn(&ContactHistory) -> bool) -> MeshEnergy {
+    /// Elastic energy of the contacts selected by `counts` (J).
+    fn spring_energy_j(&mut self, counts: impl Fn(&ContactHistory) -> bool) -> MeshEnergy {
         if !self.has_springs {
             return MeshEnergy::default();
         }
         let Self { world, state, .. } = self;
         let is_tree = |history: &ContactHistory| world.terrain.is_tree(history.triangle);
-        let trees_j = state.held_j(world, |history| count(history) && is_tree(history));
-        MeshEnergy { slope_j: state.held_j(world, count) - trees_j, trees_j }
+        let trees_j = state.held_j(world, |history| counts(history) && is_tree(history));
+        MeshEnergy { slope_j: state.held_j(world, counts) - trees_j, trees_j }
     }
 
-    /// Turns the rock back, if it is turned.
+    /// Undoes the rotation of a facet, if there is one.
     pub(super) fn leave_facet(&mut self) {
         if let Some(turn) = self.state.turn_back(&self.world) {
-            // a rebound into the mean surface is the next impact
-            self.recorder.impacts.forget_last();
-            // turned, not taken from the state: a step that is not noted yet has changed its speed
+            // a contact with the mean surface after the rebound is the next impact
+            self.recorder.impacts.forget_ended();
+            // rotated, not copied from the state: a step that is not recorded yet has changed its
+            // speed
             self.recorder.now.turn(&turn);
         }
     }

@@ -1,4 +1,4 @@
-//! What all rocks of a scene have in common.
+//! Settings that all rocks of a run share.
 
 use super::{Effort, Stop};
 use crate::flight::FlightEnd;
@@ -9,20 +9,19 @@ use crate::solver::body::Body;
 use crate::solver::environment::ContactEnvironment;
 use crate::terrain::Terrain;
 
-/// What all rocks of a scene have in common.
-/// Borrowed from the plan and never changed while rocks fall, so all threads share one.
+/// Settings that all rocks of a run share. Borrowed from the plan and never changed during the run,
+/// so all threads share one.
 #[derive(Debug, Clone, Copy)]
 pub struct RunSettings<'a> {
     /// The meshes.
     pub terrain: &'a Terrain,
     /// Gravity (m/s²).
     pub gravity_m_s2: f64,
-    /// The step.
+    /// Scheme and parameters of the time step.
     pub step: &'a Settings,
-    /// When a rock is at rest.
-    /// See [`RestRule`].
+    /// Criterion of rest, see [`RestRule`].
     pub rest: RestRule,
-    /// Simulated time after which a rock is out of time (s).
+    /// Simulated time at which a rock is stopped (s).
     pub longest_s: f64,
     /// Evaluation lines and map cells.
     pub recorders: Recorders<'a>,
@@ -31,7 +30,7 @@ pub struct RunSettings<'a> {
 }
 
 impl<'a> RunSettings<'a> {
-    /// What the rocks of a plan have in common.
+    /// Settings of the rocks of a plan.
     pub fn of(plan: &'a Plan) -> Self {
         Self {
             terrain: &plan.terrain,
@@ -44,10 +43,10 @@ impl<'a> RunSettings<'a> {
         }
     }
 
-    /// What the laws of grounds and rocks need to know of the run.
+    /// Parameters of the capture speed for the laws of grounds and rocks.
     ///
-    /// The scene's own capture speed, or what it is made of where the scene names none: tolerance
-    /// and gravity.
+    /// The capture speed of the scene, or, where the scene names none, what it is derived from:
+    /// tolerance and gravity.
     pub(super) fn capture(&self, block_radius_m: Option<f64>) -> Capture {
         Capture {
             own_m_s: self.step.capture_speed_m_s,
@@ -56,22 +55,29 @@ impl<'a> RunSettings<'a> {
         }
     }
 
-    /// What a rock meets, with these laws of the grounds.
-    pub(super) fn around<'w>(&self, body: Body, laws: &'w [Law]) -> ContactEnvironment<'w>
+    /// Terrain, body and laws of the grounds, as the contact solver needs them.
+    pub(super) fn contact_environment<'w>(
+        &self,
+        body: Body,
+        laws: &'w [Law],
+    ) -> ContactEnvironment<'w>
     where
         'a: 'w,
     {
         ContactEnvironment { terrain: self.terrain, body, laws }
     }
 
-    /// Whether a rock has had all the work it may have: a budget of work, not of time, so that it is stopped on every machine.
+    /// Whether a rock has used up its budget. The budget counts work, not computing time, so that a
+    /// rock is stopped at the same point on every machine.
     pub(super) fn over_budget(&self, effort: &Effort) -> Option<Stop> {
         (effort.work() > self.step.scheme.most_work()).then_some(Stop::OverBudget)
     }
 
-    /// How long a flight lasts (s) that ends so and began at `now_s`, and whether the rock, after this `effort`, stops there.
+    /// Duration (s) of a flight that began at `now_s` and ends with `end`, and why the rock stops
+    /// there after this `effort`, if it does.
     ///
-    /// Flights count too: between two plates a rock may fly without end and without getting on in time.
+    /// Flights count against the budget too: between two plates a rock may fly for ever without
+    /// advancing in time.
     pub(super) fn end_of_flight(
         &self,
         end: &FlightEnd,
@@ -84,12 +90,13 @@ impl<'a> RunSettings<'a> {
             FlightEnd::Leaves(t) => (t, Some(Stop::LeftTerrain)),
             FlightEnd::Flies => (left, Some(Stop::TimeUp)),
         };
-        // a touch at the very end of the time comes too late
+        // a contact exactly at the time limit comes too late
         (dt, stop.or_else(|| self.end_of_step(now_s, dt, effort)))
     }
 
-    /// Whether a rock, after this `effort`, is out of time `dt` (s) after `now_s`, or over its budget. Out of time: it has taken all that was
-    /// left, or the clock says so by rounding. A step of no time at all has no solution where the rock both slides and rolls.
+    /// Whether a rock, after this `effort`, has reached the time limit or its budget `dt` (s) after
+    /// `now_s`. The time limit is reached if the step took all the time left, or if the clock says
+    /// so by rounding: a step of zero length has no solution where a rock both slides and rolls.
     pub(super) fn end_of_step(&self, now_s: f64, dt: f64, effort: &Effort) -> Option<Stop> {
         let is_over = dt >= self.longest_s - now_s || now_s + dt >= self.longest_s;
         is_over.then_some(Stop::TimeUp).or_else(|| self.over_budget(effort))

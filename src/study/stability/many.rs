@@ -9,7 +9,7 @@ use crate::plan::{Recorders, RestRule};
 use crate::release::Release;
 use crate::rock::{Motion, Rock, Vec3};
 use crate::simulation::{
-    Keep, Observer, PairMaterial, RunSettings, Stop, Trajectory, simulate_world,
+    Observer, PairMaterial, RecordOptions, RunSettings, Stop, Trajectory, simulate_world,
 };
 use crate::study::bench::{GRAVITY_M_S2, GROUND, settings, terrain};
 use crate::terrain::{Terrain, make};
@@ -45,7 +45,7 @@ fn together(
     let releases: Vec<Release> = spheres.iter().map(release).collect();
     let strength = BondStrength { tensile_pa: 0.0, cohesion_pa: 0.0 };
     let answer = PairMaterial { ground: GROUND, strength };
-    let keep = |_| Keep { path_step_s: None, impacts: false };
+    let keep = |_| RecordOptions { path_step_s: None, impacts: false };
     simulate_world(&course, &releases, &answer, keep, Observer::silent(&AtomicBool::new(false)))
         .unwrap_or_default()
         .0

@@ -6,7 +6,9 @@ use crate::error::Result;
 use crate::plan::{Recorders, RestRule};
 use crate::release::Release;
 use crate::rock::{Motion, Vec3};
-use crate::simulation::{Keep, Observer, PairMaterial, RunSettings, Trajectory, simulate_world};
+use crate::simulation::{
+    Observer, PairMaterial, RecordOptions, RunSettings, Trajectory, simulate_world,
+};
 use crate::solver::Settings;
 use crate::study::bench::{GRAVITY_M_S2, GROUND, ROCK};
 use crate::study::exact::USUAL;
@@ -110,7 +112,7 @@ fn rocks(
         .collect();
     let strength = BondStrength { tensile_pa: 0.0, cohesion_pa: 0.0 };
     let answer = PairMaterial { ground: GROUND, strength };
-    let keep = |_| Keep { path_step_s: None, impacts: false };
+    let keep = |_| RecordOptions { path_step_s: None, impacts: false };
     let falls = simulate_world(
         &course,
         &releases,

@@ -1,28 +1,30 @@
-//! Where a cubic changes sides.
+//! Sign changes of a cubic.
 
-use super::WayShares;
+use super::PathFractions;
 use crate::math;
 use arrayvec::ArrayVec;
 
-/// Halvings of an interval until its ends are neighbours in `f64`.
+/// Bisections of an interval until its ends are neighbours in `f64`.
 const HALVINGS: u32 = 60;
 
-/// Where a cubic, given by its Bézier ordinates over 0..1, changes side (above 0, or not), rising.
+/// Parameters at which a cubic, given by its Bézier ordinates over 0..1, changes between > 0 and ≤
+/// 0, rising.
 ///
-/// The curve stays within the hull of its ordinates, so one look at their signs tells most steps; between its extremes
-/// (a quadratic) it is monotone, and halving finds the place to the last bit.
-pub(super) fn roots(ordinates: [f64; 4]) -> WayShares {
+/// The curve stays within the hull of its ordinates, so their signs alone decide most steps.
+/// Between its extremes (roots of a quadratic) it is monotone, and bisection finds the root to the
+/// last bit.
+pub(super) fn roots(ordinates: [f64; 4]) -> PathFractions {
     let [b0, b1, b2, b3] = ordinates;
     if ordinates.iter().all(|b| *b > 0.0) || ordinates.iter().all(|b| *b <= 0.0) {
-        return WayShares::new();
+        return PathFractions::new();
     }
     // Bernstein form: Σ C(3, k) s^k (1 − s)^(3 − k) b_k
     let value = |s: f64| {
         let r = 1.0 - s;
         r * r * r * b0 + 3.0 * s * r * (r * b1 + s * b2) + s * s * s * b3
     };
-    // the derivative is a quadratic with the ordinates c_k; its roots, without cancellation, part
-    // the curve into monotone pieces
+    // the derivative is a quadratic with the ordinates c_k; its roots, computed without
+    // cancellation, split the curve into monotone pieces
     let (c0, c1, c2) = (b1 - b0, b2 - b1, b3 - b2);
     let (a, b, c) = (c0 - 2.0 * c1 + c2, c1 - c0, c0);
     let root = (b * b - a * c).sqrt();
@@ -31,7 +33,7 @@ pub(super) fn roots(ordinates: [f64; 4]) -> WayShares {
         [q / a, c / q].into_iter().filter(|s| *s > 0.0 && *s < 1.0).collect();
     ends.extend([0.0, 1.0]);
     ends.sort_by(f64::total_cmp);
-    // the ends of the step are taken as they are, so that the next step sees the same side
+    // the ends of the step are not evaluated, so that the next step sees the same side
     let above = |s: f64| match s {
         0.0 => b0 > 0.0,
         1.0 => b3 > 0.0,
@@ -65,7 +67,7 @@ mod tests {
         assert_eq!(roots([0.1, -1.0, -1.0, 0.1]).len(), 2);
     }
 
-    /// What ends a step on the line begins the next one there: together they cross once.
+    /// A step that ends on the line and the next one, which begins there, cross it once together.
     #[test]
     fn a_line_at_a_seam_is_crossed_once() {
         let first = roots([-1.0, -0.7, -0.3, 0.0]);

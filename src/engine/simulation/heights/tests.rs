@@ -1,4 +1,4 @@
-use super::super::form::{AttitudeOnWay, Turned};
+use super::super::rock_geometry::{AttitudePath, BlockRotation};
 use super::*;
 use crate::body::{Block, Shape, Solid, box_surface, eota};
 use crate::flight::top::Top;
@@ -14,9 +14,9 @@ use std::path::Path;
 const ROCK: Rock = Rock { radius_m: 0.4, density_kg_m3: 2700.0 };
 /// Flights of each test.
 const FLIGHTS: usize = 400;
-/// Between two samples (s).
+/// Time between two samples (s).
 const STEP_S: f64 = 1e-4;
-/// Samples may be higher by this (m): rounding of heights of steep triangles.
+/// Samples may be higher by this (m): rounding of the heights of steep triangles.
 const ROUNDING_M: f64 = 1e-9;
 
 fn terrain(facets: Vec<Facet>) -> Terrain {
@@ -30,7 +30,8 @@ fn even(chance: &mut RandomStream, low: f64, high: f64) -> f64 {
     low + (high - low) * unit(chance)
 }
 
-/// A lattice over x and y, each given line by line, without the cells that `leaves_out` tells by their south-western corner.
+/// A triangulated grid over x and y, each given line by line, without the cells for which
+/// `leaves_out` is true at their south-western corner.
 fn lattice(
     [x, y]: [&[f64]; 2],
     mut height_m: impl FnMut(f64, f64) -> f64,
@@ -55,14 +56,16 @@ fn lines(low: f64, high: f64, count: usize) -> Vec<f64> {
     (0..=count).map(|k| low + (high - low) * k as f64 / count as f64).collect()
 }
 
-/// 40 m by 40 m, falls towards +x at 30°, corners up to 1 m up or down; the cells that are left out are holes.
+/// 40 m by 40 m, sloping towards +x at 30°, with corners up to 1 m up or down; the cells that are
+/// left out are holes.
 fn rough(leaves_out: impl Fn(f64, f64) -> bool) -> Vec<Facet> {
     let mut chance = stream(3, Purpose::Place, 0);
     let line = lines(-20.0, 20.0, 27);
     lattice([&line, &line], |x, _| -0.577 * x + even(&mut chance, -1.0, 1.0), leaves_out)
 }
 
-/// A wall of 88° from z = 50 m down to 0 in strips, at x from 0 to 1.746 m; level above, uneven below.
+/// A wall of 88° from z = 50 m down to 0 in strips, at x from 0 to 1.746 m; level above, uneven
+/// below.
 fn wall() -> Vec<Facet> {
     let mut chance = stream(4, Purpose::Place, 0);
     let tan = 50.0 / 1.746;
@@ -74,7 +77,8 @@ fn wall() -> Vec<Facet> {
     lattice([&x, &lines(-20.0, 20.0, 25)], height, |_, _| false)
 }
 
-/// Rough ground, and over it roofs: a tilted one 6 m up, one that cuts through it, and one that cuts through the ground.
+/// Rough ground, and roofs over it: a tilted one 6 m up, one that intersects it, and one that
+/// intersects the ground.
 fn roofs() -> Vec<Facet> {
     let roof = |at: [f64; 2], half: f64, height_m: fn(f64, f64) -> f64| {
         let [x, y] = at.map(|at| lines(at - half, at + half, 3));
@@ -87,15 +91,17 @@ fn roofs() -> Vec<Facet> {
     facets
 }
 
-/// A block's flight or a sphere's, up to where it touches; or a short way through which a block turns as in a step in contact.
+/// The flight of a block or a sphere up to its contact; or a short path over which a block rotates
+/// as in a step in contact.
 struct Flown {
     path: Parabola,
     top: Option<Top>,
-    turns: Option<[Turned; 2]>,
-    lasts_s: f64,
+    turns: Option<[BlockRotation; 2]>,
+    duration_s: f64,
 }
 
-/// A flight from somewhere over the terrain or a little beside it, `over_m` above what is below, up to `fast_m_s` fast.
+/// A flight from a random point over the terrain or a little beside it, up to `over_m` above the
+/// ground and up to `fast_m_s` fast.
 fn thrown(
     terrain: &Terrain,
     block: Option<&Block>,
@@ -116,7 +122,7 @@ fn thrown(
     if terrain.distance_m(&start, radius) < radius {
         return None;
     }
-    let lasts_s = match time_of_impact(terrain, &path, 5.0, &mut 0) {
+    let duration_s = match time_of_impact(terrain, &path, 5.0, &mut 0) {
         FlightEnd::Touch(t) => t,
         // and on past the last ground
         FlightEnd::Leaves(t) => t + 1.0,
@@ -132,52 +138,54 @@ fn thrown(
             turn * own.component_mul(&Vec3::from(block.inertia_kg_m2)),
         )
     });
-    Some(Flown { path, top, turns: None, lasts_s })
+    Some(Flown { path, top, turns: None, duration_s })
 }
 
-/// Largest heights of some parts of a flight against the largest of its samples there; how much higher they are (m).
+/// Compares the largest heights of some parts of a flight with the largest of their samples;
+/// returns how much higher they are (m).
 fn compare(terrain: &Terrain, block: Option<&Block>, flown: &Flown) -> f64 {
-    let form = Form { rock: ROCK, block };
+    let geometry = RockGeometry { rock: ROCK, block };
     let start = Motion {
         time_s: 7.0,
         position_m: flown.path.start,
         velocity_m_s: flown.path.velocity,
         spin_rad_s: Vec3::zeros(),
     };
-    let Flown { path, top, turns, lasts_s } = flown;
-    let step = turns.as_ref().map(|[from, to]| AttitudeOnWay::Step([from, to]));
-    let turning = step.or(top.as_ref().map(AttitudeOnWay::Top));
-    let flight = RockFlight { start, path, turning, lasts_s: *lasts_s };
-    let heights = Heights { terrain, form: &form, flight: &flight };
+    let Flown { path, top, turns, duration_s } = flown;
+    let step = turns.as_ref().map(|[from, to]| AttitudePath::Step([from, to]));
+    let attitude_path = step.or(top.as_ref().map(AttitudePath::Top));
+    let flight = RockFlight { start, path, attitude_path, duration_s: *duration_s };
+    let heights = Heights { terrain, geometry: &geometry, flight: &flight };
     let sample = |t: f64| {
         let at = flight.at(t);
         let centre = at.motion.position_m;
         let ground = terrain.ground_under(centre.x, centre.y, centre.z)?;
-        Some(centre.z - form.below_m(&at) - ground)
+        Some(centre.z - geometry.depth_below_centre_m(&at) - ground)
     };
     let error_m = if block.is_some() { ERROR_M } else { 0.0 } + ROUNDING_M;
     let mut more_m = 0.0_f64;
     for [from, to] in [[0.0, 1.0], [0.0, 0.3], [0.45, 0.61], [0.9, 1.0], [0.5, 0.5]] {
-        let [from_s, to_s] = [from * lasts_s, to * lasts_s];
+        let [from_s, to_s] = [from * duration_s, to * duration_s];
         let count = ((to_s - from_s) / STEP_S).ceil().max(1.0) as u32;
         let samples = (0..=count)
             .filter_map(|k| sample(from_s + (to_s - from_s) * f64::from(k) / f64::from(count)));
         let sampled_m = samples.reduce(f64::max);
         let found = heights.largest([from_s, to_s], f64::NEG_INFINITY);
         let Some(sampled_m) = sampled_m else {
-            // less than a sample's worth of way over ground
+            // less than one sample of the path is over ground
             assert!(found.is_none_or(|top| top.height_m < 50.0), "{found:?} {path:?}");
             continue;
         };
         let top = found.unwrap_or_else(|| panic!("nothing but {sampled_m} in {path:?}"));
         assert!(top.height_m >= sampled_m - error_m, "{top:?} {sampled_m} {path:?}");
-        // it is what the rock has then, or just beside: behind a brink it is what heights tend to
+        // the rock has this height then, or just beside: behind a brink it is the limit of the
+        // heights
         assert!(from_s <= top.time_s && top.time_s <= to_s, "{top:?}");
         let beside = [-2e-6, -1e-9, 0.0, 1e-9, 2e-6].map(|off| sample(top.time_s + off));
         let near = |height: &f64| (height - top.height_m).abs() < 2e-3;
         assert!(beside.iter().flatten().any(near), "{top:?} {beside:?} {path:?}");
         more_m = more_m.max(top.height_m - sampled_m);
-        // from what is known on it is found again, and nothing above
+        // with a lower known height it is found again, with a higher one nothing is found
         let again = heights.largest([from_s, to_s], sampled_m - 0.1);
         assert!(again.is_some_and(|again| again.height_m >= sampled_m - error_m), "{again:?}");
         assert_eq!(heights.largest([from_s, to_s], top.height_m + error_m), None, "{top:?}");
@@ -185,7 +193,7 @@ fn compare(terrain: &Terrain, block: Option<&Block>, flown: &Flown) -> f64 {
     more_m
 }
 
-/// The most that largest heights of many flights are above those of samples (m).
+/// Largest difference between the heights found and those of samples over many flights (m).
 fn compared(facets: Vec<Facet>, block: Option<&Block>, flights: usize) -> f64 {
     let terrain = terrain(facets);
     let mut chance = stream(11, Purpose::Shape, 1);
@@ -212,7 +220,7 @@ fn over_rough_ground_no_sample_is_higher() {
 #[test]
 fn beside_a_wall_no_sample_is_higher() {
     let more_m = compared(wall(), None, FLIGHTS);
-    // 28.6 m of wall for a metre of way, 2.5 mm of way between two samples
+    // 28.6 m of wall per metre of path, 2.5 mm of path between two samples
     assert!(more_m > 1e-3 && more_m < 0.1, "{more_m}");
 }
 
@@ -243,7 +251,7 @@ fn no_sample_of_a_block_is_higher() {
     }
 }
 
-/// In contact a block turns by up to 0.3 rad a step, while its lowest corner gives way to another.
+/// In contact a block rotates by up to 0.3 rad a step, while another corner becomes the lowest.
 #[test]
 fn no_sample_of_a_step_in_contact_is_higher() {
     let surface = box_surface([1.0, 0.7, 0.4]);
@@ -259,26 +267,31 @@ fn no_sample_of_a_step_in_contact_is_higher() {
             UnitQuaternion::new(Vec3::from(axis) * size).to_rotation_matrix()
         };
         let attitude = turn(&mut chance, 6.0);
-        let turned = |attitude| Turned { attitude, rotational_j: 0.0 };
-        let turns = [turned(attitude), turned(turn(&mut chance, 0.35) * attitude)];
-        let lasts_s = flown.lasts_s.min(0.03);
-        compare(&terrain, Some(&block), &Flown { top: None, turns: Some(turns), lasts_s, ..flown });
+        let rotation = |attitude| BlockRotation { attitude, rotational_j: 0.0 };
+        let turns = [rotation(attitude), rotation(turn(&mut chance, 0.35) * attitude)];
+        let duration_s = flown.duration_s.min(0.03);
+        compare(
+            &terrain,
+            Some(&block),
+            &Flown { top: None, turns: Some(turns), duration_s, ..flown },
+        );
         seen += 1;
     }
 }
 
-/// Of a sphere over a terrain, whose coordinates are those of its facets.
-fn sphere(terrain: &Terrain, path: &Parabola, lasts_s: f64) -> Option<HighPoint> {
+/// Highest point of a sphere over a terrain; the coordinates are those of its facets.
+fn sphere(terrain: &Terrain, path: &Parabola, duration_s: f64) -> Option<HighPoint> {
     let path = &Parabola { start: path.start - terrain.origin_m, ..*path };
-    let form = Form { rock: ROCK, block: None };
+    let geometry = RockGeometry { rock: ROCK, block: None };
     let (position_m, velocity_m_s) = (path.start, path.velocity);
     let start = Motion { time_s: 0.0, position_m, velocity_m_s, spin_rad_s: Vec3::zeros() };
-    let flight = RockFlight { start, path, turning: None, lasts_s };
-    Heights { terrain, form: &form, flight: &flight }.largest([0.0, lasts_s], f64::NEG_INFINITY)
+    let flight = RockFlight { start, path, attitude_path: None, duration_s };
+    Heights { terrain, geometry: &geometry, flight: &flight }
+        .largest([0.0, duration_s], f64::NEG_INFINITY)
 }
 
-/// Straight up and down over a corner, along an edge, over a fan of more triangles than are looked at together, without gravity, and where
-/// nothing is below.
+/// Straight up and down over a corner, along an edge, over a fan of more triangles than are
+/// evaluated together, without gravity, and where no ground is below.
 #[test]
 fn a_flight_over_corners_and_edges_has_its_height() {
     let fan = |k: u32| {
@@ -306,7 +319,7 @@ fn a_flight_over_corners_and_edges_has_its_height() {
     // over the top along an edge, level: highest where the cone is lowest
     let level = height(&path([-4.0, 0.0, 1.0], [9.0, 0.0, 0.0], 0.0));
     assert!((level - (1.0 - 0.4 + 5.0)).abs() < 1e-9, "{level}");
-    // a straight way down beside an edge, where the flank falls as fast: everywhere as high
+    // a straight path down beside an edge where the flank falls as fast: the same height everywhere
     let along = height(&path([1.0, 1e-3, 1.0], [3.0, 0.0, -3.0], 0.0));
     let lower = 1e-3 * math::tan(std::f64::consts::PI / 300.0);
     assert!((along - (2.0 - 0.4 + lower)).abs() < 1e-9, "{along}");
@@ -317,7 +330,7 @@ fn a_flight_over_corners_and_edges_has_its_height() {
     assert_eq!(sphere(&cone, &path([5.0, 0.0, -9.0], [0.0, 1.0, 0.0], 10.0), 0.3), None);
 }
 
-/// A pile of more sheets than are looked at together: the uppermost is the ground.
+/// A pile of more sheets than are evaluated together: the uppermost is the ground.
 #[test]
 fn of_a_pile_of_sheets_the_uppermost_counts() {
     let sheet = |k: u32| {

@@ -1,31 +1,33 @@
-//! What it took to follow a world, counted.
+//! Cost of the simulation of a world, in counts.
 
 /// Counters of one world (no clock: the same on every machine).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct WorldStats {
-    /// Windows of time in which the whole world goes on, those gone through again included.
+    /// Windows of time of the whole world, repeated ones included.
     pub windows: u64,
-    /// Times that an island or the world went back because a rock was deviated further than was allowed for.
+    /// Number of times that an island or the world returned to an earlier time because a rock
+    /// deviated further than was allowed for.
     pub returns: u64,
     /// Steps of islands.
     pub steps: u64,
-    /// The same times the rocks of each.
+    /// Steps of islands, each times the number of its rocks.
     pub rock_steps: u64,
-    /// Steps tried and thrown away.
+    /// Rejected steps.
     pub rejected: u64,
     /// Sweeps over the contacts of an island, or solves of its system.
     pub sweeps: u64,
-    /// Systems factorised because sweeps crept.
+    /// Systems factorised because sweeps converged slowly.
     pub jumps: u64,
-    /// Steps whose contact states did not settle (`dda`, `rigid`).
+    /// Steps whose contact states did not converge (`dda`, `rigid`).
     pub unsettled: u64,
-    /// Most rocks that took a step together.
+    /// Largest number of rocks that took a step together.
     pub largest: u64,
 }
 
 impl WorldStats {
-    /// Adds another's counts. Every field is named, so that a new counter does not compile until it is summed.
-    pub(super) fn add(&mut self, one: &Self) {
+    /// Adds the counts of another. Every field is named, so that a new counter does not compile
+    /// until it is summed.
+    pub(super) fn add(&mut self, other: &Self) {
         let Self {
             windows,
             returns,
@@ -36,7 +38,7 @@ impl WorldStats {
             jumps,
             unsettled,
             largest,
-        } = *one;
+        } = *other;
         self.windows += windows;
         self.returns += returns;
         self.steps += steps;
@@ -47,10 +49,8 @@ impl WorldStats {
         self.unsettled += unsettled;
         self.largest = self.largest.max(largest);
     }
-}
 
-impl WorldStats {
-    /// What was done after `before`. The largest island is that of the whole story.
+    /// Counts since `before`. The largest island is that of the whole simulation.
     #[must_use]
     pub fn since(&self, before: &Self) -> Self {
         Self {

@@ -1,40 +1,44 @@
-//! An island whose rocks mostly do not meet in a much shorter window is taken apart: each part goes through that on its
-//! own.
+//! Subdivision of an island: if most of its rocks do not meet in a much shorter window, each part
+//! is advanced through that window separately.
 //!
-//! A window of the world is as long as the fastest rock's way allows; inside a heap hits travel
-//! through many rocks in that time, so the prediction joins all of it. In a window of a radian or
-//! so of the stiffest contact a hit reaches only the next rocks, and a loose heap falls into parts
-//! that are cheap: the cost of an island's step grows faster than its number of rocks.
+//! A window of the world is as long as the distance of the fastest rock allows. Inside a heap an
+//! impact travels through many rocks in that time, so the prediction joins all of the heap. In a
+//! window of about a radian of the stiffest contact an impact reaches only the next rocks, and a
+//! loose heap separates into parts. Parts are cheap: the cost of an island's step grows faster than
+//! its number of rocks.
 
 use super::WorldBody;
 use super::prediction::{
-    Ahead, HitSpread, Meetings, PredictedRock, is_busy, meeting_ties, place_of, places_in,
+    ContactCandidates, HitSpread, PredictedRock, PredictionWindow, candidates_among_pairs, is_busy,
+    island_of_each, predicted_rock,
 };
-use super::snapshot::Kept;
+use super::snapshot::BodySnapshot;
 use super::window::IslandWindow;
 use crate::contact::pair::PairHistory;
 use crate::rock::Vec3;
 use rayon::prelude::*;
 
-/// An island of no more rocks than this is stepped as a whole.
-/// Taking apart costs a search and copies; below this it saves nothing.
-const FEW: usize = 4;
-/// In how many windows one is cut in which most of an island's rocks cannot meet.
-const CUTS: u32 = 4;
-/// Shortest of them, in radians of the stiffest contact (–): less than a step of a quiet heap.
-/// Radians of a contact are `ω t` with `ω = √(p_N/m)`: a spring turns a hit round in π of them.
-const SHORTEST_PART: f64 = 1.5;
-/// Within so many radians of the stiffest contact a hit is handed on to the next few rocks only (–).
-const FAR: f64 = 12.0;
-/// Times that a window is gone through again because a rock was deviated further than was allowed for, before that is left
-/// to the whole world.
-const RETURNS: usize = 6;
+/// An island of no more rocks than this is stepped as a whole: subdivision costs a search and
+/// copies, and saves nothing below this.
+const SMALL_ISLAND: usize = 4;
+/// Smallest number of shorter windows into which a window is cut, and the factor to the next
+/// number.
+const CUT_FACTOR: u32 = 4;
+/// Shortest window, in radians of the stiffest contact (–): less than a step of a quiet heap. The
+/// radians of a contact are `ω t` with `ω = √(p_N/m)`: a spring reverses an impact in π of them.
+const SHORTEST_CUT_RAD: f64 = 1.5;
+/// Longest window in which an impact is transmitted to the next few rocks only, in radians of the
+/// stiffest contact (–).
+const NEIGHBOUR_SPREAD_RAD: f64 = 12.0;
+/// Number of times that an island repeats a window in which a rock deviated further than was
+/// allowed for, before that is left to the world.
+const MAX_ISLAND_RETURNS: usize = 6;
 
 impl IslandWindow<'_> {
-    /// Takes the island to the end of its window.
+    /// Advances the island to the end of its window.
     ///
-    /// From cheap to dear: all fly and nothing happens; a rigid heap; parts that do not meet; all
-    /// of it together.
+    /// In the order of cost: all fly and nothing happens; a rigid heap; parts that do not meet; all
+    /// together.
     pub(super) fn run(&mut self) {
         self.load_or_unload();
         if self.is_rigid_heap() {
@@ -46,22 +50,19 @@ impl IslandWindow<'_> {
         }
         // the contact between rocks with the highest frequency; contacts with the mesh join no
         // rocks
-        let stiffest = self
-            .pair_histories
-            .iter()
-            .map(|pair_history| pair_history.law.omega_rad_s())
-            .fold(0.0, f64::max);
-        let Some(cuts) = self.falls_apart(stiffest) else {
+        let stiffest =
+            self.pair_histories.iter().map(|pair| pair.law.omega_rad_s()).fold(0.0, f64::max);
+        let Some(cuts) = self.useful_cuts(stiffest) else {
             self.run_whole();
             return;
         };
-        // `end_s` moves from cut to cut, so that no part goes beyond its cut
+        // `end_s` moves from cut to cut, so that no part is advanced beyond its cut
         let (start_s, end_s) = (self.now_s, self.end_s);
         for k in 1..=cuts {
             let part = f64::from(k) / f64::from(cuts);
             self.end_s = if k == cuts { end_s } else { start_s + part * (end_s - start_s) };
-            if self.goes_back {
-                self.run_parts_again(stiffest);
+            if self.may_repeat {
+                self.run_parts_with_repeats(stiffest);
             } else {
                 self.run_parts(stiffest);
             }
@@ -69,61 +70,63 @@ impl IslandWindow<'_> {
         }
     }
 
-    /// Whether all of the island flies and neither meets nor lands before the end of its window.
+    /// Whether all rocks of the island fly and neither collide nor land before the end of its
+    /// window.
     fn flies_through(&self) -> bool {
-        let flies_on = |body: &WorldBody| {
-            let lands = body.lands.as_ref();
-            body.member.flying && lands.is_some_and(|(time_s, _)| *time_s > self.end_s)
-        };
-        self.bodies.iter().all(|body| flies_on(body)) && self.next_event_s() > self.end_s
+        self.bodies.iter().all(|body| body.flies_beyond(self.end_s))
+            && self.next_event_s() > self.end_s
     }
 
-    /// In how many much shorter windows most of the island's rocks are not joined: then those are cheaper than stepping
-    /// all together.
+    /// Number of shorter windows in which most of the island's rocks are not joined, so that these
+    /// are cheaper than stepping all together.
     ///
-    /// Tried from few cuts to many: the first that lets no part be larger than three quarters of
-    /// the island.
-    fn falls_apart(&self, stiffest: f64) -> Option<u32> {
+    /// Tries few cuts first: the result is the first number for which no part is larger than three
+    /// quarters of the island.
+    fn useful_cuts(&self, stiffest: f64) -> Option<u32> {
         let (count, length) = (self.bodies.len(), self.end_s - self.now_s);
-        let mut cuts = CUTS;
-        while count > FEW && length / f64::from(cuts) * stiffest >= SHORTEST_PART {
+        let mut cuts = CUT_FACTOR;
+        while count > SMALL_ISLAND && length / f64::from(cuts) * stiffest >= SHORTEST_CUT_RAD {
             let dt = length / f64::from(cuts);
-            let mut meetings = self.meetings(&self.places(dt), (dt, stiffest));
-            let largest = meetings.islands.sizes().into_iter().max().unwrap_or(0);
+            let mut candidates = self.candidates(&self.predicted_rocks(dt), (dt, stiffest));
+            let largest = candidates.islands.sizes().into_iter().max().unwrap_or(0);
             if 4 * largest <= 3 * count {
                 return Some(cuts);
             }
-            cuts *= CUTS;
+            cuts *= CUT_FACTOR;
         }
         None
     }
 
-    /// Where its rocks are, and what each may do within `dt` (s).
-    fn places(&self, dt: f64) -> Vec<PredictedRock> {
-        let place = |body: &WorldBody| place_of(body, self.settings, (self.now_s, dt));
-        self.bodies.iter().map(|body| place(body)).collect()
+    /// State of its rocks, and bounds of their motion within `dt` (s).
+    fn predicted_rocks(&self, dt: f64) -> Vec<PredictedRock> {
+        let predict = |body: &WorldBody| predicted_rock(body, self.settings, (self.now_s, dt));
+        self.bodies.iter().map(|body| predict(body)).collect()
     }
 
-    /// Who may meet whom within `dt` (s).
-    fn meetings(&self, places: &[PredictedRock], (dt, stiffest): (f64, f64)) -> Meetings {
-        let spread = if dt * stiffest > FAR { HitSpread::Island } else { HitSpread::Neighbours };
-        meeting_ties(&self.pair_histories, places, Ahead { dt, spread })
+    /// Predicts who may meet whom within `dt` (s).
+    fn candidates(&self, rocks: &[PredictedRock], (dt, stiffest): (f64, f64)) -> ContactCandidates {
+        let spread = if dt * stiffest > NEIGHBOUR_SPREAD_RAD {
+            HitSpread::Island
+        } else {
+            HitSpread::Neighbours
+        };
+        candidates_among_pairs(&self.pair_histories, rocks, PredictionWindow { dt, spread })
     }
 
-    /// Takes the parts there, and again if a rock was deviated further than was allowed for.
+    /// Advances the parts, and repeats that if a rock deviated further than was allowed for.
     ///
     /// As the world does with its windows (`bodies`), on a smaller scale: a return here costs this
     /// island alone.
-    fn run_parts_again(&mut self, stiffest: f64) {
-        // as the world keeps a snapshot before its windows
-        let kept: Vec<Kept> = self.bodies.iter().map(|body| body.keep()).collect();
+    fn run_parts_with_repeats(&mut self, stiffest: f64) {
+        // as the world takes a snapshot before its windows
+        let snapshots: Vec<BodySnapshot> = self.bodies.iter().map(|body| body.snapshot()).collect();
         let pair_histories = self.pair_histories.clone();
-        for _ in 0..RETURNS {
+        for _ in 0..MAX_ISLAND_RETURNS {
             if !self.run_parts(stiffest) {
                 return;
             }
-            for (body, kept) in self.bodies.iter_mut().zip(&kept) {
-                body.go_back(kept);
+            for (body, snapshot) in self.bodies.iter_mut().zip(&snapshots) {
+                body.restore(snapshot);
             }
             self.pair_histories.clone_from(&pair_histories);
             self.missed = false;
@@ -132,35 +135,32 @@ impl IslandWindow<'_> {
         self.run_parts(stiffest);
     }
 
-    /// Takes the parts that cannot meet before the end of the window there, each on its own; whether some may have met
-    /// after all.
+    /// Advances the parts that cannot meet to the end of the window, each separately; returns
+    /// whether some may have met after all.
     fn run_parts(&mut self, stiffest: f64) -> bool {
         let dt = self.end_s - self.now_s;
-        let places = self.places(dt);
-        let mut meetings = self.meetings(&places, (dt, stiffest));
+        let rocks = self.predicted_rocks(dt);
+        let mut candidates = self.candidates(&rocks, (dt, stiffest));
         let (settings, now_s) = (self.settings, self.now_s);
         let before: Vec<(Vec3, f64)> =
-            self.bodies.iter_mut().map(|body| body.watch_from(settings, now_s)).collect();
-        let mut homes: Vec<Option<Box<WorldBody>>> = Vec::new();
-        let mut jobs = self.take_apart(&mut meetings, &mut homes);
-        jobs.par_iter_mut().for_each(IslandWindow::run);
-        self.join(jobs, homes);
+            self.bodies.iter_mut().map(|body| body.start_deviation(settings, now_s)).collect();
+        let mut slots: Vec<Option<Box<WorldBody>>> = Vec::new();
+        let mut islands = self.split(&mut candidates, &mut slots);
+        islands.par_iter_mut().for_each(IslandWindow::run);
+        self.merge(islands, slots);
         let after = |k: usize| {
             let body = &self.bodies[k];
-            (body.position_at(self.settings, self.end_s), body.off.1)
+            (body.position_at(self.settings, self.end_s), body.deviation.1)
         };
-        // Pairs without a history are looked at by the island that this one is a part of.
-        let deviated = meetings.missed(&places, dt, after, |_| {
-            self.pair_histories
-                .iter()
-                .map(|pair_history| (pair_history.a, pair_history.b))
-                .collect()
+        // Pairs without a history are checked by the island of which this one is a part.
+        let deviated = candidates.missed(&rocks, dt, after, |_| {
+            self.pair_histories.iter().map(|pair| (pair.a, pair.b)).collect()
         });
         for &k in &deviated {
-            self.bodies[k].foresee();
+            self.bodies[k].raise_predicted_dv();
         }
         for (body, before) in self.bodies.iter_mut().zip(before) {
-            body.watch_on(before);
+            body.resume_deviation(before);
         }
         self.missed |= !deviated.is_empty();
         self.missed
@@ -168,63 +168,61 @@ impl IslandWindow<'_> {
 }
 
 impl<'a> IslandWindow<'a> {
-    /// Makes a window of every part in which something may happen; the other rocks stay in `homes`, and pairs between parts
-    /// with the island.
-    fn take_apart(
+    /// Makes a window of every part in which something may happen. The other rocks stay in `slots`,
+    /// and pairs between parts stay with the island.
+    fn split(
         &mut self,
-        meetings: &mut Meetings,
-        homes: &mut Vec<Option<Box<WorldBody<'a>>>>,
+        candidates: &mut ContactCandidates,
+        slots: &mut Vec<Option<Box<WorldBody<'a>>>>,
     ) -> Vec<Self> {
-        let mut lists = meetings.islands.lists();
+        let mut lists = candidates.islands.lists();
         lists.retain(|list| is_busy(list.iter().map(|&k| &*self.bodies[k as usize]), self.end_s));
-        let part = places_in(&lists, self.bodies.len());
+        let membership = island_of_each(&lists, self.bodies.len());
         let mut pair_histories: Vec<Vec<PairHistory>> = lists.iter().map(|_| Vec::new()).collect();
-        let mut pairs = meetings.pairs.iter().peekable();
-        // a pair goes with its part if both ends are in it; pairs between parts wait with the
-        // island until the parts are joined again
-        self.pair_histories.retain(|pair_history| {
-            let (number, a) = part[pair_history.a as usize];
-            let meets = pairs.next_if(|pair| **pair == (pair_history.a, pair_history.b)).is_some();
+        let mut pairs = candidates.pairs.iter().peekable();
+        // a pair goes with its part if both ends are in it; pairs between parts stay with the
+        // island until the parts are merged
+        self.pair_histories.retain(|pair| {
+            let (number, a) = membership[pair.a as usize];
+            let meets = pairs.next_if(|ends| **ends == (pair.a, pair.b)).is_some();
             let goes = meets && number != usize::MAX;
             if goes {
                 pair_histories[number].push(PairHistory {
                     a,
-                    b: part[pair_history.b as usize].1,
-                    ..*pair_history
+                    b: membership[pair.b as usize].1,
+                    ..*pair
                 });
             }
             !goes
         });
-        homes.extend(self.bodies.drain(..).map(Some));
+        slots.extend(self.bodies.drain(..).map(Some));
         let window = (self.now_s, self.end_s);
-        let mut jobs = Vec::with_capacity(lists.len());
+        let mut islands = Vec::with_capacity(lists.len());
         for (list, pair_histories) in lists.into_iter().zip(pair_histories) {
-            let bodies = list.iter().filter_map(|&k| homes[k as usize].take()).collect();
+            let bodies = list.iter().filter_map(|&k| slots[k as usize].take()).collect();
             let part = Self::new(self.settings, list, bodies, pair_histories, window);
-            jobs.push(Self { goes_back: false, ..part });
+            islands.push(Self { may_repeat: false, ..part });
         }
-        jobs
+        islands
     }
 
     /// Takes the parts and their rocks back.
-    fn join(&mut self, jobs: Vec<Self>, mut homes: Vec<Option<Box<WorldBody<'a>>>>) {
-        for job in jobs {
-            self.missed |= job.missed;
-            self.statistics.add(&job.statistics);
-            let (list, bodies, pair_histories) = job.into_parts();
-            self.pair_histories.extend(pair_histories.into_iter().map(|pair_history| {
-                PairHistory {
-                    a: list[pair_history.a as usize],
-                    b: list[pair_history.b as usize],
-                    ..pair_history
-                }
+    fn merge(&mut self, islands: Vec<Self>, mut slots: Vec<Option<Box<WorldBody<'a>>>>) {
+        for island in islands {
+            self.missed |= island.missed;
+            self.statistics.add(&island.statistics);
+            let (list, bodies, pair_histories) = island.into_parts();
+            self.pair_histories.extend(pair_histories.into_iter().map(|pair| PairHistory {
+                a: list[pair.a as usize],
+                b: list[pair.b as usize],
+                ..pair
             }));
             for (&k, body) in list.iter().zip(bodies) {
-                homes[k as usize] = Some(body);
+                slots[k as usize] = Some(body);
             }
         }
-        // ascending order again: what follows must not depend on how the island was cut
-        self.pair_histories.sort_unstable_by_key(|pair_history| (pair_history.a, pair_history.b));
-        self.bodies.extend(homes.into_iter().flatten());
+        // ascending order again: the result must not depend on how the island was cut
+        self.pair_histories.sort_unstable_by_key(|pair| (pair.a, pair.b));
+        self.bodies.extend(slots.into_iter().flatten());
     }
 }

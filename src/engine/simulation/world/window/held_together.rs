@@ -1,4 +1,4 @@
-//! Rocks that hold each other fall asleep together, and leave the terrain together.
+//! Groups of rocks in contact fall asleep together, and leave the terrain together.
 
 use super::super::{BodyState, WorldBody};
 use super::IslandWindow;
@@ -8,22 +8,25 @@ use crate::rock::Vec3;
 use crate::simulation::Stop;
 
 impl IslandWindow<'_> {
-    /// The rocks that hold each other, by their places in the island.
-    fn held_together(&self) -> Vec<Vec<u32>> {
+    /// The groups of rocks in contact with each other, by their indices in the island.
+    fn groups_in_contact(&self) -> Vec<Vec<u32>> {
         held_groups(self.bodies.len(), &self.pair_histories).lists()
     }
 
-    /// Puts to sleep what has been quiet for long enough together with all that it touches.
-    pub(super) fn fall_asleep(&mut self) {
-        let quiet = |body: &WorldBody| {
-            body.state == BodyState::Moving && !body.member.flying && body.calm.rests()
+    /// Puts to sleep the groups in which all rocks have been quiet for long enough.
+    pub(super) fn put_to_sleep(&mut self) {
+        let is_quiet = |body: &WorldBody| {
+            body.state == BodyState::Moving
+                && !body.member.flying
+                && body.rest_criterion.is_at_rest()
         };
-        if !self.bodies.iter().any(|body| quiet(body)) {
+        if !self.bodies.iter().any(|body| is_quiet(body)) {
             return;
         }
-        // rocks that hold each other fall asleep together or not at all: one that still moves would pull on the others
-        for list in self.held_together() {
-            if list.iter().all(|k| quiet(&self.bodies[*k as usize])) {
+        // a group falls asleep as a whole or not at all: one that still moves would pull on the
+        // others
+        for list in self.groups_in_contact() {
+            if list.iter().all(|k| is_quiet(&self.bodies[*k as usize])) {
                 for k in list {
                     self.bodies[k as usize].state = BodyState::Asleep;
                 }
@@ -31,23 +34,23 @@ impl IslandWindow<'_> {
         }
     }
 
-    /// Takes bonded rocks out of the world that have passed the border of the terrain: each alone ends where its last flight passes the last
-    /// ground, but what is bonded does not fly.
-    pub(super) fn leave_terrain(&mut self) {
+    /// Removes bonded rocks that have passed the border of the terrain. A rock alone is removed
+    /// where its last flight passes the last ground, but bonded rocks do not fly.
+    pub(super) fn remove_past_border(&mut self) {
         if self.pair_histories.iter().all(|pair_history| pair_history.bond.is_none()) {
             return;
         }
-        for list in self.held_together() {
+        for list in self.groups_in_contact() {
             if list.len() > 1 && self.is_past_border(&list) {
                 for k in list {
-                    self.bodies[k as usize].leave(Stop::LeftTerrain);
+                    self.bodies[k as usize].remove(Stop::LeftTerrain);
                 }
             }
         }
     }
 
-    /// Whether rocks that hold each other have no ground below, and the ball round all of them, which flies as their centre of mass does, never
-    /// touches the mesh again.
+    /// Whether a group has no ground below, and its bounding sphere, which flies as its centre of
+    /// mass does, never touches the mesh again.
     fn is_past_border(&self, list: &[u32]) -> bool {
         let terrain = self.settings.terrain;
         let rocks = || list.iter().map(|k| &*self.bodies[*k as usize]);
