@@ -26,11 +26,11 @@ use crate::rock::{Motion, Vec3};
 use crate::solver::block::{Footing, Moving, Stepped};
 use crate::solver::body::Body;
 use crate::solver::environment::ContactEnvironment;
+use crate::solver::impact_point::ImpactPoint;
 use crate::solver::loss::Loss;
 use crate::solver::roughness::RoughFacets;
 use crate::solver::scar::{GroundBlow, Scars};
 use crate::solver::step_control::{Advance, StepError};
-use crate::solver::struck::Struck;
 
 /// One block on its way.
 struct Roll<'a> {
@@ -64,7 +64,7 @@ pub(super) fn follow_block(
     let block = &drawn.block;
     let world = settings.around(Body::of_block(block, settings.gravity_m_s2), laws);
     footing.forget();
-    footing.stem_load.raise(settings.terrain, &random, &mut footing.near.gone);
+    footing.stem_load.reset(settings.terrain, &random, &mut footing.near.gone);
     (footing.near.tested, footing.sweeps) = (0, 0);
     footing.facets = RoughFacets::of(random, laws);
     footing.slip.begin(&release.grounds);
@@ -118,7 +118,7 @@ impl<'a> Falling<'a> for Roll<'a> {
         self.recorder.effort.leaps += 1;
         let (dt, stop) = self.settings.end_of_flight(&landing, time_s, &self.recorder.effort);
         self.recorder.fly(&path, Some(&tumble.top), dt);
-        self.footing.slip.fly(dt);
+        self.footing.slip.decay(dt);
         let kept = self.scars.fly(&self.world.body, &self.recorder.now.velocity_m_s, dt);
         self.recorder.slow_in_flight(kept);
         self.moving.pose = tumble.pose(dt);
@@ -219,7 +219,7 @@ impl Roll<'_> {
         for touch in struck.iter().take(MOST) {
             // of the touching point, spin included: v + ω × r
             let velocity = self.moving.at(block, &touch.lever);
-            let struck = Struck {
+            let struck = ImpactPoint {
                 point_m: self.moving.pose.centre + touch.lever,
                 normal: touch.normal,
                 feature: touch.feature.kind,

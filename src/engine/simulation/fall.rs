@@ -45,7 +45,7 @@ pub(super) fn follow_sphere(
 ) -> Trajectory {
     state.near.forget();
     (state.near.tested, state.sweeps) = (0, 0);
-    state.stem_load.raise(settings.terrain, &random, &mut state.near.gone);
+    state.stem_load.reset(settings.terrain, &random, &mut state.near.gone);
     state.facets = RoughFacets::of(random, laws);
     slip.begin(&release.grounds);
     let form = Form { rock: release.rock, block: None };
@@ -174,7 +174,7 @@ impl<'a> Falling<'a> for Fall<'a> {
         self.answer_blows();
         let world = self.settings.around(self.body, self.laws);
         // a stem has given way: stiffness and contacts changed, so the stepper forgets its factors and its step
-        if self.state.bend(&world, !self.is_rigid(), &mut done.loss) {
+        if self.state.load_stems(&world, !self.is_rigid(), &mut done.loss) {
             *stepper = Stepper::new(self.settings.step, &world, self.state);
         }
         // one slipping contact makes the whole step "sliding" on the path
@@ -239,7 +239,7 @@ impl<'a> Soil<'a> {
 
     /// Flies for so long (s) and ends at a velocity; what the rock keeps of that (–).
     pub(super) fn fly(&mut self, body: &Body, v: &Vec3, flight_s: f64) -> f64 {
-        self.slip.fly(flight_s);
+        self.slip.decay(flight_s);
         self.last_step_s = 0.0;
         self.scars.fly(body, v, flight_s)
     }

@@ -13,7 +13,7 @@ use super::Impact;
 use crate::contact::MOST;
 use crate::contact::history::SAME_GRIP;
 use crate::rock::Vec3;
-use crate::solver::struck::Struck;
+use crate::solver::impact_point::ImpactPoint;
 
 /// A patch struck again so soon after it has let go (s) is the same impact: its springs opened for an instant, or the rock went
 /// on over the side of a triangle.
@@ -140,7 +140,7 @@ impl Impacts {
     /// `lost_j` is what has gone into contacts with the mesh so far, and what of it into soil. Returns its number, and whether it is a new one.
     pub(super) fn begin(
         &mut self,
-        (struck, owner): (&Struck, PatchOwner),
+        (struck, owner): (&ImpactPoint, PatchOwner),
         (now_s, until_s): (f64, f64),
         speed_m_s: f64,
         lost_j: (MeshEnergy, f64),

@@ -10,8 +10,8 @@ use super::fall::{Fall, Slips};
 use crate::contact::MOST;
 use crate::contact::history::ContactHistory;
 use crate::rock::Vec3;
+use crate::solver::impact_point::Blow;
 use crate::solver::scar::GroundBlow;
-use crate::solver::struck::Blow;
 use arrayvec::ArrayVec;
 
 /// Growth of `κ s` within one step, about (–): friction changes between steps.
@@ -57,7 +57,7 @@ impl Fall<'_> {
     fn dig(&mut self) -> f64 {
         let world = self.settings.around(self.body, self.laws);
         let (state, scars) = (&self.state, &mut *self.soil.scars);
-        let holding = state.histories.iter().chain(state.struck.iter());
+        let holding = state.histories.iter().chain(state.upcoming_impacts.iter());
         let in_soil = scars.holds(&world, holding.map(|history| history.triangle));
         let blow = |&Blow { approach_m_s, n: normal, triangle }: &Blow| {
             let ground = world.ground_of(triangle);
@@ -76,7 +76,7 @@ impl Fall<'_> {
         let kept = self.soil.scars.plough_ahead();
         self.slow(kept);
         let mut longest_s = longest_s.min(self.soil.scars.longest_s(self.state.v.norm()));
-        if self.soil.slip.is_any() {
+        if self.soil.slip.has_growing_friction() {
             self.soil.slips = self.fastest_slip();
             let speed_m_s = self.soil.slips.map_or(0.0, |slips| slips.speed_m_s);
             // d(κ s)/dt = κ |slip|: a step of GROWTH/per_s lets κ s grow by that much

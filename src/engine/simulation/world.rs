@@ -166,7 +166,7 @@ pub fn simulate_world(
             let mut body = body(settings, release, keep(k), &mut damping);
             let random = stream(settings.seed, Purpose::Impacts, k);
             let state = &mut body.member.state;
-            state.stem_load.raise(settings.terrain, &random, &mut state.near.gone);
+            state.stem_load.reset(settings.terrain, &random, &mut state.near.gone);
             body.member.state.facets = RoughFacets::of(random, &body.member.laws);
             Some(Box::new(body))
         })

@@ -4,13 +4,13 @@ use super::body::{Body, are_finite};
 use super::dda_system::DdaScratch;
 pub use super::environment::ContactEnvironment;
 use super::friction_rolling::SlipState;
+use super::impact_point::Blow;
 use super::impact_progress::ImpactProgress;
 use super::law::StageContact;
 use super::loss::Loss;
 use super::plane_state::PlaneState;
 use super::roughness::{RoughFacets, Tilt};
 use super::stem_load::StemLoad;
-use super::struck::Blow;
 use super::tableau::STAGES;
 use crate::contact::history::{ContactHistories, HISTORIES};
 use crate::contact::neighbours::Neighbours;
@@ -41,7 +41,7 @@ pub struct StateRates {
 impl StateRates {
     /// Takes over another's rates, of the springs the first `histories` only.
     #[inline]
-    pub fn take(&mut self, from: &Self, histories: usize) {
+    pub fn copy_from(&mut self, from: &Self, histories: usize) {
         (self.c, self.v, self.w, self.loss) = (from.c, from.v, from.w, from.loss);
         self.shear[..histories].copy_from_slice(&from.shear[..histories]);
         self.roll[..histories].copy_from_slice(&from.roll[..histories]);
@@ -69,9 +69,9 @@ impl StateRates {
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Onset {
     /// Whether they press nothing in the present try: it will be cut where they begin.
-    pub(super) waits: bool,
+    pub(super) deferred: bool,
     /// Whether one that waits would have pressed at the end of a stage of it.
-    pub(super) is_met: bool,
+    pub(super) is_reached: bool,
 }
 
 /// A rock in contact.
@@ -90,7 +90,7 @@ pub struct ContactState {
     /// Contact points at the last place asked.
     pub touches: ContactPoints,
     /// That place, if they were asked for with all slack.
-    pub(crate) looked_ahead: Option<Vec3>,
+    pub(crate) points_found_at: Option<Vec3>,
     /// Rates at the stages of the current step; the first is that at its start.
     pub rates: [StateRates; STAGES],
     /// Whether the first rate belongs to the present state.
@@ -106,7 +106,7 @@ pub struct ContactState {
     /// An impact in its own time.
     pub(crate) impact: ImpactProgress,
     /// Contacts that are about to be struck anew within an episode (`rigid`).
-    pub struck: ContactHistories,
+    pub upcoming_impacts: ContactHistories,
     /// The blows that have been announced last, of one instant, until somebody takes them.
     pub(crate) blows: ArrayVec<Blow, MOST>,
     /// The facets it meets on rough ground.
@@ -116,7 +116,7 @@ pub struct ContactState {
     /// Whether what is touched may give way, or several trees are: it is asked step by step.
     pub may_yield: bool,
     /// Whether the current blow has been announced (`rigid`).
-    pub(crate) is_struck: bool,
+    pub(crate) impact_announced: bool,
     /// Impacts that an implicit step runs into.
     pub(super) onset: Onset,
     /// Work space of the fixed step.
@@ -134,7 +134,7 @@ pub(super) const AHEAD: f64 = 0.17;
 /// … at a touch no further than this, if that is enough for the impact (–) …
 const LEAST_MARGIN: f64 = 0.06;
 /// … which goes on for about so many contact times `π/ω` (–) …
-const IMPACT_WAY: f64 = 1.3;
+const IMPACT_TRAVEL: f64 = 1.3;
 /// … and asked for up to this far beyond the radius (–), so that a stage sees what it is about to run into.
 const SLACK: f64 = 0.1;
 
@@ -156,7 +156,7 @@ impl ContactState {
             histories: ContactHistories::default(),
             near: Neighbours::empty(),
             touches: ContactPoints::default(),
-            looked_ahead: None,
+            points_found_at: None,
             rates: [StateRates::NONE; STAGES],
             fresh: false,
             stored: 0.0,
@@ -164,8 +164,8 @@ impl ContactState {
             contact_count: 0,
             plane: PlaneState::default(),
             impact: ImpactProgress::default(),
-            struck: ContactHistories::default(),
-            is_struck: true,
+            upcoming_impacts: ContactHistories::default(),
+            impact_announced: true,
             onset: Onset::default(),
             may_yield: false,
             blows: ArrayVec::new_const(),
@@ -184,44 +184,44 @@ impl ContactState {
         self.begin_within(world, (c, v, w), TOUCH);
     }
 
-    /// The same with what it comes to within `together` (–, relative to R) taken as touched.
+    /// The same with what it comes to within `simultaneous` (–, relative to R) taken as touched.
     pub(crate) fn begin_within(
         &mut self,
         world: &ContactEnvironment,
         (c, v, w): (Vec3, Vec3, Vec3),
-        together: f64,
+        simultaneous: f64,
     ) {
         (self.c, self.v, self.w) = (c, v, w);
         self.histories.clear();
         self.fresh = false;
         self.plane.forget();
         self.impact.forget();
-        self.struck.clear();
+        self.upcoming_impacts.clear();
         self.blows.clear();
-        (self.is_struck, self.onset) = (true, Onset::default());
+        (self.impact_announced, self.onset) = (true, Onset::default());
         // Nothing of the rock before, not even a guess, may tell.
         self.contacts.iter_mut().for_each(|contact| contact.mode = SlipState::default());
         if !self.near.covers(&c) {
-            let margin = self.way_of_impact(world);
+            let margin = self.impact_travel_m(world);
             self.collect_within(world, &c, margin);
         }
-        self.look(world, &c, world.body.radius * (1.0 + together));
-        self.touches.keep_struck(world.body.radius, &v, together);
+        self.find_contact_points(world, &c, world.body.radius * (1.0 + simultaneous));
+        self.touches.keep_struck(world.body.radius, &v, simultaneous);
         // An impact rebounds or not as a whole, by its fastest approach.
         let captured = self.touches.iter().all(|touch| world.captures(touch, &v));
         for k in 0..self.touches.len() {
             let touch = &self.touches[k];
             let place = self.histories.find(touch, &self.touches, (1 << k) - 1, || captured);
             if !captured {
-                self.impact.meet(-touch.normal.dot(&v), world.least_impact_m_s());
-                self.part_springs(world, place, k);
+                self.impact.add_contact(-touch.normal.dot(&v), world.least_impact_m_s());
+                self.inherit_springs(world, place, k);
             }
         }
     }
 
     /// Sees to it that the features around `c` are known.
     #[inline]
-    pub fn know(&mut self, world: &ContactEnvironment, c: &Vec3) {
+    pub fn update_neighbours(&mut self, world: &ContactEnvironment, c: &Vec3) {
         if !self.near.covers(c) {
             self.collect(world, c);
         }
@@ -247,17 +247,17 @@ impl ContactState {
 
     /// How far an impact goes before it is over (m), between bounds: the less is collected the fewer features there are,
     /// and the more often it is one face alone.
-    fn way_of_impact(&self, world: &ContactEnvironment) -> f64 {
+    fn impact_travel_m(&self, world: &ContactEnvironment) -> f64 {
         let slowest = world.laws.iter().map(Law::omega_rad_s).fold(f64::INFINITY, f64::min);
-        let way = IMPACT_WAY * std::f64::consts::PI / slowest * self.v.norm();
+        let way = IMPACT_TRAVEL * std::f64::consts::PI / slowest * self.v.norm();
         way.clamp(LEAST_MARGIN * world.body.radius, MARGIN * world.body.radius)
     }
 
     /// Asks for the touches at `c` nearer than `reach` (m).
     #[inline]
-    pub fn look(&mut self, world: &ContactEnvironment, c: &Vec3, reach: f64) {
-        self.know(world, c);
-        self.looked_ahead = None;
+    pub fn find_contact_points(&mut self, world: &ContactEnvironment, c: &Vec3, reach: f64) {
+        self.update_neighbours(world, c);
+        self.points_found_at = None;
         let begun = self.stopwatches.now();
         self.near.touches(world.terrain, c, reach, &mut self.touches);
         self.stopwatches.stop(TimedPiece::Geometry, begun);
@@ -265,32 +265,32 @@ impl ContactState {
 
     /// Asks for the touches at `c` that a stage must know.
     #[inline]
-    pub fn look_ahead(&mut self, world: &ContactEnvironment, c: &Vec3) {
-        self.look(world, c, world.body.radius * (1.0 + SLACK));
+    pub fn find_contact_points_ahead(&mut self, world: &ContactEnvironment, c: &Vec3) {
+        self.find_contact_points(world, c, world.body.radius * (1.0 + SLACK));
     }
 
     /// The same, if it was not asked for at `c` last.
     #[inline]
-    pub fn look_ahead_again(&mut self, world: &ContactEnvironment, c: &Vec3) {
-        if self.looked_ahead != Some(*c) {
-            self.look_ahead(world, c);
-            self.looked_ahead = Some(*c);
+    pub fn update_contact_points_ahead(&mut self, world: &ContactEnvironment, c: &Vec3) {
+        if self.points_found_at != Some(*c) {
+            self.find_contact_points_ahead(world, c);
+            self.points_found_at = Some(*c);
         }
     }
 
     /// How far `c` is from where touches were looked for last (m); they are looked for anew if that is farther than `way` (m).
     #[inline]
-    pub(super) fn look_ahead_near(
+    pub(super) fn contact_points_ahead_near(
         &mut self,
         world: &ContactEnvironment,
         c: &Vec3,
         way: f64,
     ) -> Vec3 {
-        let off = self.looked_ahead.map(|at| c - at);
+        let off = self.points_found_at.map(|at| c - at);
         if let Some(off) = off.filter(|off| off.norm_squared() <= way * way) {
             return off;
         }
-        self.look_ahead_again(world, c);
+        self.update_contact_points_ahead(world, c);
         Vec3::zeros()
     }
 
@@ -310,7 +310,7 @@ impl ContactState {
         let history = self.histories.find(touch, &self.touches, taken, || slow && !rebounds);
         if history >= before {
             self.histories[history].met_m_s = if slow { 0.0 } else { -touch.normal.dot(v) };
-            self.part_springs(world, history, k);
+            self.inherit_springs(world, history, k);
             for rate in &mut self.rates {
                 (rate.shear[history], rate.roll[history]) = (Vec3::zeros(), Vec3::zeros());
             }
@@ -325,16 +325,16 @@ impl ContactState {
     }
 
     /// Fastest approach of what has come up in the present try and presses (m/s).
-    pub(super) fn met_m_s(&self) -> f64 {
+    pub(super) fn new_contact_approach_m_s(&self) -> f64 {
         let pressed = self.stage_contacts().iter().filter(|contact| contact.normal_force > 0.0);
         pressed.map(|contact| self.histories[contact.history].met_m_s).fold(0.0, f64::max)
     }
 
     /// The contacts that have come up belong to the impact from now on.
-    pub(super) fn accept_meetings(&mut self, world: &ContactEnvironment) {
+    pub(super) fn accept_new_contacts(&mut self, world: &ContactEnvironment) {
         let slowest = world.least_impact_m_s();
         for history in self.histories.iter_mut() {
-            self.impact.meet(history.met_m_s, slowest);
+            self.impact.add_contact(history.met_m_s, slowest);
             history.met_m_s = 0.0;
         }
     }
@@ -344,7 +344,7 @@ impl ContactState {
         for history in self.histories.iter_mut().filter(|history| !history.announced) {
             history.captured = false;
         }
-        self.impact.meet(speed_m_s, world.least_impact_m_s());
+        self.impact.add_contact(speed_m_s, world.least_impact_m_s());
     }
 
     /// Gives the rock another velocity and spin in the middle of a contact; its springs stay as they are.

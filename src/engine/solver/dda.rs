@@ -83,7 +83,7 @@ pub struct Fixed {
 impl Fixed {
     /// Begins an episode.
     pub fn new(settings: &Settings, world: &ContactEnvironment, state: &mut ContactState) -> Self {
-        let stored = DdaBody::looking(*world, state).stored;
+        let stored = DdaBody::with_contact_points(*world, state).stored;
         Self { step_s: settings.step_s, shear_memory: settings.shear_memory, stored }
     }
 

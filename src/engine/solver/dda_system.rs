@@ -54,7 +54,7 @@ pub struct DdaScratch {
     pub(super) step: StepConstants,
     contacts: ArrayVec<DdaContact, MOST>,
     /// Memories that belong to the contacts.
-    pub(super) taken: u32,
+    pub(super) used_histories: u32,
     /// What contacts add to the free displacement, `E`, and both together, `D = D₀ + E`, Eq. (1).
     pub(super) added: Vec6,
     pub(super) d: Vec6,
@@ -70,7 +70,7 @@ pub struct DdaScratch {
 impl DdaScratch {
     /// Begins a step without contacts.
     pub(super) fn begin(&mut self, body: &Body, step: StepConstants) {
-        (self.step, self.taken) = (step, 0);
+        (self.step, self.used_histories) = (step, 0);
         self.contacts.clear();
         let inertia = inertia(body.mass, body.inertia, step.dt);
         if self.inertia != inertia {
@@ -81,7 +81,7 @@ impl DdaScratch {
     /// Adds the contact of a touch and its memory.
     pub(super) fn add(&mut self, law: &Law, touch: &ContactPoint, left: (usize, &ContactHistory)) {
         self.contacts.push(DdaContact::with_mesh(&self.step, law, touch, left));
-        self.taken |= 1 << left.0;
+        self.used_histories |= 1 << left.0;
     }
 
     pub(super) fn contacts(&self) -> &[DdaContact] {
@@ -121,20 +121,21 @@ impl DdaScratch {
             self.factor = Cholesky::new(self.block());
         }
         self.factor.as_ref()?.solve_mut(&mut load);
-        self.take(load)
+        self.set_solution(load)
     }
 
     /// Takes a solution; `None` if it is none.
-    pub(super) fn take(&mut self, added: Vec6) -> Option<()> {
+    pub(super) fn set_solution(&mut self, added: Vec6) -> Option<()> {
         (self.added, self.d) = (added, self.step.free + added);
         added.iter().all(|x| x.is_finite()).then_some(())
     }
 
     /// Judges its contacts by the displacement that came out; the largest change of all counts.
-    pub(super) fn judge(&mut self) -> Change {
+    pub(super) fn update_state(&mut self) -> Change {
         let contacts = self.contacts.iter_mut();
-        let judged = contacts.map(|contact| contact.judge(&contact.ways(&self.d)));
-        judged.max().unwrap_or(Change::None)
+        let changes =
+            contacts.map(|contact| contact.update_state(&contact.relative_displacement(&self.d)));
+        changes.max().unwrap_or(Change::None)
     }
 
     /// Ends the search for the states of its contacts.
@@ -145,6 +146,6 @@ impl DdaScratch {
     /// Opens or closes one contact that begins apart, the last that asks for it; whether there is any.
     pub(super) fn open_or_close_one_apart(&mut self) -> bool {
         let mut contacts = self.contacts.iter_mut().rev();
-        contacts.any(|contact| contact.open_or_close_apart(&contact.ways(&self.d)))
+        contacts.any(|contact| contact.open_or_close_apart(&contact.relative_displacement(&self.d)))
     }
 }

@@ -17,20 +17,20 @@ use crate::contact::history::{ContactHistory, SAME_GRIP};
 use crate::rock::Vec3;
 
 /// A contact that is so deep when it comes up is part of one that was there, as patches part (–, relative to the radius of the ball).
-const PRESSED_AT_BIRTH: f64 = 1e-5;
+const PRESSED_AT_ONSET: f64 = 1e-5;
 
 /// What lasting contact loses to softer springs at most, of motion and of the weight lifted by the radius (–): what weight presses in is less. A contact that
 /// is pressed harder, as in a slow impact, waits until it is let out.
-const LOSES: f64 = 1e-3;
+const MAX_LOSS: f64 = 1e-3;
 
 /// Whether a patch of a ball of this radius (m) that comes up so deep (m) is part of one that was there.
-pub(super) fn comes_up_pressed(pressed_m: f64, radius_m: f64) -> bool {
-    pressed_m > PRESSED_AT_BIRTH * radius_m
+pub(super) fn begins_pressed(pressed_m: f64, radius_m: f64) -> bool {
+    pressed_m > PRESSED_AT_ONSET * radius_m
 }
 
 /// The springs, by a triangle of their ground, of the patch that one with this normal parts from or meets at a blunt fold: of those that are pressed,
 /// told by normal and springs, the one on the likest side, if it is one patch with it.
-pub(super) fn springs_parted_from(
+pub(super) fn springs_across_fold(
     normal: &Vec3,
     pressed: impl Iterator<Item = (Vec3, u32)>,
 ) -> Option<u32> {
@@ -40,7 +40,7 @@ pub(super) fn springs_parted_from(
 }
 
 /// What a rock does that comes on stiffer springs under the load of its softer ones.
-struct Rise {
+struct LiftOntoStiffer {
     /// The memory of its contact with the new springs.
     after: ContactHistory,
     /// How far it is lifted (m).
@@ -54,18 +54,20 @@ impl ContactState {
     /// Lets the springs of lasting contacts be those of the ground that they touch, where these hold no more energy.
     ///
     /// Asked at the end of a step, with the touches of that place.
-    pub(super) fn follow_grounds(&mut self, world: &ContactEnvironment) {
+    pub(super) fn update_springs_of_grounds(&mut self, world: &ContactEnvironment) {
         if world.laws.len() == 1 || self.is_rebounding() {
             return;
         }
         let body = &world.body;
-        let most_j = LOSES * (self.motion_j(body) + body.mass * body.gravity.norm() * body.radius);
+        let most_j =
+            MAX_LOSS * (self.motion_j(body) + body.mass * body.gravity.norm() * body.radius);
         for k in 0..self.histories.len() {
             let before = self.histories[k];
             let is_seen = self.touches.iter().any(|touch| touch.feature == before.feature);
             if is_seen && !world.are_alike(before.springs_of, before.triangle) {
                 let after = ContactHistory { springs_of: before.triangle, ..before };
-                let lost_j = self.contact_j(world, &before) - self.contact_j(world, &after);
+                let lost_j =
+                    self.contact_stored_j(world, &before) - self.contact_stored_j(world, &after);
                 if (0.0..=most_j).contains(&lost_j) {
                     self.histories[k] = after;
                     self.fresh = false;
@@ -78,15 +80,16 @@ impl ContactState {
     /// bear the same load; the softer spring and the motion pay for the height. Returns what the spring gives back, booked as taken when it was pressed.
     ///
     /// Its depth on soft ground would blunt the folds ahead: ramps of 2 to 4° of hard ground were met as one patch with what it lay on, without a blow.
-    pub(super) fn rise_on_stiffer(&mut self, world: &ContactEnvironment) -> Option<Loss> {
+    pub(super) fn lift_onto_stiffer(&mut self, world: &ContactEnvironment) -> Option<Loss> {
         let [one] = &self.histories[..] else { return None };
-        let is_at_home = world.laws.len() == 1 || world.are_alike(one.springs_of, one.triangle);
-        if is_at_home || self.is_rebounding() || !is_on_face(world, self) {
+        let has_own_springs =
+            world.laws.len() == 1 || world.are_alike(one.springs_of, one.triangle);
+        if has_own_springs || self.is_rebounding() || !is_on_face(world, self) {
             return None;
         }
-        let Rise { after, way, lifted_j, given_j } = self.rise(world)?;
+        let LiftOntoStiffer { after, way, lifted_j, given_j } = self.lift(world)?;
         let (motion_j, paid_j) = (self.motion_j(&world.body), lifted_j - given_j);
-        if paid_j > LOSES * motion_j || !self.is_alone_at(world, &(self.c + way)) {
+        if paid_j > MAX_LOSS * motion_j || !self.is_alone_at(world, &(self.c + way)) {
             return None;
         }
         self.leave_plane(world);
@@ -98,35 +101,35 @@ impl ContactState {
     }
 
     /// How a rock on one face would come on its springs, if these are stiffer than those that it lies on.
-    fn rise(&self, world: &ContactEnvironment) -> Option<Rise> {
-        let (before, pressed_m) = (self.histories[0], self.sunk(world));
+    fn lift(&self, world: &ContactEnvironment) -> Option<LiftOntoStiffer> {
+        let (before, pressed_m) = (self.histories[0], self.plane_penetration_m(world));
         let mut after = ContactHistory { springs_of: before.triangle, ..before };
         let (soft, stiff) = (world.springs_of(&before), world.springs_of(&after));
         let [normal, shear, roll] = stiff.shares_of(&soft);
         (after.shear, after.roll) = (before.shear * shear, before.roll * roll);
         let way = before.n * (pressed_m * (1.0 - normal));
         let lifted_j = world.body.lifted_j(&way);
-        let freed_j =
+        let released_j =
             soft.stored_j(pressed_m, 0.0, 0.0) - stiff.stored_j(pressed_m * normal, 0.0, 0.0);
-        let rises = lifted_j > 0.0 && freed_j > 0.0;
+        let rises = lifted_j > 0.0 && released_j > 0.0;
         // what weight does not hold, a spring that is let out, gives no height
-        rises.then(|| Rise { after, way, lifted_j, given_j: freed_j.min(lifted_j) })
+        rises.then(|| LiftOntoStiffer { after, way, lifted_j, given_j: released_j.min(lifted_j) })
     }
 
     /// Whether a rock on one face touches nothing else at `c`.
     fn is_alone_at(&mut self, world: &ContactEnvironment, c: &Vec3) -> bool {
         let feature = self.histories[0].feature;
-        self.look(world, c, world.body.radius * (1.0 + TOUCH));
+        self.find_contact_points(world, c, world.body.radius * (1.0 + TOUCH));
         self.touches.iter().all(|touch| touch.feature == feature)
     }
 
     /// Gives a contact that has just come up at touch `k` the springs of a pressed one that it is parted from, if it is, and in an impact of
     /// one on a like side: at a blunt fold their patches meet, and only of equal springs does the energy stay what it was.
-    pub(super) fn part_springs(&mut self, world: &ContactEnvironment, place: usize, k: usize) {
+    pub(super) fn inherit_springs(&mut self, world: &ContactEnvironment, place: usize, k: usize) {
         let touch = &self.touches[k];
         let (radius_m, rebounds) = (world.body.radius, self.is_rebounding());
         let pressed_m = radius_m - touch.distance_m;
-        if world.laws.len() == 1 || !(rebounds || comes_up_pressed(pressed_m, radius_m)) {
+        if world.laws.len() == 1 || !(rebounds || begins_pressed(pressed_m, radius_m)) {
             return;
         }
         let is_tree = world.terrain.is_tree(touch.triangle);
@@ -135,7 +138,7 @@ impl ContactState {
             .filter(|one| one.closed || rebounds)
             .filter(|one| world.terrain.is_tree(one.triangle) == is_tree)
             .map(|one| (one.n, one.springs_of));
-        if let Some(springs_of) = springs_parted_from(&touch.normal, pressed) {
+        if let Some(springs_of) = springs_across_fold(&touch.normal, pressed) {
             self.histories[place].springs_of = springs_of;
         }
     }
@@ -166,7 +169,7 @@ mod tests {
         let tilted = |angle: f64| Vec3::new(angle.sin(), 0.0, angle.cos());
         let parted = |sides: &[(f64, u32)]| {
             let pressed = sides.iter().map(|(angle, springs_of)| (tilted(*angle), *springs_of));
-            springs_parted_from(&Vec3::z(), pressed)
+            springs_across_fold(&Vec3::z(), pressed)
         };
         let sharp = SAME_GRIP.acos() + 0.01;
         assert_eq!(parted(&[(-0.3, 4), (0.2, 7), (0.5, 9)]), Some(7));

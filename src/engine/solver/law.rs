@@ -6,7 +6,7 @@
 
 use super::body::Body;
 use super::contact_frame::ContactFrame;
-use super::friction_rolling::{Answers, Pair, SlipState};
+use super::friction_rolling::{Compliance, FrictionRolling, SlipState};
 use crate::contact::Feature;
 use crate::contact::history::ContactHistory;
 pub(crate) use crate::ground::within;
@@ -48,7 +48,7 @@ pub(crate) const ZERO: Vec3 = Vec3::new(0.0, 0.0, 0.0);
 
 /// What a contact does at a given motion, and how its springs go on.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Action {
+pub(crate) struct ContactForces {
     /// Slip of the contact point (m/s).
     pub(crate) slip: Vec3,
     /// Normal force (N), ≥ 0, and what it would be if it could pull.
@@ -61,7 +61,7 @@ pub(crate) struct Action {
 
 /// Where a contact is.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct ContactPlace {
+pub(crate) struct ContactDeformation {
     /// Unit normal from the mesh to the centre.
     pub(crate) n: Vec3,
     /// Penetration (m).
@@ -72,14 +72,14 @@ pub(crate) struct ContactPlace {
     pub(crate) roll: Vec3,
 }
 
-impl Action {
+impl ContactForces {
     /// In a contact with this normal element, all else by `law`, at velocity `v` and spin `w`.
     #[inline]
     pub(crate) fn of(
         body: &Body,
         law: &Law,
         normal: &NormalElement,
-        at: &ContactPlace,
+        at: &ContactDeformation,
         (v, w): (&Vec3, &Vec3),
     ) -> Self {
         let pulls = normal.pull_or_push(at.penetration, at.n.dot(v));
@@ -123,12 +123,12 @@ impl StageContact {
         }
         let law = &self.law;
         let frame = ContactFrame::of(&self.n);
-        let answers = Answers::of(body, law, h);
+        let compliance = Compliance::of(body, law, h);
         let slip = body.slip(&self.n, v, w);
-        let pair = Pair {
-            answers: &answers,
-            a: frame.along(&(law.shear.held(self.shear) + slip * answers.kap)),
-            d: frame.local(&(law.rolling.held(self.roll) + w * answers.kar)),
+        let pair = FrictionRolling {
+            compliance: &compliance,
+            a: frame.along(&(law.shear.held(self.shear) + slip * compliance.kappa)),
+            d: frame.local(&(law.rolling.held(self.roll) + w * compliance.kappa_r)),
             caps: law.limits().caps(self.normal_force),
         };
         let (shear_force, rolling_moment) = pair.solve(&mut self.mode);
@@ -137,10 +137,10 @@ impl StageContact {
     }
 
     /// What shear and rolling springs would hold at velocity `v` and spin `w` if they did not slide.
-    pub(crate) fn trials(&self, body: &Body, v: &Vec3, w: &Vec3, h: f64) -> (Vec3, Vec3) {
+    pub(crate) fn trial_forces(&self, body: &Body, v: &Vec3, w: &Vec3, h: f64) -> (Vec3, Vec3) {
         let law = &self.law;
-        let stick = law.shear.held(self.shear) + body.slip(&self.n, v, w) * law.shear.over(h);
-        (stick, law.rolling.held(self.roll) + w * law.rolling.over(h))
+        let trial_force = law.shear.held(self.shear) + body.slip(&self.n, v, w) * law.shear.over(h);
+        (trial_force, law.rolling.held(self.roll) + w * law.rolling.over(h))
     }
 
     /// Change of velocity and spin by this contact's forces over `h`.
@@ -154,14 +154,14 @@ impl StageContact {
 
     /// Penetration at the stage's end (m), where the velocity is `v`.
     #[inline]
-    pub fn pen_at(&self, v: &Vec3, h: f64) -> f64 {
+    pub fn penetration_at(&self, v: &Vec3, h: f64) -> f64 {
         self.penetration - h * self.n.dot(v)
     }
 
     /// Whether it still holds the rock at the stage's end.
     #[inline]
     pub fn is_closed(&self, v: &Vec3, h: f64) -> bool {
-        self.normal_force > 0.0 || self.pen_at(v, h) > 0.0
+        self.normal_force > 0.0 || self.penetration_at(v, h) > 0.0
     }
 
     /// Writes the contact into its memory, with its stretches and whether it still holds the rock.

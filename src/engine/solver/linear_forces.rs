@@ -32,7 +32,7 @@ impl StageContact {
 
     /// Solves it anew while all others hold: `now` is the motion with everybody's forces. Returns the largest change of a force, squared (N²),
     /// of the rolling moment over the radius.
-    pub(super) fn solve_anew(&mut self, body: &Body, now: &mut Twist, h: f64) -> f64 {
+    pub(super) fn relax(&mut self, body: &Body, now: &mut Twist, h: f64) -> f64 {
         let before = (self.normal_force, self.shear_force, self.rolling_moment);
         let (dv, dw) = self.effect(body, h);
         // without this contact's own forces: what the others do to the rock
@@ -51,41 +51,47 @@ impl StageContact {
     ///
     /// After a jump: the linear system may have left a cone or let a spring pull; the law itself may
     /// not.
-    pub(super) fn act_at(&mut self, body: &Body, [(v, w), (dv, dw)]: [&Twist; 2], h: f64) {
+    pub(super) fn set_forces_at(&mut self, body: &Body, [(v, w), (dv, dw)]: [&Twist; 2], h: f64) {
         let NormalLine { a, b } = self.line(body, h);
         self.normal_force = (a - b * self.n.dot(v) - b * self.n.dot(dv)).max(0.0);
-        let (stick, wound) = self.trials(body, v, w, h);
-        let stick = stick + body.slip(&self.n, dv, dw) * self.law.shear.over(h);
-        let wound = wound + dw * self.law.rolling.over(h);
-        self.shear_force = self.law.shear.capped(stick, self.normal_force);
-        self.rolling_moment = self.law.rolling.capped(wound, self.normal_force);
+        let (trial_force, trial_moment) = self.trial_forces(body, v, w, h);
+        let trial_force = trial_force + body.slip(&self.n, dv, dw) * self.law.shear.over(h);
+        let trial_moment = trial_moment + dw * self.law.rolling.over(h);
+        self.shear_force = self.law.shear.capped(trial_force, self.normal_force);
+        self.rolling_moment = self.law.rolling.capped(trial_moment, self.normal_force);
     }
 
     /// Its forces, linear around a motion, in its present modes.
-    pub(super) fn linear(&self, body: &Body, motion: &Twist, h: f64) -> LinearForces {
-        self.linear_and_here(body, motion, h).0
+    pub(super) fn linearised(&self, body: &Body, motion: &Twist, h: f64) -> LinearForces {
+        self.linearised_at(body, motion, h).0
     }
 
     /// The same in changes of the motion: its load is what it does at the motion itself.
-    pub(super) fn linear_in_changes(&self, body: &Body, motion: &Twist, h: f64) -> LinearForces {
-        let (forces, here) = self.linear_and_here(body, motion, h);
-        LinearForces { load: here, ..forces }
+    pub(super) fn linearised_in_changes(
+        &self,
+        body: &Body,
+        motion: &Twist,
+        h: f64,
+    ) -> LinearForces {
+        let (forces, at_motion) = self.linearised_at(body, motion, h);
+        LinearForces { load: at_motion, ..forces }
     }
 
     /// Its forces, linear around the motion `(v, w)`, and force and moment there.
-    fn linear_and_here(&self, body: &Body, (v, w): &Twist, h: f64) -> (LinearForces, Twist) {
+    fn linearised_at(&self, body: &Body, (v, w): &Twist, h: f64) -> (LinearForces, Twist) {
         let normal = self.line(body, h);
         let (law, n, r) = (&self.law, self.n, body.radius);
         // Slip u = T x with T = [Q, R n×]; shear acts back through the same T.
         let q = Matrix3::identity() - n * n.transpose();
         let spin = n.cross_matrix() * r;
-        let (stick, wound) = self.trials(body, v, w, h);
+        let (trial_force, trial_moment) = self.trial_forces(body, v, w, h);
         let normal_force = normal.at(n.dot(v));
         // The sweeps know the mode. What the law gives at `(v, w)` does not: a newton of another contact that has changed
         // since moves a stiff spring far beyond its cap.
         let shear = law.shear.left(h, (&self.shear_force, self.normal_force));
         let roll = law.rolling.left(h, (&self.rolling_moment, self.normal_force));
-        let (shear, roll) = (shear.at(stick, normal_force), roll.at(wound, normal_force));
+        let (shear, roll) =
+            (shear.at(trial_force, normal_force), roll.at(trial_moment, normal_force));
         let slip = body.slip(&n, v, w);
         // q ≈ q0 + J (u − u0) − e μ b (s − s0), and the same for the moment.
         let drag0 = shear.force - shear.jacobian * slip + shear.along * (normal.b * n.dot(v));
@@ -96,16 +102,16 @@ impl StageContact {
         let wv = spin.transpose() * (shear.jacobian * q - coupling)
             - roll.along * n.transpose() * normal.b;
         let ww = spin.transpose() * js + roll.jacobian;
-        // the very numbers that `act_at` begins with
+        // the very numbers that `set_forces_at` begins with
         let push = n * (normal.a - normal.b * n.dot(v));
-        let here = (push - shear.force, -(spin.transpose() * shear.force + roll.force));
+        let at_motion = (push - shear.force, -(spin.transpose() * shear.force + roll.force));
         let load = (n * normal.a - drag0, -(spin.transpose() * drag0 + moment0));
-        (LinearForces { stiffness: [[vv, vw], [wv, ww]], load }, here)
+        (LinearForces { stiffness: [[vv, vw], [wv, ww]], load }, at_motion)
     }
 }
 
 /// Free motion and all contact forces of a rock together.
-pub(super) fn driven(body: &Body, contacts: &[StageContact], free: Twist, h: f64) -> Twist {
+pub(super) fn motion_under(body: &Body, contacts: &[StageContact], free: Twist, h: f64) -> Twist {
     contacts.iter().fold(free, |(v, w), contact| {
         let (dv, dw) = contact.effect(body, h);
         (v + dv, w + dw)

@@ -36,13 +36,13 @@ impl Loss {
 
     /// On the slope, of parts by friction, damping and rolling of which only the sum is exact: what one of them seems to give back in a step,
     /// as friction that follows a spin which rolling friction slows, the others take less.
-    pub(crate) fn sharing([friction, damping, rolling]: [f64; 3]) -> Self {
+    pub(crate) fn redistributed([friction, damping, rolling]: [f64; 3]) -> Self {
         let parts = [friction, damping, rolling];
         let (sum, mut taken) = (friction + damping + rolling, parts.map(|part| part.max(0.0)));
         if sum < 0.0 || parts.iter().all(|part| *part >= 0.0) {
             return Self::on_slope(parts);
         }
-        shared(sum, &mut taken);
+        scale_to_total(sum, &mut taken);
         Self::on_slope(taken)
     }
 
@@ -79,29 +79,29 @@ impl Loss {
 
 /// Shares what is known to be lost as the steps have summed it up.
 /// The total is exact, from energies; the parts are sums along the steps and only share it.
-pub(super) fn shared(lost: f64, parts: &mut [f64]) {
-    match share_of(lost, parts.iter().sum()) {
+pub(super) fn scale_to_total(lost: f64, parts: &mut [f64]) {
+    match scale_factor(lost, parts.iter().sum()) {
         Some(share) => parts.iter_mut().for_each(|part| *part *= share),
         None => parts[1] = lost,
     }
 }
 
 /// What parts with this sum are multiplied by to be together what is `lost`; none where they tell nothing, as sums below what a division can take.
-pub(super) fn share_of(lost: f64, sum: f64) -> Option<f64> {
+pub(super) fn scale_factor(lost: f64, sum: f64) -> Option<f64> {
     let share = lost / sum;
     (sum > 0.0 && share.is_finite()).then_some(share)
 }
 
 /// Energy that a rock gives away through its contacts with other rocks (J), or power (W).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Given {
+pub struct EnergyGiven {
     /// Its half of what those contacts take.
     pub lost: f64,
     /// Handed on to the other rocks, negative if received.
     pub passed_on: f64,
 }
 
-impl Given {
+impl EnergyGiven {
     /// Of the two ends of a contact, from the work that each does on it.
     ///
     /// `lost` is half of the sum for each; what is left is equal and opposite, so that `passed_on`
@@ -130,12 +130,12 @@ mod tests {
     /// Where friction follows a spin that rolling friction slows, the mean motion of a step makes it give a little back: none of a ledger is below 0.
     #[test]
     fn parts_of_a_loss_take_and_give_nothing_back() {
-        let loss = Loss::sharing([-0.2, 0.5, 1.0]);
+        let loss = Loss::redistributed([-0.2, 0.5, 1.0]);
         assert!(loss.friction == 0.0 && (loss.sum() - 1.3).abs() < 1e-15, "{loss:?}");
         assert!((loss.rolling / loss.damping - 2.0).abs() < 1e-15, "{loss:?}");
-        assert_eq!(Loss::sharing([0.1, 0.2, 0.3]), Loss::on_slope([0.1, 0.2, 0.3]));
+        assert_eq!(Loss::redistributed([0.1, 0.2, 0.3]), Loss::on_slope([0.1, 0.2, 0.3]));
         // a gain stays one, to be seen
-        assert_eq!(Loss::sharing([-0.2, 0.1, 0.0]), Loss::on_slope([-0.2, 0.1, 0.0]));
+        assert_eq!(Loss::redistributed([-0.2, 0.1, 0.0]), Loss::on_slope([-0.2, 0.1, 0.0]));
     }
 
     #[test]
@@ -143,7 +143,7 @@ mod tests {
         for summed in [[0.0; 4], [1e-320, 0.0, 3e-322, 0.0], [5e-324; 4]] {
             for lost in [0.0, 1e-9, 1e3, 1e9] {
                 let mut parts = summed;
-                shared(lost, &mut parts);
+                scale_to_total(lost, &mut parts);
                 let sum: f64 = parts.iter().sum();
                 assert!((sum - lost).abs() <= 1e-12 * lost + 1e-300, "{summed:?}: {parts:?}");
             }

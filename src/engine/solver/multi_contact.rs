@@ -19,7 +19,7 @@
 
 use super::body::{Body, STILL, Twist};
 use super::law::StageContact;
-use super::linear_forces::{LinearForces, driven};
+use super::linear_forces::{LinearForces, motion_under};
 use crate::contact::submatrix::{Mat6, Vec6};
 use crate::rock::Vec3;
 
@@ -45,7 +45,7 @@ pub(super) fn solve(
         [contact] => {
             *sweeps += 1;
             contact.solve(body, &free.0, &free.1, h);
-            Some(driven(body, contacts, free, h))
+            Some(motion_under(body, contacts, free, h))
         }
         several => sweep_and_jump(body, several, free, h, sweeps),
     }
@@ -75,18 +75,18 @@ fn sweep_and_jump(
         }
         // a singular system is no harm: the sweeps simply go on
         let jumped = if round == 0 {
-            let motion = solved(body, contacts, (&free, h), |one| one.linear(body, &now, h));
+            let motion = solved(body, contacts, (&free, h), |one| one.linearised(body, &now, h));
             motion.map(|motion| (motion, STILL))
         } else {
             let missing = (free.0 - now.0, free.1 - now.1);
-            let change = |one: &StageContact| one.linear_in_changes(body, &now, h);
+            let change = |one: &StageContact| one.linearised_in_changes(body, &now, h);
             solved(body, contacts, (&missing, h), change).map(|change| (now, change))
         };
         if let Some((motion, change)) = jumped {
             for contact in contacts.iter_mut() {
-                contact.act_at(body, [&motion, &change], h);
+                contact.set_forces_at(body, [&motion, &change], h);
             }
-            now = driven(body, contacts, free, h);
+            now = motion_under(body, contacts, free, h);
         }
     }
     None
@@ -106,7 +106,7 @@ fn sweep(
     let scale = contacts.iter().map(|contact| contact.normal_force).fold(least, f64::max);
     let count = contacts.len();
     for contact in contacts.iter_mut() {
-        let change2 = contact.solve_anew(body, now, h);
+        let change2 = contact.relax(body, now, h);
         *calm = if change2 <= (SETTLED * scale.max(contact.normal_force)).powi(2) {
             *calm + 1
         } else {

@@ -17,9 +17,9 @@ const LONGEST: f64 = 2.0;
 /// A way is not worth asking for where it is less than so many times that of steps elsewhere (–) …
 const WORTH: f64 = 1.5;
 /// … and not again so near to where none was clear (–, relative to R).
-const AGAIN: f64 = 0.3;
+const RETRY: f64 = 0.3;
 /// How far off the straight way the path is taken to be before it is known (–, relative to its length).
-const OFF: f64 = 0.05;
+const PATH_OFFSET: f64 = 0.05;
 
 /// One step on a plane.
 #[derive(Debug, Clone, Copy)]
@@ -35,7 +35,7 @@ pub(super) struct PlaneStep {
 impl PlaneStep {
     /// Whether a rock that shifts by `shift` (m) within `dt` (s), while its velocity changes by `change` (m/s), has touched
     /// nothing but the plane, and stands on the same ground at the end.
-    pub(super) fn is_certain(
+    pub(super) fn touches_plane_only(
         &self,
         (world, near): (&ContactEnvironment, &Neighbours),
         (shift, change): (&Vec3, &Vec3),
@@ -61,14 +61,14 @@ impl ContactState {
     /// no further than `travel` (–, relative to R), among several.
     pub fn longest_step(&mut self, world: &ContactEnvironment, travel: f64) -> f64 {
         let (c, way) = (self.c, travel * world.body.radius);
-        self.know(world, &c);
+        self.update_neighbours(world, &c);
         let is_plane = self.near.plane().is_some();
         let room = if is_plane { self.near.room_m(&self.c).max(way) } else { way };
         longest_step(&world.body, self.v.norm(), room)
     }
 
     /// Sees to it that the features on a straight `way` (m) from where the rock is are known, and a little beside it.
-    pub(super) fn see_along(&mut self, world: &ContactEnvironment, way: &Vec3) {
+    pub(super) fn collect_along(&mut self, world: &ContactEnvironment, way: &Vec3) {
         if self.near.covers(&self.c) && self.near.covers(&(self.c + way)) {
             return;
         }
@@ -88,11 +88,11 @@ impl ContactState {
     ) -> f64 {
         let (body, speed) = (&world.body, self.v.norm());
         let wished_m = (speed + 0.5 * body.gravity.norm() * wished_s) * wished_s;
-        longest_step(body, speed, self.way_on_plane_m(world, face, (wished_m, least)))
+        longest_step(body, speed, self.clear_way_m(world, face, (wished_m, least)))
     }
 
     /// How far the rock may go on the plane of `face` in one step (m), `wished` at most; `least` is what it may go wherever it is.
-    fn way_on_plane_m(
+    fn clear_way_m(
         &mut self,
         world: &ContactEnvironment,
         face: u32,
@@ -100,14 +100,15 @@ impl ContactState {
     ) -> f64 {
         let (radius, speed) = (world.body.radius, self.v.norm());
         // what it strikes next decides where the step ends
-        let to_facet = self.facets.way_left_m(&self.c);
+        let to_facet = self.facets.distance_to_facet_m(&self.c);
         let most = wished_m.min(self.plane.reach * radius).min(to_facet);
-        let is_again = (self.c - self.plane.crowded_at).norm_squared() < (AGAIN * radius).powi(2);
-        if most < WORTH * least || speed == 0.0 || is_again || self.plane.ploughs {
+        let is_too_soon =
+            (self.c - self.plane.blocked_at).norm_squared() < (RETRY * radius).powi(2);
+        if most < WORTH * least || speed == 0.0 || is_too_soon || self.plane.ploughs {
             return least;
         }
         let direction = self.v / speed;
-        self.see_along(world, &(direction * most));
+        self.collect_along(world, &(direction * most));
         let most = most.min(self.near.room_ahead_m(&self.c, &direction));
         if self.is_clear(face, &(direction * most)) {
             self.plane.reach = (2.0 * most / radius).clamp(FIRST_REACH, LONGEST);
@@ -115,7 +116,7 @@ impl ContactState {
         }
         self.plane.reach *= 0.5;
         if self.plane.reach * radius < WORTH * least {
-            (self.plane.reach, self.plane.crowded_at) = (FIRST_REACH, self.c);
+            (self.plane.reach, self.plane.blocked_at) = (FIRST_REACH, self.c);
         }
         least
     }
@@ -125,7 +126,7 @@ impl ContactState {
         if self.near.plane() == Some(face) {
             return true;
         }
-        let (start, into, off_m) = (self.c, Vec3::zeros(), OFF * way.norm());
+        let (start, into, off_m) = (self.c, Vec3::zeros(), PATH_OFFSET * way.norm());
         let way_m = way.norm() + off_m;
         self.near.is_plane_on(face, &PressedPath { start, along: *way, into, off_m, way_m })
     }

@@ -9,7 +9,7 @@
 
 use super::contact_state::{ContactEnvironment, ContactState};
 use super::impact::{NormalPassage, Plane, PressedIn, Rebound};
-use super::law::{Action, ContactPlace};
+use super::law::{ContactDeformation, ContactForces};
 use super::plane_kernel::is_on_face;
 use super::step_control::Advance;
 use crate::contact::TOUCH;
@@ -18,7 +18,7 @@ use crate::contact::neighbours::PressedPath;
 use crate::rock::Vec3;
 
 /// Share of its slip that an impact is taken to stop, at most, before that is known (–): one that loses nothing turns it round.
-const STOPS: f64 = 0.5;
+const SLIP_STOPPED: f64 = 0.5;
 
 /// Least part of an impact that is worth following by itself (rad of the contact).
 const LEAST_RAD: f64 = 0.5;
@@ -30,7 +30,7 @@ impl ContactState {
     ///
     /// Returns false and changes nothing where it is none: then the impact is followed step by
     /// step.
-    pub(crate) fn bounce(
+    pub(crate) fn finish_plane_impact(
         &mut self,
         world: &ContactEnvironment,
         tolerance: f64,
@@ -45,9 +45,9 @@ impl ContactState {
         loop {
             if passage.time_s() <= h_max
                 && let Some(rebound) =
-                    self.pass_alone(world, (&plane, &passage), (&history, &pressed))
+                    self.passage_on_plane(world, (&plane, &passage), (&history, &pressed))
             {
-                self.accept_bounce(world, &rebound, done);
+                self.accept_rebound(world, &rebound, done);
                 return true;
             }
             share *= 0.5;
@@ -66,7 +66,7 @@ impl ContactState {
         if !is_on_face(world, self) || self.may_yield {
             return None;
         }
-        let (history, depth_m) = (self.histories[0], self.sunk(world));
+        let (history, depth_m) = (self.histories[0], self.plane_penetration_m(world));
         let is_sunk = depth_m > 2.0 * TOUCH * world.body.radius;
         match (history.closed, is_sunk) {
             _ if history.captured => None,
@@ -81,7 +81,7 @@ impl ContactState {
     }
 
     /// Where and how the rock is after a `passage` on which it touches nothing but the plane, if that is so.
-    fn pass_alone(
+    fn passage_on_plane(
         &mut self,
         world: &ContactEnvironment,
         (plane, passage): (&Plane, &NormalPassage),
@@ -95,11 +95,12 @@ impl ContactState {
             PressedPath::of(n, surface, (shift, change_m_s), time_s, deepest_m)
         };
         let slip_m_s = world.body.slip(n, &self.v, &self.w).norm();
-        let rubbed_m_s = world.springs_of(history).limits().caps(passage.blow_m_s()).0;
+        let friction_m_s = world.springs_of(history).limits().caps(passage.blow_m_s()).0;
         // springs at rest change the velocity one way; stretched ones may turn it round, by all that friction bears
         let is_whole = pressed.depth_m == 0.0 && passage.leaves();
-        let most_m_s = rubbed_m_s + world.body.gravity.norm() * passage.time_s();
-        let likely_m_s = if is_whole { rubbed_m_s.min(STOPS * slip_m_s) } else { most_m_s };
+        let most_m_s = friction_m_s + world.body.gravity.norm() * passage.time_s();
+        let likely_m_s =
+            if is_whole { friction_m_s.min(SLIP_STOPPED * slip_m_s) } else { most_m_s };
         let straight = encloses(&(self.v * passage.time_s()), likely_m_s);
         if straight.way_m + pressed.depth_m > self.near.room_m(&self.c) {
             let c = self.c;
@@ -121,7 +122,12 @@ impl ContactState {
     }
 
     /// Takes over the end of a passage.
-    fn accept_bounce(&mut self, world: &ContactEnvironment, rebound: &Rebound, done: &mut Advance) {
+    fn accept_rebound(
+        &mut self,
+        world: &ContactEnvironment,
+        rebound: &Rebound,
+        done: &mut Advance,
+    ) {
         self.c += rebound.shift_m;
         (self.v, self.w) = (rebound.velocity_m_s, rebound.spin_rad_s);
         self.fresh = false;
@@ -137,18 +143,19 @@ impl ContactState {
             return;
         };
         let law = world.springs_of(&self.histories[0]);
-        self.impact.pass(law.omega_rad_s() * rebound.time_s);
-        if self.impact.left <= 0.0 {
+        self.impact.elapse(law.omega_rad_s() * rebound.time_s);
+        if self.impact.left_rad <= 0.0 {
             self.balance(world);
         }
         let history = &mut self.histories[0];
-        let at = ContactPlace {
+        let at = ContactDeformation {
             n: history.n,
             penetration: pressed.depth_m,
             shear: pressed.shear_m,
             roll: pressed.roll_rad,
         };
-        let action = Action::of(&world.body, &law, &law.normal(false), &at, (&self.v, &self.w));
+        let action =
+            ContactForces::of(&world.body, &law, &law.normal(false), &at, (&self.v, &self.w));
         (history.shear, history.roll) = (at.shear, at.roll);
         history.normal_force = action.normal[0];
         history.slides = law.shear.slides2(action.shear.asked2, action.normal[0]);

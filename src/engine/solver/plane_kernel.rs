@@ -58,13 +58,13 @@ impl ContactState {
         let history = self.histories[0];
         let (wished_s, usual_m) = (h.min(h_max), TRAVEL * world.body.radius);
         let limit = self.longest_on_plane_s(world, history.feature.id, (wished_s, usual_m));
-        self.see_along(world, &(self.v * wished_s).cap_magnitude(usual_m));
+        self.collect_along(world, &(self.v * wished_s).cap_magnitude(usual_m));
         let usual_s = longest_step(&world.body, self.v.norm(), usual_m);
         let law = &world.springs_of(&history);
         let normal = law.normal(history.captured);
         // from the centre, not from the last step's sum: ways of many steps do not drift off the
         // plane
-        let penetration = self.sunk(world);
+        let penetration = self.plane_penetration_m(world);
         // state and rates stay in the plane's frame from step to step; they are turned only on the way in and out
         if !self.plane.on {
             self.enter_plane(law, &world.body, (penetration, &normal));
@@ -83,39 +83,39 @@ impl ContactState {
             penetration,
             energy: self.motion_j(&world.body) + self.stored,
             energy_at_end: 0.0,
-            room2: self.near.room_m(&self.c).max(0.0).powi(2),
+            known_way2: self.near.room_m(&self.c).max(0.0).powi(2),
             near: &self.near,
             start: self.c,
             face: history.feature.id,
             plane: &mut self.plane,
             mode: SlipState::default(),
             end: [0.0; SIZE],
-            press: PlaneForces::default(),
+            forces: PlaneForces::default(),
             stored: 0.0,
             solved: 0,
         };
         // as many steps as the certificate covers
-        let halt = trial.run((h_max, world.terrain.is_tree(history.triangle)), done);
-        let (press, stored) = (trial.press, trial.stored);
+        let failure = trial.take_steps((h_max, world.terrain.is_tree(history.triangle)), done);
+        let (forces, stored) = (trial.forces, trial.stored);
         self.sweeps += trial.solved;
-        match halt {
+        match failure {
             // a failure before the first step is the caller's; after it, what was done counts and
             // the next call sees to the rest
-            Some(StepFailure::Unsettled) if done.steps == 0 => {
-                return Some(Err(StepError::Unsettled));
+            Some(StepFailure::NotConverged) if done.steps == 0 => {
+                return Some(Err(StepError::NotConverged));
             }
-            Some(StepFailure::Elsewhere) if done.steps == 0 => return None,
+            Some(StepFailure::OutOfDomain) if done.steps == 0 => return None,
             // What stopped it after its first step is met again, or got round, from where it is now.
             _ => {}
         }
         done.loss = done.loss.on(world, history.triangle);
-        self.take_plane(law, press, stored);
+        self.accept_plane_steps(law, forces, stored);
         Some(Ok(()))
     }
 
     /// Penetration into the plane of the one contact (m).
     /// `R − n·(c − a)`, positive when pressed in.
-    pub(super) fn sunk(&self, world: &ContactEnvironment) -> f64 {
+    pub(super) fn plane_penetration_m(&self, world: &ContactEnvironment) -> f64 {
         let history = &self.histories[0];
         let corner = world.terrain.face(history.feature.id).a;
         world.body.radius - history.n.dot(&(self.c - corner))
@@ -148,13 +148,13 @@ impl ContactState {
                 [loss.trees, 0.0, 0.0]
             };
         } else {
-            self.stored = plane.begin(law, body, (penetration, normal));
+            self.stored = plane.rates_now(law, body, (penetration, normal));
             self.fresh = true;
         }
     }
 
     /// Takes over where the steps have ended: motion and memory.
-    fn take_plane(&mut self, law: &Law, press: PlaneForces, stored: f64) {
+    fn accept_plane_steps(&mut self, law: &Law, forces: PlaneForces, stored: f64) {
         let PlaneState { state, frame, on, .. } = &mut self.plane;
         let history = &mut self.histories[0];
         let way;
@@ -162,12 +162,12 @@ impl ContactState {
         self.c += way;
         self.stored = stored;
         // forces of the end, for the first guess of what comes next
-        history.normal_force = press.normal_force;
-        history.slides = law.shear.slides2(square(press.shear_force), press.normal_force);
-        history.closed = press.closed;
+        history.normal_force = forces.normal_force;
+        history.slides = law.shear.slides2(square(forces.shear_force), forces.normal_force);
+        history.closed = forces.closed;
         state[WAY..SPEED].fill(0.0);
         // the rock has lifted off: the episode may be over, and no memory is left
-        if !press.closed {
+        if !forces.closed {
             *on = false;
             self.histories.clear();
             self.fresh = false;

@@ -2,7 +2,7 @@
 
 use super::body::Body;
 use super::contact_frame::{Along, ContactFrame, Local, dot, square};
-use super::friction_rolling::cut;
+use super::friction_rolling::capped;
 use super::tableau::STAGES;
 use crate::ground::{Law, NormalElement};
 use crate::rock::Vec3;
@@ -23,12 +23,12 @@ pub(super) const ROLL: usize = 11;
 pub(super) type State = [f64; SIZE];
 
 #[inline]
-pub(super) fn two(x: &State, at: usize) -> Along {
+pub(super) fn along_at(x: &State, at: usize) -> Along {
     [x[at], x[at + 1]]
 }
 
 #[inline]
-pub(super) fn three(x: &State, at: usize) -> Local {
+pub(super) fn local_at(x: &State, at: usize) -> Local {
     [x[at], x[at + 1], x[at + 2]]
 }
 
@@ -55,8 +55,9 @@ pub(super) fn into_plane(
 
 /// Way, velocity, spin, shear and rolling as vectors.
 pub(super) fn out_of_plane(frame: &ContactFrame, x: &State) -> [Vec3; 5] {
-    let [way, speed, spin, roll] = [WAY, SPEED, SPIN, ROLL].map(|at| frame.out_local(three(x, at)));
-    [way, speed, spin, frame.out_along(two(x, SHEAR)), roll]
+    let [way, speed, spin, roll] =
+        [WAY, SPEED, SPIN, ROLL].map(|at| frame.out_local(local_at(x, at)));
+    [way, speed, spin, frame.out_along(along_at(x, SHEAR)), roll]
 }
 
 /// What presses on the rock at a stage's end.
@@ -78,7 +79,7 @@ pub(super) fn slip(body: &Body, speed: Local, spin: Local) -> Along {
 /// Energy in the springs (J).
 #[inline]
 pub(super) fn stored_j(law: &Law, penetration: f64, at: &State) -> f64 {
-    let (shear2, roll2) = (square(two(at, SHEAR)), square(three(at, ROLL)));
+    let (shear2, roll2) = (square(along_at(at, SHEAR)), square(local_at(at, ROLL)));
     law.stored_j(penetration, shear2, roll2)
 }
 
@@ -133,7 +134,7 @@ pub struct PlaneState {
     pub(super) wished_s: f64,
     /// Way to ask for next (–, relative to R), and where the last that was short enough was not clear (m).
     pub(super) reach: f64,
-    pub(super) crowded_at: Vec3,
+    pub(super) blocked_at: Vec3,
     /// Whether soil takes of the rock's speed between steps: they stay short.
     pub(crate) ploughs: bool,
 }
@@ -148,7 +149,7 @@ impl Default for PlaneState {
             losses: [[0.0; 3]; STAGES],
             wished_s: f64::INFINITY,
             reach: FIRST_REACH,
-            crowded_at: Vec3::repeat(f64::INFINITY),
+            blocked_at: Vec3::repeat(f64::INFINITY),
             ploughs: false,
         }
     }
@@ -158,35 +159,35 @@ impl PlaneState {
     /// Forgets whose state it holds (before the next contact).
     pub(crate) fn forget(&mut self) {
         (self.on, self.wished_s) = (false, f64::INFINITY);
-        (self.reach, self.crowded_at) = (FIRST_REACH, Vec3::repeat(f64::INFINITY));
+        (self.reach, self.blocked_at) = (FIRST_REACH, Vec3::repeat(f64::INFINITY));
     }
 
     /// Rates at the present state, for the explicit first stage; returns the energy in the springs (J).
-    pub(super) fn begin(
+    pub(super) fn rates_now(
         &mut self,
         law: &Law,
         body: &Body,
         (penetration, normal): (f64, &NormalElement),
     ) -> f64 {
         let (penetration, s) = (penetration.max(0.0), &self.state);
-        let (speed, spin) = (three(s, SPEED), three(s, SPIN));
+        let (speed, spin) = (local_at(s, SPEED), local_at(s, SPIN));
         let slip = slip(body, speed, spin);
         let normal_force = normal.force(penetration, speed[2]);
-        let held = two(s, SHEAR).map(|x| law.shear.held(x));
-        let asked = [0, 1].map(|k| held[k] + law.shear.damped(slip[k]));
-        let shear_force = cut(asked, law.shear.cap(normal_force));
-        let wound = three(s, ROLL).map(|x| law.rolling.held(x));
-        let asked = [0, 1, 2].map(|k| wound[k] + law.rolling.damped(spin[k]));
-        let rolling_moment = cut(asked, law.rolling.cap(normal_force));
+        let held = along_at(s, SHEAR).map(|x| law.shear.held(x));
+        let trial = [0, 1].map(|k| held[k] + law.shear.damped(slip[k]));
+        let shear_force = capped(trial, law.shear.cap(normal_force));
+        let roll_held = local_at(s, ROLL).map(|x| law.rolling.held(x));
+        let trial = [0, 1, 2].map(|k| roll_held[k] + law.rolling.damped(spin[k]));
+        let rolling_moment = capped(trial, law.rolling.cap(normal_force));
         let (over_s, over_r) = (law.shear.mobility(), law.rolling.mobility());
         let gravity = self.frame.local(&body.gravity);
-        let press = PlaneForces { normal_force, shear_force, rolling_moment, closed: true };
-        let (dv, dw) = press.accelerations(body);
+        let forces = PlaneForces { normal_force, shear_force, rolling_moment, closed: true };
+        let (dv, dw) = forces.accelerations(body);
         let dv = [0, 1, 2].map(|k| gravity[k] + dv[k]);
         let shear_rate = [0, 1].map(|k| (shear_force[k] - held[k]) * over_s);
-        let roll_rate = [0, 1, 2].map(|k| (rolling_moment[k] - wound[k]) * over_r);
+        let roll_rate = [0, 1, 2].map(|k| (rolling_moment[k] - roll_held[k]) * over_r);
         self.rates[0] = state_of([speed, dv, dw], shear_rate, roll_rate);
-        self.losses[0] = press.losses(slip, (speed[2], spin), shear_rate);
+        self.losses[0] = forces.losses(slip, (speed[2], spin), shear_rate);
         stored_j(law, penetration, &self.state)
     }
 }

@@ -60,22 +60,22 @@ pub fn advance(
 ) -> Result<Advance, StepError> {
     let mut done = Advance { steps: 1, ..Advance::default() };
     let c = state.c;
-    state.struck.clear();
-    state.look_ahead_again(world, &c);
+    state.upcoming_impacts.clear();
+    state.update_contact_points_ahead(world, &c);
     if hits(world, state) {
         // only what touches at this instant takes part in the impact
         let mut touches = state.touches.clone();
         touches.keep_struck(world.body.radius, &state.v, STRUCK_TOGETHER);
-        if state.is_struck {
+        if state.impact_announced {
             impact(world, state, &touches, &mut done);
         } else {
             // Strikes anew within an episode: the driver hears of it before it happens, as it does of the first.
             strike(world, state, &touches);
             done.steps = 0;
         }
-        state.is_struck = !state.is_struck;
+        state.impact_announced = !state.impact_announced;
     } else {
-        state.is_struck = false;
+        state.impact_announced = false;
         sustained::meet(world, state, &mut done);
         let speed = state.v.norm().max(f64::MIN_POSITIVE);
         let usual = longest.min(TRAVEL * world.body.radius / speed);
@@ -89,7 +89,7 @@ pub fn advance(
 /// Whether a touch of the last look comes in faster than the capture speed, or as fast as to a facet that is met.
 fn hits(world: &ContactEnvironment, state: &ContactState) -> bool {
     let reach = world.body.radius * (1.0 + TOUCH);
-    let meets = state.facets.is_any_met();
+    let meets = state.facets.is_tilted();
     let comes = |touch: &ContactPoint| {
         let approach = -touch.normal.dot(&state.v);
         is_fast(world, touch, &state.v)
@@ -120,7 +120,7 @@ fn strike(world: &ContactEnvironment, state: &mut ContactState, touches: &[Conta
         history.announced = true;
         if !captured {
             let struck = ContactHistory { announced: false, captured, ..*history };
-            state.struck.push(struck);
+            state.upcoming_impacts.push(struck);
         }
     }
 }
@@ -162,7 +162,7 @@ fn impact(
 /// Keeps a memory for every touch that still `holds` the rock, so that impacts are counted and rest is seen.
 pub(crate) fn remember(world: &ContactEnvironment, state: &mut ContactState, holds: bool) {
     let (c, v) = (state.c, state.v);
-    state.look_ahead_again(world, &c);
+    state.update_contact_points_ahead(world, &c);
     let touches = state.touches.nearer(world.body.radius * (1.0 + HELD));
     for history in state.histories.iter_mut() {
         history.closed = false;

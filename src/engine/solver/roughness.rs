@@ -63,7 +63,7 @@ pub(super) struct Tilt {
 
 /// A rock at a surface.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Meeting {
+pub(crate) struct SurfaceApproach {
     /// Normal of the surface.
     pub(crate) n: Vec3,
     /// Triangle whose ground answers.
@@ -74,7 +74,7 @@ pub(crate) struct Meeting {
     pub(crate) v: Vec3,
 }
 
-impl Meeting {
+impl SurfaceApproach {
     /// Approach to the facet that the surface is turned to (m/s).
     pub(crate) fn approach_m_s(&self, turn: &Rotation3<f64>) -> f64 {
         -(turn * self.n).dot(&self.v)
@@ -85,7 +85,7 @@ impl Meeting {
     /// `−n'·v` over all `n'` within an angle of `n` is `|v|` if the direction `−v` is among them,
     /// else that of the `n'` nearest to it: `approach cos + along sin`. It scales the rejection
     /// below, so that the most visible facet is always accepted.
-    fn most_m_s(&self, most: f64) -> f64 {
+    fn max_approach_m_s(&self, most: f64) -> f64 {
         let approach = -self.n.dot(&self.v);
         let along = (self.v + self.n * approach).norm();
         let (sine, cosine) = math::sin_cos(most);
@@ -106,7 +106,7 @@ impl RoughFacets {
     }
 
     /// Whether any ground of the rock has some.
-    pub(crate) fn are_any(&self) -> bool {
+    pub(crate) fn are_rough(&self) -> bool {
         self.random.is_some()
     }
 
@@ -115,17 +115,17 @@ impl RoughFacets {
     ///
     /// What is approached more slowly than the capture speed does not rebound, but it deflects and takes what it takes: the
     /// capture speed goes with `√(m/p_N)`, and soft springs must not make the ground smooth for slow rocks.
-    pub(crate) fn struck(
+    pub(crate) fn draw_facet(
         &mut self,
         world: &ContactEnvironment,
-        at: &Meeting,
+        at: &SurfaceApproach,
     ) -> Option<Rotation3<f64>> {
-        if !self.meet_next(world, at) {
+        if !self.meets_new_facet(world, at) {
             return None;
         }
         let law = world.law(at.triangle);
         let turn = draw(self.random.as_mut()?, at, law.roughness_rad, least_m_s(world))?;
-        let reach_m = law.roughness_length_m - self.passed_m(at, law.roughness_length_m);
+        let reach_m = law.roughness_length_m - self.overshoot_m(at, law.roughness_length_m);
         let ground = world.ground_of(at.triangle);
         self.last = Some(TiltedFacet { centre: at.c, normal: at.n, ground, reach_m });
         Some(turn)
@@ -133,7 +133,7 @@ impl RoughFacets {
 
     /// How far the rock is past the place of the next facet (m): a step ends somewhere behind it, and lengths of steps must not
     /// decide how many facets there are. Farther than by the share [`PAST_DUE`] of the roughness length it has flown or stood.
-    fn passed_m(&self, at: &Meeting, length_m: f64) -> f64 {
+    fn overshoot_m(&self, at: &SurfaceApproach, length_m: f64) -> f64 {
         let past_m = |facet: &TiltedFacet| (facet.centre - at.c).norm() - facet.reach_m;
         let past_m = self.last.as_ref().map_or(0.0, past_m);
         if (0.0..PAST_DUE * length_m).contains(&past_m) { past_m } else { 0.0 }
@@ -141,10 +141,10 @@ impl RoughFacets {
 
     /// Whether a rock at a surface sees a new facet: it comes fast enough, and the last one does not reach here. That is far off,
     /// on another ground, or on another side of what the rock has run into.
-    pub(crate) fn meet_next(&self, world: &ContactEnvironment, at: &Meeting) -> bool {
+    pub(crate) fn meets_new_facet(&self, world: &ContactEnvironment, at: &SurfaceApproach) -> bool {
         let law = world.law(at.triangle);
         law.roughness_rad > 0.0
-            && at.most_m_s(law.roughness_rad) >= least_m_s(world)
+            && at.max_approach_m_s(law.roughness_rad) >= least_m_s(world)
             && self.last.as_ref().is_none_or(|facet| {
                 (facet.centre - at.c).norm() >= facet.reach_m
                     || facet.ground != world.ground_of(at.triangle)
@@ -153,7 +153,7 @@ impl RoughFacets {
     }
 
     /// How far a rock at `c` may go before it can strike a facet (m): nowhere while it meets one, and on rough ground before its first.
-    pub(super) fn way_left_m(&self, c: &Vec3) -> f64 {
+    pub(super) fn distance_to_facet_m(&self, c: &Vec3) -> f64 {
         match (&self.random, &self.tilt, &self.last) {
             (None, ..) => f64::INFINITY,
             (_, None, Some(facet)) => (facet.reach_m - (facet.centre - c).norm()).max(0.0),
@@ -162,12 +162,12 @@ impl RoughFacets {
     }
 
     /// Whether the rock is turned against one that it has left, or whose time is up at `now_s` (s).
-    pub(crate) fn is_met(&self, is_free: bool, now_s: f64) -> bool {
+    pub(crate) fn is_tilt_over(&self, is_free: bool, now_s: f64) -> bool {
         self.tilt.as_ref().is_some_and(|tilt| is_free || now_s >= tilt.until_s)
     }
 
     /// Whether the rock is turned against one.
-    pub(crate) fn is_any_met(&self) -> bool {
+    pub(crate) fn is_tilted(&self) -> bool {
         self.tilt.is_some()
     }
 }
@@ -177,8 +177,13 @@ impl RoughFacets {
 ///
 /// Rejection sampling: tilt and direction uniform, accepted with the probability `max(0,
 /// −v·n')/fastest`. Three numbers of the rock's own stream a try.
-fn draw(random: &mut RandomStream, at: &Meeting, most: f64, least: f64) -> Option<Rotation3<f64>> {
-    let fastest = at.most_m_s(most);
+fn draw(
+    random: &mut RandomStream,
+    at: &SurfaceApproach,
+    most: f64,
+    least: f64,
+) -> Option<Rotation3<f64>> {
+    let fastest = at.max_approach_m_s(most);
     let beside = if at.n.x.abs() < 0.6 { Vec3::x() } else { Vec3::y() };
     // any axis square to the normal: it is turned by a uniform angle to give the direction of the
     // tilt
@@ -230,7 +235,9 @@ mod tests {
         for k in 0..count {
             let c = Vec3::x() * (0.5 * step * f64::from(k));
             met += u32::from(
-                facets.struck(&world, &Meeting { n: Vec3::z(), triangle: 0, c, v }).is_some(),
+                facets
+                    .draw_facet(&world, &SurfaceApproach { n: Vec3::z(), triangle: 0, c, v })
+                    .is_some(),
             );
         }
         f64::from(count) * step / f64::from(met)

@@ -9,7 +9,7 @@ use crate::ground::{Ground, Law, SlipFriction};
 /// How far a rock has slipped.
 #[derive(Debug, Default)]
 pub(crate) struct Slip {
-    way_m: f64,
+    slipped_m: f64,
     /// On which ground last.
     on: Option<u16>,
     /// What the grounds do, and their friction before any slip (–).
@@ -21,7 +21,7 @@ pub(crate) struct Slip {
 impl Slip {
     /// Nothing has slipped yet on these grounds.
     pub(crate) fn begin(&mut self, grounds: &[Ground]) {
-        (self.way_m, self.on) = (0.0, None);
+        (self.slipped_m, self.on) = (0.0, None);
         self.soils.clear();
         let soil = |ground: &Ground| {
             ground.slip_friction.map(|soil| (soil, ground.friction_coefficient()))
@@ -32,7 +32,7 @@ impl Slip {
     }
 
     /// Whether the friction of any ground grows.
-    pub(crate) fn is_any(&self) -> bool {
+    pub(crate) fn has_growing_friction(&self) -> bool {
         self.fastest_per_m > 0.0
     }
 
@@ -43,7 +43,7 @@ impl Slip {
     /// Coefficient of friction (–) on a ground where the rock will have slipped `ahead_m` (m) further.
     pub(crate) fn friction(&self, ground: u16, law: &Law, ahead_m: f64) -> f64 {
         self.soil(ground).map_or(law.friction_coefficient(), |(soil, least)| {
-            soil.at(*least, self.way_m + ahead_m)
+            soil.at(*least, self.slipped_m + ahead_m)
         })
     }
 
@@ -54,14 +54,14 @@ impl Slip {
 
     /// Slips further, on a ground if it touches one.
     pub(crate) fn grow(&mut self, slipped_m: f64, on: Option<u16>) {
-        self.way_m += slipped_m;
+        self.slipped_m += slipped_m;
         self.on = on.or(self.on);
     }
 
     /// Forgets in a flight of `flight_s` (s) what its last ground forgets.
     /// Exactly: `s e^(−β t)`.
-    pub(crate) fn fly(&mut self, flight_s: f64) {
+    pub(crate) fn decay(&mut self, flight_s: f64) {
         let soil = self.on.and_then(|ground| self.soil(ground));
-        self.way_m = soil.map_or(0.0, |(soil, _)| soil.left_m(self.way_m, flight_s));
+        self.slipped_m = soil.map_or(0.0, |(soil, _)| soil.left_m(self.slipped_m, flight_s));
     }
 }

@@ -14,7 +14,7 @@ impl ContactState {
     /// `Σ (p_N pen² + p_s ξ² + k_r θ²)/2`.
     pub fn springs_j(&mut self, world: &ContactEnvironment) -> Loss {
         let c = self.c;
-        self.look(world, &c, world.body.radius);
+        self.find_contact_points(world, &c, world.body.radius);
         self.stored_j(world)
     }
 
@@ -34,7 +34,11 @@ impl ContactState {
     }
 
     /// What the springs of one contact hold (J), its touch being one of the last look.
-    pub(super) fn contact_j(&self, world: &ContactEnvironment, history: &ContactHistory) -> f64 {
+    pub(super) fn contact_stored_j(
+        &self,
+        world: &ContactEnvironment,
+        history: &ContactHistory,
+    ) -> f64 {
         let law = world.springs_of(history);
         let touch = self.touches.iter().find(|touch| touch.feature == history.feature);
         touch.map_or(0.0, |touch| pressed_j(world, touch, &law))
@@ -42,12 +46,12 @@ impl ContactState {
     }
 
     /// What the normal springs of impacts under way hold (J): normal, triangle and energy of each.
-    pub(super) fn pressed_in_impacts(
+    pub(super) fn impact_springs(
         &mut self,
         world: &ContactEnvironment,
     ) -> ArrayVec<(Vec3, u32, f64), MOST> {
         let c = self.c;
-        self.look(world, &c, world.body.radius);
+        self.find_contact_points(world, &c, world.body.radius);
         let of_touch = |touch: &ContactPoint| {
             let history = self.histories.iter().find(|one| one.feature == touch.feature)?;
             let energy_j = pressed_j(world, touch, &world.springs_of(history));
@@ -67,11 +71,11 @@ impl ContactState {
             return 0.0;
         }
         let (c, last) = (self.c, std::mem::take(&mut self.touches));
-        self.know(world, &c);
+        self.update_neighbours(world, &c);
         self.near.touches(world.terrain, &c, world.body.radius, &mut self.touches);
         let all = self.stored_j(world).sum();
         let others = self.histories.iter().filter(|history| !count(history));
-        let of_others: f64 = others.map(|history| self.contact_j(world, history)).sum();
+        let of_others: f64 = others.map(|history| self.contact_stored_j(world, history)).sum();
         self.touches = last;
         all - of_others
     }
@@ -86,39 +90,39 @@ impl ContactState {
             return pressed;
         }
         let (c, last) = (self.c, std::mem::take(&mut self.touches));
-        self.know(world, &c);
+        self.update_neighbours(world, &c);
         // also what has just come to touch: its dashpot takes most at first
         self.near.touches(terrain, &c, world.body.radius * (1.0 + TOUCH), &mut self.touches);
         for (k, touch) in self.touches.iter().enumerate() {
             let memory = self.histories.iter().find(|history| history.feature == touch.feature);
             if let Some(history) = memory.filter(|_| terrain.is_tree(touch.triangle)) {
                 let law = world.law_of(history, &self.touches, k);
-                let (held_j, weight) = self.pressing(world, (history, touch), &law);
+                let (held_j, weight) = self.normal_energy_and_power(world, (history, touch), &law);
                 let stem = stems.of_triangle(touch.triangle);
-                pressed.press(PressedTree { stem, held_j, weight });
+                pressed.add(PressedTree { stem, held_j, weight });
             }
         }
         for history in self.histories.iter().filter(|one| terrain.is_tree(one.triangle)) {
             let held_j = stretched_j(world, history).sum();
             let stem = stems.of_triangle(history.triangle);
-            pressed.press(PressedTree { stem, held_j, weight: 0.0 });
+            pressed.add(PressedTree { stem, held_j, weight: 0.0 });
         }
         self.touches = last;
         pressed
     }
 
     /// What the normal spring of a touch holds (J), and the power that its dashpot and its friction take (W).
-    fn pressing(
+    fn normal_energy_and_power(
         &self,
         world: &ContactEnvironment,
         (history, touch): (&ContactHistory, &ContactPoint),
         law: &Law,
     ) -> (f64, f64) {
         let penetration = (world.body.radius - touch.distance_m).max(0.0);
-        let (normal, apart_m_s) = (law.normal(history.captured), touch.normal.dot(&self.v));
+        let (normal, separation_m_s) = (law.normal(history.captured), touch.normal.dot(&self.v));
         let slip_m_s = world.body.slip(&touch.normal, &self.v, &self.w).norm();
         let cap = if history.slides { law.limits().caps(history.normal_force).0 } else { 0.0 };
-        let taken_w = normal.dissipating_w(penetration, apart_m_s) + cap * slip_m_s;
+        let taken_w = normal.dissipating_w(penetration, separation_m_s) + cap * slip_m_s;
         (normal.stored_j(penetration), taken_w)
     }
 

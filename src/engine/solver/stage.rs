@@ -5,7 +5,7 @@
 //! given normals; the loop around it moves the normals to where the rock ends.
 
 use super::contact_state::{ContactEnvironment, ContactState, StateRates};
-use super::law::{Action, ContactPlace, StageContact};
+use super::law::{ContactDeformation, ContactForces, StageContact};
 use super::loss::Loss;
 use super::multi_contact;
 use super::tableau::Tableau;
@@ -17,7 +17,7 @@ use crate::rock::Vec3;
 /// Most passes in which geometry and forces are brought to agree.
 pub(crate) const PASSES: u32 = 10;
 /// Change of the centre, relative to the radius, below which they agree (–).
-pub(crate) const AGREED: f64 = 1e-9;
+pub(crate) const SHIFT_CONVERGED: f64 = 1e-9;
 
 impl StageContact {
     /// Power that goes into the contact (W) at velocity `v` and spin `w`: what its springs store is counted in.
@@ -34,20 +34,20 @@ impl StageContact {
     }
 
     /// Forces at the present state, for the explicit first stage; returns the rates of shear and rolling springs.
-    pub(super) fn act_now(
+    pub(super) fn set_forces_now(
         &mut self,
         world: &ContactEnvironment,
         v: &Vec3,
         w: &Vec3,
     ) -> (Vec3, Vec3) {
-        let at = ContactPlace {
+        let at = ContactDeformation {
             n: self.n,
             penetration: self.penetration,
             shear: self.shear,
             roll: self.roll,
         };
         let law = &self.law;
-        let action = Action::of(&world.body, law, &self.normal, &at, (v, w));
+        let action = ContactForces::of(&world.body, law, &self.normal, &at, (v, w));
         self.normal_force = action.normal[0];
         (self.shear_force, self.rolling_moment) = (action.shear.force, action.rolling.force);
         (action.shear.stretch_rate, action.rolling.stretch_rate)
@@ -56,7 +56,7 @@ impl StageContact {
 
 /// Where a stage ends.
 #[derive(Debug, Clone, Copy)]
-pub struct End {
+pub struct StageMotion {
     /// Centre (m).
     pub c: Vec3,
     /// Velocity (m/s).
@@ -67,9 +67,9 @@ pub struct End {
 
 impl ContactState {
     /// The base of implicit stage `i`: the state plus the explicit part of the earlier stages.
-    pub(crate) fn base(&self, tableau: &Tableau, i: usize, h: f64) -> End {
+    pub(crate) fn base(&self, tableau: &Tableau, i: usize, h: f64) -> StageMotion {
         let base = |x, part: fn(&StateRates) -> Vec3| tableau.base((i, h), (x, &self.rates), part);
-        End {
+        StageMotion {
             c: base(self.c, |rate| rate.c),
             v: base(self.v, |rate| rate.v),
             w: base(self.w, |rate| rate.w),
@@ -83,7 +83,7 @@ impl ContactState {
         tableau: &Tableau,
         i: usize,
         h: f64,
-    ) -> Option<End> {
+    ) -> Option<StageMotion> {
         let base = self.base(tableau, i, h);
         let hh = tableau.diagonal * h;
         // free motion: weight acts, contacts do not
@@ -92,10 +92,10 @@ impl ContactState {
         let before = &self.rates[i - 1];
         let mut guess = base.c + (before.c + before.v * hh) * hh;
         // Planes slid along may have ended on the way: what they say must be confirmed by the look at the end.
-        let mut looked =
+        let mut is_current =
             !(self.near.covers(&guess) && self.touches.slide_to(world.terrain, &guess));
-        if looked {
-            self.look_ahead(world, &guess);
+        if is_current {
+            self.find_contact_points_ahead(world, &guess);
         }
         for _ in 0..PASSES {
             self.place_contacts(world, tableau, (i, h), (&base, &guess));
@@ -103,15 +103,15 @@ impl ContactState {
             let (v, w) =
                 multi_contact::solve(&world.body, contacts, (vf, wf), hh, &mut self.sweeps)?;
             let c = base.c + v * hh;
-            self.look_ahead(world, &c);
+            self.find_contact_points_ahead(world, &c);
             let moved = (c - guess).norm_squared();
-            let agrees = looked && moved <= (AGREED * world.body.radius).powi(2);
+            let agrees = is_current && moved <= (SHIFT_CONVERGED * world.body.radius).powi(2);
             if agrees || self.stays_on_faces() {
-                let end = End { c, v, w };
+                let end = StageMotion { c, v, w };
                 self.store(world, &base, &end, (i, hh));
                 return Some(end);
             }
-            (guess, looked) = (c, true);
+            (guess, is_current) = (c, true);
         }
         None
     }
@@ -133,7 +133,7 @@ impl ContactState {
         world: &ContactEnvironment,
         tableau: &Tableau,
         (i, h): (usize, f64),
-        (base, at): (&End, &Vec3),
+        (base, at): (&StageMotion, &Vec3),
     ) {
         self.contact_count = self.touches.len();
         // a memory belongs to one contact at a time; bits mark those given away
@@ -147,7 +147,7 @@ impl ContactState {
             let mut contact = self.contact_of(world, k, history, (shear, roll));
             contact.penetration =
                 world.body.radius - self.touches[k].distance_m - contact.n.dot(&(base.c - at));
-            if self.onset.waits && memory.met_m_s > 0.0 {
+            if self.onset.deferred && memory.met_m_s > 0.0 {
                 contact.normal = NormalElement::NONE;
             }
             self.contacts[k] = contact;
@@ -187,8 +187,8 @@ impl ContactState {
     pub(crate) fn store(
         &mut self,
         world: &ContactEnvironment,
-        base: &End,
-        end: &End,
+        base: &StageMotion,
+        end: &StageMotion,
         (i, hh): (usize, f64),
     ) {
         let rate = &mut self.rates[i];
@@ -206,9 +206,9 @@ impl ContactState {
                 carry(shear_rate, &contact.n, &self.histories[contact.history].n);
             rate.roll[contact.history] = roll_rate;
             rate.loss.add(&contact.loss(world, &end.v, &end.w, &shear_rate), 1.0);
-            self.onset.is_met |= self.onset.waits
+            self.onset.is_reached |= self.onset.deferred
                 && self.histories[contact.history].met_m_s > 0.0
-                && contact.pen_at(&end.v, hh) > 0.0;
+                && contact.penetration_at(&end.v, hh) > 0.0;
         }
     }
 
@@ -216,7 +216,7 @@ impl ContactState {
     pub fn rates_now(&mut self, world: &ContactEnvironment) {
         let (c, v, w) = (self.c, self.v, self.w);
         let body = &world.body;
-        self.look(world, &c, body.radius * (1.0 + TOUCH));
+        self.find_contact_points(world, &c, body.radius * (1.0 + TOUCH));
         // weight, then contact by contact
         self.rates[0] = StateRates { c: v, v: body.gravity, ..StateRates::NONE };
         let mut taken = 0;
@@ -226,7 +226,7 @@ impl ContactState {
             let memory = &self.histories[history];
             let mut contact = self.contact_of(world, k, history, (memory.shear, memory.roll));
             contact.penetration = (body.radius - self.touches[k].distance_m).max(0.0);
-            let (shear_rate, roll_rate) = contact.act_now(world, &v, &w);
+            let (shear_rate, roll_rate) = contact.set_forces_now(world, &v, &w);
             let back = self.histories[history].n;
             let rate = &mut self.rates[0];
             // Newton and Euler for a sphere: shear acts at the touched point, R below the centre

@@ -39,7 +39,7 @@ pub(super) struct PressedTrees(ArrayVec<PressedTree, MOST>);
 
 impl PressedTrees {
     /// Adds a contact with a tree.
-    pub(super) fn press(&mut self, tree: PressedTree) {
+    pub(super) fn add(&mut self, tree: PressedTree) {
         match self.0.iter_mut().find(|known| known.stem == tree.stem) {
             Some(known) => {
                 known.held_j += tree.held_j;
@@ -64,11 +64,11 @@ impl PressedTrees {
     }
 
     /// What each has taken of `lost_j` (J) until `end`: what its springs hold more, and of the rest a share by its weights of both instants.
-    fn taken_until(mut self, end: &Self, lost_j: f64) -> ArrayVec<(Option<u32>, f64), MOST> {
+    fn energies_until(mut self, end: &Self, lost_j: f64) -> ArrayVec<(Option<u32>, f64), MOST> {
         for tree in &mut self.0 {
             tree.held_j = -tree.held_j;
         }
-        end.0.iter().for_each(|tree| self.press(*tree));
+        end.0.iter().for_each(|tree| self.add(*tree));
         let sum = |of: fn(&PressedTree) -> f64| self.0.iter().map(of).sum::<f64>();
         let (rest_j, weight) = (lost_j - sum(|tree| tree.held_j), sum(|tree| tree.weight));
         let evenly = 1.0 / self.0.len() as f64;
@@ -92,7 +92,7 @@ pub(crate) struct StemLoad {
 
 impl StemLoad {
     /// All stems stand again, none of them `gone`, with limits drawn for the rock of this random stream.
-    pub(crate) fn raise(&mut self, terrain: &Terrain, random: &RandomStream, gone: &mut Vec<u32>) {
+    pub(crate) fn reset(&mut self, terrain: &Terrain, random: &RandomStream, gone: &mut Vec<u32>) {
         gone.clear();
         let Some(stems) = &terrain.stems else { return };
         gone.reserve(stems.count());
@@ -109,8 +109,8 @@ impl StemLoad {
     }
 
     /// Notes what a stem has taken (J); what it took beyond its limit (J), at most rounding less than that, if it gives way.
-    pub(super) fn yields(&mut self, stems: &Stems, stem: u32, joule: f64) -> Option<f64> {
-        self.take(stem, joule);
+    pub(super) fn add_and_check(&mut self, stems: &Stems, stem: u32, energy_j: f64) -> Option<f64> {
+        self.add_taken(stem, energy_j);
         let left_j = self.left_j(stems, stem);
         (left_j <= AT_LIMIT * self.limits_j[stems.ground_of(stem)]).then_some(-left_j)
     }
@@ -127,7 +127,12 @@ impl StemLoad {
     }
 
     /// Whether it matters what each of these trees takes of this motion (J) and of what springs on them hold.
-    pub(super) fn tells_apart(&self, stems: &Stems, pressed: &PressedTrees, motion_j: f64) -> bool {
+    pub(super) fn needs_energy_by_tree(
+        &self,
+        stems: &Stems,
+        pressed: &PressedTrees,
+        motion_j: f64,
+    ) -> bool {
         let held_j: f64 = pressed.iter().map(|tree| tree.held_j).sum();
         let moved_j = UNNOTICED * (motion_j + held_j);
         let mut stems_pressed = pressed.iter().filter_map(|tree| tree.stem);
@@ -140,10 +145,10 @@ impl StemLoad {
     }
 
     /// Notes what a stem has taken (J), negative where its springs gave something back.
-    pub(super) fn take(&mut self, stem: u32, joule: f64) {
+    pub(super) fn add_taken(&mut self, stem: u32, energy_j: f64) {
         match self.taken.iter_mut().find(|(known, _)| *known == stem) {
-            Some((_, taken)) => *taken += joule,
-            None => self.taken.push((stem, joule)),
+            Some((_, taken)) => *taken += energy_j,
+            None => self.taken.push((stem, energy_j)),
         }
     }
 
@@ -155,14 +160,14 @@ impl StemLoad {
         step: &mut Loss,
     ) {
         step.add(&taken.on(world, triangle), 1.0);
-        self.strike(world.terrain, triangle, taken.sum());
+        self.note_impact(world.terrain, triangle, taken.sum());
     }
 
     /// A blow on a triangle has taken so much (J): if that is of a tree, it has its share of what trees have taken since the last step.
-    pub(super) fn strike(&mut self, terrain: &Terrain, triangle: u32, joule: f64) {
+    pub(super) fn note_impact(&mut self, terrain: &Terrain, triangle: u32, energy_j: f64) {
         if let Some(stems) = terrain.stems.as_ref().filter(|_| terrain.is_tree(triangle)) {
-            let weight = joule.max(0.0);
-            self.pressed.press(PressedTree {
+            let weight = energy_j.max(0.0);
+            self.pressed.add(PressedTree {
                 stem: stems.of_triangle(triangle),
                 held_j: 0.0,
                 weight,
@@ -172,16 +177,16 @@ impl StemLoad {
 
     /// Notes what the trees pressed until now have taken of `lost_j` (J), those at the `end` of the step known; the stems that give way, and what each took
     /// beyond its limit (J).
-    pub(super) fn take_until(
+    pub(super) fn distribute_until(
         &mut self,
         stems: &Stems,
         end: &PressedTrees,
         lost_j: f64,
     ) -> ArrayVec<(u32, f64), MOST> {
-        let taken = std::mem::take(&mut self.pressed).taken_until(end, lost_j);
-        let of_stem = |(stem, joule): (Option<u32>, f64)| {
+        let taken = std::mem::take(&mut self.pressed).energies_until(end, lost_j);
+        let of_stem = |(stem, energy_j): (Option<u32>, f64)| {
             let stem = stem?;
-            self.yields(stems, stem, joule).map(|beyond_j| (stem, beyond_j))
+            self.add_and_check(stems, stem, energy_j).map(|beyond_j| (stem, beyond_j))
         };
         taken.into_iter().filter_map(of_stem).collect()
     }

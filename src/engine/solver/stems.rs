@@ -27,7 +27,7 @@ use arrayvec::ArrayVec;
 
 /// How stems give way to a blow in the rigid limit.
 #[derive(Debug, Clone)]
-pub(crate) struct Broken {
+pub(crate) struct BrokenStems {
     /// The stems that are gone.
     stems: ArrayVec<u32, MOST>,
     /// Velocity (m/s) and spin (rad/s) with which the rock goes on.
@@ -44,7 +44,8 @@ impl ContactState {
         self.stem_load.pressed = self.pressed_trees(world);
         let motion_j = self.motion_j(&world.body);
         // what each of several takes is known between steps
-        let mut may_yield = self.stem_load.tells_apart(stems, &self.stem_load.pressed, motion_j);
+        let mut may_yield =
+            self.stem_load.needs_energy_by_tree(stems, &self.stem_load.pressed, motion_j);
         let mut longest_s =
             if may_yield { APART_RAD / self.stiffest_rad_s(world) } else { f64::INFINITY };
         for stem in self.stem_load.pressed.iter().filter_map(|tree| tree.stem) {
@@ -63,7 +64,7 @@ impl ContactState {
 
     /// After a step with these losses: the stems pressed have taken what went into contacts with trees. Whether one has
     /// given way; what the step took beyond its limit is then given back.
-    pub(crate) fn bend(
+    pub(crate) fn load_stems(
         &mut self,
         world: &ContactEnvironment,
         has_springs: bool,
@@ -77,12 +78,12 @@ impl ContactState {
         let standing_j = loss.trees - std::mem::take(&mut self.stem_load.broken_j);
         // with springs what each holds now; without them blows have told what each took
         let end = if has_springs { self.pressed_trees(world) } else { PressedTrees::default() };
-        let giving_way = self.stem_load.take_until(stems, &end, standing_j);
+        let giving_way = self.stem_load.distribute_until(stems, &end, standing_j);
         for &(stem, beyond_j) in &giving_way {
             let push = self.push_of(stems, stem);
             self.v += given_back(world.body.mass, &self.v, beyond_j, &push);
             loss.trees -= beyond_j;
-            self.fell(stems, stem);
+            self.remove_stem(stems, stem);
         }
         !giving_way.is_empty()
     }
@@ -103,7 +104,7 @@ impl ContactState {
         &self,
         world: &ContactEnvironment,
         (v, w): (&Vec3, &Vec3),
-    ) -> Option<Broken> {
+    ) -> Option<BrokenStems> {
         let stems = world.terrain.stems.as_ref()?;
         let motion_j = world.body.motion_j((v, w));
         let stands =
@@ -132,7 +133,7 @@ impl ContactState {
         world: &ContactEnvironment,
         touch: &ContactPoint,
         motion: (&Vec3, &Vec3),
-    ) -> Option<Broken> {
+    ) -> Option<BrokenStems> {
         let stems = world.terrain.stems.as_ref()?;
         let stem = stems.of_triangle(touch.triangle)?;
         let taken_j = self.stem_load.left_j(stems, stem);
@@ -141,7 +142,7 @@ impl ContactState {
         let loss = Loss { trees: taken_j, ..Loss::default() };
         let (stems, struck) =
             ([stem].into_iter().collect(), [(*touch, loss)].into_iter().collect());
-        Some(Broken { stems, motion, struck })
+        Some(BrokenStems { stems, motion, struck })
     }
 
     /// How stems give way among all these touches of one instant.
@@ -150,7 +151,7 @@ impl ContactState {
         world: &ContactEnvironment,
         touches: &[ContactPoint],
         (v, w): Twist,
-    ) -> Option<Broken> {
+    ) -> Option<BrokenStems> {
         let stems = world.terrain.stems.as_ref()?;
         let contact = |(k, touch): (usize, &ContactPoint)| JointContact {
             n: touch.normal,
@@ -166,7 +167,7 @@ impl ContactState {
         let left_j = |(_, stem)| self.stem_load.left_j(stems, stem);
         let Breakage { after, stems } = joint_blow(&[body], &contacts, left_j)?;
         let taken = touches.iter().zip(&after.loss);
-        Some(Broken {
+        Some(BrokenStems {
             stems: stems.into_iter().map(|(_, stem)| stem).collect(),
             motion: after.motions[0],
             struck: taken.map(|(touch, loss)| (*touch, loss.on(world, touch.triangle))).collect(),
@@ -174,29 +175,29 @@ impl ContactState {
     }
 
     /// Stems are gone within a step whose losses hold what they took.
-    pub(crate) fn fell_broken(&mut self, world: &ContactEnvironment, broken: &Broken) {
+    pub(crate) fn remove_broken_stems(&mut self, world: &ContactEnvironment, broken: &BrokenStems) {
         let Some(stems) = world.terrain.stems.as_ref() else { return };
         let struck = broken.struck.iter().map(|(touch, loss)| (touch.triangle, loss.trees));
-        self.fell_with(stems, struck, broken.stems.iter().copied());
+        self.remove_stems(stems, struck, broken.stems.iter().copied());
     }
 
     /// The same with what each triangle has taken that was `struck` as part of a tree (J), and the stems that are gone.
-    pub(crate) fn fell_with(
+    pub(crate) fn remove_stems(
         &mut self,
         stems: &Stems,
         struck: impl Iterator<Item = (u32, f64)>,
         gone: impl Iterator<Item = u32> + Clone,
     ) {
-        for (triangle, joule) in struck {
-            self.stem_load.broken_j += joule;
+        for (triangle, energy_j) in struck {
+            self.stem_load.broken_j += energy_j;
             // what stands after the same blow has taken its part too
             let stands = stems.of_triangle(triangle);
             if let Some(stem) = stands.filter(|stem| !gone.clone().any(|other| other == *stem)) {
-                self.stem_load.take(stem, joule);
+                self.stem_load.add_taken(stem, energy_j);
             }
         }
         for stem in gone {
-            self.fell(stems, stem);
+            self.remove_stem(stems, stem);
         }
     }
 
@@ -211,18 +212,18 @@ impl ContactState {
     ) {
         let Some(stems) = world.terrain.stems.as_ref() else { return };
         let c = self.c;
-        self.look_ahead_again(world, &c);
+        self.update_contact_points_ahead(world, &c);
         if !self.touches.iter().any(|touch| world.terrain.is_tree(touch.triangle)) {
             return;
         }
-        self.look(world, &c, world.body.radius * (1.0 + STRUCK_TOGETHER));
+        self.find_contact_points(world, &c, world.body.radius * (1.0 + STRUCK_TOGETHER));
         self.touches.keep_struck(world.body.radius, &self.v, STRUCK_TOGETHER);
         while let Some(broken) = self.broken_by(world, (&self.v, &self.w)) {
             for (touch, loss) in &broken.struck {
                 note(self, touch, (loss, self.is_new(stems, touch)));
             }
             (self.v, self.w) = broken.motion;
-            self.fell_broken(world, &broken);
+            self.remove_broken_stems(world, &broken);
             // what it took is booked, and is not among the losses of the step
             self.stem_load.broken_j = 0.0;
         }
@@ -236,11 +237,12 @@ impl ContactState {
             let is_same = stems.of_triangle(one.triangle) == stem;
             one.announced && !one.captured && is_same && (stem.is_some() || one.n == touch.normal)
         };
-        !self.is_struck || !self.histories.iter().chain(self.struck.iter()).any(known)
+        !self.impact_announced
+            || !self.histories.iter().chain(self.upcoming_impacts.iter()).any(known)
     }
 
     /// A stem is gone for this rock, with all that its contacts remember.
-    fn fell(&mut self, stems: &Stems, stem: u32) {
+    fn remove_stem(&mut self, stems: &Stems, stem: u32) {
         self.near.gone.push(stem);
         self.near.forget();
         self.histories.retain(|history| stems.of_triangle(history.triangle) != Some(stem));
@@ -252,11 +254,11 @@ impl ContactState {
 /// Change of the velocity `v` (m/s) of a mass (kg) that gives back what the last step took beyond the limit (J), negative for what
 /// it left, along the push of the stem.
 /// From `m v²/2` along the push: `v₁ = ±√(v² + 2 J/m)`; the part across it is not touched.
-pub(super) fn given_back(mass_kg: f64, v: &Vec3, joule: f64, normal_force: &Vec3) -> Vec3 {
+pub(super) fn given_back(mass_kg: f64, v: &Vec3, energy_j: f64, normal_force: &Vec3) -> Vec3 {
     let along =
         normal_force.try_normalize(0.0).or_else(|| v.try_normalize(0.0)).unwrap_or(Vec3::z());
     let speed = along.dot(v);
-    let after = (speed * speed + 2.0 * joule / mass_kg).max(0.0).sqrt();
+    let after = (speed * speed + 2.0 * energy_j / mass_kg).max(0.0).sqrt();
     // a rock that is still on its way in, as nearly always, goes against the push
     let after = if speed > 0.0 { after } else { -after };
     along * (after - speed)

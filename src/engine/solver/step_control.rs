@@ -11,19 +11,19 @@
 //! stage has no solution, when it jumps over a feature, and when energy rises.
 
 mod onset;
-mod settle;
+mod controller;
 
 use super::Settings;
 use super::body::Body;
 use super::contact_state::{ContactEnvironment, ContactState, Onset};
 use super::law::StageContact;
 use super::loss::Loss;
-use super::stage::End;
+use super::stage::StageMotion;
 use super::tableau::Tableau;
 use crate::contact::history::carry;
 use crate::ground::Law;
-pub(crate) use onset::{Begun, MET, MOST_CUTS, OnsetSearch};
-pub(crate) use settle::{StepFailure, TrialStep, TryOutcome, settle};
+pub(crate) use controller::{StepFailure, TrialStep, TryOutcome, find_accepted_step};
+pub(crate) use onset::{FirstOnset, MOST_CUTS, ONSET_ACCURACY_RAD, OnsetSearch};
 
 /// First step of a contact, in radians of its oscillation (–): an impact must be resolved, or it creates energy.
 ///
@@ -44,8 +44,8 @@ pub(crate) const PLACE_ROUNDING: f64 = 1e-11;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum StepError {
     /// No step, however short, settles.
-    #[error("the contact step would not settle, however short")]
-    Unsettled,
+    #[error("the contact step would not find_accepted_step, however short")]
+    NotConverged,
     /// It is so deep in the mesh that its contacts mean nothing any more.
     #[error("the rock sank in by half its radius: its contact springs are too soft for its speed")]
     SankIn,
@@ -102,7 +102,7 @@ impl Control {
         let impact = settings.scheme.of([usual, usual, IMPACT_OF_REFERENCE, usual]);
         Self {
             tableau,
-            tolerance: lasting_m_s(settings, &world.body),
+            tolerance: sustained_tolerance_m_s(settings, &world.body),
             impact,
             impact_kernels: settings.impact_kernels,
         }
@@ -115,7 +115,7 @@ const WEDGED: f64 = 3e-3;
 const UNLIKE: f64 = 0.97;
 
 /// Local error allowed to a rock in lasting contact (m/s): that of the run, and a share of `√(g R)`.
-pub(crate) fn lasting_m_s(settings: &Settings, body: &Body) -> f64 {
+pub(crate) fn sustained_tolerance_m_s(settings: &Settings, body: &Body) -> f64 {
     let own = body.fall_speed_m_s();
     let relative = if own > 0.0 { PIVOT * own } else { f64::INFINITY };
     settings.tolerance_m_s.min(relative)
@@ -161,7 +161,9 @@ fn step(
     // elsewhere
     if state.is_rebounding() {
         state.leave_plane(world);
-        if control.impact_kernels && state.bounce(world, control.impact, h_max, &mut done) {
+        if control.impact_kernels
+            && state.finish_plane_impact(world, control.impact, h_max, &mut done)
+        {
             return Ok(done);
         }
         let omega = stiffest(world, state);
@@ -178,15 +180,16 @@ fn step(
         state.rates_now(world);
     }
     let limit = state.longest_step(world, TRAVEL);
-    let (omega, known) = (stiffest(world, state), state.histories.len());
+    let (omega, histories_at_start) = (stiffest(world, state), state.histories.len());
     let (end, onsets) = (None, OnsetSearch::NEW);
-    let mut trial = RockTrial { world, control, state, h, limit, omega, known, end, onsets };
-    done.dt = settle(&mut trial, control, (h_max, omega), &mut done.rejected)?;
+    let mut trial =
+        RockTrial { world, control, state, h, limit, omega, histories_at_start, end, onsets };
+    done.dt = find_accepted_step(&mut trial, control, (h_max, omega), &mut done.rejected)?;
     done.steps = 1;
     if let Some(end) = trial.end {
         accept(world, control.tableau, state, (&end, done.dt), &mut done.loss);
         // what has waited presses from now on
-        state.fresh &= !std::mem::take(&mut state.onset).is_met;
+        state.fresh &= !std::mem::take(&mut state.onset).is_reached;
     }
     Ok(done)
 }
@@ -200,8 +203,8 @@ struct RockTrial<'a, 'w> {
     limit: f64,
     omega: f64,
     /// Memories at the step's start.
-    known: usize,
-    end: Option<End>,
+    histories_at_start: usize,
+    end: Option<StageMotion>,
     onsets: OnsetSearch,
 }
 
@@ -216,11 +219,12 @@ impl TrialStep for RockTrial<'_, '_> {
 
     fn try_step(&mut self, dt: f64) -> TryOutcome {
         // memories that came up in a try that failed have never been
-        self.state.histories.truncate(self.known);
-        self.state.onset = Onset { waits: self.onsets.waits(dt * self.omega), is_met: false };
+        self.state.histories.truncate(self.histories_at_start);
+        self.state.onset =
+            Onset { deferred: self.onsets.defers(dt * self.omega), is_reached: false };
         let Some((end, error)) = attempt(self.world, self.control, self.state, dt, self.omega)
         else {
-            return TryOutcome::Unsettled;
+            return TryOutcome::NotConverged;
         };
         self.end = Some(end);
         let hh = self.control.tableau.diagonal * dt;
@@ -229,11 +233,11 @@ impl TrialStep for RockTrial<'_, '_> {
         }
         // what has just begun stores less than the error of the step
         if error <= 1.0
-            && !self.state.onset.is_met
+            && !self.state.onset.is_reached
             && dt * self.omega > RESOLVED
-            && gains(self.world, self.state, &end, hh)
+            && gains_energy(self.world, self.state, &end, hh)
         {
-            return TryOutcome::Gains;
+            return TryOutcome::EnergyGain;
         }
         TryOutcome::Error(error)
     }
@@ -243,7 +247,12 @@ impl TrialStep for RockTrial<'_, '_> {
 ///
 /// `m v²/2 + I ω²/2 − m g·Δc + springs`, each at the end against the start; dashpots and friction
 /// only take.
-fn gains(world: &ContactEnvironment, state: &ContactState, end: &End, hh: f64) -> bool {
+fn gains_energy(
+    world: &ContactEnvironment,
+    state: &ContactState,
+    end: &StageMotion,
+    hh: f64,
+) -> bool {
     let body = &world.body;
     let [before, after] = energies_j(body, state, (end, hh));
     // Positions are rounded to about 1e-13 of a slope's size: times the forces, that much work is not known.
@@ -254,19 +263,23 @@ fn gains(world: &ContactEnvironment, state: &ContactState, end: &End, hh: f64) -
 }
 
 /// Motion, height over the step's start and springs of a rock (J), at the start of a step and at its end.
-pub(crate) fn energies_j(body: &Body, state: &ContactState, (end, hh): (&End, f64)) -> [f64; 2] {
+pub(crate) fn energies_j(
+    body: &Body,
+    state: &ContactState,
+    (end, hh): (&StageMotion, f64),
+) -> [f64; 2] {
     let motion = body.motion_j((&end.v, &end.w));
     // height relative to the start of the step: absolute heights would cost digits
     let lifted = body.lifted_j(&(end.c - state.c));
-    [state.motion_j(body) + state.stored, motion + lifted + pressed_j(state, end, hh)]
+    [state.motion_j(body) + state.stored, motion + lifted + springs_at_end_j(state, end, hh)]
 }
 
 /// Energy in the springs of the contacts that are closed at the end of the step (J).
 /// `Σ (p_N pen² + p_s ξ² + k_r θ²)/2` over what is closed.
-fn pressed_j(state: &ContactState, end: &End, hh: f64) -> f64 {
+fn springs_at_end_j(state: &ContactState, end: &StageMotion, hh: f64) -> f64 {
     let closed = state.stage_contacts().iter().filter(|contact| contact.is_closed(&end.v, hh));
     let stored = closed.map(|contact| {
-        let (penetration, law) = (contact.pen_at(&end.v, hh).max(0.0), &contact.law);
+        let (penetration, law) = (contact.penetration_at(&end.v, hh).max(0.0), &contact.law);
         let (shear, roll) = contact.stretches(hh);
         law.stored_j(penetration, shear.norm_squared(), roll.norm_squared())
     });
@@ -280,14 +293,14 @@ fn attempt(
     state: &mut ContactState,
     dt: f64,
     omega: f64,
-) -> Option<(End, f64)> {
+) -> Option<(StageMotion, f64)> {
     let tableau = control.tableau;
     let mut end = None;
     for i in 1..tableau.stages {
         end = Some(state.stage(world, tableau, i, dt)?);
     }
-    let off2 = off2(tableau, state, &world.body, (omega, control.tolerance));
-    end.map(|end| (end, dt * off2.sqrt() / control.tolerance))
+    let error_rate2 = error_rate2(tableau, state, &world.body, (omega, control.tolerance));
+    end.map(|end| (end, dt * error_rate2.sqrt() / control.tolerance))
 }
 
 /// Square of the local error of a rock over the length of the step (m²/s⁴), of which `allowed_m_s` is allowed: ways and stretches times the frequency
@@ -296,7 +309,7 @@ fn attempt(
 /// On one plane a contact forgets an error: its force is what the weight asks for. Between unlike faces, as in a gully, friction across the rock's
 /// way holds one against the other with any force within both cones, and keeps an error as long as they stay shut. Rolling friction answers to
 /// these forces; there ways count for more, as exact as forces must be.
-pub(crate) fn off2(
+pub(crate) fn error_rate2(
     tableau: &Tableau,
     state: &ContactState,
     body: &Body,
@@ -304,15 +317,15 @@ pub(crate) fn off2(
 ) -> f64 {
     let rates = &state.rates;
     let ways2 = (0..state.histories.len())
-        .map(|k| tableau.off(rates, |rate| rate.shear[k]).norm_squared())
-        .fold(tableau.off(rates, |rate| rate.c).norm_squared(), f64::max);
+        .map(|k| tableau.embedded_difference(rates, |rate| rate.shear[k]).norm_squared())
+        .fold(tableau.embedded_difference(rates, |rate| rate.c).norm_squared(), f64::max);
     let (mut counts, weight) = (omega, body.gravity.norm());
     if weight > 0.0 && rolls_wedged(state.stage_contacts()) {
         counts *= (allowed_m_s * omega / (WEDGED * weight)).max(1.0);
     }
     (ways2 * counts * counts)
-        .max(tableau.off(rates, |rate| rate.v).norm_squared())
-        .max(tableau.off(rates, |rate| rate.w).norm_squared() * body.radius.powi(2))
+        .max(tableau.embedded_difference(rates, |rate| rate.v).norm_squared())
+        .max(tableau.embedded_difference(rates, |rate| rate.w).norm_squared() * body.radius.powi(2))
 }
 
 /// Whether a rock that rolling friction holds back touches faces that are unlike.
@@ -330,7 +343,7 @@ pub(crate) fn accept(
     world: &ContactEnvironment,
     tableau: &Tableau,
     state: &mut ContactState,
-    (end, dt): (&End, f64),
+    (end, dt): (&StageMotion, f64),
     loss: &mut Loss,
 ) {
     for k in 0..tableau.stages {
@@ -338,11 +351,11 @@ pub(crate) fn accept(
     }
     let last = tableau.stages - 1;
     let hh = tableau.diagonal * dt;
-    state.stored = pressed_j(state, end, hh);
+    state.stored = springs_at_end_j(state, end, hh);
     let (first, later) = state.rates.split_at_mut(last);
     // the last stage's rates open the next step; shear rates are turned with their normals
     let next = &mut first[0];
-    next.take(&later[0], state.histories.len());
+    next.copy_from(&later[0], state.histories.len());
     for history in state.histories.iter_mut() {
         history.closed = false;
     }
@@ -361,7 +374,7 @@ pub(crate) fn accept(
         }
     }
     state.histories.retain(|history| history.closed);
-    state.accept_meetings(world);
+    state.accept_new_contacts(world);
     (state.c, state.v, state.w) = (end.c, end.v, end.w);
-    state.follow_grounds(world);
+    state.update_springs_of_grounds(world);
 }

@@ -60,7 +60,7 @@ impl Tableau {
 
     /// What the two methods differ by in a `part` of the rates, over the length of the step: `Σ (b_i − b̂_i) f_i`.
     #[inline]
-    pub(super) fn off<R>(&self, rates: &[R], part: impl Fn(&R) -> Vec3) -> Vec3 {
+    pub(super) fn embedded_difference<R>(&self, rates: &[R], part: impl Fn(&R) -> Vec3) -> Vec3 {
         let weighted = rates[..self.stages].iter().zip(self.error);
         weighted.fold(Vec3::zeros(), |sum, (rate, weight)| sum + part(rate) * weight)
     }

@@ -6,7 +6,7 @@
 //! left the rock's motion is in the stem, whether in springs or in friction.
 
 use super::body::Body;
-use super::law::{Action, ContactPlace};
+use super::law::{ContactDeformation, ContactForces};
 use crate::ground::Law;
 use crate::math;
 use crate::rock::Vec3;
@@ -15,48 +15,49 @@ use crate::rock::Vec3;
 /// 5e-3 rad with a midpoint rule: an error of some 1e-5 of the speed, over at most 4000 steps.
 pub(super) const STEP: f64 = 5e-3;
 /// A rock has come off within this (rad), or creeps out so heavily damped that nothing is left to take.
-pub(super) const COMES_OFF: f64 = 20.0;
+pub(super) const MAX_CONTACT_RAD: f64 = 20.0;
 /// Halvings of the step in which it gives way: all the digits there are.
 pub(super) const BISECTIONS: u32 = 60;
 
 /// A rock pressed into one contact.
 #[derive(Clone, Copy)]
-struct Pressing {
-    at: ContactPlace,
+struct PressedRock {
+    at: ContactDeformation,
     v: Vec3,
     w: Vec3,
 }
 
-impl Pressing {
+impl PressedRock {
     /// After `h` (s), by a step through the middle.
     /// Midpoint rule: `x + h f(x + h f(x)/2)`.
     fn after(&self, body: &Body, law: &Law, h: f64) -> Self {
-        let middle = self.moved(body, law, self, 0.5 * h);
-        self.moved(body, law, &middle, h)
+        let middle = self.stepped(body, law, self, 0.5 * h);
+        self.stepped(body, law, &middle, h)
     }
 
     /// Gone on for `h` (s) at the rates of `there`.
-    fn moved(&self, body: &Body, law: &Law, there: &Self, h: f64) -> Self {
+    fn stepped(&self, body: &Body, law: &Law, there: &Self, h: f64) -> Self {
         let n = &there.at.n;
-        let acts = Action::of(body, law, &law.normal(false), &there.at, (&there.v, &there.w));
-        let turning = n.cross(&acts.shear.force) * body.radius - acts.rolling.force;
+        let forces =
+            ContactForces::of(body, law, &law.normal(false), &there.at, (&there.v, &there.w));
+        let turning = n.cross(&forces.shear.force) * body.radius - forces.rolling.force;
         Self {
-            at: ContactPlace {
+            at: ContactDeformation {
                 n: *n,
                 penetration: self.at.penetration - n.dot(&there.v) * h,
-                shear: self.at.shear + acts.shear.stretch_rate * h,
-                roll: self.at.roll + acts.rolling.stretch_rate * h,
+                shear: self.at.shear + forces.shear.stretch_rate * h,
+                roll: self.at.roll + forces.rolling.stretch_rate * h,
             },
-            v: self.v + (n * acts.normal[0] - acts.shear.force) * (h / body.mass),
+            v: self.v + (n * forces.normal[0] - forces.shear.force) * (h / body.mass),
             w: self.w + turning * (h / body.inertia),
         }
     }
 
     /// Whether it is still on its way in, or pushed out.
     fn presses(&self, law: &Law) -> bool {
-        let apart_m_s = self.at.n.dot(&self.v);
-        let force = law.normal(false).pull_or_push(self.at.penetration, apart_m_s);
-        apart_m_s < 0.0 || force > 0.0
+        let separation_m_s = self.at.n.dot(&self.v);
+        let force = law.normal(false).pull_or_push(self.at.penetration, separation_m_s);
+        separation_m_s < 0.0 || force > 0.0
     }
 
     fn motion_j(&self, body: &Body) -> f64 {
@@ -72,12 +73,13 @@ pub(crate) fn yielding_impact(
     (v, w): (&Vec3, &Vec3),
     limit_j: f64,
 ) -> Option<(Vec3, Vec3)> {
-    let at = ContactPlace { n: *n, penetration: 0.0, shear: Vec3::zeros(), roll: Vec3::zeros() };
-    let mut rock = Pressing { at, v: *v, w: *w };
+    let at =
+        ContactDeformation { n: *n, penetration: 0.0, shear: Vec3::zeros(), roll: Vec3::zeros() };
+    let mut rock = PressedRock { at, v: *v, w: *w };
     let left_j = rock.motion_j(body) - limit_j;
     let step = STEP / law.omega_rad_s();
-    let mut gone = 0.0;
-    while rock.presses(law) && gone < COMES_OFF {
+    let mut elapsed_rad = 0.0;
+    while rock.presses(law) && elapsed_rad < MAX_CONTACT_RAD {
         let next = rock.after(body, law, step);
         if next.motion_j(body) <= left_j {
             // halving is safe where the energy taken is not monotone: the interval always ends with
@@ -87,7 +89,7 @@ pub(crate) fn yielding_impact(
             let end = rock.after(body, law, yields);
             return Some((end.v, end.w));
         }
-        (rock, gone) = (next, gone + STEP);
+        (rock, elapsed_rad) = (next, elapsed_rad + STEP);
     }
     None
 }

@@ -4,15 +4,15 @@ use super::Recorder;
 use crate::rock::Vec3;
 use crate::simulation::Ledger;
 use crate::simulation::impacts::{MeshEnergy, PatchOwner};
+use crate::solver::impact_point::ImpactPoint;
 use crate::solver::loss::Loss;
-use crate::solver::struck::Struck;
 
 impl Recorder<'_> {
     /// Begins an impact on a triangle's patch at the present motion, to end at `until_s` (s) at the latest; `held_j` is what
     /// the springs of other contacts hold. Returns its number.
     pub(in crate::simulation) fn begin_impact(
         &mut self,
-        struck: &Struck,
+        struck: &ImpactPoint,
         until_s: f64,
         held_j: &MeshEnergy,
     ) -> u32 {

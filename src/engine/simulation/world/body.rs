@@ -13,8 +13,8 @@ use crate::simulation::rest::RestCriterion;
 use crate::simulation::rock_in_contact::RockInContact;
 use crate::simulation::settings::RunSettings;
 use crate::simulation::{PathState, Stop, Trajectory};
-use crate::solver::island::{BlowInStep, Hit};
-use crate::solver::loss::{Given, Loss};
+use crate::solver::island::{BlowInStep, MeshImpact};
+use crate::solver::loss::{EnergyGiven, Loss};
 use crate::solver::step_control::ONSET;
 
 impl<'a> WorldBody<'a> {
@@ -64,13 +64,13 @@ impl<'a> WorldBody<'a> {
             self.recorder.stay(now_s);
         }
         if self.member.flying && self.lands.is_none() {
-            self.look_ahead(settings);
+            self.find_contact_points_ahead(settings);
         }
     }
 
     /// Finds the end of the flight that begins now.
     /// Kept until it comes: windows only compare times with it.
-    pub(super) fn look_ahead(&mut self, settings: &RunSettings) {
+    pub(super) fn find_contact_points_ahead(&mut self, settings: &RunSettings) {
         let now_s = self.recorder.now.time_s;
         let left = settings.longest_s - now_s;
         let flight = self.flight(settings);
@@ -175,7 +175,7 @@ impl<'a> WorldBody<'a> {
         &mut self,
         settings: &RunSettings,
         time_s: f64,
-        (mut loss, given): (Loss, Given),
+        (mut loss, given): (Loss, EnergyGiven),
         slides: bool,
     ) {
         if matches!(self.state, BodyState::Gone(_)) {
@@ -185,22 +185,22 @@ impl<'a> WorldBody<'a> {
         let mut rock = self.in_contact(settings);
         rock.announce();
         // what others give it comes from where they are: it meets no facet meanwhile
-        if given != Given::default() {
+        if given != EnergyGiven::default() {
             rock.leave_facet();
         }
         // stems that the step has overloaded take their share of the energy now
-        rock.state.bend(&rock.world, true, &mut loss);
+        rock.state.load_stems(&rock.world, true, &mut loss);
         let to = self.motion_at(time_s);
         // A rock may be hit and let go within one step: then it flies another way.
         // neither the mesh nor another rock took or gave anything in this step
-        let is_untouched = given == Given::default() && loss == Loss::default();
+        let is_untouched = given == EnergyGiven::default() && loss == Loss::default();
         if was_flying && self.member.flying && is_untouched {
             self.recorder.step_as(to, PathState::Flight, true);
             return;
         }
         self.touch(settings, to, (loss, given), (slides, was_flying));
         if self.member.flying {
-            self.look_ahead(settings);
+            self.find_contact_points_ahead(settings);
         }
     }
 
@@ -212,14 +212,14 @@ impl<'a> WorldBody<'a> {
         &mut self,
         settings: &RunSettings,
         time_s: f64,
-        (mut loss, given): (Loss, Given),
+        (mut loss, given): (Loss, EnergyGiven),
         slides: bool,
     ) {
         if matches!(self.state, BodyState::Gone(_)) {
             return;
         }
         let rock = self.in_contact(settings);
-        rock.state.bend(&rock.world, false, &mut loss);
+        rock.state.load_stems(&rock.world, false, &mut loss);
         let to = self.motion_at(time_s);
         // its impacts are listed with its blows
         self.member.state.histories.iter_mut().for_each(|history| history.announced = true);
@@ -240,7 +240,7 @@ impl<'a> WorldBody<'a> {
     pub(super) fn pass(
         &mut self,
         settings: &RunSettings,
-        (blow, hits): (&BlowInStep, &[Hit]),
+        (blow, hits): (&BlowInStep, &[MeshImpact]),
         (time_s, slides): (f64, bool),
     ) {
         if matches!(self.state, BodyState::Gone(_)) {
@@ -278,7 +278,7 @@ impl<'a> WorldBody<'a> {
         &mut self,
         settings: &RunSettings,
         to: Motion,
-        (loss, given): (Loss, Given),
+        (loss, given): (Loss, EnergyGiven),
         (slides, was_flying): (bool, bool),
     ) {
         let from = self.recorder.now;
@@ -310,7 +310,7 @@ impl<'a> WorldBody<'a> {
     }
 
     /// Writes down what other rocks, and contacts with them, have got (J).
-    pub(super) fn give(&mut self, given: &Given) {
+    pub(super) fn give(&mut self, given: &EnergyGiven) {
         self.recorder.ledger.others_j += given.lost;
         self.recorder.ledger.passed_on_j += given.passed_on;
     }

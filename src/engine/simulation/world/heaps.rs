@@ -14,7 +14,7 @@ use crate::contact::pair::{PairHistory, between, held_groups};
 use crate::rock::Motion;
 use crate::simulation::settings::RunSettings;
 use crate::solver::island::unload_pair;
-use crate::solver::loss::Given;
+use crate::solver::loss::EnergyGiven;
 use crate::solver::{MOST_WITH_SPRINGS, Settings};
 
 /// The step of heaps where they go on in the rigid limit: not where bonds are to break, as those have springs.
@@ -106,12 +106,12 @@ impl WorldBody<'_> {
         self.in_contact(settings).leave_facet();
         let loss = self.member.unload(settings.terrain);
         self.recorder.pay(&loss);
-        self.go_on_unloaded(&Given::default());
+        self.go_on_unloaded(&EnergyGiven::default());
         self.recorder.end_all_impacts();
     }
 
     /// Goes on with the motion that springs have given it.
-    fn go_on_unloaded(&mut self, given: &Given) {
+    fn go_on_unloaded(&mut self, given: &EnergyGiven) {
         self.give(given);
         let (velocity_m_s, spin_rad_s) = (self.member.state.v, self.member.state.w);
         self.recorder.go_on_with(Motion { velocity_m_s, spin_rad_s, ..self.recorder.now });

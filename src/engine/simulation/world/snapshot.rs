@@ -9,7 +9,7 @@ use super::{BodyState, Stop, WorldBody};
 use crate::contact::pair::PairHistory;
 use crate::simulation::recorder::RecorderMark;
 use crate::simulation::rest::RestCriterion;
-use crate::solver::island::Memory;
+use crate::solver::island::BodySnapshot;
 
 /// All that later windows depend on.
 pub(super) struct Snapshot {
@@ -20,7 +20,7 @@ pub(super) struct Snapshot {
 
 /// One rock of it.
 pub(super) struct Kept {
-    memory: Memory,
+    memory: BodySnapshot,
     mark: RecorderMark,
     state: BodyState,
     lands: Option<(f64, Option<Stop>)>,
@@ -35,7 +35,7 @@ impl WorldBody<'_> {
     /// What the rock is now, as far as later windows depend on it.
     pub(super) fn keep(&self) -> Kept {
         Kept {
-            memory: self.member.memory(),
+            memory: self.member.snapshot(),
             mark: self.recorder.mark(),
             state: self.state.clone(),
             lands: self.lands.clone(),
@@ -49,7 +49,7 @@ impl WorldBody<'_> {
 
     /// To the bit what it was; only its effort and what is foreseen of it stay.
     pub(super) fn go_back(&mut self, kept: &Kept) {
-        self.member.recall(&kept.memory);
+        self.member.restore(&kept.memory);
         self.recorder.go_back(&kept.mark);
         self.state.clone_from(&kept.state);
         self.lands.clone_from(&kept.lands);

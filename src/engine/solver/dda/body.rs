@@ -7,7 +7,7 @@ use crate::rock::Vec3;
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
 use crate::solver::dda_system::StepConstants;
 use crate::solver::dda_system::contact::DdaContact;
-use crate::solver::loss::{Given, Loss};
+use crate::solver::loss::{EnergyGiven, Loss};
 use crate::solver::springs::stretched_j;
 use crate::solver::step_control::StepError;
 
@@ -21,7 +21,7 @@ pub(in crate::solver) struct DdaBody<'a> {
     /// What its contacts with the mesh have taken in the step (J).
     pub(in crate::solver) loss: Loss,
     /// What it gave to other rocks in the step (J).
-    pub(in crate::solver) given: Given,
+    pub(in crate::solver) given: EnergyGiven,
 }
 
 impl<'a> DdaBody<'a> {
@@ -31,16 +31,16 @@ impl<'a> DdaBody<'a> {
         state: &'a mut ContactState,
         stored: Loss,
     ) -> Self {
-        Self { world, state, stored, loss: Loss::default(), given: Given::default() }
+        Self { world, state, stored, loss: Loss::default(), given: EnergyGiven::default() }
     }
 
     /// A rock of which nothing is known yet: it looks for what it touches.
-    pub(in crate::solver) fn looking(
+    pub(in crate::solver) fn with_contact_points(
         world: ContactEnvironment<'a>,
         state: &'a mut ContactState,
     ) -> Self {
         let c = state.c;
-        state.look_ahead(&world, &c);
+        state.find_contact_points_ahead(&world, &c);
         let stored = state.stored_j(&world);
         Self::new(world, state, stored)
     }
@@ -49,10 +49,10 @@ impl<'a> DdaBody<'a> {
     ///
     /// Normals and levers stay those of the start for the whole step, as in the paper: on an edge that makes every order
     /// of the rule first order.
-    pub(super) fn meet(&mut self, (dt, shear_memory): (f64, bool)) {
+    pub(super) fn begin_step(&mut self, (dt, shear_memory): (f64, bool)) {
         let (body, state) = (&self.world.body, &mut *self.state);
         // D₀ = V₀ Δt + g Δt²/2; a free sphere keeps its spin
-        let free = six(&(state.v * dt + body.gravity * (0.5 * dt * dt)), &(state.w * dt));
+        let free = vec6(&(state.v * dt + body.gravity * (0.5 * dt * dt)), &(state.w * dt));
         state.scratch.begin(body, StepConstants::new(body, free, (dt, shear_memory)));
         for k in 0..self.state.touches.len() {
             self.add_contact(k, self.state.touches[k].distance_m);
@@ -63,7 +63,7 @@ impl<'a> DdaBody<'a> {
     fn add_contact(&mut self, k: usize, distance_m: f64) {
         let Self { world, state, .. } = self;
         let v = state.v;
-        let history = state.history_of(world, k, state.scratch.taken, &v);
+        let history = state.history_of(world, k, state.scratch.used_histories, &v);
         let touch = ContactPoint { distance_m, ..state.touches[k] };
         let memory = &state.histories[history];
         let law = world.law_of(memory, &state.touches, k);
@@ -71,16 +71,16 @@ impl<'a> DdaBody<'a> {
     }
 
     /// Adds the contacts that the step ran into; whether there are any. Ends with the touches of the step's end.
-    pub(super) fn meet_more(&mut self) -> bool {
+    pub(super) fn add_new_contacts(&mut self) -> bool {
         let way: Vec3 = self.state.scratch.d.fixed_rows::<3>(0).into();
         let end = self.state.c + way;
-        self.state.look_ahead(&self.world, &end);
+        self.state.find_contact_points_ahead(&self.world, &end);
         let touches = self.state.touches.clone();
         let before = self.state.scratch.contacts().len();
         for (k, touch) in touches.iter().enumerate() {
             let contacts = self.state.scratch.contacts();
             let is_inside = touch.distance_m < self.world.body.radius && contacts.len() < MOST;
-            if is_inside && !knows(contacts, touch, &touches, &self.state.scratch.d) {
+            if is_inside && !has_contact(contacts, touch, &touches, &self.state.scratch.d) {
                 // as far from it as it was at the step's start
                 self.add_contact(k, touch.distance_m - touch.normal.dot(&way));
             }
@@ -95,7 +95,7 @@ impl<'a> DdaBody<'a> {
     ///
     /// # Errors
     /// [`StepError::SankIn`] if a contact is deeper than its spring is meant for.
-    pub(super) fn carry_on(&mut self) -> Result<(), StepError> {
+    pub(super) fn finish_step(&mut self) -> Result<(), StepError> {
         let Self { world, state, loss, .. } = self;
         let ContactState { scratch, histories, .. } = &mut **state;
         let d = &scratch.d;
@@ -103,12 +103,12 @@ impl<'a> DdaBody<'a> {
             history.closed = false;
         }
         for contact in scratch.contacts() {
-            let ways = contact.ways(d);
-            if ways.depth > DEEPEST * contact.radius {
+            let relative = contact.relative_displacement(d);
+            if relative.depth > DEEPEST * contact.radius {
                 return Err(StepError::SankIn);
             }
-            loss.add(&contact.loss(&ways).on(world, contact.triangle), 1.0);
-            contact.remember(&ways, &mut histories[contact.history]);
+            loss.add(&contact.loss(&relative).on(world, contact.triangle), 1.0);
+            contact.remember(&relative, &mut histories[contact.history]);
         }
         let (d, dt) = (*d, scratch.step.dt);
         let kick = scratch.added * (2.0 / dt);
@@ -131,12 +131,12 @@ impl<'a> DdaBody<'a> {
 }
 
 /// A displacement and a rotation as the six unknowns of Eq. (1).
-fn six(a: &Vec3, b: &Vec3) -> Vec6 {
+fn vec6(a: &Vec3, b: &Vec3) -> Vec6 {
     Vec6::new(a.x, a.y, a.z, b.x, b.y, b.z)
 }
 
 /// Whether a touch of the step's end took part in it, by itself or as the part of the surface that it came from.
-fn knows(
+fn has_contact(
     contacts: &[DdaContact],
     touch: &ContactPoint,
     touches: &[ContactPoint],
@@ -144,7 +144,7 @@ fn knows(
 ) -> bool {
     contacts.iter().any(|contact| {
         contact.feature == touch.feature
-            || contact.leads_to(touch, d)
+            || contact.moves_to(touch, d)
                 && touches.iter().all(|other| other.feature != contact.feature)
     })
 }

@@ -11,7 +11,7 @@ use crate::contact::submatrix::{Mat6, Vec6};
 use crate::solver::block_factor::{Below, Blocks, Factor};
 use crate::solver::dda_system::pair_contact::DdaPairContact;
 use crate::solver::dda_system::slider::Change;
-use crate::solver::loss::Given;
+use crate::solver::loss::EnergyGiven;
 use crate::solver::step_control::StepError;
 
 /// The contacts between rocks; a rock alone has none, and no memory is taken for it.
@@ -25,7 +25,7 @@ pub(in crate::solver) struct DdaPairs {
 
 impl DdaPairs {
     /// Contacts that are closed or may close within the step.
-    pub(super) fn meet(&mut self, bodies: &[DdaBody], pair_histories: &[PairHistory]) {
+    pub(super) fn begin_step(&mut self, bodies: &[DdaBody], pair_histories: &[PairHistory]) {
         let over = |(k, pair_history): (usize, &PairHistory)| {
             let ends = [pair_history.a, pair_history.b].map(|end| &bodies[end as usize]);
             let steps = ends.map(|end| &end.state.scratch.step);
@@ -60,7 +60,8 @@ impl DdaPairs {
             self.factorise(bodies)?;
         }
         for pair in &self.pairs {
-            let free = pair.ways(pair.ends.map(|end| &bodies[end].state.scratch.step.free));
+            let free = pair
+                .relative_displacement(pair.ends.map(|end| &bodies[end].state.scratch.step.free));
             for (k, end) in pair.ends.into_iter().enumerate() {
                 let own = load[6 * self.places[end]?..].iter_mut();
                 own.zip(&pair.load(k, &free)).for_each(|(sum, load)| *sum += load);
@@ -69,7 +70,9 @@ impl DdaPairs {
         self.factor.as_ref()?.substitute(&mut load)?;
         let joined = bodies.iter_mut().zip(&self.places).filter(|(_, place)| place.is_some());
         let mut solved = joined.zip(load.chunks_exact(6));
-        solved.try_for_each(|((body, _), x)| body.state.scratch.take(Vec6::from_column_slice(x)))
+        solved.try_for_each(|((body, _), x)| {
+            body.state.scratch.set_solution(Vec6::from_column_slice(x))
+        })
     }
 
     /// Factorises the blocks of the rocks that are joined and of the contacts between them.
@@ -92,10 +95,11 @@ impl DdaPairs {
     }
 
     /// Judges each by the displacements that came out; the largest change.
-    pub(super) fn judge(&mut self, bodies: &[DdaBody]) -> Change {
+    pub(super) fn update_state(&mut self, bodies: &[DdaBody]) -> Change {
         let pairs = self.pairs.iter_mut();
-        let judged = pairs.map(|pair| pair.contact.judge(&pair.ways(d(pair, bodies))));
-        judged.max().unwrap_or(Change::None)
+        let changes = pairs
+            .map(|pair| pair.contact.update_state(&pair.relative_displacement(d(pair, bodies))));
+        changes.max().unwrap_or(Change::None)
     }
 
     /// Ends the search for their states.
@@ -106,7 +110,9 @@ impl DdaPairs {
     /// Opens or closes one that begins apart, the last that asks for it; whether there is any.
     pub(super) fn open_or_close_one_apart(&mut self, bodies: &[DdaBody]) -> bool {
         let mut pairs = self.pairs.iter_mut().rev();
-        pairs.any(|pair| pair.contact.open_or_close_apart(&pair.ways(d(pair, bodies))))
+        pairs.any(|pair| {
+            pair.contact.open_or_close_apart(&pair.relative_displacement(d(pair, bodies)))
+        })
     }
 
     /// Writes their state into their memory, and books what each end gave the other (J); how many bonds broke.
@@ -115,7 +121,7 @@ impl DdaPairs {
     ///
     /// # Errors
     /// [`StepError::SankIn`] if a contact is deeper than the springs are meant for: the step is too long for them.
-    pub(super) fn book(
+    pub(super) fn finish_step(
         &self,
         bodies: &mut [DdaBody],
         pair_histories: &mut [PairHistory],
@@ -124,13 +130,13 @@ impl DdaPairs {
         let mut broken = 0;
         for pair in &self.pairs {
             let d = d(pair, bodies);
-            if pair.ways(d).depth > DEEPEST * pair.contact.radius {
+            if pair.relative_displacement(d).depth > DEEPEST * pair.contact.radius {
                 return Err(StepError::SankIn);
             }
-            let (given, lost) = (Given::of_ends(pair.given_j(d)), 0.5 * pair.taken_j(d));
+            let (given, lost) = (EnergyGiven::of_ends(pair.given_j(d)), 0.5 * pair.taken_j(d));
             broken += u64::from(pair.remember(d, &mut pair_histories[pair.contact.history]));
             for (end, given) in pair.ends.into_iter().zip(given) {
-                bodies[end].given.add(&Given { lost, ..given }, 1.0);
+                bodies[end].given.add(&EnergyGiven { lost, ..given }, 1.0);
             }
         }
         Ok(broken)

@@ -48,13 +48,13 @@ impl DdaStep<'_, '_> {
         &mut self,
         (dt, shear_memory): (f64, bool),
     ) -> Result<DdaOutcome, StepError> {
-        self.bodies.iter_mut().for_each(|body| body.meet((dt, shear_memory)));
-        self.pairs.meet(self.bodies, self.pair_histories);
+        self.bodies.iter_mut().for_each(|body| body.begin_step((dt, shear_memory)));
+        self.pairs.begin_step(self.bodies, self.pair_histories);
         let mut solves = 0;
         // a system that cannot be factored means a motion that is no number
         let settled = self.solve(&mut solves).ok_or(StepError::NotFinite)?;
-        self.bodies.iter_mut().try_for_each(DdaBody::carry_on)?;
-        let broken = self.pairs.book(self.bodies, self.pair_histories)?;
+        self.bodies.iter_mut().try_for_each(DdaBody::finish_step)?;
+        let broken = self.pairs.finish_step(self.bodies, self.pair_histories)?;
         Ok(DdaOutcome { settled, solves, broken })
     }
 
@@ -64,10 +64,10 @@ impl DdaStep<'_, '_> {
     /// Ends: each round adds a contact, and no rock has more than `MOST`.
     fn solve(&mut self, solves: &mut u32) -> Option<bool> {
         loop {
-            let settled = self.settle(solves)?;
+            let settled = self.iterate_open_close(solves)?;
             let mut more = false;
             for body in &mut *self.bodies {
-                more |= body.meet_more();
+                more |= body.add_new_contacts();
             }
             if !more {
                 return Some(settled);
@@ -78,14 +78,14 @@ impl DdaStep<'_, '_> {
     /// Open–close iteration; whether the states of all contacts settled.
     ///
     /// A step that does not settle is solved by [`Self::stick`]. `None` if it has no solution.
-    fn settle(&mut self, solves: &mut u32) -> Option<bool> {
+    fn iterate_open_close(&mut self, solves: &mut u32) -> Option<bool> {
         let (mut rounds, mut change) = (0, Change::Mode);
         for _ in 0..SOLVES {
             *solves += 1;
             // the largest change of all contacts decides: a changed mode needs a new matrix, a
             // changed load only a new right side
             self.pairs.solve(self.bodies, change == Change::Mode)?;
-            change = self.judge();
+            change = self.update_state();
             match change {
                 Change::None => return Some(true),
                 Change::Load => {}
@@ -120,9 +120,9 @@ impl DdaStep<'_, '_> {
     }
 
     /// Judges every contact at the displacements found; the largest change.
-    fn judge(&mut self) -> Change {
-        let bodies = self.bodies.iter_mut().map(|body| body.state.scratch.judge());
+    fn update_state(&mut self) -> Change {
+        let bodies = self.bodies.iter_mut().map(|body| body.state.scratch.update_state());
         let change = bodies.max().unwrap_or(Change::None);
-        change.max(self.pairs.judge(self.bodies))
+        change.max(self.pairs.update_state(self.bodies))
     }
 }

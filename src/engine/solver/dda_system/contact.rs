@@ -1,7 +1,7 @@
 //! One contact inside a fixed step, of a sphere with the mesh or of two spheres: its submatrices, and the judgement of its state.
 
 use super::StepConstants;
-use super::slider::{Change, DdaSlider, along};
+use super::slider::{Change, DdaSlider, unit_or_zero};
 use crate::contact::TOUCH;
 use crate::contact::history::{ContactHistory, SAME_GRIP, carry};
 use crate::contact::submatrix::{
@@ -35,7 +35,7 @@ impl ContactMatrixTerms {
 
 /// What a contact sees of the displacements of a step.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct ContactWays {
+pub(crate) struct RelativeDisplacement {
     /// Penetration at the end (m), negative when apart.
     pub(crate) depth: f64,
     /// Slip of the touched point (m), Eq. (16), of the first sphere relative to the second.
@@ -70,11 +70,11 @@ pub(crate) struct DdaContact {
     /// Whether the shear spring remembers; without, as printed.
     pub(super) shear_memory: bool,
     /// Normal force at the end of the last step (N): the printed scheme caps friction by it.
-    pub(super) push_before: f64,
+    pub(super) last_normal_force: f64,
     /// Normal force of the last judgement (N), positive when pressing.
     pub(super) normal_force: f64,
     /// Not open.
-    pub(super) presses: bool,
+    pub(super) closed: bool,
 }
 
 impl DdaContact {
@@ -116,7 +116,7 @@ impl DdaContact {
         };
         contact.roll.stretch = history.roll;
         let stretch = carry(history.shear, &history.n, &touch.normal);
-        let free = contact.ways(&step.free);
+        let free = contact.relative_displacement(&step.free);
         let left = (history.normal_force, stretch);
         contact.begin((history.closed, history.slides), left, &free);
         contact
@@ -128,38 +128,38 @@ impl DdaContact {
         &mut self,
         (closed, slides): (bool, bool),
         (push, stretch): (f64, Vec3),
-        free: &ContactWays,
+        free: &RelativeDisplacement,
     ) {
-        self.push_before = push;
+        self.last_normal_force = push;
         if self.shear_memory {
             self.shear.stretch = stretch;
         } else {
             self.shear.damper = 0.0;
         }
-        self.presses = closed || free.depth > 0.0;
+        self.closed = closed || free.depth > 0.0;
         if push <= 0.0 || self.bonded {
             return;
         }
         let (cap, roll_cap) = self.limits.caps(push);
         if self.shear_memory {
-            self.shear.judge(&free.slip, &Vec3::zeros(), cap);
+            self.shear.update_state(&free.slip, &Vec3::zeros(), cap);
         } else if slides {
-            (self.shear.slides, self.shear.friction) = (true, along(&free.slip) * cap);
+            (self.shear.slides, self.shear.friction) = (true, unit_or_zero(&free.slip) * cap);
         }
         if self.limits.has_rolling() {
-            self.roll.judge(&free.turn, &Vec3::zeros(), roll_cap);
+            self.roll.update_state(&free.turn, &Vec3::zeros(), roll_cap);
         }
     }
 
     /// What it sees of the displacement `d` of its sphere.
-    pub(crate) fn ways(&self, d: &Vec6) -> ContactWays {
-        self.see(d, &(displacement(&self.points[0]) * d))
+    pub(crate) fn relative_displacement(&self, d: &Vec6) -> RelativeDisplacement {
+        self.relative_to(d, &(displacement(&self.points[0]) * d))
     }
 
     /// What it sees of the displacements `d` of a sphere and `u` of the touched point, or of those relative to the other sphere's.
-    pub(super) fn see(&self, d: &Vec6, u: &Vec3) -> ContactWays {
+    pub(super) fn relative_to(&self, d: &Vec6, u: &Vec3) -> RelativeDisplacement {
         let turn = d.fixed_rows::<3>(3).into();
-        ContactWays { depth: self.depth(d), slip: slip(&self.v, u), turn }
+        RelativeDisplacement { depth: self.depth(d), slip: slip(&self.v, u), turn }
     }
 
     fn depth(&self, d: &Vec6) -> f64 {
@@ -167,7 +167,7 @@ impl DdaContact {
     }
 
     /// Whether a touch after `d` is where this contact has got to: no deeper in a surface no steeper.
-    pub(crate) fn leads_to(&self, touch: &ContactPoint, d: &Vec6) -> bool {
+    pub(crate) fn moves_to(&self, touch: &ContactPoint, d: &Vec6) -> bool {
         let deeper = self.radius - touch.distance_m - self.depth(d);
         -self.v.dot(&touch.normal) > SAME_GRIP && deeper <= TOUCH * self.radius
     }
@@ -186,26 +186,26 @@ impl DdaContact {
     }
 
     /// Shear force (N) and rolling moment (N m), against slip and turn.
-    pub(super) fn forces(&self, ways: &ContactWays) -> (Vec3, Vec3) {
-        if !self.presses {
+    pub(super) fn forces(&self, relative: &RelativeDisplacement) -> (Vec3, Vec3) {
+        if !self.closed {
             return (Vec3::zeros(), Vec3::zeros());
         }
         let has_rolling = self.limits.has_rolling();
-        let moment = if has_rolling { self.roll.force(&ways.turn) } else { Vec3::zeros() };
-        (self.shear.force(&ways.slip), moment)
+        let moment = if has_rolling { self.roll.force(&relative.turn) } else { Vec3::zeros() };
+        (self.shear.force(&relative.slip), moment)
     }
 
     /// Its springs and dashpots in force.
     pub(super) fn terms(&self) -> ContactMatrixTerms {
         let [normal, shear] = self.stiffnesses();
-        let roll = self.roll.stiffness(self.presses && self.limits.has_rolling());
+        let roll = self.roll.stiffness(self.closed && self.limits.has_rolling());
         ContactMatrixTerms { v: self.v, p1: self.points[0], normal, shear, roll }
     }
 
     /// Stiffness in force along `V` and along the surface (N/m).
     pub(super) fn stiffnesses(&self) -> [f64; 2] {
-        let normal = if self.presses { self.normal.stiffness() } else { 0.0 };
-        [normal, self.shear.stiffness(self.presses)]
+        let normal = if self.closed { self.normal.stiffness() } else { 0.0 };
+        [normal, self.shear.stiffness(self.closed)]
     }
 
     /// Load of the normal element, Eq. (11).
@@ -225,7 +225,7 @@ impl DdaContact {
 
     /// Adds the loads of a contact with the mesh to `F`.
     pub(super) fn add_load(&self, f: &mut Vec6) {
-        if !self.presses {
+        if !self.closed {
             return;
         }
         *f += self.normal_load();
@@ -244,34 +244,38 @@ impl DdaContact {
 
     /// Opens or closes as the normal force asks; whether that changed anything.
     fn open_or_close(&mut self, depth: f64) -> bool {
-        let presses = self.press(depth);
-        std::mem::replace(&mut self.presses, presses) != presses
+        let closed = self.press(depth);
+        std::mem::replace(&mut self.closed, closed) != closed
     }
 
     /// Compares its state with the displacements that came out, and changes it where they do not agree.
     /// Forces are those of the solution in hand, before it opens or closes.
-    pub(crate) fn judge(&mut self, ways: &ContactWays) -> Change {
-        let (shear_force, moment) = self.forces(ways);
-        let change = if self.open_or_close(ways.depth) { Change::Mode } else { Change::None };
-        if !self.presses || self.bonded {
+    pub(crate) fn update_state(&mut self, relative: &RelativeDisplacement) -> Change {
+        let (shear_force, moment) = self.forces(relative);
+        let change = if self.open_or_close(relative.depth) { Change::Mode } else { Change::None };
+        if !self.closed || self.bonded {
             return change;
         }
         let (cap, roll_cap) = self.limits.caps(self.normal_force);
         let change = change.max(if self.shear_memory {
-            self.shear.judge(&ways.slip, &shear_force, cap)
+            self.shear.update_state(&relative.slip, &shear_force, cap)
         } else {
-            self.shear.judge_as_printed(&ways.slip, cap, self.limits.caps(self.push_before).0)
+            self.shear.update_state_as_printed(
+                &relative.slip,
+                cap,
+                self.limits.caps(self.last_normal_force).0,
+            )
         });
         if !self.limits.has_rolling() {
             return change;
         }
-        change.max(self.roll.judge(&ways.turn, &moment, roll_cap))
+        change.max(self.roll.update_state(&relative.turn, &moment, roll_cap))
     }
 
     /// Ends the search for its state: closed and sticking for this step if it begins inside, else without friction.
     pub(crate) fn stick(&mut self) {
         let apart = self.begins_apart();
-        self.presses |= !apart;
+        self.closed |= !apart;
         self.shear.slides = apart || !self.limits.has_friction() && !self.bonded;
         self.roll.slides = apart;
         (self.shear.friction, self.roll.friction) = (Vec3::zeros(), Vec3::zeros());
@@ -283,28 +287,28 @@ impl DdaContact {
     }
 
     /// After [`Self::stick`]: opens or closes if it begins apart; whether that changed anything.
-    pub(crate) fn open_or_close_apart(&mut self, ways: &ContactWays) -> bool {
+    pub(crate) fn open_or_close_apart(&mut self, relative: &RelativeDisplacement) -> bool {
         if self.begins_apart() {
-            return self.open_or_close(ways.depth);
+            return self.open_or_close(relative.depth);
         }
-        self.press(ways.depth);
+        self.press(relative.depth);
         false
     }
 
     /// Energy that its dashpots and sliders take (J).
-    pub(crate) fn loss(&self, ways: &ContactWays) -> Loss {
-        let (shear_force, moment) = self.forces(ways);
-        let damping = self.normal.loss_j(self.presses, ways.depth, self.inside());
+    pub(crate) fn loss(&self, relative: &RelativeDisplacement) -> Loss {
+        let (shear_force, moment) = self.forces(relative);
+        let damping = self.normal.loss_j(self.closed, relative.depth, self.inside());
         let mut loss = Loss { damping, ..Loss::default() };
         if self.shear_memory {
-            let (friction, damping) = self.shear.loss(&ways.slip, &shear_force);
+            let (friction, damping) = self.shear.loss(&relative.slip, &shear_force);
             loss.friction = friction;
             loss.damping += damping;
         } else if self.shear.slides {
-            loss.friction = shear_force.dot(&ways.slip);
+            loss.friction = shear_force.dot(&relative.slip);
         }
         if self.limits.has_rolling() {
-            let (slider, dashpot) = self.roll.loss(&ways.turn, &moment);
+            let (slider, dashpot) = self.roll.loss(&relative.turn, &moment);
             loss.rolling = slider + dashpot;
         }
         loss
@@ -312,27 +316,33 @@ impl DdaContact {
 
     /// How much more its springs hold at the step's end than at its start (J); a shear spring that is let go runs out against its own dashpot, and
     /// counts as if it still held.
-    pub(super) fn stored_more_j(&self, ways: &ContactWays) -> f64 {
-        let depth = if self.bonded { ways.depth } else { ways.depth.max(0.0) };
-        let sheared =
-            if self.shear_memory { self.shear.stored_more_j(&self.forces(ways).0) } else { 0.0 };
+    pub(super) fn stored_more_j(&self, relative: &RelativeDisplacement) -> f64 {
+        let depth = if self.bonded { relative.depth } else { relative.depth.max(0.0) };
+        let sheared = if self.shear_memory {
+            self.shear.stored_more_j(&self.forces(relative).0)
+        } else {
+            0.0
+        };
         self.normal.stored_more_j(depth, self.inside()) + sheared
     }
 
     /// Whether it was closed at the step's end, whether it slid, and the stretch that its shear spring has left (m).
-    pub(super) fn left(&self, ways: &ContactWays) -> (bool, bool, Vec3) {
-        let stretch =
-            if self.shear_memory { self.shear.end(&self.forces(ways).0) } else { Vec3::zeros() };
-        (self.presses || ways.depth > 0.0, self.presses && self.shear.slides, stretch)
+    pub(super) fn end_state(&self, relative: &RelativeDisplacement) -> (bool, bool, Vec3) {
+        let stretch = if self.shear_memory {
+            self.shear.stretch_after(&self.forces(relative).0)
+        } else {
+            Vec3::zeros()
+        };
+        (self.closed || relative.depth > 0.0, self.closed && self.shear.slides, stretch)
     }
 
     /// Writes what it remembers of the step into its memory.
-    pub(crate) fn remember(&self, ways: &ContactWays, history: &mut ContactHistory) {
+    pub(crate) fn remember(&self, relative: &RelativeDisplacement, history: &mut ContactHistory) {
         (history.feature, history.triangle, history.n) = (self.feature, self.triangle, -self.v);
-        (history.closed, history.slides, history.shear) = self.left(ways);
+        (history.closed, history.slides, history.shear) = self.end_state(relative);
         history.normal_force = self.normal_force;
         if self.limits.has_rolling() {
-            history.roll = self.roll.end(&self.forces(ways).1);
+            history.roll = self.roll.stretch_after(&self.forces(relative).1);
         }
     }
 }

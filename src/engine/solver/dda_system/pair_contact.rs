@@ -8,7 +8,7 @@
 //! the radii. Dashpots act on the mean velocity of the step, `c/Δt` beside the spring, as in `dda`.
 
 use super::StepConstants;
-use super::contact::{ContactWays, DdaContact};
+use super::contact::{DdaContact, RelativeDisplacement};
 use crate::contact::history::carry;
 use crate::contact::pair::{PairHistory, between};
 use crate::contact::submatrix::{
@@ -59,7 +59,7 @@ impl DdaPairContact {
         };
         let ends = [pair_history.a as usize, pair_history.b as usize];
         let mut pair = Self { ends, contact };
-        let free = pair.ways(steps.map(|step| &step.free));
+        let free = pair.relative_displacement(steps.map(|step| &step.free));
         // A new pair knows no normal yet, and from the opposite of `n` there is no shortest turn.
         let from = if pair_history.is_held() { &pair_history.n } else { &n };
         let left = (pair_history.normal_force, carry(pair_history.shear, from, &n));
@@ -68,9 +68,9 @@ impl DdaPairContact {
     }
 
     /// What it sees of the displacements of its ends.
-    pub(crate) fn ways(&self, d: [&Vec6; 2]) -> ContactWays {
+    pub(crate) fn relative_displacement(&self, d: [&Vec6; 2]) -> RelativeDisplacement {
         let [a, b] = [0, 1].map(|k| displacement(&self.contact.points[k]) * d[k]);
-        self.contact.see(&(d[0] - d[1]), &(a - b))
+        self.contact.relative_to(&(d[0] - d[1]), &(a - b))
     }
 
     /// Block `K_kl`.
@@ -87,9 +87,9 @@ impl DdaPairContact {
     ///
     /// What the free motion does to the springs depends on the difference of both alone: rocks that move along
     /// together lose no digits by it.
-    pub(crate) fn load(&self, k: usize, free: &ContactWays) -> Vec6 {
+    pub(crate) fn load(&self, k: usize, free: &RelativeDisplacement) -> Vec6 {
         let contact = &self.contact;
-        if !contact.presses {
+        if !contact.closed {
             return Vec6::zeros();
         }
         let [normal, shear] = contact.stiffnesses();
@@ -104,12 +104,12 @@ impl DdaPairContact {
     /// `−F_k · D_k` with the force at the step's end: the paper's springs act with it over the whole
     /// step.
     pub(crate) fn given_j(&self, d: [&Vec6; 2]) -> [f64; 2] {
-        let (contact, ways) = (&self.contact, self.ways(d));
-        if !contact.presses {
+        let (contact, relative) = (&self.contact, self.relative_displacement(d));
+        if !contact.closed {
             return [0.0; 2];
         }
-        let push = normal_row(&contact.v) * contact.pull_or_push(ways.depth);
-        let drag = contact.forces(&ways).0;
+        let push = normal_row(&contact.v) * contact.pull_or_push(relative.depth);
+        let drag = contact.forces(&relative).0;
         let act = |k: usize| push + force_at(&displacement(&contact.points[k]), &drag);
         [0, 1].map(|k| (act(k) * SIGN[k]).dot(d[k]))
     }
@@ -117,19 +117,19 @@ impl DdaPairContact {
     /// What the contact itself takes of that and keeps (J): dashpots, slider and what its springs hold more at the end. The rest is what the step
     /// has lost.
     pub(crate) fn taken_j(&self, d: [&Vec6; 2]) -> f64 {
-        let ways = self.ways(d);
-        self.contact.loss(&ways).sum() + self.contact.stored_more_j(&ways)
+        let relative = self.relative_displacement(d);
+        self.contact.loss(&relative).sum() + self.contact.stored_more_j(&relative)
     }
 
     /// Writes what it remembers of the step; whether a bond broke.
     pub(crate) fn remember(&self, d: [&Vec6; 2], pair_history: &mut PairHistory) -> bool {
-        let (contact, ways) = (&self.contact, self.ways(d));
-        let (closed, slides, stretch) = contact.left(&ways);
+        let (contact, relative) = (&self.contact, self.relative_displacement(d));
+        let (closed, slides, stretch) = contact.end_state(&relative);
         pair_history.n = -contact.v;
         (pair_history.closed, pair_history.slides) = (closed, slides);
         pair_history.shear = if closed { stretch } else { Vec3::zeros() };
         pair_history.normal_force = contact.normal_force;
-        pair_history.shear_force = contact.forces(&ways).0;
+        pair_history.shear_force = contact.forces(&relative).0;
         let breaks = pair_history.overload() > 0.0;
         if breaks {
             pair_history.break_bond();

@@ -50,9 +50,9 @@ impl DdaSlider {
         Self { spring, damper, compliance, ..Self::default() }
     }
 
-    /// Force after `way`, should it stick.
-    pub(crate) fn sticking(&self, way: &Vec3) -> Vec3 {
-        self.stretch * self.spring + way * (self.spring + self.damper)
+    /// Force after `displacement`, should it stick.
+    pub(crate) fn sticking(&self, displacement: &Vec3) -> Vec3 {
+        self.stretch * self.spring + displacement * (self.spring + self.damper)
     }
 
     /// Its stiffness while it `acts` (N/m): nothing while it slides.
@@ -60,26 +60,31 @@ impl DdaSlider {
         if acts && !self.slides { self.spring + self.damper } else { 0.0 }
     }
 
-    pub(crate) fn force(&self, way: &Vec3) -> Vec3 {
-        if self.slides { self.friction } else { self.sticking(way) }
+    pub(crate) fn force(&self, displacement: &Vec3) -> Vec3 {
+        if self.slides { self.friction } else { self.sticking(displacement) }
     }
 
     /// Stretch that belongs to a force at the step's end.
-    pub(crate) fn end(&self, force: &Vec3) -> Vec3 {
+    pub(crate) fn stretch_after(&self, force: &Vec3) -> Vec3 {
         (force + self.stretch * self.damper) / (self.spring + self.damper)
     }
 
     /// Slides where the force that would make it stick passes the cap, in that force's direction.
     ///
-    /// `way` is what came out with the force `used`. Taking the effect of that force off before asking is what makes the
+    /// `displacement` is what came out with the force `last_force`. Taking the effect of that force off before asking is what makes the
     /// iteration settle: the slip that friction itself has left says little about its direction.
     ///
-    /// `way + used · compliance` is what the contact point would move without any force of this
+    /// `displacement + last_force · compliance` is what the contact point would move without any force of this
     /// element; from there the force that holds it is `(k ξ + k_eff Δ₀)/(1 + k_eff · compliance)`, `k_eff = k + c/Δt`: the element's own
     /// force shortens the way.
-    pub(crate) fn judge(&mut self, way: &Vec3, used: &Vec3, cap: f64) -> Change {
+    pub(crate) fn update_state(
+        &mut self,
+        displacement: &Vec3,
+        last_force: &Vec3,
+        cap: f64,
+    ) -> Change {
         let stiff = 1.0 + (self.spring + self.damper) * self.compliance;
-        let needed = self.sticking(&(way + used * self.compliance)) / stiff;
+        let needed = self.sticking(&(displacement + last_force * self.compliance)) / stiff;
         let size = needed.norm();
         // At the cap itself rounding must not turn the state to and fro.
         let least = if self.slides { cap * (1.0 - SETTLED) } else { cap };
@@ -98,11 +103,16 @@ impl DdaSlider {
 
     /// The same as printed: friction is `before`, that of the last step's end, and acts against the displacement of the
     /// step until that turns round.
-    pub(crate) fn judge_as_printed(&mut self, way: &Vec3, cap: f64, before: f64) -> Change {
-        if !self.slides && self.sticking(way).norm() > cap {
-            (self.slides, self.friction) = (true, along(way) * before);
+    pub(crate) fn update_state_as_printed(
+        &mut self,
+        displacement: &Vec3,
+        cap: f64,
+        before: f64,
+    ) -> Change {
+        if !self.slides && self.sticking(displacement).norm() > cap {
+            (self.slides, self.friction) = (true, unit_or_zero(displacement) * before);
             Change::Mode
-        } else if self.slides && way.dot(&self.friction) < 0.0 {
+        } else if self.slides && displacement.dot(&self.friction) < 0.0 {
             (self.slides, self.friction) = (false, Vec3::zeros());
             Change::Mode
         } else {
@@ -110,22 +120,22 @@ impl DdaSlider {
         }
     }
 
-    /// Energy that slider and dashpot take over `way` at `force`.
+    /// Energy that slider and dashpot take over `displacement` at `force`.
     ///
     /// Work of the slider is force times what it slipped, way less growth of the stretch; the
     /// dashpot takes `c/Δt` times the square of that growth.
-    pub(crate) fn loss(&self, way: &Vec3, force: &Vec3) -> (f64, f64) {
-        let stretched = self.end(force) - self.stretch;
-        (force.dot(&(way - stretched)), self.damper * stretched.norm_squared())
+    pub(crate) fn loss(&self, displacement: &Vec3, force: &Vec3) -> (f64, f64) {
+        let stretched = self.stretch_after(force) - self.stretch;
+        (force.dot(&(displacement - stretched)), self.damper * stretched.norm_squared())
     }
 
     /// How much more the spring holds at `force` than at the step's start (J).
     pub(crate) fn stored_more_j(&self, force: &Vec3) -> f64 {
-        0.5 * self.spring * (self.end(force).norm_squared() - self.stretch.norm_squared())
+        0.5 * self.spring * (self.stretch_after(force).norm_squared() - self.stretch.norm_squared())
     }
 }
 
 /// The direction of `x`; nothing for nothing.
-pub(crate) fn along(x: &Vec3) -> Vec3 {
+pub(crate) fn unit_or_zero(x: &Vec3) -> Vec3 {
     x.try_normalize(0.0).unwrap_or_default()
 }

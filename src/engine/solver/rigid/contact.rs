@@ -5,7 +5,7 @@ use crate::ground::{FrictionLimits, Law};
 use crate::rock::Vec3;
 use crate::solver::body::{Body, Twist};
 use crate::solver::contact_frame::ContactFrame;
-use crate::solver::friction_rolling::{Answers, Pair, SlipState};
+use crate::solver::friction_rolling::{Compliance, FrictionRolling, SlipState};
 use crate::solver::law::ZERO;
 use crate::solver::loss::Loss;
 
@@ -87,10 +87,10 @@ impl GroundContact {
             self.clear_impulses();
             return;
         }
-        // The stick solution: `2/7 m` is the mass of a sphere's contact point along the surface, `I ω` stops all rotation; `Pair`
+        // The stick solution: `2/7 m` is the mass of a sphere's contact point along the surface, `I ω` stops all rotation; `FrictionRolling`
         // couples both and cuts them.
-        let pair = Pair {
-            answers: &Answers::rigid(body.radius),
+        let pair = FrictionRolling {
+            compliance: &Compliance::rigid(body.radius),
             a: self.frame.along(&(body.slip(self.n(), v, w) * body.mass_along())),
             d: self.frame.local(&(w * body.inertia)),
             caps: self.limits.caps(self.normal_impulse),
@@ -122,7 +122,7 @@ impl GroundContact {
     pub(crate) fn loss(&self, body: &Body, (v, w): &Twist) -> Loss {
         let friction = -self.shear_impulse.dot(&body.slip(self.n(), v, w));
         let damping = -self.normal_impulse * self.n().dot(v);
-        Loss::sharing([friction, damping, -self.rolling_impulse.dot(w)])
+        Loss::redistributed([friction, damping, -self.rolling_impulse.dot(w)])
     }
 }
 

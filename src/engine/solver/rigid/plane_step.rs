@@ -77,11 +77,11 @@ impl PlaneContact<'_, '_> {
         let is_smooth = half.goes_on_as(&whole) && half.goes_on_as(&end);
         let error = if is_smooth { ERROR.0 } else { ERROR.1 };
         let allowed = error * body.gravity.norm() * usual;
-        let off2 = (whole.v - end.v)
+        let error_rate2 = (whole.v - end.v)
             .norm_squared()
             .max((whole.w - end.w).norm_squared() * body.radius * body.radius)
             .max((whole.c - end.c).norm_squared() / (usual * usual));
-        if off2 <= allowed * allowed {
+        if error_rate2 <= allowed * allowed {
             return Ok(end);
         }
         Err(self.ends(from, &half).map(|halves| 0.5 * dt * halves).filter(|_| !is_smooth))
@@ -143,7 +143,7 @@ impl ContactState {
             match contact.settled(&from, dt, usual) {
                 Ok(end) => {
                     let moved = (&(end.c - from.c), &(end.v - from.v));
-                    if step.is_certain((world, &self.near), moved, dt) {
+                    if step.touches_plane_only((world, &self.near), moved, dt) {
                         self.slide_to(world, (&end, contact.touch.triangle), dt, done);
                         self.plane.wished_s = if is_cut { tried } else { GROWTH.0 * dt };
                         return true;

@@ -12,7 +12,7 @@ use arrayvec::ArrayVec;
 /// How often a step is cut to where the rock comes to the next surface, at most: each cut knows the motion on the way better.
 const CUTS: u32 = 6;
 /// A step may end so far beyond what it meets (–, relative to R).
-const MET: f64 = 1e-6;
+const OVERSHOOT: f64 = 1e-6;
 
 /// A step as it is tried.
 struct HeldStep {
@@ -87,7 +87,7 @@ impl HeldStep {
     fn hold(&mut self, world: &ContactEnvironment, state: &mut ContactState, dt: f64) {
         let half = state.v * (0.5 * dt);
         let middle = state.c + half;
-        state.look_ahead(world, &middle);
+        state.find_contact_points_ahead(world, &middle);
         self.dt = dt;
         self.contacts.clear();
         for touch in state.touches.iter() {
@@ -135,7 +135,7 @@ fn meets_s(world: &ContactEnvironment, state: &ContactState, tried: &HeldStep) -
         let [speed, end] = [state.v, tried.after.0].map(|v| -touch.normal.dot(&v));
         // `speed² + 2 a gap` with the mean acceleration `a`: negative where it turns back before
         let met2 = speed * speed + 2.0 * gap * (end - speed) / tried.dt;
-        let is_met = 0.5 * (speed + end) * tried.dt > gap + MET * radius && met2 >= 0.0;
+        let is_met = 0.5 * (speed + end) * tried.dt > gap + OVERSHOOT * radius && met2 >= 0.0;
         let is_known = gap > TOUCH * radius;
         is_met.then(|| if is_known { 2.0 * gap / (speed + met2.sqrt()) } else { 0.5 * tried.dt })
     });
@@ -159,7 +159,7 @@ pub(super) fn push_out(world: &ContactEnvironment, state: &mut ContactState) {
     let (r, before) = (world.body.radius, state.c);
     for _ in 0..4 {
         let c = state.c;
-        state.look_ahead_again(world, &c);
+        state.update_contact_points_ahead(world, &c);
         let out = way_out(&state.touches, r, &Vec3::zeros());
         if out.norm() <= TOUCH * r {
             break;

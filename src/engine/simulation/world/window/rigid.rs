@@ -22,7 +22,7 @@ impl IslandWindow<'_> {
         let mut island = self.cluster();
         while self.now_s < self.end_s {
             let room = self.end_s - self.now_s;
-            let spent = (island.sweeps, island.jumps);
+            let spent = (island.sweeps, island.newton_steps);
             let Some(done) = self.advance(&mut island, room) else { break };
             // a step that takes all the room ends exactly at the window's end
             self.now_s = if done.dt >= room { self.end_s } else { self.now_s + done.dt };

@@ -16,7 +16,7 @@ pub(crate) struct Blow {
 
 /// A patch that is struck.
 #[derive(Debug, Clone, Copy)]
-pub struct Struck {
+pub struct ImpactPoint {
     /// Where (m).
     pub point_m: Vec3,
     /// Normal of the patch there.
@@ -29,7 +29,7 @@ pub struct Struck {
     pub approach_m_s: f64,
 }
 
-impl Struck {
+impl ImpactPoint {
     /// What a ball with its centre at `c` strikes along the normal of a feature, whose triangle answers: the touched point is
     /// `P1 = c − R n`.
     pub fn by_ball(

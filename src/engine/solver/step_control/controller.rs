@@ -17,27 +17,27 @@ pub(crate) enum TryOutcome {
     Error(f64),
     /// Accurate, but with more energy than before: it has met a kink of the law in an unlucky place, and a shorter one
     /// does not.
-    Gains,
+    EnergyGain,
     /// Something begins at this share of it (–, 0..1), where it has to end: that is no error.
     Cut(f64),
     /// A stage did not settle.
-    Unsettled,
+    NotConverged,
     /// The rock has left where the trial holds.
-    Elsewhere,
+    OutOfDomain,
 }
 
 /// Why no step was found.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum StepFailure {
     /// No step, however short, settles.
-    Unsettled,
+    NotConverged,
     /// The trial does not hold where the rock goes.
-    Elsewhere,
+    OutOfDomain,
 }
 
 impl From<StepFailure> for StepError {
     fn from(_: StepFailure) -> Self {
-        Self::Unsettled
+        Self::NotConverged
     }
 }
 
@@ -54,7 +54,7 @@ pub(crate) trait TrialStep {
 /// Tries steps until one is accurate and returns its length (s), at most `h_max`, which does not count against the step to
 /// try next; the stiffest contact has `omega` (rad/s).
 /// The one place where steps are accepted, for stages in space, on a plane and in islands alike.
-pub(crate) fn settle(
+pub(crate) fn find_accepted_step(
     trial: &mut impl TrialStep,
     control: &Control,
     (h_max, omega): (f64, f64),
@@ -62,31 +62,31 @@ pub(crate) fn settle(
 ) -> Result<f64, StepFailure> {
     loop {
         let limit = trial.limit();
-        let wished = trial.h().min(limit);
-        let dt = wished.min(h_max);
+        let proposed = trial.h().min(limit);
+        let dt = proposed.min(h_max);
         let ratio = match trial.try_step(dt) {
             TryOutcome::Error(error) if error <= 1.0 => {
                 // a step cut short by `h_max` says nothing of how long it could have been
-                let least = if dt < wished { wished } else { 0.0 };
-                *trial.h() = grown(control, dt, error).max(least);
+                let least = if dt < proposed { proposed } else { 0.0 };
+                *trial.h() = scaled_by_error(control, dt, error).max(least);
                 return Ok(dt);
             }
-            TryOutcome::Error(error) if error.is_finite() => grown(control, 1.0, error),
-            TryOutcome::Gains => 0.4,
+            TryOutcome::Error(error) if error.is_finite() => scaled_by_error(control, 1.0, error),
+            TryOutcome::EnergyGain => 0.4,
             TryOutcome::Cut(share) => share,
-            TryOutcome::Elsewhere => return Err(StepFailure::Elsewhere),
+            TryOutcome::OutOfDomain => return Err(StepFailure::OutOfDomain),
             _ => 0.25,
         };
         *rejected += 1;
         *trial.h() = dt * ratio;
         // one that began so short may be tried again as it is
         if ratio < 1.0 && dt * ratio * omega < SHORTEST {
-            return Err(StepFailure::Unsettled);
+            return Err(StepFailure::NotConverged);
         }
     }
 }
 
-fn grown(control: &Control, dt: f64, error: f64) -> f64 {
+fn scaled_by_error(control: &Control, dt: f64, error: f64) -> f64 {
     dt * (SAFETY * math::pow(error, -control.tableau.exponent)).clamp(RATIO.0, RATIO.1)
 }
 
@@ -129,7 +129,7 @@ mod tests {
         let short = [1.0, 1e-6, 0.5 * SHORTEST, 1e-3 * SHORTEST];
         for (h, most_s) in short.into_iter().flat_map(|h| [(h, 1.0), (1.0, h)]) {
             let (mut trial, mut rejected) = (Popped { h, presses: false }, 0);
-            let dt = settle(&mut trial, &control, (most_s, 1.0), &mut rejected);
+            let dt = find_accepted_step(&mut trial, &control, (most_s, 1.0), &mut rejected);
             assert!(dt.is_ok_and(|dt| dt > 0.0 && dt <= most_s), "{h:e} {most_s:e}: {dt:?}");
         }
     }
