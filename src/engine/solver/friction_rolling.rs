@@ -1,7 +1,8 @@
 //! Shear force and rolling moment of one contact, solved in the contact's own frame.
 //!
-//! Both are springs with dashpots in series with sliders. They act on each other: shear turns the rock, the moment
-//! changes the slip. Of the four cases (stick or slip, each) two have closed forms and two a scalar equation for Newton.
+//! Both are springs with dashpots in series with sliders. They are coupled: shear turns the rock,
+//! the moment changes the slip. Of the four cases (stick or slip, each) two have closed forms and
+//! two a scalar equation solved by Newton's method.
 //!
 //! `B = 7/2 κ h/m`, `C = κ h R/I`, `E = κ_r h/I`, with `κ = p_s h + c_s` and `κ_r = k_r h + c_r` of
 //! a stage of length `h`.
@@ -11,7 +12,7 @@ use super::contact_frame::{Along, Local, square};
 use crate::ground::{INSIDE, Law};
 use crate::rock::Rock;
 
-/// What a contact answers with over a stage of a given length: the same for all stages of a step.
+/// Coefficients of a contact over a stage of given length: the same for all stages of a step.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Compliance {
     /// Shear force per slip speed (N s/m) and moment per spin (N m s) while they stick.
@@ -66,53 +67,53 @@ impl Compliance {
     }
 }
 
-/// The coupled shear force `q` and rolling moment `M` of one contact over one stage: each is the shortening to its cap of
-/// `q̂ = (a − C n × M)/(1 + B)` and `M̂ = (d + E R n × q)/(1 + E)`.
+/// The coupled shear force `q` and rolling moment `M` of one contact over one stage: each is the
+/// projection onto its cap of `q̂ = (a − C n × M)/(1 + B)` and `M̂ = (d + E R n × q)/(1 + E)`.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct FrictionRolling<'a> {
     pub(crate) compliance: &'a Compliance,
-    /// What the shear spring would hold without being moved by `q` and `M` (N).
+    /// Trial shear force without the effect of `q` and `M` (N).
     pub(crate) a: Along,
-    /// The same of the rolling spring (N m).
+    /// Trial rolling moment without their effect (N m).
     pub(crate) d: Local,
     /// Largest shear force (N) and rolling moment (N m).
     pub(crate) caps: (f64, f64),
 }
 
-/// Newton steps for a ratio.
+/// Most Newton steps for a ratio.
 const RATIO_STEPS: u32 = 30;
-/// Change of a ratio, relative to it, after which Newton's next would be rounding (–): sweeps over several contacts wait for
-/// each of them to say the same again.
+/// Relative change of a ratio after which the next Newton step would be rounding (–): sweeps over
+/// several contacts converge only when each of them reproduces its forces.
 const RATIO_CONVERGED: f64 = 1e-7;
 
-/// `n × x`, along the surface.
+/// `n × x` of a vector along the surface.
 #[inline]
 fn cross_n(x: Along) -> Along {
     [-x[1], x[0]]
 }
 
-/// Shortens a vector, along the surface or a moment, to at most `cap`.
+/// Shortens a vector to at most `cap`.
 #[inline]
 pub(crate) fn capped<const N: usize>(x: [f64; N], cap: f64) -> [f64; N] {
     let size2 = square(x);
     if size2 > cap * cap { x.map(|x| x * (cap / size2.sqrt())) } else { x }
 }
 
-/// How much a ratio must grow (–, in logarithms) for a value to reach the one wanted, both squared; `grows` over `by` is how
-/// the value's logarithm grows with that of the ratio. Newton in logarithms, by at most a factor of
-/// 2.5 at once: a power is found in no time.
+/// Newton step for the logarithm of a ratio (–), at most a factor of 2.5, from a value and the
+/// wanted one, both squared. `grows/by` is the derivative of the value's logarithm with respect to
+/// that of the ratio. In logarithms a power law converges at once.
 #[inline]
 fn log_newton_step((value2, wanted2): (f64, f64), (grows, by): (f64, f64)) -> f64 {
     ((wanted2 - value2) * by / ((wanted2 + value2) * grows).max(f64::MIN_POSITIVE)).clamp(-1.0, 1.0)
 }
 
-/// A ratio by a cap that may be nothing.
+/// Ratio over a cap that may be zero.
 #[inline]
 fn over_cap(ratio: f64, cap: f64) -> f64 {
     ratio / cap.max(f64::MIN_POSITIVE)
 }
 
-/// Which of the two are at their caps.
+/// Which of shear force and rolling moment are at their caps.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) enum SlipState {
     /// Neither.
@@ -127,8 +128,8 @@ pub(crate) enum SlipState {
 }
 
 impl FrictionRolling<'_> {
-    /// Force and moment; `mode` is that of a solution nearby and becomes this one's. There is only one solution, so what
-    /// agrees with both laws is the one.
+    /// Force and moment. `mode` is an initial guess for the case and is set to the one found. The
+    /// solution is unique, so any case that agrees with both laws is the solution.
     #[inline]
     pub(crate) fn solve(&self, mode: &mut SlipState) -> (Along, Local) {
         let cap_m = self.caps.1;
@@ -157,7 +158,7 @@ impl FrictionRolling<'_> {
         })
     }
 
-    /// The moment at its cap, if shear then sticks and the moment does not.
+    /// The moment at its cap, if shear then sticks and the moment slips.
     #[inline]
     fn try_rolling(&self, ratio: Option<f64>) -> Option<(SlipState, Along, Local)> {
         let (ratio, share, rolling_moment) = self.rolling_alone(ratio);
@@ -167,7 +168,7 @@ impl FrictionRolling<'_> {
         (rolls && square(q) <= self.caps.0 * self.caps.0).then_some((mode, q, rolling_moment))
     }
 
-    /// Shear at its cap, if the moment then sticks and shear does not.
+    /// Shear at its cap, if the moment then sticks and shear slips.
     #[inline]
     fn try_sliding(&self) -> Option<(SlipState, Along, Local)> {
         let (cap_q, cap_m) = self.caps;
@@ -218,8 +219,9 @@ impl FrictionRolling<'_> {
         (q, [y[1], -y[0], self.d[2] * rolling_factor])
     }
 
-    /// The moment at its cap while shear sticks: `M_t = μ G_t`, `M_n = λ G_n` with `λ = μ/(1 + μs)`; `|M|²` grows with
-    /// `μ`, so Newton finds where it is that of the cap. Returns `μ`, `λ` and the moment.
+    /// The moment at its cap while shear sticks: `M_t = μ G_t`, `M_n = λ G_n` with `λ = μ/(1 +
+    /// μs)`. `|M|²` grows with `μ`, and Newton's method finds the `μ` of the cap. Returns `μ`, `λ`
+    /// and the moment.
     #[inline]
     fn rolling_alone(&self, guess: Option<f64>) -> (f64, f64, Local) {
         let y = cross_n(self.a);
@@ -238,7 +240,7 @@ impl FrictionRolling<'_> {
             let change = ratio * (share + 0.5 * share * share);
             ratio += change;
             if share.abs() <= RATIO_CONVERGED {
-                // So little further on the line through it is as good.
+                // so small a step is exact on the tangent
                 room -= room * room * s * change;
                 break;
             }
@@ -258,9 +260,10 @@ impl FrictionRolling<'_> {
         if size > 0.0 { along.map(|x| x * (self.caps.0 / size)) } else { along }
     }
 
-    /// Both at their caps: only directions are sought. With `M = κ/C (d + E R n × q)` what turns with `q` does not turn it:
-    /// `q ∥ a − κ n × d`, and `κ |n × d − E R q, d_n|` is `C` times the moment's cap. It grows with `κ`, so Newton finds
-    /// it. Returns `κ`, force and moment.
+    /// Both at their caps: only directions are unknown. With `M = κ/C (d + E R n × q)` the part of
+    /// `M` that is parallel to `n × q` does not turn `q`: `q ∥ a − κ n × d`, and `κ |n × d − E R q,
+    /// d_n|` is `C` times the moment's cap. It grows with `κ`, which Newton's method finds. Returns
+    /// `κ`, force and moment.
     fn both_slip(&self, guess: Option<f64>) -> (f64, Along, Local) {
         let (cap_q, cap_m) = self.caps;
         let nd = cross_n([self.d[0], self.d[1]]);
@@ -281,7 +284,7 @@ impl FrictionRolling<'_> {
             let change = ratio * (share + 0.5 * share * share);
             ratio += change;
             if share.abs() <= RATIO_CONVERGED {
-                // So little further on the tangent is as good.
+                // so small a step is exact on the tangent
                 e = [0, 1].map(|k| e[k] - (nd[k] - e[k] * c) * (over * change));
                 break;
             }
@@ -290,7 +293,7 @@ impl FrictionRolling<'_> {
         (ratio, q, self.moment_with(q, ratio / self.compliance.c))
     }
 
-    /// `M̂` for a shear force, `share` of it instead of `1/(1 + E)`.
+    /// `M̂` for a shear force with the factor `share` in place of `1/(1 + E)`.
     #[inline]
     fn moment_with(&self, q: Along, share: f64) -> Local {
         let y = cross_n(q);

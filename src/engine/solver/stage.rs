@@ -1,9 +1,9 @@
 //! One implicit stage: the contact law solved with the geometry at the stage's end.
 //!
-//! The unknowns of a stage are velocity and spin at its end: with `h γ = hh`, `M (v − v_free)/hh` equals the sum of
-//! the contact forces, and these depend on `v` and `ω` through penetration, slip and rolling. The solve is exact for
-//! given normals; the loop around it moves the normals to where the rock ends.
-
+//! The unknowns of a stage are velocity and spin at its end: with `h γ = hh`, `M (v − v_free)/hh`
+//! equals the sum of the contact forces, which depend on `v` and `ω` through penetration, slip and
+//! rolling. The solve is exact for given normals; an outer fixed-point iteration moves the normals
+//! to the end position of the rock.
 use super::contact_state::{ContactEnvironment, ContactState, StateRates};
 use super::law::{ContactDeformation, ContactForces, StageContact};
 use super::loss::Loss;
@@ -14,13 +14,14 @@ use crate::contact::history::carry;
 use crate::ground::NormalElement;
 use crate::rock::Vec3;
 
-/// Most passes in which geometry and forces are brought to agree.
+/// Most passes of the fixed-point iteration between geometry and forces.
 pub(crate) const PASSES: u32 = 10;
-/// Change of the centre, relative to the radius, below which they agree (–).
+/// Change of the centre, relative to the radius, at which it has converged (–).
 pub(crate) const SHIFT_CONVERGED: f64 = 1e-9;
 
 impl StageContact {
-    /// Power that goes into the contact (W) at velocity `v` and spin `w`: what its springs store is counted in.
+    /// Power that goes into the contact (W) at velocity `v` and spin `w`, what its springs store
+    /// included.
     pub(super) fn loss(
         &self,
         world: &ContactEnvironment,
@@ -33,7 +34,8 @@ impl StageContact {
         Loss::of_slip((&self.shear_force, &slip, shear_rate), others).on(world, self.triangle)
     }
 
-    /// Forces at the present state, for the explicit first stage; returns the rates of shear and rolling springs.
+    /// Sets the forces to those of the present state, for the explicit first stage; returns the
+    /// rates of shear and rolling springs.
     pub(super) fn set_forces_now(
         &mut self,
         world: &ContactEnvironment,
@@ -54,7 +56,7 @@ impl StageContact {
     }
 }
 
-/// Where a stage ends.
+/// Position, velocity and spin at the base or at the end of a stage.
 #[derive(Debug, Clone, Copy)]
 pub struct StageMotion {
     /// Centre (m).
@@ -76,7 +78,8 @@ impl ContactState {
         }
     }
 
-    /// Solves implicit stage `i` of a step of length `h` and stores its rates; `None` if it does not settle.
+    /// Solves implicit stage `i` of a step of length `h` and stores its rates; `None` if it does
+    /// not converge.
     pub fn stage(
         &mut self,
         world: &ContactEnvironment,
@@ -88,10 +91,11 @@ impl ContactState {
         let hh = tableau.diagonal * h;
         // free motion: weight acts, contacts do not
         let (vf, wf) = (base.v + world.body.gravity * hh, base.w);
-        // Where it would be if it went on as in the stage before.
+        // extrapolated with velocity and acceleration of the stage before
         let before = &self.rates[i - 1];
         let mut guess = base.c + (before.c + before.v * hh) * hh;
-        // Planes slid along may have ended on the way: what they say must be confirmed by the look at the end.
+        // contact points moved along their planes may have left their faces: the search at the end
+        // must confirm them
         let mut is_current =
             !(self.near.covers(&guess) && self.touches.slide_to(world.terrain, &guess));
         if is_current {
@@ -116,8 +120,8 @@ impl ContactState {
         None
     }
 
-    /// Whether the last look found the very faces that the forces were computed with: planes are the same everywhere,
-    /// so the forces are exact wherever the rock was when they were computed.
+    /// Whether the last search found the very faces that the forces were computed with. A plane is
+    /// the same everywhere, so the forces are exact wherever the rock was when they were computed.
     #[inline]
     fn stays_on_faces(&self) -> bool {
         let contacts = self.stage_contacts();
@@ -127,7 +131,7 @@ impl ContactState {
             })
     }
 
-    /// Makes the contacts of the last look into contacts based at the stage's base.
+    /// Makes the contact points found last into contacts of the stage.
     pub(crate) fn place_contacts(
         &mut self,
         world: &ContactEnvironment,
@@ -136,7 +140,7 @@ impl ContactState {
         (base, at): (&StageMotion, &Vec3),
     ) {
         self.contact_count = self.touches.len();
-        // a memory belongs to one contact at a time; bits mark those given away
+        // each history belongs to at most one contact; bits mark those in use
         let mut taken = 0;
         for k in 0..self.contact_count {
             let history = self.history_of(world, k, taken, &base.v);
@@ -154,7 +158,8 @@ impl ContactState {
         }
     }
 
-    /// The contact of touch `k` with springs stretched so in the frame of its memory, and no penetration yet.
+    /// The contact at point `k` with the given spring stretches in the frame of its history, and no
+    /// penetration yet.
     fn contact_of(
         &self,
         world: &ContactEnvironment,
@@ -177,7 +182,7 @@ impl ContactState {
             normal_force: memory.normal_force,
             shear_force: Vec3::zeros(),
             rolling_moment: Vec3::zeros(),
-            // a first guess only: the solver finds the mode anew
+            // an initial guess only: the solver finds the mode itself
             mode: self.contacts[k].mode,
             law,
         }
@@ -229,7 +234,8 @@ impl ContactState {
             let (shear_rate, roll_rate) = contact.set_forces_now(world, &v, &w);
             let back = self.histories[history].n;
             let rate = &mut self.rates[0];
-            // Newton and Euler for a sphere: shear acts at the touched point, R below the centre
+            // Newton–Euler equations of a sphere: shear acts at the contact point, R below the
+            // centre
             rate.v += (contact.n * contact.normal_force - contact.shear_force) / body.mass;
             rate.w += (contact.n.cross(&contact.shear_force) * body.radius
                 - contact.rolling_moment)

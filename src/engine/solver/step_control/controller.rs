@@ -1,5 +1,5 @@
-//! Trying steps until one is accurate: the one controller of all steps whose error is controlled, in space, on a plane, of blocks and in
-//! islands.
+//! Step length control: tries steps until one is accurate. It serves all schemes with error
+//! control: stages in space, on a plane, of blocks and in islands.
 
 use super::{Control, StepError};
 use crate::math;
@@ -7,31 +7,31 @@ use crate::solver::tableau::RATIO;
 
 /// The step controller's safety factor (–).
 const SAFETY: f64 = 0.9;
-/// A step shorter than this, in radians of the stiffest contact, cannot help any more (–).
+/// A step shorter than this, in radians of the stiffest contact, is given up (–).
 const SHORTEST: f64 = 1e-9;
 
-/// What one try of a step came to.
+/// Outcome of one try of a step.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum TryOutcome {
     /// Its local error relative to the tolerance; accepted up to 1.
     Error(f64),
-    /// Accurate, but with more energy than before: it has met a kink of the law in an unlucky place, and a shorter one
-    /// does not.
+    /// Accurate, but with a gain of energy: a kink of the law lies unfavourably within the step. A
+    /// shorter step avoids it.
     EnergyGain,
-    /// Something begins at this share of it (–, 0..1), where it has to end: that is no error.
+    /// The step must end at this share of it (–, 0..1), where an event lies: that is no error.
     Cut(f64),
-    /// A stage did not settle.
+    /// A stage did not converge.
     NotConverged,
-    /// The rock has left where the trial holds.
+    /// The rock has left the domain in which the trial is valid.
     OutOfDomain,
 }
 
 /// Why no step was found.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum StepFailure {
-    /// No step, however short, settles.
+    /// No step, however short, converges.
     NotConverged,
-    /// The trial does not hold where the rock goes.
+    /// The rock leaves the domain in which the trial is valid.
     OutOfDomain,
 }
 
@@ -45,15 +45,15 @@ impl From<StepFailure> for StepError {
 pub(crate) trait TrialStep {
     /// The step to try next (s).
     fn h(&mut self) -> &mut f64;
-    /// The longest step that cannot jump over a feature (s).
+    /// The longest step that cannot miss a feature (s).
     fn limit(&mut self) -> f64;
-    /// Tries it with length `dt` (s).
+    /// Tries the step with length `dt` (s).
     fn try_step(&mut self, dt: f64) -> TryOutcome;
 }
 
-/// Tries steps until one is accurate and returns its length (s), at most `h_max`, which does not count against the step to
-/// try next; the stiffest contact has `omega` (rad/s).
-/// The one place where steps are accepted, for stages in space, on a plane and in islands alike.
+/// Tries steps until one is accurate; its length (s), at most `h_max` (s). `h_max` does not reduce
+/// the step to try next. `omega` is the frequency of the stiffest contact (rad/s). All schemes with
+/// error control accept their steps here.
 pub(crate) fn find_accepted_step(
     trial: &mut impl TrialStep,
     control: &Control,
@@ -66,7 +66,7 @@ pub(crate) fn find_accepted_step(
         let dt = proposed.min(h_max);
         let ratio = match trial.try_step(dt) {
             TryOutcome::Error(error) if error <= 1.0 => {
-                // a step cut short by `h_max` says nothing of how long it could have been
+                // a step limited by `h_max` says nothing about how long it could have been
                 let least = if dt < proposed { proposed } else { 0.0 };
                 *trial.h() = scaled_by_error(control, dt, error).max(least);
                 return Ok(dt);
@@ -79,7 +79,7 @@ pub(crate) fn find_accepted_step(
         };
         *rejected += 1;
         *trial.h() = dt * ratio;
-        // one that began so short may be tried again as it is
+        // a step that was this short from the start may be tried again with the same length
         if ratio < 1.0 && dt * ratio * omega < SHORTEST {
             return Err(StepFailure::NotConverged);
         }
@@ -96,13 +96,14 @@ mod tests {
     use crate::solver::step_control::RESOLVED;
     use crate::solver::tableau::ESDIRK4;
 
-    /// A contact that has popped up at the start of a step: it has to press at once, which the step is then tried with.
-    struct Popped {
+    /// A contact that exists from the start of a step: the first try is cut, the next one includes
+    /// its force.
+    struct ExistingContact {
         h: f64,
-        presses: bool,
+        is_included: bool,
     }
 
-    impl TrialStep for Popped {
+    impl TrialStep for ExistingContact {
         fn h(&mut self) -> &mut f64 {
             &mut self.h
         }
@@ -112,7 +113,7 @@ mod tests {
         }
 
         fn try_step(&mut self, dt: f64) -> TryOutcome {
-            if std::mem::replace(&mut self.presses, true) {
+            if std::mem::replace(&mut self.is_included, true) {
                 TryOutcome::Error(0.5)
             } else {
                 TryOutcome::Cut((RESOLVED / dt).min(1.0))
@@ -120,15 +121,17 @@ mod tests {
         }
     }
 
-    /// A step may begin shorter than any that helps, after an impact that ended with such a one or because little is asked for: to try it again as it is
-    /// is not to give up. Boxes that slid on blunt folds failed so with `reference`: 3 of 200, and 2 of 8 where edges were let go as well.
+    /// A step may start shorter than the limit, after an impact that ended with such a step or
+    /// because the time left is short. Trying it again with the same length is no failure. Boxes
+    /// that slid on blunt folds failed so with `reference`: 3 of 200, and 2 of 8 where edges were
+    /// released as well.
     #[test]
     fn a_step_that_begins_short_settles() {
         let control =
             Control { tableau: &ESDIRK4, tolerance: 1e-8, impact: 1e-10, impact_kernels: true };
         let short = [1.0, 1e-6, 0.5 * SHORTEST, 1e-3 * SHORTEST];
         for (h, most_s) in short.into_iter().flat_map(|h| [(h, 1.0), (1.0, h)]) {
-            let (mut trial, mut rejected) = (Popped { h, presses: false }, 0);
+            let (mut trial, mut rejected) = (ExistingContact { h, is_included: false }, 0);
             let dt = find_accepted_step(&mut trial, &control, (most_s, 1.0), &mut rejected);
             assert!(dt.is_ok_and(|dt| dt > 0.0 && dt <= most_s), "{h:e} {most_s:e}: {dt:?}");
         }
