@@ -1,4 +1,5 @@
-//! A rock on one plane: the fourteen numbers that change along a step, and what presses on it.
+//! State of a rock on one plane: fourteen numbers that change during a step, and the contact
+//! forces.
 
 use super::body::Body;
 use super::contact_frame::{Along, ContactFrame, Local, dot, square};
@@ -7,9 +8,9 @@ use super::tableau::STAGES;
 use crate::ground::{Law, NormalElement};
 use crate::rock::Vec3;
 
-/// Numbers that change along a step, and where each kind begins.
+/// Size of the state; the offset of each quantity follows.
 pub(super) const SIZE: usize = 14;
-/// Way of the centre since the step's start (m).
+/// Displacement of the centre since the step's start (m).
 pub(super) const WAY: usize = 0;
 /// Velocity (m/s).
 pub(super) const SPEED: usize = 3;
@@ -32,11 +33,16 @@ pub(super) fn local_at(x: &State, at: usize) -> Local {
     [x[at], x[at + 1], x[at + 2]]
 }
 
-/// The numbers of way, velocity and spin and of the springs of shear and rolling, or of their rates.
+/// A state of displacement, velocity, spin and the stretches of shear and rolling springs, or of
+/// their rates.
 #[inline]
-pub(super) fn state_of([way, speed, spin]: [Local; 3], shear: Along, roll: Local) -> State {
+pub(super) fn state_of(
+    [displacement, speed, spin]: [Local; 3],
+    shear: Along,
+    roll: Local,
+) -> State {
     let mut state = [0.0; SIZE];
-    state[WAY..SPEED].copy_from_slice(&way);
+    state[WAY..SPEED].copy_from_slice(&displacement);
     state[SPEED..SPIN].copy_from_slice(&speed);
     state[SPIN..SHEAR].copy_from_slice(&spin);
     state[SHEAR..ROLL].copy_from_slice(&shear);
@@ -44,7 +50,7 @@ pub(super) fn state_of([way, speed, spin]: [Local; 3], shear: Along, roll: Local
     state
 }
 
-/// The same of vectors, in the frame of the plane.
+/// A state from vectors in the frame of the terrain.
 pub(super) fn into_plane(
     frame: &ContactFrame,
     motion: [&Vec3; 3],
@@ -53,20 +59,20 @@ pub(super) fn into_plane(
     state_of(motion.map(|x| frame.local(x)), frame.along(shear), frame.local(roll))
 }
 
-/// Way, velocity, spin, shear and rolling as vectors.
+/// Displacement, velocity, spin, shear and rolling as vectors in the frame of the terrain.
 pub(super) fn out_of_plane(frame: &ContactFrame, x: &State) -> [Vec3; 5] {
     let [way, speed, spin, roll] =
         [WAY, SPEED, SPIN, ROLL].map(|at| frame.out_local(local_at(x, at)));
     [way, speed, spin, frame.out_along(along_at(x, SHEAR)), roll]
 }
 
-/// What presses on the rock at a stage's end.
+/// Contact forces at a stage's end.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct PlaneForces {
     pub(super) normal_force: f64,
     pub(super) shear_force: Along,
     pub(super) rolling_moment: Local,
-    /// Whether it still holds the rock.
+    /// Whether the contact is closed.
     pub(super) closed: bool,
 }
 
@@ -84,7 +90,7 @@ pub(super) fn stored_j(law: &Law, penetration: f64, at: &State) -> f64 {
 }
 
 impl PlaneForces {
-    /// What they do to velocity and spin (m/s², rad/s²).
+    /// Accelerations by them (m/s², rad/s²).
     #[inline]
     pub(super) fn accelerations(&self, body: &Body) -> (Local, Local) {
         let Self { normal_force, shear_force, rolling_moment, .. } = *self;
@@ -100,7 +106,7 @@ impl PlaneForces {
         )
     }
 
-    /// Power that goes into friction, damping and rolling (W): what the springs store is counted in.
+    /// Power that goes into friction, damping and rolling (W), what the springs store included.
     #[inline]
     pub(super) fn losses(
         &self,
@@ -117,13 +123,13 @@ impl PlaneForces {
     }
 }
 
-/// Way on one plane that is asked for first (–, relative to R).
+/// Travel on one plane that is checked first (–, relative to R).
 pub(super) const FIRST_REACH: f64 = 0.6;
 
 /// State and rates of a rock on one plane.
 #[derive(Debug)]
 pub struct PlaneState {
-    /// Whether they are those of the current rock.
+    /// Whether they belong to the current rock.
     pub(super) on: bool,
     pub(super) frame: ContactFrame,
     pub(super) state: State,
@@ -132,10 +138,11 @@ pub struct PlaneState {
     pub(super) losses: [Local; STAGES],
     /// `rigid`: the step to try next (s).
     pub(super) wished_s: f64,
-    /// Way to ask for next (–, relative to R), and where the last that was short enough was not clear (m).
+    /// Travel to check next (–, relative to R), and the position where the last one short enough
+    /// was not clear (m).
     pub(super) reach: f64,
     pub(super) blocked_at: Vec3,
-    /// Whether soil takes of the rock's speed between steps: they stay short.
+    /// Whether soil slows the rock between steps: then steps stay short.
     pub(crate) ploughs: bool,
 }
 
@@ -156,7 +163,7 @@ impl Default for PlaneState {
 }
 
 impl PlaneState {
-    /// Forgets whose state it holds (before the next contact).
+    /// Invalidates the state (before the next contact).
     pub(crate) fn forget(&mut self) {
         (self.on, self.wished_s) = (false, f64::INFINITY);
         (self.reach, self.blocked_at) = (FIRST_REACH, Vec3::repeat(f64::INFINITY));

@@ -1,15 +1,17 @@
-//! Rough ground: a rock that comes to it meets a facet that is tilted against the mesh.
+//! Rough ground: impacts on facets that are tilted against the mesh.
 //!
-//! A rock sees the facets that face it: the tilt is uniform in its angle, from nothing to the ground's roughness, and in its
-//! direction, weighted by `max(0, −v·n′)` with `n′` the tilted normal, the flux of the rock through the facet. Whether it
-//! rebounds is judged by its approach to the facet. A rebound into the mean surface is simply the next impact.
+//! The tilt of a facet is uniform in its angle, from zero to the ground's roughness, and in its
+//! direction, weighted by `max(0, −v·n′)` with `n′` the tilted normal, the flux of the rock through
+//! the facet. Whether an impact rebounds depends on the approach to the facet. A rebound into the
+//! mean surface is simply the next impact.
 //!
-//! Roughness belongs to the place: it meets one facet for each roughness length of its way, and the mean surface until that is
-//! behind it, so that the number of its small impacts, which is a matter of stiffness and steps, does not decide how often it
-//! is deflected. If it met the same facet in each of them, stiff springs would let it hop up a ramp that soft ones roll along.
+//! Roughness is a property of the place: a rock meets one facet per roughness length of its path,
+//! and the mean surface until it has left that behind. So the number of its small impacts, which
+//! depends on stiffness and steps, does not decide how often it is deflected. If it met the same
+//! facet in each of them, stiff springs would let it hop up a ramp that soft ones roll along.
 //!
-//! Energy is untouched: the rock is turned against the facet and turned back, and a rotation
-//! changes neither speed nor spin.
+//! Energy is conserved: the motion is rotated onto the facet and back, and a rotation changes
+//! neither speed nor spin rate.
 
 use super::environment::ContactEnvironment;
 use crate::contact::history::SAME_GRIP;

@@ -1,9 +1,10 @@
-//! An impact on something that gives way, in the limit of stiff springs: the law of one contact at one place, followed in the
-//! impact's own time until what is struck has taken all it can.
+//! An impact on a stem that breaks, in the limit of stiff springs: the law of one contact at a
+//! fixed place, integrated on the time scale of the impact until the stem has taken its limit of
+//! energy.
 //!
-//! In the limit of stiff springs nothing moves while the impact lasts, so normal and place are
-//! fixed and the law of one contact is all there is: three springs, six velocities. Energy that has
-//! left the rock's motion is in the stem, whether in springs or in friction.
+//! In the limit of stiff springs nothing moves during the impact: normal and position are fixed and
+//! the law of one contact is the whole model, with three springs and six velocities. Energy that
+//! has left the rock's motion is in the stem, whether in springs or in friction.
 
 use super::body::Body;
 use super::law::{ContactDeformation, ContactForces};
@@ -14,9 +15,10 @@ use crate::rock::Vec3;
 /// Step (rad of the contact's oscillation).
 /// 5e-3 rad with a midpoint rule: an error of some 1e-5 of the speed, over at most 4000 steps.
 pub(super) const STEP: f64 = 5e-3;
-/// A rock has come off within this (rad), or creeps out so heavily damped that nothing is left to take.
+/// Longest impact (rad). By then the rock has separated, or moves out so heavily damped that no
+/// more energy is taken.
 pub(super) const MAX_CONTACT_RAD: f64 = 20.0;
-/// Halvings of the step in which it gives way: all the digits there are.
+/// Bisections of the step in which the stem breaks: to the last digit.
 pub(super) const BISECTIONS: u32 = 60;
 
 /// A rock pressed into one contact.
@@ -28,14 +30,13 @@ struct PressedRock {
 }
 
 impl PressedRock {
-    /// After `h` (s), by a step through the middle.
-    /// Midpoint rule: `x + h f(x + h f(x)/2)`.
+    /// State after `h` (s), by the midpoint rule: `x + h f(x + h f(x)/2)`.
     fn after(&self, body: &Body, law: &Law, h: f64) -> Self {
         let middle = self.stepped(body, law, self, 0.5 * h);
         self.stepped(body, law, &middle, h)
     }
 
-    /// Gone on for `h` (s) at the rates of `there`.
+    /// State after `h` (s) at the rates of `there`.
     fn stepped(&self, body: &Body, law: &Law, there: &Self, h: f64) -> Self {
         let n = &there.at.n;
         let forces =
@@ -53,7 +54,7 @@ impl PressedRock {
         }
     }
 
-    /// Whether it is still on its way in, or pushed out.
+    /// Whether it still approaches or is pushed out.
     fn presses(&self, law: &Law) -> bool {
         let separation_m_s = self.at.n.dot(&self.v);
         let force = law.normal(false).pull_or_push(self.at.penetration, separation_m_s);
@@ -65,8 +66,9 @@ impl PressedRock {
     }
 }
 
-/// Velocity and spin with which a rock leaves something with normal `n` that gives way once it has taken `limit_j`, springs and
-/// friction included. `None` if it stands until the rock has come off: friction goes on taking while the spring pushes out.
+/// Velocity and spin after an impact on a stem with normal `n` that breaks once it has taken
+/// `limit_j`, springs and friction included. `None` if it withstands until the rock has separated:
+/// friction goes on taking energy while the spring pushes out.
 pub(crate) fn yielding_impact(
     body: &Body,
     (law, n): (&Law, &Vec3),
@@ -82,11 +84,11 @@ pub(crate) fn yielding_impact(
     while rock.presses(law) && elapsed_rad < MAX_CONTACT_RAD {
         let next = rock.after(body, law, step);
         if next.motion_j(body) <= left_j {
-            // halving is safe where the energy taken is not monotone: the interval always ends with
-            // the first crossing that the step saw
-            let stands = |time: f64| rock.after(body, law, time).motion_j(body) > left_j;
-            let [_, yields] = math::bisected([0.0, step], BISECTIONS, stands);
-            let end = rock.after(body, law, yields);
+            // bisection is safe where the energy taken is not monotone: the interval always ends
+            // with the first crossing that the step saw
+            let withstands = |time: f64| rock.after(body, law, time).motion_j(body) > left_j;
+            let [_, breaks_s] = math::bisected([0.0, step], BISECTIONS, withstands);
+            let end = rock.after(body, law, breaks_s);
             return Some((end.v, end.w));
         }
         (rock, elapsed_rad) = (next, elapsed_rad + STEP);

@@ -33,7 +33,7 @@ use crate::solver::impact::BlowTable;
 use crate::solver::law::capture_m_s;
 use crate::solver::loss::EnergyGiven;
 use crate::solver::loss::Loss;
-use crate::solver::rigid::{GroundContact, HELD, remember};
+use crate::solver::rigid::{GroundContact, HELD, update_histories};
 use crate::solver::step_control::StepError;
 use crate::terrain::Terrain;
 pub(crate) use contacts::blows_of;
@@ -252,7 +252,7 @@ impl IslandBody {
         self.was_touched = ball.pushed || ball.moved;
         let (world, state) = self.with_environment(terrain);
         (state.c, state.v, state.w) = (ball.c, ball.v, ball.w);
-        remember(&world, state, ball.pushed);
+        update_histories(&world, state, ball.pushed);
         state.impact_announced = false;
     }
 }

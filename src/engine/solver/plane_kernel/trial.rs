@@ -1,8 +1,8 @@
-//! One step on a plane, tried with any length.
+//! A trial step on a plane.
 //!
-//! The numbers of a state are way, velocity, spin, shear stretch and rolling stretch, in the frame of two tangents
-//! and the normal: fourteen in all. Normal force and friction follow in closed form (`stage_force`,
-//! `FrictionRolling::solve`), so a stage takes no iteration but that of the two sliders.
+//! A state has fourteen numbers: displacement, velocity, spin, shear stretch and rolling stretch,
+//! in the frame of two tangents and the normal. Normal force and friction follow in closed form
+//! (`stage_force`, `FrictionRolling::solve`), so a stage iterates only over the two sliders.
 //!
 //! Equations of a stage, with `x*` the state at its base, `h` its length (`γ Δt`) and `v_f = v* + h
 //! g`:
@@ -33,18 +33,19 @@ use crate::solver::step_control::{
     TryOutcome, find_accepted_step,
 };
 
-/// An impact is over after about so many radians of its contact (–): up to there its steps are taken in one go.
+/// An impact is over after about so many radians of its contact (–): up to there its steps are
+/// taken in one call.
 const IMPACT_RAD: f64 = 3.5;
 
-/// A step being tried.
+/// A step that can be tried with any length.
 pub(super) struct PlaneTrial<'a, 'w> {
     /// The step to try next (s).
     pub(super) h: &'a mut f64,
-    /// The longest step that cannot jump over a feature (s).
+    /// The longest step that misses no feature (s).
     pub(super) limit: f64,
-    /// The longest step that cannot wherever it is (s).
+    /// The longest step that misses no feature at any position (s).
     pub(super) usual_s: f64,
-    /// Time within which steps may follow each other without a look around (s): the same whatever is left out.
+    /// Time left for steps without a new contact search (s): the same whatever is left out.
     pub(super) room_s: f64,
     /// Tableau and tolerances.
     pub(super) control: &'a Control,
@@ -57,36 +58,36 @@ pub(super) struct PlaneTrial<'a, 'w> {
     pub(super) gravity: Local,
     /// Penetration at `start` (m).
     pub(super) penetration: f64,
-    /// Energy at the step's start, motion, springs and height over `start` (J).
+    /// Energy at the step's start: kinetic, springs and height over `start` (J).
     pub(super) energy: f64,
     /// The same at its end.
     pub(super) energy_at_end: f64,
-    /// How far from `start` what is near is known, squared (m²).
+    /// Distance from `start` within which all features are known, squared (m²).
     pub(super) known_way2: f64,
     /// Features collected around the rock, which certify the plane.
     pub(super) near: &'a Neighbours,
-    /// Centre where the ways are counted from (m).
+    /// Centre from which displacements are counted (m).
     pub(super) start: Vec3,
     /// The face that it is on.
     pub(super) face: u32,
-    /// How shear and rolling were when last asked.
+    /// Modes of shear and rolling found last.
     pub(super) mode: SlipState,
     /// State at the end of the last stage solved.
     pub(super) end: State,
     /// Forces there (N, N m).
     pub(super) forces: PlaneForces,
-    /// What springs hold there (J).
+    /// Energy of the springs there (J).
     pub(super) stored: f64,
     /// Stages solved so far.
     pub(super) solved: u64,
 }
 
-/// What the stages of a step of one length have in common.
+/// Constants of all stages of a step of one length.
 struct StageConstants {
     /// Length of a stage (s).
     hh: f64,
     compliance: Compliance,
-    /// Reciprocals of what stretches shear and rolling spring (m/(N s), 1/(N m s)).
+    /// Reciprocals of the coefficients of shear and rolling spring (m/(N s), 1/(N m s)).
     over_s: f64,
     over_r: f64,
 }
@@ -116,12 +117,12 @@ impl PlaneTrial<'_, '_> {
         let spin = local_at(&base, SPIN);
         let speed = [0, 1, 2].map(|k| base[SPEED + k] + self.gravity[k] * hh);
         let penetration = self.penetration - base[WAY + 2];
-        // Kelvin–Voigt spring of the stage's end, never pulling; see the law
+        // Kelvin–Voigt element at the stage's end, never pulling; see the law
         let normal_force = self.normal.stage_force(penetration, speed[2], body.mass, hh);
         let (mut shear_force, mut rolling_moment) = ([0.0; 2], [0.0; 3]);
         if normal_force > 0.0 {
             let (slip, compliance) = (slip(body, speed, spin), &constants.compliance);
-            // trial forces: what springs and dashpots would give if nothing slipped
+            // trial forces: those of springs and dashpots without sliding
             let a = [0, 1].map(|k| law.shear.held(base[SHEAR + k]) + slip[k] * compliance.kappa);
             let d =
                 [0, 1, 2].map(|k| law.rolling.held(base[ROLL + k]) + spin[k] * compliance.kappa_r);
@@ -138,7 +139,7 @@ impl PlaneTrial<'_, '_> {
         let roll_rate = [0, 1, 2]
             .map(|k| (rolling_moment[k] - law.rolling.held(base[ROLL + k])) * constants.over_r);
         let rate = state_of([v, dv, dw], shear_rate, roll_rate);
-        // stiffly accurate: the last of these ends is that of the step
+        // stiffly accurate: the end of the last stage is that of the step
         self.end = std::array::from_fn(|k| base[k] + rate[k] * hh);
         let (speed, spin) = (local_at(&self.end, SPEED), local_at(&self.end, SPIN));
         self.plane.rates[i] = rate;
@@ -147,10 +148,11 @@ impl PlaneTrial<'_, '_> {
         self.solved += 1;
     }
 
-    /// What speaks against the stage's end, if anything: the rock must stay over the face and touch nothing else.
+    /// Why the stage's end is rejected, if it is: the rock must stay over the face and touch
+    /// nothing else.
     ///
-    /// Cheapest first: a distance, a certificate that holds for all of the margin, then tests of
-    /// the place itself.
+    /// Cheapest test first: a distance, a certificate for the whole margin, then tests of the
+    /// position itself.
     #[inline]
     fn rejection(&self, dt: f64) -> Option<TryOutcome> {
         let centre = self.start + self.plane.frame.out_local(local_at(&self.end, WAY));
@@ -167,7 +169,7 @@ impl PlaneTrial<'_, '_> {
         if self.near.is_alone(self.world.terrain, self.face, (&centre, reach)) {
             return None;
         }
-        // It runs into something: what it meets must be resolved from the start, so come close first.
+        // it runs into something, whose onset must be resolved: the step is shortened first
         Some(if dt * self.law.omega_rad_s() > ONSET {
             TryOutcome::NotConverged
         } else {
@@ -209,7 +211,7 @@ impl PlaneTrial<'_, '_> {
         step.touches_plane_only((self.world, self.near), (&since(WAY), &since(SPEED)), dt)
     }
 
-    /// Motion, height and springs at the step's end (J).
+    /// Kinetic energy, height and springs at the step's end (J).
     #[inline]
     fn motion_and_springs_j(&self) -> f64 {
         let (body, end) = (&self.world.body, &self.end);
@@ -218,24 +220,24 @@ impl PlaneTrial<'_, '_> {
         motion + self.stored - body.mass * dot(self.gravity, local_at(end, WAY))
     }
 
-    /// Whether that is more than at the step's start.
-    /// What cannot be known is the rounding of energies and of places times forces.
+    /// Whether that exceeds the energy at the step's start by more than the rounding of energies
+    /// and of positions times forces.
     #[inline]
     fn gains_energy(&self) -> bool {
         let body = &self.world.body;
         let force = body.mass * body.gravity.norm() + self.forces.normal_force;
-        let unknown = ROUNDING * self.energy.abs() + PLACE_ROUNDING * body.radius * force;
-        self.energy_at_end > self.energy + unknown
+        let rounding_j = ROUNDING * self.energy.abs() + PLACE_ROUNDING * body.radius * force;
+        self.energy_at_end > self.energy + rounding_j
     }
 
-    /// Steps until the rock is free, an impact would be over, or what is near is no longer known; why it stopped before
-    /// that, if it did.
+    /// Takes steps until the rock is free, an impact would be over, or the features around are no
+    /// longer known. Returns the failure that stopped it before, if any.
     pub(super) fn take_steps(
         &mut self,
         (h_max, is_tree): (f64, bool),
         done: &mut Advance,
     ) -> Option<StepFailure> {
-        // A stem must be asked after every step whether it still stands.
+        // whether a stem still stands must be checked after every step
         let omega = self.law.omega_rad_s();
         let span = if is_tree { 0.0 } else { IMPACT_RAD / omega };
         let (control, mut sum) = (self.control, [0.0; 3]);
@@ -256,7 +258,8 @@ impl PlaneTrial<'_, '_> {
         failure
     }
 
-    /// Goes on from the step's end; adds what went into friction, damping and rolling (J) to `sum`.
+    /// Accepts the step; adds the energies that went into friction, damping and rolling (J) to
+    /// `sum`.
     #[inline]
     fn accept(&mut self, dt: f64, sum: &mut Local) {
         let tableau = self.control.tableau;
@@ -273,9 +276,10 @@ impl PlaneTrial<'_, '_> {
         plane.state = self.end;
     }
 
-    /// Whether the next step stays where what is near is known, and within the longest step that was allowed for.
+    /// Whether the next step stays where all features are known, and within the longest step
+    /// allowed.
     ///
-    /// Also bounds the time without a look around, in the same way for every mesh: with one
+    /// Also bounds the time without a contact search, in the same way for every mesh: with one
     /// triangle or a thousand in the plane the steps are the same.
     #[inline]
     fn may_continue(&mut self, dt: f64) -> bool {
