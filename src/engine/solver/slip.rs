@@ -1,25 +1,25 @@
-//! How far a rock has slipped, and the friction that soil answers with.
+//! Slip distance of a rock, and friction of soil that grows with it.
 //!
 //! `μ(s) = μ_min + (2/π)(μ_max − μ_min) atan(κ s)` (Leine et al. 2014, Eqs. 46, 47): the further a
-//! rock has ploughed, the more soil it has pushed up before it. `s` grows with slip in contact and
-//! is forgotten in flight, `s' = −β s`. One number a rock, whatever its grounds.
+//! rock has ploughed, the more soil it has pushed up in front. `s` grows with slip in contact and
+//! decays in flight, `s' = −β s`. It is one number per rock, whatever its grounds.
 
 use crate::ground::{Ground, Law, SlipFriction};
 
-/// How far a rock has slipped.
+/// Slip distance of a rock.
 #[derive(Debug, Default)]
 pub(crate) struct Slip {
     slipped_m: f64,
-    /// On which ground last.
+    /// The ground touched last.
     on: Option<u16>,
-    /// What the grounds do, and their friction before any slip (–).
+    /// Slip-dependent friction of each ground, and its coefficient before any slip (–).
     soils: Vec<Option<(SlipFriction, f64)>>,
-    /// How fast friction grows with slip at most (1/m); 0 where none grows.
+    /// Largest growth rate of friction with slip (1/m); 0 where none grows.
     fastest_per_m: f64,
 }
 
 impl Slip {
-    /// Nothing has slipped yet on these grounds.
+    /// No slip yet, on these grounds.
     pub(crate) fn begin(&mut self, grounds: &[Ground]) {
         (self.slipped_m, self.on) = (0.0, None);
         self.soils.clear();
@@ -47,19 +47,18 @@ impl Slip {
         })
     }
 
-    /// How fast friction grows with slip at most (1/m).
+    /// Largest growth rate of friction with slip (1/m).
     pub(crate) fn fastest_per_m(&self) -> f64 {
         self.fastest_per_m
     }
 
-    /// Slips further, on a ground if it touches one.
+    /// Adds slip (m), on a ground if the rock touches one.
     pub(crate) fn grow(&mut self, slipped_m: f64, on: Option<u16>) {
         self.slipped_m += slipped_m;
         self.on = on.or(self.on);
     }
 
-    /// Forgets in a flight of `flight_s` (s) what its last ground forgets.
-    /// Exactly: `s e^(−β t)`.
+    /// Decay in a flight of `flight_s` (s), by the rate of the last ground: `s e^(−β t)` exactly.
     pub(crate) fn decay(&mut self, flight_s: f64) {
         let soil = self.on.and_then(|ground| self.soil(ground));
         self.slipped_m = soil.map_or(0.0, |(soil, _)| soil.left_m(self.slipped_m, flight_s));

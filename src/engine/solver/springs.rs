@@ -1,4 +1,5 @@
-//! What the springs of a rock's contacts hold, and how soon they will have taken more than what they press on can bear.
+//! Energy in the springs of a rock's contacts, and a bound for the time until they have taken a
+//! given energy.
 
 use super::contact_state::{ContactEnvironment, ContactState};
 use super::loss::Loss;
@@ -18,7 +19,7 @@ impl ContactState {
         self.stored_j(world)
     }
 
-    /// The same for the touches of the last look.
+    /// The same for the contact points found last.
     pub fn stored_j(&self, world: &ContactEnvironment) -> Loss {
         let mut stored = Loss::default();
         for touch in self.touches.iter() {
@@ -33,7 +34,7 @@ impl ContactState {
         stored
     }
 
-    /// What the springs of one contact hold (J), its touch being one of the last look.
+    /// Energy in the springs of one contact (J), whose point is among those found last.
     pub(super) fn contact_stored_j(
         &self,
         world: &ContactEnvironment,
@@ -45,7 +46,7 @@ impl ContactState {
             + law.stored_j(0.0, history.shear.norm_squared(), history.roll.norm_squared())
     }
 
-    /// What the normal springs of impacts under way hold (J): normal, triangle and energy of each.
+    /// Normal springs of impacts under way: normal, triangle and energy (J) of each.
     pub(super) fn impact_springs(
         &mut self,
         world: &ContactEnvironment,
@@ -60,8 +61,8 @@ impl ContactState {
         self.touches.iter().filter_map(of_touch).collect()
     }
 
-    /// How much the springs of the contacts hold that `count` (J). Touches are looked for anew, and the last look stays as it was: a
-    /// force would not tell, as dashpots push as well.
+    /// Energy (J) in the springs of the contacts for which `count` is true. Contact points are
+    /// found anew and restored afterwards: the normal force would not do, as dashpots push as well.
     pub(crate) fn held_j(
         &mut self,
         world: &ContactEnvironment,
@@ -80,8 +81,8 @@ impl ContactState {
         all - of_others
     }
 
-    /// The trees that are pressed, with what springs on them hold and the power of their dashpots and of friction. Touches are looked for anew, and
-    /// the last look stays as it was.
+    /// The trees that are pressed, with the energy of the springs on them and the power of their
+    /// dashpots and friction. Contact points are found anew and restored afterwards.
     pub(super) fn pressed_trees(&mut self, world: &ContactEnvironment) -> PressedTrees {
         let mut pressed = PressedTrees::default();
         let terrain = world.terrain;
@@ -91,7 +92,7 @@ impl ContactState {
         }
         let (c, last) = (self.c, std::mem::take(&mut self.touches));
         self.update_neighbours(world, &c);
-        // also what has just come to touch: its dashpot takes most at first
+        // including new contacts: the dashpot takes most at first
         self.near.touches(terrain, &c, world.body.radius * (1.0 + TOUCH), &mut self.touches);
         for (k, touch) in self.touches.iter().enumerate() {
             let memory = self.histories.iter().find(|history| history.feature == touch.feature);
@@ -111,7 +112,8 @@ impl ContactState {
         pressed
     }
 
-    /// What the normal spring of a touch holds (J), and the power that its dashpot and its friction take (W).
+    /// Energy in the normal spring of a contact (J), and the power that its dashpot and friction
+    /// take (W).
     fn normal_energy_and_power(
         &self,
         world: &ContactEnvironment,
@@ -126,8 +128,9 @@ impl ContactState {
         (normal.stored_j(penetration), taken_w)
     }
 
-    /// A time (s) within which the contacts of `on` take no more than `work_j`: their forces do not grow faster than springs
-    /// without loss, and nothing brakes the rock. The nearer to the end, the nearer it is to the true time.
+    /// A lower bound (s) of the time in which the contacts of `on` take `work_j`: their forces grow
+    /// no faster than those of springs without loss, and nothing slows the rock. The bound becomes
+    /// exact as `work_j` goes to 0.
     pub(crate) fn time_to_take_s(
         &self,
         world: &ContactEnvironment,
@@ -148,7 +151,7 @@ impl ContactState {
     }
 }
 
-/// What the springs of shear and rolling of a contact hold (J), by the kind it was counted under.
+/// Energy in the springs of shear and rolling of a contact (J), by the kind it was counted under.
 pub(super) fn stretched_j(world: &ContactEnvironment, history: &ContactHistory) -> Loss {
     let law = world.springs_of(history);
     let damping = law.stored_j(0.0, history.shear.norm_squared(), 0.0);
@@ -156,7 +159,7 @@ pub(super) fn stretched_j(world: &ContactEnvironment, history: &ContactHistory) 
     Loss::on_slope([0.0, damping, rolling]).on(world, history.triangle)
 }
 
-/// What the normal spring of a touch holds (J) by a law.
+/// Energy in the normal spring at a contact point (J) by a law.
 fn pressed_j(world: &ContactEnvironment, touch: &ContactPoint, law: &Law) -> f64 {
     let penetration = (world.body.radius - touch.distance_m).max(0.0);
     touch.gain2 * law.stored_j(penetration, 0.0, 0.0)

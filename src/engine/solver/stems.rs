@@ -1,16 +1,18 @@
-//! Stems that give way.
+//! Stems that break.
 //!
-//! What a rock puts into its contact with a stem, springs and friction included, counts against what the stem can take. When
-//! that is what was left of the stem, the stem is gone and the rock goes on: the schemes with springs cut their step there,
-//! in the rigid limit the impulse ends there. What a stem took in earlier contacts with the same rock is not given back. A stem
-//! gives way to one rock alone: the next, also one that shares its world, finds it whole.
+//! The energy that a rock puts into its contact with a stem, springs and friction included, counts
+//! against the stem's limit. When the limit is reached, the stem is removed and the rock goes on:
+//! schemes with springs cut their step there, in the rigid limit the impulse ends there. Energy
+//! taken in earlier contacts with the same rock is not given back. A stem breaks for one rock
+//! alone: the next one, also in the same world, finds it intact.
 //!
-//! A stem that is struck by one contact alone has a law of its own (`yielding`); all else, with the ground that is touched, is one blow of all
-//! contacts (`joint_blow`): a push that is cut short goes on forward, and must not be read from the speed with which the whole blow has thrown the rock off.
+//! A stem struck at one contact alone has a solution of its own (`yielding`); every other case,
+//! also with the ground touched, is one blow of all contacts (`joint_blow`): the velocity after a
+//! truncated impulse does not follow from that after the whole blow.
 //!
-//! The limit is an energy (J), drawn for each stem and rock from the scene's distribution: what a
-//! trunk takes until it breaks is known from pull and impact tests as an energy, and it needs no
-//! model of the trunk's motion.
+//! The limit is an energy (J), drawn for each stem and rock from the scene's distribution: the
+//! energy until a trunk breaks is known from pull and impact tests, and it needs no model of the
+//! trunk's motion.
 
 use super::body::Twist;
 use super::contact_state::{ContactEnvironment, ContactState};
@@ -25,31 +27,31 @@ use crate::rock::Vec3;
 use crate::terrain::stems::Stems;
 use arrayvec::ArrayVec;
 
-/// How stems give way to a blow in the rigid limit.
+/// Stems broken by a blow in the rigid limit.
 #[derive(Debug, Clone)]
 pub(crate) struct BrokenStems {
-    /// The stems that are gone.
+    /// The broken stems.
     stems: ArrayVec<u32, MOST>,
     /// Velocity (m/s) and spin (rad/s) with which the rock goes on.
     pub(crate) motion: Twist,
-    /// What was struck, and what the blow has lost there.
+    /// The contact points struck, and the loss at each.
     pub(crate) struck: ArrayVec<(ContactPoint, Loss), MOST>,
 }
 
 impl ContactState {
-    /// Sees whether a stem that is pressed may give way in the next step, and returns the longest step (s) in which it does
-    /// not take more than is left of it.
+    /// Determines whether a pressed stem may break in the next step; returns the longest step (s)
+    /// in which it does not take more than is left of its limit.
     pub(crate) fn longest_before_yield_s(&mut self, world: &ContactEnvironment) -> f64 {
         let Some(stems) = world.terrain.stems.as_ref() else { return f64::INFINITY };
         self.stem_load.pressed = self.pressed_trees(world);
         let motion_j = self.motion_j(&world.body);
-        // what each of several takes is known between steps
+        // the shares of several trees are evaluated between steps
         let mut may_yield =
             self.stem_load.needs_energy_by_tree(stems, &self.stem_load.pressed, motion_j);
         let mut longest_s =
             if may_yield { APART_RAD / self.stiffest_rad_s(world) } else { f64::INFINITY };
         for stem in self.stem_load.pressed.iter().filter_map(|tree| tree.stem) {
-            // all of the rock's motion would not break another: no step need be limited
+            // a stem that the rock's kinetic energy cannot break does not limit the step
             if self.stem_load.may_yield(stems, stem, motion_j) {
                 let left_j = self.stem_load.left_j(stems, stem);
                 let of_stem =
@@ -62,8 +64,8 @@ impl ContactState {
         longest_s
     }
 
-    /// After a step with these losses: the stems pressed have taken what went into contacts with trees. Whether one has
-    /// given way; what the step took beyond its limit is then given back.
+    /// After a step with these losses: the pressed stems have taken those of contacts with trees.
+    /// Returns whether one has broken; the excess over its limit is then given back to the motion.
     pub(crate) fn load_stems(
         &mut self,
         world: &ContactEnvironment,
@@ -74,21 +76,23 @@ impl ContactState {
             self.stem_load.pressed = PressedTrees::default();
             return false;
         };
-        // what broke in the limit of stiff springs has had its energy and is gone: the rest went into what stands
+        // stems broken in the limit of stiff springs have had their energy: the rest went into
+        // those standing
         let standing_j = loss.trees - std::mem::take(&mut self.stem_load.broken_j);
-        // with springs what each holds now; without them blows have told what each took
+        // with springs their energy now; without them, blows have set the weights
         let end = if has_springs { self.pressed_trees(world) } else { PressedTrees::default() };
-        let giving_way = self.stem_load.distribute_until(stems, &end, standing_j);
-        for &(stem, beyond_j) in &giving_way {
+        let broken = self.stem_load.distribute_until(stems, &end, standing_j);
+        for &(stem, beyond_j) in &broken {
             let push = self.push_of(stems, stem);
             self.v += given_back(world.body.mass, &self.v, beyond_j, &push);
             loss.trees -= beyond_j;
             self.remove_stem(stems, stem);
         }
-        !giving_way.is_empty()
+        !broken.is_empty()
     }
 
-    /// Direction of the push of all contacts with a stem, by their forces if these are known.
+    /// Direction of the total normal force of all contacts with a stem, of their normals if forces
+    /// are unknown.
     fn push_of(&self, stems: &Stems, stem: u32) -> Vec3 {
         let of_stem = |history: &&ContactHistory| stems.of_triangle(history.triangle) == Some(stem);
         let histories = || self.histories.iter().filter(of_stem);
@@ -96,10 +100,12 @@ impl ContactState {
         if push == Vec3::zeros() { histories().map(|history| history.n).sum() } else { push }
     }
 
-    /// How stems give way to the blow on all that the last look has found, at a velocity and a spin, if one does.
+    /// Stems that break in the blow on all contact points found last, at a velocity and a spin, if
+    /// any.
     ///
-    /// One that is struck alone breaks as if nothing else were there; the rest of the blow falls with what it leaves. Where several contacts with trees
-    /// are struck, or what else is touched presses the rock against one, all are followed together.
+    /// A stem struck alone breaks as if nothing else were there; the rest of the blow follows with
+    /// the remaining motion. Where several contacts with trees are struck, or another contact
+    /// presses the rock against a tree, all are solved together.
     pub(crate) fn broken_by(
         &self,
         world: &ContactEnvironment,
@@ -107,19 +113,19 @@ impl ContactState {
     ) -> Option<BrokenStems> {
         let stems = world.terrain.stems.as_ref()?;
         let motion_j = world.body.motion_j((v, w));
-        let stands =
+        let is_standing =
             |touch: &&ContactPoint| !world.terrain.is_gone(touch.triangle, &self.near.gone);
         let standing: ArrayVec<ContactPoint, MOST> =
-            self.touches.iter().filter(stands).copied().collect();
+            self.touches.iter().filter(is_standing).copied().collect();
         let may_break =
             |touch: &ContactPoint| self.stem_load.may_yield_at(stems, touch.triangle, motion_j);
         if !standing.iter().any(may_break) {
             return None;
         }
-        let comes = |touch: &&ContactPoint| {
+        let approaches = |touch: &&ContactPoint| {
             world.terrain.is_tree(touch.triangle) && touch.normal.dot(v) < 0.0
         };
-        let mut struck = standing.iter().filter(comes);
+        let mut struck = standing.iter().filter(approaches);
         let first = struck.next()?;
         let alone = struck.next().is_none().then(|| self.broken_alone(world, first, (v, w)));
         let is_among = standing.len() > 1;
@@ -127,7 +133,7 @@ impl ContactState {
         alone.flatten().or_else(|| jointly().flatten())
     }
 
-    /// How the stem at `touch` gives way that is struck there alone.
+    /// The break of the stem at `touch`, struck there alone.
     fn broken_alone(
         &self,
         world: &ContactEnvironment,
@@ -145,7 +151,7 @@ impl ContactState {
         Some(BrokenStems { stems, motion, struck })
     }
 
-    /// How stems give way among all these touches of one instant.
+    /// The break of stems among all these contact points of one instant.
     fn broken_jointly(
         &self,
         world: &ContactEnvironment,
@@ -174,14 +180,15 @@ impl ContactState {
         })
     }
 
-    /// Stems are gone within a step whose losses hold what they took.
+    /// Removes stems broken within a step whose losses include their energy.
     pub(crate) fn remove_broken_stems(&mut self, world: &ContactEnvironment, broken: &BrokenStems) {
         let Some(stems) = world.terrain.stems.as_ref() else { return };
         let struck = broken.struck.iter().map(|(touch, loss)| (touch.triangle, loss.trees));
         self.remove_stems(stems, struck, broken.stems.iter().copied());
     }
 
-    /// The same with what each triangle has taken that was `struck` as part of a tree (J), and the stems that are gone.
+    /// Removes stems, given the energy (J) of each triangle `struck` as part of a tree, and the
+    /// stems that are gone.
     pub(crate) fn remove_stems(
         &mut self,
         stems: &Stems,
@@ -190,9 +197,9 @@ impl ContactState {
     ) {
         for (triangle, energy_j) in struck {
             self.stem_load.broken_j += energy_j;
-            // what stands after the same blow has taken its part too
-            let stands = stems.of_triangle(triangle);
-            if let Some(stem) = stands.filter(|stem| !gone.clone().any(|other| other == *stem)) {
+            // stems that withstand the same blow have taken energy too
+            let touched = stems.of_triangle(triangle);
+            if let Some(stem) = touched.filter(|stem| !gone.clone().any(|other| other == *stem)) {
                 self.stem_load.add_taken(stem, energy_j);
             }
         }
@@ -201,10 +208,12 @@ impl ContactState {
         }
     }
 
-    /// Breaks the stems that cannot take the current blow, in the rigid limit; `note` hears of all that is struck, with the touch and
-    /// what it took, and whether the rock has just come to it.
+    /// Breaks the stems that do not withstand the current blow, in the rigid limit; `note` is
+    /// called for every contact point struck, with its loss and whether the rock has just reached
+    /// it.
     ///
-    /// Before the blow itself: a stem that breaks takes its energy, and the rock goes on with what is left.
+    /// Before the blow itself: a stem that breaks takes its energy, and the blow follows with what
+    /// is left.
     pub(crate) fn break_stems(
         &mut self,
         world: &ContactEnvironment,
@@ -220,18 +229,18 @@ impl ContactState {
         self.touches.keep_struck(world.body.radius, &self.v, STRUCK_TOGETHER);
         while let Some(broken) = self.broken_by(world, (&self.v, &self.w)) {
             for (touch, loss) in &broken.struck {
-                note(self, touch, (loss, self.is_new(stems, touch)));
+                note(self, touch, (loss, self.is_new_contact(stems, touch)));
             }
             (self.v, self.w) = broken.motion;
             self.remove_broken_stems(world, &broken);
-            // what it took is booked, and is not among the losses of the step
+            // its energy is booked here, and is not part of the losses of the step
             self.stem_load.broken_j = 0.0;
         }
     }
 
-    /// Whether a rock has just come to the stem that it touches: only the blow that falls next has been announced, and a memory alone is of a
-    /// rock that rolls up to it.
-    fn is_new(&self, stems: &Stems, touch: &ContactPoint) -> bool {
+    /// Whether a rock has just reached the stem that it touches: only the next blow has been
+    /// announced, and a history alone belongs to a rock that rolls up to it.
+    fn is_new_contact(&self, stems: &Stems, touch: &ContactPoint) -> bool {
         let stem = stems.of_triangle(touch.triangle);
         let known = |one: &ContactHistory| {
             let is_same = stems.of_triangle(one.triangle) == stem;
@@ -241,7 +250,7 @@ impl ContactState {
             || !self.histories.iter().chain(self.upcoming_impacts.iter()).any(known)
     }
 
-    /// A stem is gone for this rock, with all that its contacts remember.
+    /// Removes a stem for this rock, with all its contact histories.
     fn remove_stem(&mut self, stems: &Stems, stem: u32) {
         self.near.gone.push(stem);
         self.near.forget();
@@ -251,15 +260,15 @@ impl ContactState {
     }
 }
 
-/// Change of the velocity `v` (m/s) of a mass (kg) that gives back what the last step took beyond the limit (J), negative for what
-/// it left, along the push of the stem.
-/// From `m v²/2` along the push: `v₁ = ±√(v² + 2 J/m)`; the part across it is not touched.
+/// Change of the velocity `v` (m/s) of a mass (kg) that returns the energy (J) by which the last
+/// step exceeded the limit (negative if it did not reach it), along the normal force of the stem.
+/// From `m v²/2` along it: `v₁ = ±√(v² + 2 J/m)`; the other components stay.
 pub(super) fn given_back(mass_kg: f64, v: &Vec3, energy_j: f64, normal_force: &Vec3) -> Vec3 {
     let along =
         normal_force.try_normalize(0.0).or_else(|| v.try_normalize(0.0)).unwrap_or(Vec3::z());
     let speed = along.dot(v);
     let after = (speed * speed + 2.0 * energy_j / mass_kg).max(0.0).sqrt();
-    // a rock that is still on its way in, as nearly always, goes against the push
+    // a rock that still moves inwards, as nearly always, moves against the force
     let after = if speed > 0.0 { after } else { -after };
     along * (after - speed)
 }

@@ -1,4 +1,5 @@
-//! One contact inside a fixed step, of a sphere with the mesh or of two spheres: its submatrices, and the judgement of its state.
+//! A contact in a fixed step, of a sphere with the mesh or of two spheres: its submatrices, and the
+//! update of its state.
 
 use super::StepConstants;
 use super::slider::{Change, DdaSlider, unit_or_zero};
@@ -13,7 +14,7 @@ use crate::ground::{FixedStepNormal, FrictionLimits, Law};
 use crate::rock::Vec3;
 use crate::solver::loss::Loss;
 
-/// What of a contact with the mesh the matrix is made of.
+/// Terms of a contact with the mesh that determine its stiffness matrix.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct ContactMatrixTerms {
     v: Vec3,
@@ -24,7 +25,7 @@ pub(super) struct ContactMatrixTerms {
 }
 
 impl ContactMatrixTerms {
-    /// Its stiffness, Eqs. (10) and (13).
+    /// Stiffness matrix, Eqs. (10) and (13).
     pub(super) fn stiffness(&self) -> Mat6 {
         let row = normal_row(&self.v);
         normal_stiffness(self.normal, &row)
@@ -33,12 +34,12 @@ impl ContactMatrixTerms {
     }
 }
 
-/// What a contact sees of the displacements of a step.
+/// Relative displacement at a contact over a step.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct RelativeDisplacement {
-    /// Penetration at the end (m), negative when apart.
+    /// Penetration at the end (m), negative when open.
     pub(crate) depth: f64,
-    /// Slip of the touched point (m), Eq. (16), of the first sphere relative to the second.
+    /// Slip of the contact point (m), Eq. (16), of the first sphere relative to the second.
     pub(super) slip: Vec3,
     /// Rotation.
     turn: Vec3,
@@ -47,38 +48,40 @@ pub(crate) struct RelativeDisplacement {
 /// One contact of a step.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct DdaContact {
-    /// Its memory.
+    /// Place of its history.
     pub(crate) history: usize,
-    /// Where on the mesh.
+    /// Mesh feature.
     pub(crate) feature: Feature,
-    /// Triangle whose ground answers.
+    /// Triangle whose ground sets the law.
     pub(crate) triangle: u32,
     /// Radius, the smaller one of two (m).
     pub(crate) radius: f64,
-    /// `V`, from the centre to the touched point or the other centre, frozen at the step's start.
+    /// `V`, from the centre to the contact point or the other centre, of the step's start.
     pub(super) v: Vec3,
     /// `P1` from the centre (m), Eq. (5), and the same of the second sphere.
     pub(super) points: [Vec3; 2],
     /// `λ` at the step's start (m), Eq. (7).
     pub(super) gap: f64,
-    /// Whether it pulls as well as it pushes, and never slides.
+    /// Whether it is bonded: it also pulls, and never slides.
     pub(super) bonded: bool,
     pub(super) normal: FixedStepNormal,
     pub(super) limits: FrictionLimits,
     pub(super) shear: DdaSlider,
     pub(super) roll: DdaSlider,
-    /// Whether the shear spring remembers; without, as printed.
+    /// Whether the shear spring keeps its stretch; if not, as printed in the paper.
     pub(super) shear_memory: bool,
-    /// Normal force at the end of the last step (N): the printed scheme caps friction by it.
+    /// Normal force at the end of the last step (N): the printed scheme takes the cap of friction
+    /// from it.
     pub(super) last_normal_force: f64,
-    /// Normal force of the last judgement (N), positive when pressing.
+    /// Normal force of the last state update (N), positive in compression.
     pub(super) normal_force: f64,
-    /// Not open.
+    /// Whether it is closed.
     pub(super) closed: bool,
 }
 
 impl DdaContact {
-    /// The elements of a law over the step; a unit of shear force takes `compliance` (m/N) off the way.
+    /// A contact with the elements of a law over the step; `compliance` is displacement per unit of
+    /// shear force (m/N) and rotation per unit of moment.
     pub(super) fn new(
         step: &StepConstants,
         law: &Law,
@@ -95,7 +98,7 @@ impl DdaContact {
         }
     }
 
-    /// The contact of a touch and its memory (number `k`).
+    /// The contact of a contact point and its history (number `k`).
     pub(super) fn with_mesh(
         step: &StepConstants,
         law: &Law,
@@ -122,8 +125,8 @@ impl DdaContact {
         contact
     }
 
-    /// Begins in the state in which it was left, open or closed and sliding or not, with its normal force (N) and stretch (m), or in
-    /// that which these and the free motion suggest.
+    /// Sets the initial state: as it was left, open or closed and sliding or not, with its normal
+    /// force (N) and stretch (m), or as these and the free motion suggest.
     pub(super) fn begin(
         &mut self,
         (closed, slides): (bool, bool),
@@ -151,12 +154,13 @@ impl DdaContact {
         }
     }
 
-    /// What it sees of the displacement `d` of its sphere.
+    /// Relative displacement for the displacement `d` of its sphere.
     pub(crate) fn relative_displacement(&self, d: &Vec6) -> RelativeDisplacement {
         self.relative_to(d, &(displacement(&self.points[0]) * d))
     }
 
-    /// What it sees of the displacements `d` of a sphere and `u` of the touched point, or of those relative to the other sphere's.
+    /// Relative displacement for `d` of a sphere and `u` of its contact point, both relative to the
+    /// other sphere's if there is one.
     pub(super) fn relative_to(&self, d: &Vec6, u: &Vec3) -> RelativeDisplacement {
         let turn = d.fixed_rows::<3>(3).into();
         RelativeDisplacement { depth: self.depth(d), slip: slip(&self.v, u), turn }
@@ -166,23 +170,25 @@ impl DdaContact {
         normal_row(&self.v).dot(d) - self.gap
     }
 
-    /// Whether a touch after `d` is where this contact has got to: no deeper in a surface no steeper.
+    /// Whether a contact point after `d` is where this contact has moved to: no deeper, on a
+    /// surface that continues it.
     pub(crate) fn moves_to(&self, touch: &ContactPoint, d: &Vec6) -> bool {
         let deeper = self.radius - touch.distance_m - self.depth(d);
         -self.v.dot(&touch.normal) > SAME_GRIP && deeper <= TOUCH * self.radius
     }
 
-    /// Penetration at the start (m), 0 when apart: the dashpot begins at the touch.
-    fn inside(&self) -> f64 {
+    /// Penetration at the start (m), 0 when open: the dashpot begins at the contact.
+    fn start_penetration(&self) -> f64 {
         if self.bonded { -self.gap } else { (-self.gap).max(0.0) }
     }
 
-    /// Normal force at a depth (N): spring and dashpot, the dashpot working from the touch on; negative only in a bond.
+    /// Normal force at a depth (N), of spring and dashpot; negative only in a bond.
     ///
-    /// Counted from the touch the force grows steadily from nothing as the rock gets in, so every set of contacts has
-    /// one state that fits; a dashpot that worked on the way there would leave none.
+    /// The dashpot acts from the contact on. Then the force grows continuously from zero with the
+    /// penetration, and every set of contacts has one consistent state; with a dashpot that acts on
+    /// the approach there might be none.
     pub(super) fn pull_or_push(&self, depth: f64) -> f64 {
-        self.normal.force(depth, self.inside())
+        self.normal.force(depth, self.start_penetration())
     }
 
     /// Shear force (N) and rolling moment (N m), against slip and turn.
@@ -235,21 +241,22 @@ impl DdaContact {
         }
     }
 
-    /// Takes the normal force at a depth; whether it presses there. A contact without bond is open where it would pull.
-    fn press(&mut self, depth: f64) -> bool {
+    /// Sets the normal force at a depth; whether it is closed there. A contact without bond is open
+    /// where it would pull.
+    fn update_normal_force(&mut self, depth: f64) -> bool {
         let force = self.pull_or_push(depth);
         self.normal_force = if self.bonded { force } else { force.max(0.0) };
         self.bonded || force > 0.0
     }
 
-    /// Opens or closes as the normal force asks; whether that changed anything.
+    /// Opens or closes by the sign of the normal force; whether the state changed.
     fn open_or_close(&mut self, depth: f64) -> bool {
-        let closed = self.press(depth);
+        let closed = self.update_normal_force(depth);
         std::mem::replace(&mut self.closed, closed) != closed
     }
 
-    /// Compares its state with the displacements that came out, and changes it where they do not agree.
-    /// Forces are those of the solution in hand, before it opens or closes.
+    /// Updates its state by the displacements found, where both disagree; the change. Forces are
+    /// those of the present solution, before it opens or closes.
     pub(crate) fn update_state(&mut self, relative: &RelativeDisplacement) -> Change {
         let (shear_force, moment) = self.forces(relative);
         let change = if self.open_or_close(relative.depth) { Change::Mode } else { Change::None };
@@ -272,7 +279,8 @@ impl DdaContact {
         change.max(self.roll.update_state(&relative.turn, &moment, roll_cap))
     }
 
-    /// Ends the search for its state: closed and sticking for this step if it begins inside, else without friction.
+    /// Fixes its state for the fallback solution: closed and sticking for this step if it begins
+    /// inside, else frictionless.
     pub(crate) fn stick(&mut self) {
         let apart = self.begins_apart();
         self.closed |= !apart;
@@ -281,24 +289,24 @@ impl DdaContact {
         (self.shear.friction, self.roll.friction) = (Vec3::zeros(), Vec3::zeros());
     }
 
-    /// A bond is there at any distance.
+    /// Whether it begins apart; a bond never does.
     fn begins_apart(&self) -> bool {
         self.gap > TOUCH * self.radius && !self.bonded
     }
 
-    /// After [`Self::stick`]: opens or closes if it begins apart; whether that changed anything.
+    /// After [`Self::stick`]: opens or closes if it begins apart; whether the state changed.
     pub(crate) fn open_or_close_apart(&mut self, relative: &RelativeDisplacement) -> bool {
         if self.begins_apart() {
             return self.open_or_close(relative.depth);
         }
-        self.press(relative.depth);
+        self.update_normal_force(relative.depth);
         false
     }
 
     /// Energy that its dashpots and sliders take (J).
     pub(crate) fn loss(&self, relative: &RelativeDisplacement) -> Loss {
         let (shear_force, moment) = self.forces(relative);
-        let damping = self.normal.loss_j(self.closed, relative.depth, self.inside());
+        let damping = self.normal.loss_j(self.closed, relative.depth, self.start_penetration());
         let mut loss = Loss { damping, ..Loss::default() };
         if self.shear_memory {
             let (friction, damping) = self.shear.loss(&relative.slip, &shear_force);
@@ -314,8 +322,8 @@ impl DdaContact {
         loss
     }
 
-    /// How much more its springs hold at the step's end than at its start (J); a shear spring that is let go runs out against its own dashpot, and
-    /// counts as if it still held.
+    /// Increase of the energy of its springs over the step (J). A shear spring that opens loses its
+    /// energy in its own dashpot, and counts as if it still held it.
     pub(super) fn stored_more_j(&self, relative: &RelativeDisplacement) -> f64 {
         let depth = if self.bonded { relative.depth } else { relative.depth.max(0.0) };
         let sheared = if self.shear_memory {
@@ -323,10 +331,11 @@ impl DdaContact {
         } else {
             0.0
         };
-        self.normal.stored_more_j(depth, self.inside()) + sheared
+        self.normal.stored_more_j(depth, self.start_penetration()) + sheared
     }
 
-    /// Whether it was closed at the step's end, whether it slid, and the stretch that its shear spring has left (m).
+    /// State at the step's end: whether it is closed, whether it slides, and the stretch of its
+    /// shear spring (m).
     pub(super) fn end_state(&self, relative: &RelativeDisplacement) -> (bool, bool, Vec3) {
         let stretch = if self.shear_memory {
             self.shear.stretch_after(&self.forces(relative).0)
@@ -336,7 +345,7 @@ impl DdaContact {
         (self.closed || relative.depth > 0.0, self.closed && self.shear.slides, stretch)
     }
 
-    /// Writes what it remembers of the step into its memory.
+    /// Writes the step's end into its history.
     pub(crate) fn remember(&self, relative: &RelativeDisplacement, history: &mut ContactHistory) {
         (history.feature, history.triangle, history.n) = (self.feature, self.triangle, -self.v);
         (history.closed, history.slides, history.shear) = self.end_state(relative);
