@@ -44,7 +44,7 @@ pub mod stage;
 pub mod tableau;
 pub mod environment;
 mod springs;
-pub mod struck;
+pub mod impact_point;
 pub(crate) mod stems;
 pub(crate) mod roughness;
 pub(crate) mod scar;
@@ -151,7 +151,7 @@ pub fn advance(
 ) -> Result<Advance, StepError> {
     match stepper {
         Stepper::Controlled(control, h) => {
-            let raised = state.rise_on_stiffer(world);
+            let raised = state.lift_onto_stiffer(world);
             let mut done = step_control::advance(world, control, state, h, h_max)?;
             if let Some(loss) = raised {
                 done.loss.add(&loss, 1.0);

@@ -27,11 +27,11 @@ use crate::rock::{Motion, Vec3};
 use crate::solver::block::{Footing, Moving, Stepped};
 use crate::solver::body::Body;
 use crate::solver::environment::ContactEnvironment;
+use crate::solver::impact_point::ImpactPoint;
 use crate::solver::loss::Loss;
 use crate::solver::roughness::RoughFacets;
 use crate::solver::scar::{GroundBlow, Scars};
 use crate::solver::step_control::{Advance, StepError};
-use crate::solver::struck::Struck;
 
 /// One block during its simulation.
 struct BlockSimulation<'a> {
@@ -65,7 +65,7 @@ pub(super) fn run_block(
     let block = &drawn.block;
     let world = settings.contact_environment(Body::of_block(block, settings.gravity_m_s2), laws);
     footing.forget();
-    footing.stem_load.raise(settings.terrain, &random, &mut footing.near.broken_stems);
+    footing.stem_load.reset(settings.terrain, &random, &mut footing.near.broken_stems);
     (footing.near.tested, footing.sweeps) = (0, 0);
     footing.facets = RoughFacets::of(random, laws);
     footing.slip.begin(&release.grounds);
@@ -121,7 +121,7 @@ impl<'a> RockSimulation<'a> for BlockSimulation<'a> {
         self.recorder.effort.leaps += 1;
         let (dt, stop) = self.settings.end_of_flight(&landing, time_s, &self.recorder.effort);
         self.recorder.record_flight(&path, Some(&tumble.top), dt);
-        self.footing.slip.fly(dt);
+        self.footing.slip.decay(dt);
         let speed_factor = self.scars.fly(&self.world.body, &self.recorder.now.velocity_m_s, dt);
         self.recorder.slow_in_soil_after_flight(speed_factor);
         self.moving.pose = tumble.pose(dt);
@@ -233,7 +233,7 @@ impl BlockSimulation<'_> {
         for touch in struck.iter().take(MAX_CONTACTS) {
             // velocity of the contact point, spin included: v + ω × r
             let velocity = self.moving.at(block, &touch.lever);
-            let struck = Struck {
+            let struck = ImpactPoint {
                 point_m: self.moving.pose.centre + touch.lever,
                 normal: touch.normal,
                 feature: touch.feature.kind,

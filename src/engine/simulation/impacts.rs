@@ -14,7 +14,7 @@ use super::Impact;
 use crate::contact::MAX_CONTACTS;
 use crate::contact::history::SAME_CONTACT_COSINE;
 use crate::rock::Vec3;
-use crate::solver::struck::Struck;
+use crate::solver::impact_point::ImpactPoint;
 
 /// A patch hit again within this time after it has opened (s) is the same impact: its springs
 /// opened for an instant, or the rock crossed the edge of a triangle.
@@ -145,7 +145,7 @@ impl Impacts {
     /// is new.
     pub(super) fn begin(
         &mut self,
-        (struck, owner): (&Struck, PatchOwner),
+        (struck, owner): (&ImpactPoint, PatchOwner),
         (now_s, latest_end_s): (f64, f64),
         speed_m_s: f64,
         lost_j: (MeshEnergy, f64),

@@ -9,9 +9,9 @@ use super::recorder::Recorder;
 use crate::contact::ContactPoint;
 use crate::contact::history::ContactHistory;
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
+use crate::solver::impact_point::{Blow, ImpactPoint};
 use crate::solver::loss::Loss;
-use crate::solver::roughness::Meeting;
-use crate::solver::struck::{Blow, Struck};
+use crate::solver::roughness::SurfaceApproach;
 use nalgebra::Rotation3;
 use std::f64::consts::PI;
 
@@ -62,19 +62,19 @@ impl RockInContact<'_, '_> {
     /// before: that rotation is undone first.
     fn next_facet(&mut self, blow: &Blow) -> Option<(Rotation3<f64>, f64)> {
         let Blow { n, triangle, .. } = *blow;
-        let at = |state: &ContactState| Meeting { n, triangle, c: state.c, v: state.v };
-        if !self.state.facets.meet_next(&self.world, &at(self.state)) {
+        let at = |state: &ContactState| SurfaceApproach { n, triangle, c: state.c, v: state.v };
+        if !self.state.facets.meets_new_facet(&self.world, &at(self.state)) {
             return None;
         }
         self.leave_facet();
         let at = at(self.state);
-        let turn = self.state.facets.struck(&self.world, &at)?;
+        let turn = self.state.facets.draw_facet(&self.world, &at)?;
         Some((turn, at.approach_m_s(&turn)))
     }
 
     /// The fastest of the contacts that have begun and are not recorded yet.
     fn fastest_new_contact(&self) -> Option<Blow> {
-        let both = self.state.histories.iter().chain(self.state.struck.iter());
+        let both = self.state.histories.iter().chain(self.state.upcoming_impacts.iter());
         let begun = both.filter(|history| !history.announced).map(|history| Blow {
             approach_m_s: -history.n.dot(&self.recorder.now.velocity_m_s),
             n: history.n,
@@ -92,10 +92,10 @@ impl RockInContact<'_, '_> {
         (until_s, held_j): (f64, &MeshEnergy),
     ) {
         let Self { world, state, recorder, .. } = self;
-        let ContactState { c, histories, struck, blows, .. } = &mut **state;
+        let ContactState { c, histories, upcoming_impacts, blows, .. } = &mut **state;
         // in the rigid limit contacts of an impact that is still to be solved have a list of their
         // own
-        for history in histories.iter_mut().chain(struck.iter_mut()) {
+        for history in histories.iter_mut().chain(upcoming_impacts.iter_mut()) {
             if std::mem::replace(&mut history.announced, true) || history.captured {
                 continue;
             }
@@ -112,7 +112,7 @@ impl RockInContact<'_, '_> {
             } else {
                 let place = (history.feature, history.triangle);
                 let struck =
-                    Struck::by_ball((c, world.body.radius), &history.n, place, approach_m_s);
+                    ImpactPoint::by_ball((c, world.body.radius), &history.n, place, approach_m_s);
                 recorder.begin_impact(&struck, until_s, held_j)
             };
         }
@@ -130,7 +130,7 @@ impl RockInContact<'_, '_> {
             self.break_stems();
             f64::INFINITY
         };
-        if self.state.facets.are_any() {
+        if self.state.facets.are_rough() {
             self.meet_next_facet();
         }
         longest_s
@@ -144,7 +144,7 @@ impl RockInContact<'_, '_> {
             if is_new && approach_m_s >= world.law(touch.triangle).capture_m_s {
                 let place = (touch.feature, touch.triangle);
                 let at = (&state.c, world.body.radius);
-                let struck = Struck::by_ball(at, &touch.normal, place, approach_m_s);
+                let struck = ImpactPoint::by_ball(at, &touch.normal, place, approach_m_s);
                 let now_s = recorder.now.time_s;
                 recorder.begin_impact(&struck, now_s, &MeshEnergy::default());
             }
@@ -161,7 +161,7 @@ impl RockInContact<'_, '_> {
     /// Roughness is a property of the distance covered, not of the number of contact events: see
     /// `solver::roughness`.
     fn meet_next_facet(&mut self) {
-        if self.state.facets.is_any_met() {
+        if self.state.facets.is_tilted() {
             return;
         }
         let is_persistent = |history: &&mut ContactHistory| history.closed && history.announced;
@@ -172,13 +172,17 @@ impl RockInContact<'_, '_> {
         else {
             return;
         };
-        let at =
-            Meeting { n: history.n, triangle: history.triangle, c: self.state.c, v: self.state.v };
-        if self.state.facets.meet_next(&self.world, &at) {
+        let at = SurfaceApproach {
+            n: history.n,
+            triangle: history.triangle,
+            c: self.state.c,
+            v: self.state.v,
+        };
+        if self.state.facets.meets_new_facet(&self.world, &at) {
             history.announced = false;
             self.begin_impacts();
             // its impact is recorded herewith
-            self.state.is_struck |= self.state.facets.is_any_met();
+            self.state.impact_announced |= self.state.facets.is_tilted();
         }
     }
 
@@ -197,7 +201,7 @@ impl RockInContact<'_, '_> {
     /// rotation of a facet that the rock has left behind.
     pub(super) fn end_impacts(&mut self) {
         // an impact of the rigid limit is recorded first and solved in the next step
-        if !self.has_springs && self.state.is_struck {
+        if !self.has_springs && self.state.impact_announced {
             return;
         }
         // the rigid limit has no history of a contact that has closed and opened within a step
@@ -208,7 +212,7 @@ impl RockInContact<'_, '_> {
             let held_j = self.spring_energy_j(|_| true);
             self.recorder.book_impacts(&held_j);
         }
-        if self.state.facets.is_met(self.state.is_free(), self.recorder.now.time_s) {
+        if self.state.facets.is_tilt_over(self.state.is_free(), self.recorder.now.time_s) {
             self.leave_facet();
         }
     }

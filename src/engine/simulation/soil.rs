@@ -11,8 +11,8 @@ use super::sphere::{SlippingContact, SphereSimulation};
 use crate::contact::MAX_CONTACTS;
 use crate::contact::history::ContactHistory;
 use crate::rock::Vec3;
+use crate::solver::impact_point::Blow;
 use crate::solver::scar::GroundBlow;
-use crate::solver::struck::Blow;
 use arrayvec::ArrayVec;
 
 /// Approximate growth of `κ s` within one step (–): friction changes between steps only. It is
@@ -63,7 +63,7 @@ impl SphereSimulation<'_> {
     fn enter_soil(&mut self) -> f64 {
         let world = self.settings.contact_environment(self.body, self.laws);
         let (state, scars) = (&self.state, &mut *self.soil.scars);
-        let holding = state.histories.iter().chain(state.struck.iter());
+        let holding = state.histories.iter().chain(state.upcoming_impacts.iter());
         let in_soil = scars.holds(&world, holding.map(|history| history.triangle));
         let blow = |&Blow { approach_m_s, n: normal, triangle }: &Blow| {
             let ground = world.ground_of(triangle);
@@ -82,7 +82,7 @@ impl SphereSimulation<'_> {
         let speed_factor = self.soil.scars.plough_ahead();
         self.slow(speed_factor);
         let mut longest_s = longest_s.min(self.soil.scars.longest_s(self.state.v.norm()));
-        if self.soil.slip.is_any() {
+        if self.soil.slip.has_growing_friction() {
             self.soil.fastest_slip = self.find_fastest_slip();
             let speed_m_s = self.soil.fastest_slip.map_or(0.0, |slip| slip.speed_m_s);
             // d(κ s)/dt = κ |slip|: a step of GROWTH/per_s lets κ s grow by that much

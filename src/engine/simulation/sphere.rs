@@ -45,7 +45,7 @@ pub(super) fn run_sphere(
 ) -> Trajectory {
     state.near.forget();
     (state.near.tested, state.sweeps) = (0, 0);
-    state.stem_load.raise(settings.terrain, &random, &mut state.near.broken_stems);
+    state.stem_load.reset(settings.terrain, &random, &mut state.near.broken_stems);
     state.facets = RoughFacets::of(random, laws);
     slip.begin(&release.grounds);
     let geometry = RockGeometry { rock: release.rock, block: None };
@@ -186,7 +186,7 @@ impl<'a> RockSimulation<'a> for SphereSimulation<'a> {
         let world = self.settings.contact_environment(self.body, self.laws);
         // a stem has yielded: stiffness and contacts have changed, so the stepper discards its
         // factorisation and its step size
-        if self.state.bend(&world, !self.is_rigid(), &mut done.loss) {
+        if self.state.load_stems(&world, !self.is_rigid(), &mut done.loss) {
             *stepper = Stepper::new(self.settings.step, &world, self.state);
         }
         // one slipping contact makes the whole step "sliding" on the path
@@ -250,7 +250,7 @@ impl<'a> Soil<'a> {
     /// Records a flight of `flight_s` (s) that ends with velocity `v`. Returns the fraction of the
     /// speed that the rock keeps (–).
     pub(super) fn fly(&mut self, body: &Body, v: &Vec3, flight_s: f64) -> f64 {
-        self.slip.fly(flight_s);
+        self.slip.decay(flight_s);
         self.last_step_s = 0.0;
         self.scars.fly(body, v, flight_s)
     }

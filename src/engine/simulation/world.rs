@@ -172,7 +172,7 @@ pub fn simulate_world(
             let mut body = new_body(settings, release, options_of(k), &mut damping);
             let random = stream(settings.seed, Purpose::Impacts, k);
             let state = &mut body.member.state;
-            state.stem_load.raise(settings.terrain, &random, &mut state.near.broken_stems);
+            state.stem_load.reset(settings.terrain, &random, &mut state.near.broken_stems);
             body.member.state.facets = RoughFacets::of(random, &body.member.laws);
             Some(Box::new(body))
         })

@@ -1,25 +1,27 @@
-//! A rock as the mechanics sees it.
+//! Mass, inertia and size of a rock as the equations of motion need them.
 //!
-//! A solid homogeneous sphere has `I = 2/5 m R²`; seen from its contact point the mass along the
-//! surface is `1/(1/m + R²/I) = 2/7 m`, and a sphere that rolls without slip moves like the mass `7/5 m`. These numbers come back all over the solver.
+//! A solid homogeneous sphere has `I = 2/5 m R²`. Its effective mass at the contact point along the
+//! surface is `1/(1/m + R²/I) = 2/7 m`, and rolling without slip it has the inertia `7/5 m`. The
+//! solver uses these numbers throughout.
 
 use crate::body::Block;
 use crate::rock::{Rock, Vec3};
 
-/// A velocity (m/s) and a spin (rad/s), or an impulse and one of rotation.
+/// A velocity (m/s) and a spin (rad/s), or a force and a moment, or an impulse and a rotational
+/// impulse.
 pub(crate) type Twist = (Vec3, Vec3);
 /// No motion.
 pub(super) const STILL: Twist = (Vec3::new(0.0, 0.0, 0.0), Vec3::new(0.0, 0.0, 0.0));
 
-/// What comes at a rock faster than this strikes it hard (–, relative to `√(g R)`).
+/// A faster approach is a hard impact (–, relative to `√(g R)`).
 const STRUCK_HARD: f64 = 4.0;
 
-/// Whether place, velocity and spin are numbers.
+/// Whether position, velocity and spin are finite.
 pub(super) fn are_finite(motion: [&Vec3; 3]) -> bool {
     motion.into_iter().flatten().all(|x| x.is_finite())
 }
 
-/// What of a rock the mechanics needs.
+/// Mechanical properties of a rock.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Body {
     /// Mass (kg).
@@ -33,19 +35,20 @@ pub struct Body {
 }
 
 impl Body {
-    /// Energy of motion (J) with a velocity (m/s) and a spin (rad/s).
+    /// Kinetic energy (J) at a velocity (m/s) and a spin (rad/s).
     #[inline]
     pub(crate) fn motion_j(&self, (v, w): (&Vec3, &Vec3)) -> f64 {
         0.5 * (self.mass * v.norm_squared() + self.inertia * w.norm_squared())
     }
 
-    /// Energy that its height gains on a way (J).
+    /// Potential energy gained by a displacement (m) (J).
     #[inline]
     pub(crate) fn lifted_j(&self, way: &Vec3) -> f64 {
         -self.mass * self.gravity.dot(way)
     }
 
-    /// Takes energy (J) out of its motion, as much as it has at most: velocity and spin keep their directions and their ratio.
+    /// Takes energy (J) out of the motion, at most all of it: velocity and spin keep their
+    /// directions and their ratio.
     pub(crate) fn slow_down(&self, (v, w): (&mut Vec3, &mut Vec3), lost_j: f64) {
         let motion_j = self.motion_j((v, w));
         if motion_j > 0.0 && lost_j > 0.0 {
@@ -61,10 +64,10 @@ impl Body {
         Self { mass: rock.mass_kg(), inertia: rock.inertia_kg_m2(), radius: rock.radius_m, gravity }
     }
 
-    /// The body of a block as the laws of grounds want it: mass and radius of the sphere of equal volume.
+    /// The body of a block for the laws of grounds: mass and radius of the sphere of equal volume.
     ///
-    /// The mean of its three moments stands for the inertia; the block's own equations of motion take
-    /// its three moments.
+    /// The mean of its three moments of inertia stands for the inertia; the block's own equations
+    /// of motion use all three.
     pub(crate) fn of_block(block: &Block, g_m_s2: f64) -> Self {
         Self {
             mass: block.mass_kg,
@@ -74,28 +77,31 @@ impl Body {
         }
     }
 
-    /// Mass that moves where two rocks press each other (kg): `m_a m_b/(m_a + m_b)`.
+    /// Effective mass of the normal contact of two rocks (kg): `m_a m_b/(m_a + m_b)`.
     pub(crate) fn reduced_mass_with(&self, other: &Self) -> f64 {
         self.mass * other.mass / (self.mass + other.mass)
     }
 
-    /// Speed of a rock that has fallen by half its radius (m/s): `√(g R)`, what is slow for a rock of its size.
+    /// Speed of a rock that has fallen by half its radius (m/s), `√(g R)`: the scale of slow motion
+    /// for its size.
     pub(crate) fn fall_speed_m_s(&self) -> f64 {
         (self.gravity.norm() * self.radius).sqrt()
     }
 
-    /// Whether what comes at it at a speed (m/s) strikes it so hard that it matters how the blow runs through all that it touches.
+    /// Whether an approach at a speed (m/s) is a hard impact, for which it matters how the blow is
+    /// transmitted through all contacts.
     pub(crate) fn is_struck_hard(&self, approach_m_s: f64) -> bool {
         approach_m_s > STRUCK_HARD * self.fall_speed_m_s()
     }
 
-    /// Mass that a force along the surface meets at the contact point (kg): `m/(1 + m R²/I)`.
+    /// Effective mass of a force along the surface at the contact point (kg): `m/(1 + m R²/I)`.
     #[inline]
     pub(crate) fn mass_along(&self) -> f64 {
         1.0 / Rock::SLIP_LIGHTNESS * self.mass
     }
 
-    /// How much more a force along the surface does to the slip by the turn than by the way (–): `m R²/I`.
+    /// Share of the slip caused by a force along the surface through rotation, relative to that
+    /// through translation (–): `m R²/I`.
     #[inline]
     pub(crate) fn turns(&self) -> f64 {
         self.mass * self.radius * self.radius / self.inertia

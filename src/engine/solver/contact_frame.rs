@@ -1,4 +1,5 @@
-//! The frame of a contact: what acts along a surface has two numbers there, a rolling moment three.
+//! The local frame of a contact: a vector along the surface has two components, a rolling moment
+//! three.
 
 use crate::rock::Vec3;
 
@@ -28,14 +29,14 @@ pub(crate) struct ContactFrame {
 }
 
 impl ContactFrame {
-    /// That of a level.
+    /// The frame of a level surface.
     pub(crate) const LEVEL: Self = Self {
         s: Vec3::new(1.0, 0.0, 0.0),
         t: Vec3::new(0.0, 1.0, 0.0),
         n: Vec3::new(0.0, 0.0, 1.0),
     };
 
-    /// The frame of a normal, without a branch and without a root (Duff et al. 2017).
+    /// The frame of a normal, without branches and square roots (Duff et al. 2017).
     #[inline]
     pub(crate) fn of(n: &Vec3) -> Self {
         let sign = 1.0f64.copysign(n.z);

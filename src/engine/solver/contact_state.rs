@@ -1,16 +1,16 @@
-//! A rock in contact: its motion, what it remembers of its contacts, and the scratch space of its steps.
+//! State of a rock in contact: motion, contact histories, and the scratch space of its steps.
 
 use super::body::{Body, are_finite};
 use super::dda_system::DdaScratch;
 pub use super::environment::ContactEnvironment;
 use super::friction_rolling::SlipState;
+use super::impact_point::Blow;
 use super::impact_progress::ImpactProgress;
 use super::law::StageContact;
 use super::loss::Loss;
 use super::plane_state::PlaneState;
 use super::roughness::{RoughFacets, Tilt};
 use super::stem_load::StemLoad;
-use super::struck::Blow;
 use super::tableau::STAGES;
 use crate::contact::history::{ContactHistories, MAX_HISTORIES};
 use crate::contact::neighbours::Neighbours;
@@ -30,7 +30,7 @@ pub struct StateRates {
     pub v: Vec3,
     /// Angular acceleration (rad/s²).
     pub w: Vec3,
-    /// Of the shear springs (m/s), in the frames of the memories.
+    /// Of the shear springs (m/s), in the frames of the contact histories.
     pub shear: [Vec3; MAX_HISTORIES],
     /// Of the rolling springs (rad/s).
     pub roll: [Vec3; MAX_HISTORIES],
@@ -39,15 +39,15 @@ pub struct StateRates {
 }
 
 impl StateRates {
-    /// Takes over another's rates, of the springs the first `histories` only.
+    /// Copies rates, those of springs for the first `histories` contacts only.
     #[inline]
-    pub fn take(&mut self, from: &Self, histories: usize) {
+    pub fn copy_from(&mut self, from: &Self, histories: usize) {
         (self.c, self.v, self.w, self.loss) = (from.c, from.v, from.w, from.loss);
         self.shear[..histories].copy_from_slice(&from.shear[..histories]);
         self.roll[..histories].copy_from_slice(&from.roll[..histories]);
     }
 
-    /// Forgets the rates of the first `histories` springs.
+    /// Sets the rates of the first `histories` springs to zero.
     #[inline]
     pub fn clear(&mut self, histories: usize) {
         self.shear[..histories].fill(Vec3::zeros());
@@ -65,13 +65,14 @@ impl StateRates {
     };
 }
 
-/// Impacts that an implicit step runs into: see `step_control::onset`.
+/// Onsets of impacts within a try of an implicit step: see `step_control::onset`.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Onset {
-    /// Whether they press nothing in the present try: it will be cut where they begin.
-    pub(super) waits: bool,
-    /// Whether one that waits would have pressed at the end of a stage of it.
-    pub(super) is_met: bool,
+    /// Whether new contacts that may rebound exert no force in this try, which is cut where they
+    /// begin.
+    pub(super) deferred: bool,
+    /// Whether a deferred contact is closed at the end of a stage of this try.
+    pub(super) is_reached: bool,
 }
 
 /// A rock in contact.
@@ -83,14 +84,14 @@ pub struct ContactState {
     pub v: Vec3,
     /// Spin (rad/s).
     pub w: Vec3,
-    /// Its contacts' memories.
+    /// Contact histories.
     pub histories: ContactHistories,
-    /// Features around it.
+    /// Mesh features around it.
     pub near: Neighbours,
-    /// Contact points at the last place asked.
+    /// Contact points found last.
     pub touches: ContactPoints,
-    /// That place, if they were asked for with all slack.
-    pub(crate) looked_ahead: Option<Vec3>,
+    /// Centre for which they were found, if that was with all slack (m).
+    pub(crate) points_found_at: Option<Vec3>,
     /// Rates at the stages of the current step; the first is that at its start.
     pub rates: [StateRates; STAGES],
     /// Whether the first rate belongs to the present state.
@@ -99,55 +100,58 @@ pub struct ContactState {
     pub stored: f64,
     /// Contacts of the current stage.
     pub contacts: [StageContact; MAX_CONTACTS],
-    /// How many of them.
+    /// Their number.
     pub contact_count: usize,
-    /// The same of a rock on one plane.
+    /// State and rates of a rock on one plane.
     pub plane: PlaneState,
-    /// An impact in its own time.
+    /// Progress of an impact that is resolved on its own time scale.
     pub(crate) impact: ImpactProgress,
-    /// Contacts that are about to be struck anew within an episode (`rigid`).
-    pub struck: ContactHistories,
-    /// The blows that have been announced last, of one instant, until somebody takes them.
+    /// Contacts of the next impact within an episode (`rigid`).
+    pub upcoming_impacts: ContactHistories,
+    /// The blows announced last, all of one instant, until they are read.
     pub(crate) blows: ArrayVec<Blow, MAX_CONTACTS>,
-    /// The facets it meets on rough ground.
+    /// Its facets on rough ground.
     pub(crate) facets: RoughFacets,
-    /// What it has done to the stems.
+    /// Energies that it has put into stems.
     pub(crate) stem_load: StemLoad,
-    /// Whether what is touched may give way, or several trees are: it is asked step by step.
+    /// Whether a touched stem may break, or several trees are touched: then it is stepped, not
+    /// resolved as a whole impact.
     pub may_yield: bool,
     /// Whether the current blow has been announced (`rigid`).
-    pub(crate) is_struck: bool,
-    /// Impacts that an implicit step runs into.
+    pub(crate) impact_announced: bool,
+    /// Onsets within the present try of an implicit step.
     pub(super) onset: Onset,
     /// Work space of the fixed step.
     pub scratch: DdaScratch,
-    /// Contact sweeps done.
+    /// Number of contact sweeps.
     pub sweeps: u64,
-    /// Where the time goes, if somebody asks.
+    /// Stopwatches of the run, if it is timed.
     pub stopwatches: Stopwatches,
 }
 
-/// Features are collected for the rock's centre up to this far from where it was (–, relative to R) …
+/// Features are collected for centres up to this distance from the present one (–, relative to R) …
 pub(super) const MARGIN: f64 = 0.35;
-/// … half of that ahead of it (–) …
+/// … around a point ahead by about half of it (–) …
 pub(super) const AHEAD: f64 = 0.17;
-/// … at a touch no further than this, if that is enough for the impact (–) …
+/// … at least this far at the start of an impact (–) …
 const LEAST_MARGIN: f64 = 0.06;
-/// … which goes on for about so many contact times `π/ω` (–) …
-const IMPACT_WAY: f64 = 1.3;
-/// … and asked for up to this far beyond the radius (–), so that a stage sees what it is about to run into.
+/// … which lasts about so many contact times `π/ω` (–).
+const IMPACT_TRAVEL: f64 = 1.3;
+/// Contact points are found up to this distance beyond the radius (–), so that a stage knows what
+/// it may reach.
 const SLACK: f64 = 0.1;
 
 impl Default for ContactState {
     fn default() -> Self {
-        // room for what is usually near, so that the first rock of a thread need not stop to make it
+        // allocated for the usual number of features, so that the first rock of a thread need not
+        // allocate
         let near = Neighbours::default();
         Self { near, ..Self::unused() }
     }
 }
 
 impl ContactState {
-    /// Without memory taken: for rocks that are kept by the thousand.
+    /// Without allocation: for worlds that keep thousands of rocks.
     pub fn unused() -> Self {
         Self {
             c: Vec3::zeros(),
@@ -156,7 +160,7 @@ impl ContactState {
             histories: ContactHistories::default(),
             near: Neighbours::empty(),
             touches: ContactPoints::default(),
-            looked_ahead: None,
+            points_found_at: None,
             rates: [StateRates::NONE; STAGES],
             fresh: false,
             stored: 0.0,
@@ -164,8 +168,8 @@ impl ContactState {
             contact_count: 0,
             plane: PlaneState::default(),
             impact: ImpactProgress::default(),
-            struck: ContactHistories::default(),
-            is_struck: true,
+            upcoming_impacts: ContactHistories::default(),
+            impact_announced: true,
             onset: Onset::default(),
             may_yield: false,
             blows: ArrayVec::new_const(),
@@ -179,55 +183,57 @@ impl ContactState {
 }
 
 impl ContactState {
-    /// Takes a rock that has just touched; contacts slower than the capture speed are captured.
+    /// Begins a contact episode of a rock; contacts slower than the capture speed are captured.
     pub fn begin(&mut self, world: &ContactEnvironment, c: Vec3, v: Vec3, w: Vec3) {
         self.begin_within(world, (c, v, w), TOUCH);
     }
 
-    /// The same with what it comes to within `together` (–, relative to R) taken as touched.
+    /// Begins a contact episode with all contact points within `simultaneous` (–, relative to R) as
+    /// touched.
     pub(crate) fn begin_within(
         &mut self,
         world: &ContactEnvironment,
         (c, v, w): (Vec3, Vec3, Vec3),
-        together: f64,
+        simultaneous: f64,
     ) {
         (self.c, self.v, self.w) = (c, v, w);
         self.histories.clear();
         self.fresh = false;
         self.plane.forget();
         self.impact.forget();
-        self.struck.clear();
+        self.upcoming_impacts.clear();
         self.blows.clear();
-        (self.is_struck, self.onset) = (true, Onset::default());
-        // Nothing of the rock before, not even a guess, may tell.
+        (self.impact_announced, self.onset) = (true, Onset::default());
+        // the start guess of the previous rock must not influence the result
         self.contacts.iter_mut().for_each(|contact| contact.mode = SlipState::default());
         if !self.near.covers(&c) {
-            let margin = self.way_of_impact(world);
+            let margin = self.impact_travel_m(world);
             self.collect_within(world, &c, margin);
         }
-        self.look(world, &c, world.body.radius * (1.0 + together));
-        self.touches.retain_impacting(world.body.radius, &v, together);
-        // An impact rebounds or not as a whole, by its fastest approach.
+        self.find_contact_points(world, &c, world.body.radius * (1.0 + simultaneous));
+        self.touches.retain_impacting(world.body.radius, &v, simultaneous);
+        // an impact rebounds or not as a whole, by its fastest approach
         let captured = self.touches.iter().all(|touch| world.captures(touch, &v));
         for k in 0..self.touches.len() {
             let touch = &self.touches[k];
             let place = self.histories.find(touch, &self.touches, (1 << k) - 1, || captured);
             if !captured {
-                self.impact.meet(-touch.normal.dot(&v), world.least_impact_m_s());
-                self.part_springs(world, place, k);
+                self.impact.add_contact(-touch.normal.dot(&v), world.least_impact_m_s());
+                self.inherit_springs(world, place, k);
             }
         }
     }
 
-    /// Sees to it that the features around `c` are known.
+    /// Makes sure that the features around `c` are collected.
     #[inline]
-    pub fn know(&mut self, world: &ContactEnvironment, c: &Vec3) {
+    pub fn update_neighbours(&mut self, world: &ContactEnvironment, c: &Vec3) {
         if !self.near.covers(c) {
             self.collect(world, c);
         }
     }
 
-    /// Collects the features around `c` and ahead of it along the velocity, so that most of them are still to come.
+    /// Collects the features around `c` and ahead along the velocity, as most of them are still to
+    /// come.
     pub(crate) fn collect(&mut self, world: &ContactEnvironment, c: &Vec3) {
         let r = world.body.radius;
         self.collect_within(world, &(c + self.v.cap_magnitude(AHEAD * r)), MARGIN * r);
@@ -245,56 +251,57 @@ impl ContactState {
         self.stopwatches.stop(TimedPiece::Geometry, begun);
     }
 
-    /// How far an impact goes before it is over (m), between bounds: the less is collected the fewer features there are,
-    /// and the more often it is one face alone.
-    fn way_of_impact(&self, world: &ContactEnvironment) -> f64 {
+    /// Travel during an impact (m), bounded on both sides. A smaller region holds fewer features,
+    /// and more often one face alone.
+    fn impact_travel_m(&self, world: &ContactEnvironment) -> f64 {
         let slowest = world.laws.iter().map(Law::omega_rad_s).fold(f64::INFINITY, f64::min);
-        let way = IMPACT_WAY * std::f64::consts::PI / slowest * self.v.norm();
+        let way = IMPACT_TRAVEL * std::f64::consts::PI / slowest * self.v.norm();
         way.clamp(LEAST_MARGIN * world.body.radius, MARGIN * world.body.radius)
     }
 
-    /// Asks for the touches at `c` nearer than `reach` (m).
+    /// Finds the contact points at `c` nearer than `reach` (m).
     #[inline]
-    pub fn look(&mut self, world: &ContactEnvironment, c: &Vec3, reach: f64) {
-        self.know(world, c);
-        self.looked_ahead = None;
+    pub fn find_contact_points(&mut self, world: &ContactEnvironment, c: &Vec3, reach: f64) {
+        self.update_neighbours(world, c);
+        self.points_found_at = None;
         let begun = self.stopwatches.now();
         self.near.touches(world.terrain, c, reach, &mut self.touches);
         self.stopwatches.stop(TimedPiece::Geometry, begun);
     }
 
-    /// Asks for the touches at `c` that a stage must know.
+    /// Finds the contact points at `c` that a stage must know.
     #[inline]
-    pub fn look_ahead(&mut self, world: &ContactEnvironment, c: &Vec3) {
-        self.look(world, c, world.body.radius * (1.0 + SLACK));
+    pub fn find_contact_points_ahead(&mut self, world: &ContactEnvironment, c: &Vec3) {
+        self.find_contact_points(world, c, world.body.radius * (1.0 + SLACK));
     }
 
-    /// The same, if it was not asked for at `c` last.
+    /// Finds them unless those at hand were found at `c`.
     #[inline]
-    pub fn look_ahead_again(&mut self, world: &ContactEnvironment, c: &Vec3) {
-        if self.looked_ahead != Some(*c) {
-            self.look_ahead(world, c);
-            self.looked_ahead = Some(*c);
+    pub fn update_contact_points_ahead(&mut self, world: &ContactEnvironment, c: &Vec3) {
+        if self.points_found_at != Some(*c) {
+            self.find_contact_points_ahead(world, c);
+            self.points_found_at = Some(*c);
         }
     }
 
-    /// How far `c` is from where touches were looked for last (m); they are looked for anew if that is farther than `way` (m).
+    /// Offset of `c` from where contact points were found last (m); they are found anew if it
+    /// exceeds `way` (m).
     #[inline]
-    pub(super) fn look_ahead_near(
+    pub(super) fn contact_points_ahead_near(
         &mut self,
         world: &ContactEnvironment,
         c: &Vec3,
         way: f64,
     ) -> Vec3 {
-        let off = self.looked_ahead.map(|at| c - at);
+        let off = self.points_found_at.map(|at| c - at);
         if let Some(off) = off.filter(|off| off.norm_squared() <= way * way) {
             return off;
         }
-        self.look_ahead_again(world, c);
+        self.update_contact_points_ahead(world, c);
         Vec3::zeros()
     }
 
-    /// The memory of touch `k` of the last look; a new one starts without stretch and without history of rates.
+    /// History of contact point `k`; a new one starts without stretch and without earlier rates.
     #[inline]
     pub fn history_of(
         &mut self,
@@ -304,13 +311,13 @@ impl ContactState {
         v: &Vec3,
     ) -> usize {
         let (before, touch) = (self.histories.len(), &self.touches[k]);
-        // What is born while an impact rebounds belongs to it, however slow it is.
+        // a contact that begins during a rebounding impact belongs to it, however slow it is
         let rebounds = self.histories.iter().any(|history| !history.captured);
         let slow = world.captures(touch, v);
         let history = self.histories.find(touch, &self.touches, taken, || slow && !rebounds);
         if history >= before {
             self.histories[history].onset_m_s = if slow { 0.0 } else { -touch.normal.dot(v) };
-            self.part_springs(world, history, k);
+            self.inherit_springs(world, history, k);
             for rate in &mut self.rates {
                 (rate.shear[history], rate.roll[history]) = (Vec3::zeros(), Vec3::zeros());
             }
@@ -324,30 +331,30 @@ impl ContactState {
         &self.contacts[..self.contact_count]
     }
 
-    /// Fastest approach of what has come up in the present try and presses (m/s).
-    pub(super) fn met_m_s(&self) -> f64 {
+    /// Fastest approach among the contacts with force that are new in the present try (m/s).
+    pub(super) fn new_contact_approach_m_s(&self) -> f64 {
         let pressed = self.stage_contacts().iter().filter(|contact| contact.normal_force > 0.0);
         pressed.map(|contact| self.histories[contact.history].onset_m_s).fold(0.0, f64::max)
     }
 
-    /// The contacts that have come up belong to the impact from now on.
-    pub(super) fn accept_meetings(&mut self, world: &ContactEnvironment) {
+    /// Makes the new contacts of an accepted step part of the impact.
+    pub(super) fn accept_new_contacts(&mut self, world: &ContactEnvironment) {
         let slowest = world.least_impact_m_s();
         for history in self.histories.iter_mut() {
-            self.impact.meet(history.onset_m_s, slowest);
+            self.impact.add_contact(history.onset_m_s, slowest);
             history.onset_m_s = 0.0;
         }
     }
 
-    /// All contacts not yet announced rebound after all, from an approach of `speed_m_s`.
+    /// Lets all contacts not yet announced rebound after all, from an approach of `speed_m_s`.
     pub(crate) fn rebound(&mut self, world: &ContactEnvironment, speed_m_s: f64) {
         for history in self.histories.iter_mut().filter(|history| !history.announced) {
             history.captured = false;
         }
-        self.impact.meet(speed_m_s, world.least_impact_m_s());
+        self.impact.add_contact(speed_m_s, world.least_impact_m_s());
     }
 
-    /// Gives the rock another velocity and spin in the middle of a contact; its springs stay as they are.
+    /// Changes velocity and spin during a contact; the springs keep their stretch.
     pub fn redirect(&mut self, world: &ContactEnvironment, v: Vec3, w: Vec3) {
         self.leave_plane(world);
         (self.v, self.w) = (v, w);
@@ -360,24 +367,25 @@ impl ContactState {
         omegas.fold(0.0, f64::max)
     }
 
-    /// Whether nothing presses on the rock any more.
+    /// Whether no contact is closed.
     pub fn is_free(&self) -> bool {
         self.histories.iter().all(|history| !history.closed)
     }
 
-    /// Whether place, velocity and spin are numbers.
+    /// Whether position, velocity and spin are finite.
     pub(super) fn is_finite(&self) -> bool {
         are_finite([&self.c, &self.v, &self.w])
     }
 
-    /// Energy in motion (J): `m v²/2 + I w²/2`.
+    /// Kinetic energy (J): `m v²/2 + I w²/2`.
     pub fn motion_j(&self, body: &Body) -> f64 {
         body.motion_j((&self.v, &self.w))
     }
 }
 
 impl ContactState {
-    /// Turns the rock against a facet until it is turned back, at `until_s` (s) at the latest; turning keeps every joule.
+    /// Rotates the motion onto a facet until `until_s` (s) at the latest; a rotation keeps the
+    /// energy.
     pub(crate) fn turn_against(
         &mut self,
         world: &ContactEnvironment,
@@ -389,7 +397,7 @@ impl ContactState {
         self.facets.tilt = Some(Tilt { turn, until_s });
     }
 
-    /// Turns the rock back if it is turned; returns by what.
+    /// Rotates the motion back if it is rotated; returns the rotation.
     pub(crate) fn turn_back(&mut self, world: &ContactEnvironment) -> Option<Rotation3<f64>> {
         let Tilt { turn, .. } = self.facets.tilt.take()?;
         self.redirect(world, turn * self.v, turn * self.w);

@@ -1,28 +1,31 @@
 //! Scheme `dda`: the paper's displacement-based step at a fixed time step.
 //!
-//! The unknown of a step is the displacement `D` under constant acceleration (Newmark β = 1/2, γ = 1, the
-//! right-Riemann rule): `(2M/Δt² + K) D = m g + (2M/Δt) V₀ + F`, `V₁ = 2D/Δt − V₀`. Contacts are those of the step's
-//! start, with their normals; whether they are open, sliding or sticking is found by open–close iteration.
+//! The unknown of a step is the displacement `D` under constant acceleration (Newmark β = 1/2, γ =
+//! 1, the right-Riemann rule): `(2M/Δt² + K) D = m g + (2M/Δt) V₀ + F`, `V₁ = 2D/Δt − V₀`. Contacts
+//! are those of the step's start, with their normals; open–close iteration finds whether they are
+//! open, sliding or sticking.
 //!
-//! Solved is for `E = D − D₀`, what contacts add to the free displacement `D₀ = V₀ Δt + g Δt²/2`:
-//! `(2M/Δt² + K) E = F − K D₀`. It is the same equation; a motion no contact acts on keeps every bit.
+//! It is solved for `E = D − D₀`, the effect of contacts on the free displacement `D₀ = V₀ Δt + g
+//! Δt²/2`: `(2M/Δt² + K) E = F − K D₀`. The equation is the same, and a motion without contacts is
+//! not rounded.
 //!
-//! Work equals the change of kinetic energy exactly, `(V₁² − V₀²) M/2 = (F + m g)·D`, and all forces but gravity are
-//! those of springs at the step's end or against the step's displacement: springs lose `k (Δx)²/2` a step and nothing
-//! gains, however long the step. Dashpots act on the mean velocity `D/Δt` for that reason: on `V₁` they may add energy
-//! where a step turns the motion round.
+//! Work equals the change of kinetic energy exactly, `(V₁² − V₀²) M/2 = (F + m g)·D`, and all
+//! forces but gravity are those of springs at the step's end or against the step's displacement:
+//! springs lose `k (Δx)²/2` a step and no energy is created, whatever the step length. For that
+//! reason dashpots act on the mean velocity `D/Δt`: on `V₁` they might add energy where a step
+//! reverses the motion.
 //!
-//! Why this rule is stable and yet coarse: it is unconditionally stable and first order, and damps an oscillation
-//! of phase `z = ω Δt` by `exp(−π z/4)` in half a period. At fixed `p_N` and `Δt` small rocks,
-//! whose `ω` is large, lose more than large ones: an artefact of the step, not of the rock. From `z
-//! = 2` on an impact is turned round in one step, and from 4 on that of an impact which begins within
-//! a step is anything between nothing and all of its speed.
+//! The rule is unconditionally stable and first order. It damps an oscillation of phase `z = ω Δt`
+//! by `exp(−π z/4)` in half a period. At fixed `p_N` and `Δt` small rocks, whose `ω` is large, lose
+//! more than large ones: an artefact of the step, not of the rock. An impact with `z ≥ 2` is
+//! reversed in one step. From 4 on an impact that begins within a step may keep anything between
+//! none and all of its speed.
 //!
-//! A rock alone and the rocks of an island take one step, that of `n ≥ 1` rocks; a rock alone has no pairs, and takes no memory.
+//! The step serves `n ≥ 1` rocks; a rock alone has no pairs, and allocates nothing.
 //!
 //! ```text
 //! step         open–close iteration over all contacts
-//! body         one rock: what it meets, what its contacts take, how it goes on
+//! body         one rock: its contacts, their losses, the end of its step
 //! pairs        contacts between rocks, and the system of all, Eq. (4)
 //! dda_system   beside this: a rock's contacts, their submatrices and states, its block of the system
 //! ```
@@ -41,18 +44,20 @@ pub(super) use pairs::DdaPairs;
 use std::f64::consts::PI;
 pub(super) use step::DdaStep;
 
-/// Longest way in one step (–, relative to R) where more than one plane is near: features are seen a tenth of the
-/// radius ahead.
+/// Longest travel in one step (–, relative to R) where more than one plane is near: features are
+/// known a tenth of the radius ahead.
 pub const TRAVEL: f64 = 0.09;
-/// Deepest penetration that still is one (–, relative to R). Where the centre passes the surface `V` turns round and
-/// the contact would push the rock through.
+/// Deepest valid penetration (–, relative to R). Where the centre passes the surface, `V` reverses
+/// and the contact would push the rock through.
 pub(super) const DEEPEST: f64 = 0.5;
-/// Contact oscillation per step (rad) from which an impact is turned round within one step: the longer, the livelier.
+/// Phase of the contact oscillation per step (rad) from which an impact is reversed within one
+/// step; beyond, restitution grows with it.
 pub const SINGLE_STEP_PHASE: f64 = 2.0;
 
 /// Normal restitution (–) that the step leaves of an undamped impact at `ω Δt` = `phase` (rad, > 0), without gravity.
 ///
-/// The impact begins at the touch, where the leap ends. The step shrinks the oscillation by `ρ = (1+q)^(−1/2)` while
+/// The impact begins at the contact, where the flight ends. The step shrinks the oscillation by `ρ
+/// = (1+q)^(−1/2)` while
 /// its phase turns by `θ = acos((2−q)/(2 √(1+q)))`, `q = phase²/2`; the rock is out after `N = ⌈π/θ⌉ − 1` steps, with
 /// `e = −ρᴺ (cos Nθ − √(q/(8−q)) sin Nθ)`, about `exp(−π phase/4)` while the step resolves the impact. From phase 2 on
 /// one step turns it round, with `e = (q−1)/(q+1)`. An impact that begins within a step, on another contact, keeps
@@ -83,7 +88,7 @@ pub struct Fixed {
 impl Fixed {
     /// Begins an episode.
     pub fn new(settings: &Settings, world: &ContactEnvironment, state: &mut ContactState) -> Self {
-        let stored = DdaBody::looking(*world, state).stored;
+        let stored = DdaBody::with_contact_points(*world, state).stored;
         Self { step_s: settings.step_s, shear_memory: settings.shear_memory, stored }
     }
 
@@ -97,8 +102,8 @@ impl Fixed {
         state: &mut ContactState,
         h_max: f64,
     ) -> Result<Advance, StepError> {
-        // cut by events and by the way that has been looked ahead; the phase of a cut step is
-        // smaller, so it damps less
+        // limited by events and by the travel for which features are known; a shorter step has a
+        // smaller phase and damps less
         let dt = self.step_s.min(h_max).min(state.longest_step(world, TRAVEL));
         let bodies = &mut [DdaBody::new(*world, state, self.stored)];
         let (pairs, pair_histories) = (&mut DdaPairs::default(), &mut []);

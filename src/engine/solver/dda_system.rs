@@ -1,8 +1,9 @@
-//! One rock's part of the system of a fixed step: its contacts with the mesh, and its block.
+//! A rock's part of the system of a fixed step: its contacts with the mesh, and its block.
 //!
-//! A contact is open, sticks or slips; with these states given the step is one linear system, paper Eq. (4),
-//! `(2M/Δt² + K) E = F − K D₀`: a block of 6×6 a rock, `2M/Δt²` and the contacts with the mesh, and the blocks of
-//! contacts between rocks. What is here knows nothing of a rock's motion beyond the step.
+//! A contact is open, sticks or slips. With given states the step is one linear system, paper Eq.
+//! (4), `(2M/Δt² + K) E = F − K D₀`: a block of 6×6 a rock, from `2M/Δt²` and its contacts with the
+//! mesh, and the blocks of contacts between rocks. This module depends on a rock's motion only
+//! within the step.
 
 pub(crate) mod contact;
 pub(crate) mod pair_contact;
@@ -18,7 +19,7 @@ use contact::{ContactMatrixTerms, DdaContact};
 use nalgebra::{Cholesky, U6};
 use slider::Change;
 
-/// What is the same for all contacts of a rock in a step.
+/// Constants of all contacts of a rock in a step.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct StepConstants {
     /// Length (s).
@@ -29,12 +30,13 @@ pub(crate) struct StepConstants {
     pub(crate) free: Vec6,
     /// Radius of the sphere (m).
     pub(crate) radius: f64,
-    /// Way of the touched point per newton along the surface (m/N) and turn of the sphere per newton metre.
+    /// Compliance: displacement of the contact point per newton along the surface (m/N), and
+    /// rotation of the sphere per newton metre.
     compliance: (f64, f64),
 }
 
 impl StepConstants {
-    /// Those of a body that would move by `free` over `dt` (s).
+    /// For a body with the free displacement `free` over `dt` (s).
     ///
     /// `Δt²/(2m) + R² Δt²/(2I)`: displacement is force times half the square of the step over the mass,
     /// and the contact point also turns.
@@ -47,30 +49,31 @@ impl StepConstants {
 
 /// A rock in a fixed step: its contacts with the mesh, its displacement, and its block of the system.
 ///
-/// The block is made anew only when it has changed. In lasting contact neither step nor states change, so a whole slide of a
-/// rock alone needs one factorisation of 6×6.
+/// The block is rebuilt only when it has changed. In sustained contact neither step nor states
+/// change, so a whole slide of a rock alone needs one factorisation of 6×6.
 #[derive(Debug, Default)]
 pub struct DdaScratch {
     pub(super) step: StepConstants,
     contacts: ArrayVec<DdaContact, MAX_CONTACTS>,
-    /// Memories that belong to the contacts.
-    pub(super) taken: u32,
-    /// What contacts add to the free displacement, `E`, and both together, `D = D₀ + E`, Eq. (1).
+    /// Histories that belong to the contacts, one bit each.
+    pub(super) used_histories: u32,
+    /// Effect of contacts on the free displacement, `E`, and the total displacement, `D = D₀ + E`,
+    /// Eq. (1).
     pub(super) added: Vec6,
     pub(super) d: Vec6,
-    /// Of what the block was made: inertia, and contacts in their states.
+    /// Terms of the block: inertia, and contacts in their states.
     inertia: Mat6,
     terms: ArrayVec<ContactMatrixTerms, MAX_CONTACTS>,
-    /// What the contacts add to the block.
+    /// Stiffness of the contacts in the block.
     springs: Mat6,
-    /// Factor of the block; `None` if nobody has asked for it, or if there is none.
+    /// Factor of the block; `None` before it is needed, and where there is none.
     factor: Option<Cholesky<f64, U6>>,
 }
 
 impl DdaScratch {
     /// Begins a step without contacts.
     pub(super) fn begin(&mut self, body: &Body, step: StepConstants) {
-        (self.step, self.taken) = (step, 0);
+        (self.step, self.used_histories) = (step, 0);
         self.contacts.clear();
         let inertia = inertia(body.mass, body.inertia, step.dt);
         if self.inertia != inertia {
@@ -78,23 +81,23 @@ impl DdaScratch {
         }
     }
 
-    /// Adds the contact of a touch and its memory.
+    /// Adds the contact of a contact point and its history.
     pub(super) fn add(&mut self, law: &Law, touch: &ContactPoint, left: (usize, &ContactHistory)) {
         self.contacts.push(DdaContact::with_mesh(&self.step, law, touch, left));
-        self.taken |= 1 << left.0;
+        self.used_histories |= 1 << left.0;
     }
 
     pub(super) fn contacts(&self) -> &[DdaContact] {
         &self.contacts
     }
 
-    /// `2M/Δt² + K` of the contacts with the mesh, as [`Self::load`] has brought it up to date.
+    /// `2M/Δt² + K` of the contacts with the mesh, as last updated by [`Self::load`].
     pub(super) fn block(&self) -> Mat6 {
         self.springs + self.inertia
     }
 
-    /// Brings the block up to the states of the contacts, and gives `F − K D₀`: the unknown is what contacts add to the
-    /// free displacement.
+    /// Updates the block to the states of the contacts; returns `F − K D₀`, as the unknown is the
+    /// effect of contacts on the free displacement.
     pub(super) fn load(&mut self) -> Vec6 {
         let contacts = &self.contacts;
         let terms = || contacts.iter().map(DdaContact::terms);
@@ -111,7 +114,8 @@ impl DdaScratch {
         load
     }
 
-    /// Solves the step of a rock that no other touches: its block is all of the system. `None` if it has no solution.
+    /// Solves the step of a rock without contact to others: its block is the whole system. `None`
+    /// if it has no solution.
     ///
     /// Cholesky: inertia is positive definite and springs add `Vᵀ V` terms, so the matrix always
     /// is.
@@ -121,30 +125,31 @@ impl DdaScratch {
             self.factor = Cholesky::new(self.block());
         }
         self.factor.as_ref()?.solve_mut(&mut load);
-        self.take(load)
+        self.set_solution(load)
     }
 
-    /// Takes a solution; `None` if it is none.
-    pub(super) fn take(&mut self, added: Vec6) -> Option<()> {
+    /// Sets the solution; `None` if it is not finite.
+    pub(super) fn set_solution(&mut self, added: Vec6) -> Option<()> {
         (self.added, self.d) = (added, self.step.free + added);
         added.iter().all(|x| x.is_finite()).then_some(())
     }
 
-    /// Judges its contacts by the displacement that came out; the largest change of all counts.
-    pub(super) fn judge(&mut self) -> Change {
+    /// Updates the states of its contacts by the displacement found; the largest change.
+    pub(super) fn update_state(&mut self) -> Change {
         let contacts = self.contacts.iter_mut();
-        let judged = contacts.map(|contact| contact.judge(&contact.ways(&self.d)));
-        judged.max().unwrap_or(Change::None)
+        let changes =
+            contacts.map(|contact| contact.update_state(&contact.relative_displacement(&self.d)));
+        changes.max().unwrap_or(Change::None)
     }
 
-    /// Ends the search for the states of its contacts.
+    /// Fixes the states of its contacts for the fallback solution.
     pub(super) fn stick(&mut self) {
         self.contacts.iter_mut().for_each(DdaContact::stick);
     }
 
-    /// Opens or closes one contact that begins apart, the last that asks for it; whether there is any.
+    /// Opens or closes the last contact that begins apart and has to change; whether there is one.
     pub(super) fn open_or_close_one_apart(&mut self) -> bool {
         let mut contacts = self.contacts.iter_mut().rev();
-        contacts.any(|contact| contact.open_or_close_apart(&contact.ways(&self.d)))
+        contacts.any(|contact| contact.open_or_close_apart(&contact.relative_displacement(&self.d)))
     }
 }

@@ -1,4 +1,4 @@
-//! What a rock in contact meets: the terrain, the law of every ground, and itself.
+//! Environment of a rock in contact: the terrain, the law of every ground, and its body.
 
 use super::body::Body;
 use crate::contact::history::ContactHistory;
@@ -10,8 +10,7 @@ use crate::terrain::Terrain;
 /// An approach slower than this is no impact (–, relative to `√(g R)`).
 const LEAST_IMPACT: f64 = 1e-3;
 
-/// What stays the same while one rock falls.
-/// Borrowed and copied freely: a few words.
+/// What stays constant while one rock falls. It is borrowed and copied freely: a few words.
 #[derive(Debug, Clone, Copy)]
 pub struct ContactEnvironment<'a> {
     /// The mesh.
@@ -43,10 +42,11 @@ impl<'a> ContactEnvironment<'a> {
         -touch.normal.dot(v) < self.law(touch.triangle).capture_m_s
     }
 
-    /// Slowest approach that is an impact to be followed in its own time (m/s): slower than that a rock just presses.
+    /// Slowest approach that is resolved as an impact (m/s): slower contacts are part of sustained
+    /// contact.
     ///
-    /// `√(g R)` is the speed of a rock that falls by half its radius: what comes in at a thousandth
-    /// of it is part of rolling, not a blow.
+    /// `√(g R)` is the speed of a rock that falls by half its radius: an approach at a thousandth
+    /// of it is part of rolling, not an impact.
     pub(super) fn least_impact_m_s(&self) -> f64 {
         LEAST_IMPACT * self.body.fall_speed_m_s()
     }
@@ -58,8 +58,9 @@ impl<'a> ContactEnvironment<'a> {
             || self.law(one).has_springs_of(self.law(other))
     }
 
-    /// The law of a contact with `triangle`: springs and dashpots of the ground on which it was pressed, friction of the one that it touches. An impact
-    /// on ground whose restitution falls with its speed has dashpots of its own. What is of no ground alone stands in `own`.
+    /// The law of a contact with `triangle`: springs and dashpots of the ground on which it began,
+    /// friction of the ground that it touches. An impact on ground whose restitution falls with
+    /// speed has a damping ratio of its own. A combined law is stored in `own`.
     #[inline]
     pub(crate) fn law_touched<'l>(
         &self,
@@ -80,14 +81,14 @@ impl<'a> ContactEnvironment<'a> {
         own.as_ref().unwrap_or(touched)
     }
 
-    /// The same with the triangle that it touched last.
+    /// The law of a contact with the triangle that it touched last.
     #[inline]
     pub(crate) fn springs_of(&self, history: &ContactHistory) -> Law {
         *self.law_touched(history, history.triangle, &mut None)
     }
 
-    /// The same for touch `k` among others of the same instant, whose memory this is.
-    /// Patch and neighbours change the dashpot only through the mass that they move: `m/|a|²`.
+    /// The law of contact point `k` among others of the same instant, with its history. Patch and
+    /// neighbours change the dashpot only through the effective mass `m/|a|²`.
     #[inline]
     pub fn law_of(&self, history: &ContactHistory, touches: &[ContactPoint], k: usize) -> Law {
         let touch = &touches[k];
@@ -95,13 +96,14 @@ impl<'a> ContactEnvironment<'a> {
         self.law_touched(history, touch.triangle, &mut None).of_patch(touch.gain2, share)
     }
 
-    /// What the dashpot of touch `k` among others of the same instant takes of its own damping (–).
+    /// Share of its own damping that the dashpot of contact point `k` keeps among others of the
+    /// same instant (–).
     #[inline]
     pub(super) fn dashpot_share(&self, touches: &[ContactPoint], k: usize) -> f64 {
         self.dashpot_share_beside(touches, k, &[])
     }
 
-    /// The same beside `more` contacts, by their normals.
+    /// That share beside `more` contacts, given by their normals.
     #[inline]
     pub(super) fn dashpot_share_beside(
         &self,
@@ -112,8 +114,8 @@ impl<'a> ContactEnvironment<'a> {
         if touches.len() + more.len() == 1 {
             return 1.0;
         }
-        // What parts takes part until it is no touch any more: a force that jumps where the gap is zero would be met by
-        // steps as short as what places are rounded by.
+        // A separating contact counts until its gap exceeds the tolerance: a force that jumps where
+        // the gap is zero would force steps as short as the rounding of positions.
         let reach = self.body.radius * (1.0 + TOUCH);
         let pressed =
             touches.iter().enumerate().filter(|(j, other)| *j != k && other.distance_m < reach);
@@ -121,8 +123,7 @@ impl<'a> ContactEnvironment<'a> {
     }
 }
 
-/// What each dashpot takes of its own damping where several patches are pressed at once (–):
-/// `1/√(Σ_j max(0, n̂_i·n̂_j)²)` over those pressed, itself and the `others`. `n` parallel ones damp like one; at right angles nothing changes.
+/// Share of its own damping that each dashpot keeps where several patches are pressed at once (–):
 fn dashpot_share<'a>(normal: &Vec3, others: impl Iterator<Item = &'a Vec3>) -> f64 {
     let along = others.map(|other| normal.dot(other).max(0.0).powi(2));
     1.0 / (1.0 + along.sum::<f64>()).sqrt()

@@ -21,7 +21,7 @@ use super::impact::dormand_prince::{Attempt, Flow, Stages, Tried, growth, three}
 use super::impact::{LOCAL, StepLength};
 use super::loss::Loss;
 use super::plane_ahead::longest_step;
-use super::stage::End;
+use super::stage::StageMotion;
 use super::step_control::{Advance, StepError, TRAVEL};
 use crate::contact::TOUCH;
 use crate::contact::history::{ContactHistory, MAX_HISTORIES};
@@ -61,7 +61,7 @@ struct StepBounds {
 
 /// An accepted step.
 struct Accepted {
-    end: End,
+    end: StageMotion,
     dt: f64,
     /// What contacts took, what springs hold counted in (J).
     loss: Loss,
@@ -93,7 +93,7 @@ pub(super) fn judge(
 impl ContactState {
     /// Whether an impact is going on.
     pub(crate) fn is_rebounding(&self) -> bool {
-        self.impact.left > 0.0 && self.histories.iter().any(|history| !history.captured)
+        self.impact.left_rad > 0.0 && self.histories.iter().any(|history| !history.captured)
     }
 
     /// One accepted step of an impact, of at most `h_max` (s), in contacts of at most `omega` (rad/s); `tolerance` is the local
@@ -142,7 +142,7 @@ impl ContactState {
         h_max: f64,
     ) -> StepBounds {
         let c = self.c;
-        self.know(world, &c);
+        self.update_neighbours(world, &c);
         let way = TRAVEL * world.body.radius;
         let speed = self.v.norm();
         let limit = longest_step(&world.body, speed, way).min(LONGEST_RAD / omega);
@@ -169,18 +169,18 @@ impl ContactState {
         let mut stages = Stages::<N, Q, P>::NONE;
         flow.rates(0, &flow.begin::<N>(), stages.first());
         // what the present place touches is met whatever becomes of the tries
-        flow.state.accept_meetings(world);
+        flow.state.accept_new_contacts(world);
         loop {
             let Some(accepted) = step_among(&mut flow, &mut stages, &bounds, done)? else {
                 return Ok(done.steps > 0);
             };
-            flow.state.impact.left -= bounds.omega * accepted.dt;
+            flow.state.impact.left_rad -= bounds.omega * accepted.dt;
             flow.state.accept_impact(world, &accepted, &bounds, done);
             if !(accepted.is_alike && flow.state.goes_on_alone(flow.pressed().len())) {
                 return Ok(true);
             }
             let left_s = h_max - done.dt;
-            if left_s <= 0.0 || flow.state.bounce(world, scale.1, left_s, done) {
+            if left_s <= 0.0 || flow.state.finish_plane_impact(world, scale.1, left_s, done) {
                 return Ok(true);
             }
             bounds = flow.state.step_bounds(world, scale, left_s);
@@ -195,7 +195,7 @@ impl ContactState {
             && self.histories.len() == count
             && self.histories.iter().all(|history| history.announced)
             && !self.may_yield
-            && !self.facets.are_any()
+            && !self.facets.are_rough()
     }
 
     /// Takes over the step's end: motion, memories, losses. The last stage was there.
@@ -211,11 +211,11 @@ impl ContactState {
         let lifted = body.lifted_j(&(end.c - self.c));
         (self.c, self.v, self.w) = (end.c, end.v, end.w);
         // what the springs store is counted among the losses until they give it back
-        self.impact.gained += self.motion_j(body) + lifted + loss.sum() - before;
-        self.impact.mixes |= self.is_on_several_grounds(world);
+        self.impact.gained_j += self.motion_j(body) + lifted + loss.sum() - before;
+        self.impact.mixes_grounds |= self.is_on_several_grounds(world);
         self.merge_lost(world);
         self.histories.retain(|history| history.closed);
-        self.accept_meetings(world);
+        self.accept_new_contacts(world);
         self.fresh = false;
         done.dt += accepted.dt + self.let_go(world, bounds, bounds.h_max - accepted.dt);
         // what rebounds no more goes on with other steps, also while something else still presses
@@ -246,7 +246,7 @@ impl ContactState {
         }
         let (v, g) = (self.v, world.body.gravity);
         let c = self.c + (v + g * (0.5 * dt)) * dt;
-        self.look(world, &c, world.body.radius * (1.0 + TOUCH));
+        self.find_contact_points(world, &c, world.body.radius * (1.0 + TOUCH));
         if !self.touches.is_empty() {
             return 0.0;
         }
@@ -263,17 +263,17 @@ impl ContactState {
     /// friction nothing can turn the rock, and the velocity alone is scaled. More than [`BALANCED`] is taken only where springs of several
     /// grounds were pressed at once: what these hand over to each other is no error of steps.
     pub(super) fn balance(&mut self, world: &ContactEnvironment) {
-        let (body, gained) = (&world.body, self.impact.gained);
+        let (body, gained) = (&world.body, self.impact.gained_j);
         let turns = world.laws.iter().any(|law| law.limits().caps(1.0) != (0.0, 0.0));
         let motion =
             if turns { self.motion_j(body) } else { 0.5 * body.mass * self.v.norm_squared() };
-        let most = if self.impact.mixes { 1.0 } else { BALANCED };
+        let most = if self.impact.mixes_grounds { 1.0 } else { BALANCED };
         if (-BALANCED * motion..most * motion).contains(&gained) {
             let kept = (1.0 - gained / motion).sqrt();
             self.v *= kept;
             self.w *= if turns { kept } else { 1.0 };
         }
-        (self.impact.gained, self.impact.left, self.impact.mixes) = (0.0, 0.0, false);
+        (self.impact.gained_j, self.impact.left_rad, self.impact.mixes_grounds) = (0.0, 0.0, false);
     }
 }
 

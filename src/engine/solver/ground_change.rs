@@ -1,13 +1,21 @@
-//! Where a rock comes from one ground to another while it is pressed in.
+//! Contacts of a rock that moves from one ground to another while it is pressed in.
 //!
-//! The stiffness of a spring that is pressed must not grow by itself: at one depth a spring of a hundred times the stiffness holds a
-//! hundred times the energy. So springs and dashpots of a contact are those of the ground on which they were pressed
-//! ([`ContactHistory::springs_of`]); friction holds no energy, and is that of the ground that is touched, in an impact as in all else
-//! ([`ContactEnvironment::law_touched`]). An impact is answered by the springs of that one ground to its end, on both sides of a blunt fold. What lasts, a rock
-//! that rolls, slides or rests, has the springs of the ground that it touches as soon as these hold no more energy: those of a softer ground
-//! at the end of a step in which little is lost so, those of a stiffer one when it has let go, or when a rock alone lies on one face of it: it is lifted to where
-//! these bear the same load (in worlds it is not, where a rock that moves farther than it was said to may come into another). Patches of several grounds that meet or part in an impact hand over
-//! what the new spring does not hold; that is balanced when the impact is over.
+//! The stiffness of a compressed spring must not change by itself: at one depth a spring of a
+//! hundred times the stiffness holds a hundred times the energy. So springs and dashpots of a
+//! contact are those of the ground on which it began ([`ContactHistory::springs_of`]); friction
+//! stores no energy and is always that of the ground that is touched
+//! ([`ContactEnvironment::law_touched`]). An impact keeps these springs to its end, on both sides
+//! of a blunt fold.
+//!
+//! Sustained contact of a rock that rolls, slides or rests takes over the springs of the touched
+//! ground as soon as these hold no more energy. On softer ground that is at the end of a step in
+//! which little is lost by the change. On stiffer ground it is when the spring has unloaded, or,
+//! for a rock alone on one face, at once: the rock is lifted to where the new springs bear the same
+//! load. (In worlds it is not lifted, as a rock that moves farther than predicted may run into
+//! another.)
+//!
+//! Where patches of several grounds merge or split in an impact, one passes on what the new spring
+//! does not store; that is balanced when the impact is over.
 
 use super::contact_state::{ContactEnvironment, ContactState};
 use super::loss::Loss;
@@ -16,21 +24,25 @@ use crate::contact::TOUCH;
 use crate::contact::history::{ContactHistory, SAME_CONTACT_COSINE};
 use crate::rock::Vec3;
 
-/// A contact that is so deep when it comes up is part of one that was there, as patches part (–, relative to the radius of the ball).
-const PRESSED_AT_BIRTH: f64 = 1e-5;
+/// A contact that is this deep when it begins is split off an existing patch (–, relative to the
+/// radius of the sphere).
+const PRESSED_AT_ONSET: f64 = 1e-5;
 
-/// What lasting contact loses to softer springs at most, of motion and of the weight lifted by the radius (–): what weight presses in is less. A contact that
-/// is pressed harder, as in a slow impact, waits until it is let out.
-const LOSES: f64 = 1e-3;
+/// Largest loss of sustained contact by the change to softer springs (–, relative to kinetic energy
+/// and weight times radius). Weight alone stores less. A contact under a larger load, as in a slow
+/// impact, changes after it has unloaded.
+const MAX_LOSS: f64 = 1e-3;
 
-/// Whether a patch of a ball of this radius (m) that comes up so deep (m) is part of one that was there.
-pub(super) fn comes_up_pressed(pressed_m: f64, radius_m: f64) -> bool {
-    pressed_m > PRESSED_AT_BIRTH * radius_m
+/// Whether a new patch of a sphere of this radius (m) at this depth (m) is split off an existing
+/// one.
+pub(super) fn begins_pressed(pressed_m: f64, radius_m: f64) -> bool {
+    pressed_m > PRESSED_AT_ONSET * radius_m
 }
 
-/// The springs, by a triangle of their ground, of the patch that one with this normal parts from or meets at a blunt fold: of those that are pressed,
-/// told by normal and springs, the one on the likest side, if it is one patch with it.
-pub(super) fn springs_parted_from(
+/// The springs, as a triangle of their ground, that a patch with this normal takes over at a blunt
+/// fold: those of the pressed contact, given by normal and springs, whose normal is closest, if
+/// both form one patch.
+pub(super) fn springs_across_fold(
     normal: &Vec3,
     pressed: impl Iterator<Item = (Vec3, u32)>,
 ) -> Option<u32> {
@@ -39,33 +51,36 @@ pub(super) fn springs_parted_from(
     nearest.filter(|one| along(one) > SAME_CONTACT_COSINE).map(|(_, springs_of)| springs_of)
 }
 
-/// What a rock does that comes on stiffer springs under the load of its softer ones.
-struct Rise {
-    /// The memory of its contact with the new springs.
+/// The lift of a rock that takes over stiffer springs under the load of its softer ones.
+struct LiftOntoStiffer {
+    /// History of its contact with the new springs.
     after: ContactHistory,
-    /// How far it is lifted (m).
+    /// Displacement of the lift (m).
     way: Vec3,
-    /// What that costs, and what of it the softer spring gives back (J).
+    /// Potential energy gained, and the part of it released by the softer spring (J).
     lifted_j: f64,
-    given_j: f64,
+    from_spring_j: f64,
 }
 
 impl ContactState {
-    /// Lets the springs of lasting contacts be those of the ground that they touch, where these hold no more energy.
+    /// Changes the springs of sustained contacts to those of the touched ground where these store
+    /// no more energy.
     ///
-    /// Asked at the end of a step, with the touches of that place.
-    pub(super) fn follow_grounds(&mut self, world: &ContactEnvironment) {
+    /// Called at the end of a step, with the contact points there.
+    pub(super) fn update_springs_of_grounds(&mut self, world: &ContactEnvironment) {
         if world.laws.len() == 1 || self.is_rebounding() {
             return;
         }
         let body = &world.body;
-        let most_j = LOSES * (self.motion_j(body) + body.mass * body.gravity.norm() * body.radius);
+        let most_j =
+            MAX_LOSS * (self.motion_j(body) + body.mass * body.gravity.norm() * body.radius);
         for k in 0..self.histories.len() {
             let before = self.histories[k];
             let is_seen = self.touches.iter().any(|touch| touch.feature == before.feature);
             if is_seen && !world.are_alike(before.springs_of, before.triangle) {
                 let after = ContactHistory { springs_of: before.triangle, ..before };
-                let lost_j = self.contact_j(world, &before) - self.contact_j(world, &after);
+                let lost_j =
+                    self.contact_stored_j(world, &before) - self.contact_stored_j(world, &after);
                 if (0.0..=most_j).contains(&lost_j) {
                     self.histories[k] = after;
                     self.fresh = false;
@@ -74,59 +89,69 @@ impl ContactState {
         }
     }
 
-    /// Lifts a rock that lies on one face of stiffer ground, on the springs of the softer one from which it came, to the depth at which those of the face
-    /// bear the same load; the softer spring and the motion pay for the height. Returns what the spring gives back, booked as taken when it was pressed.
+    /// Lifts a rock on one face of stiffer ground, which still lies on the springs of softer
+    /// ground, to the depth at which the springs of the face bear the same load. The released
+    /// spring energy and the motion supply the potential energy. Returns the released energy, which
+    /// was counted as loss when the spring was compressed.
     ///
-    /// Its depth on soft ground would blunt the folds ahead: ramps of 2 to 4° of hard ground were met as one patch with what it lay on, without a blow.
-    pub(super) fn rise_on_stiffer(&mut self, world: &ContactEnvironment) -> Option<Loss> {
+    /// Without it the depth from the soft ground would blunt the folds ahead: ramps of 2 to 4° on
+    /// hard ground formed one patch with the face before, without an impact.
+    pub(super) fn lift_onto_stiffer(&mut self, world: &ContactEnvironment) -> Option<Loss> {
         let [one] = &self.histories[..] else { return None };
-        let is_at_home = world.laws.len() == 1 || world.are_alike(one.springs_of, one.triangle);
-        if is_at_home || self.is_rebounding() || !is_on_face(world, self) {
+        let has_own_springs =
+            world.laws.len() == 1 || world.are_alike(one.springs_of, one.triangle);
+        if has_own_springs || self.is_rebounding() || !is_on_face(world, self) {
             return None;
         }
-        let Rise { after, way, lifted_j, given_j } = self.rise(world)?;
-        let (motion_j, paid_j) = (self.motion_j(&world.body), lifted_j - given_j);
-        if paid_j > LOSES * motion_j || !self.is_alone_at(world, &(self.c + way)) {
+        let LiftOntoStiffer { after, way, lifted_j, from_spring_j } = self.lift(world)?;
+        let (motion_j, from_motion_j) = (self.motion_j(&world.body), lifted_j - from_spring_j);
+        if from_motion_j > MAX_LOSS * motion_j || !self.is_alone_at(world, &(self.c + way)) {
             return None;
         }
         self.leave_plane(world);
-        let kept = (1.0 - paid_j / motion_j).sqrt();
+        let kept = (1.0 - from_motion_j / motion_j).sqrt();
         (self.c, self.v, self.w) = (self.c + way, self.v * kept, self.w * kept);
         self.histories[0] = after;
         self.fresh = false;
-        Some(Loss::on_slope([0.0, -given_j, 0.0]).on(world, after.triangle))
+        Some(Loss::on_slope([0.0, -from_spring_j, 0.0]).on(world, after.triangle))
     }
 
-    /// How a rock on one face would come on its springs, if these are stiffer than those that it lies on.
-    fn rise(&self, world: &ContactEnvironment) -> Option<Rise> {
-        let (before, pressed_m) = (self.histories[0], self.sunk(world));
+    /// The lift of a rock on one face, if the springs of the face are stiffer than its own.
+    fn lift(&self, world: &ContactEnvironment) -> Option<LiftOntoStiffer> {
+        let (before, pressed_m) = (self.histories[0], self.plane_penetration_m(world));
         let mut after = ContactHistory { springs_of: before.triangle, ..before };
         let (soft, stiff) = (world.springs_of(&before), world.springs_of(&after));
         let [normal, shear, roll] = stiff.stretch_ratios_to(&soft);
         (after.shear, after.roll) = (before.shear * shear, before.roll * roll);
         let way = before.n * (pressed_m * (1.0 - normal));
         let lifted_j = world.body.lifted_j(&way);
-        let freed_j =
+        let released_j =
             soft.stored_j(pressed_m, 0.0, 0.0) - stiff.stored_j(pressed_m * normal, 0.0, 0.0);
-        let rises = lifted_j > 0.0 && freed_j > 0.0;
-        // what weight does not hold, a spring that is let out, gives no height
-        rises.then(|| Rise { after, way, lifted_j, given_j: freed_j.min(lifted_j) })
+        let rises = lifted_j > 0.0 && released_j > 0.0;
+        // a spring that unloads anyway does not lift the rock
+        rises.then(|| LiftOntoStiffer {
+            after,
+            way,
+            lifted_j,
+            from_spring_j: released_j.min(lifted_j),
+        })
     }
 
     /// Whether a rock on one face touches nothing else at `c`.
     fn is_alone_at(&mut self, world: &ContactEnvironment, c: &Vec3) -> bool {
         let feature = self.histories[0].feature;
-        self.look(world, c, world.body.radius * (1.0 + TOUCH));
+        self.find_contact_points(world, c, world.body.radius * (1.0 + TOUCH));
         self.touches.iter().all(|touch| touch.feature == feature)
     }
 
-    /// Gives a contact that has just come up at touch `k` the springs of a pressed one that it is parted from, if it is, and in an impact of
-    /// one on a like side: at a blunt fold their patches meet, and only of equal springs does the energy stay what it was.
-    pub(super) fn part_springs(&mut self, world: &ContactEnvironment, place: usize, k: usize) {
+    /// Gives a contact that begins at contact point `k` the springs of the pressed contact from
+    /// which it splits off, and in an impact those of one with a close normal: at a blunt fold
+    /// their patches merge, and energy is conserved only with equal springs.
+    pub(super) fn inherit_springs(&mut self, world: &ContactEnvironment, place: usize, k: usize) {
         let touch = &self.touches[k];
         let (radius_m, rebounds) = (world.body.radius, self.is_rebounding());
         let pressed_m = radius_m - touch.distance_m;
-        if world.laws.len() == 1 || !(rebounds || comes_up_pressed(pressed_m, radius_m)) {
+        if world.laws.len() == 1 || !(rebounds || begins_pressed(pressed_m, radius_m)) {
             return;
         }
         let is_tree = world.terrain.is_tree(touch.triangle);
@@ -135,12 +160,12 @@ impl ContactState {
             .filter(|one| one.closed || rebounds)
             .filter(|one| world.terrain.is_tree(one.triangle) == is_tree)
             .map(|one| (one.n, one.springs_of));
-        if let Some(springs_of) = springs_parted_from(&touch.normal, pressed) {
+        if let Some(springs_of) = springs_across_fold(&touch.normal, pressed) {
             self.histories[place].springs_of = springs_of;
         }
     }
 
-    /// Hands the springs of contacts that merged into others to those; whether there were any.
+    /// Merges the springs of contacts that became part of others; whether there were any.
     pub(crate) fn merge_lost(&mut self, world: &ContactEnvironment) -> bool {
         let Self { histories, near, .. } = self;
         histories.merge_lost(
@@ -160,13 +185,14 @@ impl ContactState {
 mod tests {
     use super::*;
 
-    /// A patch has the springs of the likest of those that it may part from, and its own where a fold between them is too sharp for one patch.
+    /// A patch takes over the springs of the closest normal, and keeps its own where the fold
+    /// between them is too sharp for one patch.
     #[test]
     fn a_patch_parts_from_the_likest_side_of_a_blunt_fold() {
         let tilted = |angle: f64| Vec3::new(angle.sin(), 0.0, angle.cos());
         let parted = |sides: &[(f64, u32)]| {
             let pressed = sides.iter().map(|(angle, springs_of)| (tilted(*angle), *springs_of));
-            springs_parted_from(&Vec3::z(), pressed)
+            springs_across_fold(&Vec3::z(), pressed)
         };
         let sharp = SAME_CONTACT_COSINE.acos() + 0.01;
         assert_eq!(parted(&[(-0.3, 4), (0.2, 7), (0.5, 9)]), Some(7));

@@ -32,8 +32,8 @@ mod unload;
 mod sweeps;
 
 pub use assembly::Island;
-pub use body::{BodySlot, IslandBody, Memory};
-pub use outcome::{BlowInStep, Done, Hit};
+pub use body::{BodySlot, IslandBody, MotionSnapshot};
+pub use outcome::{BlowInStep, IslandAdvance, MeshImpact};
 pub use rigid::TRAVEL;
 pub(crate) use rigid::{RigidIsland, blows_of};
 pub use unload::unload_pair;

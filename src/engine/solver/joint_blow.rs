@@ -16,7 +16,7 @@
 use super::body::{Body, Twist};
 use super::impact::{BODIES, CONTACTS, FrozenCollision, LONGEST_WAIT};
 use super::loss::Loss;
-use super::yielding::{BISECTIONS, COMES_OFF, STEP};
+use super::yielding::{BISECTIONS, MAX_CONTACT_RAD, STEP};
 use crate::ground::Law;
 use crate::math;
 use crate::rock::Vec3;
@@ -140,7 +140,7 @@ pub(crate) fn joint_blow(
     };
     let mut blow = JointBlow { bodies, contacts, broken: ArrayVec::new() };
     // through a row it runs from rock to rock
-    let mut left_s = bodies.len() as f64 * COMES_OFF / blow.softest();
+    let mut left_s = bodies.len() as f64 * MAX_CONTACT_RAD / blow.softest();
     for _ in 0..JOINT_STEPS {
         if left_s <= 0.0 {
             break;
@@ -347,7 +347,7 @@ impl Instant {
         let mut after = FrozenCollision::STILL;
         after.motions[..self.motions.len()].copy_from_slice(&self.motions);
         for (k, pressed) in self.pressed.iter().enumerate() {
-            after.loss[k] = Loss::sharing(pressed.taken_j);
+            after.loss[k] = Loss::redistributed(pressed.taken_j);
             after.fastest_m_s[k] = pressed.fastest_m_s;
         }
         after

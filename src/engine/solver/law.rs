@@ -1,12 +1,13 @@
-//! The contact law acting on a sphere: normal force, shear force and rolling moment of a contact at a motion, and at the end of
-//! an implicit stage.
+//! The contact law acting on a sphere: normal force, shear force and rolling moment of a contact
+//! for a given motion, and at the end of an implicit stage.
 //!
-//! What springs, dashpots and sliders answer is asked of [`Law`]; here it meets mass, lever and spin. A stage of length `h` from
-//! `(v*, w*)` is one SDDA solve; eliminated contact by contact it needs no matrix.
+//! Forces of springs, dashpots and sliders come from [`Law`]; here they act on mass, lever and
+//! spin. A stage of length `h` from `(v*, w*)` is one SDDA solve; eliminated contact by contact it
+//! needs no matrix.
 
 use super::body::Body;
 use super::contact_frame::ContactFrame;
-use super::friction_rolling::{Answers, Pair, SlipState};
+use super::friction_rolling::{Compliance, FrictionRolling, SlipState};
 use crate::contact::Feature;
 use crate::contact::history::ContactHistory;
 pub(crate) use crate::ground::clamp_norm;
@@ -16,15 +17,15 @@ use crate::rock::Vec3;
 /// One contact inside a stage: its state at the stage's base and the forces that are sought.
 #[derive(Debug, Clone, Copy)]
 pub struct StageContact {
-    /// Which memory it belongs to.
+    /// Place of its history.
     pub history: usize,
-    /// Where on the mesh.
+    /// Mesh feature.
     pub feature: Feature,
-    /// Triangle whose ground answers.
+    /// Triangle whose ground sets the law.
     pub triangle: u32,
     /// Its law.
     pub law: Law,
-    /// Normal spring and dashpot in force: those of a captured contact if it is one.
+    /// Normal spring and dashpot in force, those of capture if it is captured.
     pub(crate) normal: NormalElement,
     /// Unit normal from the mesh to the centre.
     pub n: Vec3,
@@ -40,18 +41,19 @@ pub struct StageContact {
     pub shear_force: Vec3,
     /// Rolling moment `M`; the rock feels `−M` (N m).
     pub rolling_moment: Vec3,
-    /// Which of the two are at their caps, as far as is known.
+    /// Which of the two are at their caps, as far as is known: an initial guess for the next
+    /// solution.
     pub(crate) mode: SlipState,
 }
 
 pub(crate) const ZERO: Vec3 = Vec3::new(0.0, 0.0, 0.0);
 
-/// What a contact does at a given motion, and how its springs go on.
+/// Forces of a contact at a given motion, and the rates of its springs.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Action {
+pub(crate) struct ContactForces {
     /// Slip of the contact point (m/s).
     pub(crate) slip: Vec3,
-    /// Normal force (N), ≥ 0, and what it would be if it could pull.
+    /// Normal force (N), ≥ 0, and its value without that bound.
     pub(crate) normal: [f64; 2],
     /// Shear force; the rock feels its opposite at the contact point (N).
     pub(crate) shear: SliderForce,
@@ -59,9 +61,9 @@ pub(crate) struct Action {
     pub(crate) rolling: SliderForce,
 }
 
-/// Where a contact is.
+/// Normal, penetration and spring stretches of a contact.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct ContactPlace {
+pub(crate) struct ContactDeformation {
     /// Unit normal from the mesh to the centre.
     pub(crate) n: Vec3,
     /// Penetration (m).
@@ -72,18 +74,18 @@ pub(crate) struct ContactPlace {
     pub(crate) roll: Vec3,
 }
 
-impl Action {
-    /// In a contact with this normal element, all else by `law`, at velocity `v` and spin `w`.
+impl ContactForces {
+    /// Forces with a given normal element, all else by `law`, at velocity `v` and spin `w`.
     #[inline]
     pub(crate) fn of(
         body: &Body,
         law: &Law,
         normal: &NormalElement,
-        at: &ContactPlace,
+        at: &ContactDeformation,
         (v, w): (&Vec3, &Vec3),
     ) -> Self {
-        let pulls = normal.bilateral_force(at.penetration, at.n.dot(v));
-        let normal_force = pulls.max(0.0);
+        let unbounded = normal.bilateral_force(at.penetration, at.n.dot(v));
+        let normal_force = unbounded.max(0.0);
         let slip = body.slip(&at.n, v, w);
         let shear = law.shear.at_rate(at.shear, slip, law.shear.cap(normal_force));
         let rolling = if law.rolling.is_damped() {
@@ -91,7 +93,7 @@ impl Action {
         } else {
             SliderForce::default()
         };
-        Self { slip, normal: [normal_force, pulls], shear, rolling }
+        Self { slip, normal: [normal_force, unbounded], shear, rolling }
     }
 }
 
@@ -113,7 +115,8 @@ impl StageContact {
         mode: SlipState::Stick,
     };
 
-    /// Forces for a base `(v, w)` without this contact's own effect, over a stage of length `h`.
+    /// Solves the forces for a base `(v, w)` without this contact's own effect, over a stage of
+    /// length `h`.
     #[inline]
     pub(crate) fn solve(&mut self, body: &Body, v: &Vec3, w: &Vec3, h: f64) {
         self.normal_force = self.normal.stage_force(self.penetration, self.n.dot(v), body.mass, h);
@@ -123,12 +126,12 @@ impl StageContact {
         }
         let law = &self.law;
         let frame = ContactFrame::of(&self.n);
-        let answers = Answers::of(body, law, h);
+        let compliance = Compliance::of(body, law, h);
         let slip = body.slip(&self.n, v, w);
-        let pair = Pair {
-            answers: &answers,
-            a: frame.along(&(law.shear.spring_force(self.shear) + slip * answers.kap)),
-            d: frame.local(&(law.rolling.spring_force(self.roll) + w * answers.kar)),
+        let pair = FrictionRolling {
+            compliance: &compliance,
+            a: frame.along(&(law.shear.spring_force(self.shear) + slip * compliance.kappa)),
+            d: frame.local(&(law.rolling.spring_force(self.roll) + w * compliance.kappa_r)),
             caps: law.limits().caps(self.normal_force),
         };
         let (shear_force, rolling_moment) = pair.solve(&mut self.mode);
@@ -136,12 +139,12 @@ impl StageContact {
             (frame.out_along(shear_force), frame.out_local(rolling_moment));
     }
 
-    /// What shear and rolling springs would hold at velocity `v` and spin `w` if they did not slide.
-    pub(crate) fn trials(&self, body: &Body, v: &Vec3, w: &Vec3, h: f64) -> (Vec3, Vec3) {
+    /// Trial shear force and rolling moment at velocity `v` and spin `w`: those without sliding.
+    pub(crate) fn trial_forces(&self, body: &Body, v: &Vec3, w: &Vec3, h: f64) -> (Vec3, Vec3) {
         let law = &self.law;
-        let stick = law.shear.spring_force(self.shear)
+        let trial_force = law.shear.spring_force(self.shear)
             + body.slip(&self.n, v, w) * law.shear.stage_stiffness(h);
-        (stick, law.rolling.spring_force(self.roll) + w * law.rolling.stage_stiffness(h))
+        (trial_force, law.rolling.spring_force(self.roll) + w * law.rolling.stage_stiffness(h))
     }
 
     /// Change of velocity and spin by this contact's forces over `h`.
@@ -155,17 +158,17 @@ impl StageContact {
 
     /// Penetration at the stage's end (m), where the velocity is `v`.
     #[inline]
-    pub fn pen_at(&self, v: &Vec3, h: f64) -> f64 {
+    pub fn penetration_at(&self, v: &Vec3, h: f64) -> f64 {
         self.penetration - h * self.n.dot(v)
     }
 
-    /// Whether it still holds the rock at the stage's end.
+    /// Whether it is closed at the stage's end.
     #[inline]
     pub fn is_closed(&self, v: &Vec3, h: f64) -> bool {
-        self.normal_force > 0.0 || self.pen_at(v, h) > 0.0
+        self.normal_force > 0.0 || self.penetration_at(v, h) > 0.0
     }
 
-    /// Writes the contact into its memory, with its stretches and whether it still holds the rock.
+    /// Writes the contact into its history, with its stretches and whether it is closed.
     pub(crate) fn remember(
         &self,
         (shear, roll): (Vec3, Vec3),
@@ -192,7 +195,7 @@ impl StageContact {
     }
 }
 
-/// Speed of approach up to which a blow does not rebound in the rigid limit (m/s).
+/// Approach speed below which an impact does not rebound in the rigid limit (m/s).
 pub(crate) fn capture_m_s(law: &Law) -> f64 {
     law.rigid_capture_m_s()
 }

@@ -1,4 +1,5 @@
-//! A contact with the mesh among others of a stage: solved anew while they hold, asked at a motion, and made linear for Newton jumps.
+//! A contact with the mesh among others of a stage: its Gauss–Seidel update, its forces at a given
+//! motion, and its linearisation for Newton steps.
 //!
 //! ```text
 //! normal:  F = a − b s,  s = n·v                                  (open contacts are left out)
@@ -7,7 +8,7 @@
 //! on the rock:  Σ (n F − q),  Σ (R n × q − M),                    u = T x with T = [1 − n nᵀ, R n×]
 //! ```
 //!
-//! The same for a rock alone ([`multi_contact`](super::multi_contact)) and for the rocks of an island.
+//! Used for a rock alone ([`multi_contact`](super::multi_contact)) and for the rocks of an island.
 
 use super::body::{Body, Twist};
 use super::law::StageContact;
@@ -15,27 +16,29 @@ use crate::contact::submatrix::Mat6;
 use crate::ground::NormalLine;
 use nalgebra::Matrix3;
 
-/// What acts on a rock over a stage, linear in velocity and spin: load less stiffness times both.
+/// Forces on a rock over a stage, linear in velocity and spin: load minus stiffness times both.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct LinearForces {
-    /// How force (first row) and moment fall with velocity (first column) and spin (N s/m; N s; N m s).
+    /// Decrease of force (first row) and moment with velocity (first column) and spin (N s/m; N s;
+    /// N m s).
     pub(super) stiffness: [[Matrix3<f64>; 2]; 2],
-    /// Force and moment without them (N, N m).
+    /// Force and moment at zero velocity and spin (N, N m).
     pub(super) load: Twist,
 }
 
 impl StageContact {
-    /// Its normal force as a line, in the mode that it is in.
+    /// Normal force linearised in its present mode.
     pub(crate) fn line(&self, body: &Body, h: f64) -> NormalLine {
         self.normal.line((self.penetration, self.normal_force), body.mass, h)
     }
 
-    /// Solves it anew while all others hold: `now` is the motion with everybody's forces. Returns the largest change of a force, squared (N²),
-    /// of the rolling moment over the radius.
-    pub(super) fn solve_anew(&mut self, body: &Body, now: &mut Twist, h: f64) -> f64 {
+    /// One Gauss–Seidel update: solves the contact for fixed forces of all others. `now` is the
+    /// motion under all forces. Returns the square of the largest change of a force (N²), the
+    /// rolling moment taken over the radius.
+    pub(super) fn relax(&mut self, body: &Body, now: &mut Twist, h: f64) -> f64 {
         let before = (self.normal_force, self.shear_force, self.rolling_moment);
         let (dv, dw) = self.effect(body, h);
-        // without this contact's own forces: what the others do to the rock
+        // the motion without this contact's own forces
         let (vf, wf) = (now.0 - dv, now.1 - dw);
         self.solve(body, &vf, &wf, h);
         let (dv, dw) = self.effect(body, h);
@@ -46,46 +49,53 @@ impl StageContact {
             .max((self.rolling_moment - before.2).norm_squared() / body.radius.powi(2))
     }
 
-    /// Sets its forces to what its law gives at a motion and a change of it: what the change adds is known beyond the rounding
-    /// of the motion.
+    /// Sets the forces to those of the law at a motion plus a change of it. The change stands apart
+    /// because it is known beyond the rounding of the motion.
     ///
-    /// After a jump: the linear system may have left a cone or let a spring pull; the law itself may
-    /// not.
-    pub(super) fn act_at(&mut self, body: &Body, [(v, w), (dv, dw)]: [&Twist; 2], h: f64) {
+    /// After a Newton step the linear system may have left a friction cone or let a spring pull;
+    /// the law does not.
+    pub(super) fn set_forces_at(&mut self, body: &Body, [(v, w), (dv, dw)]: [&Twist; 2], h: f64) {
         let NormalLine { a, b } = self.line(body, h);
         self.normal_force = (a - b * self.n.dot(v) - b * self.n.dot(dv)).max(0.0);
-        let (stick, wound) = self.trials(body, v, w, h);
-        let stick = stick + body.slip(&self.n, dv, dw) * self.law.shear.stage_stiffness(h);
-        let wound = wound + dw * self.law.rolling.stage_stiffness(h);
-        self.shear_force = self.law.shear.capped(stick, self.normal_force);
-        self.rolling_moment = self.law.rolling.capped(wound, self.normal_force);
+        let (trial_force, trial_moment) = self.trial_forces(body, v, w, h);
+        let trial_force =
+            trial_force + body.slip(&self.n, dv, dw) * self.law.shear.stage_stiffness(h);
+        let trial_moment = trial_moment + dw * self.law.rolling.stage_stiffness(h);
+        self.shear_force = self.law.shear.capped(trial_force, self.normal_force);
+        self.rolling_moment = self.law.rolling.capped(trial_moment, self.normal_force);
     }
 
-    /// Its forces, linear around a motion, in its present modes.
-    pub(super) fn linear(&self, body: &Body, motion: &Twist, h: f64) -> LinearForces {
-        self.linear_and_here(body, motion, h).0
+    /// Forces linearised around a motion in the present modes.
+    pub(super) fn linearised(&self, body: &Body, motion: &Twist, h: f64) -> LinearForces {
+        self.linearised_at(body, motion, h).0
     }
 
-    /// The same in changes of the motion: its load is what it does at the motion itself.
-    pub(super) fn linear_in_changes(&self, body: &Body, motion: &Twist, h: f64) -> LinearForces {
-        let (forces, here) = self.linear_and_here(body, motion, h);
-        LinearForces { load: here, ..forces }
+    /// The same in terms of changes of the motion: the load is then the force at the motion itself.
+    pub(super) fn linearised_in_changes(
+        &self,
+        body: &Body,
+        motion: &Twist,
+        h: f64,
+    ) -> LinearForces {
+        let (forces, at_motion) = self.linearised_at(body, motion, h);
+        LinearForces { load: at_motion, ..forces }
     }
 
-    /// Its forces, linear around the motion `(v, w)`, and force and moment there.
-    fn linear_and_here(&self, body: &Body, (v, w): &Twist, h: f64) -> (LinearForces, Twist) {
+    /// Forces linearised around the motion `(v, w)`, and force and moment there.
+    fn linearised_at(&self, body: &Body, (v, w): &Twist, h: f64) -> (LinearForces, Twist) {
         let normal = self.line(body, h);
         let (law, n, r) = (&self.law, self.n, body.radius);
-        // Slip u = T x with T = [Q, R n×]; shear acts back through the same T.
+        // slip u = T x with T = [Q, R n×]; shear acts back through the same T
         let q = Matrix3::identity() - n * n.transpose();
         let spin = n.cross_matrix() * r;
-        let (stick, wound) = self.trials(body, v, w, h);
+        let (trial_force, trial_moment) = self.trial_forces(body, v, w, h);
         let normal_force = normal.at(n.dot(v));
-        // The sweeps know the mode. What the law gives at `(v, w)` does not: a newton of another contact that has changed
-        // since moves a stiff spring far beyond its cap.
+        // The modes are those of the sweeps and not those of the law at `(v, w)`: a change of a
+        // newton in another contact since then moves a stiff spring far beyond its cap.
         let shear = law.shear.stage_slider(h, (&self.shear_force, self.normal_force));
         let roll = law.rolling.stage_slider(h, (&self.rolling_moment, self.normal_force));
-        let (shear, roll) = (shear.at(stick, normal_force), roll.at(wound, normal_force));
+        let (shear, roll) =
+            (shear.at(trial_force, normal_force), roll.at(trial_moment, normal_force));
         let slip = body.slip(&n, v, w);
         // q ≈ q0 + J (u − u0) − e μ b (s − s0), and the same for the moment.
         let drag0 = shear.force - shear.jacobian * slip + shear.along * (normal.b * n.dot(v));
@@ -96,16 +106,16 @@ impl StageContact {
         let wv = spin.transpose() * (shear.jacobian * q - coupling)
             - roll.along * n.transpose() * normal.b;
         let ww = spin.transpose() * js + roll.jacobian;
-        // the very numbers that `act_at` begins with
+        // the same expressions as in `set_forces_at`
         let push = n * (normal.a - normal.b * n.dot(v));
-        let here = (push - shear.force, -(spin.transpose() * shear.force + roll.force));
+        let at_motion = (push - shear.force, -(spin.transpose() * shear.force + roll.force));
         let load = (n * normal.a - drag0, -(spin.transpose() * drag0 + moment0));
-        (LinearForces { stiffness: [[vv, vw], [wv, ww]], load }, here)
+        (LinearForces { stiffness: [[vv, vw], [wv, ww]], load }, at_motion)
     }
 }
 
-/// Free motion and all contact forces of a rock together.
-pub(super) fn driven(body: &Body, contacts: &[StageContact], free: Twist, h: f64) -> Twist {
+/// Motion under inertia, weight and all contact forces of a rock.
+pub(super) fn motion_under(body: &Body, contacts: &[StageContact], free: Twist, h: f64) -> Twist {
     contacts.iter().fold(free, |(v, w), contact| {
         let (dv, dw) = contact.effect(body, h);
         (v + dv, w + dw)
@@ -113,18 +123,18 @@ pub(super) fn driven(body: &Body, contacts: &[StageContact], free: Twist, h: f64
 }
 
 impl LinearForces {
-    /// What inertia asks for: without contacts it makes the motion the free one.
+    /// The terms of inertia: without contacts the solution is the free motion.
     pub(super) fn of_inertia(body: &Body, free: &Twist, h: f64) -> Self {
         let [m, i] = [body.mass / h, body.inertia / h];
         let diagonal = |inertia: f64| Matrix3::identity() * inertia;
         Self {
             stiffness: [[diagonal(m), Matrix3::zeros()], [Matrix3::zeros(), diagonal(i)]],
-            // by the very numbers of the diagonal: what is free comes out as it went in
+            // with the same numbers as the diagonal: a free motion comes out without rounding
             load: (free.0 * m, free.1 * i),
         }
     }
 
-    /// Adds it to the block of its rock and to the six loads of that.
+    /// Adds it to the 6×6 block of its rock and to its six loads.
     pub(super) fn add_to(&self, k: &mut Mat6, load: &mut [f64]) {
         for (i, blocks) in self.stiffness.iter().enumerate() {
             for (j, block) in blocks.iter().enumerate() {

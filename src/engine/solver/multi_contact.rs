@@ -1,9 +1,10 @@
-//! Several contacts of one rock at once: sweeps, helped along by Newton jumps in the six unknowns.
+//! Several contacts of one rock at once: Gauss–Seidel sweeps, accelerated by Newton steps in the
+//! six unknowns.
 //!
-//! Sweeping contact by contact settles slowly where two stiff contacts nearly oppose or nearly repeat each other.
-//! With the modes (open, closed, sticking, sliding) that the sweeps have found, the stage is one linear system for
-//! velocity and spin, the paper's 6×6 system of Eq. (4) for one rock; solving it jumps to where the sweeps were
-//! heading. The sweeps alone decide whether the result holds.
+//! Sweeps converge slowly where two stiff contacts nearly oppose or nearly repeat each other. With
+//! the modes (open, closed, sticking, sliding) found by the sweeps, the stage is one linear system
+//! for velocity and spin, the paper's 6×6 system of Eq. (4) for one rock; its solution is the limit
+//! of the sweeps in these modes. The sweeps alone decide whether the result is accepted.
 //!
 //! ```text
 //! sweep:  contact by contact, forces of the others held: closed form of `StageContact::solve`
@@ -11,28 +12,30 @@
 //! again:  (      the same matrix      ) δ = M (x_free − x)/h + Σ N F(x) − Σ Sᵀ q(x)
 //! ```
 //!
-//! A velocity is rounded, and times a large stiffness that is a force: at 1e14 N/m a jump leaves forces that are known to
-//! 1e-7 of their size and better, and sweeps that creep never settle. Jumps after the first therefore ask for the change `δ` of the
-//! motion, from which forces follow beyond the rounding of the motion itself.
+//! The rounding of a velocity times a large stiffness is an error of force: at 1e14 N/m a Newton
+//! step leaves forces with relative errors up to 1e-7, and slow sweeps never converge. Newton steps
+//! after the first therefore solve for the change `δ` of the motion, from which forces follow
+//! beyond the rounding of the motion itself.
 //!
-//! Cost: a sweep is linear in the contacts, a jump one LU of 6×6 whatever their number.
+//! Cost: a sweep is linear in the contacts, a Newton step one LU of 6×6 whatever their number.
 
 use super::body::{Body, STILL, Twist};
 use super::law::StageContact;
-use super::linear_forces::{LinearForces, driven};
+use super::linear_forces::{LinearForces, motion_under};
 use crate::contact::submatrix::{Mat6, Vec6};
 use crate::rock::Vec3;
 
-/// Sweeps between two jumps.
+/// Sweeps between two Newton steps.
 const SWEEPS: u32 = 4;
-/// Jumps after which a stage is given up; the step is then halved.
-const JUMPS: u32 = 12;
-/// Change of a force, relative to the largest, below which the sweeps have settled (–).
-const SETTLED: f64 = 1e-9;
+/// Rounds of sweeps after which a stage is given up; the step is then shortened.
+const ROUNDS: u32 = 12;
+/// Change of a force, relative to the largest, at which the sweeps have converged (–).
+const CONVERGED: f64 = 1e-9;
 
 /// Solves all contacts of one stage from `free`, velocity and spin without contact forces (gravity included).
 ///
-/// Returns velocity and spin at the stage's end, or `None` if the sweeps do not settle; `sweeps` counts.
+/// Returns velocity and spin at the stage's end, or `None` without convergence; `sweeps` is a
+/// counter.
 pub(super) fn solve(
     body: &Body,
     contacts: &mut [StageContact],
@@ -45,14 +48,14 @@ pub(super) fn solve(
         [contact] => {
             *sweeps += 1;
             contact.solve(body, &free.0, &free.1, h);
-            Some(driven(body, contacts, free, h))
+            Some(motion_under(body, contacts, free, h))
         }
-        several => sweep_and_jump(body, several, free, h, sweeps),
+        several => sweeps_and_newton_steps(body, several, free, h, sweeps),
     }
 }
 
-/// Nonlinear Gauss–Seidel first, because it finds the modes; Newton in these modes, because it finds the forces.
-fn sweep_and_jump(
+/// Nonlinear Gauss–Seidel finds the modes, Newton's method the forces in these modes.
+fn sweeps_and_newton_steps(
     body: &Body,
     contacts: &mut [StageContact],
     free: Twist,
@@ -60,67 +63,68 @@ fn sweep_and_jump(
     sweeps: &mut u64,
 ) -> Option<Twist> {
     for contact in contacts.iter_mut() {
-        // Without a guess for friction a guess for the push alone would only mislead.
+        // a guess for the normal force without one for friction would mislead
         (contact.normal_force, contact.shear_force, contact.rolling_moment) =
             (0.0, Vec3::zeros(), Vec3::zeros());
     }
     let mut now = free;
-    for round in 0..JUMPS {
-        let mut calm = 0;
+    for round in 0..ROUNDS {
+        let mut converged_count = 0;
         for _ in 0..SWEEPS {
             *sweeps += 1;
-            if sweep(body, contacts, (&mut now, &mut calm), h) {
+            if sweep(body, contacts, (&mut now, &mut converged_count), h) {
                 return Some(now);
             }
         }
-        // a singular system is no harm: the sweeps simply go on
-        let jumped = if round == 0 {
-            let motion = solved(body, contacts, (&free, h), |one| one.linear(body, &now, h));
+        // after a singular system the sweeps go on
+        let solution = if round == 0 {
+            let motion = solved(body, contacts, (&free, h), |one| one.linearised(body, &now, h));
             motion.map(|motion| (motion, STILL))
         } else {
-            let missing = (free.0 - now.0, free.1 - now.1);
-            let change = |one: &StageContact| one.linear_in_changes(body, &now, h);
-            solved(body, contacts, (&missing, h), change).map(|change| (now, change))
+            let free_change = (free.0 - now.0, free.1 - now.1);
+            let change = |one: &StageContact| one.linearised_in_changes(body, &now, h);
+            solved(body, contacts, (&free_change, h), change).map(|change| (now, change))
         };
-        if let Some((motion, change)) = jumped {
+        if let Some((motion, change)) = solution {
             for contact in contacts.iter_mut() {
-                contact.act_at(body, [&motion, &change], h);
+                contact.set_forces_at(body, [&motion, &change], h);
             }
-            now = driven(body, contacts, free, h);
+            now = motion_under(body, contacts, free, h);
         }
     }
     None
 }
 
-/// One pass over the contacts; whether all agree. `calm` counts, across sweeps, those that were asked since anything they answer to has
-/// changed: as soon as that is each of them, all agree.
+/// One sweep; whether all contacts have converged. `converged_count` counts, across sweeps, the contacts
+/// solved since the last change that matters: as soon as that is all of them, they agree.
 fn sweep(
     body: &Body,
     contacts: &mut [StageContact],
-    (now, calm): (&mut Twist, &mut usize),
+    (now, converged_count): (&mut Twist, &mut usize),
     h: f64,
 ) -> bool {
-    // changes are measured by the largest force, and by a thousandth of the weight where there is
-    // hardly any
+    // changes are relative to the largest force, or to a thousandth of the weight where forces are
+    // small
     let least = 1e-3 * body.mass * body.gravity.norm();
     let scale = contacts.iter().map(|contact| contact.normal_force).fold(least, f64::max);
     let count = contacts.len();
     for contact in contacts.iter_mut() {
-        let change2 = contact.solve_anew(body, now, h);
-        *calm = if change2 <= (SETTLED * scale.max(contact.normal_force)).powi(2) {
-            *calm + 1
+        let change2 = contact.relax(body, now, h);
+        *converged_count = if change2 <= (CONVERGED * scale.max(contact.normal_force)).powi(2) {
+            *converged_count + 1
         } else {
             1
         };
-        if *calm >= count {
+        if *converged_count >= count {
             return true;
         }
     }
     false
 }
 
-/// What solves the linear system of inertia, which would move by `free` without contacts, and of their linear `forces`.
-/// Friction grows with the normal force, which makes the matrix unsymmetric: LU, not Cholesky.
+/// Solves the linear system of inertia, with `free` as the motion without contacts, and of the
+/// linearised `forces`. Friction grows with the normal force, which makes the matrix unsymmetric:
+/// LU, not Cholesky.
 fn solved(
     body: &Body,
     contacts: &[StageContact],

@@ -1,8 +1,9 @@
-//! How far a rock that rolls or slides on one plane may go in one step.
+//! Longest step of a rock that rolls or slides on one plane.
 //!
-//! On a plane nothing changes but the motion: a step may be as long as its error allows, where it is certain that nothing else is
-//! touched on the way. That is asked twice: of the straight way before a step is tried, which decides how long it may be, and of the way
-//! that it took. Everywhere else a step goes no further than a share of the radius, so that it cannot jump over a feature.
+//! On a plane the geometry is constant: a step may be as long as its error allows, if certainly
+//! nothing else is touched on the way. That is checked twice: for the straight path before a step
+//! is tried, which limits its length, and for the path that it took. Elsewhere the travel in one
+//! step is limited to a share of the radius, so that no feature is missed.
 
 use super::body::Body;
 use super::contact_state::{AHEAD, ContactEnvironment, ContactState, MARGIN};
@@ -11,17 +12,17 @@ use crate::contact::neighbours::{Neighbours, PressedPath};
 use crate::flight::min_travel_time_s;
 use crate::rock::Vec3;
 
-/// Longest way on one plane in one step (–, relative to R): from [`FIRST_REACH`] on it doubles where the plane is clear, and is halved where it
-/// is not.
+/// Longest travel on one plane in one step (–, relative to R). From [`FIRST_REACH`] on it doubles
+/// where the plane is clear, and is halved where it is not.
 const LONGEST: f64 = 2.0;
-/// A way is not worth asking for where it is less than so many times that of steps elsewhere (–) …
+/// A longer travel is checked only if it is this many times that of steps elsewhere (–) …
 const WORTH: f64 = 1.5;
-/// … and not again so near to where none was clear (–, relative to R).
-const AGAIN: f64 = 0.3;
-/// How far off the straight way the path is taken to be before it is known (–, relative to its length).
-const OFF: f64 = 0.05;
+/// … and not again within this distance of where none was clear (–, relative to R).
+const RETRY: f64 = 0.3;
+/// Assumed deviation of the path from the straight line (–, relative to its length).
+const PATH_OFFSET: f64 = 0.05;
 
-/// One step on a plane.
+/// A step on a plane.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PlaneStep {
     /// The plane's face.
@@ -33,9 +34,9 @@ pub(super) struct PlaneStep {
 }
 
 impl PlaneStep {
-    /// Whether a rock that shifts by `shift` (m) within `dt` (s), while its velocity changes by `change` (m/s), has touched
-    /// nothing but the plane, and stands on the same ground at the end.
-    pub(super) fn is_certain(
+    /// Whether a rock with the displacement `shift` (m) within `dt` (s), while its velocity changes
+    /// by `change` (m/s), has touched nothing but the plane, and is on the same ground at the end.
+    pub(super) fn touches_plane_only(
         &self,
         (world, near): (&ContactEnvironment, &Neighbours),
         (shift, change): (&Vec3, &Vec3),
@@ -57,18 +58,19 @@ impl PlaneStep {
 }
 
 impl ContactState {
-    /// Longest step in which the rock cannot jump over a feature (s): its centre stays where features are known, past one plane, or goes
-    /// no further than `travel` (–, relative to R), among several.
+    /// Longest step in which the rock misses no feature (s). On one plane its centre stays where
+    /// features are known; among several its travel is at most `travel` (–, relative to R).
     pub fn longest_step(&mut self, world: &ContactEnvironment, travel: f64) -> f64 {
         let (c, way) = (self.c, travel * world.body.radius);
-        self.know(world, &c);
+        self.update_neighbours(world, &c);
         let is_plane = self.near.plane().is_some();
         let room = if is_plane { self.near.margin_left_m(&self.c).max(way) } else { way };
         longest_step(&world.body, self.v.norm(), room)
     }
 
-    /// Sees to it that the features on a straight `way` (m) from where the rock is are known, and a little beside it.
-    pub(super) fn see_along(&mut self, world: &ContactEnvironment, way: &Vec3) {
+    /// Makes sure that the features along the straight displacement `way` (m), and a little beside
+    /// it, are collected.
+    pub(super) fn collect_along(&mut self, world: &ContactEnvironment, way: &Vec3) {
         if self.near.covers(&self.c) && self.near.covers(&(self.c + way)) {
             return;
         }
@@ -78,8 +80,8 @@ impl ContactState {
         self.collect_within(world, &centre, ahead + (MARGIN - AHEAD) * r);
     }
 
-    /// Longest step on the plane of `face` (s), about `wished_s` at most where it is longer than that of a way of `least` (m), which the rock may
-    /// go wherever it is.
+    /// Longest step on the plane of `face` (s), about `wished_s` at most where it exceeds that of
+    /// the travel `least` (m), which is allowed everywhere.
     pub(super) fn longest_on_plane_s(
         &mut self,
         world: &ContactEnvironment,
@@ -88,26 +90,28 @@ impl ContactState {
     ) -> f64 {
         let (body, speed) = (&world.body, self.v.norm());
         let wished_m = (speed + 0.5 * body.gravity.norm() * wished_s) * wished_s;
-        longest_step(body, speed, self.way_on_plane_m(world, face, (wished_m, least)))
+        longest_step(body, speed, self.clear_way_m(world, face, (wished_m, least)))
     }
 
-    /// How far the rock may go on the plane of `face` in one step (m), `wished` at most; `least` is what it may go wherever it is.
-    fn way_on_plane_m(
+    /// Longest travel on the plane of `face` in one step (m), `wished` at most; `least` is allowed
+    /// everywhere.
+    fn clear_way_m(
         &mut self,
         world: &ContactEnvironment,
         face: u32,
         (wished_m, least): (f64, f64),
     ) -> f64 {
         let (radius, speed) = (world.body.radius, self.v.norm());
-        // what it strikes next decides where the step ends
-        let to_facet = self.facets.way_left_m(&self.c);
+        // the next facet limits the step
+        let to_facet = self.facets.distance_to_facet_m(&self.c);
         let most = wished_m.min(self.plane.reach * radius).min(to_facet);
-        let is_again = (self.c - self.plane.crowded_at).norm_squared() < (AGAIN * radius).powi(2);
-        if most < WORTH * least || speed == 0.0 || is_again || self.plane.ploughs {
+        let is_too_soon =
+            (self.c - self.plane.blocked_at).norm_squared() < (RETRY * radius).powi(2);
+        if most < WORTH * least || speed == 0.0 || is_too_soon || self.plane.ploughs {
             return least;
         }
         let direction = self.v / speed;
-        self.see_along(world, &(direction * most));
+        self.collect_along(world, &(direction * most));
         let most = most.min(self.near.margin_ahead_m(&self.c, &direction));
         if self.is_clear(face, &(direction * most)) {
             self.plane.reach = (2.0 * most / radius).clamp(FIRST_REACH, LONGEST);
@@ -115,24 +119,27 @@ impl ContactState {
         }
         self.plane.reach *= 0.5;
         if self.plane.reach * radius < WORTH * least {
-            (self.plane.reach, self.plane.crowded_at) = (FIRST_REACH, self.c);
+            (self.plane.reach, self.plane.blocked_at) = (FIRST_REACH, self.c);
         }
         least
     }
 
-    /// Whether nothing but the plane of `face` is touched on a straight way (m) from where the rock is.
+    /// Whether nothing but the plane of `face` is touched on a straight displacement (m).
     fn is_clear(&self, face: u32, way: &Vec3) -> bool {
         if self.near.plane() == Some(face) {
             return true;
         }
-        let (start, into, deviation_m) = (self.c, Vec3::zeros(), OFF * way.norm());
-        let reach_m = way.norm() + deviation_m;
-        self.near
-            .meets_only_plane(face, &PressedPath { start, along: *way, into, deviation_m, reach_m })
+        let (start, into, off_m) = (self.c, Vec3::zeros(), PATH_OFFSET * way.norm());
+        let way_m = way.norm() + off_m;
+        self.near.meets_only_plane(
+            face,
+            &PressedPath { start, along: *way, into, deviation_m: off_m, reach_m: way_m },
+        )
     }
 }
 
-/// Longest step in which a rock at `speed` goes no further than `room` (s); its weight may speed it up on the way.
+/// Longest step in which a rock at `speed` travels no further than `room` (s), with acceleration by
+/// its weight.
 pub(crate) fn longest_step(body: &Body, speed: f64, room: f64) -> f64 {
     min_travel_time_s(room, speed, body.gravity.norm())
 }

@@ -1,15 +1,15 @@
-//! What is left of an impact on one plane, at once.
+//! The rest of an impact on one plane, solved as a whole.
 //!
-//! On a plane the normal motion of an impact is a closed form, and slip and spin follow under its
-//! known force (`impact::plane`): no contact search, no stages. What it needs is the certificate
-//! that nothing but this plane is touched on the way: the way is enclosed in a rectangle along and
-//! into the plane, widened by what it may bulge, and all features collected around are held against
-//! it. That is nearly always so from the touch on; an impact that began at a fold or an edge is
-//! taken up where it has left it.
+//! On a plane the normal motion of an impact has a closed form, and slip and spin follow under its
+//! known force (`impact::plane`): no contact search, no stages. It requires a certificate that
+//! nothing but this plane is touched on the way: the path is enclosed in a rectangle along and into
+//! the plane, widened by its possible curvature, and tested against all features around. That
+//! nearly always holds from the first touch on; an impact that began at a fold or an edge is taken
+//! over where it has left it.
 
 use super::contact_state::{ContactEnvironment, ContactState};
 use super::impact::{NormalPassage, Plane, PressedIn, Rebound};
-use super::law::{Action, ContactPlace};
+use super::law::{ContactDeformation, ContactForces};
 use super::plane_kernel::is_on_face;
 use super::step_control::Advance;
 use crate::contact::TOUCH;
@@ -17,20 +17,21 @@ use crate::contact::history::ContactHistory;
 use crate::contact::neighbours::PressedPath;
 use crate::rock::Vec3;
 
-/// Share of its slip that an impact is taken to stop, at most, before that is known (–): one that loses nothing turns it round.
-const STOPS: f64 = 0.5;
+/// Assumed upper bound of the share of slip that an impact stops, before that is known (–): one
+/// without loss reverses it.
+const SLIP_STOPPED: f64 = 0.5;
 
-/// Least part of an impact that is worth following by itself (rad of the contact).
+/// Shortest part of an impact that is solved as a whole (rad of the contact).
 const LEAST_RAD: f64 = 0.5;
 
 impl ContactState {
-    /// What is left of an impact on one plane, if it is one: nothing else can be touched as far as the rock gets, and the rock comes
-    /// out again within `h_max` (s). Where something else is touched later, the part before: a half, or a quarter, of the time.
-    /// `tolerance` as in [`Self::step_impact`].
+    /// Solves the rest of an impact on one plane, if nothing else can be touched as far as the rock
+    /// gets and the rock comes out within `h_max` (s). Where something else is touched later, only
+    /// the first half or quarter of it, and so on. `tolerance` as in [`Self::step_impact`].
     ///
-    /// Returns false and changes nothing where it is none: then the impact is followed step by
-    /// step.
-    pub(crate) fn bounce(
+    /// Returns false and changes nothing where that is impossible: then the impact is resolved step
+    /// by step.
+    pub(crate) fn finish_plane_impact(
         &mut self,
         world: &ContactEnvironment,
         tolerance: f64,
@@ -45,9 +46,9 @@ impl ContactState {
         loop {
             if passage.time_s() <= h_max
                 && let Some(rebound) =
-                    self.pass_alone(world, (&plane, &passage), (&history, &pressed))
+                    self.passage_on_plane(world, (&plane, &passage), (&history, &pressed))
             {
-                self.accept_bounce(world, &rebound, done);
+                self.accept_rebound(world, &rebound, done);
                 return true;
             }
             share *= 0.5;
@@ -58,19 +59,20 @@ impl ContactState {
         }
     }
 
-    /// The one contact of a rock that rebounds from a face, and how far it is in; `None` if there is another, or none. A stem that may
-    /// break is stepped, so that it can break on time.
+    /// The only contact of a rock that rebounds from a face, and its penetration; `None` if there
+    /// is another, or none. An impact on a stem that may break is stepped, so that it can break at
+    /// its time.
     ///
-    /// Where it is tells how far it is in: touches may have been looked for elsewhere.
+    /// The penetration follows from the position: contact points may have been found elsewhere.
     fn pressed_in_plane(&self, world: &ContactEnvironment) -> Option<(ContactHistory, PressedIn)> {
         if !is_on_face(world, self) || self.may_yield {
             return None;
         }
-        let (history, depth_m) = (self.histories[0], self.sunk(world));
+        let (history, depth_m) = (self.histories[0], self.plane_penetration_m(world));
         let is_sunk = depth_m > 2.0 * TOUCH * world.body.radius;
         match (history.closed, is_sunk) {
             _ if history.captured => None,
-            // it has just begun: the closed form is that from penetration 0
+            // just begun: the closed form starts at penetration 0
             (false, false) => Some((history, PressedIn::NOT)),
             (true, true) if history.announced => {
                 let pressed = PressedIn { depth_m, shear_m: history.shear, roll_rad: history.roll };
@@ -80,26 +82,29 @@ impl ContactState {
         }
     }
 
-    /// Where and how the rock is after a `passage` on which it touches nothing but the plane, if that is so.
-    fn pass_alone(
+    /// Motion after a `passage` on which the rock touches nothing but the plane, if that holds.
+    fn passage_on_plane(
         &mut self,
         world: &ContactEnvironment,
         (plane, passage): (&Plane, &NormalPassage),
         (history, pressed): (&ContactHistory, &PressedIn),
     ) -> Option<Rebound> {
         let (n, face) = (&history.n, history.feature.id);
-        // the way is enclosed between the deepest place and the surface, from which the rock has come
+        // the path is enclosed between the deepest position and the surface, from which the rock
+        // has come
         let surface = self.c + n * pressed.depth_m;
         let encloses = |shift: &Vec3, change_m_s: f64| {
             let (time_s, deepest_m) = (passage.time_s(), passage.deepest_m());
             PressedPath::of(n, surface, (shift, change_m_s), time_s, deepest_m)
         };
         let slip_m_s = world.body.slip(n, &self.v, &self.w).norm();
-        let rubbed_m_s = world.springs_of(history).limits().caps(passage.blow_m_s()).0;
-        // springs at rest change the velocity one way; stretched ones may turn it round, by all that friction bears
+        let friction_m_s = world.springs_of(history).limits().caps(passage.blow_m_s()).0;
+        // springs at rest change the velocity in one direction; stretched ones may reverse it, up
+        // to the limit of friction
         let is_whole = pressed.depth_m == 0.0 && passage.leaves();
-        let most_m_s = rubbed_m_s + world.body.gravity.norm() * passage.time_s();
-        let likely_m_s = if is_whole { rubbed_m_s.min(STOPS * slip_m_s) } else { most_m_s };
+        let most_m_s = friction_m_s + world.body.gravity.norm() * passage.time_s();
+        let likely_m_s =
+            if is_whole { friction_m_s.min(SLIP_STOPPED * slip_m_s) } else { most_m_s };
         let straight = encloses(&(self.v * passage.time_s()), likely_m_s);
         if straight.reach_m + pressed.depth_m > self.near.margin_left_m(&self.c) {
             let c = self.c;
@@ -114,15 +119,20 @@ impl ContactState {
         self.is_alone_on(face, &encloses(&rebound.shift_m, change_m_s)).then_some(rebound)
     }
 
-    /// Whether nothing but the plane of `face` is touched on a `path`, as far as features are known.
+    /// Whether nothing but the plane of `face` is touched on a `path`, within the known features.
     fn is_alone_on(&self, face: u32, path: &PressedPath) -> bool {
         let beyond = (path.start - self.c).norm();
         path.reach_m + beyond <= self.near.margin_left_m(&self.c)
             && self.near.meets_only_plane(face, path)
     }
 
-    /// Takes over the end of a passage.
-    fn accept_bounce(&mut self, world: &ContactEnvironment, rebound: &Rebound, done: &mut Advance) {
+    /// Accepts the end of a passage.
+    fn accept_rebound(
+        &mut self,
+        world: &ContactEnvironment,
+        rebound: &Rebound,
+        done: &mut Advance,
+    ) {
         self.c += rebound.shift_m;
         (self.v, self.w) = (rebound.velocity_m_s, rebound.spin_rad_s);
         self.fresh = false;
@@ -138,18 +148,19 @@ impl ContactState {
             return;
         };
         let law = world.springs_of(&self.histories[0]);
-        self.impact.pass(law.omega_rad_s() * rebound.time_s);
-        if self.impact.left <= 0.0 {
+        self.impact.elapse(law.omega_rad_s() * rebound.time_s);
+        if self.impact.left_rad <= 0.0 {
             self.balance(world);
         }
         let history = &mut self.histories[0];
-        let at = ContactPlace {
+        let at = ContactDeformation {
             n: history.n,
             penetration: pressed.depth_m,
             shear: pressed.shear_m,
             roll: pressed.roll_rad,
         };
-        let action = Action::of(&world.body, &law, &law.normal(false), &at, (&self.v, &self.w));
+        let action =
+            ContactForces::of(&world.body, &law, &law.normal(false), &at, (&self.v, &self.w));
         (history.shear, history.roll) = (at.shear, at.roll);
         history.normal_force = action.normal[0];
         history.slides = law.shear.slides2(action.shear.trial_force2, action.normal[0]);

@@ -1,14 +1,17 @@
 //! A step of one contact on one plane, in the contact's own frame.
 //!
-//! While only one face touches, geometry is a plane and the normal a constant: the stages of `stage.rs` are the same sums
-//! over fourteen numbers, and there is nothing to iterate. Where each stage ends it is asked whether that face is still
-//! alone; if the features around the rock certify it (`Neighbours::plane`), not even that. Most
+//! While only one face touches, the geometry is a plane and the normal constant: the stages of
+//! `stage.rs` become the same sums over fourteen numbers, without iteration over the geometry.
+//! After each stage it is checked that the face is still
+//! the only one touched; if the features around the rock certify that (`Neighbours::plane`), no
+//! check is needed. Most
 //! impacts are of this kind.
 //!
-//! The steps are those of `stage.rs`, but for rounding; only their cost differs.
+//! The steps agree with those of `stage.rs` to rounding, at a lower cost.
 //!
 //! Frame: two tangents `s`, `t` and the normal `n` (from the mesh to the centre), fixed as long as
-//! the face is. State: way of the centre since the last look (3), velocity (3), spin (3), shear
+//! the face is. State: displacement of the centre since the last contact search (3), velocity (3),
+//! spin (3), shear
 //! stretch (2), rolling stretch (3).
 
 mod trial;
@@ -26,24 +29,25 @@ use crate::ground::{Law, NormalElement};
 use crate::rock::Vec3;
 use trial::PlaneTrial;
 
-/// Whether the rock's one contact is the face that its one memory belongs to.
+/// Whether the only contact of the rock is with the face of its only history.
 pub(super) fn is_on_face(world: &ContactEnvironment, rock: &ContactState) -> bool {
     let [history] = &rock.histories[..] else { return false };
     if history.feature.kind != FeatureKind::Face {
         return false;
     }
     let face = world.terrain.face(history.feature.id);
-    // more than half a radius off the plane, and with no memory from elsewhere, there is no doubt on which side the rock is
+    // more than half a radius off the plane, and with the normal of the face, the side of the rock
+    // is unambiguous
     history.n.dot(&(rock.c - face.a)) > 0.5 * world.body.radius
         && (history.n == face.n || history.n == -face.n)
 }
 
 impl ContactState {
-    /// One accepted step on a plane, or all of an impact; `None` if the rock does not stay on one.
+    /// Accepted steps on a plane, all of an impact; `None` if the rock does not stay on one.
     ///
-    /// `h` is the step to try, and becomes the next; `h_max` (s) the longest asked for. An impact
-    /// on a plane is stepped to its end in one call: looking around, turning frames and copying
-    /// memories are paid once.
+    /// `h` is the step to try and becomes the next one; `h_max` (s) is the longest. An impact on a
+    /// plane is stepped to its end in one call: contact search, change of frame and copies of
+    /// histories are needed once.
     pub(crate) fn step_on_plane(
         &mut self,
         world: &ContactEnvironment,
@@ -54,18 +58,19 @@ impl ContactState {
         if !is_on_face(world, self) {
             return None;
         }
-        // what lies ahead must be known before the face can be certified as alone
+        // the features ahead must be known before the face can be certified as the only one touched
         let history = self.histories[0];
         let (wished_s, usual_m) = (h.min(h_max), TRAVEL * world.body.radius);
         let limit = self.longest_on_plane_s(world, history.feature.id, (wished_s, usual_m));
-        self.see_along(world, &(self.v * wished_s).cap_magnitude(usual_m));
+        self.collect_along(world, &(self.v * wished_s).cap_magnitude(usual_m));
         let usual_s = longest_step(&world.body, self.v.norm(), usual_m);
         let law = &world.springs_of(&history);
         let normal = law.normal(history.captured);
-        // from the centre, not from the last step's sum: ways of many steps do not drift off the
-        // plane
-        let penetration = self.sunk(world);
-        // state and rates stay in the plane's frame from step to step; they are turned only on the way in and out
+        // from the position, not from the sum of displacements: over many steps that would drift
+        // off the plane
+        let penetration = self.plane_penetration_m(world);
+        // state and rates stay in the plane's frame from step to step; they are transformed only at
+        // the first and the last one
         if !self.plane.on {
             self.enter_plane(law, &world.body, (penetration, &normal));
         }
@@ -83,48 +88,48 @@ impl ContactState {
             penetration,
             energy: self.motion_j(&world.body) + self.stored,
             energy_at_end: 0.0,
-            room2: self.near.margin_left_m(&self.c).max(0.0).powi(2),
+            known_way2: self.near.margin_left_m(&self.c).max(0.0).powi(2),
             near: &self.near,
             start: self.c,
             face: history.feature.id,
             plane: &mut self.plane,
             mode: SlipState::default(),
             end: [0.0; SIZE],
-            press: PlaneForces::default(),
+            forces: PlaneForces::default(),
             stored: 0.0,
             solved: 0,
         };
         // as many steps as the certificate covers
-        let halt = trial.run((h_max, world.terrain.is_tree(history.triangle)), done);
-        let (press, stored) = (trial.press, trial.stored);
+        let failure = trial.take_steps((h_max, world.terrain.is_tree(history.triangle)), done);
+        let (forces, stored) = (trial.forces, trial.stored);
         self.sweeps += trial.solved;
-        match halt {
-            // a failure before the first step is the caller's; after it, what was done counts and
-            // the next call sees to the rest
-            Some(StepFailure::Unsettled) if done.steps == 0 => {
-                return Some(Err(StepError::Unsettled));
+        match failure {
+            // a failure of the first step is returned; after it, the accepted steps count and the
+            // next call handles the failure
+            Some(StepFailure::NotConverged) if done.steps == 0 => {
+                return Some(Err(StepError::NotConverged));
             }
-            Some(StepFailure::Elsewhere) if done.steps == 0 => return None,
-            // What stopped it after its first step is met again, or got round, from where it is now.
+            Some(StepFailure::OutOfDomain) if done.steps == 0 => return None,
+            // the cause of a later failure is met again, or avoided, from the new position
             _ => {}
         }
         done.loss = done.loss.on(world, history.triangle);
-        self.take_plane(law, press, stored);
+        self.accept_plane_steps(law, forces, stored);
         Some(Ok(()))
     }
 
     /// Penetration into the plane of the one contact (m).
     /// `R − n·(c − a)`, positive when pressed in.
-    pub(super) fn sunk(&self, world: &ContactEnvironment) -> f64 {
+    pub(super) fn plane_penetration_m(&self, world: &ContactEnvironment) -> f64 {
         let history = &self.histories[0];
         let corner = world.terrain.face(history.feature.id).a;
         world.body.radius - history.n.dot(&(self.c - corner))
     }
 
-    /// Turns state and rates into the plane's frame.
+    /// Transforms state and rates into the plane's frame.
     ///
-    /// Rates of the last step are turned with the state, where they still hold, so that the first
-    /// stage need not be computed anew.
+    /// Rates of the last step that still hold are transformed too, so that the first stage need not
+    /// be computed anew.
     fn enter_plane(
         &mut self,
         law: &Law,
@@ -148,34 +153,34 @@ impl ContactState {
                 [loss.trees, 0.0, 0.0]
             };
         } else {
-            self.stored = plane.begin(law, body, (penetration, normal));
+            self.stored = plane.rates_now(law, body, (penetration, normal));
             self.fresh = true;
         }
     }
 
-    /// Takes over where the steps have ended: motion and memory.
-    fn take_plane(&mut self, law: &Law, press: PlaneForces, stored: f64) {
+    /// Accepts the end of the steps: motion and contact history.
+    fn accept_plane_steps(&mut self, law: &Law, forces: PlaneForces, stored: f64) {
         let PlaneState { state, frame, on, .. } = &mut self.plane;
         let history = &mut self.histories[0];
-        let way;
-        [way, self.v, self.w, history.shear, history.roll] = out_of_plane(frame, state);
-        self.c += way;
+        let displacement;
+        [displacement, self.v, self.w, history.shear, history.roll] = out_of_plane(frame, state);
+        self.c += displacement;
         self.stored = stored;
-        // forces of the end, for the first guess of what comes next
-        history.normal_force = press.normal_force;
-        history.slides = law.shear.slides2(square(press.shear_force), press.normal_force);
-        history.closed = press.closed;
+        // forces at the end, as the initial guess of the next step
+        history.normal_force = forces.normal_force;
+        history.slides = law.shear.slides2(square(forces.shear_force), forces.normal_force);
+        history.closed = forces.closed;
         state[WAY..SPEED].fill(0.0);
-        // the rock has lifted off: the episode may be over, and no memory is left
-        if !press.closed {
+        // the rock has lifted off: the episode may be over, and no history is left
+        if !forces.closed {
             *on = false;
             self.histories.clear();
             self.fresh = false;
         }
     }
 
-    /// Hands state and rates back to the frame of the terrain.
-    /// The general stage goes on from the same rates: changing kernels costs no step.
+    /// Transforms state and rates back to the frame of the terrain. The general stage continues
+    /// from the same rates: the change of kernel costs no extra stage.
     pub(crate) fn leave_plane(&mut self, world: &ContactEnvironment) {
         let plane = &mut self.plane;
         if !std::mem::take(&mut plane.on) {

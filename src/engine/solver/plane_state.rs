@@ -1,15 +1,16 @@
-//! A rock on one plane: the fourteen numbers that change along a step, and what presses on it.
+//! State of a rock on one plane: fourteen numbers that change during a step, and the contact
+//! forces.
 
 use super::body::Body;
 use super::contact_frame::{Along, ContactFrame, Local, dot, square};
-use super::friction_rolling::cut;
+use super::friction_rolling::capped;
 use super::tableau::STAGES;
 use crate::ground::{Law, NormalElement};
 use crate::rock::Vec3;
 
-/// Numbers that change along a step, and where each kind begins.
+/// Size of the state; the offset of each quantity follows.
 pub(super) const SIZE: usize = 14;
-/// Way of the centre since the step's start (m).
+/// Displacement of the centre since the step's start (m).
 pub(super) const WAY: usize = 0;
 /// Velocity (m/s).
 pub(super) const SPEED: usize = 3;
@@ -23,20 +24,25 @@ pub(super) const ROLL: usize = 11;
 pub(super) type State = [f64; SIZE];
 
 #[inline]
-pub(super) fn two(x: &State, at: usize) -> Along {
+pub(super) fn along_at(x: &State, at: usize) -> Along {
     [x[at], x[at + 1]]
 }
 
 #[inline]
-pub(super) fn three(x: &State, at: usize) -> Local {
+pub(super) fn local_at(x: &State, at: usize) -> Local {
     [x[at], x[at + 1], x[at + 2]]
 }
 
-/// The numbers of way, velocity and spin and of the springs of shear and rolling, or of their rates.
+/// A state of displacement, velocity, spin and the stretches of shear and rolling springs, or of
+/// their rates.
 #[inline]
-pub(super) fn state_of([way, speed, spin]: [Local; 3], shear: Along, roll: Local) -> State {
+pub(super) fn state_of(
+    [displacement, speed, spin]: [Local; 3],
+    shear: Along,
+    roll: Local,
+) -> State {
     let mut state = [0.0; SIZE];
-    state[WAY..SPEED].copy_from_slice(&way);
+    state[WAY..SPEED].copy_from_slice(&displacement);
     state[SPEED..SPIN].copy_from_slice(&speed);
     state[SPIN..SHEAR].copy_from_slice(&spin);
     state[SHEAR..ROLL].copy_from_slice(&shear);
@@ -44,7 +50,7 @@ pub(super) fn state_of([way, speed, spin]: [Local; 3], shear: Along, roll: Local
     state
 }
 
-/// The same of vectors, in the frame of the plane.
+/// A state from vectors in the frame of the terrain.
 pub(super) fn into_plane(
     frame: &ContactFrame,
     motion: [&Vec3; 3],
@@ -53,19 +59,20 @@ pub(super) fn into_plane(
     state_of(motion.map(|x| frame.local(x)), frame.along(shear), frame.local(roll))
 }
 
-/// Way, velocity, spin, shear and rolling as vectors.
+/// Displacement, velocity, spin, shear and rolling as vectors in the frame of the terrain.
 pub(super) fn out_of_plane(frame: &ContactFrame, x: &State) -> [Vec3; 5] {
-    let [way, speed, spin, roll] = [WAY, SPEED, SPIN, ROLL].map(|at| frame.out_local(three(x, at)));
-    [way, speed, spin, frame.out_along(two(x, SHEAR)), roll]
+    let [way, speed, spin, roll] =
+        [WAY, SPEED, SPIN, ROLL].map(|at| frame.out_local(local_at(x, at)));
+    [way, speed, spin, frame.out_along(along_at(x, SHEAR)), roll]
 }
 
-/// What presses on the rock at a stage's end.
+/// Contact forces at a stage's end.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct PlaneForces {
     pub(super) normal_force: f64,
     pub(super) shear_force: Along,
     pub(super) rolling_moment: Local,
-    /// Whether it still holds the rock.
+    /// Whether the contact is closed.
     pub(super) closed: bool,
 }
 
@@ -78,12 +85,12 @@ pub(super) fn slip(body: &Body, speed: Local, spin: Local) -> Along {
 /// Energy in the springs (J).
 #[inline]
 pub(super) fn stored_j(law: &Law, penetration: f64, at: &State) -> f64 {
-    let (shear2, roll2) = (square(two(at, SHEAR)), square(three(at, ROLL)));
+    let (shear2, roll2) = (square(along_at(at, SHEAR)), square(local_at(at, ROLL)));
     law.stored_j(penetration, shear2, roll2)
 }
 
 impl PlaneForces {
-    /// What they do to velocity and spin (m/s², rad/s²).
+    /// Accelerations by them (m/s², rad/s²).
     #[inline]
     pub(super) fn accelerations(&self, body: &Body) -> (Local, Local) {
         let Self { normal_force, shear_force, rolling_moment, .. } = *self;
@@ -99,7 +106,7 @@ impl PlaneForces {
         )
     }
 
-    /// Power that goes into friction, damping and rolling (W): what the springs store is counted in.
+    /// Power that goes into friction, damping and rolling (W), what the springs store included.
     #[inline]
     pub(super) fn losses(
         &self,
@@ -116,13 +123,13 @@ impl PlaneForces {
     }
 }
 
-/// Way on one plane that is asked for first (–, relative to R).
+/// Travel on one plane that is checked first (–, relative to R).
 pub(super) const FIRST_REACH: f64 = 0.6;
 
 /// State and rates of a rock on one plane.
 #[derive(Debug)]
 pub struct PlaneState {
-    /// Whether they are those of the current rock.
+    /// Whether they belong to the current rock.
     pub(super) on: bool,
     pub(super) frame: ContactFrame,
     pub(super) state: State,
@@ -131,10 +138,11 @@ pub struct PlaneState {
     pub(super) losses: [Local; STAGES],
     /// `rigid`: the step to try next (s).
     pub(super) wished_s: f64,
-    /// Way to ask for next (–, relative to R), and where the last that was short enough was not clear (m).
+    /// Travel to check next (–, relative to R), and the position where the last one short enough
+    /// was not clear (m).
     pub(super) reach: f64,
-    pub(super) crowded_at: Vec3,
-    /// Whether soil takes of the rock's speed between steps: they stay short.
+    pub(super) blocked_at: Vec3,
+    /// Whether soil slows the rock between steps: then steps stay short.
     pub(crate) ploughs: bool,
 }
 
@@ -148,45 +156,45 @@ impl Default for PlaneState {
             losses: [[0.0; 3]; STAGES],
             wished_s: f64::INFINITY,
             reach: FIRST_REACH,
-            crowded_at: Vec3::repeat(f64::INFINITY),
+            blocked_at: Vec3::repeat(f64::INFINITY),
             ploughs: false,
         }
     }
 }
 
 impl PlaneState {
-    /// Forgets whose state it holds (before the next contact).
+    /// Invalidates the state (before the next contact).
     pub(crate) fn forget(&mut self) {
         (self.on, self.wished_s) = (false, f64::INFINITY);
-        (self.reach, self.crowded_at) = (FIRST_REACH, Vec3::repeat(f64::INFINITY));
+        (self.reach, self.blocked_at) = (FIRST_REACH, Vec3::repeat(f64::INFINITY));
     }
 
     /// Rates at the present state, for the explicit first stage; returns the energy in the springs (J).
-    pub(super) fn begin(
+    pub(super) fn rates_now(
         &mut self,
         law: &Law,
         body: &Body,
         (penetration, normal): (f64, &NormalElement),
     ) -> f64 {
         let (penetration, s) = (penetration.max(0.0), &self.state);
-        let (speed, spin) = (three(s, SPEED), three(s, SPIN));
+        let (speed, spin) = (local_at(s, SPEED), local_at(s, SPIN));
         let slip = slip(body, speed, spin);
         let normal_force = normal.force(penetration, speed[2]);
-        let held = two(s, SHEAR).map(|x| law.shear.spring_force(x));
-        let asked = [0, 1].map(|k| held[k] + law.shear.dashpot_force(slip[k]));
-        let shear_force = cut(asked, law.shear.cap(normal_force));
-        let wound = three(s, ROLL).map(|x| law.rolling.spring_force(x));
-        let asked = [0, 1, 2].map(|k| wound[k] + law.rolling.dashpot_force(spin[k]));
-        let rolling_moment = cut(asked, law.rolling.cap(normal_force));
+        let held = along_at(s, SHEAR).map(|x| law.shear.spring_force(x));
+        let trial = [0, 1].map(|k| held[k] + law.shear.dashpot_force(slip[k]));
+        let shear_force = capped(trial, law.shear.cap(normal_force));
+        let roll_held = local_at(s, ROLL).map(|x| law.rolling.spring_force(x));
+        let trial = [0, 1, 2].map(|k| roll_held[k] + law.rolling.dashpot_force(spin[k]));
+        let rolling_moment = capped(trial, law.rolling.cap(normal_force));
         let (over_s, over_r) = (law.shear.mobility(), law.rolling.mobility());
         let gravity = self.frame.local(&body.gravity);
-        let press = PlaneForces { normal_force, shear_force, rolling_moment, closed: true };
-        let (dv, dw) = press.accelerations(body);
+        let forces = PlaneForces { normal_force, shear_force, rolling_moment, closed: true };
+        let (dv, dw) = forces.accelerations(body);
         let dv = [0, 1, 2].map(|k| gravity[k] + dv[k]);
         let shear_rate = [0, 1].map(|k| (shear_force[k] - held[k]) * over_s);
-        let roll_rate = [0, 1, 2].map(|k| (rolling_moment[k] - wound[k]) * over_r);
+        let roll_rate = [0, 1, 2].map(|k| (rolling_moment[k] - roll_held[k]) * over_r);
         self.rates[0] = state_of([speed, dv, dw], shear_rate, roll_rate);
-        self.losses[0] = press.losses(slip, (speed[2], spin), shear_rate);
+        self.losses[0] = forces.losses(slip, (speed[2], spin), shear_rate);
         stored_j(law, penetration, &self.state)
     }
 }

@@ -1,8 +1,10 @@
-//! Scheme `rigid`: the limit of stiff springs. Impacts take no time, sustained contact is stepped in velocities.
+//! Scheme `rigid`: the limit of stiff springs. Impacts are instantaneous, sustained contact is
+//! stepped at velocity level.
 //!
-//! Friction and rolling friction are impulses bounded by the normal impulse; several contacts are swept
-//! (projected Gauss–Seidel, after Moreau). What each impulse takes is booked by the mean velocity it acts on, so
-//! the energy balance closes to rounding but for the push-out of penetrations.
+//! Friction and rolling friction are impulses bounded by the normal impulse; several contacts are
+//! solved by sweeps (projected Gauss–Seidel, after Moreau). The energy that an impulse takes
+//! follows from the mean velocity during it, so the energy balance closes to rounding, apart from
+//! the correction of penetrations.
 //!
 //! ```text
 //! impact:     all touches of the instant at once, in the limit p_N → ∞ (`impact::throw`)
@@ -11,11 +13,13 @@
 //!             c₁ = c₀ + Δt (v₀ + v₁)/2
 //! ```
 //!
-//! What the rock comes to bears nothing before it is met: the step ends there, and an impact follows, or, slower than a blow rebounds, the impulses
-//! that hold it from there on.
+//! A surface that the rock approaches exerts no force before it is reached: the step ends there. An
+//! impact follows, or, where the approach is too slow to rebound, impulses that hold the rock from
+//! there on.
+//!
 //! Geometry is that of the middle of the step: second order where nothing switches, first order
-//! over lift-off and sliding into rolling. What is lost against springs: the time of an impact, and
-//! the penetration at rest, `m g/p_N`.
+//! over lift-off and at the transition from sliding to rolling. Compared with springs the duration
+//! of an impact is neglected, and the penetration at rest, `m g/p_N`.
 
 mod contact;
 mod plane_step;
@@ -34,24 +38,26 @@ use arrayvec::ArrayVec;
 pub(super) use contact::{GroundContact, converge, sustained_m_s};
 pub(super) use sustained::way_out;
 
-/// Touches no further away than this still hold the rock (–, relative to R).
+/// Contact points no further away than this still hold the rock (–, relative to R).
 pub(crate) const HELD: f64 = 1e-4;
-/// What a rock comes to within this when it strikes something else it strikes with it (–, relative to R): steps end so far from what they
-/// come to, and of two walls that a rock rolls between neither is first.
+/// Surfaces reached within this distance of each other are struck together (–, relative to R):
+/// steps end at about this distance from a surface, and of two walls that a rock rolls between
+/// neither is first.
 pub(crate) const STRUCK_TOGETHER: f64 = 1e-6;
-/// Local error of an impact followed in its own time (–, relative to its speed).
+/// Local error of an impact resolved on its own time scale (–, relative to its speed).
 pub(crate) const IMPACT: f64 = 2e-5;
-/// An approach slower than this is none (–, relative to `√(g R)`): what a step leaves of it rubs off no more than rounding of the ground.
-const COMING: f64 = 3e-3;
-/// Share of the slowest approach to a facet from which on a turned rock comes to it (–): turning rounds the approach, and once
-/// the facet is struck there is none.
-const ONTO_FACET: f64 = 0.5;
+/// A slower approach is neglected (–, relative to `√(g R)`): the rest of it that a step leaves
+/// takes energy by friction only at the level of rounding of the ground.
+const APPROACHING: f64 = 3e-3;
+/// Share of the slowest approach to a facet from which on a rotated rock approaches it (–): the
+/// rotation rounds the approach, and after the impact on the facet there is none.
+const FACET_SHARE: f64 = 0.5;
 
 /// One impact or one step of at most `h_max` (s), which on one plane may be longer than `longest` (s).
 ///
 /// # Errors
 /// [`StepError`] if motion is no longer finite.
-/// Order: first what comes in fast, as an impact of no duration; else a step of sustained contact.
+/// First impacts of zero duration, where contacts approach fast; else a step of sustained contact.
 pub fn advance(
     world: &ContactEnvironment,
     state: &mut ContactState,
@@ -60,23 +66,24 @@ pub fn advance(
 ) -> Result<Advance, StepError> {
     let mut done = Advance { steps: 1, ..Advance::default() };
     let c = state.c;
-    state.struck.clear();
-    state.look_ahead_again(world, &c);
-    if hits(world, state) {
-        // only what touches at this instant takes part in the impact
+    state.upcoming_impacts.clear();
+    state.update_contact_points_ahead(world, &c);
+    if has_impact(world, state) {
+        // only contacts closed at this instant take part in the impact
         let mut touches = state.touches.clone();
         touches.retain_impacting(world.body.radius, &state.v, STRUCK_TOGETHER);
-        if state.is_struck {
+        if state.impact_announced {
             impact(world, state, &touches, &mut done);
         } else {
-            // Strikes anew within an episode: the driver hears of it before it happens, as it does of the first.
-            strike(world, state, &touches);
+            // a further impact within an episode: the driver is told before it happens, as for the
+            // first
+            announce_impact(world, state, &touches);
             done.steps = 0;
         }
-        state.is_struck = !state.is_struck;
+        state.impact_announced = !state.impact_announced;
     } else {
-        state.is_struck = false;
-        sustained::meet(world, state, &mut done);
+        state.impact_announced = false;
+        sustained::capture(world, state, &mut done);
         let speed = state.v.norm().max(f64::MIN_POSITIVE);
         let usual = longest.min(TRAVEL * world.body.radius / speed);
         if !state.slide_on_plane(world, (usual, longest), h_max, &mut done) {
@@ -86,31 +93,33 @@ pub fn advance(
     if state.is_finite() { Ok(done) } else { Err(StepError::NotFinite) }
 }
 
-/// Whether a touch of the last look comes in faster than the capture speed, or as fast as to a facet that is met.
-fn hits(world: &ContactEnvironment, state: &ContactState) -> bool {
+/// Whether a contact point found last approaches faster than the capture speed, or as fast as a
+/// facet requires.
+fn has_impact(world: &ContactEnvironment, state: &ContactState) -> bool {
     let reach = world.body.radius * (1.0 + TOUCH);
-    let meets = state.facets.is_any_met();
-    let comes = |touch: &ContactPoint| {
+    let is_tilted = state.facets.is_tilted();
+    let approaches = |touch: &ContactPoint| {
         let approach = -touch.normal.dot(&state.v);
         is_fast(world, touch, &state.v)
-            || meets && approach >= ONTO_FACET * roughness::least_m_s(world)
+            || is_tilted && approach >= FACET_SHARE * roughness::least_m_s(world)
     };
-    state.touches.iter().any(|touch| touch.distance_m < reach && comes(touch))
+    state.touches.iter().any(|touch| touch.distance_m < reach && approaches(touch))
 }
 
-/// Whether a rock with velocity `v` hits a touch too fast to be captured.
+/// Whether a rock with velocity `v` approaches a contact point too fast to be captured.
 pub(super) fn is_fast(world: &ContactEnvironment, touch: &ContactPoint, v: &Vec3) -> bool {
     -touch.normal.dot(v) >= capture_m_s(world.law(touch.triangle))
 }
 
-/// Whether a rock with velocity `v` comes to a touch so fast that it matters when it meets it: a step that began before would hold it on both
-/// sides of a fold at once, and rub.
-fn is_coming(world: &ContactEnvironment, touch: &ContactPoint, v: &Vec3) -> bool {
-    -touch.normal.dot(v) >= COMING * world.body.fall_speed_m_s()
+/// Whether a rock with velocity `v` approaches a contact point so fast that the time of contact
+/// matters: a step that began before would hold the rock on both sides of a fold at once, with
+/// friction.
+fn is_approaching(world: &ContactEnvironment, touch: &ContactPoint, v: &Vec3) -> bool {
+    -touch.normal.dot(v) >= APPROACHING * world.body.fall_speed_m_s()
 }
 
-/// Notes the contacts that are about to be struck.
-fn strike(world: &ContactEnvironment, state: &mut ContactState, touches: &[ContactPoint]) {
+/// Announces the contacts of the next impact.
+fn announce_impact(world: &ContactEnvironment, state: &mut ContactState, touches: &[ContactPoint]) {
     let mut taken = 0;
     for touch in touches {
         let captured = !is_fast(world, touch, &state.v);
@@ -120,12 +129,13 @@ fn strike(world: &ContactEnvironment, state: &mut ContactState, touches: &[Conta
         history.announced = true;
         if !captured {
             let struck = ContactHistory { announced: false, captured, ..*history };
-            state.struck.push(struck);
+            state.upcoming_impacts.push(struck);
         }
     }
 }
 
-/// The touches of a rock with velocity `v` as contacts of one impact: those too slow to rebound take part and give nothing back.
+/// Contact points of a rock with velocity `v` as contacts of one impact: those too slow to rebound
+/// take part without restitution.
 pub(super) fn frozen<'w>(
     world: &'w ContactEnvironment,
     touches: &[ContactPoint],
@@ -156,13 +166,14 @@ fn impact(
     }
     done.steps = u64::from(thrown.effort.steps).max(1);
     done.rejected = u64::from(thrown.effort.rejected);
-    remember(world, state, true);
+    update_histories(world, state, true);
 }
 
-/// Keeps a memory for every touch that still `holds` the rock, so that impacts are counted and rest is seen.
-pub(crate) fn remember(world: &ContactEnvironment, state: &mut ContactState, holds: bool) {
+/// Updates the history of every contact point that still `holds` the rock, so that impacts are
+/// counted and rest is detected.
+pub(crate) fn update_histories(world: &ContactEnvironment, state: &mut ContactState, holds: bool) {
     let (c, v) = (state.c, state.v);
-    state.look_ahead_again(world, &c);
+    state.update_contact_points_ahead(world, &c);
     let touches = state.touches.nearer(world.body.radius * (1.0 + HELD));
     for history in state.histories.iter_mut() {
         history.closed = false;
@@ -174,7 +185,7 @@ pub(crate) fn remember(world: &ContactEnvironment, state: &mut ContactState, hol
         let history = &mut state.histories[k];
         (history.feature, history.n) = (touch.feature, touch.normal);
         (history.triangle, history.springs_of) = (touch.triangle, touch.triangle);
-        // A touch that separates faster than the capture speed lets go.
+        // a contact that separates faster than the capture speed is open
         history.closed = holds && touch.normal.dot(&v) < capture_m_s(world.law(touch.triangle));
         history.slides = world.body.slip(&history.n, &v, &state.w).norm() > 1e-6 * (1.0 + v.norm());
     }

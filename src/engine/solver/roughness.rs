@@ -1,15 +1,17 @@
-//! Rough ground: a rock that comes to it meets a facet that is tilted against the mesh.
+//! Rough ground: impacts on facets that are tilted against the mesh.
 //!
-//! A rock sees the facets that face it: the tilt is uniform in its angle, from nothing to the ground's roughness, and in its
-//! direction, weighted by `max(0, −v·n′)` with `n′` the tilted normal, the flux of the rock through the facet. Whether it
-//! rebounds is judged by its approach to the facet. A rebound into the mean surface is simply the next impact.
+//! The tilt of a facet is uniform in its angle, from zero to the ground's roughness, and in its
+//! direction, weighted by `max(0, −v·n′)` with `n′` the tilted normal, the flux of the rock through
+//! the facet. Whether an impact rebounds depends on the approach to the facet. A rebound into the
+//! mean surface is simply the next impact.
 //!
-//! Roughness belongs to the place: it meets one facet for each roughness length of its way, and the mean surface until that is
-//! behind it, so that the number of its small impacts, which is a matter of stiffness and steps, does not decide how often it
-//! is deflected. If it met the same facet in each of them, stiff springs would let it hop up a ramp that soft ones roll along.
+//! Roughness is a property of the place: a rock meets one facet per roughness length of its path,
+//! and the mean surface until it has left that behind. So the number of its small impacts, which
+//! depends on stiffness and steps, does not decide how often it is deflected. If it met the same
+//! facet in each of them, stiff springs would let it hop up a ramp that soft ones roll along.
 //!
-//! Energy is untouched: the rock is turned against the facet and turned back, and a rotation
-//! changes neither speed nor spin.
+//! Energy is conserved: the motion is rotated onto the facet and back, and a rotation changes
+//! neither speed nor spin rate.
 
 use super::environment::ContactEnvironment;
 use crate::contact::history::SAME_CONTACT_COSINE;
@@ -20,13 +22,14 @@ use crate::rock::Vec3;
 use nalgebra::{Rotation3, Unit};
 use std::f64::consts::TAU;
 
-/// What is approached more slowly than this is no facet (–, relative to `√(g R)`, the speed of a rock that falls by half its
-/// radius): it takes less than a ten-thousandth of that energy, whatever the springs.
+/// Slower approaches do not count as facets (–, relative to `√(g R)`, the speed of a rock that
+/// falls by half its radius): they take less than a ten-thousandth of that energy, whatever the
+/// springs.
 const LEAST: f64 = 1e-2;
-/// Share of the roughness length within which a facet that is met late counts from where it was due (–).
+/// Share of the roughness length within which a facet met late counts from where it was due (–).
 const PAST_DUE: f64 = 0.5;
-/// Facets drawn until one is met: one in three at least where the rock comes to the surface, one in six where it goes along it.
-/// A bound for pathological cases only.
+/// Most draws of a facet: at least one in three is accepted where the rock approaches the surface,
+/// one in six where it moves along it. A bound for pathological cases only.
 const DRAWS: u32 = 1000;
 
 /// Slowest approach to a facet (m/s).
@@ -34,7 +37,7 @@ pub(super) fn least_m_s(world: &ContactEnvironment) -> f64 {
     LEAST * world.body.fall_speed_m_s()
 }
 
-/// The facets that one rock meets.
+/// The facets of one rock.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct RoughFacets {
     random: Option<RandomStream>,
@@ -42,31 +45,31 @@ pub(crate) struct RoughFacets {
     pub(super) tilt: Option<Tilt>,
 }
 
-/// The facet met last.
+/// A facet that was met.
 #[derive(Debug, Clone)]
 struct TiltedFacet {
-    /// Where the rock was (m), on which surface, and on which ground.
+    /// Centre of the rock there (m), the surface's normal, and the ground.
     centre: Vec3,
     normal: Vec3,
     ground: u16,
-    /// Way from there to the next (m).
+    /// Distance from there to the next facet (m).
     reach_m: f64,
 }
 
-/// What a rock is turned by while it meets a facet.
+/// Rotation of a rock's motion during its impact on a facet.
 #[derive(Debug, Clone)]
 pub(super) struct Tilt {
     pub(super) turn: Rotation3<f64>,
-    /// When the impact is over at the latest (s).
+    /// Latest end of the impact (s).
     pub(super) until_s: f64,
 }
 
-/// A rock at a surface.
+/// A rock that approaches a surface.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Meeting {
+pub(crate) struct SurfaceApproach {
     /// Normal of the surface.
     pub(crate) n: Vec3,
-    /// Triangle whose ground answers.
+    /// Triangle whose ground sets the law.
     pub(crate) triangle: u32,
     /// Centre of the rock (m).
     pub(crate) c: Vec3,
@@ -74,8 +77,8 @@ pub(crate) struct Meeting {
     pub(crate) v: Vec3,
 }
 
-impl Meeting {
-    /// Approach to the facet that the surface is turned to (m/s).
+impl SurfaceApproach {
+    /// Approach to the facet rotated by `turn` from the surface (m/s).
     pub(crate) fn approach_m_s(&self, turn: &Rotation3<f64>) -> f64 {
         -(turn * self.n).dot(&self.v)
     }
@@ -85,11 +88,11 @@ impl Meeting {
     /// `−n'·v` over all `n'` within an angle of `n` is `|v|` if the direction `−v` is among them,
     /// else that of the `n'` nearest to it: `approach cos + along sin`. It scales the rejection
     /// below, so that the most visible facet is always accepted.
-    fn most_m_s(&self, most: f64) -> f64 {
+    fn max_approach_m_s(&self, most: f64) -> f64 {
         let approach = -self.n.dot(&self.v);
         let along = (self.v + self.n * approach).norm();
         let (sine, cosine) = math::sin_cos(most);
-        // the facet square to the way of the rock is the fastest, if there is one
+        // the facet perpendicular to the velocity has the fastest approach, if it is in range
         if approach * sine >= along * cosine {
             self.v.norm()
         } else {
@@ -99,52 +102,57 @@ impl Meeting {
 }
 
 impl RoughFacets {
-    /// Those of a rock with its own random stream, on grounds with these laws: none where all are smooth.
+    /// Facets of a rock with its own random stream, on grounds with these laws: none where all are
+    /// smooth.
     pub(crate) fn of(random: RandomStream, laws: &[Law]) -> Self {
         let is_rough = laws.iter().any(|law| law.roughness_rad > 0.0);
         Self { random: is_rough.then_some(random), ..Self::default() }
     }
 
-    /// Whether any ground of the rock has some.
-    pub(crate) fn are_any(&self) -> bool {
+    /// Whether any ground of the rock is rough.
+    pub(crate) fn are_rough(&self) -> bool {
         self.random.is_some()
     }
 
-    /// The facet that a rock strikes, as the rotation from the surface to it. `None` on smooth ground, as far as the last facet
-    /// reaches, and where the surface is approached no faster than what is part of rolling.
+    /// Draws the facet that a rock strikes, as the rotation from the surface to it. `None` on
+    /// smooth ground, within the range of the last facet, and where the approach is no faster than
+    /// that of rolling.
     ///
-    /// What is approached more slowly than the capture speed does not rebound, but it deflects and takes what it takes: the
-    /// capture speed goes with `√(m/p_N)`, and soft springs must not make the ground smooth for slow rocks.
-    pub(crate) fn struck(
+    /// A facet approached more slowly than the capture speed causes no rebound, but deflection and
+    /// loss: the capture speed is proportional to `√(m/p_N)`, and soft springs must not make the
+    /// ground smooth for slow rocks.
+    pub(crate) fn draw_facet(
         &mut self,
         world: &ContactEnvironment,
-        at: &Meeting,
+        at: &SurfaceApproach,
     ) -> Option<Rotation3<f64>> {
-        if !self.meet_next(world, at) {
+        if !self.meets_new_facet(world, at) {
             return None;
         }
         let law = world.law(at.triangle);
         let turn = draw(self.random.as_mut()?, at, law.roughness_rad, least_m_s(world))?;
-        let reach_m = law.roughness_length_m - self.passed_m(at, law.roughness_length_m);
+        let reach_m = law.roughness_length_m - self.overshoot_m(at, law.roughness_length_m);
         let ground = world.ground_of(at.triangle);
         self.last = Some(TiltedFacet { centre: at.c, normal: at.n, ground, reach_m });
         Some(turn)
     }
 
-    /// How far the rock is past the place of the next facet (m): a step ends somewhere behind it, and lengths of steps must not
-    /// decide how many facets there are. Farther than by the share [`PAST_DUE`] of the roughness length it has flown or stood.
-    fn passed_m(&self, at: &Meeting, length_m: f64) -> f64 {
+    /// Distance of the rock past the position of the next facet (m): a step ends somewhere behind
+    /// it, and step lengths must not decide the number of facets. Beyond the share [`PAST_DUE`] of
+    /// the roughness length the rock has flown or stood still, and it is 0.
+    fn overshoot_m(&self, at: &SurfaceApproach, length_m: f64) -> f64 {
         let past_m = |facet: &TiltedFacet| (facet.centre - at.c).norm() - facet.reach_m;
         let past_m = self.last.as_ref().map_or(0.0, past_m);
         if (0.0..PAST_DUE * length_m).contains(&past_m) { past_m } else { 0.0 }
     }
 
-    /// Whether a rock at a surface sees a new facet: it comes fast enough, and the last one does not reach here. That is far off,
-    /// on another ground, or on another side of what the rock has run into.
-    pub(crate) fn meet_next(&self, world: &ContactEnvironment, at: &Meeting) -> bool {
+    /// Whether a rock at a surface meets a new facet: its approach is fast enough, and the last
+    /// facet does not extend to here. That one may be far off, on another ground, or on another
+    /// side of an obstacle.
+    pub(crate) fn meets_new_facet(&self, world: &ContactEnvironment, at: &SurfaceApproach) -> bool {
         let law = world.law(at.triangle);
         law.roughness_rad > 0.0
-            && at.most_m_s(law.roughness_rad) >= least_m_s(world)
+            && at.max_approach_m_s(law.roughness_rad) >= least_m_s(world)
             && self.last.as_ref().is_none_or(|facet| {
                 (facet.centre - at.c).norm() >= facet.reach_m
                     || facet.ground != world.ground_of(at.triangle)
@@ -152,8 +160,9 @@ impl RoughFacets {
             })
     }
 
-    /// How far a rock at `c` may go before it can strike a facet (m): nowhere while it meets one, and on rough ground before its first.
-    pub(super) fn way_left_m(&self, c: &Vec3) -> f64 {
+    /// Distance that a rock at `c` may travel before it can strike a facet (m): 0 during an impact
+    /// on one, and on rough ground before the first.
+    pub(super) fn distance_to_facet_m(&self, c: &Vec3) -> f64 {
         match (&self.random, &self.tilt, &self.last) {
             (None, ..) => f64::INFINITY,
             (_, None, Some(facet)) => (facet.reach_m - (facet.centre - c).norm()).max(0.0),
@@ -161,26 +170,32 @@ impl RoughFacets {
         }
     }
 
-    /// Whether the rock is turned against one that it has left, or whose time is up at `now_s` (s).
-    pub(crate) fn is_met(&self, is_free: bool, now_s: f64) -> bool {
+    /// Whether the rotation onto a facet has to end: the rock has left it, or its time is over at
+    /// `now_s` (s).
+    pub(crate) fn is_tilt_over(&self, is_free: bool, now_s: f64) -> bool {
         self.tilt.as_ref().is_some_and(|tilt| is_free || now_s >= tilt.until_s)
     }
 
-    /// Whether the rock is turned against one.
-    pub(crate) fn is_any_met(&self) -> bool {
+    /// Whether the motion is rotated onto a facet.
+    pub(crate) fn is_tilted(&self) -> bool {
         self.tilt.is_some()
     }
 }
 
-/// A facet that a rock sees, as the rotation from the surface to it; tilted by `most` (rad) at most and approached at `least`
-/// (m/s) or faster.
+/// Draws a facet as the rotation from the surface to it, tilted by `most` (rad) at most and
+/// approached at `least` (m/s) or faster.
 ///
 /// Rejection sampling: tilt and direction uniform, accepted with the probability `max(0,
 /// −v·n')/fastest`. Three numbers of the rock's own stream a try.
-fn draw(random: &mut RandomStream, at: &Meeting, most: f64, least: f64) -> Option<Rotation3<f64>> {
-    let fastest = at.most_m_s(most);
+fn draw(
+    random: &mut RandomStream,
+    at: &SurfaceApproach,
+    most: f64,
+    least: f64,
+) -> Option<Rotation3<f64>> {
+    let fastest = at.max_approach_m_s(most);
     let beside = if at.n.x.abs() < 0.6 { Vec3::x() } else { Vec3::y() };
-    // any axis square to the normal: it is turned by a uniform angle to give the direction of the
+    // any axis perpendicular to the normal, rotated by a uniform angle, gives the direction of the
     // tilt
     let across = at.n.cross(&beside);
     (0..DRAWS).find_map(|_| {
@@ -204,8 +219,8 @@ mod tests {
     use crate::terrain::{Sheet, Terrain};
     use std::path::Path;
 
-    /// Mean way from one facet to the next (–, relative to the roughness length) of a rock that looks for one after every `step` of
-    /// that length.
+    /// Mean distance between facets (–, relative to the roughness length) of a rock that draws one
+    /// after every `step` of that length.
     fn spacing(step: f64) -> f64 {
         let ground = Ground {
             roughness_rad: 0.25,
@@ -230,14 +245,16 @@ mod tests {
         for k in 0..count {
             let c = Vec3::x() * (0.5 * step * f64::from(k));
             met += u32::from(
-                facets.struck(&world, &Meeting { n: Vec3::z(), triangle: 0, c, v }).is_some(),
+                facets
+                    .draw_facet(&world, &SurfaceApproach { n: Vec3::z(), triangle: 0, c, v })
+                    .is_some(),
             );
         }
         f64::from(count) * step / f64::from(met)
     }
 
-    /// However long the steps are, there is one facet for each roughness length of the way. Counted from where each was met, there
-    /// was one for each whole number of steps that is no shorter: 1.2, 1.05 and 1.2.
+    /// Whatever the step length, there is one facet per roughness length. Counted from where each
+    /// was met, their distance would be the next whole number of steps: 1.2, 1.05 and 1.2.
     #[test]
     fn steps_do_not_decide_how_many_facets_there_are() {
         for step in [0.01, 0.3, 0.35, 0.4] {

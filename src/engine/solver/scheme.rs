@@ -1,9 +1,9 @@
-//! The schemes: what tells them apart, asked here and nowhere else.
+//! The schemes and their properties; no other file compares schemes.
 
 use super::tableau::{ESDIRK4, TR_BDF2, Tableau};
 
-/// How a step is taken.
-/// A closed family: a new scheme does not compile until every question here has an answer.
+/// The method of a step. The family is closed: a new scheme does not compile until every property
+/// is defined.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Scheme {
@@ -42,7 +42,8 @@ impl Scheme {
         }
     }
 
-    /// Budget of work of one rock: steps, accepted or not, and flights. A minute of fall takes a few thousand, with the
+    /// Work limit of one rock: steps, accepted or not, and flights. A minute of fall takes a few
+    /// thousand, with the
     /// paper's fixed step of 1e-5 s six million.
     pub const fn most_work(self) -> u64 {
         if self.has_fixed_step() { 20_000_000 } else { 5_000_000 }
@@ -53,28 +54,30 @@ impl Scheme {
         !matches!(self, Self::Rigid)
     }
 
-    /// Whether heaps of many rocks go on in the rigid limit: where springs are there for their error, not as a measure of others.
+    /// Whether heaps of many rocks continue in the rigid limit: only where the springs serve
+    /// accuracy and not as a reference for others.
     pub const fn leaves_heaps_rigid(self) -> bool {
         matches!(self, Self::Adaptive)
     }
 
-    /// Whether it takes the steps it is given, however large their error.
+    /// Whether its steps are fixed, however large their error.
     pub const fn has_fixed_step(self) -> bool {
         matches!(self, Self::Dda)
     }
 
-    /// Whether it keeps the local error of every step to a tolerance: all that have a tableau do.
+    /// Whether it controls the local error of every step: all with a tableau do.
     pub const fn controls_error(self) -> bool {
         self.tableau().is_some()
     }
 
-    /// Unit of what refines it: its tolerance where it controls the error, else its step.
+    /// Unit of its fineness: the tolerance where it controls the error, else the step.
     pub const fn fineness_unit(self) -> &'static str {
         if self.controls_error() { "m/s" } else { "s" }
     }
 
-    /// Order of its error in the step where nothing switches (–). The rigid limit takes geometry and velocities in the
-    /// middle of the step there; it is first order over a step in which sliding turns into rolling or a rock lifts off.
+    /// Order of its error in the step length without switching (–). The rigid limit evaluates
+    /// geometry and velocities in the middle of the step; it is first order over a step in which
+    /// sliding turns into rolling or a rock lifts off.
     pub const fn order(self) -> f64 {
         match self {
             Self::Dda => 1.0,
@@ -95,8 +98,8 @@ impl Scheme {
     /// All of them, the paper's first.
     pub const ALL: [Self; 4] = [Self::Dda, Self::Adaptive, Self::Reference, Self::Rigid];
 
-    /// What belongs to it in a table of `dda`, `adaptive`, `reference` and `rigid`. A further scheme takes the column of the
-    /// one that it resembles, so that no table need grow with it.
+    /// Its entry in a table of `dda`, `adaptive`, `reference` and `rigid`. A further scheme uses
+    /// the entry of the scheme that it resembles, so that no table needs another column.
     pub fn of<T: Copy>(self, [dda, adaptive, reference, rigid]: [T; 4]) -> T {
         match self {
             Self::Dda => dda,

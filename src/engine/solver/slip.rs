@@ -1,27 +1,27 @@
-//! How far a rock has slipped, and the friction that soil answers with.
+//! Slip distance of a rock, and friction of soil that grows with it.
 //!
 //! `μ(s) = μ_min + (2/π)(μ_max − μ_min) atan(κ s)` (Leine et al. 2014, Eqs. 46, 47): the further a
-//! rock has ploughed, the more soil it has pushed up before it. `s` grows with slip in contact and
-//! is forgotten in flight, `s' = −β s`. One number a rock, whatever its grounds.
+//! rock has ploughed, the more soil it has pushed up in front. `s` grows with slip in contact and
+//! decays in flight, `s' = −β s`. It is one number per rock, whatever its grounds.
 
 use crate::ground::{Ground, Law, SlipFriction};
 
-/// How far a rock has slipped.
+/// Slip distance of a rock.
 #[derive(Debug, Default)]
 pub(crate) struct Slip {
-    way_m: f64,
-    /// On which ground last.
+    slipped_m: f64,
+    /// The ground touched last.
     on: Option<u16>,
-    /// What the grounds do, and their friction before any slip (–).
+    /// Slip-dependent friction of each ground, and its coefficient before any slip (–).
     soils: Vec<Option<(SlipFriction, f64)>>,
-    /// How fast friction grows with slip at most (1/m); 0 where none grows.
+    /// Largest growth rate of friction with slip (1/m); 0 where none grows.
     fastest_per_m: f64,
 }
 
 impl Slip {
-    /// Nothing has slipped yet on these grounds.
+    /// No slip yet, on these grounds.
     pub(crate) fn begin(&mut self, grounds: &[Ground]) {
-        (self.way_m, self.on) = (0.0, None);
+        (self.slipped_m, self.on) = (0.0, None);
         self.soils.clear();
         let soil = |ground: &Ground| {
             ground.slip_friction.map(|soil| (soil, ground.friction_coefficient()))
@@ -32,7 +32,7 @@ impl Slip {
     }
 
     /// Whether the friction of any ground grows.
-    pub(crate) fn is_any(&self) -> bool {
+    pub(crate) fn has_growing_friction(&self) -> bool {
         self.fastest_per_m > 0.0
     }
 
@@ -43,25 +43,24 @@ impl Slip {
     /// Coefficient of friction (–) on a ground where the rock will have slipped `ahead_m` (m) further.
     pub(crate) fn friction(&self, ground: u16, law: &Law, ahead_m: f64) -> f64 {
         self.soil(ground).map_or(law.friction_coefficient(), |(soil, least)| {
-            soil.at(*least, self.way_m + ahead_m)
+            soil.at(*least, self.slipped_m + ahead_m)
         })
     }
 
-    /// How fast friction grows with slip at most (1/m).
+    /// Largest growth rate of friction with slip (1/m).
     pub(crate) fn fastest_per_m(&self) -> f64 {
         self.fastest_per_m
     }
 
-    /// Slips further, on a ground if it touches one.
+    /// Adds slip (m), on a ground if the rock touches one.
     pub(crate) fn grow(&mut self, slipped_m: f64, on: Option<u16>) {
-        self.way_m += slipped_m;
+        self.slipped_m += slipped_m;
         self.on = on.or(self.on);
     }
 
-    /// Forgets in a flight of `flight_s` (s) what its last ground forgets.
-    /// Exactly: `s e^(−β t)`.
-    pub(crate) fn fly(&mut self, flight_s: f64) {
+    /// Decay in a flight of `flight_s` (s), by the rate of the last ground: `s e^(−β t)` exactly.
+    pub(crate) fn decay(&mut self, flight_s: f64) {
         let soil = self.on.and_then(|ground| self.soil(ground));
-        self.way_m = soil.map_or(0.0, |(soil, _)| soil.left_m(self.way_m, flight_s));
+        self.slipped_m = soil.map_or(0.0, |(soil, _)| soil.left_m(self.slipped_m, flight_s));
     }
 }

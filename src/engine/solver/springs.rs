@@ -1,4 +1,5 @@
-//! What the springs of a rock's contacts hold, and how soon they will have taken more than what they press on can bear.
+//! Energy in the springs of a rock's contacts, and a bound for the time until they have taken a
+//! given energy.
 
 use super::contact_state::{ContactEnvironment, ContactState};
 use super::loss::Loss;
@@ -14,11 +15,11 @@ impl ContactState {
     /// `Σ (p_N pen² + p_s ξ² + k_r θ²)/2`.
     pub fn springs_j(&mut self, world: &ContactEnvironment) -> Loss {
         let c = self.c;
-        self.look(world, &c, world.body.radius);
+        self.find_contact_points(world, &c, world.body.radius);
         self.stored_j(world)
     }
 
-    /// The same for the touches of the last look.
+    /// The same for the contact points found last.
     pub fn stored_j(&self, world: &ContactEnvironment) -> Loss {
         let mut stored = Loss::default();
         for touch in self.touches.iter() {
@@ -33,21 +34,25 @@ impl ContactState {
         stored
     }
 
-    /// What the springs of one contact hold (J), its touch being one of the last look.
-    pub(super) fn contact_j(&self, world: &ContactEnvironment, history: &ContactHistory) -> f64 {
+    /// Energy in the springs of one contact (J), whose point is among those found last.
+    pub(super) fn contact_stored_j(
+        &self,
+        world: &ContactEnvironment,
+        history: &ContactHistory,
+    ) -> f64 {
         let law = world.springs_of(history);
         let touch = self.touches.iter().find(|touch| touch.feature == history.feature);
         touch.map_or(0.0, |touch| pressed_j(world, touch, &law))
             + law.stored_j(0.0, history.shear.norm_squared(), history.roll.norm_squared())
     }
 
-    /// What the normal springs of impacts under way hold (J): normal, triangle and energy of each.
-    pub(super) fn pressed_in_impacts(
+    /// Normal springs of impacts under way: normal, triangle and energy (J) of each.
+    pub(super) fn impact_springs(
         &mut self,
         world: &ContactEnvironment,
     ) -> ArrayVec<(Vec3, u32, f64), MAX_CONTACTS> {
         let c = self.c;
-        self.look(world, &c, world.body.radius);
+        self.find_contact_points(world, &c, world.body.radius);
         let of_touch = |touch: &ContactPoint| {
             let history = self.histories.iter().find(|one| one.feature == touch.feature)?;
             let energy_j = pressed_j(world, touch, &world.springs_of(history));
@@ -56,8 +61,8 @@ impl ContactState {
         self.touches.iter().filter_map(of_touch).collect()
     }
 
-    /// How much the springs of the contacts hold that `count` (J). Touches are looked for anew, and the last look stays as it was: a
-    /// force would not tell, as dashpots push as well.
+    /// Energy (J) in the springs of the contacts for which `count` is true. Contact points are
+    /// found anew and restored afterwards: the normal force would not do, as dashpots push as well.
     pub(crate) fn held_j(
         &mut self,
         world: &ContactEnvironment,
@@ -67,17 +72,17 @@ impl ContactState {
             return 0.0;
         }
         let (c, last) = (self.c, std::mem::take(&mut self.touches));
-        self.know(world, &c);
+        self.update_neighbours(world, &c);
         self.near.touches(world.terrain, &c, world.body.radius, &mut self.touches);
         let all = self.stored_j(world).sum();
         let others = self.histories.iter().filter(|history| !count(history));
-        let of_others: f64 = others.map(|history| self.contact_j(world, history)).sum();
+        let of_others: f64 = others.map(|history| self.contact_stored_j(world, history)).sum();
         self.touches = last;
         all - of_others
     }
 
-    /// The trees that are pressed, with what springs on them hold and the power of their dashpots and of friction. Touches are looked for anew, and
-    /// the last look stays as it was.
+    /// The trees that are pressed, with the energy of the springs on them and the power of their
+    /// dashpots and friction. Contact points are found anew and restored afterwards.
     pub(super) fn pressed_trees(&mut self, world: &ContactEnvironment) -> PressedTrees {
         let mut pressed = PressedTrees::default();
         let terrain = world.terrain;
@@ -86,44 +91,46 @@ impl ContactState {
             return pressed;
         }
         let (c, last) = (self.c, std::mem::take(&mut self.touches));
-        self.know(world, &c);
-        // also what has just come to touch: its dashpot takes most at first
+        self.update_neighbours(world, &c);
+        // including new contacts: the dashpot takes most at first
         self.near.touches(terrain, &c, world.body.radius * (1.0 + TOUCH), &mut self.touches);
         for (k, touch) in self.touches.iter().enumerate() {
             let memory = self.histories.iter().find(|history| history.feature == touch.feature);
             if let Some(history) = memory.filter(|_| terrain.is_tree(touch.triangle)) {
                 let law = world.law_of(history, &self.touches, k);
-                let (held_j, weight) = self.pressing(world, (history, touch), &law);
+                let (held_j, weight) = self.normal_energy_and_power(world, (history, touch), &law);
                 let stem = stems.of_triangle(touch.triangle);
-                pressed.press(PressedTree { stem, held_j, weight });
+                pressed.add(PressedTree { stem, held_j, weight });
             }
         }
         for history in self.histories.iter().filter(|one| terrain.is_tree(one.triangle)) {
             let held_j = stretched_j(world, history).sum();
             let stem = stems.of_triangle(history.triangle);
-            pressed.press(PressedTree { stem, held_j, weight: 0.0 });
+            pressed.add(PressedTree { stem, held_j, weight: 0.0 });
         }
         self.touches = last;
         pressed
     }
 
-    /// What the normal spring of a touch holds (J), and the power that its dashpot and its friction take (W).
-    fn pressing(
+    /// Energy in the normal spring of a contact (J), and the power that its dashpot and friction
+    /// take (W).
+    fn normal_energy_and_power(
         &self,
         world: &ContactEnvironment,
         (history, touch): (&ContactHistory, &ContactPoint),
         law: &Law,
     ) -> (f64, f64) {
         let penetration = (world.body.radius - touch.distance_m).max(0.0);
-        let (normal, apart_m_s) = (law.normal(history.captured), touch.normal.dot(&self.v));
+        let (normal, separation_m_s) = (law.normal(history.captured), touch.normal.dot(&self.v));
         let slip_m_s = world.body.slip(&touch.normal, &self.v, &self.w).norm();
         let cap = if history.slides { law.limits().caps(history.normal_force).0 } else { 0.0 };
-        let taken_w = normal.dissipating_w(penetration, apart_m_s) + cap * slip_m_s;
+        let taken_w = normal.dissipating_w(penetration, separation_m_s) + cap * slip_m_s;
         (normal.stored_j(penetration), taken_w)
     }
 
-    /// A time (s) within which the contacts of `on` take no more than `work_j`: their forces do not grow faster than springs
-    /// without loss, and nothing brakes the rock. The nearer to the end, the nearer it is to the true time.
+    /// A lower bound (s) of the time in which the contacts of `on` take `work_j`: their forces grow
+    /// no faster than those of springs without loss, and nothing slows the rock. The bound becomes
+    /// exact as `work_j` goes to 0.
     pub(crate) fn time_to_take_s(
         &self,
         world: &ContactEnvironment,
@@ -145,7 +152,7 @@ impl ContactState {
     }
 }
 
-/// What the springs of shear and rolling of a contact hold (J), by the kind it was counted under.
+/// Energy in the springs of shear and rolling of a contact (J), by the kind it was counted under.
 pub(super) fn stretched_j(world: &ContactEnvironment, history: &ContactHistory) -> Loss {
     let law = world.springs_of(history);
     let damping = law.stored_j(0.0, history.shear.norm_squared(), 0.0);
@@ -153,7 +160,7 @@ pub(super) fn stretched_j(world: &ContactEnvironment, history: &ContactHistory) 
     Loss::on_slope([0.0, damping, rolling]).on(world, history.triangle)
 }
 
-/// What the normal spring of a touch holds (J) by a law.
+/// Energy in the normal spring at a contact point (J) by a law.
 fn pressed_j(world: &ContactEnvironment, touch: &ContactPoint, law: &Law) -> f64 {
     let penetration = (world.body.radius - touch.distance_m).max(0.0);
     touch.gain2 * law.stored_j(penetration, 0.0, 0.0)

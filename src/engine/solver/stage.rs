@@ -1,11 +1,11 @@
 //! One implicit stage: the contact law solved with the geometry at the stage's end.
 //!
-//! The unknowns of a stage are velocity and spin at its end: with `h γ = hh`, `M (v − v_free)/hh` equals the sum of
-//! the contact forces, and these depend on `v` and `ω` through penetration, slip and rolling. The solve is exact for
-//! given normals; the loop around it moves the normals to where the rock ends.
-
+//! The unknowns of a stage are velocity and spin at its end: with `h γ = hh`, `M (v − v_free)/hh`
+//! equals the sum of the contact forces, which depend on `v` and `ω` through penetration, slip and
+//! rolling. The solve is exact for given normals; an outer fixed-point iteration moves the normals
+//! to the end position of the rock.
 use super::contact_state::{ContactEnvironment, ContactState, StateRates};
-use super::law::{Action, ContactPlace, StageContact};
+use super::law::{ContactDeformation, ContactForces, StageContact};
 use super::loss::Loss;
 use super::multi_contact;
 use super::tableau::Tableau;
@@ -14,13 +14,14 @@ use crate::contact::history::transport;
 use crate::ground::NormalElement;
 use crate::rock::Vec3;
 
-/// Most passes in which geometry and forces are brought to agree.
+/// Most passes of the fixed-point iteration between geometry and forces.
 pub(crate) const PASSES: u32 = 10;
-/// Change of the centre, relative to the radius, below which they agree (–).
-pub(crate) const AGREED: f64 = 1e-9;
+/// Change of the centre, relative to the radius, at which it has converged (–).
+pub(crate) const SHIFT_CONVERGED: f64 = 1e-9;
 
 impl StageContact {
-    /// Power that goes into the contact (W) at velocity `v` and spin `w`: what its springs store is counted in.
+    /// Power that goes into the contact (W) at velocity `v` and spin `w`, what its springs store
+    /// included.
     pub(super) fn loss(
         &self,
         world: &ContactEnvironment,
@@ -33,30 +34,31 @@ impl StageContact {
         Loss::of_slip((&self.shear_force, &slip, shear_rate), others).on(world, self.triangle)
     }
 
-    /// Forces at the present state, for the explicit first stage; returns the rates of shear and rolling springs.
-    pub(super) fn act_now(
+    /// Sets the forces to those of the present state, for the explicit first stage; returns the
+    /// rates of shear and rolling springs.
+    pub(super) fn set_forces_now(
         &mut self,
         world: &ContactEnvironment,
         v: &Vec3,
         w: &Vec3,
     ) -> (Vec3, Vec3) {
-        let at = ContactPlace {
+        let at = ContactDeformation {
             n: self.n,
             penetration: self.penetration,
             shear: self.shear,
             roll: self.roll,
         };
         let law = &self.law;
-        let action = Action::of(&world.body, law, &self.normal, &at, (v, w));
+        let action = ContactForces::of(&world.body, law, &self.normal, &at, (v, w));
         self.normal_force = action.normal[0];
         (self.shear_force, self.rolling_moment) = (action.shear.force, action.rolling.force);
         (action.shear.stretch_rate, action.rolling.stretch_rate)
     }
 }
 
-/// Where a stage ends.
+/// Position, velocity and spin at the base or at the end of a stage.
 #[derive(Debug, Clone, Copy)]
-pub struct End {
+pub struct StageMotion {
     /// Centre (m).
     pub c: Vec3,
     /// Velocity (m/s).
@@ -67,35 +69,37 @@ pub struct End {
 
 impl ContactState {
     /// The base of implicit stage `i`: the state plus the explicit part of the earlier stages.
-    pub(crate) fn base(&self, tableau: &Tableau, i: usize, h: f64) -> End {
+    pub(crate) fn base(&self, tableau: &Tableau, i: usize, h: f64) -> StageMotion {
         let base = |x, part: fn(&StateRates) -> Vec3| tableau.base((i, h), (x, &self.rates), part);
-        End {
+        StageMotion {
             c: base(self.c, |rate| rate.c),
             v: base(self.v, |rate| rate.v),
             w: base(self.w, |rate| rate.w),
         }
     }
 
-    /// Solves implicit stage `i` of a step of length `h` and stores its rates; `None` if it does not settle.
+    /// Solves implicit stage `i` of a step of length `h` and stores its rates; `None` if it does
+    /// not converge.
     pub fn stage(
         &mut self,
         world: &ContactEnvironment,
         tableau: &Tableau,
         i: usize,
         h: f64,
-    ) -> Option<End> {
+    ) -> Option<StageMotion> {
         let base = self.base(tableau, i, h);
         let hh = tableau.diagonal * h;
         // free motion: weight acts, contacts do not
         let (vf, wf) = (base.v + world.body.gravity * hh, base.w);
-        // Where it would be if it went on as in the stage before.
+        // extrapolated with velocity and acceleration of the stage before
         let before = &self.rates[i - 1];
         let mut guess = base.c + (before.c + before.v * hh) * hh;
-        // Planes slid along may have ended on the way: what they say must be confirmed by the look at the end.
-        let mut looked =
+        // contact points moved along their planes may have left their faces: the search at the end
+        // must confirm them
+        let mut is_current =
             !(self.near.covers(&guess) && self.touches.update_on_planes(world.terrain, &guess));
-        if looked {
-            self.look_ahead(world, &guess);
+        if is_current {
+            self.find_contact_points_ahead(world, &guess);
         }
         for _ in 0..PASSES {
             self.place_contacts(world, tableau, (i, h), (&base, &guess));
@@ -103,21 +107,21 @@ impl ContactState {
             let (v, w) =
                 multi_contact::solve(&world.body, contacts, (vf, wf), hh, &mut self.sweeps)?;
             let c = base.c + v * hh;
-            self.look_ahead(world, &c);
+            self.find_contact_points_ahead(world, &c);
             let moved = (c - guess).norm_squared();
-            let agrees = looked && moved <= (AGREED * world.body.radius).powi(2);
+            let agrees = is_current && moved <= (SHIFT_CONVERGED * world.body.radius).powi(2);
             if agrees || self.stays_on_faces() {
-                let end = End { c, v, w };
+                let end = StageMotion { c, v, w };
                 self.store(world, &base, &end, (i, hh));
                 return Some(end);
             }
-            (guess, looked) = (c, true);
+            (guess, is_current) = (c, true);
         }
         None
     }
 
-    /// Whether the last look found the very faces that the forces were computed with: planes are the same everywhere,
-    /// so the forces are exact wherever the rock was when they were computed.
+    /// Whether the last search found the very faces that the forces were computed with. A plane is
+    /// the same everywhere, so the forces are exact wherever the rock was when they were computed.
     #[inline]
     fn stays_on_faces(&self) -> bool {
         let contacts = self.stage_contacts();
@@ -127,16 +131,16 @@ impl ContactState {
             })
     }
 
-    /// Makes the contacts of the last look into contacts based at the stage's base.
+    /// Makes the contact points found last into contacts of the stage.
     pub(crate) fn place_contacts(
         &mut self,
         world: &ContactEnvironment,
         tableau: &Tableau,
         (i, h): (usize, f64),
-        (base, at): (&End, &Vec3),
+        (base, at): (&StageMotion, &Vec3),
     ) {
         self.contact_count = self.touches.len();
-        // a memory belongs to one contact at a time; bits mark those given away
+        // each history belongs to at most one contact; bits mark those in use
         let mut taken = 0;
         for k in 0..self.contact_count {
             let history = self.history_of(world, k, taken, &base.v);
@@ -147,14 +151,15 @@ impl ContactState {
             let mut contact = self.contact_of(world, k, history, (shear, roll));
             contact.penetration =
                 world.body.radius - self.touches[k].distance_m - contact.n.dot(&(base.c - at));
-            if self.onset.waits && memory.onset_m_s > 0.0 {
+            if self.onset.deferred && memory.onset_m_s > 0.0 {
                 contact.normal = NormalElement::NONE;
             }
             self.contacts[k] = contact;
         }
     }
 
-    /// The contact of touch `k` with springs stretched so in the frame of its memory, and no penetration yet.
+    /// The contact at point `k` with the given spring stretches in the frame of its history, and no
+    /// penetration yet.
     fn contact_of(
         &self,
         world: &ContactEnvironment,
@@ -177,7 +182,7 @@ impl ContactState {
             normal_force: memory.normal_force,
             shear_force: Vec3::zeros(),
             rolling_moment: Vec3::zeros(),
-            // a first guess only: the solver finds the mode anew
+            // an initial guess only: the solver finds the mode itself
             mode: self.contacts[k].mode,
             law,
         }
@@ -187,8 +192,8 @@ impl ContactState {
     pub(crate) fn store(
         &mut self,
         world: &ContactEnvironment,
-        base: &End,
-        end: &End,
+        base: &StageMotion,
+        end: &StageMotion,
         (i, hh): (usize, f64),
     ) {
         let rate = &mut self.rates[i];
@@ -206,9 +211,9 @@ impl ContactState {
                 transport(shear_rate, &contact.n, &self.histories[contact.history].n);
             rate.roll[contact.history] = roll_rate;
             rate.loss.add(&contact.loss(world, &end.v, &end.w, &shear_rate), 1.0);
-            self.onset.is_met |= self.onset.waits
+            self.onset.is_reached |= self.onset.deferred
                 && self.histories[contact.history].onset_m_s > 0.0
-                && contact.pen_at(&end.v, hh) > 0.0;
+                && contact.penetration_at(&end.v, hh) > 0.0;
         }
     }
 
@@ -216,7 +221,7 @@ impl ContactState {
     pub fn rates_now(&mut self, world: &ContactEnvironment) {
         let (c, v, w) = (self.c, self.v, self.w);
         let body = &world.body;
-        self.look(world, &c, body.radius * (1.0 + TOUCH));
+        self.find_contact_points(world, &c, body.radius * (1.0 + TOUCH));
         // weight, then contact by contact
         self.rates[0] = StateRates { c: v, v: body.gravity, ..StateRates::NONE };
         let mut taken = 0;
@@ -226,10 +231,11 @@ impl ContactState {
             let memory = &self.histories[history];
             let mut contact = self.contact_of(world, k, history, (memory.shear, memory.roll));
             contact.penetration = (body.radius - self.touches[k].distance_m).max(0.0);
-            let (shear_rate, roll_rate) = contact.act_now(world, &v, &w);
+            let (shear_rate, roll_rate) = contact.set_forces_now(world, &v, &w);
             let back = self.histories[history].n;
             let rate = &mut self.rates[0];
-            // Newton and Euler for a sphere: shear acts at the touched point, R below the centre
+            // Newton–Euler equations of a sphere: shear acts at the contact point, R below the
+            // centre
             rate.v += (contact.n * contact.normal_force - contact.shear_force) / body.mass;
             rate.w += (contact.n.cross(&contact.shear_force) * body.radius
                 - contact.rolling_moment)

@@ -16,7 +16,7 @@ use crate::rock::Vec3;
 /// Most stages of a tableau.
 pub const STAGES: usize = 6;
 
-/// Most that the next step shrinks or grows at once (–): one error estimate is trusted no further than this.
+/// Bounds of the change of the step length at once (–): an error estimate is not trusted beyond.
 pub(crate) const RATIO: (f64, f64) = (0.2, 4.0);
 
 /// One tableau: every implicit stage has the same diagonal and the last stage is the step's result.
@@ -58,33 +58,37 @@ impl Tableau {
         rates.iter().zip(self.a[i]).fold(x, |sum, (rate, a)| sum + part(rate) * (h * a))
     }
 
-    /// What the two methods differ by in a `part` of the rates, over the length of the step: `Σ (b_i − b̂_i) f_i`.
+    /// Difference of the two methods in a `part` of the rates, over the step length: `Σ (b_i −
+    /// b̂_i) f_i`.
     #[inline]
-    pub(super) fn off<R>(&self, rates: &[R], part: impl Fn(&R) -> Vec3) -> Vec3 {
+    pub(super) fn embedded_difference<R>(&self, rates: &[R], part: impl Fn(&R) -> Vec3) -> Vec3 {
         let weighted = rates[..self.stages].iter().zip(self.error);
         weighted.fold(Vec3::zeros(), |sum, (rate, weight)| sum + part(rate) * weight)
     }
 
-    /// When stage `k` is, over the step (–).
+    /// Node of stage `k`, its time over the step length (–).
     pub(crate) fn node(&self, k: usize) -> f64 {
         self.a[k].iter().sum::<f64>() + if k > 0 { self.diagonal } else { 0.0 }
     }
 
     /// Weight of stage `k` in the work done over the step: that of the finer of the two methods.
     ///
-    /// The power that goes into contacts is one more component of the motion. Summed with the weights of the finer method
-    /// it is that of the exact motion from the step's start, to one order more than the step itself: what the motion's
-    /// energy then misses is what the step lost or gained by itself, not an error of the sum.
+    /// The power that goes into contacts is one more component of the motion. Summed with the
+    /// weights of the finer method it is that of the exact motion from the step's start, to one
+    /// order more than the step itself. What the energy of the motion then misses is the gain or
+    /// loss of the step itself, not an error of the sum.
     #[inline]
     pub fn work_weight(&self, k: usize) -> f64 {
         if self.embedded_is_finer { self.weight(k) - self.error[k] } else { self.weight(k) }
     }
 
-    /// The same where a stage leaves the share `left` (–, 0..1) of the fastest motion of the contacts.
+    /// The same for a stage that leaves the share `left` (–, 0..1) of the fastest motion of the
+    /// contacts.
     ///
-    /// The embedded method does not damp what is stiff. Forces that stand for a constraint swing from stage to stage in a step much longer than
-    /// their contact's own times; the step's own weights sum them to the impulse that the motion has taken, those of the
-    /// finer method do not. So what both differ by is filtered as an error estimate of a stiff motion is (Hosea and Shampine 1996).
+    /// The embedded method does not damp stiff motion. In a step much longer than the contact's own
+    /// time scale the forces of a constraint oscillate from stage to stage; the step's own weights
+    /// sum them to the impulse of the motion, those of the finer method do not. So their difference
+    /// is filtered like an error estimate of stiff motion (Hosea and Shampine 1996).
     #[inline]
     pub fn damped_work_weight(&self, k: usize, left: f64) -> f64 {
         let own = self.weight(k);

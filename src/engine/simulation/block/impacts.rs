@@ -7,10 +7,10 @@ use super::super::rock_in_contact::IMPACT_TIMES;
 use super::{BlockSimulation, rotation};
 use crate::rock::Vec3;
 use crate::solver::block::BlockHistory;
+use crate::solver::impact_point::ImpactPoint;
 use crate::solver::law::capture_m_s;
-use crate::solver::roughness::Meeting;
+use crate::solver::roughness::SurfaceApproach;
 use crate::solver::scar::GroundBlow;
-use crate::solver::struck::Struck;
 use nalgebra::Rotation3;
 use std::f64::consts::PI;
 
@@ -71,19 +71,19 @@ impl BlockSimulation<'_> {
         n: &Vec3,
         point: &Vec3,
     ) -> Option<(Rotation3<f64>, f64)> {
-        if !self.footing.facets.meet_next(&self.world, &self.meeting(triangle, n, point)) {
+        if !self.footing.facets.meets_new_facet(&self.world, &self.meeting(triangle, n, point)) {
             return None;
         }
         self.turn_back();
         let at = self.meeting(triangle, n, point);
-        let turn = self.footing.facets.struck(&self.world, &at)?;
+        let turn = self.footing.facets.draw_facet(&self.world, &at)?;
         Some((turn, at.approach_m_s(&turn)))
     }
 
     /// State of the block at a contact with normal `n` at `point`.
-    fn meeting(&self, triangle: u32, n: &Vec3, point: &Vec3) -> Meeting {
+    fn meeting(&self, triangle: u32, n: &Vec3, point: &Vec3) -> SurfaceApproach {
         let c = self.moving.pose.centre;
-        Meeting { n: *n, triangle, c, v: self.moving.at(self.block, &(point - c)) }
+        SurfaceApproach { n: *n, triangle, c, v: self.moving.at(self.block, &(point - c)) }
     }
 
     /// Recomputes the dashpots of the contacts that have begun, from the speed that soil has left
@@ -138,7 +138,7 @@ impl BlockSimulation<'_> {
             history.rebound(speed);
         }
         if !history.captured {
-            let struck = Struck {
+            let struck = ImpactPoint {
                 point_m: history.point,
                 normal: history.n,
                 feature: history.feature.kind,
@@ -163,7 +163,7 @@ impl BlockSimulation<'_> {
             self.recorder.book_impacts(&held_j);
         }
         let now_s = self.recorder.now.time_s;
-        if self.footing.facets.is_met(self.footing.springs.is_free(), now_s) {
+        if self.footing.facets.is_tilt_over(self.footing.springs.is_free(), now_s) {
             self.turn_back();
         }
         self.footing.springs.capture(now_s);

@@ -4,8 +4,8 @@ use super::Recorder;
 use crate::rock::Vec3;
 use crate::simulation::Ledger;
 use crate::simulation::impacts::{MeshEnergy, PatchOwner};
+use crate::solver::impact_point::ImpactPoint;
 use crate::solver::loss::Loss;
-use crate::solver::struck::Struck;
 
 impl Recorder<'_> {
     /// Begins an impact on the patch of a triangle with the present motion, to end at
@@ -13,7 +13,7 @@ impl Recorder<'_> {
     /// its number.
     pub(in crate::simulation) fn begin_impact(
         &mut self,
-        struck: &Struck,
+        struck: &ImpactPoint,
         latest_end_s: f64,
         held_j: &MeshEnergy,
     ) -> u32 {

@@ -14,8 +14,8 @@ use crate::simulation::rest::RestCriterion;
 use crate::simulation::rock_in_contact::RockInContact;
 use crate::simulation::settings::RunSettings;
 use crate::simulation::{PathState, Stop, Trajectory};
-use crate::solver::island::{BlowInStep, Hit};
-use crate::solver::loss::{Given, Loss};
+use crate::solver::island::{BlowInStep, MeshImpact};
+use crate::solver::loss::{EnergyGiven, Loss};
 use crate::solver::step_control::ONSET;
 
 impl<'a> WorldBody<'a> {
@@ -184,7 +184,7 @@ impl<'a> WorldBody<'a> {
         &mut self,
         settings: &RunSettings,
         time_s: f64,
-        (mut loss, given): (Loss, Given),
+        (mut loss, given): (Loss, EnergyGiven),
         slides: bool,
     ) {
         if matches!(self.state, BodyState::Removed(_)) {
@@ -194,15 +194,15 @@ impl<'a> WorldBody<'a> {
         let mut rock = self.in_contact(settings);
         rock.begin_impacts();
         // what other rocks transfer to it comes from their positions: it meets no facet meanwhile
-        if given != Given::default() {
+        if given != EnergyGiven::default() {
             rock.leave_facet();
         }
         // stems that the step has overloaded take their part of the energy now
-        rock.state.bend(&rock.world, true, &mut loss);
+        rock.state.load_stems(&rock.world, true, &mut loss);
         let to = self.motion_at(time_s);
         // a rock may be hit and released within one step and then fly on another path; here neither
         // the mesh nor another rock took or gave anything in this step
-        let is_untouched = given == Given::default() && loss == Loss::default();
+        let is_untouched = given == EnergyGiven::default() && loss == Loss::default();
         if was_flying && self.member.flying && is_untouched {
             self.recorder.record_step_as(to, PathState::Flight, true);
             return;
@@ -222,14 +222,14 @@ impl<'a> WorldBody<'a> {
         &mut self,
         settings: &RunSettings,
         time_s: f64,
-        (mut loss, given): (Loss, Given),
+        (mut loss, given): (Loss, EnergyGiven),
         slides: bool,
     ) {
         if matches!(self.state, BodyState::Removed(_)) {
             return;
         }
         let rock = self.in_contact(settings);
-        rock.state.bend(&rock.world, false, &mut loss);
+        rock.state.load_stems(&rock.world, false, &mut loss);
         let to = self.motion_at(time_s);
         // its impacts are listed with the impacts of the step
         self.member.state.histories.iter_mut().for_each(|history| history.announced = true);
@@ -251,7 +251,7 @@ impl<'a> WorldBody<'a> {
     pub(super) fn record_blow(
         &mut self,
         settings: &RunSettings,
-        (blow, hits): (&BlowInStep, &[Hit]),
+        (blow, hits): (&BlowInStep, &[MeshImpact]),
         (time_s, slides): (f64, bool),
     ) {
         if matches!(self.state, BodyState::Removed(_)) {
@@ -290,7 +290,7 @@ impl<'a> WorldBody<'a> {
         &mut self,
         settings: &RunSettings,
         to: Motion,
-        (loss, given): (Loss, Given),
+        (loss, given): (Loss, EnergyGiven),
         (slides, was_flying): (bool, bool),
     ) {
         let from = self.recorder.now;
@@ -324,7 +324,7 @@ impl<'a> WorldBody<'a> {
     }
 
     /// Books the energy transferred to other rocks and lost in contacts with them (J).
-    pub(super) fn book_given(&mut self, given: &Given) {
+    pub(super) fn book_given(&mut self, given: &EnergyGiven) {
         self.recorder.ledger.others_j += given.lost;
         self.recorder.ledger.passed_on_j += given.passed_on;
     }

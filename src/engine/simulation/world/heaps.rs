@@ -17,7 +17,7 @@ use crate::contact::pair::{PairHistory, held_groups, normal_and_distance};
 use crate::rock::Motion;
 use crate::simulation::settings::RunSettings;
 use crate::solver::island::unload_pair;
-use crate::solver::loss::Given;
+use crate::solver::loss::EnergyGiven;
 use crate::solver::{MOST_WITH_SPRINGS, Settings};
 
 /// Settings of the step of heaps where they are computed in the rigid limit; none where bonds may
@@ -113,12 +113,12 @@ impl WorldBody<'_> {
         self.in_contact(settings).leave_facet();
         let loss = self.member.unload(settings.terrain);
         self.recorder.book_losses(&loss);
-        self.continue_unloaded(&Given::default());
+        self.continue_unloaded(&EnergyGiven::default());
         self.recorder.end_all_impacts();
     }
 
     /// Continues with the motion after unloading.
-    fn continue_unloaded(&mut self, given: &Given) {
+    fn continue_unloaded(&mut self, given: &EnergyGiven) {
         self.book_given(given);
         let (velocity_m_s, spin_rad_s) = (self.member.state.v, self.member.state.w);
         self.recorder.record_velocity_jump(Motion {

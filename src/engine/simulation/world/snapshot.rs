@@ -10,7 +10,7 @@ use super::{BodyState, Stop, WorldBody};
 use crate::contact::pair::PairHistory;
 use crate::simulation::recorder::RecorderMark;
 use crate::simulation::rest::RestCriterion;
-use crate::solver::island::Memory;
+use crate::solver::island::MotionSnapshot;
 
 /// All that later windows depend on.
 pub(super) struct Snapshot {
@@ -21,7 +21,7 @@ pub(super) struct Snapshot {
 
 /// Snapshot of one rock.
 pub(super) struct BodySnapshot {
-    memory: Memory,
+    memory: MotionSnapshot,
     mark: RecorderMark,
     state: BodyState,
     flight_end: Option<(f64, Option<Stop>)>,
@@ -36,7 +36,7 @@ impl WorldBody<'_> {
     /// State of the rock, as far as later windows depend on it.
     pub(super) fn snapshot(&self) -> BodySnapshot {
         BodySnapshot {
-            memory: self.member.memory(),
+            memory: self.member.snapshot(),
             mark: self.recorder.mark(),
             state: self.state.clone(),
             flight_end: self.flight_end.clone(),
@@ -50,7 +50,7 @@ impl WorldBody<'_> {
 
     /// Restores the state to the bit; effort and predicted velocity change are not restored.
     pub(super) fn restore(&mut self, saved: &BodySnapshot) {
-        self.member.recall(&saved.memory);
+        self.member.restore(&saved.memory);
         self.recorder.restore(&saved.mark);
         self.state.clone_from(&saved.state);
         self.flight_end.clone_from(&saved.flight_end);

@@ -17,8 +17,8 @@ use super::{WorldBody, WorldStats};
 use crate::contact::pair::{PairHistory, PairImpact, collision_time_s};
 use crate::simulation::Stop;
 use crate::simulation::settings::RunSettings;
-use crate::solver::island::{Done, Island, RigidIsland};
-use crate::solver::loss::{Given, Loss};
+use crate::solver::island::{Island, IslandAdvance, RigidIsland};
+use crate::solver::loss::{EnergyGiven, Loss};
 use crate::solver::step_control::{ONSET, StepError};
 
 /// Gap between two rocks that is rounding of their flight (–, relative to the sum of their radii).
@@ -35,7 +35,7 @@ type Bodies<'a> = Vec<Box<WorldBody<'a>>>;
 
 /// Function by which a rock records a step, with its losses (J), the energy given to others (J),
 /// and whether it slides.
-type RecordStep<'a> = fn(&mut WorldBody<'a>, &RunSettings, f64, (Loss, Given), bool);
+type RecordStep<'a> = fn(&mut WorldBody<'a>, &RunSettings, f64, (Loss, EnergyGiven), bool);
 
 /// One island and its window.
 pub(super) struct IslandWindow<'a> {
@@ -218,7 +218,7 @@ impl<'a> IslandWindow<'a> {
             // no step passes the next event, the end of the window, or the end of a facet of rough
             // ground
             let longest_s = (until_s - self.now_s).min(self.before_step(&mut island));
-            let spent = (island.sweeps, island.jumps);
+            let spent = (island.sweeps, island.newton_steps);
             let Some(done) = self.advance(&mut island, longest_s) else {
                 continues = false;
                 break;
@@ -246,7 +246,7 @@ impl<'a> IslandWindow<'a> {
 
     /// One step of at most `longest_s` (s). None where it fails: the step is that of all rocks of
     /// the island, and none may continue from a guess.
-    fn advance(&mut self, island: &mut Island<'a>, longest_s: f64) -> Option<Done> {
+    fn advance(&mut self, island: &mut Island<'a>, longest_s: f64) -> Option<IslandAdvance> {
         let step = self.settings.step;
         // three drivers of one system: error control, the fixed step of the paper, velocity
         // stepping without springs
@@ -271,14 +271,14 @@ impl<'a> IslandWindow<'a> {
         let mut longest_s = f64::INFINITY;
         let has_stems = self.settings.terrain.stems.is_some();
         for (body, member) in self.bodies.iter_mut().zip(&mut island.members) {
-            if !has_stems && !member.state.facets.are_any() {
+            if !has_stems && !member.state.facets.are_rough() {
                 continue;
             }
-            let met = member.state.facets.is_any_met();
+            let met = member.state.facets.is_tilted();
             std::mem::swap(&mut body.member, member);
             longest_s = longest_s.min(body.before_step(self.settings));
             std::mem::swap(&mut body.member, member);
-            if met != member.state.facets.is_any_met() {
+            if met != member.state.facets.is_tilted() {
                 island.h = island.h.min(ONSET / member.omega(self.settings.terrain));
             }
         }
@@ -322,10 +322,10 @@ impl<'a> IslandWindow<'a> {
     fn record_step(
         &mut self,
         island: &mut Island<'a>,
-        done: &Done,
+        done: &IslandAdvance,
         ((swept, jumped), record): ((u64, u64), RecordStep<'a>),
     ) -> bool {
-        let (sweeps, jumps) = (island.sweeps - swept, island.jumps - jumped);
+        let (sweeps, jumps) = (island.sweeps - swept, island.newton_steps - jumped);
         let rocks = self.bodies.len() as u64;
         // the island counts a step once, whatever the number of its rocks
         self.statistics.add(&WorldStats {

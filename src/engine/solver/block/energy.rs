@@ -7,7 +7,7 @@ use crate::body::Block;
 use crate::flight::top::momentum_of;
 use crate::rock::Vec3;
 use crate::solver::environment::ContactEnvironment;
-use crate::solver::loss::{Loss, share_of};
+use crate::solver::loss::{Loss, scale_factor};
 
 /// Normals that differ by less are one (–).
 const SAME_NORMAL: f64 = 1e-9;
@@ -239,7 +239,7 @@ impl Footing {
             (taken.map(|joule| joule.max(0.0)), contact.triangle)
         };
         let sum: f64 = self.contacts.iter().flat_map(|contact| part(contact).0).sum();
-        let share = share_of(lost_j.max(0.0), sum).unwrap_or(0.0);
+        let share = scale_factor(lost_j.max(0.0), sum).unwrap_or(0.0);
         let mut loss = Loss::default();
         for (taken, triangle) in self.contacts.iter().map(part) {
             loss.add(&Loss::on_slope(taken).on(world, triangle), share);

@@ -7,7 +7,7 @@ use crate::body::Block;
 use crate::contact::block::BlockContactPoint;
 use crate::solver::environment::ContactEnvironment;
 use crate::solver::law::capture_m_s;
-use crate::solver::roughness::{Meeting, Tilt};
+use crate::solver::roughness::{SurfaceApproach, Tilt};
 use nalgebra::Rotation3;
 
 impl Moving {
@@ -42,7 +42,7 @@ impl Footing {
         moving: &Moving,
     ) -> Option<Rotation3<f64>> {
         let meeting = self.meeting(block, moving)?;
-        self.facets.struck(world, &meeting)
+        self.facets.draw_facet(world, &meeting)
     }
 
     /// Whether a block that slides or rolls has the last facet behind it, and comes to the next.
@@ -52,15 +52,15 @@ impl Footing {
         block: &Block,
         moving: &Moving,
     ) -> bool {
-        self.facets.are_any()
-            && self.meeting(block, moving).is_some_and(|at| self.facets.meet_next(world, &at))
+        self.facets.are_rough()
+            && self.meeting(block, moving).is_some_and(|at| self.facets.meets_new_facet(world, &at))
     }
 
     /// The fastest of the contacts that touch, as it meets a facet.
-    fn meeting(&self, block: &Block, moving: &Moving) -> Option<Meeting> {
+    fn meeting(&self, block: &Block, moving: &Moving) -> Option<SurfaceApproach> {
         let fastest = moving.fastest(block, self.touching(block))?;
         let (n, triangle, c) = (fastest.normal, fastest.triangle, moving.pose.centre);
-        Some(Meeting { n, triangle, c, v: moving.at(block, &fastest.lever) })
+        Some(SurfaceApproach { n, triangle, c, v: moving.at(block, &fastest.lever) })
     }
 
     /// With springs: lets the contact that presses hardest begin anew where the block comes to the next facet.
@@ -69,7 +69,7 @@ impl Footing {
         world: &ContactEnvironment,
         (block, moving): (&Block, &Moving),
     ) {
-        if !self.facets.are_any() || self.facets.is_any_met() {
+        if !self.facets.are_rough() || self.facets.is_tilted() {
             return;
         }
         let pressed = self.springs.histories.iter_mut().filter(|one| one.closed && one.announced);
@@ -77,7 +77,7 @@ impl Footing {
         let Some(history) = hardest else { return };
         let v = moving.at(block, &(history.point - moving.pose.centre));
         let (n, triangle, c) = (history.n, history.triangle, moving.pose.centre);
-        if self.facets.meet_next(world, &Meeting { n, triangle, c, v }) {
+        if self.facets.meets_new_facet(world, &SurfaceApproach { n, triangle, c, v }) {
             (history.announced, history.captured) = (false, true);
             history.approach_m_s = -n.dot(&v);
         }

@@ -131,7 +131,7 @@ impl Footing {
             lost.add(&loss.on(world, touch.triangle), 1.0);
             // what stands after the same blow has taken its part too
             if let Some(stem) = contact.stem.filter(|&stem| !broken.contains(&(0, stem))) {
-                self.stem_load.take(stem, loss.sum());
+                self.stem_load.add_taken(stem, loss.sum());
             }
         }
         broken.iter().for_each(|&(_, stem)| self.fell(stem));
@@ -151,9 +151,9 @@ impl Footing {
         };
         let mut end = self.pressed_by_springs(world, stems, (block, moving));
         if end.have_no_weight() && self.stem_load.pressed.have_no_weight() {
-            self.deepest(stems).into_iter().for_each(|tree| end.press(tree));
+            self.deepest(stems).into_iter().for_each(|tree| end.add(tree));
         }
-        for (stem, beyond_j) in self.stem_load.take_until(stems, &end, loss.trees) {
+        for (stem, beyond_j) in self.stem_load.distribute_until(stems, &end, loss.trees) {
             let push = self.push_of(stems, stem);
             moving.v += given_back(block.mass_kg, &moving.v, beyond_j, &push);
             self.springs.refresh();
@@ -186,7 +186,7 @@ impl Footing {
             for touch in trees {
                 let weight = moving.approach_m_s(block, touch).max(0.0).powi(2);
                 let stem = stems.of_triangle(touch.triangle);
-                pressed.press(PressedTree { stem, held_j: 0.0, weight });
+                pressed.add(PressedTree { stem, held_j: 0.0, weight });
             }
         }
         self.stem_load.pressed = pressed;
@@ -200,7 +200,7 @@ impl Footing {
     ) -> f64 {
         let Some(stems) = world.terrain.stems.as_ref() else { return f64::INFINITY };
         let pressed = self.pressed_by_springs(world, stems, (block, moving));
-        if !self.stem_load.tells_apart(stems, &pressed, moving.motion_j(block)) {
+        if !self.stem_load.needs_energy_by_tree(stems, &pressed, moving.motion_j(block)) {
             return f64::INFINITY;
         }
         APART_RAD / self.springs.stiffest(world)
@@ -219,7 +219,7 @@ impl Footing {
             let velocity = moving.at(block, &(history.point - moving.pose.centre));
             let (held_j, weight) = (history.held_j(), history.taking_w(&velocity));
             let stem = stems.of_triangle(history.triangle);
-            pressed.press(PressedTree { stem, held_j, weight });
+            pressed.add(PressedTree { stem, held_j, weight });
         }
         pressed
     }

@@ -1,8 +1,9 @@
-//! The contacts between the rocks of a fixed step, and the system of the rocks that they join.
+//! The contacts between rocks in a fixed step, and the system of the rocks that they couple.
 //!
-//! `(2M/Δt² + K) E = F − K D₀` in blocks of 6×6, paper Eq. (4): `K_kk` of a rock is `2M/Δt²` with its contacts, `K_kl`
-//! couples two rocks that touch. The matrix is symmetric and positive definite, so blocks are factorised without
-//! pivoting; the pattern is kept as long as the same rocks touch, and the numbers while only loads change.
+//! `(2M/Δt² + K) E = F − K D₀` in blocks of 6×6, paper Eq. (4): `K_kk` of a rock is `2M/Δt²` with
+//! its contacts, `K_kl` couples two rocks that touch. The matrix is symmetric and positive
+//! definite, so blocks are factorised without pivoting; its pattern is kept while the same rocks
+//! touch, its factors while only loads change.
 
 use super::DEEPEST;
 use super::body::DdaBody;
@@ -11,21 +12,21 @@ use crate::contact::submatrix::{Mat6, Vec6};
 use crate::solver::block_factor::{Below, Blocks, Factor};
 use crate::solver::dda_system::pair_contact::DdaPairContact;
 use crate::solver::dda_system::slider::Change;
-use crate::solver::loss::Given;
+use crate::solver::loss::EnergyGiven;
 use crate::solver::step_control::StepError;
 
-/// The contacts between rocks; a rock alone has none, and no memory is taken for it.
+/// The contacts between rocks; for a rock alone nothing is allocated.
 #[derive(Debug, Default)]
 pub(in crate::solver) struct DdaPairs {
     pairs: Vec<DdaPairContact>,
-    /// Place of each rock among those that pairs join; `None` for one that no other touches.
+    /// Place of each rock in the coupled system; `None` without contact to another rock.
     places: Vec<Option<usize>>,
     factor: Option<Box<Factor>>,
 }
 
 impl DdaPairs {
-    /// Contacts that are closed or may close within the step.
-    pub(super) fn meet(&mut self, bodies: &[DdaBody], pair_histories: &[PairHistory]) {
+    /// Begins the step with the contacts that are closed or may close within it.
+    pub(super) fn begin_step(&mut self, bodies: &[DdaBody], pair_histories: &[PairHistory]) {
         let over = |(k, pair_history): (usize, &PairHistory)| {
             let ends = [pair_history.a, pair_history.b].map(|end| &bodies[end as usize]);
             let steps = ends.map(|end| &end.state.scratch.step);
@@ -38,12 +39,12 @@ impl DdaPairs {
             self.places.resize(bodies.len(), None);
         }
         self.pairs.iter().flat_map(|pair| pair.ends).for_each(|end| self.places[end] = Some(0));
-        // numbered among themselves: the pattern has no empty rows
+        // numbered consecutively: the pattern has no empty rows
         self.places.iter_mut().flatten().enumerate().for_each(|(k, place)| *place = k);
     }
 
-    /// Solves Eq. (4): rocks that no other touches each for itself, the others together, with a matrix made anew if contacts
-    /// have changed it. `None` if there is no solution.
+    /// Solves Eq. (4), rocks without contact to others one by one, the others together; the matrix
+    /// is rebuilt if contacts have changed it. `None` if there is no solution.
     pub(super) fn solve(&mut self, bodies: &mut [DdaBody], is_new: bool) -> Option<()> {
         let mut load = Vec::new();
         for (k, body) in bodies.iter_mut().enumerate() {
@@ -60,7 +61,8 @@ impl DdaPairs {
             self.factorise(bodies)?;
         }
         for pair in &self.pairs {
-            let free = pair.ways(pair.ends.map(|end| &bodies[end].state.scratch.step.free));
+            let free = pair
+                .relative_displacement(pair.ends.map(|end| &bodies[end].state.scratch.step.free));
             for (k, end) in pair.ends.into_iter().enumerate() {
                 let own = load[6 * self.places[end]?..].iter_mut();
                 own.zip(&pair.load(k, &free)).for_each(|(sum, load)| *sum += load);
@@ -69,10 +71,12 @@ impl DdaPairs {
         self.factor.as_ref()?.substitute(&mut load)?;
         let joined = bodies.iter_mut().zip(&self.places).filter(|(_, place)| place.is_some());
         let mut solved = joined.zip(load.chunks_exact(6));
-        solved.try_for_each(|((body, _), x)| body.state.scratch.take(Vec6::from_column_slice(x)))
+        solved.try_for_each(|((body, _), x)| {
+            body.state.scratch.set_solution(Vec6::from_column_slice(x))
+        })
     }
 
-    /// Factorises the blocks of the rocks that are joined and of the contacts between them.
+    /// Factorises the blocks of the coupled rocks and of the contacts between them.
     ///
     /// Pairs stand in ascending order of their ends, and so do the blocks below the diagonal by
     /// column and row.
@@ -91,31 +95,36 @@ impl DdaPairs {
         self.factor.get_or_insert_default().factorise(blocks)
     }
 
-    /// Judges each by the displacements that came out; the largest change.
-    pub(super) fn judge(&mut self, bodies: &[DdaBody]) -> Change {
+    /// Updates the contact states by the displacements found; the largest change.
+    pub(super) fn update_state(&mut self, bodies: &[DdaBody]) -> Change {
         let pairs = self.pairs.iter_mut();
-        let judged = pairs.map(|pair| pair.contact.judge(&pair.ways(d(pair, bodies))));
-        judged.max().unwrap_or(Change::None)
+        let changes = pairs
+            .map(|pair| pair.contact.update_state(&pair.relative_displacement(d(pair, bodies))));
+        changes.max().unwrap_or(Change::None)
     }
 
-    /// Ends the search for their states.
+    /// Fixes the contact states for the fallback solution.
     pub(super) fn stick(&mut self) {
         self.pairs.iter_mut().for_each(|pair| pair.contact.stick());
     }
 
-    /// Opens or closes one that begins apart, the last that asks for it; whether there is any.
+    /// Opens or closes the last contact that begins apart and has to change; whether there is one.
     pub(super) fn open_or_close_one_apart(&mut self, bodies: &[DdaBody]) -> bool {
         let mut pairs = self.pairs.iter_mut().rev();
-        pairs.any(|pair| pair.contact.open_or_close_apart(&pair.ways(d(pair, bodies))))
+        pairs.any(|pair| {
+            pair.contact.open_or_close_apart(&pair.relative_displacement(d(pair, bodies)))
+        })
     }
 
-    /// Writes their state into their memory, and books what each end gave the other (J); how many bonds broke.
+    /// Ends the step: writes the contact histories, and books the energy that each end gave to the
+    /// other (J); the number of broken bonds.
     ///
-    /// Energy: the work of a contact on each of its ends; what it takes of that is lost in it, half to each.
+    /// Energy: the work of a contact on each of its ends; half of what the contact itself takes is
+    /// booked at each.
     ///
     /// # Errors
     /// [`StepError::SankIn`] if a contact is deeper than the springs are meant for: the step is too long for them.
-    pub(super) fn book(
+    pub(super) fn finish_step(
         &self,
         bodies: &mut [DdaBody],
         pair_histories: &mut [PairHistory],
@@ -124,13 +133,13 @@ impl DdaPairs {
         let mut broken = 0;
         for pair in &self.pairs {
             let d = d(pair, bodies);
-            if pair.ways(d).depth > DEEPEST * pair.contact.radius {
+            if pair.relative_displacement(d).depth > DEEPEST * pair.contact.radius {
                 return Err(StepError::SankIn);
             }
-            let (given, lost) = (Given::of_ends(pair.given_j(d)), 0.5 * pair.taken_j(d));
+            let (given, lost) = (EnergyGiven::of_ends(pair.given_j(d)), 0.5 * pair.taken_j(d));
             broken += u64::from(pair.remember(d, &mut pair_histories[pair.contact.history]));
             for (end, given) in pair.ends.into_iter().zip(given) {
-                bodies[end].given.add(&Given { lost, ..given }, 1.0);
+                bodies[end].given.add(&EnergyGiven { lost, ..given }, 1.0);
             }
         }
         Ok(broken)

@@ -1,4 +1,4 @@
-//! The contact of two rocks inside a fixed step: the paper's submatrices for two spheres.
+//! The contact of two rocks in a fixed step: the paper's submatrices for two spheres.
 //!
 //! With `V` from the first sphere to the second, `s = 1` for the first and `−1` for the second, the relative
 //! displacement is `Σ s_k T_k D_k`, and every submatrix of the sphere–edge contact becomes four:
@@ -8,7 +8,7 @@
 //! the radii. Dashpots act on the mean velocity of the step, `c/Δt` beside the spring, as in `dda`.
 
 use super::StepConstants;
-use super::contact::{ContactWays, DdaContact};
+use super::contact::{DdaContact, RelativeDisplacement};
 use crate::contact::history::transport;
 use crate::contact::pair::{PairHistory, normal_and_distance};
 use crate::contact::submatrix::{
@@ -16,10 +16,11 @@ use crate::contact::submatrix::{
 };
 use crate::rock::Vec3;
 
-/// Gap (–, relative to the smaller radius) up to which two rocks are a contact of the step: they may close it within.
+/// Gap (–, relative to the smaller radius) up to which two rocks are in potential contact: they may
+/// close it within the step.
 const REACH: f64 = 0.1;
 
-/// `s` of the first and of the second sphere: what pushes one pushes the other back.
+/// Sign `s` of the first and of the second sphere: their forces are opposite.
 const SIGN: [f64; 2] = [1.0, -1.0];
 
 /// One contact of two rocks in a step.
@@ -27,7 +28,7 @@ const SIGN: [f64; 2] = [1.0, -1.0];
 pub(crate) struct DdaPairContact {
     /// The rocks.
     pub(crate) ends: [usize; 2],
-    /// Springs and state, the same as of a contact with the mesh.
+    /// Springs and state, as of a contact with the mesh.
     pub(crate) contact: DdaContact,
 }
 
@@ -59,18 +60,18 @@ impl DdaPairContact {
         };
         let ends = [pair_history.a as usize, pair_history.b as usize];
         let mut pair = Self { ends, contact };
-        let free = pair.ways(steps.map(|step| &step.free));
-        // A new pair knows no normal yet, and from the opposite of `n` there is no shortest turn.
+        let free = pair.relative_displacement(steps.map(|step| &step.free));
+        // a new pair has no normal yet, and from the opposite of `n` there is no shortest rotation
         let from = if pair_history.is_held() { &pair_history.n } else { &n };
         let left = (pair_history.normal_force, transport(pair_history.shear, from, &n));
         pair.contact.begin((pair_history.is_held(), pair_history.slides), left, &free);
         Some(pair)
     }
 
-    /// What it sees of the displacements of its ends.
-    pub(crate) fn ways(&self, d: [&Vec6; 2]) -> ContactWays {
+    /// Relative displacement of its ends.
+    pub(crate) fn relative_displacement(&self, d: [&Vec6; 2]) -> RelativeDisplacement {
         let [a, b] = [0, 1].map(|k| displacement(&self.contact.points[k]) * d[k]);
-        self.contact.see(&(d[0] - d[1]), &(a - b))
+        self.contact.relative_to(&(d[0] - d[1]), &(a - b))
     }
 
     /// Block `K_kl`.
@@ -83,13 +84,13 @@ impl DdaPairContact {
         (normal_stiffness(normal, &row) + across) * (SIGN[k] * SIGN[l])
     }
 
-    /// Load `F_k − Σ_l K_kl D₀_l` with what it sees of the free displacements.
+    /// Load `F_k − Σ_l K_kl D₀_l`, from the relative free displacement.
     ///
-    /// What the free motion does to the springs depends on the difference of both alone: rocks that move along
-    /// together lose no digits by it.
-    pub(crate) fn load(&self, k: usize, free: &ContactWays) -> Vec6 {
+    /// The effect of the free motion on the springs depends on that difference alone: rocks that
+    /// move together lose no digits.
+    pub(crate) fn load(&self, k: usize, free: &RelativeDisplacement) -> Vec6 {
         let contact = &self.contact;
-        if !contact.presses {
+        if !contact.closed {
             return Vec6::zeros();
         }
         let [normal, shear] = contact.stiffnesses();
@@ -99,37 +100,38 @@ impl DdaPairContact {
         (contact.normal_load() - pushed + held) * SIGN[k]
     }
 
-    /// Work of each end on the contact over its displacement (J): what the other rock and the springs are given by it.
+    /// Work of each end on the contact over its displacement (J), which goes to the other rock and
+    /// the springs.
     ///
     /// `−F_k · D_k` with the force at the step's end: the paper's springs act with it over the whole
     /// step.
     pub(crate) fn given_j(&self, d: [&Vec6; 2]) -> [f64; 2] {
-        let (contact, ways) = (&self.contact, self.ways(d));
-        if !contact.presses {
+        let (contact, relative) = (&self.contact, self.relative_displacement(d));
+        if !contact.closed {
             return [0.0; 2];
         }
-        let push = normal_row(&contact.v) * contact.pull_or_push(ways.depth);
-        let drag = contact.forces(&ways).0;
+        let push = normal_row(&contact.v) * contact.pull_or_push(relative.depth);
+        let drag = contact.forces(&relative).0;
         let act = |k: usize| push + force_at(&displacement(&contact.points[k]), &drag);
         [0, 1].map(|k| (act(k) * SIGN[k]).dot(d[k]))
     }
 
-    /// What the contact itself takes of that and keeps (J): dashpots, slider and what its springs hold more at the end. The rest is what the step
-    /// has lost.
+    /// The part of it that the contact itself takes (J): that of dashpots and slider, and the
+    /// increase of its springs. The rest is lost by the step.
     pub(crate) fn taken_j(&self, d: [&Vec6; 2]) -> f64 {
-        let ways = self.ways(d);
-        self.contact.loss(&ways).sum() + self.contact.stored_more_j(&ways)
+        let relative = self.relative_displacement(d);
+        self.contact.loss(&relative).sum() + self.contact.stored_more_j(&relative)
     }
 
-    /// Writes what it remembers of the step; whether a bond broke.
+    /// Writes the step's end into its history; whether a bond broke.
     pub(crate) fn remember(&self, d: [&Vec6; 2], pair_history: &mut PairHistory) -> bool {
-        let (contact, ways) = (&self.contact, self.ways(d));
-        let (closed, slides, stretch) = contact.left(&ways);
+        let (contact, relative) = (&self.contact, self.relative_displacement(d));
+        let (closed, slides, stretch) = contact.end_state(&relative);
         pair_history.n = -contact.v;
         (pair_history.closed, pair_history.slides) = (closed, slides);
         pair_history.shear = if closed { stretch } else { Vec3::zeros() };
         pair_history.normal_force = contact.normal_force;
-        pair_history.shear_force = contact.forces(&ways).0;
+        pair_history.shear_force = contact.forces(&relative).0;
         let breaks = pair_history.overload() > 0.0;
         if breaks {
             pair_history.break_bond();

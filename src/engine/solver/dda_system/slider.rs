@@ -1,28 +1,27 @@
-//! The element that shear and rolling are made of.
+//! The friction element of shear and rolling.
 //!
 //! ```text
-//! sticks:  q = k (ξ + Δ) + (c/Δt) Δ,        Δ the way of the contact point over the step
-//! slides:  q = cap · e,                     e the direction of the force that would make it stick
-//! end:     ξ₁ = (q + (c/Δt) ξ)/(k + c/Δt)   the stretch at which spring and dashpot give q
+//! sticks:  q = k (ξ + Δ) + (c/Δt) Δ,        Δ the displacement of the contact point over the step
+//! slides:  q = cap · e,                     e the direction of the sticking force
+//! end:     ξ₁ = (q + (c/Δt) ξ)/(k + c/Δt)   the stretch at which spring and dashpot carry q
 //! ```
 //!
-//! The caller takes the sign: `q` acts against the sphere's motion.
+//! Sign: `q` acts against the sphere's motion.
 
 use crate::ground::FrictionElement;
 use crate::rock::Vec3;
 
-/// Change of a friction force, relative to its cap, below which it has settled (–).
-const SETTLED: f64 = 1e-5;
+/// Change of a friction force, relative to its cap, at which it has converged (–).
+const CONVERGED: f64 = 1e-5;
 
-/// What a judgement changed.
-/// Ordered by what it costs to answer it.
+/// Change of a contact state, ordered by the cost of its consequence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Change {
     /// Nothing.
     None,
-    /// A friction force: the right-hand side.
+    /// A friction force: the load changes.
     Load,
-    /// Open, sliding or sticking: the matrix.
+    /// Open, sliding or sticking: the matrix changes.
     Mode,
 }
 
@@ -35,7 +34,7 @@ pub(crate) struct DdaSlider {
     pub spring: f64,
     /// Damping over the step's length.
     pub damper: f64,
-    /// Way that a unit of its force takes off the sphere in the step.
+    /// Displacement per unit of its force over the step.
     pub compliance: f64,
     /// Whether it slides.
     pub slides: bool,
@@ -50,44 +49,52 @@ impl DdaSlider {
         Self { spring, damper, compliance, ..Self::default() }
     }
 
-    /// Force after `way`, should it stick.
-    pub(crate) fn sticking(&self, way: &Vec3) -> Vec3 {
-        self.stretch * self.spring + way * (self.spring + self.damper)
+    /// Force after `displacement` while it sticks.
+    pub(crate) fn sticking(&self, displacement: &Vec3) -> Vec3 {
+        self.stretch * self.spring + displacement * (self.spring + self.damper)
     }
 
-    /// Its stiffness while it `acts` (N/m): nothing while it slides.
+    /// Stiffness while it `acts` (N/m): 0 while it slides.
     pub(crate) fn stiffness(&self, acts: bool) -> f64 {
         if acts && !self.slides { self.spring + self.damper } else { 0.0 }
     }
 
-    pub(crate) fn force(&self, way: &Vec3) -> Vec3 {
-        if self.slides { self.friction } else { self.sticking(way) }
+    pub(crate) fn force(&self, displacement: &Vec3) -> Vec3 {
+        if self.slides { self.friction } else { self.sticking(displacement) }
     }
 
-    /// Stretch that belongs to a force at the step's end.
-    pub(crate) fn end(&self, force: &Vec3) -> Vec3 {
+    /// Stretch at the step's end under a force.
+    pub(crate) fn stretch_after(&self, force: &Vec3) -> Vec3 {
         (force + self.stretch * self.damper) / (self.spring + self.damper)
     }
 
-    /// Slides where the force that would make it stick passes the cap, in that force's direction.
+    /// Updates the state: it slides where the sticking force exceeds the cap, in that force's
+    /// direction.
     ///
-    /// `way` is what came out with the force `used`. Taking the effect of that force off before asking is what makes the
-    /// iteration settle: the slip that friction itself has left says little about its direction.
+    /// `displacement` was found with the force `last_force`. The effect of that force is removed
+    /// first, which makes the iteration converge: the slip that is left by friction itself says
+    /// little about its direction.
     ///
-    /// `way + used · compliance` is what the contact point would move without any force of this
+    /// `displacement + last_force · compliance` is what the contact point would move without any force of this
     /// element; from there the force that holds it is `(k ξ + k_eff Δ₀)/(1 + k_eff · compliance)`, `k_eff = k + c/Δt`: the element's own
     /// force shortens the way.
-    pub(crate) fn judge(&mut self, way: &Vec3, used: &Vec3, cap: f64) -> Change {
+    pub(crate) fn update_state(
+        &mut self,
+        displacement: &Vec3,
+        last_force: &Vec3,
+        cap: f64,
+    ) -> Change {
         let stiff = 1.0 + (self.spring + self.damper) * self.compliance;
-        let needed = self.sticking(&(way + used * self.compliance)) / stiff;
-        let size = needed.norm();
-        // At the cap itself rounding must not turn the state to and fro.
-        let least = if self.slides { cap * (1.0 - SETTLED) } else { cap };
+        let sticking_force = self.sticking(&(displacement + last_force * self.compliance)) / stiff;
+        let size = sticking_force.norm();
+        // at the cap itself rounding must not switch the state to and fro
+        let least = if self.slides { cap * (1.0 - CONVERGED) } else { cap };
         let slides = cap <= 0.0 || size > least;
-        let friction = if slides && size > 0.0 { needed * (cap / size) } else { Vec3::zeros() };
+        let friction =
+            if slides && size > 0.0 { sticking_force * (cap / size) } else { Vec3::zeros() };
         let change = if slides != self.slides {
             Change::Mode
-        } else if slides && (friction - self.friction).norm() > SETTLED * cap {
+        } else if slides && (friction - self.friction).norm() > CONVERGED * cap {
             Change::Load
         } else {
             return Change::None;
@@ -96,13 +103,18 @@ impl DdaSlider {
         change
     }
 
-    /// The same as printed: friction is `before`, that of the last step's end, and acts against the displacement of the
-    /// step until that turns round.
-    pub(crate) fn judge_as_printed(&mut self, way: &Vec3, cap: f64, before: f64) -> Change {
-        if !self.slides && self.sticking(way).norm() > cap {
-            (self.slides, self.friction) = (true, along(way) * before);
+    /// The update as printed in the paper: friction is `before`, from the end of the last step, and
+    /// acts against the displacement of the step until that reverses.
+    pub(crate) fn update_state_as_printed(
+        &mut self,
+        displacement: &Vec3,
+        cap: f64,
+        before: f64,
+    ) -> Change {
+        if !self.slides && self.sticking(displacement).norm() > cap {
+            (self.slides, self.friction) = (true, unit_or_zero(displacement) * before);
             Change::Mode
-        } else if self.slides && way.dot(&self.friction) < 0.0 {
+        } else if self.slides && displacement.dot(&self.friction) < 0.0 {
             (self.slides, self.friction) = (false, Vec3::zeros());
             Change::Mode
         } else {
@@ -110,22 +122,22 @@ impl DdaSlider {
         }
     }
 
-    /// Energy that slider and dashpot take over `way` at `force`.
+    /// Energy that slider and dashpot take over `displacement` at `force`.
     ///
-    /// Work of the slider is force times what it slipped, way less growth of the stretch; the
-    /// dashpot takes `c/Δt` times the square of that growth.
-    pub(crate) fn loss(&self, way: &Vec3, force: &Vec3) -> (f64, f64) {
-        let stretched = self.end(force) - self.stretch;
-        (force.dot(&(way - stretched)), self.damper * stretched.norm_squared())
+    /// Work of the slider is force times its slip, which is displacement less growth of the
+    /// stretch; the dashpot takes `c/Δt` times the square of that growth.
+    pub(crate) fn loss(&self, displacement: &Vec3, force: &Vec3) -> (f64, f64) {
+        let stretched = self.stretch_after(force) - self.stretch;
+        (force.dot(&(displacement - stretched)), self.damper * stretched.norm_squared())
     }
 
-    /// How much more the spring holds at `force` than at the step's start (J).
+    /// Increase of the spring's energy from the step's start to `force` (J).
     pub(crate) fn stored_more_j(&self, force: &Vec3) -> f64 {
-        0.5 * self.spring * (self.end(force).norm_squared() - self.stretch.norm_squared())
+        0.5 * self.spring * (self.stretch_after(force).norm_squared() - self.stretch.norm_squared())
     }
 }
 
-/// The direction of `x`; nothing for nothing.
-pub(crate) fn along(x: &Vec3) -> Vec3 {
+/// The direction of `x`, or zero.
+pub(crate) fn unit_or_zero(x: &Vec3) -> Vec3 {
     x.try_normalize(0.0).unwrap_or_default()
 }

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! c' = v,   v' = g + Σ (F n − q)/m,   ω' = Σ (R n × q − M)/I
-//! ξ' and θ' of each contact from its sliders (`law::Action`)
+//! ξ' and θ' of each contact from its sliders (`law::ContactForces`)
 //! F ≥ 0 by spring and dashpot,   |q| ≤ μ F,   |M| ≤ μ_r R F
 //! ```
 //!
@@ -18,9 +18,9 @@ use crate::ground::NormalElement;
 use crate::rock::Vec3;
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
 use crate::solver::impact::dormand_prince::{Flow, NODES, Rates, put, three};
-use crate::solver::law::{Action, ContactPlace};
+use crate::solver::law::{ContactDeformation, ContactForces};
 use crate::solver::loss::Loss;
-use crate::solver::stage::End;
+use crate::solver::stage::StageMotion;
 use arrayvec::ArrayVec;
 
 /// Where the way of the centre begins among the numbers that change; velocity, spin and the springs follow.
@@ -40,7 +40,7 @@ pub(super) struct PressedContact {
     /// Place of its memory.
     pub(super) place: usize,
     pub(super) touch: ContactPoint,
-    pub(super) at: ContactPlace,
+    pub(super) at: ContactDeformation,
     /// Normal spring and dashpot in force.
     pub(super) normal: NormalElement,
     /// Normal force (N), and whether friction is at its cap.
@@ -170,7 +170,7 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
 
     /// The same, nearer than `reach` (m).
     pub(super) fn look_within(&mut self, c: &Vec3, reach: f64) {
-        self.state.look(self.world, c, reach);
+        self.state.find_contact_points(self.world, c, reach);
     }
 
     /// Radius of the rock (m).
@@ -243,8 +243,8 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
     }
 
     /// Where and how fast the rock is.
-    pub(super) fn end<const N: usize>(&self, y: &[f64; N]) -> End {
-        End { c: self.state.c + three(y, WAY), v: three(y, V), w: three(y, W) }
+    pub(super) fn end<const N: usize>(&self, y: &[f64; N]) -> StageMotion {
+        StageMotion { c: self.state.c + three(y, WAY), v: three(y, V), w: three(y, W) }
     }
 }
 
@@ -291,7 +291,7 @@ impl<const C: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, 
             // a patch of stiffness |a|² has its dashpot times |a|; parallel patches share theirs
             let share = world.dashpot_share_beside(&state.touches, k, changes.gone());
             let normal = law.normal(memory.captured).of_patch(touch.gain2, share);
-            let at = ContactPlace {
+            let at = ContactDeformation {
                 n,
                 penetration: (body.radius - touch.distance_m).max(0.0),
                 shear: transport(three(y, SPRINGS + 3 * place), &memory.n, &n),
@@ -301,8 +301,8 @@ impl<const C: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, 
                     Vec3::zeros()
                 },
             };
-            let action = Action::of(body, law, &normal, &at, (&v, &w));
-            let Action { normal: [normal_force, pulls], shear, rolling, slip } = action;
+            let action = ContactForces::of(body, law, &normal, &at, (&v, &w));
+            let ContactForces { normal: [normal_force, pulls], shear, rolling, slip } = action;
             dv += (n * normal_force - shear.force) * by_mass;
             dw += (n.cross(&shear.force) * body.radius - rolling.force) * by_inertia;
             put(&mut rates.y, SPRINGS + 3 * place, &transport(shear.stretch_rate, &n, &memory.n));

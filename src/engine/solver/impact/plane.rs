@@ -17,7 +17,7 @@ use crate::math;
 use crate::rock::Vec3;
 use crate::solver::body::Body;
 use crate::solver::contact_frame::{Along, Local, dot, square};
-use crate::solver::loss::{Loss, shared};
+use crate::solver::loss::{Loss, scale_to_total};
 
 pub(crate) use blow_table::BlowTable;
 pub(crate) use passage::{NormalPassage, PressedIn};
@@ -211,7 +211,7 @@ impl Plane {
         let slipping = slipping.max(0.0);
         let (shear, rolling) = (shear + held_shear - slipping, rolling + held_roll);
         end.lost = [slipping, shear.max(0.0), rolling.max(0.0)];
-        shared(lost, &mut end.lost);
+        scale_to_total(lost, &mut end.lost);
         end
     }
 

@@ -24,7 +24,7 @@ use crate::ground::Law;
 use crate::math;
 use crate::rock::Vec3;
 use crate::solver::body::{Body, STILL, Twist};
-use crate::solver::loss::{Loss, shared};
+use crate::solver::loss::{Loss, scale_to_total};
 pub(crate) use bodies::{BODIES, CONTACTS, FrozenCollision, collide, most_unlike};
 use contacts::{AfterImpact, SwitchTime};
 use rates::ContactRates;
@@ -366,7 +366,7 @@ impl<const B: usize, const K: usize, const N: usize, const Q: usize, const P: us
             let damping = (shear - slipping).max(0.0) + normal.max(0.0);
             *part = [slipping, damping + plastic, rolling.max(0.0)];
         }
-        shared(lost_j, parts.as_flattened_mut());
+        scale_to_total(lost_j, parts.as_flattened_mut());
         parts.map(Loss::on_slope)
     }
 }

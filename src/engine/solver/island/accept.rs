@@ -7,33 +7,33 @@
 
 use super::assembly::Island;
 use super::body::note_flights;
-use super::outcome::Done;
+use super::outcome::IslandAdvance;
 use crate::contact::history::transport;
 use crate::contact::pair::{PairHistory, PairImpact, normal_and_distance};
 use crate::math;
 use crate::rock::Vec3;
-use crate::solver::loss::{Given, Loss};
+use crate::solver::loss::{EnergyGiven, Loss};
 use crate::solver::step_control;
 use crate::solver::tableau::Tableau;
 use nalgebra::Matrix3;
 
 impl Island<'_> {
     /// Takes over the step's end.
-    pub(super) fn accept(&mut self, tableau: &Tableau, dt: f64) -> Done {
-        let mut done = Done { dt, ..Done::default() };
-        let before = self.angular_state();
+    pub(super) fn accept(&mut self, tableau: &Tableau, dt: f64) -> IslandAdvance {
+        let mut done = IslandAdvance { dt, ..IslandAdvance::default() };
+        let before = self.free_angular_momentum();
         for member in &mut self.members {
             let mut loss = Loss::default();
             let omegas_dt = member.omega(self.terrain) * dt;
             let end = member.end;
             let (world, state) = member.with_environment(self.terrain);
             // what has begun as the step ends has all its time before it
-            state.impact.pass(omegas_dt);
+            state.impact.elapse(omegas_dt);
             step_control::accept(&world, tableau, state, (&end, dt), &mut loss);
             // a merged contact acts otherwise than its rates say
             self.fresh &= state.fresh;
             done.losses.push(loss);
-            let mut given = Given::default();
+            let mut given = EnergyGiven::default();
             for k in 0..tableau.stages {
                 // work through contacts: the power of the stages, summed with the weights of the finer method of the
                 // pair
@@ -43,16 +43,16 @@ impl Island<'_> {
             // first same as last: the rates at the end are those at the start of the next step
             member.given[0] = member.given[tableau.stages - 1];
         }
-        done.broken = self.accept_ties(tableau, dt);
+        done.broken = self.accept_pairs(tableau, dt);
         note_flights(&mut self.members, &self.pair_histories);
-        self.keep_spin(before);
+        self.restore_angular_momentum(before);
         done
     }
 
     /// Takes over memory and forces of the pairs, and breaks overloaded bonds; how many broke.
     ///
     /// Pairs and histories are both in ascending order: one pass over both, O(n).
-    fn accept_ties(&mut self, tableau: &Tableau, dt: f64) -> u64 {
+    fn accept_pairs(&mut self, tableau: &Tableau, dt: f64) -> u64 {
         let (last, hh) = (tableau.stages - 1, tableau.diagonal * dt);
         let mut broken = 0;
         let mut pairs = self.pairs.iter().peekable();
@@ -77,7 +77,7 @@ impl Island<'_> {
             pair_history.closed =
                 pair.normal_force > 0.0 || distance < a.body.radius + b.body.radius;
             let gone_rad = pair_history.law.omega_rad_s() * dt;
-            pair_history.impact = match (pair_history.closed, pair.waits) {
+            pair_history.impact = match (pair_history.closed, pair.deferred) {
                 // it has begun as the step ends
                 (true, true) => pair.impact,
                 (true, false) => pair.impact.after(gone_rad),
@@ -113,7 +113,7 @@ impl Island<'_> {
 impl Island<'_> {
     /// Angular momentum about the common centre of mass (kg m²/s) of an island that touches nothing but itself.
     /// `None` where the mesh, or nothing at all, acts: there is nothing to keep then.
-    fn angular_state(&self) -> Option<Vec3> {
+    fn free_angular_momentum(&self) -> Option<Vec3> {
         let alone =
             self.members.iter().all(|m| m.state.histories.iter().all(|history| !history.closed))
                 && self.pair_histories.iter().any(PairHistory::is_held);
@@ -146,7 +146,7 @@ impl Island<'_> {
     /// `Δω = I⁻¹ (L₀ − L)` about the centre of mass, as a rigid turn of all rocks: it changes
     /// neither the velocity of the centre of mass nor
     /// the speed at which any two rocks near each other.
-    fn keep_spin(&mut self, before: Option<Vec3>) {
+    fn restore_angular_momentum(&mut self, before: Option<Vec3>) {
         let Some(before) = before else { return };
         if self.members.iter().any(|m| m.state.histories.iter().any(|history| history.closed)) {
             return;

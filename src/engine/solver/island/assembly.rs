@@ -6,7 +6,7 @@
 
 use super::active_set::ActiveSet;
 use super::body::{BodySlot, IslandBody};
-use super::outcome::Done;
+use super::outcome::IslandAdvance;
 use super::pair_contact::PairContact;
 use super::rigid::RigidIsland;
 use crate::contact::pair::{PairHistory, normal_and_distance};
@@ -37,7 +37,7 @@ pub struct Island<'a> {
     /// Sweeps over the contacts so far.
     pub sweeps: u64,
     /// Systems solved by factorisation so far.
-    pub jumps: u64,
+    pub newton_steps: u64,
     /// Whether the first rates belong to the present state.
     pub fresh: bool,
     pub(super) pairs: Vec<PairContact>,
@@ -77,7 +77,7 @@ impl<'a> Island<'a> {
             members,
             h: f64::INFINITY,
             sweeps: 0,
-            jumps: 0,
+            newton_steps: 0,
             fresh: false,
             pairs: Vec::new(),
             motions: Vec::new(),
@@ -96,7 +96,7 @@ impl<'a> Island<'a> {
     ///
     /// # Errors
     /// [`StepError`] if the step had to become too short to matter.
-    pub fn advance(&mut self, settings: &Settings, h_max: f64) -> Result<Done, StepError> {
+    pub fn advance(&mut self, settings: &Settings, h_max: f64) -> Result<IslandAdvance, StepError> {
         if let [member] = &mut self.members[..] {
             let tableau = settings.scheme.tableau().unwrap_or(&TR_BDF2);
             let h = &mut self.h;
@@ -117,26 +117,28 @@ impl<'a> Island<'a> {
         // a rock that was turned against a facet, or whose stem has given way, has other rates
         if !self.fresh || self.members.iter().any(|member| !member.state.fresh) {
             self.rates_now();
-            self.accept_meetings();
+            self.accept_new_contacts();
         }
         let omega = self.omega();
         if !self.h.is_finite() {
             self.h = ONSET / omega;
         }
-        self.members.iter_mut().for_each(|member| member.known = member.state.histories.len());
+        self.members
+            .iter_mut()
+            .for_each(|member| member.histories_at_start = member.state.histories.len());
         // as long as error, energy and bonds allow it, and to where impacts begin and end
-        let (dt, rejected) = self.settle_step(control, omega, h_max)?;
+        let (dt, rejected) = self.find_accepted_step(control, omega, h_max)?;
         let done = self.accept(control.tableau, dt);
-        self.begin_late();
+        self.begin_deferred_impacts();
         let finite = self.members.iter().all(|member| member.state.is_finite());
-        if finite { Ok(Done { rejected, ..done }) } else { Err(StepError::NotFinite) }
+        if finite { Ok(IslandAdvance { rejected, ..done }) } else { Err(StepError::NotFinite) }
     }
 
     /// One step of the scheme `rigid`, at most `longest` and `h_max` (s) long.
     ///
     /// # Errors
     /// [`StepError`] if motion is no longer finite.
-    pub fn advance_rigid(&mut self, longest: f64, h_max: f64) -> Result<Done, StepError> {
+    pub fn advance_rigid(&mut self, longest: f64, h_max: f64) -> Result<IslandAdvance, StepError> {
         let Self { terrain, members, pair_histories, rigid, .. } = self;
         if let [member] = &mut members[..] {
             return member.advance_alone(terrain, |world, state| {
@@ -144,14 +146,14 @@ impl<'a> Island<'a> {
             });
         }
         let done = rigid.advance(terrain, members, pair_histories, (longest, h_max));
-        let (sweeps, jumps) = rigid.take_effort();
+        let (sweeps, newton_steps) = rigid.take_effort();
         self.sweeps += sweeps;
-        self.jumps += jumps;
+        self.newton_steps += newton_steps;
         done
     }
 
     /// Whether motion, height and springs of the whole island together hold more at the step's end than at its start.
-    pub(super) fn gains(&self, hh: f64) -> bool {
+    pub(super) fn gains_energy(&self, hh: f64) -> bool {
         // `unknown`: energy that rounding of the places alone may make, weight and normal forces times a length
         let (mut before, mut after, mut unknown) = (0.0, 0.0, 0.0);
         for IslandBody { state, body, end, .. } in self.members.iter().map(|member| &**member) {
@@ -168,7 +170,7 @@ impl<'a> Island<'a> {
         for pair in &self.pairs {
             let ends = pair.ends.map(|k| (self.members[k].end.v, self.members[k].end.w));
             // at the end of the stage: the base's penetration less what the normal speed takes of it
-            let mut penetration = pair.pen_at(pair.speed([&ends[0], &ends[1]]), hh);
+            let mut penetration = pair.penetration_at(pair.speed([&ends[0], &ends[1]]), hh);
             if pair.bond.is_none() {
                 penetration = penetration.max(0.0);
             }
@@ -225,7 +227,7 @@ impl<'a> Island<'a> {
         let tableau = control.tableau;
         for i in 1..tableau.stages {
             self.stage(tableau, i, dt)?;
-            if self.tears_badly() {
+            if self.overloads_bond() {
                 return None;
             }
         }
@@ -235,7 +237,7 @@ impl<'a> Island<'a> {
 
     /// Whether a bond is loaded far beyond its strength in the present stage, which a shorter step would have found out: its largest pull may
     /// lie within a step.
-    fn tears_badly(&self) -> bool {
+    fn overloads_bond(&self) -> bool {
         self.h * self.omega() > 1e-6
             && self.pairs.iter().any(|pair| {
                 let used = |bond: &crate::contact::pair::Bond| {
@@ -266,7 +268,7 @@ impl<'a> Island<'a> {
                 omegas[k] = omegas[k].max(pair_history.law.omega_rad_s());
             }
             // error of the shear stretch (m/s as a rate), times ω to compare with an acceleration
-            let drift = tableau.off(rates, |rate| *rate);
+            let drift = tableau.embedded_difference(rates, |rate| *rate);
             let [a, b] = [pair_history.a, pair_history.b].map(|k| allowed_m_s[k as usize]);
             let by = 1.0 / a.min(b);
             worst2 =
@@ -274,7 +276,7 @@ impl<'a> Island<'a> {
         }
         for ((member, omega), allowed_m_s) in self.members.iter().zip(&omegas).zip(&allowed_m_s) {
             let (IslandBody { state, body, .. }, by) = (&**member, 1.0 / allowed_m_s);
-            let own2 = step_control::off2(tableau, state, body, (*omega, *allowed_m_s));
+            let own2 = step_control::error_rate2(tableau, state, body, (*omega, *allowed_m_s));
             worst2 = worst2.max(own2 * by * by);
         }
         worst2.sqrt()

@@ -3,7 +3,7 @@
 //! The state of a rock alone (`ContactState`) with what an island adds: the base and guess of the
 //! stage in hand, motions with and without contact forces, and what it gives to other rocks.
 
-use super::outcome::Done;
+use super::outcome::IslandAdvance;
 use crate::contact::Feature;
 use crate::contact::history::ContactHistory;
 use crate::contact::pair::PairHistory;
@@ -13,9 +13,9 @@ use crate::solver::body::{Body, Twist};
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
 use crate::solver::impact_progress::ImpactProgress;
 use crate::solver::law::StageContact;
-use crate::solver::loss::Given;
+use crate::solver::loss::EnergyGiven;
 use crate::solver::roughness::RoughFacets;
-use crate::solver::stage::End;
+use crate::solver::stage::StageMotion;
 use crate::solver::stem_load::StemLoad;
 use crate::solver::step_control::{Advance, StepError};
 use crate::solver::tableau::{STAGES, Tableau};
@@ -38,31 +38,31 @@ pub struct IslandBody {
     /// Whether anything but its weight acted on it in the last step (`rigid`).
     pub was_touched: bool,
     /// Local error allowed in lasting contact, and the speed of the fastest impact that goes on, 0 if none (m/s).
-    pub(super) lasting_m_s: f64,
-    pub(super) struck_m_s: f64,
+    pub(super) sustained_tolerance_m_s: f64,
+    pub(super) impact_m_s: f64,
     /// How many it touches: other rocks, and the mesh as one.
-    pub(super) touching: u32,
+    pub(super) touched_count: u32,
     /// The same of the one with most of it and those that it touches.
-    pub(super) crowd: u32,
+    pub(super) max_touched_count: u32,
     /// The stage's base `x* = x + h Σ a_ij f_j`, and the guess of the centre at its end (m).
-    pub(super) base: End,
+    pub(super) base: StageMotion,
     pub(super) guess: Vec3,
     /// Velocity and spin at the stage's end without contact forces.
     pub(super) free: Twist,
     /// Where the stage ended; after the last stage, the step.
-    pub(super) end: End,
+    pub(super) end: StageMotion,
     /// Forces of the last solution, to start the next from.
-    pub(super) kept: Vec<(Feature, f64, Vec3, Vec3)>,
+    pub(super) last_forces: Vec<(Feature, f64, Vec3, Vec3)>,
     /// Power given to other rocks at each stage (W).
-    pub(super) given: [Given; STAGES],
+    pub(super) given: [EnergyGiven; STAGES],
     /// Memories at the step's start: a try that is thrown away goes back to them.
-    pub(super) known: usize,
+    pub(super) histories_at_start: usize,
 }
 
 /// What a rock is and remembers between two steps: all that later steps depend on.
 /// Scratch space and geometry are not in it: they are found again from the motion.
 #[derive(Debug)]
-pub struct Memory {
+pub struct MotionSnapshot {
     motion: (Vec3, Vec3, Vec3),
     histories: Vec<ContactHistory>,
     impact: ImpactProgress,
@@ -111,7 +111,7 @@ impl IslandBody {
     /// A rock in flight at `(c, v, w)`.
     pub fn new(body: Body, laws: Vec<Law>, (c, v, w): (Vec3, Vec3, Vec3)) -> Self {
         let zero = (Vec3::zeros(), Vec3::zeros());
-        let end = End { c, v, w };
+        let end = StageMotion { c, v, w };
         let state = ContactState { c, v, w, ..ContactState::unused() };
         Self {
             state,
@@ -120,28 +120,28 @@ impl IslandBody {
             flying: true,
             flew: true,
             was_touched: false,
-            lasting_m_s: 0.0,
-            struck_m_s: 0.0,
-            touching: 0,
-            crowd: 0,
+            sustained_tolerance_m_s: 0.0,
+            impact_m_s: 0.0,
+            touched_count: 0,
+            max_touched_count: 0,
             base: end,
             guess: c,
             free: zero,
             end,
-            kept: Vec::new(),
-            given: [Given::default(); STAGES],
-            known: 0,
+            last_forces: Vec::new(),
+            given: [EnergyGiven::default(); STAGES],
+            histories_at_start: 0,
         }
     }
 
     /// What the rock is and remembers between two steps.
-    pub fn memory(&self) -> Memory {
+    pub fn snapshot(&self) -> MotionSnapshot {
         let state = &self.state;
-        Memory {
+        MotionSnapshot {
             motion: (state.c, state.v, state.w),
             histories: state.histories.to_vec(),
             impact: state.impact.clone(),
-            blow: (state.is_struck, state.struck.to_vec()),
+            blow: (state.impact_announced, state.upcoming_impacts.to_vec()),
             facets: state.facets.clone(),
             stems: (state.stem_load.clone(), state.near.broken_stems.clone()),
             flying: self.flying,
@@ -150,13 +150,13 @@ impl IslandBody {
 
     /// Goes back to what it was.
     /// To the bit: from here it goes the way it went, if nothing else has changed.
-    pub fn recall(&mut self, memory: &Memory) {
+    pub fn restore(&mut self, memory: &MotionSnapshot) {
         let state = &mut self.state;
         (state.c, state.v, state.w) = memory.motion;
         state.histories.restore(&memory.histories);
         state.impact.clone_from(&memory.impact);
-        state.is_struck = memory.blow.0;
-        state.struck.restore(&memory.blow.1);
+        state.impact_announced = memory.blow.0;
+        state.upcoming_impacts.restore(&memory.blow.1);
         state.facets.clone_from(&memory.facets);
         state.plane.forget();
         state.stem_load.clone_from(&memory.stems.0);
@@ -166,7 +166,7 @@ impl IslandBody {
         }
         state.fresh = false;
         self.flying = memory.flying;
-        self.kept.clear();
+        self.last_forces.clear();
     }
 
     /// Comes into an island that knows nothing of the steps before.
@@ -180,19 +180,19 @@ impl IslandBody {
         &mut self,
         terrain: &Terrain,
         advance: impl FnOnce(&ContactEnvironment, &mut ContactState) -> Result<Advance, StepError>,
-    ) -> Result<Done, StepError> {
+    ) -> Result<IslandAdvance, StepError> {
         self.flew = self.flying;
-        self.kept.clear();
+        self.last_forces.clear();
         let (world, state) = self.with_environment(terrain);
         let done = advance(&world, state)?;
         self.flying = self.state.is_free();
-        Ok(Done {
+        Ok(IslandAdvance {
             dt: done.dt,
             rejected: done.rejected,
             losses: vec![done.loss],
-            given: vec![Given::default()],
+            given: vec![EnergyGiven::default()],
             unsettled: done.unsettled,
-            ..Done::default()
+            ..IslandAdvance::default()
         })
     }
 
@@ -245,10 +245,10 @@ impl IslandBody {
 
 impl IslandBody {
     /// Looks for what the guess of the stage's end touches.
-    pub(super) fn look(&mut self, terrain: &Terrain) {
+    pub(super) fn find_contact_points(&mut self, terrain: &Terrain) {
         let guess = self.guess;
         let (world, state) = self.with_environment(terrain);
-        state.look_ahead(&world, &guess);
+        state.find_contact_points_ahead(&world, &guess);
     }
 
     /// Makes the touches of the guess into contacts of stage `i`; forces begin with those of the
@@ -263,7 +263,7 @@ impl IslandBody {
         self.state.place_contacts(&world, tableau, (i, h), (&self.base, &self.guess));
         for contact in &mut self.state.contacts[..self.state.contact_count] {
             // the same feature as before: its forces are the best first guess there is
-            let kept = self.kept.iter().find(|kept| kept.0 == contact.feature);
+            let kept = self.last_forces.iter().find(|kept| kept.0 == contact.feature);
             if let Some((_, normal_force, shear_force, rolling_moment)) = kept {
                 (contact.normal_force, contact.shear_force, contact.rolling_moment) =
                     (*normal_force, *shear_force, *rolling_moment);
@@ -275,12 +275,12 @@ impl IslandBody {
     pub(super) fn store(&mut self, terrain: &Terrain, (v, w): Twist, (i, hh): (usize, f64)) {
         let world = ContactEnvironment { terrain, body: self.body, laws: &self.laws };
         let c = self.base.c + v * hh;
-        self.end = End { c, v, w };
+        self.end = StageMotion { c, v, w };
         let (base, end) = (self.base, self.end);
         self.state.store(&world, &base, &end, (i, hh));
-        self.kept.clear();
+        self.last_forces.clear();
         let contacts = &self.state.contacts[..self.state.contact_count];
-        self.kept.extend(
+        self.last_forces.extend(
             contacts.iter().map(|s| (s.feature, s.normal_force, s.shear_force, s.rolling_moment)),
         );
     }
@@ -311,12 +311,13 @@ mod tests {
         let rock = Rock { radius_m: 0.5, density_kg_m3: 2700.0 };
         let start = (Vec3::z(), Vec3::x(), Vec3::zeros());
         let mut member = IslandBody::new(Body::new(&rock, 9.8), Vec::new(), start);
-        member.state.is_struck = false;
-        member.state.struck.push(ContactHistory::new(&ContactPoint::NONE, false));
-        let memory = member.memory();
-        (member.state.is_struck, member.state.struck) = (true, ContactHistories::default());
-        member.recall(&memory);
-        assert!(!member.state.is_struck);
-        assert_eq!(member.state.struck.len(), 1);
+        member.state.impact_announced = false;
+        member.state.upcoming_impacts.push(ContactHistory::new(&ContactPoint::NONE, false));
+        let memory = member.snapshot();
+        (member.state.impact_announced, member.state.upcoming_impacts) =
+            (true, ContactHistories::default());
+        member.restore(&memory);
+        assert!(!member.state.impact_announced);
+        assert_eq!(member.state.upcoming_impacts.len(), 1);
     }
 }

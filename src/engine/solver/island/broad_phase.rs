@@ -21,7 +21,7 @@ type CellEntry = (i32, [i64; 3], u32);
 
 /// Of the columns of cells around one, those that come after it; of its own, the cells from it upwards. Two balls see each
 /// other once that way.
-const AHEAD: [[i64; 2]; 5] = [[0, 0], [0, 1], [1, -1], [1, 0], [1, 1]];
+const NEXT_COLUMNS: [[i64; 2]; 5] = [[0, 0], [0, 1], [1, -1], [1, 0], [1, 1]];
 
 /// All pairs `(a, b)`, `a < b`, of balls that overlap or touch, in ascending order.
 ///
@@ -50,11 +50,11 @@ pub fn overlapping(balls: &[Ball]) -> Vec<(u32, u32)> {
             visit_coarser(&entries, (level, home), |other| add(k, other));
         }
     }
-    in_order(&pairs, balls.len())
+    sorted_pairs(&pairs, balls.len())
 }
 
 /// Pairs in ascending order: laid down by their first balls, as these are counted, then the few of each by their second.
-fn in_order(pairs: &[(u32, u32)], balls: usize) -> Vec<(u32, u32)> {
+fn sorted_pairs(pairs: &[(u32, u32)], balls: usize) -> Vec<(u32, u32)> {
     let mut ends = vec![0; balls + 1];
     for (a, _) in pairs {
         ends[*a as usize + 1] += 1;
@@ -114,32 +114,37 @@ fn entry(ball: &Ball, level: i32, k: u32) -> CellEntry {
     (level, [x.floor() as i64, y.floor() as i64, z.floor() as i64], k)
 }
 
-/// Calls `see` with every two balls in cells of the same size next to each other. Balls are gone through in the order of
+/// Calls `visit` with every two balls in cells of the same size next to each other. Balls are gone through in the order of
 /// their cells, and so are the first of each column beside them: nothing need be searched.
-fn visit_own(entries: &[CellEntry], see: &mut impl FnMut(u32, u32)) {
+fn visit_own(entries: &[CellEntry], visit: &mut impl FnMut(u32, u32)) {
     // one cursor for each of the columns ahead: together they go through the list once
-    let mut first = [0; AHEAD.len()];
+    let mut first = [0; NEXT_COLUMNS.len()];
     for (place, &(level, [x, y, z], k)) in entries.iter().enumerate() {
-        for (first, [dx, dy]) in first.iter_mut().zip(AHEAD) {
+        for (first, [dx, dy]) in first.iter_mut().zip(NEXT_COLUMNS) {
             let column = |z: i64| (level, [x + dx, y + dy, z]);
             while entries.get(*first).is_some_and(|entry| (entry.0, entry.1) < column(z - 1)) {
                 *first += 1;
             }
             let start = if [dx, dy] == [0, 0] { place + 1 } else { *first };
             let near = entries[start..].iter();
-            near.take_while(|entry| (entry.0, entry.1) <= column(z + 1)).for_each(|e| see(k, e.2));
+            near.take_while(|entry| (entry.0, entry.1) <= column(z + 1))
+                .for_each(|e| visit(k, e.2));
         }
     }
 }
 
-/// Calls `see` with all balls in the 27 cells around `home`; the three above each other are one stretch of the list.
-fn visit_coarser(entries: &[CellEntry], (level, home): (i32, [i64; 3]), mut see: impl FnMut(u32)) {
+/// Calls `visit` with all balls in the 27 cells around `home`; the three above each other are one stretch of the list.
+fn visit_coarser(
+    entries: &[CellEntry],
+    (level, home): (i32, [i64; 3]),
+    mut visit: impl FnMut(u32),
+) {
     for x in home[0] - 1..=home[0] + 1 {
         for y in home[1] - 1..=home[1] + 1 {
             let first = (level, [x, y, home[2] - 1], 0);
             let last = (level, [x, y, home[2] + 1], u32::MAX);
             let start = entries.partition_point(|entry| *entry < first);
-            entries[start..].iter().take_while(|entry| **entry <= last).for_each(|e| see(e.2));
+            entries[start..].iter().take_while(|entry| **entry <= last).for_each(|e| visit(e.2));
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::assembly::Island;
 use super::body::note_flights;
-use super::outcome::Done;
+use super::outcome::IslandAdvance;
 use crate::solver::Settings;
 use crate::solver::dda::{DdaBody, DdaStep, TRAVEL};
 use crate::solver::step_control::StepError;
@@ -12,7 +12,11 @@ impl Island<'_> {
     ///
     /// # Errors
     /// [`StepError`] if a rock sank in or its motion is no longer finite.
-    pub fn advance_fixed(&mut self, settings: &Settings, h_max: f64) -> Result<Done, StepError> {
+    pub fn advance_fixed(
+        &mut self,
+        settings: &Settings,
+        h_max: f64,
+    ) -> Result<IslandAdvance, StepError> {
         // the fixed step, cut only at events and where a rock would pass what has been looked for
         let dt = settings.step_s.min(h_max).min(self.travel_limit(TRAVEL));
         self.release_struck();
@@ -20,7 +24,7 @@ impl Island<'_> {
         let mut bodies = Vec::with_capacity(members.len());
         for member in members.iter_mut() {
             let (world, state) = member.with_environment(terrain);
-            bodies.push(DdaBody::looking(world, state));
+            bodies.push(DdaBody::with_contact_points(world, state));
         }
         let bodies = &mut bodies;
         let done =
@@ -29,6 +33,6 @@ impl Island<'_> {
         let (losses, given) = bodies.iter().map(|body| (body.loss, body.given)).unzip();
         note_flights(&mut self.members, &self.pair_histories);
         let (unsettled, broken) = (!done.settled, done.broken);
-        Ok(Done { dt, losses, given, unsettled, broken, ..Done::default() })
+        Ok(IslandAdvance { dt, losses, given, unsettled, broken, ..IslandAdvance::default() })
     }
 }

@@ -17,7 +17,7 @@ use crate::contact::history::ContactHistory;
 use crate::rock::Vec3;
 use crate::solver::Settings;
 use crate::solver::impact::LOCAL;
-use crate::solver::step_control::{Control, lasting_m_s};
+use crate::solver::step_control::{Control, sustained_tolerance_m_s};
 use crate::solver::tableau::{ESDIRK4, TR_BDF2};
 
 /// Local error allowed in an impact (–, relative to its speed) by 1 m/s of that in lasting contact, and at most: that of a rock
@@ -25,12 +25,12 @@ use crate::solver::tableau::{ESDIRK4, TR_BDF2};
 const IMPACT: (f64, f64) = (1.0, 2e-4);
 /// The same where the rock that is struck, or what strikes it, touches others as well, in units of that (–): at the usual tolerance
 /// 1 % of the speed of the blow.
-const IN_A_HEAP: f64 = 150.0;
+const IN_HEAP: f64 = 150.0;
 /// The same where the blow runs through one contact more and no farther: its outcome hangs on that one gap.
 const THROUGH_ONE: f64 = 30.0;
 
 /// Cosine between two contacts of a rock from which a blow on the one runs on through the other (–).
-const RUNS_ON: f64 = 0.1;
+const TRANSMITS: f64 = 0.1;
 
 /// Local error allowed to two that are bonded, of the speed (–) from which their springs would pull as hard as the bond bears, and of that of
 /// their vibration: a blow ends in a vibration, and whether the bond bears it is decided swings later, by all errors until then together.
@@ -46,16 +46,16 @@ impl Island<'_> {
         let usual = settings.scheme.tableau().unwrap_or(&TR_BDF2);
         let relative = LOCAL * (IMPACT.0 * settings.tolerance_m_s).min(IMPACT.1);
         self.note_impacts(false);
-        let mut is_struck = false;
+        let mut has_impact = false;
         for member in self.members.iter_mut().map(|slot| &mut **slot) {
-            member.lasting_m_s = lasting_m_s(settings, &member.body);
-            is_struck |= member.struck_m_s > 0.0 && !member.is_in_heap();
+            member.sustained_tolerance_m_s = sustained_tolerance_m_s(settings, &member.body);
+            has_impact |= member.impact_m_s > 0.0 && !member.is_in_heap();
         }
-        is_struck |= self.hold_bonds(settings);
+        has_impact |= self.limit_bond_errors(settings);
         let allowed = self.members.iter().map(|member| member.allowed_m_s(relative));
         self.tolerance = allowed.fold(f64::INFINITY, f64::min);
         Control {
-            tableau: if is_struck { &ESDIRK4 } else { usual },
+            tableau: if has_impact { &ESDIRK4 } else { usual },
             tolerance: self.tolerance,
             impact: relative,
             impact_kernels: false,
@@ -63,8 +63,8 @@ impl Island<'_> {
     }
 
     /// Holds the error of bonded rocks to what their bonds notice; whether that is less than lasting contact asks for.
-    fn hold_bonds(&mut self, settings: &Settings) -> bool {
-        let mut is_held = false;
+    fn limit_bond_errors(&mut self, settings: &Settings) -> bool {
+        let mut is_limited = false;
         for pair_history in &self.pair_histories {
             let Some(breaking_speed_m_s) = pair_history.breaking_speed_m_s() else { continue };
             let ends = [pair_history.a, pair_history.b].map(|end| end as usize);
@@ -72,15 +72,15 @@ impl Island<'_> {
             let vibration_speed_m_s = pair_history.vibration_speed_m_s(&(a.state.v - b.state.v));
             for end in ends {
                 let member = &mut *self.members[end];
-                let usual_m_s = lasting_m_s(settings, &member.body);
+                let usual_m_s = sustained_tolerance_m_s(settings, &member.body);
                 let of_strength_m_s = (BONDED * breaking_speed_m_s).max(WEAKEST * usual_m_s);
                 let of_vibration_m_s = (BONDED * vibration_speed_m_s).max(SLOWEST * usual_m_s);
                 let bonded_m_s = of_strength_m_s.min(of_vibration_m_s);
-                is_held |= bonded_m_s < usual_m_s;
-                member.lasting_m_s = member.lasting_m_s.min(bonded_m_s);
+                is_limited |= bonded_m_s < usual_m_s;
+                member.sustained_tolerance_m_s = member.sustained_tolerance_m_s.min(bonded_m_s);
             }
         }
-        is_held
+        is_limited
     }
 
     /// Notes how fast each rock is struck (m/s) and whether it touches others that touch more, also by what it has only met in
@@ -88,10 +88,10 @@ impl Island<'_> {
     pub(super) fn note_impacts(&mut self, tried: bool) {
         for member in self.members.iter_mut().map(|slot| &mut **slot) {
             let state = &member.state;
-            let begun_m_s = if tried { state.met_m_s() } else { 0.0 };
+            let begun_m_s = if tried { state.new_contact_approach_m_s() } else { 0.0 };
             let known_m_s = if state.is_rebounding() { state.impact.speed_m_s } else { 0.0 };
-            member.struck_m_s = known_m_s.max(begun_m_s);
-            (member.touching, member.crowd) = (0, 0);
+            member.impact_m_s = known_m_s.max(begun_m_s);
+            (member.touched_count, member.max_touched_count) = (0, 0);
         }
         let Self { members, pair_histories, pairs, .. } = self;
         let held = pair_histories.iter().filter(|pair_history| pair_history.is_held());
@@ -103,18 +103,19 @@ impl Island<'_> {
             pair.normal_force > 0.0 && !pair_histories[pair.pair_history].is_held()
         };
         let met = pairs.iter().filter(|_| tried).filter(is_new);
-        let touching = held.chain(met.map(|pair| (pair.ends, pair.n, pair.impact.speed_m_s)));
-        for (ends, _, speed_m_s) in touching.clone() {
+        let touching_pairs = held.chain(met.map(|pair| (pair.ends, pair.n, pair.impact.speed_m_s)));
+        for (ends, _, speed_m_s) in touching_pairs.clone() {
             for end in ends {
-                members[end].struck_m_s = members[end].struck_m_s.max(speed_m_s);
-                members[end].touching += 1;
+                members[end].impact_m_s = members[end].impact_m_s.max(speed_m_s);
+                members[end].touched_count += 1;
             }
         }
-        for (ends, n, _) in touching {
+        for (ends, n, _) in touching_pairs {
             let [first, second] = ends.map(|end| &members[end]);
             let through = [first.touching_through(&n), second.touching_through(&-n)];
             for end in ends {
-                members[end].crowd = members[end].crowd.max(through[0].max(through[1]));
+                members[end].max_touched_count =
+                    members[end].max_touched_count.max(through[0].max(through[1]));
             }
         }
     }
@@ -124,31 +125,31 @@ impl IslandBody {
     /// How many others it touches, with the mesh if the contact along `n`, which points at its centre, presses it on that: a blow along the
     /// ground does not run through the ground.
     fn touching_through(&self, n: &Vec3) -> u32 {
-        let presses = |history: &ContactHistory| history.n.dot(n) < -RUNS_ON;
-        self.touching + u32::from(self.state.histories.iter().any(presses))
+        let presses = |history: &ContactHistory| history.n.dot(n) < -TRANSMITS;
+        self.touched_count + u32::from(self.state.histories.iter().any(presses))
     }
 
     /// Whether it, or one that it touches, touches more than one.
     fn is_in_heap(&self) -> bool {
-        self.crowd > 1
+        self.max_touched_count > 1
     }
 
     /// Local error allowed to it in an impact (–, relative to its speed), where `relative` is that of two bodies alone.
     pub(super) fn allowed_share(&self, relative: f64) -> f64 {
-        let times = match self.crowd {
+        let times = match self.max_touched_count {
             0..=1 => 1.0,
             2 => THROUGH_ONE,
-            _ => IN_A_HEAP,
+            _ => IN_HEAP,
         };
         times * relative
     }
 
     /// Local error allowed to it (m/s), `relative` to the speed of an impact (–).
     pub(super) fn allowed_m_s(&self, relative: f64) -> f64 {
-        if self.struck_m_s > 0.0 {
-            self.lasting_m_s.min(self.allowed_share(relative) * self.struck_m_s)
+        if self.impact_m_s > 0.0 {
+            self.sustained_tolerance_m_s.min(self.allowed_share(relative) * self.impact_m_s)
         } else {
-            self.lasting_m_s
+            self.sustained_tolerance_m_s
         }
     }
 }

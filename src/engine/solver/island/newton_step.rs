@@ -27,7 +27,7 @@ use nalgebra::{DMatrix, DVector, Matrix3};
 const DENSE: usize = 8;
 
 /// One contact, linear around the present motion.
-struct Linear {
+struct LinearContact {
     /// Normal force (N) as a line in the normal speed.
     normal: NormalLine,
     /// Shear force (N) linearised in slip (m/s) and normal force.
@@ -46,7 +46,7 @@ struct NewtonSystem {
     /// `K_kk`: inertia over `h`, and the contacts of rock `k` with mesh and others (kg/s, kg m²/s).
     diagonal: Vec<Mat6>,
     /// Blocks that join two rocks: the one below the diagonal, and the one opposite.
-    joined: Vec<(Below, Mat6)>,
+    off_diagonal: Vec<(Below, Mat6)>,
     /// Right side: impulse rates of free motion and of the constant parts of contacts (N, N m), six a rock.
     load: Vec<f64>,
 }
@@ -70,26 +70,26 @@ pub(super) fn solve_linearised(
         .collect();
     // rows are numbered over the rocks that take part only; others enter through the load
     let (diagonal, load) = (vec![Mat6::zeros(); rocks], vec![0.0; 6 * rocks]);
-    let mut system = NewtonSystem { diagonal, joined: Vec::with_capacity(pairs.len()), load };
+    let mut system = NewtonSystem { diagonal, off_diagonal: Vec::with_capacity(pairs.len()), load };
     for ((member, motion), place) in members.iter().zip(motions).zip(&place) {
         let Some(k) = *place else { continue };
         let own = &mut (&mut system.diagonal[k], &mut system.load[6 * k..6 * k + 6]);
         LinearForces::of_inertia(&member.body, &member.free, h).add_to(own.0, own.1);
         for contact in member.contacts().iter().filter(|contact| contact.normal_force > 0.0) {
             // the mesh is an end that does not move, so only `K_kk` changes
-            contact.linear(&member.body, motion, h).add_to(own.0, own.1);
+            contact.linearised(&member.body, motion, h).add_to(own.0, own.1);
         }
     }
     for pair in pairs.iter().filter(|pair| pair.normal_force > 0.0 || pair.bond.is_some()) {
         if pair.ends.iter().any(|&end| place[end].is_some()) {
-            system.add(&Linear::of_pair(pair, motions, &place, h));
+            system.add(&LinearContact::of_pair(pair, motions, &place, h));
         }
     }
     let solved = system.solve()?;
     Some(place.iter().map(|place| place.map(|k| solved[k])).collect())
 }
 
-impl Linear {
+impl LinearContact {
     /// The contact of two rocks, or their bond. A bond pulls as well as pushes and has no friction cap.
     fn of_pair(pair: &PairContact, motions: &[Twist], place: &[Option<usize>], h: f64) -> Self {
         let ends = pair.ends.map(|k| &motions[k]);
@@ -120,8 +120,8 @@ impl Linear {
 
 impl NewtonSystem {
     /// `K_kl += N_kᵀ b N_l + S_kᵀ (J S_l − e μ b N_l)`, with the rows `N` of the normal speed and `S` of the slip.
-    fn add(&mut self, contact: &Linear) {
-        let Linear { normal, shear, n, .. } = contact;
+    fn add(&mut self, contact: &LinearContact) {
+        let LinearContact { normal, shear, n, .. } = contact;
         let constant =
             shear.force - shear.jacobian * contact.slip + shear.along * (normal.b * contact.speed);
         let rows = contact.ends.map(|end| end.map(|(k, sign, lever)| (k, rows(n, sign, lever))));
@@ -139,7 +139,7 @@ impl NewtonSystem {
         if let [Some((k, one)), Some((l, two))] = &rows {
             // K_kl ≠ K_lkᵀ: friction follows the normal force of both
             let (below, above) = (block(one, two), block(two, one));
-            self.joined.push(if k > l {
+            self.off_diagonal.push(if k > l {
                 ((*k, *l, below), above)
             } else {
                 ((*l, *k, above), below)
@@ -150,7 +150,7 @@ impl NewtonSystem {
     /// The motions, or `None` if the matrix is singular. Few rocks: dense LU with pivots, O(n³); more: block factors
     /// in the order of least fill.
     fn solve(mut self) -> Option<Vec<Twist>> {
-        self.joined.sort_by_key(|((row, column, _), _)| (*column, *row));
+        self.off_diagonal.sort_by_key(|((row, column, _), _)| (*column, *row));
         let x =
             if self.diagonal.len() <= DENSE { self.solve_dense()? } else { self.solve_sparse()? };
         let at = |k: usize| Vec3::new(x[k], x[k + 1], x[k + 2]);
@@ -167,7 +167,7 @@ impl NewtonSystem {
             home += block;
         };
         self.diagonal.iter().enumerate().for_each(|(k, block)| add(k, k, block));
-        for ((row, column, below), above) in &self.joined {
+        for ((row, column, below), above) in &self.off_diagonal {
             add(*row, *column, below);
             add(*column, *row, above);
         }
@@ -177,7 +177,7 @@ impl NewtonSystem {
 
     /// Blocks where rocks touch, and nothing elsewhere.
     fn solve_sparse(self) -> Option<Vec<f64>> {
-        let (below, above): (Vec<Below>, Vec<Mat6>) = self.joined.into_iter().unzip();
+        let (below, above): (Vec<Below>, Vec<Mat6>) = self.off_diagonal.into_iter().unzip();
         let blocks = Blocks { diagonal: &self.diagonal, below: &below, above: Some(&above) };
         let mut load = self.load;
         Factor::default().solve(blocks, &mut load).map(|()| load)

@@ -1,22 +1,22 @@
 //! What a step of an island did.
 
 use crate::rock::Motion;
-use crate::solver::loss::{Given, Loss};
-use crate::solver::struck::Struck;
+use crate::solver::impact_point::ImpactPoint;
+use crate::solver::loss::{EnergyGiven, Loss};
 
 /// What one step did.
 #[derive(Debug, Clone, Default)]
-pub struct Done {
+pub struct IslandAdvance {
     /// Time gone (s).
     pub dt: f64,
     /// Energy lost to the ground, for each rock (J).
     pub losses: Vec<Loss>,
     /// Energy given to other rocks, for each rock (J).
-    pub given: Vec<Given>,
+    pub given: Vec<EnergyGiven>,
     /// Steps tried and thrown away.
     pub rejected: u64,
     /// Impacts on the mesh, rock by rock and blow by blow (`rigid`; with the others the memory of a contact tells).
-    pub hits: Vec<Hit>,
+    pub hits: Vec<MeshImpact>,
     /// Blows within the step, rock by rock (`rigid`; with the others blows take time, and steps).
     pub blows: Vec<BlowInStep>,
     /// Whether contact states did not settle (`dda`, `rigid`).
@@ -27,11 +27,11 @@ pub struct Done {
 
 /// An impact on the mesh.
 #[derive(Debug, Clone, Copy)]
-pub struct Hit {
+pub struct MeshImpact {
     /// The rock, as a place in the island.
     pub rock: usize,
     /// What it strikes.
-    pub struck: Struck,
+    pub struck: ImpactPoint,
 }
 
 /// A blow on a rock within a step.

@@ -21,7 +21,7 @@ pub(super) struct PairContact {
     /// The impact that goes on.
     pub(super) impact: PairImpact,
     /// Whether an impact begins with it that presses nothing in the present try.
-    pub(super) waits: bool,
+    pub(super) deferred: bool,
     /// Holds in tension too.
     pub(super) bond: Option<Bond>,
     /// Unit normal from the second to the first.
@@ -68,7 +68,7 @@ impl PairContact {
             normal: pair_history.law.normal(pair_history.captured),
             captured: pair_history.captured,
             impact: pair_history.impact,
-            waits: false,
+            deferred: false,
             bond: pair_history.bond,
             n,
             penetration: pair_history.bond.map_or(reach, |bond| bond.length_m) - distance,
@@ -84,8 +84,8 @@ impl PairContact {
 
     /// Begins as bodies come together at a speed (m/s): too slow to rebound, or an impact. What begins while one of them is struck
     /// at a speed (m/s, 0 if none is) is a part of that impact, however slow it is.
-    pub(super) fn begin(&mut self, approach_m_s: f64, struck_m_s: f64) {
-        let fastest_m_s = approach_m_s.max(struck_m_s);
+    pub(super) fn begin(&mut self, approach_m_s: f64, impact_m_s: f64) {
+        let fastest_m_s = approach_m_s.max(impact_m_s);
         self.captured = fastest_m_s < self.law.capture_m_s;
         self.normal = self.law.normal(self.captured);
         if !self.captured {
@@ -94,22 +94,22 @@ impl PairContact {
     }
 
     /// Begins in a try in which impacts that come up wait for its end.
-    pub(super) fn begin_late(&mut self, approach_m_s: f64) {
-        self.waits = !self.captured && approach_m_s >= self.law.capture_m_s;
-        if self.waits {
+    pub(super) fn defer_impact(&mut self, approach_m_s: f64) {
+        self.deferred = !self.captured && approach_m_s >= self.law.capture_m_s;
+        if self.deferred {
             self.normal = NormalElement::NONE;
         }
     }
 
     /// Penetration at the end of a stage of length `h`, where the normal speed apart is `vn` (m).
     #[inline]
-    pub(super) fn pen_at(&self, vn: f64, h: f64) -> f64 {
+    pub(super) fn penetration_at(&self, vn: f64, h: f64) -> f64 {
         self.penetration - h * vn
     }
 
     /// Whether it holds any force.
     #[inline]
-    pub(super) fn acts(&self) -> bool {
+    pub(super) fn has_force(&self) -> bool {
         self.normal_force != 0.0 || self.bond.is_some()
     }
 
@@ -152,10 +152,10 @@ impl PairContact {
     }
 
     /// Sets its forces to what its law gives at the motions of both rocks.
-    pub(super) fn act_at(&mut self, ends: [&Twist; 2], h: f64) {
+    pub(super) fn set_forces_at(&mut self, ends: [&Twist; 2], h: f64) {
         let (speed, stick) = (self.speed(ends), self.trial(ends, h));
         if self.bond.is_some() {
-            self.normal_force = self.normal.bilateral_force(self.pen_at(speed, h), speed);
+            self.normal_force = self.normal.bilateral_force(self.penetration_at(speed, h), speed);
             self.shear_force = stick;
         } else {
             self.normal_force = self.line(h).at(speed);
@@ -164,7 +164,7 @@ impl PairContact {
     }
 
     /// Forces at the present state, for the explicit first stage; gives the rate of the shear spring.
-    pub(super) fn act_now(&mut self, ends: [&Twist; 2]) -> Vec3 {
+    pub(super) fn set_forces_now(&mut self, ends: [&Twist; 2]) -> Vec3 {
         let (penetration, vn) = (self.penetration, self.speed(ends));
         let held = self.law.shear.spring_force(self.shear);
         let stick = held + self.law.shear.dashpot_force(self.slip(ends));
@@ -193,7 +193,7 @@ impl PairContact {
 
     /// Adds `times` the effect over `h` on end `k` to its motion.
     #[inline]
-    pub(super) fn act(&self, k: usize, times_h: f64, (v, w): &mut Twist) {
+    pub(super) fn apply_effect(&self, k: usize, times_h: f64, (v, w): &mut Twist) {
         let (force, torque) = self.load(k);
         let (mass, inertia) = self.inertia[k];
         *v += force * (times_h / mass);

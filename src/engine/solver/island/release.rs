@@ -43,7 +43,7 @@ impl IslandBody {
             let law = world.springs_of(history);
             if law.is_struck_through(history.normal_force, approach_m_s) {
                 history.captured = false;
-                state.impact.meet(approach_m_s, world.least_impact_m_s());
+                state.impact.add_contact(approach_m_s, world.least_impact_m_s());
                 is_any = true;
             }
         }

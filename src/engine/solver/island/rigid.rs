@@ -25,15 +25,15 @@ mod sweeps;
 
 use super::body::{BodySlot, IslandBody, note_flights};
 use super::contact_queue::{ContactQueue, ContactsOfRocks};
-use super::outcome::{BlowInStep, Done, Hit};
+use super::outcome::{BlowInStep, IslandAdvance, MeshImpact};
 use crate::contact::pair::{PairHistory, normal_and_distance};
 use crate::rock::Vec3;
 use crate::solver::body::are_finite;
 use crate::solver::impact::BlowTable;
 use crate::solver::law::capture_m_s;
-use crate::solver::loss::Given;
+use crate::solver::loss::EnergyGiven;
 use crate::solver::loss::Loss;
-use crate::solver::rigid::{GroundContact, HELD, remember};
+use crate::solver::rigid::{GroundContact, HELD, update_histories};
 use crate::solver::step_control::StepError;
 use crate::terrain::Terrain;
 pub(crate) use contacts::blows_of;
@@ -56,8 +56,8 @@ pub(crate) struct RigidIsland {
     ground_contacts: Vec<GroundContact>,
     ball_contacts: Vec<BallContact>,
     losses: Vec<Loss>,
-    given: Vec<Given>,
-    hits: Vec<Hit>,
+    given: Vec<EnergyGiven>,
+    hits: Vec<MeshImpact>,
     blows_in_step: Vec<BlowInStep>,
     pending: BinaryHeap<PendingImpact>,
     /// Which pairs had an impact.
@@ -99,7 +99,7 @@ impl RigidIsland {
         members: &mut [BodySlot],
         pair_histories: &mut [PairHistory],
         (longest, h_max): (f64, f64),
-    ) -> Result<Done, StepError> {
+    ) -> Result<IslandAdvance, StepError> {
         self.begin(members, pair_histories);
         let dt = self.step_s(longest, h_max);
         let settled = self.solve_resting_contacts(terrain, (members, pair_histories), dt);
@@ -111,14 +111,14 @@ impl RigidIsland {
         // impacts come in the order of their times, and are reported rock by rock
         self.hits.sort_by_cached_key(|hit| hit.rock);
         self.blows_in_step.sort_by_cached_key(|blow| blow.rock);
-        let done = Done {
+        let done = IslandAdvance {
             dt,
             losses: std::mem::take(&mut self.losses),
             given: std::mem::take(&mut self.given),
             hits: std::mem::take(&mut self.hits),
             blows: std::mem::take(&mut self.blows_in_step),
             unsettled: !(settled && struck),
-            ..Done::default()
+            ..IslandAdvance::default()
         };
         if finite { Ok(done) } else { Err(StepError::NotFinite) }
     }
@@ -177,7 +177,7 @@ impl RigidIsland {
             .peekable();
         for (k, (member, ball)) in members.iter_mut().zip(&self.balls).enumerate() {
             let member = &mut **member;
-            member.kept.clear();
+            member.last_forces.clear();
             while let Some(ground_contact) =
                 ground_contacts.next_if(|ground_contact| ground_contact.rock == k)
             {
@@ -186,7 +186,7 @@ impl RigidIsland {
                     ground_contact.shear_impulse / dt,
                     ground_contact.rolling_impulse / dt,
                 );
-                member.kept.push((ground_contact.feature, kept.0, kept.1, kept.2));
+                member.last_forces.push((ground_contact.feature, kept.0, kept.1, kept.2));
             }
             member.land_on(terrain, ball);
         }
@@ -220,7 +220,7 @@ impl RigidIsland {
         self.losses.clear();
         self.losses.resize(members.len(), Loss::default());
         self.given.clear();
-        self.given.resize(members.len(), Given::default());
+        self.given.resize(members.len(), EnergyGiven::default());
         self.struck.clear();
         self.struck.resize(pair_histories.len(), false);
         self.hits.clear();
@@ -252,7 +252,7 @@ impl IslandBody {
         self.was_touched = ball.pushed || ball.moved;
         let (world, state) = self.with_environment(terrain);
         (state.c, state.v, state.w) = (ball.c, ball.v, ball.w);
-        remember(&world, state, ball.pushed);
-        state.is_struck = false;
+        update_histories(&world, state, ball.pushed);
+        state.impact_announced = false;
     }
 }

@@ -13,18 +13,18 @@ use super::pair_contact::PairContact;
 use super::pair_contact::TOUCH;
 use crate::contact::history::transport;
 use crate::rock::Vec3;
-use crate::solver::loss::Given;
-use crate::solver::stage::{AGREED, PASSES};
+use crate::solver::loss::EnergyGiven;
+use crate::solver::stage::{PASSES, SHIFT_CONVERGED};
 use crate::solver::tableau::{STAGES, Tableau};
 
 /// Gap below which two rocks may press each other whatever their motion (–, relative to the smaller radius): far more than the
 /// passes of a stage leave open.
-const NEAR: f64 = 1e-6;
+const PAIR_GAP: f64 = 1e-6;
 
 /// Change of a centre (–, relative to the radius) up to which geometry and forces may agree in an island of more than a few rocks …
-const AGREED_OF_MANY: f64 = 1e-6;
+const SHIFT_CONVERGED_OF_MANY: f64 = 1e-6;
 /// … if what the turn of the normals by it does to a velocity is no more than this (–, relative to the local error allowed).
-const TURNED: f64 = 1e-2;
+const TURN_EFFECT: f64 = 1e-2;
 
 impl Island<'_> {
     /// Solves implicit stage `i` of a step of length `h` and stores its rates.
@@ -43,7 +43,7 @@ impl Island<'_> {
             // what the rock would do in the stage without contacts: weight changes velocity,
             // negligible changes spin
             member.free = (member.base.v + member.body.gravity * hh, member.base.w);
-            member.look(self.terrain);
+            member.find_contact_points(self.terrain);
         }
         // without agreement within so many passes the step is too long: it is tried again, shorter
         for _ in 0..PASSES {
@@ -61,15 +61,16 @@ impl Island<'_> {
                 let c = member.base.c + motion.0 * hh;
                 // every rock must agree: a contact of one decides the forces on its neighbours
                 let allowed = if self.active.is_small() {
-                    AGREED
+                    SHIFT_CONVERGED
                 } else {
                     // normals turn by the change over the radius, and with them what contacts have given
                     let pushed_m_s = (motion.0 - member.free.0).norm().max(f64::MIN_POSITIVE);
-                    (TURNED * self.tolerance / pushed_m_s).clamp(AGREED, AGREED_OF_MANY)
+                    (TURN_EFFECT * self.tolerance / pushed_m_s)
+                        .clamp(SHIFT_CONVERGED, SHIFT_CONVERGED_OF_MANY)
                 };
                 agreed &= (c - member.guess).norm() <= allowed * member.body.radius;
                 member.guess = c;
-                member.look(self.terrain);
+                member.find_contact_points(self.terrain);
             }
             if agreed {
                 self.store(i, hh);
@@ -89,7 +90,7 @@ impl Island<'_> {
         for (k, pair_history) in self.pair_histories.iter().enumerate() {
             let [a, b] = [pair_history.a, pair_history.b].map(|k| &self.members[k as usize]);
             let passes_m = (a.base.v - b.base.v).norm() * hh;
-            let slack = NEAR * a.body.radius.min(b.body.radius) + 2.0 * passes_m;
+            let slack = PAIR_GAP * a.body.radius.min(b.body.radius) + 2.0 * passes_m;
             let bodies = [&a.body, &b.body];
             let Some(mut pair) =
                 PairContact::over(pair_history, bodies, [&a.guess, &b.guess], slack)
@@ -102,11 +103,11 @@ impl Island<'_> {
             pair.penetration -= apart;
             // a new contact: whether it rebounds is judged by the approach at the stage's base
             if !pair_history.is_held() {
-                let struck_m_s = a.struck_m_s.max(b.struck_m_s);
+                let impact_m_s = a.impact_m_s.max(b.impact_m_s);
                 let approach_m_s = -pair.n.dot(&(a.base.v - b.base.v));
-                pair.begin(approach_m_s, struck_m_s);
-                if self.onset.waits {
-                    pair.begin_late(approach_m_s);
+                pair.begin(approach_m_s, impact_m_s);
+                if self.onset.deferred {
+                    pair.defer_impact(approach_m_s);
                 }
             }
             // the remembered stretch is turned with the normal: the spring stays in the tangent plane
@@ -124,7 +125,7 @@ impl Island<'_> {
     /// (W).
     fn store(&mut self, i: usize, hh: f64) {
         for member in &mut self.members {
-            member.given[i] = Given::default();
+            member.given[i] = EnergyGiven::default();
         }
         for (rates, pair_history) in self.pair_rates.iter_mut().zip(&self.pair_histories) {
             rates[i] = Vec3::zeros();
@@ -142,9 +143,11 @@ impl Island<'_> {
                 let (force, rolling_moment) = pair.load(k);
                 -force.dot(v) - rolling_moment.dot(w)
             };
-            let apart_m_s = pair.speed(pair.ends.map(|end| &self.motions[end]));
-            self.onset.is_met |= pair.waits && pair.pen_at(apart_m_s, hh) > 0.0;
-            for (end, given) in pair.ends.into_iter().zip(Given::of_ends([power(0), power(1)])) {
+            let separation_m_s = pair.speed(pair.ends.map(|end| &self.motions[end]));
+            self.onset.is_reached |= pair.deferred && pair.penetration_at(separation_m_s, hh) > 0.0;
+            for (end, given) in
+                pair.ends.into_iter().zip(EnergyGiven::of_ends([power(0), power(1)]))
+            {
                 self.members[end].given[i].add(&given, 1.0);
             }
         }
@@ -156,12 +159,12 @@ impl Island<'_> {
     /// Rates at the present state, for the explicit first stage.
     ///
     /// Nothing is solved: forces follow from places, velocities and stretches as they are
-    /// (`act_now`).
+    /// (`set_forces_now`).
     pub(super) fn rates_now(&mut self) {
         for member in &mut self.members {
             let (world, state) = member.with_environment(self.terrain);
             state.rates_now(&world);
-            member.given[0] = Given::default();
+            member.given[0] = EnergyGiven::default();
         }
         self.pair_rates.resize(self.pair_histories.len(), [Vec3::zeros(); STAGES]);
         for (k, pair_history) in self.pair_histories.iter_mut().enumerate() {
@@ -178,17 +181,17 @@ impl Island<'_> {
             let motions = [(a.state.v, a.state.w), (b.state.v, b.state.w)];
             if !pair_history.is_held() {
                 let approach_m_s = -pair.speed([&motions[0], &motions[1]]);
-                pair.begin(approach_m_s, a.struck_m_s.max(b.struck_m_s));
+                pair.begin(approach_m_s, a.impact_m_s.max(b.impact_m_s));
                 pair_history.n = pair.n;
             }
             pair.shear = transport(pair_history.shear, &pair_history.n, &pair.n);
-            let rate = pair.act_now([&motions[0], &motions[1]]);
+            let rate = pair.set_forces_now([&motions[0], &motions[1]]);
             self.pair_rates[k][0] = transport(rate, &pair.n, &pair_history.n);
             let power = |k: usize| {
                 let (force, rolling_moment) = pair.load(k);
                 -force.dot(&motions[k].0) - rolling_moment.dot(&motions[k].1)
             };
-            let given = Given::of_ends([power(0), power(1)]);
+            let given = EnergyGiven::of_ends([power(0), power(1)]);
             for end in 0..2 {
                 let member = &mut *self.members[ends[end]];
                 let (force, rolling_moment) = pair.load(end);

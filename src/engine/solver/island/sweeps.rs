@@ -12,7 +12,7 @@ use super::assembly::Island;
 use super::body::IslandBody;
 use super::newton_step::solve_linearised;
 use crate::solver::body::{STILL, Twist};
-use crate::solver::linear_forces::driven;
+use crate::solver::linear_forces::motion_under;
 
 /// Sweeps before the first Newton step and between two of them: at least, for each rock that still changes, and at
 /// most. A Newton step costs as much as some hundred contacts.
@@ -39,7 +39,7 @@ impl Island<'_> {
                 return true;
             }
             if round + 1 < NEWTON_STEPS {
-                self.jumps += 1;
+                self.newton_steps += 1;
                 self.newton_step(h);
             }
         }
@@ -82,7 +82,7 @@ impl Island<'_> {
     /// Without them the linear solve would press these against neighbours of fixed motion.
     fn include_neighbours(&mut self) {
         let core = self.active.changed.clone();
-        for [a, b] in self.pairs.iter().filter(|pair| pair.acts()).map(|pair| pair.ends) {
+        for [a, b] in self.pairs.iter().filter(|pair| pair.has_force()).map(|pair| pair.ends) {
             self.active.changed[a] |= core[b];
             self.active.changed[b] |= core[a];
         }
@@ -94,11 +94,11 @@ impl Island<'_> {
         for member in &self.members {
             let IslandBody { state, body, free, .. } = &**member;
             let contacts = &state.contacts[..state.contact_count];
-            self.motions.push(driven(body, contacts, *free, h));
+            self.motions.push(motion_under(body, contacts, *free, h));
         }
-        for pair in self.pairs.iter().filter(|pair| pair.acts()) {
+        for pair in self.pairs.iter().filter(|pair| pair.has_force()) {
             for k in 0..2 {
-                pair.act(k, h, &mut self.motions[pair.ends[k]]);
+                pair.apply_effect(k, h, &mut self.motions[pair.ends[k]]);
             }
         }
     }
@@ -125,7 +125,7 @@ impl Island<'_> {
         let count = state.contact_count;
         let mut worst = 0.0f64;
         for contact in &mut state.contacts[..count] {
-            let change = contact.solve_anew(body, now, h).sqrt();
+            let change = contact.relax(body, now, h).sqrt();
             // a force that changes the velocity by CONVERGED · tolerance in a stage
             let allowed = CONVERGED * self.tolerance * body.mass / h;
             worst = worst.max(change / allowed.max(ROUNDING / negligible * contact.normal_force));
@@ -147,16 +147,16 @@ impl Island<'_> {
         let ends = pair.ends;
         let before = (pair.normal_force, pair.shear_force);
         let mut motions: [Twist; 2] = ends.map(|end| self.motions[end]);
-        if pair.acts() {
+        if pair.has_force() {
             for (k, motion) in motions.iter_mut().enumerate() {
-                pair.act(k, -h, motion);
+                pair.apply_effect(k, -h, motion);
             }
         }
         pair.solve([&motions[0], &motions[1]], h);
         let change = (pair.normal_force - before.0).abs().max((pair.shear_force - before.1).norm());
-        if pair.acts() || change > 0.0 {
+        if pair.has_force() || change > 0.0 {
             for (k, motion) in motions.iter_mut().enumerate() {
-                pair.act(k, h, motion);
+                pair.apply_effect(k, h, motion);
                 self.motions[ends[k]] = *motion;
             }
         }
@@ -182,7 +182,7 @@ impl Island<'_> {
             let IslandBody { state, body, .. } = &mut **member;
             *now = *motion;
             for contact in &mut state.contacts[..state.contact_count] {
-                contact.act_at(body, [motion, &STILL], h);
+                contact.set_forces_at(body, [motion, &STILL], h);
             }
         }
         for pair in &mut self.pairs {
@@ -190,7 +190,7 @@ impl Island<'_> {
                 continue;
             }
             let ends = pair.ends.map(|k| &self.motions[k]);
-            pair.act_at(ends, h);
+            pair.set_forces_at(ends, h);
         }
     }
 }

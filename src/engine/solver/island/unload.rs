@@ -7,7 +7,7 @@
 use super::body::IslandBody;
 use crate::contact::pair::{PairHistory, normal_and_distance};
 use crate::rock::Vec3;
-use crate::solver::loss::{Given, Loss};
+use crate::solver::loss::{EnergyGiven, Loss};
 use crate::terrain::Terrain;
 
 /// Impulse along the normal (N s) by which a contact of effective mass `mass` (kg) with the normal speed apart `speed` (m/s) gets
@@ -22,7 +22,7 @@ impl IslandBody {
     pub fn unload(&mut self, terrain: &Terrain) -> Loss {
         let (world, state) = self.with_environment(terrain);
         let mut loss = Loss::default();
-        let pressed = state.pressed_in_impacts(&world);
+        let pressed = state.impact_springs(&world);
         for (n, triangle, energy_j) in pressed {
             state.v += n * (impulse(world.body.mass, n.dot(&state.v), energy_j) / world.body.mass);
             loss.add(&Loss::on_slope([0.0, -energy_j, 0.0]).on(&world, triangle), 1.0);
@@ -41,14 +41,14 @@ impl IslandBody {
         }
         state.impact.forget();
         state.plane.forget();
-        state.struck.clear();
-        (state.is_struck, state.fresh) = (false, false);
-        self.kept.clear();
+        state.upcoming_impacts.clear();
+        (state.impact_announced, state.fresh) = (false, false);
+        self.last_forces.clear();
     }
 }
 
 /// Unloads the contact of two rocks; what each gives (J).
-pub fn unload_pair(pair: &mut PairHistory, [a, b]: [&mut IslandBody; 2]) -> [Given; 2] {
+pub fn unload_pair(pair: &mut PairHistory, [a, b]: [&mut IslandBody; 2]) -> [EnergyGiven; 2] {
     let (n, distance) = normal_and_distance(&a.state.c, &b.state.c);
     let depth_m = (a.body.radius + b.body.radius - distance).max(0.0);
     let energy_j = if pair.captured { 0.0 } else { pair.law.stored_j(depth_m, 0.0, 0.0) };
@@ -62,5 +62,5 @@ pub fn unload_pair(pair: &mut PairHistory, [a, b]: [&mut IslandBody; 2]) -> [Giv
         // the work of the impulse on the rock, by the mean velocity
         -0.5 * push.dot(&(before + one.state.v))
     };
-    Given::of_ends([work(a, push), work(b, -push)])
+    EnergyGiven::of_ends([work(a, push), work(b, -push)])
 }

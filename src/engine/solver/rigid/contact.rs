@@ -1,17 +1,18 @@
-//! A contact of a rock with the mesh in the limit of stiff springs, and its impulses: of a rock alone and of one among others.
+//! A contact of a rock with the mesh in the limit of stiff springs, and its impulses: for a rock
+//! alone and for one among others.
 
 use crate::contact::{ContactPoint, Feature};
 use crate::ground::{FrictionLimits, Law};
 use crate::rock::Vec3;
 use crate::solver::body::{Body, Twist};
 use crate::solver::contact_frame::ContactFrame;
-use crate::solver::friction_rolling::{Answers, Pair, SlipState};
+use crate::solver::friction_rolling::{Compliance, FrictionRolling, SlipState};
 use crate::solver::law::ZERO;
 use crate::solver::loss::Loss;
 
 /// Sweeps over the contacts of one rock, at most.
 const SWEEPS: u32 = 100;
-/// Change of an impulse, relative to the largest, below which they have settled (–).
+/// Change of an impulse, relative to the largest, at which they have converged (–).
 const CONVERGED: f64 = 1e-12;
 
 /// One contact with the mesh and its impulses.
@@ -22,7 +23,7 @@ pub(crate) struct GroundContact {
     pub(crate) feature: Feature,
     pub(crate) triangle: u32,
     frame: ContactFrame,
-    /// What friction and rolling friction bear.
+    /// Limits of friction and rolling friction.
     pub(crate) limits: FrictionLimits,
     /// Normal speed wanted after the impulse (m/s).
     pub(crate) target_m_s: f64,
@@ -32,14 +33,14 @@ pub(crate) struct GroundContact {
     pub(crate) shear_impulse: Vec3,
     /// Rolling impulse on the rock (N m s).
     pub(crate) rolling_impulse: Vec3,
-    /// Which of friction and rolling friction holds, as far as is known.
+    /// Which of friction and rolling friction are at their limits, as far as is known.
     pub(crate) mode: SlipState,
-    /// Among others: the count of its rock when it was solved last.
+    /// Among others: version of its rock's motion when it was solved last.
     pub(crate) seen_version: u32,
 }
 
 impl GroundContact {
-    /// None, on a level.
+    /// No contact, on a level surface.
     pub(crate) const NONE: Self = Self {
         rock: 0,
         feature: Feature::NONE,
@@ -54,7 +55,7 @@ impl GroundContact {
         seen_version: 0,
     };
 
-    /// The contact of a rock where it touches, without impulses.
+    /// The contact of a rock at a contact point, without impulses.
     pub(crate) fn new(rock: usize, touch: &ContactPoint, law: &Law) -> Self {
         Self {
             rock,
@@ -72,13 +73,13 @@ impl GroundContact {
         &self.frame.n
     }
 
-    /// Without impulses.
+    /// Sets the impulses to zero.
     pub(crate) fn clear_impulses(&mut self) {
         (self.normal_impulse, self.shear_impulse, self.rolling_impulse) =
             (0.0, Vec3::zeros(), Vec3::zeros());
     }
 
-    /// Finds the impulses for velocity `v` and spin `w` without this contact's own.
+    /// Solves the impulses for velocity `v` and spin `w` without this contact's own.
     ///
     /// `J = max(0, m (target_m_s − n·v))`: exact for one contact; for several sweeps repeat it.
     pub(crate) fn solve_for(&mut self, body: &Body, v: &Vec3, w: &Vec3) {
@@ -87,10 +88,11 @@ impl GroundContact {
             self.clear_impulses();
             return;
         }
-        // The stick solution: `2/7 m` is the mass of a sphere's contact point along the surface, `I ω` stops all rotation; `Pair`
-        // couples both and cuts them.
-        let pair = Pair {
-            answers: &Answers::rigid(body.radius),
+        // The stick solution: `2/7 m` is the effective mass of a sphere's contact point along the
+        // surface, and `I ω` stops all rotation; `FrictionRolling` couples both and applies the
+        // limits.
+        let pair = FrictionRolling {
+            compliance: &Compliance::rigid(body.radius),
             a: self.frame.along(&(body.slip(self.n(), v, w) * body.mass_along())),
             d: self.frame.local(&(w * body.inertia)),
             caps: self.limits.caps(self.normal_impulse),
@@ -109,32 +111,35 @@ impl GroundContact {
         )
     }
 
-    /// What its impulses change of the rock's velocity and spin.
+    /// Change of the rock's velocity and spin by the impulses.
     pub(crate) fn velocity_change(&self, body: &Body) -> Twist {
         let (push, turn) = self.load(body);
         (push / body.mass, turn / body.inertia)
     }
 
-    /// Energy that the impulses take (J), at mean velocity and spin.
+    /// Energy taken by the impulses (J), at mean velocity and spin.
     ///
-    /// An impulse works with the mean of the velocities before and after: `J·(v₀ + v₁)/2` is the
+    /// The work of an impulse is that with the mean of the velocities before and after: `J·(v₀ +
+    /// v₁)/2` is the
     /// change of kinetic energy exactly.
     pub(crate) fn loss(&self, body: &Body, (v, w): &Twist) -> Loss {
         let friction = -self.shear_impulse.dot(&body.slip(self.n(), v, w));
         let damping = -self.normal_impulse * self.n().dot(v);
-        Loss::sharing([friction, damping, -self.rolling_impulse.dot(w)])
+        Loss::redistributed([friction, damping, -self.rolling_impulse.dot(w)])
     }
 }
 
-/// Normal speed wanted at the end of a step of length `dt` (s) of a contact with the gap `gap` (m) and the normal speed `speed` (m/s): an
-/// open gap may close, and a push never works on the rock: over an edge, half of the turn of the normal is before the middle of the step
-/// and half after it.
+/// Normal separation speed wanted at the end of a step of length `dt` (s), from the gap (m) and the
+/// separation speed (m/s) at its start: an open gap may close, and a normal impulse does no
+/// positive work on the rock. Over an edge, half of the turn of the normal lies before the middle
+/// of the step and half after it.
 pub(crate) fn sustained_m_s(gap: f64, speed: f64, dt: f64) -> f64 {
     -(gap / dt).max(speed).max(0.0)
 }
 
-/// Sweeps over the contacts of one rock until their impulses settle, beginning with those that they have; `v` and `w` are its motion with
-/// these, and what is returned is that afterwards (projected Gauss–Seidel; for one contact the first sweep is exact).
+/// Sweeps over the contacts of one rock until their impulses converge, starting from those at hand.
+/// `v` and `w` are the motion with these impulses; returns the motion afterwards (projected
+/// Gauss–Seidel; for one contact the first sweep is exact).
 pub(crate) fn converge(
     contacts: &mut [GroundContact],
     body: &Body,

@@ -1,12 +1,13 @@
 //! A long step of a rock that slides or rolls on one plane.
 //!
-//! With one normal, impulses in the limit of stiff springs depend on a step's length only where friction changes its direction, slipping ends,
-//! or the rock comes to rest. So a step is taken whole and in two halves: where both agree it is as long as the plane is clear, and what is
-//! kept are the halves.
+//! With one normal, the impulses of the limit of stiff springs depend on the step length only where
+//! friction changes its direction, slipping ends, or the rock comes to rest. So a step is taken as
+//! a whole and in two halves. Where both agree, the step may be as long as the plane is clear; the
+//! result is that of the halves.
 
 use super::contact::{GroundContact, sustained_m_s};
 use super::sustained::push_out;
-use super::{HELD, remember};
+use super::{HELD, update_histories};
 use crate::contact::ContactPoint;
 use crate::rock::Vec3;
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
@@ -17,17 +18,19 @@ use crate::solver::step_control::Advance;
 
 /// Longest step on a plane over the longest elsewhere (–).
 const LONGER: f64 = 10.0;
-/// A step is worth trying where it is longer than elsewhere by so much (–) …
+/// A longer step is tried only if it exceeds the usual one by this factor (–) …
 const WORTH: f64 = 2.0;
-/// … and gets on by so much (–, relative to R): whether a slow rock rests is asked after every step.
+/// … and the travel is at least this (–, relative to R): a slow rock must be checked for rest after
+/// every step.
 const LEAST_WAY: f64 = 0.05;
-/// By how much the next may be longer, after one that was taken and after one that was not tried (–).
+/// Growth of the next step, after one that was accepted and after one that was not tried (–).
 const GROWTH: (f64, f64) = (2.0, 1.5);
-/// Difference between a step as a whole and in halves, of velocities and of places (–, relative to what gravity gives in the longest step
-/// elsewhere): a small part of what such a step is off, where friction turns and where slipping or rolling ends.
+/// Difference allowed between a step as a whole and in halves, of velocities and of positions (–,
+/// relative to the change by gravity in the longest usual step): a small part of the error of such
+/// a step; first for smooth steps, then where friction turns or slipping or rolling ends.
 const ERROR: (f64, f64) = (0.02, 0.001);
 
-/// Motion on the plane at some time, and what it has taken since the step's start.
+/// Motion on the plane at a time, and the energy taken since the step's start.
 #[derive(Debug, Clone, Copy)]
 struct Slide {
     c: Vec3,
@@ -36,18 +39,19 @@ struct Slide {
     /// Height over the plane less the radius (m).
     gap: f64,
     loss: Loss,
-    /// Which of friction and rolling friction has held.
+    /// Mode of friction and rolling friction.
     mode: SlipState,
 }
 
-/// The one plane that holds the rock.
+/// The only plane that holds the rock.
 struct PlaneContact<'a, 'w> {
     world: &'a ContactEnvironment<'w>,
     touch: ContactPoint,
 }
 
 impl PlaneContact<'_, '_> {
-    /// The motion after `dt` (s), with the mean velocity on the way; `None` if nothing pushes.
+    /// The motion after `dt` (s), with the mean velocity during the step; `None` without a normal
+    /// impulse.
     fn after(&self, from: &Slide, dt: f64) -> Option<Slide> {
         let Self { world, touch } = self;
         let (body, n) = (&world.body, touch.normal);
@@ -67,28 +71,33 @@ impl PlaneContact<'_, '_> {
         Some(Slide { c: from.c + mean.0 * dt, v, w, gap, loss, mode: contact.mode })
     }
 
-    /// The same in two halves, if both ways agree to a part of the error of steps of `usual` (s); else, where slipping or rolling ends within
-    /// the step, when it does (s).
-    fn settled(&self, from: &Slide, dt: f64, usual: f64) -> Result<Slide, Option<f64>> {
+    /// The motion in two halves, if it agrees with the whole step within a part of the error of
+    /// steps of `usual` (s). Else the time at which slipping or rolling ends within the step (s),
+    /// if it does.
+    fn in_halves(&self, from: &Slide, dt: f64, usual: f64) -> Result<Slide, Option<f64>> {
         let whole = self.after(from, dt).ok_or(None)?;
         let half = self.after(from, 0.5 * dt).ok_or(None)?;
         let end = self.after(&half, 0.5 * dt).ok_or(None)?;
         let body = &self.world.body;
-        let is_smooth = half.goes_on_as(&whole) && half.goes_on_as(&end);
+        let is_smooth = half.has_mode_of(&whole) && half.has_mode_of(&end);
         let error = if is_smooth { ERROR.0 } else { ERROR.1 };
         let allowed = error * body.gravity.norm() * usual;
-        let off2 = (whole.v - end.v)
+        let error_rate2 = (whole.v - end.v)
             .norm_squared()
             .max((whole.w - end.w).norm_squared() * body.radius * body.radius)
             .max((whole.c - end.c).norm_squared() / (usual * usual));
-        if off2 <= allowed * allowed {
+        if error_rate2 <= allowed * allowed {
             return Ok(end);
         }
-        Err(self.ends(from, &half).map(|halves| 0.5 * dt * halves).filter(|_| !is_smooth))
+        Err(self
+            .halves_to_mode_change(from, &half)
+            .map(|halves| 0.5 * dt * halves)
+            .filter(|_| !is_smooth))
     }
 
-    /// After how many halves of the step what slips or rolls comes to an end, if it goes on as in the first.
-    fn ends(&self, from: &Slide, half: &Slide) -> Option<f64> {
+    /// Number of halves of the step after which slipping or rolling ends, extrapolated from the
+    /// first half.
+    fn halves_to_mode_change(&self, from: &Slide, half: &Slide) -> Option<f64> {
         let (body, n) = (&self.world.body, &self.touch.normal);
         let slip = |slide: &Slide| body.slip(n, &slide.v, &slide.w).norm();
         let [before, after] = match half.mode {
@@ -101,15 +110,15 @@ impl PlaneContact<'_, '_> {
 }
 
 impl Slide {
-    /// Whether the same slips or rolls.
-    fn goes_on_as(&self, other: &Self) -> bool {
+    /// Whether both are in the same mode of slipping and rolling.
+    fn has_mode_of(&self, other: &Self) -> bool {
         std::mem::discriminant(&self.mode) == std::mem::discriminant(&other.mode)
     }
 }
 
 impl ContactState {
-    /// A step on the plane that holds the rock, at most `h_max` (s) long; whether there was one that is longer than those elsewhere,
-    /// `usual` (s).
+    /// A step on the plane that holds the rock, at most `h_max` (s) long; returns whether one
+    /// longer than the usual step elsewhere, `usual` (s), was taken.
     pub(super) fn slide_on_plane(
         &mut self,
         world: &ContactEnvironment,
@@ -140,10 +149,10 @@ impl ContactState {
         let mut dt = tried;
         while dt >= least || is_cut {
             self.sweeps += 3;
-            match contact.settled(&from, dt, usual) {
+            match contact.in_halves(&from, dt, usual) {
                 Ok(end) => {
                     let moved = (&(end.c - from.c), &(end.v - from.v));
-                    if step.is_certain((world, &self.near), moved, dt) {
+                    if step.touches_plane_only((world, &self.near), moved, dt) {
                         self.slide_to(world, (&end, contact.touch.triangle), dt, done);
                         self.plane.wished_s = if is_cut { tried } else { GROWTH.0 * dt };
                         return true;
@@ -151,7 +160,7 @@ impl ContactState {
                     is_cut = false;
                     dt *= 0.5;
                 }
-                // from there on it goes on as something else
+                // at this time the mode changes
                 Err(Some(ends)) if ends < dt && !is_cut => (dt, is_cut) = (ends, true),
                 Err(_) => (dt, is_cut) = (0.5 * dt, false),
             }
@@ -161,7 +170,7 @@ impl ContactState {
         false
     }
 
-    /// Takes over the end of a step of `dt` (s) on the plane of a triangle.
+    /// Accepts a step of `dt` (s) on the plane of a triangle.
     fn slide_to(
         &mut self,
         world: &ContactEnvironment,
@@ -173,10 +182,10 @@ impl ContactState {
         done.loss.add(&end.loss.on(world, triangle), 1.0);
         done.dt = dt;
         push_out(world, self);
-        remember(world, self, true);
+        update_histories(world, self, true);
     }
 
-    /// The plane of the ground that alone holds the rock, by the last look.
+    /// The only plane of the ground that holds the rock, by the last contact search.
     fn plane_contact<'a, 'w>(
         &self,
         world: &'a ContactEnvironment<'w>,

@@ -1,7 +1,8 @@
-//! One step of sustained contact: what holds the rock bears it, and what it comes to within the step ends the step.
+//! One step of sustained contact: closed contacts bear the rock, and the step ends where the rock
+//! reaches a further surface.
 
 use super::contact::{GroundContact, converge, sustained_m_s};
-use super::{is_coming, remember};
+use super::{is_approaching, update_histories};
 use crate::contact::{ContactPoint, MAX_CONTACTS, TOUCH};
 use crate::rock::Vec3;
 use crate::solver::body::Twist;
@@ -9,16 +10,17 @@ use crate::solver::contact_state::{ContactEnvironment, ContactState};
 use crate::solver::step_control::Advance;
 use arrayvec::ArrayVec;
 
-/// How often a step is cut to where the rock comes to the next surface, at most: each cut knows the motion on the way better.
+/// Most cuts of a step to the time at which a surface is reached: each improves the motion that
+/// predicts it.
 const CUTS: u32 = 6;
-/// A step may end so far beyond what it meets (–, relative to R).
-const MET: f64 = 1e-6;
+/// A step may overshoot a surface by this (–, relative to R).
+const OVERSHOOT: f64 = 1e-6;
 
-/// A step as it is tried.
+/// A trial step.
 struct HeldStep {
     /// Its length (s).
     dt: f64,
-    /// What holds the rock in its middle, with the impulses.
+    /// Contacts in its middle, with their impulses.
     contacts: ArrayVec<GroundContact, MAX_CONTACTS>,
     /// Motion at its end.
     after: Twist,
@@ -35,10 +37,10 @@ pub(super) fn step(
     done: &mut Advance,
 ) {
     let mut tried = HeldStep { dt: 0.0, contacts: ArrayVec::new(), after: (state.v, state.w) };
-    tried.hold(world, state, closing(world, state, longest));
+    tried.solve(world, state, time_until_closed(world, state, longest));
     for _ in 0..CUTS {
-        let Some(met_s) = meets_s(world, state, &tried) else { break };
-        tried.hold(world, state, met_s);
+        let Some(contact_s) = time_to_contact_s(world, state, &tried) else { break };
+        tried.solve(world, state, contact_s);
     }
     let before = (state.v, state.w);
     let mean = book((world, state), &tried.contacts, [&before, &tried.after], done);
@@ -46,17 +48,17 @@ pub(super) fn step(
     // mean of both velocities: the parabola under weight alone is exact
     state.c += mean.0 * tried.dt;
     done.dt = tried.dt;
-    // without any impulse the rock is free, and the next leap takes over
+    // without any impulse the rock is free, and its flight follows
     let pushed = tried.contacts.iter().any(|contact| contact.normal_impulse > 0.0);
     push_out(world, state);
-    remember(world, state, pushed);
+    update_histories(world, state, pushed);
 }
 
-/// What the rock meets at this instant, too slow to rebound, holds it from now on: impulses that take no time.
-pub(super) fn meet(world: &ContactEnvironment, state: &mut ContactState, done: &mut Advance) {
+/// Captures contacts at this instant that are too slow to rebound, by instantaneous impulses.
+pub(super) fn capture(world: &ContactEnvironment, state: &mut ContactState, done: &mut Advance) {
     let reach = world.body.radius * (1.0 + TOUCH);
     let touches = || state.touches.iter().filter(|touch| touch.distance_m < reach);
-    if !touches().any(|touch| is_coming(world, touch, &state.v)) {
+    if !touches().any(|touch| is_approaching(world, touch, &state.v)) {
         return;
     }
     let held = |touch: &ContactPoint| GroundContact::new(0, touch, world.law(touch.triangle));
@@ -67,7 +69,7 @@ pub(super) fn meet(world: &ContactEnvironment, state: &mut ContactState, done: &
     (state.v, state.w) = after;
 }
 
-/// Books what contacts took of the motion between two instants; their mean motion.
+/// Books the energy that contacts took between two motions; returns the mean motion.
 fn book(
     (world, state): (&ContactEnvironment, &mut ContactState),
     contacts: &[GroundContact],
@@ -83,16 +85,17 @@ fn book(
 }
 
 impl HeldStep {
-    /// Takes `dt` (s), with the contacts of the middle, looked for there. What the rock comes to does nothing before it is met.
-    fn hold(&mut self, world: &ContactEnvironment, state: &mut ContactState, dt: f64) {
+    /// Solves the step over `dt` (s), with the contacts in its middle. A surface that the rock
+    /// approaches exerts no force before it is reached.
+    fn solve(&mut self, world: &ContactEnvironment, state: &mut ContactState, dt: f64) {
         let half = state.v * (0.5 * dt);
         let middle = state.c + half;
-        state.look_ahead(world, &middle);
+        state.find_contact_points_ahead(world, &middle);
         self.dt = dt;
         self.contacts.clear();
         for touch in state.touches.iter() {
-            // what is touched when the step begins is not come to any more: it has been met
-            if is_coming(world, touch, &state.v) {
+            // contacts closed at the step's start no longer approach: they have been captured
+            if is_approaching(world, touch, &state.v) {
                 continue;
             }
             let gap = gap_at_start(world, touch, &half);
@@ -105,61 +108,72 @@ impl HeldStep {
     }
 }
 
-/// How far a touch of the middle of a step was at its start (m): the rock has moved by `half` since.
+/// Gap at the step's start of a contact point in its middle (m): the rock has moved by `half`
+/// since.
 fn gap_at_start(world: &ContactEnvironment, touch: &ContactPoint, half: &Vec3) -> f64 {
     touch.distance_m - world.body.radius - touch.normal.dot(half)
 }
 
-/// What of the last look the rock comes to.
+/// Contact points found last that the rock approaches.
 fn ahead<'s>(
     world: &ContactEnvironment,
     state: &'s ContactState,
 ) -> impl Iterator<Item = &'s ContactPoint> {
-    state.touches.iter().filter(|touch| is_coming(world, touch, &state.v))
+    state.touches.iter().filter(|touch| is_approaching(world, touch, &state.v))
 }
 
-/// Cuts a step where a gap to a touch of the last look, that at its start, closes.
-fn closing(world: &ContactEnvironment, state: &ContactState, dt: f64) -> f64 {
+/// Cuts a step where the gap to a contact point found last, at the step's start, closes.
+fn time_until_closed(world: &ContactEnvironment, state: &ContactState, dt: f64) -> f64 {
     ahead(world, state).fold(dt, |dt, touch| {
         let gap = touch.distance_m - world.body.radius;
         if gap > TOUCH * world.body.radius { dt.min(gap / -touch.normal.dot(&state.v)) } else { dt }
     })
 }
 
-/// When the rock comes to the first of what is ahead (s), if that is within the step, with the acceleration of the step. Beside an edge or a
-/// corner, whose normal turns on the way, this is a guess; where it tells nothing it is half of the step.
-fn meets_s(world: &ContactEnvironment, state: &ContactState, tried: &HeldStep) -> Option<f64> {
+/// Time at which the rock reaches the first surface ahead (s), if within the step, with the mean
+/// acceleration of the step. Beside an edge or a corner, whose normal turns during the step, it is
+/// an estimate; without a known gap it is half of the step.
+fn time_to_contact_s(
+    world: &ContactEnvironment,
+    state: &ContactState,
+    tried: &HeldStep,
+) -> Option<f64> {
     let (half, radius) = (state.v * (0.5 * tried.dt), world.body.radius);
-    let met_s = ahead(world, state).filter_map(|touch| {
+    let times_s = ahead(world, state).filter_map(|touch| {
         let gap = gap_at_start(world, touch, &half);
         let [speed, end] = [state.v, tried.after.0].map(|v| -touch.normal.dot(&v));
         // `speed² + 2 a gap` with the mean acceleration `a`: negative where it turns back before
-        let met2 = speed * speed + 2.0 * gap * (end - speed) / tried.dt;
-        let is_met = 0.5 * (speed + end) * tried.dt > gap + MET * radius && met2 >= 0.0;
+        let speed2_at_contact = speed * speed + 2.0 * gap * (end - speed) / tried.dt;
+        let is_met =
+            0.5 * (speed + end) * tried.dt > gap + OVERSHOOT * radius && speed2_at_contact >= 0.0;
         let is_known = gap > TOUCH * radius;
-        is_met.then(|| if is_known { 2.0 * gap / (speed + met2.sqrt()) } else { 0.5 * tried.dt })
+        is_met.then(|| {
+            if is_known { 2.0 * gap / (speed + speed2_at_contact.sqrt()) } else { 0.5 * tried.dt }
+        })
     });
-    met_s.reduce(f64::min)
+    times_s.reduce(f64::min)
 }
 
-/// Way (m) that takes a rock of a radius (m) out of all that it touches, which is `off` (m) from where it was looked for.
+/// Displacement (m) that moves a rock of a radius (m) out of all that it touches, at `off` (m) from
+/// where that was found.
 pub(in crate::solver) fn way_out(touches: &[ContactPoint], radius_m: f64, off: &Vec3) -> Vec3 {
-    // each normal adds what the ones before it have not moved out already
+    // each normal adds what the previous ones have not corrected
     touches.iter().fold(Vec3::zeros(), |sum, touch| {
         let missing_m = radius_m - touch.distance_m - (sum + off).dot(&touch.normal);
         sum + touch.normal * missing_m.max(0.0)
     })
 }
 
-/// Moves a rock that got into the mesh out along the normals; the height it gains is paid by its motion.
+/// Moves a rock out of the mesh along the normals; the potential energy gained is taken from its
+/// motion.
 ///
-/// The depth is the error of the step. Lifting the rock out for nothing would create energy at
+/// The penetration is the error of the step. Lifting the rock without that would create energy at
 /// every step of a slide over rough ground.
 pub(super) fn push_out(world: &ContactEnvironment, state: &mut ContactState) {
     let (r, before) = (world.body.radius, state.c);
     for _ in 0..4 {
         let c = state.c;
-        state.look_ahead_again(world, &c);
+        state.update_contact_points_ahead(world, &c);
         let out = way_out(&state.touches, r, &Vec3::zeros());
         if out.norm() <= TOUCH * r {
             break;

@@ -25,7 +25,7 @@ impl IslandWindow<'_> {
         let mut island = self.lend_to_solver();
         while self.now_s < self.end_s {
             let longest_s = self.end_s - self.now_s;
-            let spent = (island.sweeps, island.jumps);
+            let spent = (island.sweeps, island.newton_steps);
             let Some(done) = self.advance(&mut island, longest_s) else { break };
             // a step of the full length ends exactly at the window's end
             self.now_s = if done.dt >= longest_s { self.end_s } else { self.now_s + done.dt };

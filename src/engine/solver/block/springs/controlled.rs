@@ -11,7 +11,8 @@ use crate::rock::Vec3;
 use crate::solver::environment::ContactEnvironment;
 use crate::solver::plane_ahead::longest_step;
 use crate::solver::step_control::{
-    Control, ONSET, PLACE_ROUNDING, RESOLVED, ROUNDING, StepError, TrialStep, TryOutcome, settle,
+    Control, ONSET, PLACE_ROUNDING, RESOLVED, ROUNDING, StepError, TrialStep, TryOutcome,
+    find_accepted_step,
 };
 
 /// Energy that a step may make by its error, and pays for by its motion (–, relative to that of the speed which its tolerance allows).
@@ -61,7 +62,7 @@ impl TrialStep for BlockTrial<'_, '_> {
         let tried = self.attempt(dt);
         self.footing.springs.new_wait = false;
         let (end, error) = match tried {
-            None => return TryOutcome::Unsettled,
+            None => return TryOutcome::NotConverged,
             Some(StagesOutcome::Cut(share)) => {
                 return TryOutcome::Cut(self.onsets.cut(share, dt * self.omega));
             }
@@ -72,7 +73,7 @@ impl TrialStep for BlockTrial<'_, '_> {
         // what comes up pressed in, as one feature takes the place of another, is not brought away by a shorter step
         let is_payable = dt * self.omega <= RESOLVED || self.made_j <= self.payable_j(&end);
         self.end = Some(end);
-        if is_payable { TryOutcome::Error(error) } else { TryOutcome::Gains }
+        if is_payable { TryOutcome::Error(error) } else { TryOutcome::EnergyGain }
     }
 }
 
@@ -112,11 +113,12 @@ impl BlockTrial<'_, '_> {
     fn error(&self, dt: f64) -> f64 {
         let tableau = self.control.tableau;
         let rates = &self.footing.springs.rates;
-        let off = |part: fn(&BlockRates) -> Vec3| tableau.off(rates, part);
+        let off = |part: fn(&BlockRates) -> Vec3| tableau.embedded_difference(rates, part);
         let (omega, reach) = (self.omega, self.block.bound_m);
         let spin = self.start.mass(self.block).inverse * off(|rate| rate.momentum);
         let histories = 0..self.footing.springs.histories.len();
-        let stretch = histories.map(|k| tableau.off(rates, |rate| rate.shear[k]).norm());
+        let stretch =
+            histories.map(|k| tableau.embedded_difference(rates, |rate| rate.shear[k]).norm());
         let worst = [
             off(|rate| rate.centre).norm() * omega,
             off(|rate| rate.turned).norm() * reach * omega,
@@ -260,9 +262,9 @@ impl Footing {
             made_j: 0.0,
             end: None,
         };
-        let dt = settle(&mut trial, &control, (most_s, omega), &mut rejected)?;
+        let dt = find_accepted_step(&mut trial, &control, (most_s, omega), &mut rejected)?;
         let (next_h, unsettled, made_j) = (trial.h, trial.unsettled, trial.made_j);
-        let end = trial.end.ok_or(StepError::Unsettled)?;
+        let end = trial.end.ok_or(StepError::NotConverged)?;
         self.springs.h = next_h;
         *moving = end.moving;
         self.springs.grow_old(dt);

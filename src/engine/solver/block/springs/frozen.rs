@@ -28,7 +28,7 @@ use crate::solver::explicit_impact::{FIRST, LONGEST_RAD, SHORTEST_RAD, judge};
 use crate::solver::impact::dormand_prince::{Attempt, Flow, Rates, Stages, put, sum_up, three};
 use crate::solver::impact::{LOCAL, NOTHING};
 use crate::solver::law::capture_m_s;
-use crate::solver::loss::{Loss, shared};
+use crate::solver::loss::{Loss, scale_to_total};
 use standstill::Standstill;
 
 /// Where velocity, angular momentum and the stretch of the rolling spring begin among the numbers that change; penetration and
@@ -330,7 +330,7 @@ impl FrozenFlow<'_, '_> {
             end.hold_energy(self.block, (start, &Vec3::zeros()), &along);
         }
         let mut taken = sums.map(|sum| sum.max(0.0));
-        shared((before_j - end.motion_j(self.block) - holds_j).max(0.0), &mut taken);
+        scale_to_total((before_j - end.motion_j(self.block) - holds_j).max(0.0), &mut taken);
         let [friction, damping, rolling, trees] = taken;
         let mut loss = Loss { friction, damping, rolling, trees };
         let stored_j = holds_j - self.held_j;

@@ -9,7 +9,7 @@ use crate::ground::Law;
 use crate::rock::Vec3;
 use crate::solver::block::solve::Mass;
 use crate::solver::environment::ContactEnvironment;
-use crate::solver::ground_change::{comes_up_pressed, springs_parted_from};
+use crate::solver::ground_change::{begins_pressed, springs_across_fold};
 use crate::solver::law::capture_m_s;
 
 /// What other contacts take off the answer of one at most (–): where they push each other up, its mass would grow without bound.
@@ -233,14 +233,14 @@ impl Footing {
 
     /// The springs, by a triangle, of the patch of the same corner from which a new one parts, or which it meets in an impact: they are one at
     /// a blunt fold, as those of a sphere are (`solver::ground_change`).
-    fn springs_parted_from(
+    fn springs_across_fold(
         &self,
         world: &ContactEnvironment,
         touch: &BlockContactPoint,
         block: &Block,
     ) -> Option<u32> {
         let rebounds = self.springs.is_rebounding();
-        let is_parted = rebounds || comes_up_pressed(-touch.gap_m, block.ball_m);
+        let is_parted = rebounds || begins_pressed(-touch.gap_m, block.ball_m);
         if world.laws.len() == 1 || !block.core.is_corner(touch.part) || !is_parted {
             return None;
         }
@@ -249,7 +249,7 @@ impl Footing {
         let pressed = same
             .filter(|one| one.closed || rebounds)
             .filter(|one| world.terrain.is_tree(one.triangle) == is_tree);
-        springs_parted_from(&touch.normal, pressed.map(|one| (one.n, one.springs_of)))
+        springs_across_fold(&touch.normal, pressed.map(|one| (one.n, one.springs_of)))
     }
 
     /// A new memory.
@@ -265,7 +265,7 @@ impl Footing {
         let rebounds = self.springs.is_rebounding();
         let captured = approach_m_s < capture_m_s(world.law(touch.triangle)) && !rebounds;
         let law = Self::law_of_touch(world, mass, touch, (approach_m_s, self.touching(block)));
-        let springs_of = self.springs_parted_from(world, touch, block).unwrap_or(touch.triangle);
+        let springs_of = self.springs_across_fold(world, touch, block).unwrap_or(touch.triangle);
         let on_springs = || {
             let began = (approach_m_s, self.touching(block));
             Self::law_on(world.law(springs_of), mass, touch, began)

@@ -8,7 +8,7 @@ use super::explicit::ROUNDING_OF_PLACE;
 use super::{Footing, Moving, Springs};
 use crate::body::Block;
 use crate::solver::environment::ContactEnvironment;
-use crate::solver::step_control::{Control, MET, MOST_CUTS, RESOLVED};
+use crate::solver::step_control::{Control, MOST_CUTS, ONSET_ACCURACY_RAD, RESOLVED};
 
 /// Where in the tries of one step impacts begin.
 #[derive(Debug)]
@@ -55,14 +55,14 @@ impl Onsets {
     /// from where it is found, in a step so short that little of the impact is over by its end: what is allowed to lasting contact is no measure of it.
     pub(super) fn cut(&mut self, share: f64, rad: f64) -> f64 {
         self.cuts += 1;
-        self.press = share * rad <= MET || self.cuts >= MOST_CUTS;
+        self.press = share * rad <= ONSET_ACCURACY_RAD || self.cuts >= MOST_CUTS;
         if self.press { (RESOLVED / rad).min(1.0) } else { share }
     }
 
     /// The error of a try of so many radians, over the one allowed (–). One in which a contact comes to press is accepted once it is so short
     /// that nobody can tell where in it: its error is that of the jump.
     pub(super) fn bounded(&self, error: f64, rad: f64) -> f64 {
-        if self.press && rad <= MET { error.clamp(0.0, 1.0) } else { error }
+        if self.press && rad <= ONSET_ACCURACY_RAD { error.clamp(0.0, 1.0) } else { error }
     }
 }
 

@@ -15,7 +15,7 @@ use crate::solver::block::rolling::Turning;
 use crate::solver::block::solve::{BlockContact, Mass, SWEEPS, first_guess, solve, solve_springs};
 use crate::solver::environment::ContactEnvironment;
 use crate::solver::loss::Loss;
-use crate::solver::stage::{AGREED, PASSES};
+use crate::solver::stage::{PASSES, SHIFT_CONVERGED};
 use crate::solver::tableau::Tableau;
 
 /// So few contacts are swept first (–) …
@@ -123,7 +123,7 @@ impl Footing {
             let moved = (end.moving.pose.centre - guess.moving.pose.centre).norm()
                 + (end.turned - guess.turned).norm() * block.bound_m;
             guess = end;
-            if moved <= AGREED * block.radius_m {
+            if moved <= SHIFT_CONVERGED * block.radius_m {
                 return Some(guess);
             }
         }
@@ -133,7 +133,7 @@ impl Footing {
     /// Penetration (m) at which the spring of a contact begins to press: none, but where a contact of an edge or a face of the block
     /// begins in this step, or goes on to another feature, that was pressed in further at the step's start than the spring was. What a
     /// feature finds when it comes to own a contact stores nothing, so that no change of features can gain energy. The patches of
-    /// a corner's ball hand over without a jump by themselves, as they have the same springs (`springs_parted_from`).
+    /// a corner's ball hand over without a jump by themselves, as they have the same springs (`springs_across_fold`).
     fn offset_m(
         &self,
         (start, guess): (&Moving, &Moving),

@@ -90,12 +90,12 @@ impl ImpactScene<'_> {
             let state = &mut self.members[rock].state;
             if gone.clone().next().is_none() {
                 for (_, triangle, joule) in own {
-                    state.stem_load.strike(terrain, *triangle, *joule);
+                    state.stem_load.note_impact(terrain, *triangle, *joule);
                 }
                 continue;
             }
             let struck = own.map(|(_, triangle, joule)| (*triangle, *joule));
-            state.fell_with(stems, struck, gone);
+            state.remove_stems(stems, struck, gone);
         }
     }
 }

@@ -345,8 +345,10 @@ impl RigidIsland {
             let world = scene.members[*rock].environment(scene.terrain);
             let (state, radius) = (&scene.members[*rock].state, world.body.radius);
             for touch in state.touches.iter() {
-                let is_held =
-                    scene.members[*rock].kept.iter().any(|(held, ..)| *held == touch.feature);
+                let is_held = scene.members[*rock]
+                    .last_forces
+                    .iter()
+                    .any(|(held, ..)| *held == touch.feature);
                 let gap_m =
                     blow.gap_m(touch.distance_m - blow.reach_m(first, radius), radius, is_held);
                 add(FrozenContact {
@@ -370,7 +372,7 @@ impl StruckRocks {
             let (world, state) = scene.members[rock].with_environment(scene.terrain);
             let radius = world.body.radius;
             let reach = blow.reach_m(k, radius);
-            state.look(&world, &at.c, reach + WIDEST * radius);
+            state.find_contact_points(&world, &at.c, reach + WIDEST * radius);
             state.touches.retain(|touch| {
                 let room = blow.closes_m(-touch.normal.dot(&at.v), radius).max(HELD * radius);
                 touch.distance_m <= reach + room

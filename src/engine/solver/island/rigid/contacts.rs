@@ -6,10 +6,10 @@ use crate::ground::{FrictionLimits, Law};
 use crate::rock::{Motion, Vec3};
 use crate::solver::body::{Body, Twist};
 use crate::solver::impact::{BlowTable, blow_along_a_line};
+use crate::solver::impact_point::ImpactPoint;
 use crate::solver::island::body::BodySlot;
-use crate::solver::island::outcome::Hit;
+use crate::solver::island::outcome::MeshImpact;
 use crate::solver::rigid::GroundContact;
-use crate::solver::struck::Struck;
 use crate::terrain::Terrain;
 
 /// One rock inside a step.
@@ -128,9 +128,14 @@ pub(super) struct ImpactScene<'s> {
 }
 
 /// Record of the impact of rock `k`, given by centre and radius, at a contact point.
-pub(super) fn hit_of(k: usize, touch: &ContactPoint, ball: (&Vec3, f64), approach_m_s: f64) -> Hit {
+pub(super) fn hit_of(
+    k: usize,
+    touch: &ContactPoint,
+    ball: (&Vec3, f64),
+    approach_m_s: f64,
+) -> MeshImpact {
     let on = (touch.feature, touch.triangle);
-    Hit { rock: k, struck: Struck::by_ball(ball, &touch.normal, on, approach_m_s) }
+    MeshImpact { rock: k, struck: ImpactPoint::by_ball(ball, &touch.normal, on, approach_m_s) }
 }
 
 /// The impulses of one contact: normal (N s), tangential (N s) and of rolling friction (N m s).

@@ -13,7 +13,7 @@ use crate::solver::contact_state::{ContactEnvironment, ContactState};
 use crate::solver::island::pair_contact::TOUCH;
 use crate::solver::law::capture_m_s;
 use crate::solver::rigid::{HELD, is_fast};
-use crate::solver::roughness::Meeting;
+use crate::solver::roughness::SurfaceApproach;
 use std::cmp::Reverse;
 
 /// Farthest contact point at the time of an impact (–, relative to R): a rock in sustained contact is not on a parabola.
@@ -92,7 +92,7 @@ fn first_touch(
     let (start, velocity) = ball.before_end(ball.since_s);
     let way = velocity.norm().max(ball.v.norm()) * ball.since_s;
     // most rocks of a heap are nowhere near the mesh
-    state.know(world, &ball.c);
+    state.update_neighbours(world, &ball.c);
     let (gravity, radius) = (-world.body.gravity.z, world.body.radius);
     if state.near.are_out_of_reach(world.terrain, &ball.c, (way, radius * (1.0 + TOUCH))) {
         return None;
@@ -104,7 +104,7 @@ fn first_touch(
     let FlightEnd::Touch(t) = end else { return None };
     let s = (ball.since_s - t).max(0.0);
     let (at, v) = ball.before_end(s);
-    state.look(world, &at, radius * (1.0 + HELD));
+    state.find_contact_points(world, &at, radius * (1.0 + HELD));
     Some((s, state.touches.iter().any(|touch| is_fast(world, touch, &v))))
 }
 
@@ -114,7 +114,7 @@ fn deepest_touch(
     state: &mut ContactState,
     ball: &StepBody,
 ) -> Option<f64> {
-    state.look_ahead_again(world, &ball.c);
+    state.update_contact_points_ahead(world, &ball.c);
     let mut first: Option<f64> = None;
     for touch in state.touches.iter() {
         let s = time_of_touch(ball, &touch.normal, world.body.radius - touch.distance_m);
@@ -134,8 +134,9 @@ fn meets_facet(world: &ContactEnvironment, state: &ContactState, ball: &StepBody
     let reach = ball.body.radius * (1.0 + HELD);
     let mut held = state.touches.iter().filter(|touch| touch.distance_m <= reach);
     held.any(|touch| {
-        let at = Meeting { n: touch.normal, triangle: touch.triangle, c: ball.c, v: ball.v };
-        state.facets.meet_next(world, &at)
+        let at =
+            SurfaceApproach { n: touch.normal, triangle: touch.triangle, c: ball.c, v: ball.v };
+        state.facets.meets_new_facet(world, &at)
     })
 }
 

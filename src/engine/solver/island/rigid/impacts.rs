@@ -19,9 +19,9 @@ use crate::solver::body::Twist;
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
 use crate::solver::impact::throw;
 use crate::solver::island::outcome::BlowInStep;
-use crate::solver::loss::{Given, Loss};
+use crate::solver::loss::{EnergyGiven, Loss};
 use crate::solver::rigid::{HELD, IMPACT, frozen, is_fast};
-use crate::solver::roughness::Meeting;
+use crate::solver::roughness::SurfaceApproach;
 use nalgebra::Rotation3;
 use std::cmp::Reverse;
 
@@ -167,7 +167,7 @@ impl RigidIsland {
             given[k] = -StepBody::work_j(&load, &v, &w);
             ball.note_impact(s);
         }
-        for (end, given) in ends.into_iter().zip(Given::of_ends(given)) {
+        for (end, given) in ends.into_iter().zip(EnergyGiven::of_ends(given)) {
             self.given[end].add(&given, 1.0);
         }
         self.struck[place] = true;
@@ -178,10 +178,10 @@ impl RigidIsland {
         let (world, state) = scene.members[k].with_environment(scene.terrain);
         let (at, v) = ball.before_end(s);
         let reach = world.body.radius * (1.0 + NEAR);
-        state.look(&world, &at, reach);
+        state.find_contact_points(&world, &at, reach);
         // a rock in sustained contact is not on the parabola of the prediction
         if state.touches.iter().all(|touch| touch.normal.dot(&v) >= 0.0) {
-            state.look(&world, &ball.c, reach);
+            state.find_contact_points(&world, &ball.c, reach);
         }
         let hit = state
             .touches
@@ -204,12 +204,12 @@ impl RigidIsland {
                     self.hits.push(hit_of(k, touch, (&at, world.body.radius), approach_m_s));
                 }
             }
-            state.fell_broken(&world, &broken);
+            state.remove_broken_stems(&world, &broken);
             return ball.note_impact(s);
         }
         let lasts_s = BlowStart::lasting_s(world.law(touch.triangle));
-        let meeting = Meeting { n: touch.normal, triangle: touch.triangle, c: at, v };
-        let turn = state.facets.struck(&world, &meeting);
+        let meeting = SurfaceApproach { n: touch.normal, triangle: touch.triangle, c: at, v };
+        let turn = state.facets.draw_facet(&world, &meeting);
         let approach_m_s = -touch.normal.dot(&v);
         let found = state.touches.clone();
         let blow = BlowStart { pair: None, turn, touches_m, approach_m_s, lasts_s };
@@ -256,7 +256,7 @@ impl RigidIsland {
             return;
         }
         let (world, state) = scene.members[k].with_environment(scene.terrain);
-        state.look(&world, &ball.c, world.body.radius * (1.0 + HELD));
+        state.find_contact_points(&world, &ball.c, world.body.radius * (1.0 + HELD));
         let ContactState { touches, stem_load, .. } = state;
         let comes = |touch: &&ContactPoint| is_fast(&world, touch, &ball.v);
         let Some(touch) = touches.iter().find(comes).copied() else { return };

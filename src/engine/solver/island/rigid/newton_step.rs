@@ -195,7 +195,7 @@ impl BallContact {
             law,
             captured: pair_history.captured,
             impact: PairImpact::default(),
-            waits: false,
+            deferred: false,
             bond: None,
             n: self.n,
             penetration: self.target_m_s,

@@ -8,7 +8,7 @@ use super::contacts::{ImpactScene, StepBody};
 use crate::contact::TOUCH;
 use crate::contact::pair::{PairHistory, normal_and_distance};
 use crate::rock::Vec3;
-use crate::solver::loss::Given;
+use crate::solver::loss::EnergyGiven;
 use crate::solver::rigid::way_out;
 
 /// Overlap of two rocks that is not corrected: the static penetration of their springs, within bounds (–, relative to the
@@ -129,7 +129,7 @@ impl RigidIsland {
     fn push_out(&mut self, scene: &mut ImpactScene, k: usize, sweep: u32) -> bool {
         let ball = &mut self.balls[k];
         let (world, state) = scene.members[k].with_environment(scene.terrain);
-        let off = state.look_ahead_near(&world, &ball.c, FLAT * world.body.radius);
+        let off = state.contact_points_ahead_near(&world, &ball.c, FLAT * world.body.radius);
         if state.touches.is_empty() {
             return false;
         }
@@ -174,7 +174,7 @@ impl RigidIsland {
     }
 
     /// Books something for every rock by the potential energy that it has gained (J).
-    fn share_out(&mut self, mut book: impl FnMut(&mut Given, f64)) {
+    fn share_out(&mut self, mut book: impl FnMut(&mut EnergyGiven, f64)) {
         for ((ball, from), given) in self.balls.iter().zip(&self.places).zip(&mut self.given) {
             book(given, ball.lifted_j(from));
         }

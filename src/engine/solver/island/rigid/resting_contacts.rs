@@ -14,7 +14,7 @@ use crate::rock::Vec3;
 use crate::solver::contact_state::ContactEnvironment;
 use crate::solver::island::body::BodySlot;
 use crate::solver::law::capture_m_s;
-use crate::solver::loss::Given;
+use crate::solver::loss::EnergyGiven;
 use crate::solver::rigid::{GroundContact, converge, sustained_m_s};
 use crate::terrain::Terrain;
 
@@ -58,7 +58,7 @@ impl RigidIsland {
             let member = &mut **member;
             let world = ContactEnvironment { terrain, body: member.body, laws: &member.laws };
             let middle = ball.c + ball.v * (0.5 * dt);
-            member.state.look_ahead(&world, &middle);
+            member.state.find_contact_points_ahead(&world, &middle);
             for touch in member.state.touches.iter() {
                 let law = world.law(touch.triangle);
                 let (speed, capture) = (touch.normal.dot(&ball.v), capture_m_s(law));
@@ -71,7 +71,7 @@ impl RigidIsland {
                 }
                 let mut ground_contact = GroundContact::new(k, touch, law);
                 ground_contact.target_m_s = sustained_m_s(gap, speed, dt);
-                let kept = member.kept.iter().find(|kept| kept.0 == touch.feature);
+                let kept = member.last_forces.iter().find(|kept| kept.0 == touch.feature);
                 if let Some((_, normal_force, shear_force, turn)) = kept {
                     // impulses of the last step in the present tangent plane: this warm start saves
                     // most sweeps of a heap at rest
@@ -188,7 +188,7 @@ impl RigidIsland {
                 let (v, w) = mean(&self.balls[ball_contact.ends[k]]);
                 -StepBody::work_j(&ball_contact.load(k), &v, &w)
             });
-            for (end, given) in ball_contact.ends.into_iter().zip(Given::of_ends(given)) {
+            for (end, given) in ball_contact.ends.into_iter().zip(EnergyGiven::of_ends(given)) {
                 self.given[end].add(&given, 1.0);
             }
         }

@@ -1,4 +1,4 @@
-//! A patch of the mesh that a rock strikes.
+//! Where a rock strikes the mesh.
 
 use crate::contact::{Feature, FeatureKind};
 use crate::rock::Vec3;
@@ -10,27 +10,27 @@ pub(crate) struct Blow {
     pub(crate) approach_m_s: f64,
     /// Normal of the surface.
     pub(crate) n: Vec3,
-    /// Triangle whose ground answers.
+    /// Triangle whose ground sets the law.
     pub(crate) triangle: u32,
 }
 
-/// A patch that is struck.
+/// A point of the mesh that is struck.
 #[derive(Debug, Clone, Copy)]
-pub struct Struck {
-    /// Where (m).
+pub struct ImpactPoint {
+    /// Position (m).
     pub point_m: Vec3,
-    /// Normal of the patch there.
+    /// Unit normal of the surface there.
     pub normal: Vec3,
-    /// What of the mesh it is.
+    /// Kind of mesh feature.
     pub feature: FeatureKind,
-    /// Triangle whose ground answers.
+    /// Triangle whose ground sets the law.
     pub triangle: u32,
     /// Speed of approach along the normal (m/s).
     pub approach_m_s: f64,
 }
 
-impl Struck {
-    /// What a ball with its centre at `c` strikes along the normal of a feature, whose triangle answers: the touched point is
+impl ImpactPoint {
+    /// The point that a ball with centre `c` strikes along the normal of a feature of a triangle:
     /// `P1 = c − R n`.
     pub fn by_ball(
         (c, radius_m): (&Vec3, f64),
