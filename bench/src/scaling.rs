@@ -199,8 +199,10 @@ pub fn world(scheme: Scheme, spheres: usize, (longest_s, before): (f64, Option<u
         seed: 1,
     };
     let releases = heap(spheres, size, terrain.origin_m);
-    let answer =
-        PairMaterial { ground: GROUND, strength: Strength { tensile_pa: 0.0, cohesion_pa: 0.0 } };
+    let answer = PairMaterial {
+        ground: GROUND,
+        strength: BondStrength { tensile_pa: 0.0, cohesion_pa: 0.0 },
+    };
     let keep = |_| RecordOptions { path_step_s: None, impacts: false };
     let never = AtomicBool::new(false);
     // Linux forgets the largest memory so far when asked to; where it cannot, the number is left out.
