@@ -9,7 +9,7 @@ use super::impact_progress::ImpactProgress;
 use super::law::StageContact;
 use super::loss::Loss;
 use super::plane_state::PlaneState;
-use super::roughness::{RoughFacets, Tilt};
+use super::roughness::RoughFacets;
 use super::stem_load::StemLoad;
 use super::tableau::STAGES;
 use crate::contact::history::{ContactHistories, MAX_HISTORIES};
@@ -19,7 +19,6 @@ use crate::ground::Law;
 use crate::rock::Vec3;
 use crate::stopwatch::{Stopwatches, TimedPiece};
 use arrayvec::ArrayVec;
-use nalgebra::Rotation3;
 
 /// Rates of change of a rock in contact.
 #[derive(Debug, Clone, Copy)]
@@ -262,11 +261,26 @@ impl ContactState {
     /// Finds the contact points at `c` nearer than `reach` (m).
     #[inline]
     pub fn find_contact_points(&mut self, world: &ContactEnvironment, c: &Vec3, reach: f64) {
-        self.update_neighbours(world, c);
         self.points_found_at = None;
         let begun = self.stopwatches.now();
-        self.near.touches(world.terrain, c, reach, &mut self.touches);
+        self.collect_contact_points(world, c, reach);
         self.stopwatches.stop(TimedPiece::Geometry, begun);
+    }
+
+    /// The same in the midst of something else, without the clock.
+    #[inline]
+    pub(super) fn collect_contact_points(
+        &mut self,
+        world: &ContactEnvironment,
+        c: &Vec3,
+        reach: f64,
+    ) {
+        let on_mesh = self.on_mesh(c);
+        self.update_neighbours(world, &on_mesh);
+        self.near.touches(world.terrain, &on_mesh, reach, &mut self.touches);
+        if let Some(mesh) = &self.facets.mesh {
+            self.touches.rotate(mesh.turn());
+        }
     }
 
     /// Finds the contact points at `c` that a stage must know.
@@ -380,27 +394,5 @@ impl ContactState {
     /// Kinetic energy (J): `m v²/2 + I w²/2`.
     pub fn motion_j(&self, body: &Body) -> f64 {
         body.motion_j((&self.v, &self.w))
-    }
-}
-
-impl ContactState {
-    /// Rotates the motion onto a facet until `until_s` (s) at the latest; a rotation keeps the
-    /// energy.
-    pub(crate) fn turn_against(
-        &mut self,
-        world: &ContactEnvironment,
-        turn: Rotation3<f64>,
-        until_s: f64,
-    ) {
-        let back = turn.inverse();
-        self.redirect(world, back * self.v, back * self.w);
-        self.facets.tilt = Some(Tilt { turn, until_s });
-    }
-
-    /// Rotates the motion back if it is rotated; returns the rotation.
-    pub(crate) fn turn_back(&mut self, world: &ContactEnvironment) -> Option<Rotation3<f64>> {
-        let Tilt { turn, .. } = self.facets.tilt.take()?;
-        self.redirect(world, turn * self.v, turn * self.w);
-        Some(turn)
     }
 }

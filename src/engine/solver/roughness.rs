@@ -14,6 +14,7 @@
 //! neither speed nor spin rate.
 
 use super::environment::ContactEnvironment;
+use super::tilted_mesh::TiltedMesh;
 use crate::contact::history::SAME_CONTACT_COSINE;
 use crate::ground::Law;
 use crate::math;
@@ -43,6 +44,8 @@ pub(crate) struct RoughFacets {
     random: Option<RandomStream>,
     last: Option<TiltedFacet>,
     pub(super) tilt: Option<Tilt>,
+    /// The mesh, if it is rotated or off its place for the rock.
+    pub(super) mesh: Option<TiltedMesh>,
 }
 
 /// A facet that was met.
@@ -56,7 +59,7 @@ struct TiltedFacet {
     reach_m: f64,
 }
 
-/// Rotation of a rock's motion during its impact on a facet.
+/// Rotation between surface and facet during the impact of a rock on it.
 #[derive(Debug, Clone)]
 pub(super) struct Tilt {
     pub(super) turn: Rotation3<f64>,
@@ -176,7 +179,17 @@ impl RoughFacets {
         self.tilt.as_ref().is_some_and(|tilt| is_free || now_s >= tilt.until_s)
     }
 
-    /// Whether the motion is rotated onto a facet.
+    /// Whether the mesh is rotated or off its place for the rock.
+    pub(crate) fn has_rotated_mesh(&self) -> bool {
+        self.mesh.is_some()
+    }
+
+    /// A direction in the frame of the mesh.
+    pub(crate) fn along_mesh(&self, x: &Vec3) -> Vec3 {
+        self.mesh.as_ref().map_or(*x, |mesh| mesh.turn().inverse() * x)
+    }
+
+    /// Whether the rock is in an impact on a facet.
     pub(crate) fn is_tilted(&self) -> bool {
         self.tilt.is_some()
     }

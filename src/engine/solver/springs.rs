@@ -72,8 +72,7 @@ impl ContactState {
             return 0.0;
         }
         let (c, last) = (self.c, std::mem::take(&mut self.touches));
-        self.update_neighbours(world, &c);
-        self.near.touches(world.terrain, &c, world.body.radius, &mut self.touches);
+        self.collect_contact_points(world, &c, world.body.radius);
         let all = self.stored_j(world).sum();
         let others = self.histories.iter().filter(|history| !count(history));
         let of_others: f64 = others.map(|history| self.contact_stored_j(world, history)).sum();
@@ -91,9 +90,8 @@ impl ContactState {
             return pressed;
         }
         let (c, last) = (self.c, std::mem::take(&mut self.touches));
-        self.update_neighbours(world, &c);
         // including new contacts: the dashpot takes most at first
-        self.near.touches(terrain, &c, world.body.radius * (1.0 + TOUCH), &mut self.touches);
+        self.collect_contact_points(world, &c, world.body.radius * (1.0 + TOUCH));
         for (k, touch) in self.touches.iter().enumerate() {
             let memory = self.histories.iter().find(|history| history.feature == touch.feature);
             if let Some(history) = memory.filter(|_| terrain.is_tree(touch.triangle)) {

@@ -193,10 +193,6 @@ impl<'a> WorldBody<'a> {
         let was_flying = self.flight_end.is_some();
         let mut rock = self.in_contact(settings);
         rock.begin_impacts();
-        // what other rocks transfer to it comes from their positions: it meets no facet meanwhile
-        if given != EnergyGiven::default() {
-            rock.leave_facet();
-        }
         // stems that the step has overloaded take their part of the energy now
         rock.state.load_stems(&rock.world, true, &mut loss);
         let to = self.motion_at(time_s);

@@ -10,6 +10,7 @@
 //! (`begin_contacts`), the contact system is stepped until the next event (`step_until`), and so on
 //! to the end of the window.
 
+mod facets;
 mod held_together;
 mod rigid;
 
@@ -270,17 +271,20 @@ impl<'a> IslandWindow<'a> {
         // most scenes have neither stems nor rough ground: nothing to do before a step
         let mut longest_s = f64::INFINITY;
         let has_stems = self.settings.terrain.stems.is_some();
-        for (body, member) in self.bodies.iter_mut().zip(&mut island.members) {
-            if !has_stems && !member.state.facets.are_rough() {
+        for k in 0..island.members.len() {
+            let facets = &island.members[k].state.facets;
+            if !has_stems && !facets.are_rough() {
                 continue;
             }
-            let met = member.state.facets.is_tilted();
-            std::mem::swap(&mut body.member, member);
-            longest_s = longest_s.min(body.before_step(self.settings));
-            std::mem::swap(&mut body.member, member);
+            let met = facets.is_tilted();
+            longest_s = longest_s.min(self.with_rock(island, k, WorldBody::before_step));
+            let member = &island.members[k];
             if met != member.state.facets.is_tilted() {
                 island.h = island.h.min(ONSET / member.omega(self.settings.terrain));
             }
+        }
+        if self.settings.step.scheme.has_springs() {
+            self.rotate_meshes(island);
         }
         longest_s
     }
