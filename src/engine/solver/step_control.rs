@@ -47,7 +47,7 @@ pub(crate) const PLACE_ROUNDING: f64 = 1e-11;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum StepError {
     /// No step, however short, converges.
-    #[error("the contact step would not find_accepted_step, however short")]
+    #[error("the contact step would not settle, however short")]
     NotConverged,
     /// The rock is so deep in the mesh that its contact springs mean nothing any more.
     #[error("the rock sank in by half its radius: its contact springs are too soft for its speed")]

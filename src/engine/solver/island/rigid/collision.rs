@@ -17,7 +17,6 @@ use super::contacts::{ImpactScene, REBOUNDS_IN_STEP, hit_of};
 use crate::contact::ContactPoint;
 use crate::contact::pair::normal_and_distance;
 use crate::rock::Vec3;
-use crate::solver::body::Twist;
 use crate::solver::impact::{
     BODIES, CONTACTS, ContactEnds, FrozenBody, FrozenCollision, FrozenContact, collide,
 };
@@ -26,7 +25,6 @@ use crate::solver::joint_blow::Breakage;
 use crate::solver::law::capture_m_s;
 use crate::solver::rigid::HELD;
 use arrayvec::ArrayVec;
-use nalgebra::Rotation3;
 
 /// Most rocks that a blow is followed with in an island of more than [`BODIES`]: a light one on the mesh, and a heavy one that strikes it.
 const TOGETHER_IN_HEAP: usize = 2;
@@ -144,7 +142,7 @@ impl RigidIsland {
         if contacts.len() == 1 {
             return Followed::No;
         }
-        let thrown = self.thrown(scene, &struck, &contacts, blow);
+        let thrown = self.thrown(scene, &struck, &contacts);
         let Some(Breakage { after, stems }) = thrown else {
             return if has_gaps { Followed::NotSoWide } else { Followed::No };
         };
@@ -165,28 +163,17 @@ impl RigidIsland {
         scene: &ImpactScene,
         StruckRocks { touching, rocks }: &StruckRocks,
         contacts: &[FrozenContact],
-        blow: &BlowStart,
     ) -> Option<Breakage> {
         let frozen = |(rock, at): (&usize, &StruckRock)| {
             let ball = &self.balls[*rock];
             FrozenBody { body: ball.body, motion: (at.v, ball.w) }
         };
-        let mut bodies: ArrayVec<_, BODIES> =
-            touching.rocks.iter().zip(rocks).map(frozen).collect();
-        // a rock alone is turned against the facet that it strikes, and back: all others meet the mesh as it is
-        let turned = |turn: Rotation3<f64>, (v, w): Twist| (turn * v, turn * w);
-        if let Some(turn) = &blow.turn {
-            bodies[0].motion = turned(turn.inverse(), bodies[0].motion);
-        }
+        let bodies: ArrayVec<_, BODIES> = touching.rocks.iter().zip(rocks).map(frozen).collect();
         let whole = || {
             let after = collide(&bodies, contacts, self.impact_tolerance())?;
             Some(Breakage { after, stems: ArrayVec::new() })
         };
-        let mut thrown = scene.broken_by(&touching.rocks, &bodies, contacts).or_else(whole)?;
-        if let Some(turn) = blow.turn {
-            thrown.after.motions[0] = turned(turn, thrown.after.motions[0]);
-        }
-        Some(thrown)
+        scene.broken_by(&touching.rocks, &bodies, contacts).or_else(whole)
     }
 
     /// Books what the contacts of a blow took; what each rock lost in its contacts (J), and what trees took.
@@ -352,7 +339,7 @@ impl RigidIsland {
                 let gap_m =
                     blow.gap_m(touch.distance_m - blow.reach_m(first, radius), radius, is_held);
                 add(FrozenContact {
-                    normal: touch.normal,
+                    normal: blow.normal(first, &touch.normal),
                     law: world.law(touch.triangle),
                     stiffness_scale: touch.gain2,
                     gap_m,
