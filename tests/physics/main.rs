@@ -17,6 +17,7 @@ mod dda_island;
 mod dda_ledger;
 mod exact_edge;
 mod exact_plane;
+mod facets_among_others;
 mod grooves;
 mod ground_border;
 mod heap;
