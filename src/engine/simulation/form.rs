@@ -131,7 +131,7 @@ impl RockFlight<'_> {
         }
     }
 
-    /// Largest size of `ω × (ω × ρ) + ω̇ × ρ` over the length of `ρ` (1/s²), see [`Top::bends`]; none for a sphere.
+    /// Largest size of `ω × (ω × ρ) + ω̇ × ρ` over the length of `ρ` (1/s²), see [`Top::point_bounds`]; none for a sphere.
     ///
     /// In a step the spin is largest in its middle, and by `ω = 4 S h/(h² + u²)` with the sine `S` and the cosine `h` of a fourth of
     /// the angle and `|u| ≤ S` it changes by no more than `ω³ dt/4` per second.
