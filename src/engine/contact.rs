@@ -260,9 +260,9 @@ impl ContactPoints {
         self.retain(|touch| touch.distance_m < reach);
     }
 
-    /// Keeps the contacts that are `wanted`.
-    pub(crate) fn retain(&mut self, wanted: impl Fn(&ContactPoint) -> bool) {
-        self.0.retain(|touch| wanted(touch));
+    /// Keeps the contacts for which `keep` holds.
+    pub(crate) fn retain(&mut self, keep: impl Fn(&ContactPoint) -> bool) {
+        self.0.retain(|touch| keep(touch));
     }
 
     /// Adds a contact of a ball of `radius` (m). If the list is full, the farthest contact is

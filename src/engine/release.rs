@@ -108,15 +108,15 @@ impl Releases {
     /// A point or corner of the place without ground below, or a rock that starts in ground or
     /// tree, with its coordinates.
     pub fn compile(scene: &Scene, terrain: &Terrain) -> Result<Self> {
-        let asked = &scene.release;
-        let sources = scene.frequency.as_ref().map_or(&[][..], |table| &table.sources[..]);
-        let places = if !asked.blocks.is_empty() {
-            vec![ReleasePlace::Points(asked.blocks.iter().map(ReleasePoint::of_block).collect())]
+        let table = &scene.release;
+        let sources = scene.frequency.as_ref().map_or(&[][..], |frequency| &frequency.sources[..]);
+        let places = if !table.blocks.is_empty() {
+            vec![ReleasePlace::Points(table.blocks.iter().map(ReleasePoint::of_block).collect())]
         } else if sources.is_empty() {
-            vec![Self::place_asked(scene)?]
+            vec![Self::place_of_scene(scene)?]
         } else {
-            let of_source = |one: &SourceTable| {
-                ReleasePlace::one_of((&one.points_m, &one.line_m, &one.polygon_m))
+            let of_source = |source: &SourceTable| {
+                ReleasePlace::one_of((&source.points_m, &source.line_m, &source.polygon_m))
             };
             sources.iter().filter_map(of_source).collect()
         };
@@ -126,18 +126,18 @@ impl Releases {
             gravity_m_s2: scene.gravity_m_s2,
             places,
             zones_are_sources: scene.has_zone_sources(),
-            height_m: asked.height_m.clone(),
-            velocity_m_s: asked.velocity_m_s.clone(),
-            spin_rad_s: asked.spin_rad_s.clone(),
+            height_m: table.height_m.clone(),
+            velocity_m_s: table.velocity_m_s.clone(),
+            spin_rad_s: table.spin_rad_s.clone(),
             radius_m: scene.rocks.radius_m().clone(),
             frequency: scene.sources(),
-            radii_m: asked.blocks.iter().map_while(|block| block.radius_m).collect(),
+            radii_m: table.blocks.iter().map_while(|block| block.radius_m).collect(),
             density_kg_m3: scene.rocks.density_kg_m3,
             grounds: scene.grounds.values().cloned().collect(),
             shapes: Shapes::compile(scene)?,
         };
         releases.check_ground(terrain)?;
-        for index in 0..releases.fixed_cycle().min(asked.count) {
+        for index in 0..releases.fixed_cycle().min(table.count) {
             releases.release(terrain, index)?;
         }
         Ok(releases)
@@ -298,9 +298,9 @@ impl Releases {
         }
         let ground_m = self.ground_m(terrain, at_m, &release_name(index))?;
         let gap_m = self.height_m.as_ref().map_or(0.0, |height| height.draw(random));
-        let asked = Vec3::new(x, y, ground_m + gap_m + radius_m);
-        let centre = lifted_clear(terrain, asked, radius_m);
-        Ok((centre, centre.z - asked.z))
+        let unlifted = Vec3::new(x, y, ground_m + gap_m + radius_m);
+        let centre = lifted_clear(terrain, unlifted, radius_m);
+        Ok((centre, centre.z - unlifted.z))
     }
 
     /// Checks a centre given with its height: it may be beyond the edge of the terrain if the rock

@@ -155,7 +155,7 @@ impl Core {
         let level = |face: &HullFace| face.level - depth + max_out;
         for _ in 0..MAX_PROJECTIONS {
             let out = self.faces.iter().map(|face| (face.normal.dot(&p) - level(face), face));
-            match out.max_by(|one, other| one.0.total_cmp(&other.0)) {
+            match out.max_by(|a, b| a.0.total_cmp(&b.0)) {
                 Some((out, face)) if out > 0.0 => p -= face.normal * out,
                 _ => return p,
             }
@@ -252,12 +252,12 @@ impl HullPlane {
         let middle = own.iter().map(at).sum::<Vec3>() / own.len() as f64;
         let first = (at(&own[0]) - middle).normalize();
         let second = self.normal.cross(&first);
-        own.sort_by(|one, other| {
+        own.sort_by(|a, b| {
             let angle = |k: &u8| {
                 let to = at(k) - middle;
                 crate::math::atan2(to.dot(&second), to.dot(&first))
             };
-            angle(one).total_cmp(&angle(other))
+            angle(a).total_cmp(&angle(b))
         });
         HullFace { normal: self.normal, level: self.level, corners: own }
     }

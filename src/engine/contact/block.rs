@@ -105,7 +105,7 @@ struct PosedBlock<'a> {
     /// Bounding box of the core in its own frame: lowest and highest coordinates (m).
     core_box_m: Option<[Vec3; 2]>,
     /// Active pairs, sorted by feature.
-    held: &'a [(u16, Feature)],
+    active: &'a [(u16, Feature)],
 }
 
 /// The contacts of a block, and the work space of their search.
@@ -115,7 +115,7 @@ pub struct BlockContactPoints {
     pub found: Vec<BlockContactPoint>,
     /// Active pairs: a part of the block and a feature of the mesh that press on each other
     /// already.
-    pub held: Vec<(u16, Feature)>,
+    pub active: Vec<(u16, Feature)>,
     corners: Vec<Vec3>,
     /// For each corner, a position (m) and a lower bound of its distance from the mesh there (m).
     clearances: Vec<(Vec3, f64)>,
@@ -125,14 +125,14 @@ impl BlockContactPoints {
     /// Clears everything known of another block.
     pub fn forget(&mut self) {
         self.found.clear();
-        self.held.clear();
+        self.active.clear();
         self.clearances.clear();
     }
 }
 
 /// Finds the contacts of a block that are no farther than `reach_m`, in a fixed order: corners,
 /// edges, faces. `near` must have been collected with the radius of the corner balls, for a margin
-/// that covers the core. A pair in `touches.held` stays in contact as long as it presses.
+/// that covers the core. A pair in `touches.active` stays in contact as long as it presses.
 pub fn touches(
     near: &mut Neighbours,
     terrain: &Terrain,
@@ -140,17 +140,17 @@ pub fn touches(
     reach_m: f64,
     touches: &mut BlockContactPoints,
 ) {
-    let BlockContactPoints { found, held, corners, clearances } = touches;
+    let BlockContactPoints { found, active, corners, clearances } = touches;
     // hundreds of pairs may be active on cells much smaller than the block, and each near feature
     // is looked up among them
-    held.sort_unstable_by_key(by_feature);
+    active.sort_unstable_by_key(by_feature);
     found.clear();
     corners.clear();
     corners.extend(block.core.corners.iter().map(|own| pose.point(own)));
     let own = block.core.corners.iter();
     let bounding_box = || own.fold([Vec3::zeros(); 2], |[a, b], p| [a.inf(p), b.sup(p)]);
     let core_box_m = (near.sharp_edge_count() > BOX_TEST_EDGES).then(bounding_box);
-    let posed = PosedBlock { block, pose, corners, core_box_m, held };
+    let posed = PosedBlock { block, pose, corners, core_box_m, active };
     let reach = block.ball_m + reach_m;
     let (mut of_corner, query_radius) =
         (ContactPoints::default(), near.query_radius_m().max(reach));
@@ -170,7 +170,7 @@ pub fn touches(
     // active pairs first, and vertices before edges: a contact past its end continues in a later
     // one
     for is_active_pass in [true, false] {
-        if is_active_pass && held.is_empty() {
+        if is_active_pass && active.is_empty() {
             continue;
         }
         for vertex in near.sharp_vertices() {
@@ -303,13 +303,13 @@ impl PosedBlock<'_> {
 
     /// Whether a pair is active.
     fn is_active(&self, part: usize, feature: Feature) -> bool {
-        self.held.binary_search_by_key(&(feature, part as u16), by_feature).is_ok()
+        self.active.binary_search_by_key(&(feature, part as u16), by_feature).is_ok()
     }
 
     /// Whether any part of the block is active on a feature.
     fn is_any_active(&self, feature: Feature) -> bool {
-        let first = self.held.partition_point(|(_, other)| *other < feature);
-        self.held.get(first).is_some_and(|(_, other)| *other == feature)
+        let first = self.active.partition_point(|(_, other)| *other < feature);
+        self.active.get(first).is_some_and(|(_, other)| *other == feature)
     }
 }
 

@@ -265,8 +265,8 @@ mod tests {
     fn merged(stretches: [Vec3; 2], rolls: [Vec3; 2], are_alike: bool) -> (ContactHistory, bool) {
         let normals = [Vec3::z(), Vec3::new(0.6, 0.0, 0.8)];
         let mut both = [0, 1].map(|k| on_face(k, normals[k as usize]));
-        for (one, (shear, roll)) in both.iter_mut().zip(stretches.into_iter().zip(rolls)) {
-            (one.shear, one.roll) = (shear, roll);
+        for (history, (shear, roll)) in both.iter_mut().zip(stretches.into_iter().zip(rolls)) {
+            (history.shear, history.roll) = (shear, roll);
         }
         both[0].closed = true;
         let mut all = ContactHistories::default();
@@ -285,12 +285,12 @@ mod tests {
         // up the slope of the other normal; the shortest rotation takes it to x
         let (along, up) = (Vec3::x(), Vec3::new(0.8, 0.0, -0.6));
         let none = [Vec3::zeros(); 2];
-        let (one, is_merged) = merged([along * 3.0, up * 4.0], [up * 5.0, up * 12.0], true);
-        assert!(is_merged && (one.shear - along * 5.0).norm() < 1e-12, "{:?}", one.shear);
-        assert!((one.roll - up * 13.0).norm() < 1e-12, "{:?}", one.roll);
-        let (one, _) = merged([along * -3.0, up * 4.0], none, true);
-        assert!((one.shear - along).norm() < 1e-12, "{:?}", one.shear);
-        let (one, is_merged) = merged([along * 3.0, up * 4.0], none, false);
-        assert!(!is_merged && (one.shear - along * 3.0).norm() < 1e-12, "{:?}", one.shear);
+        let (history, is_merged) = merged([along * 3.0, up * 4.0], [up * 5.0, up * 12.0], true);
+        assert!(is_merged && (history.shear - along * 5.0).norm() < 1e-12, "{:?}", history.shear);
+        assert!((history.roll - up * 13.0).norm() < 1e-12, "{:?}", history.roll);
+        let (history, _) = merged([along * -3.0, up * 4.0], none, true);
+        assert!((history.shear - along).norm() < 1e-12, "{:?}", history.shear);
+        let (history, is_merged) = merged([along * 3.0, up * 4.0], none, false);
+        assert!(!is_merged && (history.shear - along * 3.0).norm() < 1e-12, "{:?}", history.shear);
     }
 }

@@ -23,18 +23,18 @@ pub fn normal_and_distance(a: &Vec3, b: &Vec3) -> (Vec3, f64) {
 /// Time of contact (s) from now of two spheres in free flight: under the same gravity their
 /// relative motion is a straight line, `|d + u t| = R_a + R_b`.
 ///
-/// `apart` is `d = c_a − c_b` (m), `closing` is `u = v_a − v_b` (m/s), `reach` the sum of the radii
+/// `offset` is `d = c_a − c_b` (m), `velocity` is `u = v_a − v_b` (m/s), `reach` the sum of the radii
 /// (m). Spheres that touch already and approach collide at 0; those that separate do not collide.
-pub fn collision_time_s(apart: &Vec3, closing: &Vec3, reach: f64) -> Option<f64> {
-    let approach = -apart.dot(closing);
-    let speed2 = closing.norm_squared();
+pub fn collision_time_s(offset: &Vec3, velocity: &Vec3, reach: f64) -> Option<f64> {
+    let approach = -offset.dot(velocity);
+    let speed2 = velocity.norm_squared();
     // d(|d + u t|²)/dt = 2 d·u at t = 0: if it is not negative, the distance grows for ever on a
     // straight relative path
     if approach <= 0.0 || speed2 == 0.0 {
         return None;
     }
     // |d|² − reach² as a product: the difference of squares would cost the digits of a small gap
-    let distance = apart.norm();
+    let distance = offset.norm();
     let outside = (distance - reach) * (distance + reach);
     // |u|² t² − 2 approach t + outside = 0; the smaller root is outside/(approach + √…), which keeps
     // the digits of a small gap, while (approach − √…)/|u|² would lose them
@@ -206,10 +206,10 @@ impl PairHistory {
         self.law.static_penetration_m(force_n) * self.law.omega_rad_s()
     }
 
-    /// Speed (m/s) of the vibration of rocks with the relative velocity `apart` (m/s): their normal
+    /// Speed (m/s) of the vibration of rocks with the relative `velocity` (m/s): their normal
     /// speed, or what their spring would give them, whichever is larger.
-    pub(crate) fn vibration_speed_m_s(&self, apart: &Vec3) -> f64 {
-        self.spring_speed_m_s(self.normal_force.abs()).max(apart.dot(&self.n).abs())
+    pub(crate) fn vibration_speed_m_s(&self, velocity: &Vec3) -> f64 {
+        self.spring_speed_m_s(self.normal_force.abs()).max(velocity.dot(&self.n).abs())
     }
 
     /// Lets a captured contact rebound if it is struck through at a speed of approach (m/s);

@@ -8,10 +8,10 @@ use crate::scene::{Area, Corner, Polyline, ReleasePoint, Scene, Zones};
 use crate::terrain::Terrain;
 
 impl Releases {
-    pub(super) fn place_asked(scene: &Scene) -> Result<ReleasePlace> {
-        let asked = &scene.release;
-        let drawn = (&asked.points_m, &asked.line_m, &asked.polygon_m);
-        let place = match &asked.zone_list {
+    pub(super) fn place_of_scene(scene: &Scene) -> Result<ReleasePlace> {
+        let table = &scene.release;
+        let drawn = (&table.points_m, &table.line_m, &table.polygon_m);
+        let place = match &table.zone_list {
             None => ReleasePlace::one_of(drawn),
             Some(zones) if drawn == (&None, &None, &None) => {
                 Some(ReleasePlace::Zones(zones.clone()))
@@ -44,7 +44,7 @@ impl Releases {
         let points = |place: &ReleasePlace| {
             if let ReleasePlace::Points(all) = place { all.len() } else { 0 }
         };
-        let strata = self.frequency.as_ref().map_or(1, |one| one.strata().len());
+        let strata = self.frequency.as_ref().map_or(1, |frequency| frequency.strata().len());
         strata * self.places.iter().map(points).max().unwrap_or(0)
     }
 
@@ -65,8 +65,9 @@ impl Releases {
             return self.radii_m[self.place_of(index).1 % self.radii_m.len()];
         }
         let mut random = stream(self.seed, Purpose::Size, index);
-        let own = self.frequency.as_ref().filter(|one| one.draws_volumes());
-        let volume_m3 = own.and_then(|one| one.stratum(index).quantile_m3(unit(&mut random)));
+        let own = self.frequency.as_ref().filter(|frequency| frequency.draws_volumes());
+        let volume_m3 =
+            own.and_then(|frequency| frequency.stratum(index).quantile_m3(unit(&mut random)));
         volume_m3.map_or_else(|| self.radius_m.draw(&mut random), radius_of_m3)
     }
 

@@ -28,9 +28,9 @@ impl SharpEdge<'_> {
     /// Whether another edge is part of the same straight line.
     pub(crate) fn is_collinear_with(&self, other: &Self) -> bool {
         let (line, other) = (&self.line, &other.line);
-        let off = |way: Vec3| way - line.along * line.along.dot(&way);
-        off(other.along).norm() <= COLLINEAR
-            && off(other.a - line.a).norm() <= COLLINEAR * line.length
+        let normal_part = |x: Vec3| x - line.along * line.along.dot(&x);
+        normal_part(other.along).norm() <= COLLINEAR
+            && normal_part(other.a - line.a).norm() <= COLLINEAR * line.length
     }
 }
 
@@ -54,10 +54,10 @@ impl SharpVertex<'_> {
     /// Whether an edge passes straight through the vertex, up to a sine of `slack` (–): such a
     /// vertex only divides an edge.
     pub(crate) fn divides_straight_edge(&self, slack: f64) -> bool {
-        let goes_on = |one: &Vec3| {
-            self.edges.iter().any(|other| (one + other).norm_squared() <= slack * slack)
+        let continues = |edge: &Vec3| {
+            self.edges.iter().any(|other| (edge + other).norm_squared() <= slack * slack)
         };
-        self.edges.iter().any(goes_on)
+        self.edges.iter().any(continues)
     }
 }
 
@@ -92,12 +92,12 @@ impl Neighbours {
 
     /// The vertices that can be touched within the margin, with unit directions along their edges.
     pub(crate) fn sharp_vertices(&self) -> impl Iterator<Item = SharpVertex<'_>> {
-        self.all.vertices.iter().map(|corner| SharpVertex {
-            feature: Feature { kind: FeatureKind::Vertex, id: corner.id },
-            triangle: corner.triangle,
-            p: corner.p,
-            edges: self.directions_of(corner.directions),
-            at_border: corner.at_border,
+        self.all.vertices.iter().map(|vertex| SharpVertex {
+            feature: Feature { kind: FeatureKind::Vertex, id: vertex.id },
+            triangle: vertex.triangle,
+            p: vertex.p,
+            edges: self.directions_of(vertex.directions),
+            at_border: vertex.at_border,
         })
     }
 

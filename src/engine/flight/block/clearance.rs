@@ -196,8 +196,8 @@ impl Clearance {
         if self.opening_m_s < 0.0 && self.gap_m <= touching {
             return 0.0;
         }
-        let asked = (self.gap_m.max(0.0), -self.opening_m_s);
-        let within = |most: f64| safe_time_s(asked, self.max_acceleration_within(most)).min(most);
+        let motion = (self.gap_m.max(0.0), -self.opening_m_s);
+        let within = |most: f64| safe_time_s(motion, self.max_acceleration_within(most)).min(most);
         let mut fails = most.min(self.valid_s);
         let mut safe = within(fails);
         if safe >= fails {

@@ -298,7 +298,7 @@ impl Footing {
     ) {
         self.springs.histories.clear();
         self.springs.rolling = RollingSpring::default();
-        self.touches.held.clear();
+        self.touches.active.clear();
         (self.springs.impact_m_s, self.springs.energy, self.springs.until_s) = (0.0, None, 0.0);
         self.look_at_all(world, (block, &moving.pose), TOUCH * block.radius_m);
         self.springs.known = 0;

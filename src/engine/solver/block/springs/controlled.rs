@@ -359,7 +359,7 @@ impl Footing {
             }
         }
         springs.histories.truncate(kept);
-        self.touches.held.clear();
-        self.touches.held.extend(springs.histories.iter().map(BlockHistory::pair));
+        self.touches.active.clear();
+        self.touches.active.extend(springs.histories.iter().map(BlockHistory::pair));
     }
 }

@@ -193,7 +193,7 @@ impl Footing {
 
     /// Whether the contacts found at the step's end are those that a look would find now, as the pairs that press have changed.
     fn sees_the_same(&self, block: &Block) -> bool {
-        let BlockContactPoints { found, held, .. } = &self.touches;
+        let BlockContactPoints { found, active: held, .. } = &self.touches;
         let holds = |touch: &BlockContactPoint| held.contains(&(touch.part, touch.feature));
         found.iter().all(|touch| block.core.is_corner(touch.part) || holds(touch))
     }
