@@ -23,7 +23,7 @@ use crate::ground::Law;
 use crate::random::RandomStream;
 use crate::release::{DrawnShape, Release};
 use crate::rock::{Motion, Vec3};
-use crate::solver::block::{Footing, Moving, Stepped};
+use crate::solver::block::{BlockContactState, BlockState, BlockStepOutcome};
 use crate::solver::body::Body;
 use crate::solver::environment::ContactEnvironment;
 use crate::solver::loss::Loss;
@@ -41,12 +41,12 @@ struct Roll<'a> {
     /// Its shape, mass and moments of inertia.
     block: &'a Block,
     /// Contacts found at the last look, with the work space of the solver.
-    footing: &'a mut Footing,
+    footing: &'a mut BlockContactState,
     /// What it has dug into soil.
     scars: &'a mut Scars,
     /// Pose, velocity and angular momentum. Momentum, not spin, is kept: it is constant in flight while the spin
     /// turns.
-    moving: Moving,
+    moving: BlockState,
     /// What is written down of its way.
     recorder: Recorder<'a>,
     /// Whether nothing held it at the end of its last step.
@@ -59,7 +59,7 @@ pub(super) fn follow_block(
     (release, drawn): (&Release, &DrawnShape),
     keep: Keep,
     (laws, random): (&[Law], RandomStream),
-    (footing, scars): (&mut Footing, &mut Scars),
+    (footing, scars): (&mut BlockContactState, &mut Scars),
 ) -> Trajectory {
     let block = &drawn.block;
     let world = settings.around(Body::of_block(block, settings.gravity_m_s2), laws);
@@ -68,7 +68,8 @@ pub(super) fn follow_block(
     (footing.near.tested, footing.sweeps) = (0, 0);
     footing.facets = RoughFacets::of(random, laws);
     footing.slip.begin(&release.grounds);
-    let moving = Moving::new(block, (release.motion.position_m, drawn.attitude), &release.motion);
+    let moving =
+        BlockState::new(block, (release.motion.position_m, drawn.attitude), &release.motion);
     let form = Form { rock: release.rock, block: Some(block) };
     let turned = turned(block, &moving);
     let start = (release.motion, Some(turned));
@@ -79,7 +80,7 @@ pub(super) fn follow_block(
 }
 
 /// Attitude and rotational energy `ω·L/2` (J) for the record.
-fn turned(block: &Block, moving: &Moving) -> Turned {
+fn turned(block: &Block, moving: &BlockState) -> Turned {
     let rotational_j = 0.5 * moving.spin(block).dot(&moving.momentum);
     Turned { attitude: moving.pose.attitude, rotational_j }
 }
@@ -137,7 +138,7 @@ impl<'a> Falling<'a> for Roll<'a> {
         }
         // contacts are looked for anew in every step: the block turns, and other corners come near
         let pose = self.moving.pose;
-        self.footing.look(&self.world, self.block, &pose, self.block.ball_m);
+        self.footing.detect(&self.world, self.block, &pose, self.block.ball_m);
         self.strike()
     }
 
@@ -160,7 +161,7 @@ impl<'a> Falling<'a> for Roll<'a> {
         if !self.moving.pose.centre.iter().chain(spin_rad_s.iter()).all(|x| x.is_finite()) {
             return Err(StepError::NotFinite);
         }
-        let Stepped { dt, loss, slides, unsettled, .. } = done;
+        let BlockStepOutcome { dt, loss, slides, unsettled, .. } = done;
         Ok((Advance { dt, loss, steps: 1, rejected, unsettled }, slides))
     }
 
@@ -196,7 +197,7 @@ impl Roll<'_> {
     }
 
     /// One step of at most `most_s` (s), and how many were thrown away.
-    fn advance(&mut self, most_s: f64) -> Result<(Stepped, u64), StepError> {
+    fn advance(&mut self, most_s: f64) -> Result<(BlockStepOutcome, u64), StepError> {
         let (settings, block) = (self.settings.step, self.block);
         if !self.has_springs() {
             let most = (settings.step_s.min(most_s), settings.corner_way);
@@ -210,15 +211,16 @@ impl Roll<'_> {
     fn strike(&mut self) -> bool {
         let (block, now_s) = (self.block, self.recorder.now.time_s);
         // touching contacts that approach faster than their ground captures: one impact, resolved together
-        let mut struck = std::mem::take(&mut self.footing.aside);
+        let mut struck = std::mem::take(&mut self.footing.selected);
         struck.clear();
-        let is_struck =
-            |touch: &&BlockTouch| Footing::is_struck(&self.world, (block, &self.moving), touch);
+        let is_struck = |touch: &&BlockTouch| {
+            BlockContactState::is_struck(&self.world, (block, &self.moving), touch)
+        };
         struck.extend(self.footing.touching(block).filter(is_struck));
         // as many have a row as there is room for at a time
         for touch in struck.iter().take(MOST) {
             // of the touching point, spin included: v + ω × r
-            let velocity = self.moving.at(block, &touch.lever);
+            let velocity = self.moving.velocity_at(block, &touch.lever);
             let struck = Struck {
                 point_m: self.moving.pose.centre + touch.lever,
                 normal: touch.normal,
@@ -229,7 +231,7 @@ impl Roll<'_> {
             self.recorder.begin_impact(&struck, now_s, &MeshEnergy::default());
         }
         self.dig_where(&struck);
-        self.footing.aside = struck;
+        self.footing.selected = struck;
         let broken = self.break_stems();
         self.footing.press_stems(&self.world, (block, &self.moving));
         let loss = self.footing.strike(&self.world, block, &mut self.moving);
@@ -240,7 +242,7 @@ impl Roll<'_> {
         let mut loss = loss.unwrap_or_default();
         self.footing.bend_stems(&self.world, (block, &mut self.moving), &mut loss);
         self.recorder.pay(&loss);
-        let is_free = !self.footing.holds(&self.world, (block, &self.moving), true);
+        let is_free = !self.footing.stays_in_contact(&self.world, (block, &self.moving), true);
         if is_free {
             let kept = self.scars.leave(&self.world.body, &self.moving.v);
             self.slow(kept);
@@ -306,13 +308,16 @@ impl Roll<'_> {
             return;
         }
         self.moving.v = self.recorder.slowed_in_soil(&self.moving.v, kept);
-        self.footing.springs.refresh();
+        self.footing.springs.invalidate_rates();
     }
 
     /// The journey, complete, with the shape as it was drawn.
     fn end(mut self, (release, drawn): (&Release, &DrawnShape), stop: Stop) -> Trajectory {
-        let start =
-            Moving::new(self.block, (release.motion.position_m, drawn.attitude), &release.motion);
+        let start = BlockState::new(
+            self.block,
+            (release.motion.position_m, drawn.attitude),
+            &release.motion,
+        );
         self.recorder.effort.sweeps += self.footing.sweeps;
         self.recorder.effort.triangles += self.footing.near.tested;
         let weight_n = self.block.mass_kg * self.settings.gravity_m_s2;

@@ -8,10 +8,10 @@
 //!
 //! An impact is that of stiff springs ([`strike`](Footing::strike)).
 
-mod ahead;
+mod mid_step;
 mod energy;
 mod facet;
-mod look;
+mod detection;
 mod rolling;
 mod slip;
 mod solve;
@@ -34,30 +34,30 @@ use crate::contact::neighbours::Neighbours;
 use crate::flight::block::WindowScratch;
 use crate::flight::top::{attitude_after, momentum_of, spin_of};
 use crate::rock::{Motion, Vec3};
-use ahead::Came;
-use energy::ActingAlong;
+use energy::ContactDirections;
+use mid_step::MidStepContact;
 use nalgebra::{Matrix3, Rotation3};
-use rolling::Turning;
+use rolling::RollingImpulse;
 use slip::slip_m_s;
-use solve::{BlockContact, Mass, SWEEPS, rigid_turning, solve};
+use solve::{BlockContact, Mass, SWEEPS, rigid_rolling, solve};
 pub(crate) use springs::BlockHistory;
 use springs::{Clamp, Springs};
 
 /// Gaps no wider than this touch (–, relative to the radius of the sphere of equal volume).
 pub(crate) const TOUCH: f64 = 1e-8;
 /// Contacts this far ahead take part in a step (–, relative to the balls' radius).
-const AHEAD: f64 = 1.0;
+const DETECTION_REACH: f64 = 1.0;
 /// A contact slides that is faster along the surface than this (–, relative to 1 m/s and the block's speed).
-const SLIDES: f64 = 1e-6;
+const SLIDING_SPEED: f64 = 1e-6;
 /// A block turns no further in one step (rad) than this share of the longest way of a corner over the balls' radius.
-const TURN: f64 = 0.1;
+const TURN_LIMIT: f64 = 0.1;
 /// What was pressed in is let out no faster than this (–, relative to the speed `√(g R)` of a fall by half the radius) …
-const LET_OUT: f64 = 0.1;
+const RECOVERY_SPEED: f64 = 0.1;
 /// … and so fast only what is as deep as this (–, relative to the radius), the rest in proportion: it comes to the surface slower and slower. Let
 /// out within one step it was thrown up, at the cost of all other motion, and came down again: a block that rolls on two corners rocked on without end.
-const DEEP: f64 = 0.01;
+const RECOVERY_DEPTH: f64 = 0.01;
 /// An approach slower than this is none (m/s): rounding.
-const STILL_M_S: f64 = 1e-9;
+const NO_APPROACH_M_S: f64 = 1e-9;
 /// A gain of energy that is rounding (–); it is taken off the motion all the same.
 const ROUNDING: f64 = 1e-12;
 /// Velocities are known to this (–).
@@ -65,7 +65,7 @@ const ROUNDING_OF_SPEED: f64 = 1e-14;
 
 /// A block in contact.
 #[derive(Debug, Clone)]
-pub(crate) struct Moving {
+pub(crate) struct BlockState {
     pub(crate) pose: Pose,
     pub(crate) v: Vec3,
     /// Angular momentum in the world's frame (kg m²/s).
@@ -74,26 +74,26 @@ pub(crate) struct Moving {
 
 /// Work space of the contact of one block.
 #[derive(Debug, Default)]
-pub(crate) struct Footing {
+pub(crate) struct BlockContactState {
     pub(crate) near: Neighbours,
     pub(crate) touches: BlockTouches,
     /// From where, and how far, the last look was (m), as long as its touches stand.
-    looked: Option<(Pose, f64)>,
+    last_detection: Option<(Pose, f64)>,
     /// Work space of the search for the end of a flight.
     pub(crate) window: WindowScratch,
     contacts: Vec<BlockContact>,
     /// Rolling friction that they bear.
-    turning: Turning,
+    rolling: RollingImpulse,
     /// Those of an impact, and the speed that each shall give back (m/s).
-    wanted: Vec<(BlockContact, f64)>,
+    targets: Vec<(BlockContact, f64)>,
     /// Touches set aside for a moment.
-    pub(crate) aside: Vec<BlockTouch>,
+    pub(crate) selected: Vec<BlockTouch>,
     /// What strikes grounds at one instant, and contacts on springs that begin then, by their memories.
     pub(crate) blows: Vec<GroundBlow>,
     pub(crate) begun: Vec<usize>,
     /// Springs of its contacts, in the schemes that have them, and which belongs to each of the last look.
     pub(crate) springs: Springs,
-    of_touch: Vec<Option<usize>>,
+    history_of_touch: Vec<Option<usize>>,
     /// Those that a blow has left pressed together.
     pub(crate) clamp: Clamp,
     /// The facets it meets on rough ground.
@@ -110,7 +110,7 @@ pub(crate) struct Footing {
 
 /// What a step has done.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Stepped {
+pub(crate) struct BlockStepOutcome {
     /// How long it was (s).
     pub(crate) dt: f64,
     pub(crate) loss: Loss,
@@ -122,7 +122,7 @@ pub(crate) struct Stepped {
     pub(crate) unsettled: bool,
 }
 
-impl Moving {
+impl BlockState {
     /// A block at a place and turned like this, with the velocity and spin of `motion`.
     pub(crate) fn new(
         block: &Block,
@@ -156,13 +156,18 @@ impl Moving {
     }
 
     /// Takes the impulses of the contacts, and of rolling friction.
-    fn take(&mut self, contacts: &[BlockContact], turning: &Turning, mass_kg: f64) {
+    fn apply_impulses(
+        &mut self,
+        contacts: &[BlockContact],
+        rolling: &RollingImpulse,
+        mass_kg: f64,
+    ) {
         for contact in contacts {
             self.v += contact.impulse / mass_kg;
             self.momentum += contact.lever.cross(&contact.impulse);
         }
-        if turning.is_on() {
-            self.momentum += turning.impulse;
+        if rolling.is_on() {
+            self.momentum += rolling.impulse;
         }
     }
 
@@ -178,12 +183,12 @@ impl Moving {
 
     /// Speed of a contact towards the mesh (m/s).
     pub(crate) fn approach_m_s(&self, block: &Block, touch: &BlockTouch) -> f64 {
-        -touch.normal.dot(&self.at(block, &touch.lever))
+        -touch.normal.dot(&self.velocity_at(block, &touch.lever))
     }
 
     /// Velocity of a point of the block (m/s).
-    pub(crate) fn at(&self, block: &Block, lever: &Vec3) -> Vec3 {
-        Mass::at(lever, (&self.v, &self.spin(block)))
+    pub(crate) fn velocity_at(&self, block: &Block, lever: &Vec3) -> Vec3 {
+        Mass::velocity_at(lever, (&self.v, &self.spin(block)))
     }
 }
 
@@ -196,11 +201,11 @@ fn orthonormal(turned: &Rotation3<f64>) -> Rotation3<f64> {
     Rotation3::from_matrix_unchecked(Matrix3::from_columns(&[one, two, one.cross(&two)]))
 }
 
-impl Footing {
+impl BlockContactState {
     /// Contacts that hold the block or strike it: those of the last look that touch.
     pub(crate) fn touching(&self, block: &Block) -> impl Iterator<Item = &BlockTouch> {
         let most = TOUCH * block.radius_m;
-        let touches = move |touch: &&BlockTouch| touch.gap_m <= most || self.clamp.holds(touch);
+        let touches = move |touch: &&BlockTouch| touch.gap_m <= most || self.clamp.contains(touch);
         self.touches.found.iter().filter(touches)
     }
 
@@ -209,57 +214,58 @@ impl Footing {
         &mut self,
         world: &ContactEnvironment,
         block: &Block,
-        moving: &mut Moving,
+        state: &mut BlockState,
         (most_s, corner_way): (f64, f64),
-    ) -> Stepped {
-        let spin = moving.spin(block);
-        let fastest = moving.v.norm() + spin.norm() * block.bound_m;
-        let way_m = self.way_m((block, moving), corner_way, fastest);
+    ) -> BlockStepOutcome {
+        let spin = state.spin(block);
+        let fastest = state.v.norm() + spin.norm() * block.bound_m;
+        let way_m = self.step_travel_m((block, state), corner_way, fastest);
         let dt = most_s
             .min(way_m / fastest.max(f64::MIN_POSITIVE))
-            .min(TURN * corner_way / spin.norm().max(f64::MIN_POSITIVE));
-        let (start, before_j) = (moving.clone(), moving.motion_j(block));
-        let dt = dt.min(moving.climbs_s(block, &world.body.gravity, before_j));
-        let dt = self.drift_to_middle(world, block, (&start, moving), dt);
-        let (mass, weight) = (moving.mass(block), world.body.gravity * dt);
-        let (v, w) = (moving.v, moving.spin(block));
+            .min(TURN_LIMIT * corner_way / spin.norm().max(f64::MIN_POSITIVE));
+        let (start, before_j) = (state.clone(), state.motion_j(block));
+        let dt = dt.min(state.climb_limit_s(block, &world.body.gravity, before_j));
+        let dt = self.drift_to_middle(world, block, (&start, state), dt);
+        let (mass, weight) = (state.mass(block), world.body.gravity * dt);
+        let (v, w) = (state.v, state.spin(block));
         self.contacts.clear();
-        let let_out = (DEEP * block.radius_m, LET_OUT * world.body.fall_speed_m_s());
-        let came = |touch: &BlockTouch| Came::of(block, [&start, moving], touch, dt);
+        let recovery =
+            (RECOVERY_DEPTH * block.radius_m, RECOVERY_SPEED * world.body.fall_speed_m_s());
+        let mid_step = |touch: &BlockTouch| MidStepContact::of(block, [&start, state], touch, dt);
         // stopped within the step, what strikes would give nothing back
-        self.set_aside(|touch| !came(touch).strikes(world, block, touch));
-        for touch in &self.aside {
-            let goal = came(touch).goal(touch, dt, let_out);
+        self.select(|touch| !mid_step(touch).strikes(world, block, touch));
+        for touch in &self.selected {
+            let goal = mid_step(touch).goal(touch, dt, recovery);
             let ahead_m = 0.5 * dt * slip_m_s(block, &start, (&touch.normal, &touch.lever));
             self.contacts.push(self.contact(world, (&mass, touch), ahead_m, goal));
         }
         // a goal is a gap, which is known as well as places are, over the time of the step
         let rounding_m_s =
-            f64::EPSILON * moving.pose.centre.amax() / dt + ROUNDING_OF_SPEED * v.norm();
+            f64::EPSILON * state.pose.centre.amax() / dt + ROUNDING_OF_SPEED * v.norm();
         let free = (v + weight, w);
-        self.turning = rigid_turning(&self.contacts);
-        let asked = (&mut self.contacts[..], &mut self.turning);
-        self.unsettled = !solve(&mass, asked, free, (rounding_m_s, SWEEPS), &mut self.sweeps);
-        moving.v += weight;
-        let free_motion = moving.clone();
-        moving.take(&self.contacts, &self.turning, block.mass_kg);
+        self.rolling = rigid_rolling(&self.contacts);
+        let unknowns = (&mut self.contacts[..], &mut self.rolling);
+        self.unsettled = !solve(&mass, unknowns, free, (rounding_m_s, SWEEPS), &mut self.sweeps);
+        state.v += weight;
+        let free_motion = state.clone();
+        state.apply_impulses(&self.contacts, &self.rolling, block.mass_kg);
         // the way of the step is that of the mean velocity, so this is just what the weight gives
-        let weight_j = 0.5 * block.mass_kg * weight.dot(&(v + moving.v));
-        let lost_j = before_j + weight_j - moving.motion_j(block);
-        let after = (&moving.v, &moving.spin(block));
-        let loss = self.booked(world, [(&v, &w), after], lost_j);
-        let along = ActingAlong::of_impulses(&self.contacts, &self.turning);
-        moving.hold_energy(block, (&free_motion, &weight), &along);
+        let weight_j = 0.5 * block.mass_kg * weight.dot(&(v + state.v));
+        let lost_j = before_j + weight_j - state.motion_j(block);
+        let after = (&state.v, &state.spin(block));
+        let loss = self.loss_of_impulses(world, [(&v, &w), after], lost_j);
+        let along = ContactDirections::of_impulses(&self.contacts, &self.rolling);
+        state.limit_energy_gain(block, (&free_motion, &weight), &along);
         let pushed = self.clamp.is_on() || self.contacts.iter().any(BlockContact::pushes);
-        let [slip_before, slip_after] = [&start, moving].map(|at| self.pushed_slip_m_s(block, at));
+        let [slip_before, slip_after] = [&start, state].map(|at| self.pushed_slip_m_s(block, at));
         let on = self.contacts.iter().find(|contact| contact.pushes());
         let on = on.map(|contact| world.ground_of(contact.triangle));
         self.slip.grow(0.5 * dt * (slip_before + slip_after), on);
-        let slides = slip_after > SLIDES * (1.0 + moving.v.norm());
-        moving.drift(block, 0.5 * dt);
-        self.look(world, block, &moving.pose, AHEAD * block.ball_m);
-        let is_free = !self.holds(world, (block, moving), pushed);
-        Stepped { dt, loss, slides, is_free, unsettled: self.unsettled }
+        let slides = slip_after > SLIDING_SPEED * (1.0 + state.v.norm());
+        state.drift(block, 0.5 * dt);
+        self.detect(world, block, &state.pose, DETECTION_REACH * block.ball_m);
+        let is_free = !self.stays_in_contact(world, (block, state), pushed);
+        BlockStepOutcome { dt, loss, slides, is_free, unsettled: self.unsettled }
     }
 
     /// A contact at a touch, where the block will have slipped `ahead_m` (m) further.
@@ -274,19 +280,19 @@ impl Footing {
         let friction = self.slip.friction(world.ground_of(touch.triangle), law, ahead_m);
         BlockContact::new(mass, (touch.normal, touch.lever), (friction, touch.triangle), goal)
             .rolling(law.limits())
-            .clamped(self.clamp.holds(touch))
+            .clamped(self.clamp.contains(touch))
     }
 
     /// Whether a contact still holds the block: it is near, and does not let go faster than its ground captures.
-    pub(crate) fn holds(
+    pub(crate) fn stays_in_contact(
         &self,
         world: &ContactEnvironment,
-        (block, moving): (&Block, &Moving),
+        (block, state): (&Block, &BlockState),
         pushed: bool,
     ) -> bool {
         self.clamp.is_on()
             || self.touches.found.iter().any(|touch| {
-                let up = touch.normal.dot(&moving.at(block, &touch.lever));
+                let up = touch.normal.dot(&state.velocity_at(block, &touch.lever));
                 touch.gap_m <= HELD * block.radius_m
                     && up < capture_m_s(world.law(touch.triangle))
                     && (pushed || up <= 0.0)

@@ -99,7 +99,7 @@ impl Roll<'_> {
     /// The block as it meets a surface with normal `n` at `point`.
     fn meeting(&self, triangle: u32, n: &Vec3, point: &Vec3) -> Meeting {
         let c = self.moving.pose.centre;
-        Meeting { n: *n, triangle, c, v: self.moving.at(self.block, &(point - c)) }
+        Meeting { n: *n, triangle, c, v: self.moving.velocity_at(self.block, &(point - c)) }
     }
 
     /// Gives the contacts that have begun the dashpots of the speed that soil has left them, and of the facet that the fastest of them meets.
@@ -129,7 +129,7 @@ impl Roll<'_> {
             self.strike_anew(begun, facet);
         }
         if self.break_stems() {
-            self.footing.springs.refresh();
+            self.footing.springs.invalidate_rates();
         }
         self.footing.springs.until_s = until_s;
     }

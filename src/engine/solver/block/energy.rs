@@ -1,8 +1,8 @@
 //! A step of a block never gains energy.
 
-use super::rolling::Turning;
-use super::solve::{BlockContact, Mass, turning_limit};
-use super::{Footing, Moving, TOUCH};
+use super::rolling::RollingImpulse;
+use super::solve::{BlockContact, Mass, rolling_limit};
+use super::{BlockContactState, BlockState, TOUCH};
 use crate::body::Block;
 use crate::flight::top::momentum_of;
 use crate::rock::Vec3;
@@ -22,18 +22,18 @@ const NOTHING_LEFT: f64 = 1e-7;
 /// of its turning is what a contact can change, and holds an energy of its own, ≥ 0: what is square to `n` in `ℓ` itself does not, unless `n` is a
 /// principal axis, and a box that slid on its corner had less than none to pay for the error of a step.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct ActingAlong {
+pub(super) struct ContactDirections {
     /// Directions square to each other, and how many.
     normals: [Vec3; 3],
     count: usize,
     /// Whether something rubs or resists rolling.
-    everything: bool,
+    all_directions: bool,
 }
 
 /// The part of a motion along which contacts act, and what it changes in the energy of motion: scaled by `1 + δ` it adds
 /// `slope δ + curvature δ²/2`. Both are twice its own energy, but for the weight that slowing it takes away.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct PartOfMotion {
+pub(super) struct MotionComponent {
     v: Vec3,
     momentum: Vec3,
     /// Both in J.
@@ -41,14 +41,14 @@ pub(super) struct PartOfMotion {
     curvature_j: f64,
 }
 
-impl ActingAlong {
+impl ContactDirections {
     /// Along everything.
-    pub(super) const EVERYTHING: Self =
-        Self { normals: [Vec3::new(0.0, 0.0, 0.0); 3], count: 0, everything: true };
+    pub(super) const ALL: Self =
+        Self { normals: [Vec3::new(0.0, 0.0, 0.0); 3], count: 0, all_directions: true };
 
     /// Takes in a contact with this normal; whether it `rubs`.
-    pub(super) fn take_in(&mut self, n: &Vec3, rubs: bool) {
-        self.everything |= rubs;
+    pub(super) fn add(&mut self, n: &Vec3, rubs: bool) {
+        self.all_directions |= rubs;
         let known = &self.normals[..self.count];
         let new = known.iter().fold(*n, |rest, one| rest - one * one.dot(&rest));
         if self.count < self.normals.len() && new.norm_squared() > SAME_NORMAL * SAME_NORMAL {
@@ -58,17 +58,21 @@ impl ActingAlong {
     }
 
     /// What impulses of contacts act along in the rigid limit.
-    pub(super) fn of_impulses(contacts: &[BlockContact], turning: &Turning) -> Self {
-        let mut all = Self { everything: turning.is_on(), ..Self::default() };
+    pub(super) fn of_impulses(contacts: &[BlockContact], rolling: &RollingImpulse) -> Self {
+        let mut all = Self { all_directions: rolling.is_on(), ..Self::default() };
         for contact in contacts.iter().filter(|contact| contact.pushes()) {
-            all.take_in(&contact.n, contact.rubs());
+            all.add(&contact.n, contact.has_friction());
         }
         all
     }
 
     /// What of the velocity and the angular momentum of a block they act along.
-    fn of(&self, block: &Block, Moving { pose, v, momentum }: &Moving) -> (Vec3, Vec3) {
-        if self.everything {
+    fn project(
+        &self,
+        block: &Block,
+        BlockState { pose, v, momentum }: &BlockState,
+    ) -> (Vec3, Vec3) {
+        if self.all_directions {
             return (*v, *momentum);
         }
         let known = &self.normals[..self.count];
@@ -84,7 +88,7 @@ impl ActingAlong {
     }
 }
 
-impl PartOfMotion {
+impl MotionComponent {
     /// Energy in it (J).
     pub(super) fn energy_j(&self) -> f64 {
         0.5 * self.slope_j
@@ -92,7 +96,7 @@ impl PartOfMotion {
 
     /// The most that can be taken from it (J): where it climbs, weight slows it besides, and it is worth more than it holds; it is stopped
     /// all the same, and not turned back.
-    pub(super) fn most_j(&self) -> f64 {
+    pub(super) fn available_j(&self) -> f64 {
         let slope_j = self.slope_j.max(0.0);
         if slope_j >= self.curvature_j {
             return slope_j - 0.5 * self.curvature_j.max(0.0);
@@ -101,7 +105,7 @@ impl PartOfMotion {
     }
 
     /// The `δ` (–) with which it has lost so much (J), or the most if it has less.
-    fn less(&self, taken_j: f64) -> f64 {
+    fn scale_for(&self, taken_j: f64) -> f64 {
         let root = (self.slope_j.powi(2) - 2.0 * taken_j * self.curvature_j).max(0.0).sqrt();
         let sum = self.slope_j + root;
         let share = if sum > 0.0 { (-2.0 * taken_j / sum).max(-1.0) } else { 0.0 };
@@ -110,36 +114,40 @@ impl PartOfMotion {
     }
 }
 
-impl Moving {
+impl BlockState {
     /// The part of its motion along which contacts act.
-    pub(super) fn part(&self, block: &Block, along: &ActingAlong) -> PartOfMotion {
-        let (v, momentum) = along.of(block, self);
+    pub(super) fn motion_component(
+        &self,
+        block: &Block,
+        along: &ContactDirections,
+    ) -> MotionComponent {
+        let (v, momentum) = along.project(block, self);
         let w = self.mass(block).inverse * momentum;
         let twice_j = block.mass_kg * v.norm_squared() + momentum.dot(&w);
-        PartOfMotion { v, momentum, slope_j: twice_j, curvature_j: twice_j }
+        MotionComponent { v, momentum, slope_j: twice_j, curvature_j: twice_j }
     }
 
     /// Takes energy (J) from a part of its motion; gives it where it is negative.
-    pub(super) fn pay(&mut self, part: &PartOfMotion, taken_j: f64) {
-        let share = part.less(taken_j);
+    pub(super) fn take_energy_from(&mut self, part: &MotionComponent, taken_j: f64) {
+        let share = part.scale_for(taken_j);
         self.v += part.v * share;
         self.momentum += part.momentum * share;
     }
 
     /// Takes energy (J) from the motion along which contacts act, and from all of it what that has not.
-    pub(super) fn pay_all(&mut self, block: &Block, along: &ActingAlong, taken_j: f64) {
-        let part = self.part(block, along);
-        self.pay(&part, taken_j);
-        let rest_j = taken_j - part.most_j();
-        if rest_j > 0.0 && !along.everything {
-            let all = self.part(block, &ActingAlong::EVERYTHING);
-            self.pay(&all, rest_j);
+    pub(super) fn take_energy(&mut self, block: &Block, along: &ContactDirections, taken_j: f64) {
+        let part = self.motion_component(block, along);
+        self.take_energy_from(&part, taken_j);
+        let rest_j = taken_j - part.available_j();
+        if rest_j > 0.0 && !along.all_directions {
+            let all = self.motion_component(block, &ContactDirections::ALL);
+            self.take_energy_from(&all, rest_j);
         }
     }
 
     /// Slows all of the motion of a block that has more energy than it had, with what its weight gave on the way behind it, and than its weight
     /// gives it on the way to come (J), which is slowed too. What has none to climb with stands still, and does not creep.
-    fn hold_all(&mut self, block: &Block, [had_j, comes_j]: [f64; 2]) {
+    fn scale_to_energy(&mut self, block: &Block, [had_j, comes_j]: [f64; 2]) {
         let motion_j = self.motion_j(block);
         if motion_j > had_j + comes_j && motion_j > 0.0 {
             // motion k² = had + comes k
@@ -164,37 +172,37 @@ impl Moving {
     /// with `v` and `ω` of the free motion, the way being that of the mean velocity and `W = g Δt` counted in `v`. It is 0 for `s = 0`.
     ///
     /// Contacts that act along everything are held by the energies themselves: at rest, where all of the motion goes, nothing may be left of it.
-    pub(super) fn hold_energy(
+    pub(super) fn limit_energy_gain(
         &mut self,
         block: &Block,
         (free, weight): (&Self, &Vec3),
-        along: &ActingAlong,
+        along: &ContactDirections,
     ) {
         let mass = self.mass(block);
-        if along.everything {
+        if along.all_directions {
             let before = free.v - weight;
             let turning_j = 0.5 * free.momentum.dot(&(mass.inverse * free.momentum));
             let had_j = turning_j + 0.5 * block.mass_kg * before.dot(&(before + weight));
-            self.hold_all(block, [had_j, 0.5 * block.mass_kg * weight.dot(&self.v)]);
+            self.scale_to_energy(block, [had_j, 0.5 * block.mass_kg * weight.dot(&self.v)]);
             return;
         }
         let (dv, turned) = (self.v - free.v, self.momentum - free.momentum);
         let dw = mass.inverse * turned;
-        let begins = block.mass_kg * dv.dot(&(free.v - weight * 0.5)) + free.momentum.dot(&dw);
-        let grows = block.mass_kg * dv.norm_squared() + turned.dot(&dw);
-        let gain_j = begins + 0.5 * grows;
+        let linear_j = block.mass_kg * dv.dot(&(free.v - weight * 0.5)) + free.momentum.dot(&dw);
+        let quadratic_j = block.mass_kg * dv.norm_squared() + turned.dot(&dw);
+        let gain_j = linear_j + 0.5 * quadratic_j;
         // rounding, which nothing along the contacts may be there to pay for
         if gain_j <= f64::EPSILON * self.motion_j(block) {
             return;
         }
-        let mut part = self.part(block, along);
+        let mut part = self.motion_component(block, along);
         // what is slowed gets less from its weight on the way to come
         part.slope_j -= 0.5 * block.mass_kg * weight.dot(&part.v);
-        if gain_j <= part.most_j() {
-            self.pay(&part, gain_j);
+        if gain_j <= part.available_j() {
+            self.take_energy_from(&part, gain_j);
             return;
         }
-        let share = (-2.0 * begins / grows).clamp(0.0, 1.0);
+        let share = (-2.0 * linear_j / quadratic_j).clamp(0.0, 1.0);
         self.v = free.v + dv * share;
         self.momentum = free.momentum + turned * share;
     }
@@ -203,11 +211,11 @@ impl Moving {
 /// No step ends sooner for want of energy (s).
 const SHORTEST_S: f64 = 1e-6;
 
-impl Moving {
+impl BlockState {
     /// How long a step may be (s) in which the block climbs half of its way on the energy that it has (J): where a contact lets out a block
     /// that hardly moves, a longer one would lift it for nothing. What it climbs within a gap that is none is nothing: a block that rests
     /// on rounding takes steps as long as any other.
-    pub(super) fn climbs_s(&self, block: &Block, gravity: &Vec3, motion_j: f64) -> f64 {
+    pub(super) fn climb_limit_s(&self, block: &Block, gravity: &Vec3, motion_j: f64) -> f64 {
         // m g v: what the climb takes in a second
         let power_w = -block.mass_kg * gravity.dot(&self.v);
         if power_w <= 0.0 {
@@ -218,23 +226,23 @@ impl Moving {
     }
 }
 
-impl Footing {
+impl BlockContactState {
     /// What friction, restitution and rolling friction of each contact took, together `lost_j`, each at least 0: impulses work with the
     /// mean of the motion before and after.
-    pub(super) fn booked(
+    pub(super) fn loss_of_impulses(
         &self,
         world: &ContactEnvironment,
         motion: [(&Vec3, &Vec3); 2],
         lost_j: f64,
     ) -> Loss {
-        let limit = turning_limit(&self.contacts);
+        let limit = rolling_limit(&self.contacts);
         let part = |contact: &BlockContact| {
-            let [before, after] = motion.map(|motion| Mass::at(&contact.lever, motion));
+            let [before, after] = motion.map(|motion| Mass::velocity_at(&contact.lever, motion));
             let (mean, spin) = ((before + after) * 0.5, (motion[0].1 + motion[1].1) * 0.5);
             let (push, up) = (contact.n.dot(&contact.impulse), contact.n.dot(&mean));
             let drag = contact.impulse - contact.n * push;
-            let borne = contact.turning_limit() / limit.max(f64::MIN_POSITIVE);
-            let rolling = -self.turning.impulse.dot(&spin) * borne;
+            let borne = contact.rolling_limit() / limit.max(f64::MIN_POSITIVE);
+            let rolling = -self.rolling.impulse.dot(&spin) * borne;
             let taken = [-drag.dot(&mean), -push * up, rolling];
             (taken.map(|joule| joule.max(0.0)), contact.triangle)
         };
@@ -257,13 +265,20 @@ mod tests {
     #[test]
     fn a_part_of_motion_gives_what_it_is_said_to_have() {
         for slope_j in [-1.0, 0.0, 0.4, 1.0, 1.7, 3.0] {
-            let part =
-                PartOfMotion { v: Vec3::x(), momentum: Vec3::zeros(), slope_j, curvature_j: 1.0 };
-            let most_j = part.most_j();
+            let part = MotionComponent {
+                v: Vec3::x(),
+                momentum: Vec3::zeros(),
+                slope_j,
+                curvature_j: 1.0,
+            };
+            let available_j = part.available_j();
             let change_j = |share: f64| slope_j * share + 0.5 * share * share;
-            assert!((change_j(part.less(most_j)) + most_j).abs() < 1e-6, "{slope_j}: {most_j}");
+            assert!(
+                (change_j(part.scale_for(available_j)) + available_j).abs() < 1e-6,
+                "{slope_j}: {available_j}"
+            );
             let least_j = (0..=100).map(|k| change_j(-0.01 * f64::from(k))).fold(0.0, f64::min);
-            assert!((most_j + least_j).abs() < 1e-4, "{slope_j}: {most_j} {least_j}");
+            assert!((available_j + least_j).abs() < 1e-4, "{slope_j}: {available_j} {least_j}");
         }
     }
 }

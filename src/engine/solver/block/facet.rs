@@ -2,7 +2,7 @@
 //! facet while the impact lasts. As for spheres, velocity and spin are turned, not the mesh: the block presses into the surface that is there, and no spring can give
 //! back more than it took. The spin is given the length that keeps its energy, as the moments of inertia stay where they are.
 
-use super::{Footing, Moving};
+use super::{BlockContactState, BlockState};
 use crate::body::Block;
 use crate::contact::block::BlockTouch;
 use crate::solver::environment::ContactEnvironment;
@@ -10,7 +10,7 @@ use crate::solver::law::capture_m_s;
 use crate::solver::roughness::{Meeting, Tilt};
 use nalgebra::Rotation3;
 
-impl Moving {
+impl BlockState {
     /// Turns velocity and spin; every joule stays.
     pub(super) fn redirect(&mut self, block: &Block, turn: &Rotation3<f64>) {
         let w = self.spin(block);
@@ -24,14 +24,14 @@ impl Moving {
     }
 }
 
-impl Footing {
+impl BlockContactState {
     /// Whether a contact that touches is struck, faster than its ground captures.
     pub(crate) fn is_struck(
         world: &ContactEnvironment,
-        (block, moving): (&Block, &Moving),
+        (block, state): (&Block, &BlockState),
         touch: &BlockTouch,
     ) -> bool {
-        moving.approach_m_s(block, touch) >= capture_m_s(world.law(touch.triangle))
+        state.approach_m_s(block, touch) >= capture_m_s(world.law(touch.triangle))
     }
 
     /// The facet of rough ground that the fastest of the contacts that touch meets.
@@ -39,35 +39,35 @@ impl Footing {
         &mut self,
         world: &ContactEnvironment,
         block: &Block,
-        moving: &Moving,
+        state: &BlockState,
     ) -> Option<Rotation3<f64>> {
-        let meeting = self.meeting(block, moving)?;
+        let meeting = self.meeting(block, state)?;
         self.facets.struck(world, &meeting)
     }
 
     /// Whether a block that slides or rolls has the last facet behind it, and comes to the next.
-    pub(super) fn comes_to_next_facet(
+    pub(super) fn reaches_next_facet(
         &self,
         world: &ContactEnvironment,
         block: &Block,
-        moving: &Moving,
+        state: &BlockState,
     ) -> bool {
         self.facets.are_any()
-            && self.meeting(block, moving).is_some_and(|at| self.facets.meet_next(world, &at))
+            && self.meeting(block, state).is_some_and(|at| self.facets.meet_next(world, &at))
     }
 
     /// The fastest of the contacts that touch, as it meets a facet.
-    fn meeting(&self, block: &Block, moving: &Moving) -> Option<Meeting> {
-        let fastest = moving.fastest(block, self.touching(block))?;
-        let (n, triangle, c) = (fastest.normal, fastest.triangle, moving.pose.centre);
-        Some(Meeting { n, triangle, c, v: moving.at(block, &fastest.lever) })
+    fn meeting(&self, block: &Block, state: &BlockState) -> Option<Meeting> {
+        let fastest = state.fastest(block, self.touching(block))?;
+        let (n, triangle, c) = (fastest.normal, fastest.triangle, state.pose.centre);
+        Some(Meeting { n, triangle, c, v: state.velocity_at(block, &fastest.lever) })
     }
 
     /// With springs: lets the contact that presses hardest begin anew where the block comes to the next facet.
     pub(crate) fn meet_next_facet(
         &mut self,
         world: &ContactEnvironment,
-        (block, moving): (&Block, &Moving),
+        (block, state): (&Block, &BlockState),
     ) {
         if !self.facets.are_any() || self.facets.is_any_met() {
             return;
@@ -75,8 +75,8 @@ impl Footing {
         let pressed = self.springs.histories.iter_mut().filter(|one| one.closed && one.announced);
         let hardest = pressed.max_by(|one, other| one.normal_force.total_cmp(&other.normal_force));
         let Some(history) = hardest else { return };
-        let v = moving.at(block, &(history.point - moving.pose.centre));
-        let (n, triangle, c) = (history.n, history.triangle, moving.pose.centre);
+        let v = state.velocity_at(block, &(history.point - state.pose.centre));
+        let (n, triangle, c) = (history.n, history.triangle, state.pose.centre);
         if self.facets.meet_next(world, &Meeting { n, triangle, c, v }) {
             (history.announced, history.captured) = (false, true);
             history.approach_m_s = -n.dot(&v);
@@ -87,19 +87,19 @@ impl Footing {
     pub(crate) fn turn_against(
         &mut self,
         block: &Block,
-        moving: &mut Moving,
+        state: &mut BlockState,
         (turn, until_s): (Rotation3<f64>, f64),
     ) {
-        moving.redirect(block, &turn.inverse());
+        state.redirect(block, &turn.inverse());
         self.facets.tilt = Some(Tilt { turn, until_s });
-        self.springs.refresh();
+        self.springs.invalidate_rates();
     }
 
     /// Turns the block back if it is turned; whether it was.
-    pub(crate) fn turn_back(&mut self, block: &Block, moving: &mut Moving) -> bool {
+    pub(crate) fn turn_back(&mut self, block: &Block, state: &mut BlockState) -> bool {
         let Some(Tilt { turn, .. }) = self.facets.tilt.take() else { return false };
-        moving.redirect(block, &turn);
-        self.springs.refresh();
+        state.redirect(block, &turn);
+        self.springs.invalidate_rates();
         true
     }
 }

@@ -22,26 +22,26 @@ const AT_LIMIT: f64 = 1e-13;
 
 /// Rolling friction of a body over a stage, and its impulse.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Turning {
+pub(crate) struct RollingImpulse {
     /// `s` (1/(kg m²)); `None` = no rolling friction.
     compliance: Option<f64>,
     /// Spin that the spring would give back (rad/s): `k θ/(k b + c)`.
-    wound: Vec3,
+    spring_spin: Vec3,
     /// Impulse of turning on the body (N m s).
     pub(crate) impulse: Vec3,
 }
 
-impl Default for Turning {
+impl Default for RollingImpulse {
     fn default() -> Self {
         Self::NONE
     }
 }
 
-impl Turning {
+impl RollingImpulse {
     /// None.
     pub(crate) const NONE: Self = Self {
         compliance: None,
-        wound: Vec3::new(0.0, 0.0, 0.0),
+        spring_spin: Vec3::new(0.0, 0.0, 0.0),
         impulse: Vec3::new(0.0, 0.0, 0.0),
     };
 
@@ -49,19 +49,19 @@ impl Turning {
     pub(crate) const RIGID: Self = Self { compliance: Some(0.0), ..Self::NONE };
 
     /// Over a stage in which it acts for `a` and the block turns for `b` (s), from a stretch of its spring (rad).
-    pub(super) fn over(element: &FrictionElement, stretch: &Vec3, (a, b): (f64, f64)) -> Self {
-        let answer = element.over(b);
-        let wound = element.held(*stretch) / answer;
-        Self { compliance: Some(1.0 / (a * answer)), wound, ..Self::NONE }
+    pub(super) fn of_stage(element: &FrictionElement, stretch: &Vec3, (a, b): (f64, f64)) -> Self {
+        let stiffness = element.over(b);
+        let spring_spin = element.held(*stretch) / stiffness;
+        Self { compliance: Some(1.0 / (a * stiffness)), spring_spin, ..Self::NONE }
     }
 
     /// The same with an impulse where the solve begins (N m s).
-    pub(super) fn guessed(self, impulse: Vec3) -> Self {
+    pub(super) fn with_guess(self, impulse: Vec3) -> Self {
         Self { impulse, ..self }
     }
 
     /// The same with this compliance (1/(kg m²)), if there is any.
-    pub(super) fn giving_way(self, compliance: f64) -> Self {
+    pub(super) fn with_compliance(self, compliance: f64) -> Self {
         Self { compliance: self.compliance.map(|_| compliance), ..self }
     }
 
@@ -73,26 +73,30 @@ impl Turning {
 
     /// Takes up the impulse that contacts which bear `limit` (N m s) let it have at the spin `w` (rad/s) of a body with an inverse inertia
     /// (1/(kg m²)); the change of the spin.
-    pub(crate) fn turn(&mut self, inverse: &Matrix3<f64>, w: &Vec3, limit: f64) -> Vec3 {
+    pub(crate) fn update(&mut self, inverse: &Matrix3<f64>, w: &Vec3, limit: f64) -> Vec3 {
         let Some(compliance) = self.compliance else { return Vec3::zeros() };
         let own = inverse * self.impulse;
-        let next = -taken(inverse, &(w - own + self.wound), (compliance, limit));
+        let next = -limited_impulse(inverse, &(w - own + self.spring_spin), (compliance, limit));
         self.impulse = next;
         inverse * next - own
     }
 
     /// The impulse that it takes from a body that turns with `w` at the stage's end, under contacts that bear `limit` (N m s), with its
     /// change by the spin and by the limit.
-    pub(super) fn answer_at(&mut self, w: &Vec3, limit: f64) -> Option<(Vec3, Matrix3<f64>, Vec3)> {
+    pub(super) fn impulse_at(
+        &mut self,
+        w: &Vec3,
+        limit: f64,
+    ) -> Option<(Vec3, Matrix3<f64>, Vec3)> {
         let stiffness = 1.0 / self.compliance?;
-        let asked = w + self.wound;
-        let size = asked.norm();
+        let demand = w + self.spring_spin;
+        let size = demand.norm();
         let found = if size * stiffness <= limit {
-            (asked * stiffness, Matrix3::identity() * stiffness, Vec3::zeros())
+            (demand * stiffness, Matrix3::identity() * stiffness, Vec3::zeros())
         } else {
-            let way = asked / size;
-            let across = Matrix3::identity() - way * way.transpose();
-            (way * limit, across * (limit / size), way)
+            let direction = demand / size;
+            let across = Matrix3::identity() - direction * direction.transpose();
+            (direction * limit, across * (limit / size), direction)
         };
         self.impulse = -found.0;
         Some(found)
@@ -101,13 +105,13 @@ impl Turning {
 
 /// `T` of a body with an inverse inertia (1/(kg m²)) for a spin to take (rad/s), from the least `s` and the limit (N m s). The size of
 /// `(s + I⁻¹)⁻¹ ω` falls with `s`; Newton's method on its reciprocal, which is nearly a line, comes from below and does not overshoot.
-fn taken(inverse: &Matrix3<f64>, spin: &Vec3, (least, limit): (f64, f64)) -> Vec3 {
+fn limited_impulse(inverse: &Matrix3<f64>, spin: &Vec3, (least, limit): (f64, f64)) -> Vec3 {
     if limit <= 0.0 {
         return Vec3::zeros();
     }
-    let whole = |s: f64| (inverse + Matrix3::identity() * s).try_inverse();
+    let inverse_with = |s: f64| (inverse + Matrix3::identity() * s).try_inverse();
     let mut s = least;
-    let Some(mut soft) = whole(s) else { return Vec3::zeros() };
+    let Some(mut soft) = inverse_with(s) else { return Vec3::zeros() };
     let mut taken = soft * spin;
     for _ in 0..STEPS {
         let beyond = taken.norm() - limit;
@@ -115,7 +119,7 @@ fn taken(inverse: &Matrix3<f64>, spin: &Vec3, (least, limit): (f64, f64)) -> Vec
             return taken;
         }
         s += taken.norm_squared() / taken.dot(&(soft * taken)) * beyond / limit;
-        let Some(next) = whole(s) else { break };
+        let Some(next) = inverse_with(s) else { break };
         (soft, taken) = (next, next * spin);
     }
     crate::solver::law::within(taken, limit)

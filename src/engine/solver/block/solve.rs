@@ -5,22 +5,22 @@
 //!
 //! Every contact obeys `u_n + C_n p_n ≥ goal ⊥ p_n ≥ 0` and Coulomb's law for what is left of `u_t + C_t p_t − goal`; contacts are swept
 //! (projected Gauss–Seidel), each solved for its three unknowns at once. In the rigid limit a contact gives way to nothing, `C = 0`. A spring
-//! and dashpot over an implicit step is the same contact with a compliance and a goal of its own ([`GivingWay`]): one solver serves both.
+//! and dashpot over an implicit step is the same contact with a compliance and a goal of its own ([`SpringCompliance`]): one solver serves both.
 
 mod mixing;
 mod newton;
 mod sliding;
 
-use super::rolling::Turning;
+use super::rolling::RollingImpulse;
 use crate::contact::MOST;
 use crate::contact::block::MOST_TOUCHES;
 use crate::ground::FrictionLimits;
 use crate::rock::Vec3;
-use mixing::{BEFORE, Mixing};
+use mixing::{AndersonMixing, PLAIN_SWEEPS};
 use nalgebra::Matrix3;
 use newton::solve_hard;
 pub(super) use newton::solve_springs;
-use sliding::SlidingAnswer;
+use sliding::SlidingMatrix;
 
 /// Sweeps over the contacts, at most.
 pub(super) const SWEEPS: u32 = 300;
@@ -29,7 +29,7 @@ const SETTLED: f64 = 1e-11;
 /// The same for the second half of the sweeps: laws hold to five digits of what contacts do …
 const NEARLY_SETTLED: f64 = 1e-5;
 /// … and each goes this part of its way (–): what two contacts, or contacts and rolling friction, hand each other to and fro dies out.
-const PART_OF_WAY: f64 = 0.5;
+const RELAXATION: f64 = 0.5;
 /// What presses on a clamped contact (N s): more than anything else.
 const LOCKED_N_S: f64 = 1e100;
 
@@ -60,25 +60,25 @@ pub(crate) struct BlockContact {
     /// What rolling friction bears.
     limits: FrictionLimits,
     /// `G` (1/kg).
-    pub(super) answer: Matrix3<f64>,
+    pub(super) delassus: Matrix3<f64>,
     /// `G + C` and its inverse.
-    whole: Inverted,
+    with_compliance: MatrixAndInverse,
     /// `G + C` along the normal and two directions of the surface.
-    rim: SlidingAnswer,
+    sliding: SlidingMatrix,
     /// How it gives way; `None` in the rigid limit.
-    springs: Option<GivingWay>,
+    springs: Option<SpringCompliance>,
     /// Whether it is clamped: it neither parts nor slips.
     pub(super) is_clamped: bool,
 }
 
 /// A matrix (1/kg) and its inverse (kg).
 #[derive(Debug, Clone, Copy)]
-struct Inverted {
+struct MatrixAndInverse {
     matrix: Matrix3<f64>,
     inverse: Matrix3<f64>,
 }
 
-impl Inverted {
+impl MatrixAndInverse {
     fn of(matrix: Matrix3<f64>, mass_kg: f64) -> Self {
         let inverse = matrix.try_inverse().unwrap_or_else(|| Matrix3::identity() * mass_kg);
         Self { matrix, inverse }
@@ -87,7 +87,7 @@ impl Inverted {
 
 /// How a contact with springs and dashpots gives way over an implicit step.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct GivingWay {
+pub(crate) struct SpringCompliance {
     /// Compliance along the normal and along the surface (1/kg): speed over impulse.
     pub(crate) compliance: [f64; 2],
     /// Speed along the normal that ends the step at the surface (m/s).
@@ -97,24 +97,24 @@ pub(crate) struct GivingWay {
 impl Mass {
     /// Velocity of a point of the body.
     #[inline]
-    pub(crate) fn at(lever: &Vec3, (v, w): (&Vec3, &Vec3)) -> Vec3 {
+    pub(crate) fn velocity_at(lever: &Vec3, (v, w): (&Vec3, &Vec3)) -> Vec3 {
         v + w.cross(lever)
     }
 
     /// `G = T M⁻¹ Tᵀ` of a point (1/kg).
-    fn answer(&self, lever: &Vec3) -> Matrix3<f64> {
+    fn delassus(&self, lever: &Vec3) -> Matrix3<f64> {
         let across = lever.cross_matrix();
         Matrix3::identity() / self.mass - across * self.inverse * across
     }
 
     /// Mass that a contact with this normal and lever moves along the normal, and in the mean along the surface (kg).
     pub(crate) fn moved_by(&self, (n, lever): (&Vec3, &Vec3)) -> [f64; 2] {
-        let answer = self.answer(lever);
-        let along = n.dot(&(answer * n));
-        [1.0 / along, 2.0 / (answer.trace() - along)]
+        let delassus = self.delassus(lever);
+        let along = n.dot(&(delassus * n));
+        [1.0 / along, 2.0 / (delassus.trace() - along)]
     }
 
-    fn change(&self, contact: &BlockContact, impulse: &Vec3) -> (Vec3, Vec3) {
+    fn velocity_change(&self, contact: &BlockContact, impulse: &Vec3) -> (Vec3, Vec3) {
         (impulse / self.mass, self.inverse * contact.lever.cross(impulse))
     }
 }
@@ -126,9 +126,10 @@ impl BlockContact {
         (friction, triangle): (f64, u32),
         goal: Vec3,
     ) -> Self {
-        let answer = mass.answer(&lever);
-        let (impulse, whole) = (Vec3::zeros(), Inverted::of(answer, mass.mass));
-        let (limits, springs, rim) = (FrictionLimits::NONE, None, SlidingAnswer::of(&n, &answer));
+        let delassus = mass.delassus(&lever);
+        let (impulse, with_compliance) = (Vec3::zeros(), MatrixAndInverse::of(delassus, mass.mass));
+        let (limits, springs, sliding) =
+            (FrictionLimits::NONE, None, SlidingMatrix::of(&n, &delassus));
         let is_clamped = false;
         Self {
             n,
@@ -138,9 +139,9 @@ impl BlockContact {
             triangle,
             impulse,
             limits,
-            answer,
-            whole,
-            rim,
+            delassus,
+            with_compliance,
+            sliding,
             springs,
             is_clamped,
         }
@@ -151,14 +152,14 @@ impl BlockContact {
         mass: &Mass,
         (n, lever): (Vec3, Vec3),
         (friction, triangle): (f64, u32),
-        (goal, springs): (Vec3, GivingWay),
+        (goal, springs): (Vec3, SpringCompliance),
     ) -> Self {
         let ([along, across], normal) = (springs.compliance, n * n.transpose());
         let soft = normal * along + (Matrix3::identity() - normal) * across;
         let hard = Self::new(mass, (n, lever), (friction, triangle), goal);
-        let whole = Inverted::of(hard.answer + soft, mass.mass);
-        let rim = SlidingAnswer::of(&n, &whole.matrix);
-        Self { whole, rim, springs: Some(springs), ..hard }
+        let with_compliance = MatrixAndInverse::of(hard.delassus + soft, mass.mass);
+        let sliding = SlidingMatrix::of(&n, &with_compliance.matrix);
+        Self { with_compliance, sliding, springs: Some(springs), ..hard }
     }
 
     /// The same with what its sliders bear.
@@ -182,24 +183,24 @@ impl BlockContact {
     }
 
     /// Whether friction acts at it.
-    pub(super) fn rubs(&self) -> bool {
+    pub(super) fn has_friction(&self) -> bool {
         self.friction > 0.0
     }
 
     /// The largest impulse of turning that its own bears (N m s).
-    pub(super) fn turning_limit(&self) -> f64 {
-        self.turning_limit_of(self.n.dot(&self.impulse))
+    pub(super) fn rolling_limit(&self) -> f64 {
+        self.rolling_limit_of(self.n.dot(&self.impulse))
     }
 
     /// The same for a normal impulse (N s).
-    pub(super) fn turning_limit_of(&self, push: f64) -> f64 {
+    pub(super) fn rolling_limit_of(&self, push: f64) -> f64 {
         let push = if self.is_clamped { LOCKED_N_S } else { push };
         self.limits.caps(push).1
     }
 
     /// How it gives way, in a scheme with springs.
     #[inline]
-    pub(super) fn springs(&self) -> Option<&GivingWay> {
+    pub(super) fn springs(&self) -> Option<&SpringCompliance> {
         self.springs.as_ref()
     }
 
@@ -209,45 +210,53 @@ impl BlockContact {
     }
 
     /// Its impulse where the point would move by `u` without it.
-    fn own_impulse(&self, u: &Vec3) -> Vec3 {
+    fn local_impulse(&self, u: &Vec3) -> Vec3 {
         if self.is_clamped {
-            return self.whole.inverse * (self.goal - u);
+            return self.with_compliance.inverse * (self.goal - u);
         }
-        let impulse = self.answering(&(u - self.goal), (&self.whole, &self.rim));
+        let impulse =
+            self.coulomb_impulse(&(u - self.goal), (&self.with_compliance, &self.sliding));
         let Some(springs) = self.springs.filter(|_| impulse != Vec3::zeros()) else {
             return impulse;
         };
-        if self.n.dot(&(u + self.answer * impulse)) <= springs.surface_m_s {
+        if self.n.dot(&(u + self.delassus * impulse)) <= springs.surface_m_s {
             return impulse;
         }
         // the dashpot alone would keep the block out: the impulse that holds it exactly at the surface
         let normal = self.n * self.n.transpose();
-        let hard = self.whole.matrix - normal * springs.compliance[0];
-        let mass_kg = self.whole.inverse.trace() / 3.0;
+        let hard = self.with_compliance.matrix - normal * springs.compliance[0];
+        let mass_kg = self.with_compliance.inverse.trace() / 3.0;
         let goal = self.goal + self.n * (springs.surface_m_s - self.n.dot(&self.goal));
-        self.answering(
+        self.coulomb_impulse(
             &(u - goal),
-            (&Inverted::of(hard, mass_kg), &SlidingAnswer::of(&self.n, &hard)),
+            (&MatrixAndInverse::of(hard, mass_kg), &SlidingMatrix::of(&self.n, &hard)),
         )
     }
 
-    /// Its impulse where the point would move by `u` beyond its goal without it, and answers an impulse by `whole`.
-    fn answering(&self, u: &Vec3, (whole, rim): (&Inverted, &SlidingAnswer)) -> Vec3 {
+    /// Its impulse where the point would move by `u` beyond its goal without it, and answers an impulse by `with_compliance`.
+    fn coulomb_impulse(
+        &self,
+        u: &Vec3,
+        (with_compliance, sliding): (&MatrixAndInverse, &SlidingMatrix),
+    ) -> Vec3 {
         let up = self.n.dot(u);
         if up >= 0.0 {
             return Vec3::zeros();
         }
-        let stick = -(whole.inverse * u);
+        let stick = -(with_compliance.inverse * u);
         let push = self.n.dot(&stick);
         let drag = stick - self.n * push;
         if push > 0.0 && drag.norm_squared() <= (self.friction * push).powi(2) {
             return stick;
         }
         // in a sweep it goes on sliding as it did in the one before
-        let begins = [rim.flat(&self.impulse), rim.flat(&drag)];
+        let begins = [sliding.tangential(&self.impulse), sliding.tangential(&drag)];
         let mut slides = begins.iter().filter_map(|drag| drag.try_normalize(0.0));
-        let on_rim = slides.find_map(|d| self.on_rim((up, rim.flat(u)), d, rim));
-        on_rim.unwrap_or_else(|| self.sliding(u, (drag, &whole.matrix)))
+        let sliding_impulse =
+            slides.find_map(|d| self.sliding_impulse((up, sliding.tangential(u)), d, sliding));
+        sliding_impulse.unwrap_or_else(|| {
+            self.sliding_impulse_by_iteration(u, (drag, &with_compliance.matrix))
+        })
     }
 }
 
@@ -257,14 +266,14 @@ pub(super) fn first_guess(impulse: Vec3) -> Vec3 {
 }
 
 /// Largest impulse of turning under the impulses of contacts (N m s).
-pub(super) fn turning_limit(contacts: &[BlockContact]) -> f64 {
-    contacts.iter().map(BlockContact::turning_limit).sum()
+pub(super) fn rolling_limit(contacts: &[BlockContact]) -> f64 {
+    contacts.iter().map(BlockContact::rolling_limit).sum()
 }
 
 /// Rolling friction that contacts bear in the rigid limit.
-pub(super) fn rigid_turning(contacts: &[BlockContact]) -> Turning {
+pub(super) fn rigid_rolling(contacts: &[BlockContact]) -> RollingImpulse {
     let rolls = contacts.iter().any(BlockContact::has_rolling);
-    if rolls { Turning::RIGID } else { Turning::NONE }
+    if rolls { RollingImpulse::RIGID } else { RollingImpulse::NONE }
 }
 
 /// Sweeps until the body moves as it will, from velocity and spin without impulses; whether it did. `sweeps` counts.
@@ -278,64 +287,65 @@ pub(super) fn rigid_turning(contacts: &[BlockContact]) -> Turning {
 /// only, and there are at most so many sweeps.
 pub(crate) fn solve(
     mass: &Mass,
-    asked: (&mut [BlockContact], &mut Turning),
+    unknowns: (&mut [BlockContact], &mut RollingImpulse),
     free: (Vec3, Vec3),
     until: (f64, u32),
     sweeps: &mut u64,
 ) -> bool {
     // a face with many corners is rare, and room for all of them is not cleared for nothing
-    if asked.0.len() <= MOST {
-        sweep::<{ MOST + 1 }>(mass, asked, free, until, sweeps)
+    if unknowns.0.len() <= MOST {
+        sweep::<{ MOST + 1 }>(mass, unknowns, free, until, sweeps)
     } else {
-        sweep::<{ MOST_TOUCHES + 1 }>(mass, asked, free, until, sweeps)
+        sweep::<{ MOST_TOUCHES + 1 }>(mass, unknowns, free, until, sweeps)
     }
 }
 
 /// The same with room to learn from fewer than `M` contacts.
 fn sweep<const M: usize>(
     mass: &Mass,
-    (contacts, turning): (&mut [BlockContact], &mut Turning),
+    (contacts, rolling): (&mut [BlockContact], &mut RollingImpulse),
     (mut v, mut w): (Vec3, Vec3),
     (rounding_m_s, most): (f64, u32),
     sweeps: &mut u64,
 ) -> bool {
-    let alone = contacts.len() <= 1 && !turning.is_on();
+    let alone = contacts.len() <= 1 && !rolling.is_on();
     let reach = contacts.iter().map(|contact| contact.lever.norm()).fold(0.0, f64::max);
     // a contact at the centre of mass itself has no lever to compare moments with
     let mixes = contacts.len() < M && reach > 0.0;
-    let mut mixing: Option<Mixing<M>> = None;
+    let mut mixing: Option<AndersonMixing<M>> = None;
     for sweep in 0..most {
         *sweeps += 1;
         // what the last sweeps leave is what the laws allow
-        let learns = mixes && (BEFORE..most / 2).contains(&sweep);
-        if learns {
-            let count = contacts.len() + usize::from(turning.is_on());
-            mixing.get_or_insert_with(|| Mixing::of(count, reach)).begin(contacts, turning);
+        let mixes_now = mixes && (PLAIN_SWEEPS..most / 2).contains(&sweep);
+        if mixes_now {
+            let count = contacts.len() + usize::from(rolling.is_on());
+            mixing.get_or_insert_with(|| AndersonMixing::of(count, reach)).begin(contacts, rolling);
         }
         let is_late = sweep >= SWEEPS / 2;
-        if sweep == SWEEPS / 2 && solve_hard(mass, (contacts, turning), (&v, &w), rounding_m_s) {
+        if sweep == SWEEPS / 2 && solve_hard(mass, (contacts, rolling), (&v, &w), rounding_m_s) {
             return true;
         }
         let (before, mut scale) = ((v, w), f64::MIN_POSITIVE);
         for contact in contacts.iter_mut() {
-            let u = Mass::at(&contact.lever, (&v, &w)) - contact.answer * contact.impulse;
-            let own = contact.own_impulse(&u);
-            let next = if is_late { contact.impulse.lerp(&own, PART_OF_WAY) } else { own };
-            let (dv, dw) = mass.change(contact, &(next - contact.impulse));
+            let u =
+                Mass::velocity_at(&contact.lever, (&v, &w)) - contact.delassus * contact.impulse;
+            let own = contact.local_impulse(&u);
+            let next = if is_late { contact.impulse.lerp(&own, RELAXATION) } else { own };
+            let (dv, dw) = mass.velocity_change(contact, &(next - contact.impulse));
             (v, w) = (v + dv, w + dw);
             scale = scale.max(next.norm());
             contact.impulse = next;
         }
-        if turning.is_on() {
-            w += turning.turn(&mass.inverse, &w, turning_limit(contacts));
+        if rolling.is_on() {
+            w += rolling.update(&mass.inverse, &w, rolling_limit(contacts));
         }
         let moved = (v - before.0).norm() + (w - before.1).norm() * reach;
         let enough = if is_late { NEARLY_SETTLED } else { SETTLED };
         if alone || moved <= (enough * scale / mass.mass).max(rounding_m_s) {
             return true;
         }
-        if let Some(mixing) = mixing.as_mut().filter(|_| learns) {
-            let (dv, dw) = mixing.mix(mass, (&mut *contacts, &mut *turning));
+        if let Some(mixing) = mixing.as_mut().filter(|_| mixes_now) {
+            let (dv, dw) = mixing.mix(mass, (&mut *contacts, &mut *rolling));
             (v, w) = (v + dv, w + dw);
         }
     }

@@ -5,7 +5,7 @@
 //! `ℓ' = Σ a × f`, `ω = I⁻¹ℓ`, so that no gyroscopic term has to be stepped and free spin keeps its momentum exactly.
 //!
 //! A spring and a dashpot over an implicit stage in which an impulse acts for `a` and the block moves for `b` (s) are a contact of the
-//! rigid limit that gives way ([`GivingWay`]): from `F = p (pen − b u_n) − c u_n` and `P = a F`
+//! rigid limit that gives way ([`SpringCompliance`]): from `F = p (pen − b u_n) − c u_n` and `P = a F`
 //!
 //! ```text
 //! u_n + P_n/(a (p b + c)) = p pen/(p b + c)
@@ -25,9 +25,9 @@ mod rolling;
 mod onset;
 mod stage;
 
-use super::energy::ActingAlong;
-use super::solve::{BlockContact, GivingWay, Mass};
-use super::{Footing, Moving, Stepped, TOUCH};
+use super::energy::ContactDirections;
+use super::solve::{BlockContact, Mass, SpringCompliance};
+use super::{BlockContactState, BlockState, BlockStepOutcome, TOUCH};
 use crate::body::Block;
 use crate::ground::{Law, SliderForce};
 use crate::math;
@@ -45,7 +45,7 @@ use nalgebra::{Rotation3, Unit};
 use rolling::RollingSpring;
 
 /// Contacts no further ahead than so many times the way of a stage take part in it (–).
-const AHEAD: f64 = 2.0;
+const STAGE_REACH: f64 = 2.0;
 
 /// Rates of change of a block in contact.
 #[derive(Debug, Clone, Default)]
@@ -74,7 +74,7 @@ struct SpringContact {
     /// Whether it came in too slowly to rebound.
     captured: bool,
     /// Whether it has come up in this step, which is cut where it begins: it presses nothing.
-    waits: bool,
+    is_suspended: bool,
     /// Triangle whose ground answers.
     triangle: u32,
     /// Unit normal from the mesh to the block, and lever (m).
@@ -101,19 +101,19 @@ pub(crate) struct Springs {
     rolling: RollingSpring,
     /// Memories at the step's start, and whether impacts that come up after it wait until a step begins with them.
     known: usize,
-    new_wait: bool,
+    suspends_new: bool,
     rates: [BlockRates; STAGES],
     /// Whether the first rate belongs to the present state.
-    fresh: bool,
+    has_current_rates: bool,
     /// Whether the last look was at the present place.
-    seen: bool,
+    touches_are_current: bool,
     /// Slip at the step's start (m/s), and how far it goes until friction is asked for (m).
     slip_m_s: f64,
     ahead_m: f64,
     /// Energy in the springs at the present state (J).
     stored_j: f64,
     /// What steps of `dda` have made, and the motion has not paid for as yet (J).
-    owed_j: f64,
+    debt_j: f64,
     /// The step to try next (s).
     h: f64,
     /// Fastest approach of the impacts that go on (m/s); 0 if none does.
@@ -127,13 +127,13 @@ pub(crate) struct Springs {
 
 impl Springs {
     /// The motion has been changed from outside.
-    pub(crate) fn refresh(&mut self) {
-        self.fresh = false;
+    pub(crate) fn invalidate_rates(&mut self) {
+        self.has_current_rates = false;
     }
 
     /// What the last look has found is no longer what is there.
-    pub(crate) fn forget_look(&mut self) {
-        self.seen = false;
+    pub(crate) fn invalidate_touches(&mut self) {
+        self.touches_are_current = false;
     }
 
     /// Whether nothing presses on the block any more.
@@ -167,28 +167,28 @@ impl Springs {
     }
 
     /// What the contacts of the last stage act along.
-    fn acting_along(&self) -> ActingAlong {
-        ActingAlong::default().and_springs(&self.contacts)
+    fn acting_along(&self) -> ContactDirections {
+        ContactDirections::default().and_springs(&self.contacts)
     }
 
     /// Energy in the springs of the contacts as they were placed (J), by what it belongs to.
-    fn placed(&self, world: &ContactEnvironment) -> Loss {
-        let mut placed = Loss { rolling: self.rolling.holds_j(), ..Loss::default() };
+    fn stored_by_contacts(&self, world: &ContactEnvironment) -> Loss {
+        let mut placed = Loss { rolling: self.rolling.stored_j(), ..Loss::default() };
         for contact in &self.contacts {
-            let damping = contact.holds_j(contact.penetration, &contact.shear);
+            let damping = contact.stored_j(contact.penetration, &contact.shear);
             placed.add(&Loss { damping, ..Loss::default() }.on(world, contact.triangle), 1.0);
         }
         placed
     }
 
     /// Notes the fastest approach of the impacts that go on.
-    fn note_fastest(&mut self) {
+    fn update_impact_speed(&mut self) {
         self.impact_m_s = self.fastest_m_s().map_or(0.0, |own| own.max(self.impact_m_s));
     }
 
     /// How much springs hold (J), as the memories tell.
     pub(crate) fn held_j(&self) -> f64 {
-        self.held_on_j(|_| true) + self.rolling.holds_j()
+        self.held_on_j(|_| true) + self.rolling.stored_j()
     }
 
     /// How much those of the contacts on some triangles hold (J).
@@ -198,11 +198,11 @@ impl Springs {
     }
 }
 
-impl ActingAlong {
+impl ContactDirections {
     /// With what these contacts act along.
     fn and_springs(mut self, contacts: &[SpringContact]) -> Self {
         for contact in contacts {
-            self.take_in(&contact.n, contact.law.limits().caps(1.0) != (0.0, 0.0));
+            self.add(&contact.n, contact.law.limits().caps(1.0) != (0.0, 0.0));
         }
         self
     }
@@ -210,23 +210,24 @@ impl ActingAlong {
 
 impl SpringContact {
     /// The contact that a stage sees in which impulses act for `a` and the block moves for `b` (s).
-    fn giving_way(&self, mass: &Mass, (a, b): (f64, f64)) -> BlockContact {
+    fn over_stage(&self, mass: &Mass, (a, b): (f64, f64)) -> BlockContact {
         let stage = self.law.over_stage(self.captured, (a, b));
         let goal = self.n * (stage.out_per_s * self.penetration) - self.shear * stage.back_per_s;
-        let springs = GivingWay { compliance: stage.compliance, surface_m_s: self.penetration / b };
+        let springs =
+            SpringCompliance { compliance: stage.compliance, surface_m_s: self.penetration / b };
         let slides = (self.law.friction_coefficient(), self.triangle);
         BlockContact::on_springs(mass, (self.n, self.lever), slides, (goal, springs))
             .rolling(self.law.limits())
     }
 
     /// Takes the forces from an impulse that has acted for `a` (s).
-    fn take(&mut self, impulse: &Vec3, a: f64) {
+    fn set_forces(&mut self, impulse: &Vec3, a: f64) {
         self.normal_force = self.n.dot(impulse) / a;
         self.shear_force = (self.n * self.n.dot(impulse) - impulse) / a;
     }
 
     /// Takes the forces that it has where its point moves by `u` (m/s): the normal force if it could pull (N), and shear.
-    fn press(&mut self, u: &Vec3) -> (f64, SliderForce) {
+    fn update_forces(&mut self, u: &Vec3) -> (f64, SliderForce) {
         let (up, element) = (self.n.dot(u), &self.law.shear);
         let normal = self.law.normal(self.captured);
         let pulls = normal.pull_or_push(self.penetration.max(0.0), up);
@@ -238,7 +239,7 @@ impl SpringContact {
     }
 
     /// Energy in its springs at a penetration and a stretch (J, m): nothing where it does not press.
-    fn holds_j(&self, penetration: f64, shear: &Vec3) -> f64 {
+    fn stored_j(&self, penetration: f64, shear: &Vec3) -> f64 {
         let shear2 = if penetration > 0.0 { shear.norm_squared() } else { 0.0 };
         self.law.stored_j(penetration.max(0.0), shear2, 0.0)
     }
@@ -249,7 +250,7 @@ impl SpringContact {
     }
 
     /// Penetration (m) after a motion of the contact point at `u` (m/s) for `b` (s).
-    fn pen_at(&self, u: &Vec3, b: f64) -> f64 {
+    fn penetration_after(&self, u: &Vec3, b: f64) -> f64 {
         self.penetration - b * self.n.dot(u)
     }
 
@@ -272,7 +273,7 @@ impl SpringContact {
 }
 
 /// A rotation by a rotation vector (rad).
-fn turn_by(turned: &Vec3) -> Rotation3<f64> {
+fn rotation_by(turned: &Vec3) -> Rotation3<f64> {
     let angle = turned.norm();
     if angle > 0.0 {
         math::turn(&Unit::new_unchecked(turned / angle), angle)
@@ -282,38 +283,38 @@ fn turn_by(turned: &Vec3) -> Rotation3<f64> {
 }
 
 /// Rate of the rotation vector `θ` of a body that turns with `w`: `θ' = ω − θ×ω/2 + θ×(θ×ω)/12 − …` (Bortz 1971), for small `θ`.
-fn turning(turned: &Vec3, w: &Vec3) -> Vec3 {
+fn rotation_vector_rate(turned: &Vec3, w: &Vec3) -> Vec3 {
     let once = turned.cross(w);
     w - once * 0.5 + turned.cross(&once) / 12.0
 }
 
-impl Footing {
+impl BlockContactState {
     /// Begins an episode of a block that has just touched.
     pub(crate) fn begin_springs(
         &mut self,
         world: &ContactEnvironment,
         settings: &Settings,
-        (block, moving): (&Block, &Moving),
+        (block, state): (&Block, &BlockState),
     ) {
         self.springs.histories.clear();
         self.springs.rolling = RollingSpring::default();
         self.touches.held.clear();
         (self.springs.impact_m_s, self.springs.energy, self.springs.until_s) = (0.0, None, 0.0);
-        self.look_at_all(world, (block, &moving.pose), TOUCH * block.radius_m);
+        self.detect_all(world, (block, &state.pose), TOUCH * block.radius_m);
         self.springs.known = 0;
-        self.remember(world, (block, moving));
-        for (touch, history) in self.touches.found.iter().zip(&self.of_touch) {
+        self.update_histories(world, (block, state));
+        for (touch, history) in self.touches.found.iter().zip(&self.history_of_touch) {
             let offset_m = if block.core.is_corner(touch.part) { 0.0 } else { -touch.gap_m };
             let Some(k) = *history else { continue };
             self.springs.histories[k].offset_m = offset_m.max(0.0);
         }
-        (self.springs.stored_j, self.springs.owed_j) = (self.stored(world).sum(), 0.0);
+        (self.springs.stored_j, self.springs.debt_j) = (self.stored(world).sum(), 0.0);
         let control =
             settings.scheme.tableau().map(|tableau| Control::new(tableau, settings, world));
         self.springs.control = control;
         self.springs.h = self.first_step_s(world);
-        self.springs.refresh();
-        self.springs.seen = true;
+        self.springs.invalidate_rates();
+        self.springs.touches_are_current = true;
     }
 
     /// Energy in the springs of the contacts of the last look (J), by what it belongs to.
@@ -329,7 +330,7 @@ impl Footing {
             let damping = law.stored_j(penetration, history.shear.norm_squared(), 0.0);
             stored.add(&Loss { damping, ..Loss::default() }.on(world, history.triangle), 1.0);
         }
-        stored.rolling += self.springs.rolling.holds_j();
+        stored.rolling += self.springs.rolling.stored_j();
         stored
     }
 
@@ -337,9 +338,9 @@ impl Footing {
     pub(crate) fn springs_j(
         &mut self,
         world: &ContactEnvironment,
-        (block, moving): (&Block, &Moving),
+        (block, state): (&Block, &BlockState),
     ) -> Loss {
-        self.look_at_all(world, (block, &moving.pose), TOUCH * block.radius_m);
+        self.detect_all(world, (block, &state.pose), TOUCH * block.radius_m);
         self.stored(world)
     }
 
@@ -351,19 +352,19 @@ impl Footing {
         &mut self,
         world: &ContactEnvironment,
         settings: &Settings,
-        (block, moving): (&Block, &mut Moving),
+        (block, state): (&Block, &mut BlockState),
         most_s: f64,
-    ) -> Result<(Stepped, u64), StepError> {
-        let slip_m_s = self.slip_m_s(block, moving);
+    ) -> Result<(BlockStepOutcome, u64), StepError> {
+        let slip_m_s = self.slip_m_s(block, state);
         (self.springs.slip_m_s, self.springs.ahead_m) = (slip_m_s, 0.0);
         let (done, rejected) = match self.springs.control {
             Some(control) => {
-                let limit = Self::travel_limit_s(world, (block, moving), settings.corner_way);
-                self.controlled_step(world, (block, moving), (control, most_s, limit))?
+                let limit = Self::travel_limit_s(world, (block, state), settings.corner_way);
+                self.controlled_step(world, (block, state), (control, most_s, limit))?
             }
-            None => (self.fixed_step(world, settings, (block, moving), most_s)?, 0),
+            None => (self.fixed_step(world, settings, (block, state), most_s)?, 0),
         };
-        let slipped_m = 0.5 * done.dt * (slip_m_s + self.slip_m_s(block, moving));
+        let slipped_m = 0.5 * done.dt * (slip_m_s + self.slip_m_s(block, state));
         let on = self.touching(block).next().map(|touch| world.ground_of(touch.triangle));
         self.slip.grow(slipped_m, on);
         if done.is_free {
@@ -373,10 +374,14 @@ impl Footing {
     }
 
     /// How far ahead (m) a block can touch something within a stage of `way_s`.
-    fn ahead_m(world: &ContactEnvironment, (block, moving): (&Block, &Moving), way_s: f64) -> f64 {
-        let fastest = moving.v.norm() + moving.spin(block).norm() * block.bound_m;
+    fn ahead_m(
+        world: &ContactEnvironment,
+        (block, state): (&Block, &BlockState),
+        way_s: f64,
+    ) -> f64 {
+        let fastest = state.v.norm() + state.spin(block).norm() * block.bound_m;
         let way_m = way_s * (fastest + world.body.gravity.norm() * way_s);
-        TOUCH * block.radius_m + AHEAD * way_m
+        TOUCH * block.radius_m + STAGE_REACH * way_m
     }
 
     /// Whether a spring is pressed in so far, over the balls' radius, that it means nothing any more.

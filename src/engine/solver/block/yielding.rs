@@ -12,7 +12,7 @@ use crate::solver::law::within;
 use crate::solver::yielding::BISECTIONS;
 
 /// Shares of the normal impulse that would stop the contact point without friction, for one of which a step goes (–).
-const SHARE: f64 = 2e-3;
+const PUSH_STEP: f64 = 2e-3;
 /// Steps at most: friction may make the stop as much dearer.
 const STEPS: u32 = 20_000;
 /// Passes over the two directions along the surface (–).
@@ -21,51 +21,51 @@ const PASSES: u32 = 40;
 impl BlockContact {
     /// What an impulse has taken (J) of a body whose contact point moved by `u` (m/s).
     fn taken_j(&self, u: &Vec3, impulse: &Vec3) -> f64 {
-        -(u.dot(impulse) + 0.5 * impulse.dot(&(self.answer * impulse)))
+        -(u.dot(impulse) + 0.5 * impulse.dot(&(self.delassus * impulse)))
     }
 
     /// Impulse along the surface over the normal one (–), at a velocity `u` of the contact point, for a step of `push` (N s); and
     /// whether the point slips on throughout.
-    fn drag(&self, u: &Vec3, push: f64) -> (Vec3, bool) {
+    fn friction_ratio(&self, u: &Vec3, push: f64) -> (Vec3, bool) {
         let along = |x: Vec3| x - self.n * self.n.dot(&x);
         let slip = along(*u);
         let against = |x: &Vec3| -x.try_normalize(0.0).unwrap_or_default() * self.friction;
         let slides = against(&slip);
-        let after = slip + along(self.answer * (self.n + slides)) * push;
+        let after = slip + along(self.delassus * (self.n + slides)) * push;
         if slip.dot(&after) > 0.0 {
             return (slides, true);
         }
         // the slip ends: what ends it and keeps it so, by a few passes over the two directions along the surface
-        let rate = 1.0 / (self.answer.trace() - self.n.dot(&(self.answer * self.n)));
-        let mut hold = Vec3::zeros();
+        let rate = 1.0 / (self.delassus.trace() - self.n.dot(&(self.delassus * self.n)));
+        let mut stick = Vec3::zeros();
         for _ in 0..PASSES {
-            let next = hold - along(slip / push + self.answer * (self.n + hold)) * rate;
-            hold = within(next, self.friction);
+            let next = stick - along(slip / push + self.delassus * (self.n + stick)) * rate;
+            stick = within(next, self.friction);
         }
-        (hold, false)
+        (stick, false)
     }
 
     /// Impulse after another step of `push` (N s) along the normal: while the point slips, with the direction of the slip in the
     /// middle of the step.
-    fn pushed(&self, u: &Vec3, impulse: &Vec3, push: f64) -> Vec3 {
-        let (mut drag, slips) = self.drag(&(u + self.answer * impulse), push);
+    fn advance_impulse(&self, u: &Vec3, impulse: &Vec3, push: f64) -> Vec3 {
+        let (mut ratio, slips) = self.friction_ratio(&(u + self.delassus * impulse), push);
         if slips {
-            let half = impulse + (self.n + drag) * (0.5 * push);
-            (drag, _) = self.drag(&(u + self.answer * half), 0.5 * push);
+            let half = impulse + (self.n + ratio) * (0.5 * push);
+            (ratio, _) = self.friction_ratio(&(u + self.delassus * half), 0.5 * push);
         }
-        impulse + (self.n + drag) * push
+        impulse + (self.n + ratio) * push
     }
 
     /// Impulse (N s) with which a body goes on whose contact point strikes, with the velocity `u` (m/s), something that gives way
     /// once it has taken `limit_j`, friction included. `None` if that stands until the point comes to rest along the normal.
     pub(super) fn yielding(&self, u: &Vec3, limit_j: f64) -> Option<Vec3> {
-        let push = -self.n.dot(u) / self.n.dot(&(self.answer * self.n)) * SHARE;
+        let push = -self.n.dot(u) / self.n.dot(&(self.delassus * self.n)) * PUSH_STEP;
         let mut impulse = Vec3::zeros();
         for _ in 0..STEPS {
-            if self.n.dot(&(u + self.answer * impulse)) >= 0.0 {
+            if self.n.dot(&(u + self.delassus * impulse)) >= 0.0 {
                 return None;
             }
-            let next = self.pushed(u, &impulse, push);
+            let next = self.advance_impulse(u, &impulse, push);
             if self.taken_j(u, &next) >= limit_j {
                 let after = |share: f64| impulse + (next - impulse) * share;
                 let stands = |share: f64| self.taken_j(u, &after(share)) < limit_j;

@@ -7,35 +7,35 @@
 //! Hard contacts are swept. Where that does not settle – more of them than a rigid body can tell apart, or rolling friction that holds a block which
 //! slides on several corners – they are solved as contacts that give way by a millionth of what the body does.
 
-use super::super::rolling::Turning;
-use super::{BlockContact, GivingWay, Mass};
+use super::super::rolling::RollingImpulse;
+use super::{BlockContact, Mass, SpringCompliance};
 use crate::contact::block::MOST_TOUCHES;
 use crate::rock::Vec3;
 use arrayvec::ArrayVec;
 use nalgebra::{Matrix3, Matrix6, Vector6};
 
 /// Tries of the method before contacts are swept.
-const TRIES: u32 = 30;
+const NEWTON_STEPS: u32 = 30;
 /// Halvings of one step that does not come nearer.
 const HALVINGS: u32 = 4;
 /// Change of the motion, relative to the largest impulse over the mass, below which it has settled (–).
 const MOTION_SETTLED: f64 = 1e-12;
 
 /// What hard contacts and their rolling friction give way, over what the body answers in the mean (–).
-const GIVES_WAY: f64 = 1e-6;
+const REGULARIZATION: f64 = 1e-6;
 
 /// The impulse of a contact whose point moves by `u` (m/s), and its derivative (kg).
 type ImpulseAndSlope = (Vec3, Matrix3<f64>);
 
 impl BlockContact {
     /// A hard contact that gives way a little.
-    fn giving_way(&self) -> Self {
-        let compliance = [GIVES_WAY * self.answer.trace() / 3.0; 2];
-        Self { springs: Some(GivingWay { compliance, surface_m_s: f64::INFINITY }), ..*self }
+    fn softened(&self) -> Self {
+        let compliance = [REGULARIZATION * self.delassus.trace() / 3.0; 2];
+        Self { springs: Some(SpringCompliance { compliance, surface_m_s: f64::INFINITY }), ..*self }
     }
 
     /// Its impulse at a velocity of its point; `None` where only the sweeps can tell.
-    fn answer_at(&self, u: &Vec3) -> Option<ImpulseAndSlope> {
+    fn impulse_at(&self, u: &Vec3) -> Option<ImpulseAndSlope> {
         let springs = self.springs()?;
         let [along, across] = springs.compliance.map(|c| 1.0 / c);
         let off = self.goal - u;
@@ -53,25 +53,25 @@ impl BlockContact {
         if size <= cap {
             return Some((self.n * push + held, normal * -along - plane * across));
         }
-        let way = held / size;
-        let turns = (plane - way * way.transpose()) * (-across * cap / size);
-        let grows = (way * self.n.transpose()) * (-along * self.friction);
-        Some((self.n * push + way * cap, normal * -along + turns + grows))
+        let direction = held / size;
+        let turns = (plane - direction * direction.transpose()) * (-across * cap / size);
+        let grows = (direction * self.n.transpose()) * (-along * self.friction);
+        Some((self.n * push + direction * cap, normal * -along + turns + grows))
     }
 }
 
 /// The equations of a body in contact.
-struct Equations<'c> {
+struct BodyEquations<'c> {
     mass: &'c Mass,
     inertia: Matrix3<f64>,
     contacts: &'c mut [BlockContact],
-    turning: &'c mut Turning,
+    rolling: &'c mut RollingImpulse,
     free: (Vec3, Vec3),
 }
 
-impl Equations<'_> {
+impl BodyEquations<'_> {
     /// What is left of them at a motion, and their derivative; the impulses go into the contacts.
-    fn at(&mut self, (v, w): (&Vec3, &Vec3)) -> Option<(Vector6<f64>, Matrix6<f64>)> {
+    fn residual_at(&mut self, (v, w): (&Vec3, &Vec3)) -> Option<(Vector6<f64>, Matrix6<f64>)> {
         let (dv, dw) = (v - self.free.0, w - self.free.1);
         let (mut push, mut turn) = (dv * self.mass.mass, self.inertia * dw);
         let mut slope = Matrix6::zeros();
@@ -80,7 +80,7 @@ impl Equations<'_> {
         // what rolling friction bears, and how that changes with the motion
         let (mut limit, mut limit_slope) = (0.0, [Vec3::zeros(); 2]);
         for contact in self.contacts.iter_mut() {
-            let (impulse, rate) = contact.answer_at(&Mass::at(&contact.lever, (v, w)))?;
+            let (impulse, rate) = contact.impulse_at(&Mass::velocity_at(&contact.lever, (v, w)))?;
             contact.impulse = impulse;
             push -= impulse;
             turn -= contact.lever.cross(&impulse);
@@ -96,26 +96,26 @@ impl Equations<'_> {
             let mut block = slope.fixed_view_mut::<3, 3>(3, 3);
             block += arm * right;
             if contact.has_rolling() {
-                limit += contact.turning_limit();
-                let push_slope = rate.tr_mul(&contact.n) * contact.turning_limit_of(1.0);
+                limit += contact.rolling_limit();
+                let push_slope = rate.tr_mul(&contact.n) * contact.rolling_limit_of(1.0);
                 limit_slope[0] += push_slope;
                 limit_slope[1] -= arm.tr_mul(&push_slope);
             }
         }
-        if let Some((taken, rate, way)) = self.turning.answer_at(w, limit) {
+        if let Some((taken, rate, direction)) = self.rolling.impulse_at(w, limit) {
             turn += taken;
             let mut block = slope.fixed_view_mut::<3, 3>(3, 0);
-            block += way * limit_slope[0].transpose();
+            block += direction * limit_slope[0].transpose();
             let mut block = slope.fixed_view_mut::<3, 3>(3, 3);
-            block += rate + way * limit_slope[1].transpose();
+            block += rate + direction * limit_slope[1].transpose();
         }
         Some((Vector6::new(push.x, push.y, push.z, turn.x, turn.y, turn.z), slope))
     }
 
     /// Size of what is left, as a velocity (m/s).
-    fn size(&self, left: &Vector6<f64>, reach: f64) -> f64 {
-        let push: Vec3 = left.fixed_rows::<3>(0).into();
-        let turn: Vec3 = left.fixed_rows::<3>(3).into();
+    fn residual_m_s(&self, residual: &Vector6<f64>, reach: f64) -> f64 {
+        let push: Vec3 = residual.fixed_rows::<3>(0).into();
+        let turn: Vec3 = residual.fixed_rows::<3>(3).into();
         push.norm() / self.mass.mass + (self.mass.inverse * turn).norm() * reach
     }
 }
@@ -123,28 +123,28 @@ impl Equations<'_> {
 /// Solves for the impulses of contacts that give way, from the motion without impulses and a first guess; whether it has settled.
 pub(in super::super) fn solve_springs(
     mass: &Mass,
-    (contacts, turning): (&mut [BlockContact], &mut Turning),
+    (contacts, rolling): (&mut [BlockContact], &mut RollingImpulse),
     (free, guess): ((Vec3, Vec3), (Vec3, Vec3)),
     rounding_m_s: f64,
 ) -> bool {
     let reach = contacts.iter().map(|contact| contact.lever.norm()).fold(0.0, f64::max);
     let Some(inertia) = mass.inverse.try_inverse() else { return false };
-    let mut equations = Equations { mass, inertia, contacts, turning, free };
+    let mut equations = BodyEquations { mass, inertia, contacts, rolling, free };
     let (mut v, mut w) = guess;
-    let Some((mut left, mut slope)) = equations.at((&v, &w)) else { return false };
-    let mut size = equations.size(&left, reach);
-    for _ in 0..TRIES {
-        let Some(step) = slope.lu().solve(&-left) else { return false };
+    let Some((mut residual, mut slope)) = equations.residual_at((&v, &w)) else { return false };
+    let mut size = equations.residual_m_s(&residual, reach);
+    for _ in 0..NEWTON_STEPS {
+        let Some(step) = slope.lu().solve(&-residual) else { return false };
         let (dv, dw): (Vec3, Vec3) =
             (step.fixed_rows::<3>(0).into(), step.fixed_rows::<3>(3).into());
         let mut share = 1.0;
         for halving in 0..=HALVINGS {
-            let Some(next) = equations.at((&(v + dv * share), &(w + dw * share))) else {
+            let Some(next) = equations.residual_at((&(v + dv * share), &(w + dw * share))) else {
                 return false;
             };
-            let next_size = equations.size(&next.0, reach);
+            let next_size = equations.residual_m_s(&next.0, reach);
             if next_size < size || halving == HALVINGS {
-                (left, slope, size) = (next.0, next.1, next_size);
+                (residual, slope, size) = (next.0, next.1, next_size);
                 break;
             }
             share *= 0.5;
@@ -163,25 +163,25 @@ pub(in super::super) fn solve_springs(
 /// The same for hard contacts and their rolling friction, which have motion and impulses; all of them stay as they are where it does not settle.
 pub(super) fn solve_hard(
     mass: &Mass,
-    (contacts, turning): (&mut [BlockContact], &mut Turning),
+    (contacts, rolling): (&mut [BlockContact], &mut RollingImpulse),
     (v, w): (&Vec3, &Vec3),
     rounding_m_s: f64,
 ) -> bool {
     if contacts.iter().any(|contact| contact.springs.is_some() || contact.is_clamped) {
         return false;
     }
-    let mut free = (*v, w - mass.inverse * turning.impulse);
+    let mut free = (*v, w - mass.inverse * rolling.impulse);
     for contact in contacts.iter() {
-        let (dv, dw) = mass.change(contact, &contact.impulse);
+        let (dv, dw) = mass.velocity_change(contact, &contact.impulse);
         free = (free.0 - dv, free.1 - dw);
     }
     let mut soft: ArrayVec<BlockContact, MOST_TOUCHES> =
-        contacts.iter().map(BlockContact::giving_way).collect();
-    let mut held = turning.giving_way(GIVES_WAY * mass.inverse.trace() / 3.0);
+        contacts.iter().map(BlockContact::softened).collect();
+    let mut held = rolling.with_compliance(REGULARIZATION * mass.inverse.trace() / 3.0);
     if !solve_springs(mass, (&mut soft, &mut held), (free, (*v, *w)), rounding_m_s) {
         return false;
     }
-    turning.impulse = held.impulse;
+    rolling.impulse = held.impulse;
     for (contact, solved) in contacts.iter_mut().zip(&soft) {
         contact.impulse = solved.impulse;
     }

@@ -9,7 +9,7 @@
 //! is the least-squares solution of `Σ Tᵀ K (e + T d) = 0` for the stretches `e` and stiffnesses `K` of all of them. As forces in balance do no work on a rigid body, their
 //! energy stays as it is. Where they leave a cone of friction the clamp bursts: its blow goes on from these stretches.
 
-use super::super::{Footing, TOUCH};
+use super::super::{BlockContactState, TOUCH};
 use super::SpringContact;
 use crate::body::Block;
 use crate::contact::block::{BlockTouch, MOST_TOUCHES};
@@ -22,11 +22,11 @@ use arrayvec::ArrayVec;
 use nalgebra::{Matrix3, SMatrix, SVector};
 
 /// Springs of a clamp may ask for so much more friction than there is (–) before it is followed in its own time.
-const RIM: f64 = 1e-2;
+const CONE_TOLERANCE: f64 = 1e-2;
 /// A contact no further away than this joins a blow on one that it can hold (–, relative to the radius of the sphere of equal volume). Between
 /// walls a block rattles to and fro in ever smaller gaps before it is clamped; springs of any stiffness that a ground can have press at
 /// both ends long before they are as small as what touches.
-const NEARLY: f64 = 1e-6;
+const NEARLY_TOUCHING: f64 = 1e-6;
 /// Stiffness of what no contact resists, relative to all (–).
 const UNRESISTED: f64 = 1e-12;
 
@@ -79,14 +79,14 @@ impl ClampedContact {
     }
 
     /// Penetration (m), and stretch along the surface (m).
-    fn apart(&self) -> (f64, Vec3) {
+    fn deformation(&self) -> (f64, Vec3) {
         let up = self.n.dot(&self.stretch);
         (-up, self.stretch - self.n * up)
     }
 
     /// Energy in it (J).
-    fn holds_j(&self) -> f64 {
-        let ((deep, along), [normal, shear]) = (self.apart(), self.stiffness);
+    fn stored_j(&self) -> f64 {
+        let ((deep, along), [normal, shear]) = (self.deformation(), self.stiffness);
         0.5 * (normal * deep * deep + shear * along.norm_squared())
     }
 
@@ -98,8 +98,8 @@ impl ClampedContact {
 
     /// Whether friction holds it.
     fn is_held(&self) -> bool {
-        let ((deep, along), [normal, shear]) = (self.apart(), self.stiffness);
-        deep > 0.0 && shear * along.norm() <= self.friction * normal * deep * (1.0 + RIM)
+        let ((deep, along), [normal, shear]) = (self.deformation(), self.stiffness);
+        deep > 0.0 && shear * along.norm() <= self.friction * normal * deep * (1.0 + CONE_TOLERANCE)
     }
 }
 
@@ -110,7 +110,7 @@ impl Clamp {
     }
 
     /// Whether a touch is one of its contacts.
-    pub(crate) fn holds(&self, touch: &BlockTouch) -> bool {
+    pub(crate) fn contains(&self, touch: &BlockTouch) -> bool {
         self.contacts.iter().any(|one| one.is_at(touch))
     }
 
@@ -130,14 +130,14 @@ impl Clamp {
     }
 
     fn springs_j(&self) -> f64 {
-        self.contacts.iter().map(ClampedContact::holds_j).sum()
+        self.contacts.iter().map(ClampedContact::stored_j).sum()
     }
 
     /// Energy in it, by what it belongs to.
     pub(crate) fn stored(&self, world: &ContactEnvironment) -> Loss {
         let (mut stored, all_j) = (Loss::default(), self.springs_j());
         for one in &self.contacts {
-            let damping = one.holds_j() / all_j.max(f64::MIN_POSITIVE) * self.held_j;
+            let damping = one.stored_j() / all_j.max(f64::MIN_POSITIVE) * self.held_j;
             stored.add(&Loss { damping, ..Loss::default() }.on(world, one.triangle), 1.0);
         }
         stored
@@ -146,19 +146,19 @@ impl Clamp {
     /// Gives a contact of a blow what the clamp holds at its touch.
     pub(super) fn load(&self, contact: &mut SpringContact, touch: &BlockTouch) {
         let Some(one) = self.contacts.iter().find(|one| one.is_at(touch)) else { return };
-        (contact.penetration, contact.shear) = one.apart();
-        (contact.captured, contact.waits) = (one.captured, false);
+        (contact.penetration, contact.shear) = one.deformation();
+        (contact.captured, contact.is_suspended) = (one.captured, false);
     }
 
     /// Goes with the touches found; whether all are there still.
-    fn follow(&mut self, found: &[BlockTouch], reach_m: f64, levers: &mut Levers) -> bool {
+    fn update(&mut self, found: &[BlockTouch], reach_m: f64, levers: &mut Levers) -> bool {
         let before = self.contacts.len();
         self.contacts.retain_mut(|one| {
             let near = found.iter().filter(|touch| one.is_at(touch) && touch.gap_m <= reach_m);
             let Some(touch) = near.min_by(|a, b| a.gap_m.total_cmp(&b.gap_m)) else {
                 return false;
             };
-            let ((deep, along), n) = (one.apart(), touch.normal);
+            let ((deep, along), n) = (one.deformation(), touch.normal);
             one.stretch = carry(along, &one.n, &n) - n * deep;
             (one.n, one.triangle) = (n, touch.triangle);
             levers.try_push(touch.lever).is_ok()
@@ -170,24 +170,24 @@ impl Clamp {
     fn balance(&mut self, levers: &[Vec3], reach_m: f64) {
         let before_j = self.springs_j();
         // turns times the reach: all unknowns are ways
-        let ways = |lever: &Vec3| {
-            let mut ways = SMatrix::<f64, 3, 6>::zeros();
-            ways.fixed_columns_mut::<3>(0).copy_from(&Matrix3::identity());
-            ways.fixed_columns_mut::<3>(3).copy_from(&(-lever.cross_matrix() / reach_m));
-            ways
+        let jacobian = |lever: &Vec3| {
+            let mut jacobian = SMatrix::<f64, 3, 6>::zeros();
+            jacobian.fixed_columns_mut::<3>(0).copy_from(&Matrix3::identity());
+            jacobian.fixed_columns_mut::<3>(3).copy_from(&(-lever.cross_matrix() / reach_m));
+            jacobian
         };
-        let (mut whole, mut out) = (SMatrix::<f64, 6, 6>::zeros(), SVector::<f64, 6>::zeros());
+        let (mut whole, mut residual) = (SMatrix::<f64, 6, 6>::zeros(), SVector::<f64, 6>::zeros());
         for (one, lever) in self.contacts.iter().zip(levers) {
-            let (ways, stiff) = (ways(lever), one.stiffness_matrix());
-            whole += ways.transpose() * stiff * ways;
-            out += ways.transpose() * (stiff * one.stretch);
+            let (jacobian, stiff) = (jacobian(lever), one.stiffness_matrix());
+            whole += jacobian.transpose() * stiff * jacobian;
+            residual += jacobian.transpose() * (stiff * one.stretch);
         }
         // nothing resists a turn about the line between two contacts
         whole += SMatrix::<f64, 6, 6>::identity() * (UNRESISTED * whole.trace());
         let Some(solved) = whole.cholesky() else { return };
-        let given = solved.solve(&-out);
+        let displacement = solved.solve(&-residual);
         for (one, lever) in self.contacts.iter_mut().zip(levers) {
-            one.stretch += ways(lever) * given;
+            one.stretch += jacobian(lever) * displacement;
         }
         let after_j = self.springs_j();
         if after_j > 0.0 {
@@ -197,9 +197,9 @@ impl Clamp {
     }
 }
 
-impl Footing {
+impl BlockContactState {
     /// Whether two contacts can hold each other: the line between them lies within both cones of friction.
-    fn can_hold(&self, world: &ContactEnvironment, [one, other]: [&BlockTouch; 2]) -> bool {
+    fn can_jam(&self, world: &ContactEnvironment, [one, other]: [&BlockTouch; 2]) -> bool {
         let bears = |touch: &BlockTouch, way: &Vec3| {
             let (up, law) = (touch.normal.dot(way), world.law(touch.triangle));
             let friction = self.slip.friction(world.ground_of(touch.triangle), law, 0.0);
@@ -212,23 +212,23 @@ impl Footing {
     /// Whether two of the contacts that touch can hold each other.
     pub(in super::super) fn can_clamp(&self, world: &ContactEnvironment, block: &Block) -> bool {
         self.touching(block).enumerate().any(|(k, one)| {
-            self.touching(block).take(k).any(|other| self.can_hold(world, [one, other]))
+            self.touching(block).take(k).any(|other| self.can_jam(world, [one, other]))
         })
     }
 
     /// Sets aside what takes part in a blow: what touches, and what nearly touches and can hold it.
-    pub(super) fn set_blow_aside(&mut self, world: &ContactEnvironment, block: &Block) {
-        self.set_touching_aside(block);
-        let touching = self.aside.len();
-        let [from_m, to_m] = [TOUCH, NEARLY].map(|gap| gap * block.radius_m);
+    pub(super) fn select_for_blow(&mut self, world: &ContactEnvironment, block: &Block) {
+        self.select_touching(block);
+        let touching = self.selected.len();
+        let [from_m, to_m] = [TOUCH, NEARLY_TOUCHING].map(|gap| gap * block.radius_m);
         for touch in &self.touches.found {
             let joins = touch.gap_m > from_m
                 && touch.gap_m <= to_m
-                && !self.clamp.holds(touch)
-                && self.aside.len() < MOST_TOUCHES
-                && (0..touching).any(|k| self.can_hold(world, [touch, &self.aside[k]]));
+                && !self.clamp.contains(touch)
+                && self.selected.len() < MOST_TOUCHES
+                && (0..touching).any(|k| self.can_jam(world, [touch, &self.selected[k]]));
             if joins {
-                self.aside.push(*touch);
+                self.selected.push(*touch);
             }
         }
     }
@@ -240,7 +240,7 @@ impl Footing {
         }
         let mut levers = Levers::new();
         let reach_m = HELD * block.radius_m;
-        if !self.clamp.follow(&self.touches.found, reach_m, &mut levers) {
+        if !self.clamp.update(&self.touches.found, reach_m, &mut levers) {
             return true;
         }
         self.clamp.balance(&levers, block.bound_m);

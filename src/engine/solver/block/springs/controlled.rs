@@ -1,9 +1,9 @@
 //! Schemes `adaptive` and `reference` for blocks: a diagonally implicit tableau with error control.
 
-use super::super::{Footing, Moving, Stepped, TURN};
+use super::super::{BlockContactState, BlockState, BlockStepOutcome, TURN_LIMIT};
 use super::impact_energy::gained_j;
 use super::onset::Onsets;
-use super::stage::{BlockEnd, StageBase};
+use super::stage::{StageBase, StageState};
 use super::{BlockHistory, BlockRates, Springs};
 use crate::body::Block;
 use crate::contact::history::carry;
@@ -15,15 +15,15 @@ use crate::solver::step_control::{
 };
 
 /// Energy that a step may make by its error, and pays for by its motion (–, relative to that of the speed which its tolerance allows).
-const PAYABLE: f64 = 1e-2;
+const CORRECTABLE: f64 = 1e-2;
 
 /// A step of a block among any features.
 struct BlockTrial<'a, 'w> {
     world: &'a ContactEnvironment<'w>,
     control: Control,
-    footing: &'a mut Footing,
+    footing: &'a mut BlockContactState,
     block: &'a Block,
-    start: &'a Moving,
+    start: &'a BlockState,
     h: f64,
     limit: f64,
     omega: f64,
@@ -33,14 +33,14 @@ struct BlockTrial<'a, 'w> {
     /// Whether the impulses of a stage did not settle.
     unsettled: bool,
     /// Energy that the step has made by its error (J), ≥ 0.
-    made_j: f64,
-    end: Option<BlockEnd>,
+    spurious_j: f64,
+    end: Option<StageState>,
 }
 
 /// What the stages of a try came to.
 enum StagesOutcome {
     /// Where the step ends and its error relative to the one allowed.
-    Whole(BlockEnd, f64),
+    Whole(StageState, f64),
     /// An impact begins at this share of it (–).
     Cut(f64),
 }
@@ -57,9 +57,9 @@ impl TrialStep for BlockTrial<'_, '_> {
     fn try_step(&mut self, dt: f64) -> TryOutcome {
         let springs = &mut self.footing.springs;
         springs.histories.truncate(springs.known);
-        springs.new_wait = !self.onsets.press;
+        springs.suspends_new = !self.onsets.acts_at_once;
         let tried = self.attempt(dt);
-        self.footing.springs.new_wait = false;
+        self.footing.springs.suspends_new = false;
         let (end, error) = match tried {
             None => return TryOutcome::Unsettled,
             Some(StagesOutcome::Cut(share)) => {
@@ -68,11 +68,12 @@ impl TrialStep for BlockTrial<'_, '_> {
             Some(StagesOutcome::Whole(end, error)) => (end, error),
         };
         let error = self.onsets.bounded(error, dt * self.omega);
-        self.made_j = if error <= 1.0 { self.made_j(&end, dt) } else { 0.0 };
+        self.spurious_j = if error <= 1.0 { self.spurious_j(&end, dt) } else { 0.0 };
         // what comes up pressed in, as one feature takes the place of another, is not brought away by a shorter step
-        let is_payable = dt * self.omega <= RESOLVED || self.made_j <= self.payable_j(&end);
+        let is_correctable =
+            dt * self.omega <= RESOLVED || self.spurious_j <= self.correctable_j(&end);
         self.end = Some(end);
-        if is_payable { TryOutcome::Error(error) } else { TryOutcome::Gains }
+        if is_correctable { TryOutcome::Error(error) } else { TryOutcome::Gains }
     }
 }
 
@@ -88,21 +89,21 @@ impl BlockTrial<'_, '_> {
         for i in 1..tableau.stages {
             let base = self.footing.base(self.start, tableau, (i, dt));
             let stage = StageBase { start: self.start, base, times_s: (way_s, way_s) };
-            let shear = |Footing { springs, .. }: &Footing, k: usize| {
+            let shear = |BlockContactState { springs, .. }: &BlockContactState, k: usize| {
                 let from = (springs.histories[k].shear, &springs.rates[..]);
                 tableau.base((i, dt), from, |rate| rate.shear[k])
             };
             let ends = self.footing.stage(self.world, self.block, &stage, shear)?;
             self.unsettled |= self.footing.unsettled;
-            let begins_s = self.onsets.first(
+            let onset_s = self.onsets.first(
                 &self.footing.springs,
-                (self.block, &ends.moving, way_s),
+                (self.block, &ends.state, way_s),
                 tableau.node(i) * dt,
             );
-            if let Some(begins_s) = begins_s {
-                return Some(StagesOutcome::Cut(begins_s / dt));
+            if let Some(onset_s) = onset_s {
+                return Some(StagesOutcome::Cut(onset_s / dt));
             }
-            self.footing.store(self.world, (self.block, &stage), (i, &ends));
+            self.footing.store_rates(self.world, (self.block, &stage), (i, &ends));
             end = Some(ends);
         }
         end.map(|end| StagesOutcome::Whole(end, self.error(dt)))
@@ -129,7 +130,7 @@ impl BlockTrial<'_, '_> {
     }
 
     /// How much more motion, height and springs together hold at the step's end than at its start (J); 0 where that is rounding.
-    fn made_j(&self, end: &BlockEnd, dt: f64) -> f64 {
+    fn spurious_j(&self, end: &StageState, dt: f64) -> f64 {
         let (block, body) = (self.block, &self.world.body);
         let stored_j = self.footing.springs.stored_j;
         let before = self.start.motion_j(block) + stored_j;
@@ -138,24 +139,24 @@ impl BlockTrial<'_, '_> {
             + contacts.map(|contact| contact.normal_force).sum::<f64>();
         let unknown = ROUNDING * before + PLACE_ROUNDING * block.radius_m * force;
         let pressed =
-            self.footing.pressed_j((block, &end.moving), self.control.tableau.diagonal * dt);
-        let made_j = gained_j(self.world, block, (self.start, &end.moving)) + pressed - stored_j;
-        if made_j > unknown { made_j } else { 0.0 }
+            self.footing.stored_at_end_j((block, &end.state), self.control.tableau.diagonal * dt);
+        let spurious_j = gained_j(self.world, block, (self.start, &end.state)) + pressed - stored_j;
+        if spurious_j > unknown { spurious_j } else { 0.0 }
     }
 
     /// Energy (J) that the motion can pay for without being changed by more than a small part of what the tolerance allows: `m |v| δv`.
     /// A block that tips over a corner loses nothing, so each step makes or loses a little: to refuse all that make some would
     /// let its steps be bound by rounding. Nothing in an impact, nor where one begins: such a step is too long.
-    fn payable_j(&self, end: &BlockEnd) -> f64 {
+    fn correctable_j(&self, end: &StageState) -> f64 {
         let springs = &self.footing.springs;
         let begins = springs.histories[springs.known..].iter().any(|one| !one.captured);
         if begins || springs.impact_m_s > 0.0 {
             return 0.0;
         }
         let mass_kg = self.block.mass_kg;
-        let part = end.moving.part(self.block, &springs.acting_along());
+        let part = end.state.motion_component(self.block, &springs.acting_along());
         let speed_m_s = (2.0 * part.energy_j() / mass_kg).sqrt();
-        PAYABLE * self.allowed * mass_kg * speed_m_s
+        CORRECTABLE * self.allowed * mass_kg * speed_m_s
     }
 }
 
@@ -168,46 +169,46 @@ impl Springs {
 
     /// Takes the energy that an accepted step has made (J) off the motion, with which the next one begins; what contacts have got of it (J).
     /// What the motion has not `gained` by the step's error, beyond what its contacts gave, is in springs that came up pressed in.
-    fn pay(
+    fn correct_energy(
         &mut self,
-        (block, moving): (&Block, &mut Moving),
-        (made_j, gained_j): (f64, f64),
+        (block, state): (&Block, &mut BlockState),
+        (spurious_j, gained_j): (f64, f64),
     ) -> f64 {
-        if made_j > 0.0 {
-            moving.pay_all(block, &self.acting_along(), made_j);
+        if spurious_j > 0.0 {
+            state.take_energy(block, &self.acting_along(), spurious_j);
         }
         let first = &mut self.rates[0];
-        (first.centre, first.turned) = (moving.v, moving.spin(block));
-        self.fresh = true;
-        (made_j - gained_j.max(0.0)).max(0.0)
+        (first.centre, first.turned) = (state.v, state.spin(block));
+        self.has_current_rates = true;
+        (spurious_j - gained_j.max(0.0)).max(0.0)
     }
 }
 
-impl Footing {
+impl BlockContactState {
     /// First step after a touch (s).
     pub(super) fn first_step_s(&self, world: &ContactEnvironment) -> f64 {
         ONSET / self.springs.stiffest(world)
     }
 
     /// Energy in the springs at the end of a stage of length `way_s` (J).
-    fn pressed_j(&self, (block, end): (&Block, &Moving), way_s: f64) -> f64 {
+    fn stored_at_end_j(&self, (block, end): (&Block, &BlockState), way_s: f64) -> f64 {
         let stored = self.springs.contacts.iter().map(|contact| {
-            let pen = contact.pen_at(&end.at(block, &contact.lever), way_s);
-            contact.holds_j(pen, &contact.stretch(way_s))
+            let pen = contact.penetration_after(&end.velocity_at(block, &contact.lever), way_s);
+            contact.stored_j(pen, &contact.stretch(way_s))
         });
-        stored.sum::<f64>() + self.springs.rolling.will_hold_j(way_s)
+        stored.sum::<f64>() + self.springs.rolling.stored_after_j(way_s)
     }
 
     /// Longest step (s) in which no point of the block goes further than `corner_way` of its balls, and the block turns no further than a
     /// step may.
     pub(super) fn travel_limit_s(
         world: &ContactEnvironment,
-        (block, moving): (&Block, &Moving),
+        (block, state): (&Block, &BlockState),
         corner_way: f64,
     ) -> f64 {
-        let spin = moving.spin(block).norm();
-        let fastest = moving.v.norm() + spin * block.bound_m;
-        let turn_s = TURN * corner_way / spin.max(f64::MIN_POSITIVE);
+        let spin = state.spin(block).norm();
+        let fastest = state.v.norm() + spin * block.bound_m;
+        let turn_s = TURN_LIMIT * corner_way / spin.max(f64::MIN_POSITIVE);
         turn_s.min(longest_step(&world.body, fastest, corner_way * block.ball_m))
     }
 
@@ -218,23 +219,23 @@ impl Footing {
     pub(super) fn controlled_step(
         &mut self,
         world: &ContactEnvironment,
-        (block, moving): (&Block, &mut Moving),
+        (block, state): (&Block, &mut BlockState),
         (control, most_s, limit): (Control, f64, f64),
-    ) -> Result<(Stepped, u64), StepError> {
-        self.springs.note_fastest();
+    ) -> Result<(BlockStepOutcome, u64), StepError> {
+        self.springs.update_impact_speed();
         let is_accounted = self.is_accounted(world, &control);
         if is_accounted && self.has_room() {
-            let step = self.explicit_step(world, (block, moving), (&control, most_s, limit))?;
+            let step = self.explicit_step(world, (block, state), (&control, most_s, limit))?;
             if let Some(step) = step {
                 return Ok(step);
             }
         }
-        let beyond_j = if is_accounted { 0.0 } else { self.balance(block, moving) };
-        if !self.springs.fresh {
-            self.rates_now(world, (block, moving));
+        let beyond_j = if is_accounted { 0.0 } else { self.balance(block, state) };
+        if !self.springs.has_current_rates {
+            self.rates_now(world, (block, state));
         }
         let springs = &mut self.springs;
-        springs.note_fastest();
+        springs.update_impact_speed();
         let allowed = if springs.impact_m_s > 0.0 {
             control.impact * springs.impact_m_s
         } else {
@@ -242,7 +243,7 @@ impl Footing {
         };
         self.springs.known = self.springs.histories.len();
         let omega = self.springs.stiffest(world);
-        let (h, start) = (self.springs.h, moving.clone());
+        let (h, start) = (self.springs.h, state.clone());
         let mut rejected = 0;
         let footing = &mut *self;
         let mut trial = BlockTrial {
@@ -257,20 +258,20 @@ impl Footing {
             allowed,
             onsets: Onsets::new(&control, (omega, block.radius_m)),
             unsettled: false,
-            made_j: 0.0,
+            spurious_j: 0.0,
             end: None,
         };
         let dt = settle(&mut trial, &control, (most_s, omega), &mut rejected)?;
-        let (next_h, unsettled, made_j) = (trial.h, trial.unsettled, trial.made_j);
+        let (next_h, unsettled, spurious_j) = (trial.h, trial.unsettled, trial.spurious_j);
         let end = trial.end.ok_or(StepError::Unsettled)?;
         self.springs.h = next_h;
-        *moving = end.moving;
-        self.springs.grow_old(dt);
-        let step = (block, &start, &mut *moving);
-        let mut done = self.book(world, step, (&control, dt), (made_j, is_accounted));
+        *state = end.state;
+        self.springs.advance_ages(dt);
+        let step = (block, &start, &mut *state);
+        let mut done = self.book(world, step, (&control, dt), (spurious_j, is_accounted));
         done.loss.damping += beyond_j;
         done.unsettled = unsettled;
-        self.begin_late(world);
+        self.restart_at_onset(world);
         self.check_depth(block)?;
         Ok((done, rejected))
     }
@@ -279,19 +280,19 @@ impl Footing {
     fn book(
         &mut self,
         world: &ContactEnvironment,
-        (block, start, moving): (&Block, &Moving, &mut Moving),
+        (block, start, state): (&Block, &BlockState, &mut BlockState),
         (control, dt): (&Control, f64),
-        (made_j, is_accounted): (f64, bool),
-    ) -> Stepped {
+        (spurious_j, is_accounted): (f64, bool),
+    ) -> BlockStepOutcome {
         let held_j = self.springs.stored_j;
-        let mut done = self.accept(world, (block, moving), (control, dt));
-        let own_j = gained_j(world, block, (start, moving)) + done.loss.sum();
-        done.loss.damping += self.springs.pay((block, moving), (made_j, own_j));
+        let mut done = self.accept(world, (block, state), (control, dt));
+        let own_j = gained_j(world, block, (start, state)) + done.loss.sum();
+        done.loss.damping += self.springs.correct_energy((block, state), (spurious_j, own_j));
         if is_accounted {
-            let own_j = gained_j(world, block, (start, moving)) + done.loss.sum();
+            let own_j = gained_j(world, block, (start, state)) + done.loss.sum();
             self.springs.account((own_j, done.loss.sum()), held_j);
             if done.is_free {
-                done.loss.damping += self.balance(block, moving);
+                done.loss.damping += self.balance(block, state);
             }
         }
         done
@@ -301,28 +302,28 @@ impl Footing {
     fn accept(
         &mut self,
         world: &ContactEnvironment,
-        (block, moving): (&Block, &Moving),
+        (block, state): (&Block, &BlockState),
         (control, dt): (&Control, f64),
-    ) -> Stepped {
+    ) -> BlockStepOutcome {
         let tableau = control.tableau;
         let way_s = tableau.diagonal * dt;
-        let mut done = Stepped { dt, ..Stepped::default() };
+        let mut done = BlockStepOutcome { dt, ..BlockStepOutcome::default() };
         let left = self.springs.left_by_stage(way_s);
         for (k, rate) in self.springs.rates[..tableau.stages].iter().enumerate() {
             done.loss.add(&rate.loss, dt * tableau.damped_work_weight(k, left));
         }
-        done.loss.add(&self.taken_up(world, (block, moving), way_s), 1.0);
-        self.springs.stored_j = self.pressed_j((block, moving), way_s);
+        done.loss.add(&self.elastic_uptake(world, (block, state), way_s), 1.0);
+        self.springs.stored_j = self.stored_at_end_j((block, state), way_s);
         self.springs.rates.swap(0, tableau.stages - 1);
-        self.keep((block, moving), way_s);
-        self.springs.forget_look();
+        self.store_contacts((block, state), way_s);
+        self.springs.invalidate_touches();
         done.slides = self.springs.histories.iter().any(|history| history.slides);
         done.is_free = self.springs.is_free();
         done
     }
 
     /// The contacts of the step's end go into their memories, and those that press no more are forgotten.
-    pub(super) fn keep(&mut self, (block, moving): (&Block, &Moving), way_s: f64) {
+    pub(super) fn store_contacts(&mut self, (block, state): (&Block, &BlockState), way_s: f64) {
         let springs = &mut self.springs;
         for history in &mut springs.histories {
             history.closed = false;
@@ -332,18 +333,18 @@ impl Footing {
             let rate = &mut springs.rates[0].shear[contact.history];
             *rate = carry(*rate, &history.n, &contact.n);
             if let Some(touch) = self.touches.found.get(k) {
-                history.follow(touch, &moving.pose.centre);
+                history.follow(touch, &state.pose.centre);
             }
-            if contact.waits {
-                history.gone_rad = 0.0;
+            if contact.is_suspended {
+                history.age_rad = 0.0;
             }
             history.shear = contact.stretch(way_s);
             history.normal_force = contact.normal_force;
             history.slides =
                 contact.law.shear.slides(contact.shear_force.norm(), contact.normal_force);
-            let u = moving.at(block, &contact.lever);
+            let u = state.velocity_at(block, &contact.lever);
             (history.offset_m, history.pressed_m) =
-                (contact.offset_m, contact.pen_at(&u, way_s).max(0.0));
+                (contact.offset_m, contact.penetration_after(&u, way_s).max(0.0));
             history.normal_j = contact.normal_j(history.pressed_m);
             history.closed = contact.normal_force > 0.0 || history.pressed_m > 0.0;
         }

@@ -10,7 +10,7 @@
 
 mod flow;
 
-use super::super::{Footing, Moving, Stepped, TOUCH, orthonormal};
+use super::super::{BlockContactState, BlockState, BlockStepOutcome, TOUCH, orthonormal};
 use super::impact_energy::gained_j;
 use crate::body::Block;
 use crate::contact::block::{BlockTouch, BlockTouches};
@@ -25,7 +25,7 @@ use crate::solver::step_control::{Control, StepError};
 use flow::{BlockFlow, ErrorScale, LOSSES};
 
 /// A contact that lets go is left behind in this times the time that its speed takes (–).
-const LETS_GO: f64 = 1.2;
+const RELEASE_MARGIN: f64 = 1.2;
 /// Penetration that is rounding of places (–, relative to the radius of the sphere of equal volume).
 pub(super) const ROUNDING_OF_PLACE: f64 = 1e-11;
 /// Tries that are cut where a contact begins, at most; after them it presses from where it is found.
@@ -45,13 +45,13 @@ struct ImpactBounds {
 
 /// An accepted step.
 struct ExplicitStep {
-    end: Moving,
+    end: BlockState,
     dt: f64,
     /// What it took, what springs store counted in.
     loss: Loss,
 }
 
-impl Footing {
+impl BlockContactState {
     /// Whether the present contacts are those of an impact whose energy is kept account of: it is followed in its own time, or has too many
     /// contacts for that.
     pub(super) fn is_accounted(&self, world: &ContactEnvironment, control: &Control) -> bool {
@@ -63,7 +63,7 @@ impl Footing {
             && springs.histories.iter().any(|one| {
                 one.closed
                     && !one.captured
-                    && one.gone_rad < LASTS_RAD
+                    && one.age_rad < LASTS_RAD
                     && one.approach_m_s > least_m_s
             })
             // a shear spring without a dashpot has a stretch, not a rate, of its own
@@ -82,22 +82,22 @@ impl Footing {
     pub(super) fn explicit_step(
         &mut self,
         world: &ContactEnvironment,
-        (block, moving): (&Block, &mut Moving),
+        (block, state): (&Block, &mut BlockState),
         (control, most_s, limit): (&Control, f64, f64),
-    ) -> Result<Option<(Stepped, u64)>, StepError> {
+    ) -> Result<Option<(BlockStepOutcome, u64)>, StepError> {
         let omega = self.springs.stiffest(world);
         let allowed = LOCAL * control.impact * self.springs.impact_m_s;
-        let begins_m = (allowed / omega).max(ROUNDING_OF_PLACE * block.radius_m);
-        let scale = ErrorScale { omega, allowed, begins_m };
+        let onset_m = (allowed / omega).max(ROUNDING_OF_PLACE * block.radius_m);
+        let scale = ErrorScale { omega, allowed, onset_m };
         let bounds = ImpactBounds { scale, limit: limit.min(LONGEST_RAD / omega), h_max: most_s };
         if self.springs.is_new() {
             self.springs.h = FIRST / omega;
         }
-        let start = moving.clone();
+        let start = state.clone();
         let mut rejected = 0;
         let mut step = None;
         if self.springs.histories.len() <= FEW_PRESS {
-            step = self.step_among::<FEW_PRESS, { 12 + 3 * FEW_PRESS }, { LOSSES + FEW_PRESS }, { 2 * FEW_PRESS }>(
+            step = self.try_steps::<FEW_PRESS, { 12 + 3 * FEW_PRESS }, { LOSSES + FEW_PRESS }, { 2 * FEW_PRESS }>(
                 world,
                 (block, &start),
                 &bounds,
@@ -105,7 +105,7 @@ impl Footing {
             )?;
         }
         if step.is_none() {
-            step = self.step_among::<MOST_PRESS, { 12 + 3 * MOST_PRESS }, { LOSSES + MOST_PRESS }, { 2 * MOST_PRESS }>(
+            step = self.try_steps::<MOST_PRESS, { 12 + 3 * MOST_PRESS }, { LOSSES + MOST_PRESS }, { 2 * MOST_PRESS }>(
                 world,
                 (block, &start),
                 &bounds,
@@ -113,23 +113,24 @@ impl Footing {
             )?;
         }
         let Some(step) = step else { return Ok(None) };
-        *moving = step.end;
-        self.keep((block, moving), 0.0);
-        self.springs.grow_old(step.dt);
+        *state = step.end;
+        self.store_contacts((block, state), 0.0);
+        self.springs.advance_ages(step.dt);
         let held_j = self.springs.stored_j;
-        self.springs.stored_j = self.springs.placed(world).sum();
-        self.springs.refresh();
-        self.springs.seen = self.sees_the_same(block);
+        self.springs.stored_j = self.springs.stored_by_contacts(world).sum();
+        self.springs.invalidate_rates();
+        self.springs.touches_are_current = self.touches_unchanged(block);
         // what springs store is counted among the losses until they give it back
-        let gained_j = gained_j(world, block, (&start, moving)) + step.loss.sum();
+        let gained_j = gained_j(world, block, (&start, state)) + step.loss.sum();
         self.springs.account((gained_j, step.loss.sum()), held_j);
-        let mut done = Stepped { dt: step.dt, loss: step.loss, ..Stepped::default() };
+        let mut done =
+            BlockStepOutcome { dt: step.dt, loss: step.loss, ..BlockStepOutcome::default() };
         done.slides = self.springs.histories.iter().any(|history| history.slides);
         let left_s = most_s - step.dt;
-        done.dt += self.let_go(world, (block, moving), left_s.min(limit));
+        done.dt += self.fly_clear(world, (block, state), left_s.min(limit));
         done.is_free = self.springs.is_free();
         if done.is_free {
-            done.loss.damping += self.balance(block, moving);
+            done.loss.damping += self.balance(block, state);
         }
         self.check_depth(block)?;
         Ok(Some((done, rejected)))
@@ -138,36 +139,36 @@ impl Footing {
     /// Tries steps with room for `C` contacts until one is accurate; `None` if there are more of them.
     ///
     /// A try that is cut at a kink or where a contact begins is shorter, not wrong.
-    fn step_among<const C: usize, const N: usize, const Q: usize, const P: usize>(
+    fn try_steps<const C: usize, const N: usize, const Q: usize, const P: usize>(
         &mut self,
         world: &ContactEnvironment,
-        on: (&Block, &Moving),
+        on: (&Block, &BlockState),
         bounds: &ImpactBounds,
         rejected: &mut u64,
     ) -> Result<Option<ExplicitStep>, StepError> {
         let ImpactBounds { scale, limit, h_max } = *bounds;
         let mut h = self.springs.h;
         let mut flow = BlockFlow::<C>::new(world, self, on, scale);
-        let y = flow.begin::<N>();
+        let y = flow.initial_state::<N>();
         let mut stages = Stages::<N, Q, P>::NONE;
         flow.rates(0, &y, stages.first());
-        flow.settle_contacts();
-        let (mut onsets, mut is_open) = (0, false);
+        flow.fix_contacts();
+        let (mut onsets, mut admits_new) = (0, false);
         loop {
             let wished = h.min(limit);
             let dt = wished.min(h_max);
             let is_short = dt * scale.omega < SHORTEST_RAD;
-            flow.begin_try(dt, is_open || is_short);
+            flow.begin_try(dt, admits_new || is_short);
             let felt = (!is_short).then_some(scale.allowed);
             let attempt = stages.step(&mut flow, &y, dt, felt);
-            if flow.is_crowded {
+            if flow.exceeds_room {
                 flow.footing.springs.histories.truncate(flow.footing.springs.known);
                 return Ok(None);
             }
             *rejected += 1;
             if let Some(share) = flow.onset {
                 onsets += 1;
-                is_open = share <= 0.0 || onsets >= ONSETS;
+                admits_new = share <= 0.0 || onsets >= ONSETS;
                 h = if share > 0.0 { dt * share } else { dt };
                 continue;
             }
@@ -183,7 +184,7 @@ impl Footing {
             if accepted {
                 *rejected -= 1;
                 let loss = flow.taken(&tried.q);
-                let mut end = flow.moving;
+                let mut end = flow.state;
                 self.springs.h = h;
                 end.pose.attitude = orthonormal(&end.pose.attitude);
                 return Ok(Some(ExplicitStep { end, dt, loss }));
@@ -192,7 +193,7 @@ impl Footing {
     }
 
     /// Whether the contacts found at the step's end are those that a look would find now, as the pairs that press have changed.
-    fn sees_the_same(&self, block: &Block) -> bool {
+    fn touches_unchanged(&self, block: &Block) -> bool {
         let BlockTouches { found, held, .. } = &self.touches;
         let holds = |touch: &BlockTouch| held.contains(&(touch.part, touch.feature));
         found.iter().all(|touch| block.core.is_corner(touch.part) || holds(touch))
@@ -200,19 +201,19 @@ impl Footing {
 
     /// Flies out of contacts that push no more, if that takes no longer than `longest_s` and nothing else is in the way there; how long it
     /// took (s). What still hangs on the contacts has no force, so that the motion is that of a free body.
-    fn let_go(
+    fn fly_clear(
         &mut self,
         world: &ContactEnvironment,
-        (block, moving): (&Block, &mut Moving),
+        (block, state): (&Block, &mut BlockState),
         longest_s: f64,
     ) -> f64 {
         let (gravity, clear_m) = (world.body.gravity, 2.0 * TOUCH * block.radius_m);
         let mut out_s: f64 = 0.0;
         for (contact, touch) in self.springs.contacts.iter().zip(&self.touches.found) {
-            let up_m_s = contact.n.dot(&moving.at(block, &contact.lever));
+            let up_m_s = contact.n.dot(&state.velocity_at(block, &contact.lever));
             let weight = contact.n.dot(&gravity).min(0.0);
             // weight takes less than half of the speed by then
-            let own_s = LETS_GO * (clear_m - touch.gap_m).max(0.0) / up_m_s;
+            let own_s = RELEASE_MARGIN * (clear_m - touch.gap_m).max(0.0) / up_m_s;
             let leaves = contact.normal_force <= 0.0
                 && up_m_s > 0.0
                 && contact.law.lets_go(up_m_s, 2.0 * weight, own_s);
@@ -224,16 +225,16 @@ impl Footing {
         if out_s <= 0.0 || out_s > longest_s {
             return 0.0;
         }
-        let mut out = moving.clone();
+        let mut out = state.clone();
         out.drift(block, out_s);
         out.pose.centre += gravity * (0.5 * out_s * out_s);
         out.v += gravity * out_s;
-        self.look_at_all(world, (block, &out.pose), TOUCH * block.radius_m);
+        self.detect_all(world, (block, &out.pose), TOUCH * block.radius_m);
         if !self.touches.found.is_empty() {
-            self.look_at_all(world, (block, &moving.pose), TOUCH * block.radius_m);
+            self.detect_all(world, (block, &state.pose), TOUCH * block.radius_m);
             return 0.0;
         }
-        *moving = out;
+        *state = out;
         self.springs.histories.clear();
         out_s
     }
@@ -256,13 +257,13 @@ impl super::Springs {
     /// Whether the impact that goes on has just begun.
     fn is_new(&self) -> bool {
         let mut impacts = self.histories.iter().filter(|one| one.closed && !one.captured);
-        impacts.all(|one| one.gone_rad <= 0.0)
+        impacts.all(|one| one.age_rad <= 0.0)
     }
 
     /// The contacts have gone on for `dt` (s).
-    pub(super) fn grow_old(&mut self, dt: f64) {
+    pub(super) fn advance_ages(&mut self, dt: f64) {
         for history in &mut self.histories {
-            history.gone_rad += dt * Law::omega_rad_s(&history.law);
+            history.age_rad += dt * Law::omega_rad_s(&history.law);
         }
     }
 }

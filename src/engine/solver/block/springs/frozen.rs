@@ -16,8 +16,8 @@
 
 mod standstill;
 
-use super::super::energy::ActingAlong;
-use super::{Footing, Moving, RollingSpring, SpringContact};
+use super::super::energy::ContactDirections;
+use super::{BlockContactState, BlockState, RollingSpring, SpringContact};
 use crate::body::Block;
 use crate::contact::MOST;
 use crate::contact::block::{BlockTouch, MOST_TOUCHES};
@@ -38,14 +38,14 @@ const MOMENTUM: usize = 3;
 const ROLLED: usize = 6;
 const CONTACTS: usize = 9;
 /// How many numbers each contact has.
-const OWN: usize = 4;
+const PER_CONTACT: usize = 4;
 /// What is summed up: losses by friction, damping, rolling friction and to trees.
 const SUMS: usize = 4;
 /// Steps, and radians of the stiffest contact, after which a blow is ended: corners that rattle in a notch have no other end.
 const MOST_STEPS: u32 = 5_000;
 const MOST_RAD: f64 = 300.0;
 /// Local error allowed in a blow (–, relative to the fastest of its contact points): what `adaptive` allows by default.
-const BLOW: f64 = 2e-4;
+const BLOW_TOLERANCE: f64 = 2e-4;
 
 /// Contacts that do not move, and the block that strikes them.
 struct FrozenFlow<'a, 'w> {
@@ -65,51 +65,51 @@ struct FrozenFlow<'a, 'w> {
     is_clamped: bool,
 }
 
-impl Footing {
+impl BlockContactState {
     /// The blow of the contacts that touch, with what springs of any stiffness make of it; `None` where it has no such limit, or does not
     /// end by itself: the motion is not changed then.
     pub(in super::super) fn blow(
         &mut self,
         world: &ContactEnvironment,
-        (block, moving): (&Block, &mut Moving),
+        (block, state): (&Block, &mut BlockState),
     ) -> Option<Loss> {
-        self.set_blow_aside(world, block);
-        let touches = std::mem::take(&mut self.aside);
-        let thrown = self.thrown(world, (block, moving), &touches);
-        self.aside = touches;
-        let (next, taken) = thrown?;
-        *moving = next;
+        self.select_for_blow(world, block);
+        let touches = std::mem::take(&mut self.selected);
+        let outcome = self.outcome(world, (block, state), &touches);
+        self.selected = touches;
+        let (next, taken) = outcome?;
+        *state = next;
         Some(taken)
     }
 
     /// The motion after the blow on these touches, and what its contacts have taken.
-    fn thrown(
+    fn outcome(
         &mut self,
         world: &ContactEnvironment,
-        (block, moving): (&Block, &Moving),
+        (block, state): (&Block, &BlockState),
         touches: &[BlockTouch],
-    ) -> Option<(Moving, Loss)> {
-        let mass = moving.mass(block);
+    ) -> Option<(BlockState, Loss)> {
+        let mass = state.mass(block);
         let mut contacts = std::mem::take(&mut self.springs.contacts);
         contacts.clear();
         for (k, touch) in touches.iter().enumerate() {
             let ground = world.ground_of(touch.triangle);
             let friction = self.slip.friction(ground, world.law(touch.triangle), 0.0);
-            let approach_m_s = moving.approach_m_s(block, touch);
+            let approach_m_s = state.approach_m_s(block, touch);
             let law = Self::law_of_touch(world, &mass, touch, (approach_m_s, touches.iter()));
             let mut contact = SpringContact::just_touching((k, touch), &law, friction);
             contact.captured = approach_m_s < capture_m_s(&law);
             // what neither comes nor parts lasts, whatever rounding says
-            contact.waits = approach_m_s < -capture_m_s(&law);
+            contact.is_suspended = approach_m_s < -capture_m_s(&law);
             self.clamp.load(&mut contact, touch);
             contacts.push(contact);
         }
         let omega = contacts.iter().map(|contact| contact.law.omega_rad_s()).fold(0.0, f64::max);
-        let fastest = touches.iter().map(|touch| moving.at(block, &touch.lever).norm());
+        let fastest = touches.iter().map(|touch| state.velocity_at(block, &touch.lever).norm());
         let pressed = contacts
             .iter()
             .map(|one| omega * (one.penetration.powi(2) + one.shear.norm_squared()).sqrt());
-        let allowed = LOCAL * BLOW * fastest.chain(pressed).fold(0.0, f64::max);
+        let allowed = LOCAL * BLOW_TOLERANCE * fastest.chain(pressed).fold(0.0, f64::max);
         let mut rolling = RollingSpring::default();
         rolling.take_up(&contacts);
         rolling.stretch = self.clamp.rolled;
@@ -128,11 +128,12 @@ impl Footing {
         };
         // numbers live on the stack, and loops over them are those of a constant
         let end = match touches.len() {
-            1 => flow.follow::<{ CONTACTS + OWN }, 2>(moving),
-            2 => flow.follow::<{ CONTACTS + 2 * OWN }, 4>(moving),
-            3..=4 => flow.follow::<{ CONTACTS + 4 * OWN }, 8>(moving),
-            5..=MOST => flow.follow::<{ CONTACTS + OWN * MOST }, { 2 * MOST }>(moving),
-            _ => flow.follow::<{ CONTACTS + OWN * MOST_TOUCHES }, { 2 * MOST_TOUCHES }>(moving),
+            1 => flow.follow::<{ CONTACTS + PER_CONTACT }, 2>(state),
+            2 => flow.follow::<{ CONTACTS + 2 * PER_CONTACT }, 4>(state),
+            3..=4 => flow.follow::<{ CONTACTS + 4 * PER_CONTACT }, 8>(state),
+            5..=MOST => flow.follow::<{ CONTACTS + PER_CONTACT * MOST }, { 2 * MOST }>(state),
+            _ => flow
+                .follow::<{ CONTACTS + PER_CONTACT * MOST_TOUCHES }, { 2 * MOST_TOUCHES }>(state),
         };
         if end.is_some() {
             self.clamp.open();
@@ -150,17 +151,17 @@ impl FrozenFlow<'_, '_> {
     /// Follows the blow of a block from this motion.
     fn follow<const N: usize, const P: usize>(
         &mut self,
-        moving: &Moving,
-    ) -> Option<(Moving, Loss)> {
+        state: &BlockState,
+    ) -> Option<(BlockState, Loss)> {
         let (mut y, mut sums) = ([0.0; N], [0.0; SUMS]);
-        put(&mut y, V, &moving.v);
-        put(&mut y, MOMENTUM, &moving.momentum);
+        put(&mut y, V, &state.v);
+        put(&mut y, MOMENTUM, &state.momentum);
         put(&mut y, ROLLED, &self.rolling.stretch);
         for (k, contact) in self.contacts.iter().enumerate() {
-            y[CONTACTS + OWN * k] = contact.penetration;
-            put(&mut y, CONTACTS + OWN * k + 1, &contact.shear);
+            y[CONTACTS + PER_CONTACT * k] = contact.penetration;
+            put(&mut y, CONTACTS + PER_CONTACT * k + 1, &contact.shear);
         }
-        let mut still = Standstill::of(moving);
+        let mut still = Standstill::of(state);
         let mut stages = Stages::<N, SUMS, P>::NONE;
         let (mut h, mut gone) = (FIRST / self.omega, 0.0);
         self.rates(0, &y, stages.first());
@@ -180,7 +181,7 @@ impl FrozenFlow<'_, '_> {
             if !accepted {
                 continue;
             }
-            if let Some(share) = self.comes_again(&y, &tried.y).filter(|_| !is_short) {
+            if let Some(share) = self.recontact_share(&y, &tried.y).filter(|_| !is_short) {
                 h = dt * share;
                 continue;
             }
@@ -188,18 +189,18 @@ impl FrozenFlow<'_, '_> {
             sum_up(&mut sums, &tried.q);
             gone += dt * self.omega;
             stages.pass();
-            let mut begins = self.switch(&mut y);
+            let mut begins = self.update_open(&mut y);
             // the forces are those of the step's end
             if !begins && self.is_free() {
                 let Some(wait_s) = self.next_touch(&y) else {
-                    return Some(self.end(&y, moving, &sums));
+                    return Some(self.end(&y, state, &sums));
                 };
                 self.drift(&mut y, wait_s);
                 (begins, gone) = (true, gone + wait_s * self.omega);
             }
             if self.stays_clamped(&y, gone, &mut still) {
                 self.is_clamped = true;
-                return Some(self.end(&y, moving, &sums));
+                return Some(self.end(&y, state, &sums));
             }
             if gone > MOST_RAD {
                 return None;
@@ -215,24 +216,24 @@ impl FrozenFlow<'_, '_> {
     /// The velocity of a contact's point at a state.
     fn point_m_s<const N: usize>(&self, k: usize, y: &[f64; N]) -> Vec3 {
         let w = self.mass.inverse * three(y, MOMENTUM);
-        Mass::at(&self.contacts[k].lever, (&three(y, V), &w))
+        Mass::velocity_at(&self.contacts[k].lever, (&three(y, V), &w))
     }
 
     /// Penetration up to which a contact that comes again need not be met more exactly (m).
-    fn begins_m(&self) -> f64 {
+    fn onset_m(&self) -> f64 {
         self.allowed / self.omega
     }
 
     /// Whether no contact pushes at the state last asked for.
     fn is_free(&self) -> bool {
-        self.contacts.iter().all(|contact| contact.waits || contact.normal_force <= 0.0)
+        self.contacts.iter().all(|contact| contact.is_suspended || contact.normal_force <= 0.0)
     }
 
     /// How long (s) a block that nothing pushes goes on until it touches again, if it does.
     fn next_touch<const N: usize>(&self, y: &[f64; N]) -> Option<f64> {
         let waits = (0..self.contacts.len()).filter_map(|k| {
             let comes_m_s = -self.contacts[k].n.dot(&self.point_m_s(k, y));
-            let gap_m = -y[CONTACTS + OWN * k];
+            let gap_m = -y[CONTACTS + PER_CONTACT * k];
             (comes_m_s > NOTHING * self.allowed).then(|| (gap_m / comes_m_s).max(0.0))
         });
         waits.reduce(f64::min)
@@ -242,45 +243,45 @@ impl FrozenFlow<'_, '_> {
     fn drift<const N: usize>(&mut self, y: &mut [f64; N], wait_s: f64) {
         for k in 0..self.contacts.len() {
             let up_m_s = self.contacts[k].n.dot(&self.point_m_s(k, y));
-            let x = &mut y[CONTACTS + OWN * k];
+            let x = &mut y[CONTACTS + PER_CONTACT * k];
             *x -= up_m_s * wait_s;
-            let touches = *x > -0.5 * self.begins_m() && up_m_s < 0.0;
-            self.contacts[k].waits = true;
+            let touches = *x > -0.5 * self.onset_m() && up_m_s < 0.0;
+            self.contacts[k].is_suspended = true;
             if touches {
-                self.begin_again(k, y);
+                self.recontact(k, y);
             }
         }
     }
 
     /// At which share of a step from `y` to `end` the first contact that had let go is back, if that is not its very end (–).
-    fn comes_again<const N: usize>(&self, y: &[f64; N], end: &[f64; N]) -> Option<f64> {
-        let begins_m = self.begins_m();
-        let waits = self.contacts.iter().enumerate().filter(|(_, contact)| contact.waits);
+    fn recontact_share<const N: usize>(&self, y: &[f64; N], end: &[f64; N]) -> Option<f64> {
+        let onset_m = self.onset_m();
+        let waits = self.contacts.iter().enumerate().filter(|(_, contact)| contact.is_suspended);
         let back = waits.filter_map(|(k, _)| {
-            let [x, reached] = [y, end].map(|y| y[CONTACTS + OWN * k]);
-            let share = (0.5 * begins_m - x) / (reached - x);
+            let [x, reached] = [y, end].map(|y| y[CONTACTS + PER_CONTACT * k]);
+            let share = (0.5 * onset_m - x) / (reached - x);
             // one that was let go while it was pressed in is not met on the way
-            (x < 0.0 && reached > begins_m).then_some(share)
+            (x < 0.0 && reached > onset_m).then_some(share)
         });
         back.reduce(f64::min)
     }
 
     /// Notes which contacts have let go and which are back; whether one is.
-    fn switch<const N: usize>(&mut self, y: &mut [f64; N]) -> bool {
+    fn update_open<const N: usize>(&mut self, y: &mut [f64; N]) -> bool {
         let mut is_back = false;
         for k in 0..self.contacts.len() {
-            let at = CONTACTS + OWN * k;
-            if self.contacts[k].waits && y[at] >= 0.0 {
+            let at = CONTACTS + PER_CONTACT * k;
+            if self.contacts[k].is_suspended && y[at] >= 0.0 {
                 let comes = self.contacts[k].n.dot(&self.point_m_s(k, y)) < 0.0;
                 if comes {
-                    self.begin_again(k, y);
+                    self.recontact(k, y);
                 }
                 is_back |= comes;
-            } else if !self.contacts[k].waits
+            } else if !self.contacts[k].is_suspended
                 && y[at] <= 0.0
                 && self.contacts[k].normal_force <= 0.0
             {
-                self.contacts[k].waits = true;
+                self.contacts[k].is_suspended = true;
                 // what its spring held is lost
                 put(y, at + 1, &Vec3::zeros());
             }
@@ -289,16 +290,19 @@ impl FrozenFlow<'_, '_> {
     }
 
     /// A contact comes again: with the dashpot of its speed, and its share among those that touch with it.
-    fn begin_again<const N: usize>(&mut self, k: usize, y: &mut [f64; N]) {
-        let at = CONTACTS + OWN * k;
+    fn recontact<const N: usize>(&mut self, k: usize, y: &mut [f64; N]) {
+        let at = CONTACTS + PER_CONTACT * k;
         let touch = &self.touches[k];
         let approach_m_s = -touch.normal.dot(&self.point_m_s(k, y));
         let with = self.touches.iter().enumerate();
-        let with = with.filter(|(j, _)| !self.contacts[*j].waits).map(|(_, other)| other);
-        let law = Footing::law_of_touch(self.world, &self.mass, touch, (approach_m_s, with));
+        let with = with.filter(|(j, _)| !self.contacts[*j].is_suspended).map(|(_, other)| other);
+        let law =
+            BlockContactState::law_of_touch(self.world, &self.mass, touch, (approach_m_s, with));
         let friction = self.contacts[k].law.friction_coefficient();
-        let rebounds =
-            self.contacts.iter().any(|one| !one.waits && !one.captured && one.normal_force > 0.0);
+        let rebounds = self
+            .contacts
+            .iter()
+            .any(|one| !one.is_suspended && !one.captured && one.normal_force > 0.0);
         let mut contact = SpringContact::just_touching((k, touch), &law, friction);
         contact.captured = approach_m_s < capture_m_s(&law) && !rebounds;
         self.contacts[k] = contact;
@@ -310,19 +314,19 @@ impl FrozenFlow<'_, '_> {
     fn end<const N: usize>(
         &self,
         y: &[f64; N],
-        start: &Moving,
+        start: &BlockState,
         sums: &[f64; SUMS],
-    ) -> (Moving, Loss) {
-        let mut end = Moving { v: three(y, V), momentum: three(y, MOMENTUM), ..start.clone() };
+    ) -> (BlockState, Loss) {
+        let mut end = BlockState { v: three(y, V), momentum: three(y, MOMENTUM), ..start.clone() };
         let before_j = start.motion_j(self.block) + self.held_j;
         let holds_j = if self.is_clamped { self.clamped_j() } else { 0.0 };
         // the steps' own error
-        let along = ActingAlong::default().and_springs(&self.contacts);
+        let along = ContactDirections::default().and_springs(&self.contacts);
         if self.held_j > 0.0 || self.is_clamped {
             let gained_j = end.motion_j(self.block) + holds_j - before_j;
-            end.pay_all(self.block, &along, gained_j.max(0.0));
+            end.take_energy(self.block, &along, gained_j.max(0.0));
         } else {
-            end.hold_energy(self.block, (start, &Vec3::zeros()), &along);
+            end.limit_energy_gain(self.block, (start, &Vec3::zeros()), &along);
         }
         let mut taken = sums.map(|sum| sum.max(0.0));
         shared((before_j - end.motion_j(self.block) - holds_j).max(0.0), &mut taken);
@@ -342,14 +346,14 @@ impl<const N: usize, const P: usize> Flow<N, SUMS, P> for FrozenFlow<'_, '_> {
         let w = self.mass.inverse * three(y, MOMENTUM);
         let (mut push, mut torque, mut loss) = (Vec3::zeros(), Vec3::zeros(), Loss::default());
         for (k, contact) in self.contacts.iter_mut().enumerate() {
-            let (at, u) = (CONTACTS + OWN * k, Mass::at(&contact.lever, (&v, &w)));
+            let (at, u) = (CONTACTS + PER_CONTACT * k, Mass::velocity_at(&contact.lever, (&v, &w)));
             to.y[at] = -contact.n.dot(&u);
             (contact.penetration, contact.shear) = (y[at], three(y, at + 1));
-            if contact.waits {
+            if contact.is_suspended {
                 (contact.normal_force, contact.shear_force) = (0.0, Vec3::zeros());
                 continue;
             }
-            let (pulls, shear) = contact.press(&u);
+            let (pulls, shear) = contact.update_forces(&u);
             let force = contact.n * contact.normal_force - contact.shear_force;
             push += force;
             torque += contact.lever.cross(&force);
@@ -360,9 +364,9 @@ impl<const N: usize, const P: usize> Flow<N, SUMS, P> for FrozenFlow<'_, '_> {
         }
         if self.rolling.is_on() {
             self.rolling.stretch = three(y, ROLLED);
-            let turning = self.rolling.press(&self.contacts, &w);
-            torque -= turning.force;
-            put(&mut to.y, ROLLED, &turning.stretch_rate);
+            let rolling = self.rolling.update_moment(&self.contacts, &w);
+            torque -= rolling.force;
+            put(&mut to.y, ROLLED, &rolling.stretch_rate);
             loss.add(&self.rolling.power(self.world, &self.contacts, &w), 1.0);
         }
         to.q = [loss.friction, loss.damping, loss.rolling, loss.trees];
@@ -375,7 +379,7 @@ impl<const N: usize, const P: usize> Flow<N, SUMS, P> for FrozenFlow<'_, '_> {
         let (reach2, omega2) = (self.block.bound_m.powi(2), self.omega * self.omega);
         let pressed = self.contacts.iter().enumerate().filter(|(_, one)| one.normal_force > 0.0);
         let ways2 = pressed.map(|(k, _)| {
-            let at = CONTACTS + OWN * k;
+            let at = CONTACTS + PER_CONTACT * k;
             (off[at] * off[at]).max(three(off, at + 1).norm_squared())
         });
         let worst2 = (ways2.fold(0.0, f64::max) * omega2)

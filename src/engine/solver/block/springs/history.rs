@@ -1,6 +1,6 @@
 //! What a block remembers of its contacts.
 
-use super::super::{Footing, Moving, TOUCH};
+use super::super::{BlockContactState, BlockState, TOUCH};
 use crate::body::Block;
 use crate::contact::Feature;
 use crate::contact::block::{BlockTouch, SAME_POINT};
@@ -45,7 +45,7 @@ pub(crate) struct BlockHistory {
     /// Speed of approach when it began (m/s).
     pub(crate) approach_m_s: f64,
     /// How long it has gone on (rad of its oscillation).
-    pub(super) gone_rad: f64,
+    pub(super) age_rad: f64,
     /// Came in too slowly to rebound.
     pub(crate) captured: bool,
     /// Whether it presses.
@@ -82,7 +82,7 @@ impl BlockHistory {
     /// Rebounds after all, from an approach of `speed_m_s`: to a facet of rough ground.
     pub(crate) fn rebound(&mut self, speed_m_s: f64) {
         self.captured = false;
-        self.gone_rad = 0.0;
+        self.age_rad = 0.0;
         self.approach_m_s = self.approach_m_s.max(speed_m_s);
     }
 
@@ -94,7 +94,7 @@ impl BlockHistory {
     }
 }
 
-impl Footing {
+impl BlockContactState {
     /// The law of a contact that begins at a speed of approach (m/s): its dashpots have the damping ratio of the ground for the mass that the
     /// contact moves, `m_n = 1/(V_N M⁻¹ V_Nᵀ)`, so that restitution without friction is that of the ground; where several touch at once, itself
     /// among `all`, each has its share.
@@ -125,7 +125,7 @@ impl Footing {
     pub(crate) fn damp_together(
         &mut self,
         world: &ContactEnvironment,
-        (block, moving): (&Block, &Moving),
+        (block, state): (&Block, &BlockState),
     ) {
         let histories = &mut self.springs.histories;
         if histories.iter().all(|one| one.announced || one.captured) {
@@ -133,100 +133,104 @@ impl Footing {
         }
         let rebounds = |one: &BlockHistory| !one.captured && one.closed;
         let goes_on = histories.iter().any(|one| one.announced && rebounds(one));
-        let mass = moving.mass(block);
+        let mass = state.mass(block);
         for k in 0..histories.len() {
             let one = histories[k];
             if one.announced && goes_on {
                 continue;
             }
-            let at = |one: &BlockHistory| (one.n, one.point - moving.pose.centre);
+            let at = |one: &BlockHistory| (one.n, one.point - state.pose.centre);
             let others = histories.iter().enumerate().filter(|(j, _)| *j != k);
             let others = others.map(|(_, other)| at(other));
             let approach_m_s = if one.captured { 0.0 } else { one.approach_m_s };
             let law = law_at(world.law(one.springs_of), &mass, at(&one), (approach_m_s, others));
             histories[k].law = law.with_friction_of(&one.law);
         }
-        self.springs.refresh();
+        self.springs.invalidate_rates();
     }
 
     /// Gives contact `k` the dashpots of an impact at another speed (m/s) than it began with, as soil or a facet has it.
     pub(crate) fn strike_anew(
         &mut self,
         k: usize,
-        (block, moving): (&Block, &Moving),
+        (block, state): (&Block, &BlockState),
         approach_m_s: f64,
     ) {
-        let (mass, history) = (moving.mass(block), &mut self.springs.histories[k]);
-        let lever = history.point - moving.pose.centre;
+        let (mass, history) = (state.mass(block), &mut self.springs.histories[k]);
+        let lever = history.point - state.pose.centre;
         let across = mass.moved_by((&history.n, &lever))[1];
         history.law = history.law.struck_anew(approach_m_s, [across, mass.mass]);
-        self.springs.refresh();
+        self.springs.invalidate_rates();
     }
 
     /// Gives contacts that have come to another ground its friction; springs and dashpots stay those on which they were pressed, as
     /// those of spheres do in an impact (`solver::ground_change`).
-    fn rub_on_grounds(&mut self, world: &ContactEnvironment, (block, moving): (&Block, &Moving)) {
+    fn update_friction(
+        &mut self,
+        world: &ContactEnvironment,
+        (block, state): (&Block, &BlockState),
+    ) {
         if world.laws.len() == 1 {
             return;
         }
-        for (touch, k) in self.touches.found.iter().zip(&self.of_touch) {
+        for (touch, k) in self.touches.found.iter().zip(&self.history_of_touch) {
             let Some(k) = *k else { continue };
             let before = self.springs.histories[k];
             if world.ground_of(before.triangle) != world.ground_of(touch.triangle) {
                 let began = (before.approach_m_s, self.touching(block));
-                let touched = Self::law_of_touch(world, &moving.mass(block), touch, began);
-                let memory = &mut self.springs.histories[k];
-                memory.law = memory.law.with_friction_of(&touched);
-                memory.triangle = touch.triangle;
+                let touched = Self::law_of_touch(world, &state.mass(block), touch, began);
+                let history = &mut self.springs.histories[k];
+                history.law = history.law.with_friction_of(&touched);
+                history.triangle = touch.triangle;
             }
         }
     }
 
     /// The memory of every contact of the last look, in their order; new ones begin.
-    pub(super) fn remember(
+    pub(super) fn update_histories(
         &mut self,
         world: &ContactEnvironment,
-        (block, moving): (&Block, &Moving),
+        (block, state): (&Block, &BlockState),
     ) {
-        let mut of_touch = std::mem::take(&mut self.of_touch);
-        of_touch.clear();
+        let mut history_of_touch = std::mem::take(&mut self.history_of_touch);
+        history_of_touch.clear();
         for touch in &self.touches.found {
             let known = self.springs.histories.iter().position(|history| history.is_of(touch));
-            of_touch.push(known.filter(|k| !of_touch.contains(&Some(*k))));
+            history_of_touch.push(known.filter(|k| !history_of_touch.contains(&Some(*k))));
         }
         let mut k = 0;
-        while k < of_touch.len() {
-            if of_touch[k].is_none() {
+        while k < history_of_touch.len() {
+            if history_of_touch[k].is_none() {
                 let touch = self.touches.found[k];
-                let near = self.memory_near((block, moving), &touch, &of_touch);
-                let before = of_touch.iter().position(|own| near.is_some() && *own == near);
-                of_touch[k] = near.or_else(|| {
-                    let new = self.begin(world, &touch, (block, moving));
+                let near = self.history_near((block, state), &touch, &history_of_touch);
+                let before = history_of_touch.iter().position(|own| near.is_some() && *own == near);
+                history_of_touch[k] = near.or_else(|| {
+                    let new = self.new_history(world, &touch, (block, state));
                     Some(self.springs.add(&new))
                 });
                 if let Some(before) = before {
-                    of_touch.remove(before);
+                    history_of_touch.remove(before);
                     self.touches.found.remove(before);
                     k -= usize::from(before < k);
                 }
             }
             k += 1;
         }
-        self.of_touch = of_touch;
-        self.rub_on_grounds(world, (block, moving));
+        self.history_of_touch = history_of_touch;
+        self.update_friction(world, (block, state));
     }
 
     /// The memory of a contact that has come from a feature nearby, which no other has, or one that is past the ends of its features.
-    fn memory_near(
+    fn history_near(
         &self,
-        (block, moving): (&Block, &Moving),
+        (block, state): (&Block, &BlockState),
         touch: &BlockTouch,
-        of_touch: &[Option<usize>],
+        history_of_touch: &[Option<usize>],
     ) -> Option<usize> {
-        let point = moving.pose.centre + touch.lever;
-        let is_taken = |memory: usize| {
-            let by = of_touch.iter().position(|own| *own == Some(memory));
-            by.is_some_and(|by| !goes_on(block, touch, &self.touches.found[by]))
+        let point = state.pose.centre + touch.lever;
+        let is_taken = |history: usize| {
+            let by = history_of_touch.iter().position(|own| *own == Some(history));
+            by.is_some_and(|by| !hands_over(block, touch, &self.touches.found[by]))
         };
         self.springs.nearest(touch, (&point, block.ball_m), is_taken)
     }
@@ -253,14 +257,14 @@ impl Footing {
     }
 
     /// A new memory.
-    fn begin(
+    fn new_history(
         &self,
         world: &ContactEnvironment,
         touch: &BlockTouch,
-        (block, moving): (&Block, &Moving),
+        (block, state): (&Block, &BlockState),
     ) -> BlockHistory {
-        let mass = &moving.mass(block);
-        let approach_m_s = moving.approach_m_s(block, touch);
+        let mass = &state.mass(block);
+        let approach_m_s = state.approach_m_s(block, touch);
         // what is born while an impact rebounds belongs to it, however slow it is
         let rebounds = self.springs.is_rebounding();
         let captured = approach_m_s < capture_m_s(world.law(touch.triangle)) && !rebounds;
@@ -281,7 +285,7 @@ impl Footing {
                 on_springs().with_friction_of(&law)
             },
             n: touch.normal,
-            point: moving.pose.centre + touch.lever,
+            point: state.pose.centre + touch.lever,
             shear: Vec3::zeros(),
             normal_force: 0.0,
             offset_m: 0.0,
@@ -289,7 +293,7 @@ impl Footing {
             normal_j: 0.0,
             impulse: Vec3::zeros(),
             approach_m_s,
-            gone_rad: 0.0,
+            age_rad: 0.0,
             captured,
             closed: approach_m_s > 0.0 && touch.gap_m <= TOUCH * block.radius_m,
             slides: false,
@@ -302,7 +306,7 @@ impl Footing {
 /// Whether a new contact of an edge or a face of the block goes on for one that is past the ends of its features: with the next feature of the
 /// mesh, or the next part of the block. Both would press else, the new one from where it is: at each joint of a
 /// crest a block that slides along it would sink by what its weight presses in.
-fn goes_on(block: &Block, new: &BlockTouch, before: &BlockTouch) -> bool {
+fn hands_over(block: &Block, new: &BlockTouch, before: &BlockTouch) -> bool {
     !block.core.is_corner(new.part) && before.hands_on(new.part, new.feature)
 }
 
@@ -318,11 +322,11 @@ fn law_at(
         law.struck_at(approach_m_s);
     }
     let [along, across] = mass.moved_by((&at.0, &at.1));
-    law.for_masses([along * share_of(mass, at, others), across], mass.mass)
+    law.for_masses([along * mass_share(mass, at, others), across], mass.mass)
 }
 
 /// The share of the mass that a contact moves among those that touch with it (–): `G_ii/Σ_j G_ij` along the normals.
-fn share_of(mass: &Mass, one: (Vec3, Vec3), others: impl Iterator<Item = (Vec3, Vec3)>) -> f64 {
+fn mass_share(mass: &Mass, one: (Vec3, Vec3), others: impl Iterator<Item = (Vec3, Vec3)>) -> f64 {
     let along = |other: (Vec3, Vec3)| {
         let arms = [one, other].map(|(n, lever)| lever.cross(&n));
         one.0.dot(&other.0) / mass.mass + arms[0].dot(&(mass.inverse * arms[1]))

@@ -6,7 +6,7 @@
 use super::SpringContact;
 use crate::ground::{FrictionElement, SliderForce};
 use crate::rock::Vec3;
-use crate::solver::block::rolling::Turning;
+use crate::solver::block::rolling::RollingImpulse;
 use crate::solver::block::solve::first_guess;
 use crate::solver::environment::ContactEnvironment;
 use crate::solver::loss::Loss;
@@ -40,22 +40,24 @@ impl RollingSpring {
     }
 
     /// It over a stage in which it acts for `a` and the block turns for `b` (s), from a stretch at its base (rad).
-    pub(super) fn over(&mut self, base: &Vec3, times_s: (f64, f64)) -> Turning {
+    pub(super) fn over_stage(&mut self, base: &Vec3, times_s: (f64, f64)) -> RollingImpulse {
         self.base = *base;
         match &self.element {
-            Some(element) => Turning::over(element, base, times_s).guessed(self.impulse),
-            None => Turning::NONE,
+            Some(element) => {
+                RollingImpulse::of_stage(element, base, times_s).with_guess(self.impulse)
+            }
+            None => RollingImpulse::NONE,
         }
     }
 
     /// Takes the moment from an impulse that has acted for `a` (s).
-    pub(super) fn take(&mut self, turning: &Turning, a: f64) {
-        self.moment = turning.impulse / -a;
-        self.impulse = first_guess(turning.impulse);
+    pub(super) fn set_moment(&mut self, rolling: &RollingImpulse, a: f64) {
+        self.moment = rolling.impulse / -a;
+        self.impulse = first_guess(rolling.impulse);
     }
 
     /// Takes the moment that it has where the block turns with `w` (rad/s), pressed as its contacts are.
-    pub(super) fn press(&mut self, contacts: &[SpringContact], w: &Vec3) -> SliderForce {
+    pub(super) fn update_moment(&mut self, contacts: &[SpringContact], w: &Vec3) -> SliderForce {
         self.base = self.stretch;
         let Some(element) = &self.element else { return SliderForce::default() };
         let pressed = element.at_rate(self.stretch, *w, limit_n_m(contacts));
@@ -80,16 +82,16 @@ impl RollingSpring {
     }
 
     /// Energy in it at the step's start (J).
-    pub(super) fn holds_j(&self) -> f64 {
-        self.stored_j(&self.stretch)
+    pub(super) fn stored_j(&self) -> f64 {
+        self.energy_at(&self.stretch)
     }
 
     /// Energy in it at the end of a stage (J).
-    pub(super) fn will_hold_j(&self, b: f64) -> f64 {
-        self.stored_j(&self.stretch_after(b))
+    pub(super) fn stored_after_j(&self, b: f64) -> f64 {
+        self.energy_at(&self.stretch_after(b))
     }
 
-    fn stored_j(&self, stretch: &Vec3) -> f64 {
+    fn energy_at(&self, stretch: &Vec3) -> f64 {
         self.element.as_ref().map_or(0.0, |element| 0.5 * element.held(*stretch).dot(stretch))
     }
 
@@ -105,7 +107,7 @@ impl RollingSpring {
 
     /// What slider and dashpot take (J) where the block turns with `w` (rad/s) for `b` (s), by the contacts that bear it: the spring takes, at
     /// the stretch of the end, what it was stretched by.
-    pub(super) fn taken(
+    pub(super) fn dissipated(
         &self,
         world: &ContactEnvironment,
         contacts: &[SpringContact],

@@ -8,14 +8,14 @@ const AFTER_S: f64 = 1e-3;
 use nalgebra::Unit;
 
 /// Velocity and spin times the largest radius (m/s) of a block that has just touched a plane, a millisecond later, without what weight has added.
-fn thrown(case: &mut BlockRun, attitude: Rotation3<f64>, spin: Vec3) -> (Vec3, Vec3) {
+fn rebounded(case: &mut BlockRun, attitude: Rotation3<f64>, spin: Vec3) -> (Vec3, Vec3) {
     const AFTER_S: f64 = 1e-3;
     let corners = &case.block.core.corners;
     let lowest = corners.iter().map(|corner| (attitude * corner).z).fold(f64::MAX, f64::min);
     let centre = Vec3::z() * (case.block.ball_m - lowest + 1e-9);
-    let mut moving = case.start(attitude, [centre, Vec3::new(8.0, 1.0, -6.0), spin]);
-    case.follow(&mut moving, AFTER_S, |_, _| ());
-    (moving.v + Vec3::z() * (G * AFTER_S), moving.spin(&case.block) * case.block.bound_m)
+    let mut state = case.start(attitude, [centre, Vec3::new(8.0, 1.0, -6.0), spin]);
+    case.follow(&mut state, AFTER_S, |_, _| ());
+    (state.v + Vec3::z() * (G * AFTER_S), state.spin(&case.block) * case.block.bound_m)
 }
 
 /// The difference between blow `k` of two dozen in the rigid limit and on springs of two stiffnesses, over its speed (–), of ground with a restitution: a
@@ -38,10 +38,10 @@ fn off_the_limit(k: u8, restitution: f64) -> [f64; 2] {
         }
         case
     };
-    let (v, w) = thrown(&mut made(), attitude, spin);
+    let (v, w) = rebounded(&mut made(), attitude, spin);
     [1e11, 1e13].map(|p_n| {
         let mut case = on_springs(made(), FINEST, p_n);
-        let (own_v, own_w) = thrown(&mut case, attitude, spin);
+        let (own_v, own_w) = rebounded(&mut case, attitude, spin);
         ((own_v - v).norm() + (own_w - w).norm()) / 10.0
     })
 }
@@ -90,10 +90,10 @@ fn a_straight_ridge_throws_a_face_however_it_is_divided() {
             let mut case = if scheme.has_springs() { on_springs(case, scheme, 1e9) } else { case };
             let attitude = turn(&Vec3::x_axis(), 0.05);
             let fall = [Vec3::z() * 0.35, Vec3::zeros(), Vec3::zeros()];
-            let mut moving = case.start(attitude, fall);
-            case.follow(&mut moving, 0.35, |_, _| ());
+            let mut state = case.start(attitude, fall);
+            case.follow(&mut state, 0.35, |_, _| ());
             assert!(case.impacts > 1, "{scheme:?}: {} impacts", case.impacts);
-            (moving.v, moving.spin(&case.block))
+            (state.v, state.spin(&case.block))
         });
         let off = (ends[0].0 - ends[1].0).norm() + (ends[0].1 - ends[1].1).norm();
         println!("{scheme:?}: {off:e} {ends:?}");
@@ -114,9 +114,9 @@ fn every_corner_of_a_face_joins_a_blow() {
         let low = case.block.core.corners.iter().map(|p| p.z).fold(f64::MAX, f64::min);
         let v = Vec3::new(3.0, 0.0, -6.0);
         let start = [Vec3::z() * (case.block.ball_m - low), v, Vec3::zeros()];
-        let mut moving = case.start(Rotation3::identity(), start);
-        case.follow(&mut moving, AFTER_S, |_, _| ());
-        let (v, w) = (moving.v + Vec3::z() * (G * AFTER_S), moving.spin(&case.block));
+        let mut state = case.start(Rotation3::identity(), start);
+        case.follow(&mut state, AFTER_S, |_, _| ());
+        let (v, w) = (state.v + Vec3::z() * (G * AFTER_S), state.spin(&case.block));
         println!("{sides} {friction} {e}: {:?} {:?}", v.as_slice(), w.as_slice());
         let off = v.y.abs().max(w.x.abs()).max(w.z.abs());
         assert!(off < 1e-9, "{sides} {friction} {e}: {v:?} {w:?}");

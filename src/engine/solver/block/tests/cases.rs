@@ -22,17 +22,17 @@ fn a_capsule_rolls_on_both_of_its_balls() {
         balls(vec![Vec3::y() * half, Vec3::y() * -half], r, (mass, [2.0 * own, own, 2.0 * own]));
     let mut case = BlockRun::new(slope(angle, 100.0), body, (1.0, 0.0));
     let (along, up) = axes(angle);
-    let mut moving = case.start(tilted(angle), still(up * r - along * 40.0));
-    let start = moving.pose.centre;
-    case.follow(&mut moving, 4.0, |_, _| ());
+    let mut state = case.start(tilted(angle), still(up * r - along * 40.0));
+    let start = state.pose.centre;
+    case.follow(&mut state, 4.0, |_, _| ());
     let a = G * sin(angle) / (1.0 + 7.0 / 15.0);
     assert!((a - 2.287_648_367_744).abs() < 1e-12);
-    let way = moving.pose.centre - start;
-    println!("{} {}", moving.v.dot(&along) / (4.0 * a) - 1.0, way.dot(&along) / (8.0 * a) - 1.0);
-    assert!((moving.v.dot(&along) / (4.0 * a) - 1.0).abs() < 1e-6, "{}", moving.v.dot(&along));
+    let way = state.pose.centre - start;
+    println!("{} {}", state.v.dot(&along) / (4.0 * a) - 1.0, way.dot(&along) / (8.0 * a) - 1.0);
+    assert!((state.v.dot(&along) / (4.0 * a) - 1.0).abs() < 1e-6, "{}", state.v.dot(&along));
     assert!((way.dot(&along) / (8.0 * a) - 1.0).abs() < 1e-6, "{}", way.dot(&along));
-    let spin = moving.spin(&case.block);
-    assert!((spin.y * r / moving.v.dot(&along) - 1.0).abs() < 1e-6, "{spin}");
+    let spin = state.spin(&case.block);
+    assert!((spin.y * r / state.v.dot(&along) - 1.0).abs() < 1e-6, "{spin}");
     assert!(way.y.abs() < 1e-9 && spin.x.abs() + spin.z.abs() < 1e-9, "{way} {spin}");
 }
 
@@ -44,10 +44,10 @@ fn one_ball_rolls_as_a_sphere_does() {
     let body = balls(vec![Vec3::zeros()], r, (mass, [own; 3]));
     let mut case = BlockRun::new(slope(angle, 100.0), body, (1.0, 0.0));
     let (along, up) = axes(angle);
-    let mut moving = case.start(tilted(angle), still(up * r - along * 40.0));
-    case.follow(&mut moving, 4.0, |_, _| ());
+    let mut state = case.start(tilted(angle), still(up * r - along * 40.0));
+    case.follow(&mut state, 4.0, |_, _| ());
     let speed = 5.0 / 7.0 * G * sin(angle) * 4.0;
-    assert!((moving.v.dot(&along) / speed - 1.0).abs() < 1e-6, "{}", moving.v.dot(&along) / speed);
+    assert!((state.v.dot(&along) / speed - 1.0).abs() < 1e-6, "{}", state.v.dot(&along) / speed);
 }
 
 /// Bounces with e = 1 and without friction, then all velocities turned round: the block comes back to its start. A tumbling box is
@@ -69,29 +69,29 @@ pub(super) fn run_backwards(mut case: BlockRun, bounces: &[usize], near: f64) {
     let start = [Vec3::z() * 3.0, Vec3::new(1.0, 0.5, 0.0), Vec3::new(0.3, -0.7, 0.4)];
     let begun = case.start(Rotation3::identity(), start);
     for &asked in bounces {
-        let (mut moving, mut longest) = (begun.clone(), 0.0);
+        let (mut state, mut longest) = (begun.clone(), 0.0);
         // the time that so many bounces take is not known before
         while case.impacts < asked {
-            (moving, case.impacts) = (begun.clone(), 0);
+            (state, case.impacts) = (begun.clone(), 0);
             longest += 0.25;
-            case.follow(&mut moving, longest, |_, _| ());
+            case.follow(&mut state, longest, |_, _| ());
         }
         let bounces = case.impacts;
         let mut twin = begun.clone();
         twin.pose.centre.z += 1e-8;
         case.follow(&mut twin, longest, |_, _| ());
         let apart = [
-            (twin.pose.centre - moving.pose.centre).norm(),
-            (twin.pose.attitude.matrix() - moving.pose.attitude.matrix()).norm(),
-            (twin.v - moving.v).norm(),
+            (twin.pose.centre - state.pose.centre).norm(),
+            (twin.pose.attitude.matrix() - state.pose.attitude.matrix()).norm(),
+            (twin.v - state.v).norm(),
         ];
         let growth = (apart.into_iter().fold(0.0, f64::max) / 1e-8).max(1.0);
-        (moving.v, moving.momentum, case.impacts) = (-moving.v, -moving.momentum, 0);
-        case.follow(&mut moving, longest, |_, _| ());
+        (state.v, state.momentum, case.impacts) = (-state.v, -state.momentum, 0);
+        case.follow(&mut state, longest, |_, _| ());
         assert_eq!(case.impacts, bounces);
-        let off = (moving.pose.centre - begun.pose.centre).norm();
-        let turned = (moving.pose.attitude.matrix() - begun.pose.attitude.matrix()).norm();
-        let v = (moving.v + begun.v).norm();
+        let off = (state.pose.centre - begun.pose.centre).norm();
+        let turned = (state.pose.attitude.matrix() - begun.pose.attitude.matrix()).norm();
+        let v = (state.v + begun.v).norm();
         println!("{bounces} bounces: {off:e} m, {turned:e}, {v:e} m/s; growth {growth:e}");
         assert!(off.max(turned).max(v) < near * growth, "{off:e} {turned:e} {v:e} {growth:e}");
         case.impacts = 0;
@@ -120,16 +120,16 @@ fn a_face_slides_over_any_triangulation() {
     let body = block(&box_surface([1.0, 0.9, 0.5]), 0.05);
     let ends = [slope(angle, 100.0), finely(angle, 200)].map(|mesh| {
         let mut case = BlockRun::new(mesh, body.clone(), (0.5, 0.4));
-        let mut moving = case.start(tilted(angle), still(up * 0.25));
-        let start = moving.pose.centre;
+        let mut state = case.start(tilted(angle), still(up * 0.25));
+        let start = state.pose.centre;
         let (mut worst, mut way) = (0.0f64, 0.0);
-        case.follow(&mut moving, 6.4, |_, moving| {
-            worst = worst.max(moving.v.dot(&up).abs());
-            way = (moving.pose.centre - start).dot(&along);
+        case.follow(&mut state, 6.4, |_, state| {
+            worst = worst.max(state.v.dot(&up).abs());
+            way = (state.pose.centre - start).dot(&along);
         });
         println!("{way} m, {worst:e} m/s, {} steps, {} impacts", case.steps, case.impacts);
         assert!(way > 50.0 && worst < 1e-8, "{way} {worst:e}");
-        (way, moving.v)
+        (way, state.v)
     });
     assert!(
         (ends[0].0 - ends[1].0).abs() < 1e-6 && (ends[0].1 - ends[1].1).norm() < 1e-7,
@@ -151,14 +151,14 @@ fn rolling_slab(tilt: f64, made: impl Fn(BlockRun) -> BlockRun) -> Option<f64> {
     let mut case = made(BlockRun::new(slope(angle, 4e3), body, (10.0, 0.0)));
     let (along, up) = axes(angle);
     let start = [up * 2.5 - along * 3000.0, along * 28.0, Vec3::y() * 20.8];
-    let mut moving = case.start(tilted(angle) * turn(&Vec3::x_axis(), tilt), start);
+    let mut state = case.start(tilted(angle) * turn(&Vec3::x_axis(), tilt), start);
     let own = case.block.clone();
     let widest =
         (0..3).max_by(|&i, &j| own.inertia_kg_m2[i].total_cmp(&own.inertia_kg_m2[j])).unwrap();
     let mut first = None;
     for begun_s in [0.0, 10.0, 20.0, 30.0, 40.0, 50.0] {
-        case.follow(&mut moving, 10.0, |now, moving| {
-            let spin = moving.pose.attitude.inverse_transform_vector(&moving.spin(&own));
+        case.follow(&mut state, 10.0, |now, state| {
+            let spin = state.pose.attitude.inverse_transform_vector(&state.spin(&own));
             let parts: Vec<f64> =
                 (0..3).map(|k| own.inertia_kg_m2[k] * spin[k] * spin[k]).collect();
             if parts[widest] > 0.95 * parts.iter().sum::<f64>() {
@@ -188,10 +188,10 @@ fn restitution_of_a_block_falls_with_speed() {
             BlockRun::new(slope(0.0, 50.0), block(&box_surface([1.0; 3]), 0.05), (0.5, 0.6));
         case.law.restitution_half_m_s = 9.0;
         let start = [Vec3::z() * 0.5, Vec3::z() * -speed, Vec3::zeros()];
-        let mut moving = case.start(Rotation3::identity(), start);
-        case.follow(&mut moving, 1e-3, |_, _| ());
+        let mut state = case.start(Rotation3::identity(), start);
+        case.follow(&mut state, 1e-3, |_, _| ());
         let up = 0.6 / (1.0 + (speed / 9.0_f64).powi(2)) * speed;
-        assert!((moving.v.z + G * 1e-3 - up).abs() < 1e-9, "{} {up}", moving.v.z);
+        assert!((state.v.z + G * 1e-3 - up).abs() < 1e-9, "{} {up}", state.v.z);
     }
 }
 
@@ -231,7 +231,7 @@ fn edges_and_faces_meet_edges_and_peaks() {
         };
         let top = Top::new(body.inertia_kg_m2, attitude, Vec3::zeros());
         let tumble = Tumble { block: &body, top, path };
-        let mut footing = Footing::default();
+        let mut footing = BlockContactState::default();
         let landing =
             first_touch(&case.terrain, &tumble, 10.0, (&mut footing.near, &mut footing.window));
         let FlightEnd::Touch(t) = landing else { panic!("{landing:?}") };
@@ -242,15 +242,15 @@ fn edges_and_faces_meet_edges_and_peaks() {
             body: Body::of_block(&body, G),
             laws: &laws,
         };
-        let mut moving = above.clone();
-        (moving.pose, moving.v) = (tumble.pose(t), path.velocity(t));
-        let pose = moving.pose;
-        footing.look(&world, &body, &pose, body.ball_m);
+        let mut state = above.clone();
+        (state.pose, state.v) = (tumble.pose(t), path.velocity(t));
+        let pose = state.pose;
+        footing.detect(&world, &body, &pose, body.ball_m);
         assert_eq!(footing.touching(&body).count(), 1, "{:?}", footing.touches);
         assert!((footing.touches.found[0].normal - Vec3::z()).norm() < 1e-7);
         // a balanced fall on one point stops dead
-        footing.strike(&world, &body, &mut moving).unwrap();
-        assert!(moving.v.norm() < 1e-7 && moving.spin(&body).norm() < 1e-7, "{}", moving.v);
+        footing.strike(&world, &body, &mut state).unwrap();
+        assert!(state.v.norm() < 1e-7 && state.spin(&body).norm() < 1e-7, "{}", state.v);
         case.impacts += 1;
     }
 }
@@ -266,9 +266,9 @@ fn what_is_pressed_in_is_let_out_as_gravity_has_it() {
         let body = Body::of_block(&own, gravity);
         let world = ContactEnvironment { terrain: &case.terrain, body, laws: &laws };
         for (deep_m, share) in [(0.02, 1.0), (0.001, 0.001 / (0.01 * own.radius_m))] {
-            let mut footing = Footing::default();
-            let mut moving = case.start(Rotation3::identity(), still(Vec3::z() * (0.5 - deep_m)));
-            footing.step(&world, &own, &mut moving, (1e-4, CORNER_WAY));
+            let mut footing = BlockContactState::default();
+            let mut state = case.start(Rotation3::identity(), still(Vec3::z() * (0.5 - deep_m)));
+            footing.step(&world, &own, &mut state, (1e-4, CORNER_WAY));
             let right = share * 0.1 * (gravity * own.radius_m).sqrt();
             assert!(!footing.contacts.is_empty());
             for contact in &footing.contacts {
@@ -286,11 +286,11 @@ fn lost_by_tipping(sides: [f64; 3], ball: f64, (tilt, step_s): (f64, f64)) -> f6
     case.step_s = step_s;
     let attitude = tilted(-tilt);
     let low = attitude * Vec3::new(ball - 0.5 * sides[0], 0.0, ball - 0.5 * sides[2]);
-    let mut moving = case.start(attitude, still(Vec3::z() * (ball - low.z)));
-    let (own, had_j) = (case.block.clone(), case.energy_j(&moving));
-    let energy_j = |now: &Moving| now.motion_j(&own) + own.mass_kg * G * now.pose.centre.z;
+    let mut state = case.start(attitude, still(Vec3::z() * (ball - low.z)));
+    let (own, had_j) = (case.block.clone(), case.energy_j(&state));
+    let energy_j = |now: &BlockState| now.motion_j(&own) + own.mass_kg * G * now.pose.centre.z;
     let (mut last_j, mut fastest, mut lost_j) = (had_j, 0.0f64, None);
-    case.follow(&mut moving, 2.0, |_, now| {
+    case.follow(&mut state, 2.0, |_, now| {
         let w = now.spin(&own).norm();
         if lost_j.is_none() && w < 0.9 * fastest {
             lost_j = Some(had_j - last_j);

@@ -15,7 +15,7 @@ fn chute() -> Terrain {
 }
 
 /// The tangent of 30°.
-fn rubs() -> f64 {
+fn has_friction() -> f64 {
     3_f64.sqrt().recip()
 }
 
@@ -28,14 +28,14 @@ fn a_box_turns_about_two_corners_that_walls_clamp() {
         let surface = box_surface([1.0, 0.8, 0.6]);
         let shape = Shape::of(&Solid::of(&surface), &surface.points, 0.3).unwrap();
         let rock = Rock { radius_m: 0.290_623_446_716_694_93, density_kg_m3: 2700.0 };
-        let case = BlockRun::new(chute(), Block::new(&shape, &rock), (rubs(), 0.0));
+        let case = BlockRun::new(chute(), Block::new(&shape, &rock), (has_friction(), 0.0));
         let mut case = match p_n {
             Some(p_n) => on_springs(case, FINEST, p_n),
             None => case,
         };
         let turn = Quaternion::new(0.606_328_5, 0.292_536_9, -0.061_770_8, -0.736_866_5);
         let turn = UnitQuaternion::from_quaternion(turn);
-        let mut moving = case.start(
+        let mut state = case.start(
             turn.to_rotation_matrix(),
             [
                 Vec3::new(0.018_523_949, 3.834_539_955, -1.418_586_232),
@@ -43,10 +43,10 @@ fn a_box_turns_about_two_corners_that_walls_clamp() {
                 Vec3::new(-0.410_628_258, -6.011_950_182, -1.105_215_510),
             ],
         );
-        let before_j = case.energy_j(&moving);
-        case.follow(&mut moving, 0.025, |_, _| ());
-        let gained_j = case.energy_j(&moving) + case.lost.sum() - before_j;
-        (moving.v, moving.spin(&case.block) * case.block.bound_m, gained_j / before_j.abs())
+        let before_j = case.energy_j(&state);
+        case.follow(&mut state, 0.025, |_, _| ());
+        let gained_j = case.energy_j(&state) + case.lost.sum() - before_j;
+        (state.v, state.spin(&case.block) * case.block.bound_m, gained_j / before_j.abs())
     };
     let rigid = turned_after(None);
     println!("{rigid:?}");

@@ -31,13 +31,13 @@ fn lost(yaw: f64, (friction, e): (f64, f64), made: impl Fn(BlockRun) -> BlockRun
     let reaches = |own: &Vec3| (attitude * own).dot(&along);
     let reach_m = case.block.core.corners.iter().map(reaches).fold(0.0, f64::max);
     let centre = up * 0.15 - along * (reach_m + 0.3);
-    let mut moving = case.start(attitude, [centre, along * SPEED_M_S, Vec3::zeros()]);
+    let mut state = case.start(attitude, [centre, along * SPEED_M_S, Vec3::zeros()]);
     let (own, weight_n) = (case.block.clone(), case.block.mass_kg * G);
     let (mut had_j, mut struck_s, mut left_j) = ([0.0; 2], None, None);
-    case.follow(&mut moving, 0.1, |now, moving| {
-        let motion_j = moving.motion_j(&own);
-        let energy_j = motion_j + weight_n * moving.pose.centre.z;
-        if (moving.v - along * moving.v.dot(&along)).norm() < 0.05 {
+    case.follow(&mut state, 0.1, |now, state| {
+        let motion_j = state.motion_j(&own);
+        let energy_j = motion_j + weight_n * state.pose.centre.z;
+        if (state.v - along * state.v.dot(&along)).norm() < 0.05 {
             had_j = [motion_j, energy_j];
         } else if *struck_s.get_or_insert(now) + OVER_S < now {
             left_j.get_or_insert(energy_j);

@@ -27,10 +27,10 @@ fn roll(made: impl Fn(BlockRun) -> BlockRun) -> (f64, u32) {
         let x = f64::from(k) / f64::from(BLOCKS);
         let attitude = turn(&Vec3::x_axis(), TAU * x) * turn(&Vec3::z_axis(), 5.0 * TAU * x);
         let start = [up * 0.45, along * 1.5, Vec3::new(x - 0.5, 3.7, 0.0)];
-        let mut moving = case.start(attitude, start);
-        case.follow(&mut moving, ROLLS_S, |_, _| ());
-        way_m += moving.pose.centre.dot(&along) / f64::from(BLOCKS);
-        rolling += u32::from(moving.v.norm() > 0.02);
+        let mut state = case.start(attitude, start);
+        case.follow(&mut state, ROLLS_S, |_, _| ());
+        way_m += state.pose.centre.dot(&along) / f64::from(BLOCKS);
+        rolling += u32::from(state.v.norm() > 0.02);
     }
     (way_m, rolling)
 }

@@ -52,7 +52,7 @@ fn stone(points: &[Vec3]) -> Block {
 }
 
 /// A block above the origin, turned and thrown by chance.
-fn thrown(case: &BlockRun, k: u32) -> Moving {
+fn rebounded(case: &BlockRun, k: u32) -> BlockState {
     let mut random = stream(7, Purpose::Shape, k as usize);
     let mut next = || unit(&mut random) - 0.5;
     let turn: [f64; 4] = std::array::from_fn(|_| next());
@@ -65,10 +65,10 @@ fn thrown(case: &BlockRun, k: u32) -> Moving {
 
 /// The largest drift of momentum along `kept` over the fastest speed, and of the angular momentum about `about` over the largest momentum (–).
 fn drifts(case: &mut BlockRun, k: u32, (kept, about): (&[Vec3], Option<Vec3>)) -> [f64; 2] {
-    let mut moving = thrown(case, k);
-    let (start, momentum, had_j) = (moving.v, moving.momentum, case.energy_j(&moving));
+    let mut state = rebounded(case, k);
+    let (start, momentum, had_j) = (state.v, state.momentum, case.energy_j(&state));
     let (mut off, mut fastest, mut most) = ([0.0f64; 2], 0.0f64, 0.0f64);
-    case.follow(&mut moving, LASTS_S, |t, now| {
+    case.follow(&mut state, LASTS_S, |t, now| {
         let fell = start - Vec3::z() * (G * t);
         for along in kept {
             off[0] = off[0].max((now.v - fell).dot(along).abs());
@@ -78,7 +78,7 @@ fn drifts(case: &mut BlockRun, k: u32, (kept, about): (&[Vec3], Option<Vec3>)) -
         }
         (fastest, most) = (fastest.max(now.v.norm()), most.max(now.momentum.norm()));
     });
-    let made = (case.energy_j(&moving) - had_j) / moving.motion_j(&case.block);
+    let made = (case.energy_j(&state) - had_j) / state.motion_j(&case.block);
     assert!(made < 1e-9, "{made:e}");
     [off[0] / fastest, off[1] / most]
 }
@@ -154,16 +154,16 @@ fn a_valley_without_friction_keeps_momentum_along_it() {
 fn off_the_mirror(made: impl Fn() -> BlockRun, (k, lasts_s): (u32, f64)) -> f64 {
     let flip = Matrix3::from_diagonal(&Vec3::new(1.0, -1.0, 1.0));
     let (mut case, mut mirrored) = (made(), made());
-    let mut moving = thrown(&case, k);
-    let Moving { pose, v, momentum } = &moving;
+    let mut state = rebounded(&case, k);
+    let BlockState { pose, v, momentum } = &state;
     let attitude = Rotation3::from_matrix_unchecked(flip * pose.attitude.matrix() * flip);
     let pose = Pose { centre: flip * pose.centre, attitude };
-    let mut image = Moving { pose, v: flip * v, momentum: -(flip * momentum) };
-    case.follow(&mut moving, lasts_s, |_, _| ());
+    let mut image = BlockState { pose, v: flip * v, momentum: -(flip * momentum) };
+    case.follow(&mut state, lasts_s, |_, _| ());
     mirrored.follow(&mut image, lasts_s, |_, _| ());
     let block = &case.block;
-    let turned = (image.spin(block) + flip * moving.spin(block)) * block.bound_m;
-    ((image.v - flip * moving.v).norm() + turned.norm()) / moving.v.norm()
+    let turned = (image.spin(block) + flip * state.spin(block)) * block.bound_m;
+    ((image.v - flip * state.v).norm() + turned.norm()) / state.v.norm()
 }
 
 /// The same in a mirror, as far as rounding lets two blocks fall alike: what springs make of it grows with the steps that the error control
@@ -207,11 +207,11 @@ fn kept_over_an_end(scheme: Scheme, ahead_m: f64) -> f64 {
     let low = corners.min_by(|p, q| p.z.total_cmp(&q.z)).unwrap();
     let place = Vec3::new(0.0, low.y.signum() * ahead_m, case.block.ball_m + 1e-3);
     let v = Vec3::new(0.0, -3.0 * low.y.signum(), -2.0);
-    let mut moving = case.start(attitude, [place - low, v, Vec3::zeros()]);
-    let had_j = case.energy_j(&moving);
-    case.follow(&mut moving, 0.01, |_, _| ());
+    let mut state = case.start(attitude, [place - low, v, Vec3::zeros()]);
+    let had_j = case.energy_j(&state);
+    case.follow(&mut state, 0.01, |_, _| ());
     assert!(case.impacts > 0);
-    case.energy_j(&moving) / had_j
+    case.energy_j(&state) / had_j
 }
 
 /// An edge that slides off over its end, where the corner has come to press too, keeps what its spring holds until it lets go: 16 % of
@@ -247,11 +247,11 @@ fn slid_along(scheme: Scheme, crests: Terrain, (friction, lasts_s): (f64, f64)) 
         case = with_long_steps(case);
     }
     let start = [Vec3::z() * 0.2, Vec3::x() * 2.0, Vec3::zeros()];
-    let mut moving = case.start(Rotation3::identity(), start);
-    let level = moving.pose.centre.z;
-    case.follow(&mut moving, lasts_s, |_, _| ());
+    let mut state = case.start(Rotation3::identity(), start);
+    let level = state.pose.centre.z;
+    case.follow(&mut state, lasts_s, |_, _| ());
     let pressed_m = case.block.mass_kg * G / 4e8;
-    ((level - moving.pose.centre.z) / pressed_m, moving.v.x)
+    ((level - state.pose.centre.z) / pressed_m, state.v.x)
 }
 
 /// With springs of every scheme such a box is as deep as its weight presses it in, and has the speed (m/s) that `is_right` says.
@@ -296,8 +296,8 @@ fn a_block_at_rest_takes_long_steps() {
     for (name, body) in bodies() {
         for (friction, k) in [(0.0, 0), (0.5, 1), (0.5, 2)] {
             let mut case = BlockRun::new(slope(0.0, 50.0), body.clone(), (friction, 0.3));
-            let (mut moving, mut steps) = (thrown(&case, k), 0);
-            case.follow(&mut moving, 5.0, |_, _| steps += 1);
+            let (mut state, mut steps) = (rebounded(&case, k), 0);
+            case.follow(&mut state, 5.0, |_, _| steps += 1);
             println!("{name}, friction {friction}: {steps} steps");
             assert!(steps < 5000, "{name}, friction {friction}: {steps} steps");
         }
@@ -312,14 +312,14 @@ fn rounding_that_lifts_a_block_cuts_no_step() {
     let case =
         BlockRun::new(slope(0.0, 50.0), block(&box_surface([1.0, 0.7, 0.4]), 0.05), (0.5, 0.3));
     let gravity = Vec3::z() * -G;
-    let climbs_s = |up_m_s: f64| {
+    let climb_limit_s = |up_m_s: f64| {
         let start = [Vec3::z() * 0.25, Vec3::z() * up_m_s, Vec3::zeros()];
-        let moving = case.start(Rotation3::identity(), start);
-        moving.climbs_s(&case.block, &gravity, moving.motion_j(&case.block))
+        let state = case.start(Rotation3::identity(), start);
+        state.climb_limit_s(&case.block, &gravity, state.motion_j(&case.block))
     };
-    assert!(climbs_s(-1e-8).is_infinite());
-    assert!(climbs_s(1e-8) > 0.1, "{}", climbs_s(1e-8));
-    let slow_s = climbs_s(1e-2);
+    assert!(climb_limit_s(-1e-8).is_infinite());
+    assert!(climb_limit_s(1e-8) > 0.1, "{}", climb_limit_s(1e-8));
+    let slow_s = climb_limit_s(1e-2);
     assert!((slow_s - 1e-2 / G).abs() < 1e-6 * slow_s, "{slow_s}");
 }
 
@@ -339,11 +339,11 @@ fn what_comes_within_a_step_is_struck_and_not_stopped() {
         case.law = law_of(&case.ground, &case.block, 1e-3);
         let centre = Vec3::new(-1.0 - 0.01 * f64::from(k), 0.0, 0.2);
         let start = [centre, Vec3::x() * 4.0, Vec3::zeros()];
-        let mut moving = case.start(Rotation3::identity(), start);
-        let before = case.energy_j(&moving);
-        case.follow(&mut moving, 0.2, |_, _| ());
-        let kept = case.energy_j(&moving) / before;
-        assert!(moving.v.x < 3.9, "{k}: it has not come to the ramp");
+        let mut state = case.start(Rotation3::identity(), start);
+        let before = case.energy_j(&state);
+        case.follow(&mut state, 0.2, |_, _| ());
+        let kept = case.energy_j(&state) / before;
+        assert!(state.v.x < 3.9, "{k}: it has not come to the ramp");
         assert!((kept - 1.0).abs() < 1e-6, "{k}: {kept}");
     }
 }

@@ -10,12 +10,12 @@ pub(super) fn rolling_prism(
 ) -> ((f64, f64), f64) {
     let angle = degrees.to_radians();
     let mut case = made(prism_run(angle));
-    let mut moving = prism_start(&case, angle);
+    let mut state = prism_start(&case, angle);
     // a slap takes a third of the spin, and the way up over the edge some more
     let (mut slap, mut fastest, mut slowest, mut fell) = ((0.0, 0.0), 0.0, f64::INFINITY, None);
     let own = case.block.clone();
-    case.follow(&mut moving, 12.0, |now, moving| {
-        let spin = moving.spin(&own).y;
+    case.follow(&mut state, 12.0, |now, state| {
+        let spin = state.spin(&own).y;
         match fell {
             None if spin < 0.9 * fastest => fell = Some(now),
             None => fastest = spin.max(fastest),
@@ -39,7 +39,7 @@ fn prism_run(angle: f64) -> BlockRun {
 }
 
 /// It turns about its rear edge with 1.7 rad/s.
-fn prism_start(case: &BlockRun, angle: f64) -> Moving {
+fn prism_start(case: &BlockRun, angle: f64) -> BlockState {
     let (along, up) = axes(angle);
     let (height, spin) = (0.75_f64.sqrt(), Vec3::y() * 1.7);
     let arm = up * height - along * 0.5;
@@ -68,20 +68,20 @@ fn a_hexagonal_prism_rolls_into_its_limit_cycle() {
     {
         let angle = degrees.to_radians();
         let mut case = prism_run(angle);
-        let mut moving = prism_start(&case, angle);
+        let mut state = prism_start(&case, angle);
         // the last slap: the spin before it, and what is left once the weight has brought the prism to rest on its front edge, about which
         // it turns without loss
         let (mut slap, mut known, mut fell) = ((0.0, 0.0), 1.7, (0.0, 0.0));
         let own = case.block.clone();
         let s = 0.5 - PRISM_BALL_M * crate::math::tan(std::f64::consts::FRAC_PI_6);
         let about_edge = 5.0 / 12.0 + 0.75 + s * s;
-        case.follow(&mut moving, 12.0, |t, moving| {
-            let (spin, z) = (moving.spin(&own).y, moving.pose.centre.z);
+        case.follow(&mut state, 12.0, |t, state| {
+            let (spin, z) = (state.spin(&own).y, state.pose.centre.z);
             if spin < 0.9 * known && t > fell.0 + SETTLED_S {
                 (slap.0, fell) = (known, (t, z));
             }
             if t < fell.0 + SETTLED_S {
-                let motion = moving.motion_j(&own) / own.mass_kg + G * (z - fell.1);
+                let motion = state.motion_j(&own) / own.mass_kg + G * (z - fell.1);
                 slap.1 = (2.0 * motion / about_edge).sqrt();
             }
             known = spin;

@@ -38,11 +38,11 @@ impl Slap {
     fn follow(&mut self, rad: f64) -> f64 {
         let (spin, arm) = (Vec3::y(), Vec3::new(self.half, 0.0, self.height));
         let start = [Vec3::z() * self.height, spin.cross(&arm), spin];
-        let mut moving = self.case.start(Rotation3::identity(), start);
+        let mut state = self.case.start(Rotation3::identity(), start);
         let time_s = rad / self.case.law.omega_rad_s();
-        self.case.follow(&mut moving, time_s, |_, _| ());
+        self.case.follow(&mut state, time_s, |_, _| ());
         let pivot = self.inertia + self.height.powi(2) + self.half.powi(2);
-        moving.spin(&self.case.block).y + G * self.half / pivot * time_s
+        state.spin(&self.case.block).y + G * self.half / pivot * time_s
     }
 
     /// The same by a model of its own: two edges that do not move far, each on the springs and dashpots of its two corners, in the plane,
@@ -137,18 +137,18 @@ fn a_face_slides_on_springs_over_any_triangulation() {
             let body = block(&box_surface([1.0, 0.9, 0.5]), 0.05);
             let case = BlockRun::new(mesh, body, (0.5, 0.4));
             let mut case = with_long_steps(on_springs(case, scheme, 1e9));
-            let mut moving = case.start(tilted(angle), still(up * 0.25));
-            let start = moving.pose.centre;
+            let mut state = case.start(tilted(angle), still(up * 0.25));
+            let start = state.pose.centre;
             let (mut worst, mut way) = (0.0f64, 0.0);
-            case.follow(&mut moving, 6.4, |t, moving| {
+            case.follow(&mut state, 6.4, |t, state| {
                 if t > 1.0 {
-                    worst = worst.max(moving.v.dot(&up).abs());
+                    worst = worst.max(state.v.dot(&up).abs());
                 }
-                way = (moving.pose.centre - start).dot(&along);
+                way = (state.pose.centre - start).dot(&along);
             });
             println!("{scheme:?}: {way} m, {worst:e} m/s, {} steps", case.steps);
             assert!(way > 50.0 && worst < 1e-8, "{scheme:?}: {way} {worst:e}");
-            (way, moving.v)
+            (way, state.v)
         });
         let off = ((ends[0].0 - ends[1].0).abs(), (ends[0].1 - ends[1].1).norm());
         assert!(off.0 < 1e-6 && off.1 < 1e-7, "{scheme:?}: {ends:?}");
@@ -210,14 +210,14 @@ fn one_contact_of_an_edge_or_a_face_bears_the_weight() {
             let height = body.support_m(&(attitude.inverse() * -Vec3::z()));
             let case = BlockRun::new(mesh, body, (0.5, 0.0));
             let mut case = with_long_steps(on_springs(case, scheme, 1e9));
-            let mut moving = case.start(attitude, still(Vec3::z() * height));
-            let start = moving.pose.centre;
-            case.follow(&mut moving, 0.3, |_, _| ());
-            let (pressed, way) = (case.block.mass_kg * G / 1e9, moving.pose.centre - start);
+            let mut state = case.start(attitude, still(Vec3::z() * height));
+            let start = state.pose.centre;
+            case.follow(&mut state, 0.3, |_, _| ());
+            let (pressed, way) = (case.block.mass_kg * G / 1e9, state.pose.centre - start);
             println!("{scheme:?}: {} {} steps", way.z / -pressed, case.steps);
             assert!((way.z / -pressed - 1.0).abs() < 1e-3, "{scheme:?}: {way} {pressed}");
-            let spin = moving.spin(&case.block).norm();
-            assert!(moving.v.norm() < 1e-5 && spin < 1e-9, "{scheme:?}: {} {spin}", moving.v);
+            let spin = state.spin(&case.block).norm();
+            assert!(state.v.norm() < 1e-5 && spin < 1e-9, "{scheme:?}: {} {spin}", state.v);
         }
     }
 }

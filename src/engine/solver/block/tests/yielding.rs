@@ -16,8 +16,8 @@ fn mass() -> (Block, Mass) {
         velocity_m_s: Vec3::zeros(),
         spin_rad_s: Vec3::zeros(),
     };
-    let moving = Moving::new(&block, (still.position_m, Rotation3::identity()), &still);
-    let mass = moving.mass(&block);
+    let state = BlockState::new(&block, (still.position_m, Rotation3::identity()), &still);
+    let mass = state.mass(&block);
     (block, mass)
 }
 
@@ -53,27 +53,27 @@ proptest! {
         prop_assume!(n.dot(&u) < -0.1);
         let contact = BlockContact::new(&mass, (n, lever), (friction, 0), Vec3::zeros());
         // all that a blow without friction takes until the point stops along the normal
-        let most_j: f64 = 0.5 * n.dot(&u).powi(2) / n.dot(&(contact.answer * n));
-        let Some(impulse) = contact.yielding(&u, share * most_j) else {
+        let available_j: f64 = 0.5 * n.dot(&u).powi(2) / n.dot(&(contact.delassus * n));
+        let Some(impulse) = contact.yielding(&u, share * available_j) else {
             prop_assert!(friction > 0.0 || share >= 1.0);
             return Ok(());
         };
-        let taken_j: f64 = -(u.dot(&impulse) + 0.5 * impulse.dot(&(contact.answer * impulse)));
-        prop_assert!((taken_j / (share * most_j) - 1.0).abs() < 1e-9, "{}", taken_j);
+        let taken_j: f64 = -(u.dot(&impulse) + 0.5 * impulse.dot(&(contact.delassus * impulse)));
+        prop_assert!((taken_j / (share * available_j) - 1.0).abs() < 1e-9, "{}", taken_j);
         let push = n.dot(&impulse);
         prop_assert!(push > 0.0 && (impulse - n * push).norm() <= friction * push * (1.0 + 1e-9));
     }
 
     /// With friction enough to hold it a contact point that slips in stops slipping, and stays so.
     #[test]
-    fn enough_friction_ends_the_slip(lever in vector(0.3), aside in -1.0..1.0f64) {
+    fn enough_friction_ends_the_slip(lever in vector(0.3), selected in -1.0..1.0f64) {
         let (_, mass) = mass();
         let lever = lever - Vec3::x();
         let contact = BlockContact::new(&mass, (Vec3::x(), lever), (5.0, 0), Vec3::zeros());
-        let u = Vec3::new(-10.0, aside, 0.5);
-        let most_j = 50.0 / contact.answer.m11;
-        let Some(impulse) = contact.yielding(&u, 0.7 * most_j) else { return Ok(()) };
-        let after = u + contact.answer * impulse;
+        let u = Vec3::new(-10.0, selected, 0.5);
+        let available_j = 50.0 / contact.delassus.m11;
+        let Some(impulse) = contact.yielding(&u, 0.7 * available_j) else { return Ok(()) };
+        let after = u + contact.delassus * impulse;
         prop_assert!(after.x < 0.0 && after.yz().norm() < 0.02, "{after:?}");
     }
 }

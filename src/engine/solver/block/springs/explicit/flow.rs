@@ -9,13 +9,13 @@
 //! step's start: one that comes up on the way presses nothing until the step has been cut where it begins, so that within a step the
 //! right side has no jump and the pair's own estimate of the error holds.
 
-use super::super::{SpringContact, turn_by, turning};
+use super::super::{SpringContact, rotation_by, rotation_vector_rate};
 use crate::body::Block;
 use crate::contact::Feature;
 use crate::contact::block::Pose;
 use crate::contact::history::carry;
 use crate::rock::Vec3;
-use crate::solver::block::{Footing, Moving, TOUCH};
+use crate::solver::block::{BlockContactState, BlockState, TOUCH};
 use crate::solver::environment::ContactEnvironment;
 use crate::solver::explicit_impact::HeldEnergy;
 use crate::solver::impact::dormand_prince::{Flow, NODES, Rates, put, three};
@@ -31,7 +31,7 @@ const SPRINGS: usize = 12;
 /// What is summed up: losses by friction, damping and to trees. What the normal spring of each contact takes up follows.
 pub(super) const LOSSES: usize = 3;
 /// A contact that seems to have begun so near to the step's start has not come up by the way: it popped up, and presses at once (–).
-const POPPED: f64 = 0.02;
+const APPEARED: f64 = 0.02;
 
 /// What errors are measured by.
 #[derive(Debug, Clone, Copy)]
@@ -41,15 +41,15 @@ pub(super) struct ErrorScale {
     /// Local error allowed (m/s).
     pub(super) allowed: f64,
     /// Penetration (m) up to which a contact that comes up need not be met more exactly.
-    pub(super) begins_m: f64,
+    pub(super) onset_m: f64,
 }
 
 /// A block with up to `C` contacts that press; a contact keeps the place of its memory.
 pub(super) struct BlockFlow<'a, 'w, const C: usize> {
     world: &'a ContactEnvironment<'w>,
-    pub(super) footing: &'a mut Footing,
+    pub(super) footing: &'a mut BlockContactState,
     block: &'a Block,
-    start: &'a Moving,
+    start: &'a BlockState,
     /// Inverse inertia at the step's start (1/(kg m²)).
     inverse: Matrix3<f64>,
     scale: ErrorScale,
@@ -59,27 +59,27 @@ pub(super) struct BlockFlow<'a, 'w, const C: usize> {
     first: [(u16, Feature); C],
     /// Length of the try (s), and whether what comes up in it presses at once.
     dt: f64,
-    is_open: bool,
+    admits_new: bool,
     /// Where in the try a further contact begins (–), if one does.
     pub(super) onset: Option<f64>,
     /// Whether there were more contacts than places.
-    pub(super) is_crowded: bool,
+    pub(super) exceeds_room: bool,
     /// What the normal spring of each contact held at the step's start, and whether it has a dashpot.
-    began: [HeldEnergy; C],
+    held_at_start: [HeldEnergy; C],
     damped: [bool; C],
     /// Stiffness of each contact at the step's start relative to that of a single point (–).
-    began_gain2: [f64; C],
+    gain2_at_start: [f64; C],
     /// Whether the try has met the same pairs of features throughout.
     pub(super) is_smooth: bool,
     /// The block at the state last asked for.
-    pub(super) moving: Moving,
+    pub(super) state: BlockState,
 }
 
 impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
     pub(super) fn new(
         world: &'a ContactEnvironment<'w>,
-        footing: &'a mut Footing,
-        (block, start): (&'a Block, &'a Moving),
+        footing: &'a mut BlockContactState,
+        (block, start): (&'a Block, &'a BlockState),
         scale: ErrorScale,
     ) -> Self {
         // what touches at the start and is not yet known begins there
@@ -94,19 +94,19 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
             known: usize::MAX,
             first: [(0, Feature::NONE); C],
             dt: 0.0,
-            is_open: false,
+            admits_new: false,
             onset: None,
-            is_crowded: false,
-            began: [HeldEnergy::NONE; C],
+            exceeds_room: false,
+            held_at_start: [HeldEnergy::NONE; C],
             damped: [false; C],
-            began_gain2: [1.0; C],
+            gain2_at_start: [1.0; C],
             is_smooth: true,
-            moving: start.clone(),
+            state: start.clone(),
         }
     }
 
     /// The present state. Way and rotation vector count from the step's start: map coordinates would cost digits.
-    pub(super) fn begin<const N: usize>(&self) -> [f64; N] {
+    pub(super) fn initial_state<const N: usize>(&self) -> [f64; N] {
         let mut y = [0.0; N];
         put(&mut y, V, &self.start.v);
         put(&mut y, MOMENTUM, &self.start.momentum);
@@ -117,7 +117,7 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
     }
 
     /// The contacts of the first look are those that press.
-    pub(super) fn settle_contacts(&mut self) {
+    pub(super) fn fix_contacts(&mut self) {
         self.known = self.footing.springs.histories.len();
         self.footing.springs.known = self.known;
         self.footing.springs.keep_offsets();
@@ -126,15 +126,15 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
         }
         let contacts = self.footing.springs.contacts.iter().zip(&self.footing.touches.found);
         for (contact, touch) in contacts.filter(|(contact, _)| contact.history < C) {
-            self.began[contact.history] = self.held(contact);
-            self.began_gain2[contact.history] = touch.gain2;
+            self.held_at_start[contact.history] = self.held(contact);
+            self.gain2_at_start[contact.history] = touch.gain2;
         }
     }
 
-    /// Begins another try, of length `dt` (s), from the same state; what comes up in it presses at once if it `is_open`.
-    pub(super) fn begin_try(&mut self, dt: f64, is_open: bool) {
+    /// Begins another try, of length `dt` (s), from the same state; what comes up in it presses at once if it `admits_new`.
+    pub(super) fn begin_try(&mut self, dt: f64, admits_new: bool) {
         self.footing.springs.histories.truncate(self.known);
-        (self.dt, self.is_open, self.onset, self.is_smooth) = (dt, is_open, None, true);
+        (self.dt, self.admits_new, self.onset, self.is_smooth) = (dt, admits_new, None, true);
     }
 
     /// What the normal spring of a contact holds.
@@ -154,7 +154,7 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
             let gone = HeldEnergy { stored_j: 0.0, gives_back: !self.damped[place] };
             let ended = end.map_or(gone, |contact| self.held(contact));
             let over = || self.has_patch(history.pair().0);
-            let damping = self.began[place].taken_until(&ended, over, sums[LOSSES + place]);
+            let damping = self.held_at_start[place].taken_until(&ended, over, sums[LOSSES + place]);
             let triangle = end.map_or(history.triangle, |contact| contact.triangle);
             taken.add(&Loss { damping, ..Loss::default() }.on(self.world, triangle), 1.0);
         }
@@ -164,46 +164,47 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
     /// Whether a part of the block presses with a patch of several points at an end of the step.
     fn has_patch(&self, part: u16) -> bool {
         let several = |gain2: f64| (gain2 - 1.0).abs() > 0.0;
-        let mut began = self.footing.springs.histories.iter().zip(self.began_gain2);
+        let mut held_at_start = self.footing.springs.histories.iter().zip(self.gain2_at_start);
         let mut ends = self.footing.touches.found.iter();
-        began.any(|(history, gain2)| history.pair().0 == part && several(gain2))
+        held_at_start.any(|(history, gain2)| history.pair().0 == part && several(gain2))
             || ends.any(|touch| touch.part == part && several(touch.gain2))
     }
 
     /// The block at a state, and its rotation vector since the step's start (rad).
-    fn at<const N: usize>(&self, y: &[f64; N]) -> (Moving, Vec3) {
+    fn at<const N: usize>(&self, y: &[f64; N]) -> (BlockState, Vec3) {
         let turned = three(y, TURNED);
         let pose = Pose {
             centre: self.start.pose.centre + three(y, WAY),
-            attitude: turn_by(&turned) * self.start.pose.attitude,
+            attitude: rotation_by(&turned) * self.start.pose.attitude,
         };
-        (Moving { pose, v: three(y, V), momentum: three(y, MOMENTUM) }, turned)
+        (BlockState { pose, v: three(y, V), momentum: three(y, MOMENTUM) }, turned)
     }
 
     /// Notes down where a contact begins that has come up by stage `node`, moving apart with `up_m_s` (m/s).
     fn note_onset(&mut self, node: usize, penetration_m: f64, up_m_s: f64) {
-        if penetration_m <= self.scale.begins_m {
+        if penetration_m <= self.scale.onset_m {
             return;
         }
         let reached = NODES[node];
         // half of what is allowed behind its beginning, so that the next step begins with it
-        let since_s = (penetration_m - 0.5 * self.scale.begins_m) / -up_m_s;
+        let since_s = (penetration_m - 0.5 * self.scale.onset_m) / -up_m_s;
         let share = reached - since_s / self.dt;
-        let comes = up_m_s < 0.0 && share > POPPED;
+        let comes = up_m_s < 0.0 && share > APPEARED;
         let share = if comes { share.min(reached) } else { 0.0 };
         self.onset = Some(self.onset.map_or(share, |before: f64| before.min(share)));
     }
 
     /// Looks for the contacts of the block at a state.
-    fn touch_at<const N: usize>(&mut self, moving: &Moving, y: &[f64; N]) {
+    fn detect_at<const N: usize>(&mut self, state: &BlockState, y: &[f64; N]) {
         let (world, block) = (self.world, self.block);
         // where the step begins is where the one before has looked last
-        let sees = std::mem::take(&mut self.footing.springs.seen) && self.known == usize::MAX;
+        let sees = std::mem::take(&mut self.footing.springs.touches_are_current)
+            && self.known == usize::MAX;
         if !sees {
-            self.footing.look_at_all(world, (block, &moving.pose), TOUCH * block.radius_m);
+            self.footing.detect_all(world, (block, &state.pose), TOUCH * block.radius_m);
         }
-        self.footing.remember(world, (block, moving));
-        self.footing.place(world, (block, self.start, moving), 0.0, &|_, k| {
+        self.footing.update_histories(world, (block, state));
+        self.footing.place_contacts(world, (block, self.start, state), 0.0, &|_, k| {
             if k < C { three(y, SPRINGS + 3 * k) } else { Vec3::zeros() }
         });
         let found = &self.footing.touches.found;
@@ -213,16 +214,16 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
     }
 
     /// Force of a contact whose point moves by `u` (m/s); its spring, its losses and its kinks go into `rates`.
-    fn press<const N: usize, const Q: usize, const P: usize>(
+    fn contact_force<const N: usize, const Q: usize, const P: usize>(
         &mut self,
         contact: &mut SpringContact,
         u: &Vec3,
         rates: &mut Rates<N, Q, P>,
     ) -> Vec3 {
-        let (pulls, shear) = contact.press(u);
+        let (pulls, shear) = contact.update_forces(u);
         let place = contact.history;
-        let memory = &self.footing.springs.histories[place];
-        let rate = carry(shear.stretch_rate, &contact.n, &memory.n);
+        let history = &self.footing.springs.histories[place];
+        let rate = carry(shear.stretch_rate, &contact.n, &history.n);
         put(&mut rates.y, SPRINGS + 3 * place, &rate);
         let (normal, up) = (contact.law.normal(contact.captured), contact.n.dot(u));
         let penetration = contact.penetration.max(0.0);
@@ -250,30 +251,30 @@ impl<const C: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, 
         if self.onset.is_some() {
             return;
         }
-        let (moving, turned) = self.at(y);
-        self.touch_at(&moving, y);
-        let spin = moving.spin(self.block);
+        let (state, turned) = self.at(y);
+        self.detect_at(&state, y);
+        let spin = state.spin(self.block);
         let mut contacts = std::mem::take(&mut self.footing.springs.contacts);
         let (mut dv, mut torque) = (self.world.body.gravity, Vec3::zeros());
         for contact in &mut contacts {
-            let u = moving.v + spin.cross(&contact.lever);
+            let u = state.v + spin.cross(&contact.lever);
             let place = contact.history;
-            if place >= self.known && !self.is_open {
+            if place >= self.known && !self.admits_new {
                 self.note_onset(node, contact.penetration, contact.n.dot(&u));
             } else if place < C {
-                let force = self.press(contact, &u, rates);
+                let force = self.contact_force(contact, &u, rates);
                 dv += force / self.block.mass_kg;
                 torque += contact.lever.cross(&force);
             } else {
-                self.is_crowded = true;
+                self.exceeds_room = true;
             }
         }
         self.footing.springs.contacts = contacts;
-        put(&mut rates.y, WAY, &moving.v);
-        put(&mut rates.y, TURNED, &turning(&turned, &spin));
+        put(&mut rates.y, WAY, &state.v);
+        put(&mut rates.y, TURNED, &rotation_vector_rate(&turned, &spin));
         put(&mut rates.y, V, &dv);
         put(&mut rates.y, MOMENTUM, &torque);
-        self.moving = moving;
+        self.state = state;
     }
 
     /// Ways, turns and stretches times `ω`, spin times the largest radius, all in m/s. A spring that nothing presses on any more holds

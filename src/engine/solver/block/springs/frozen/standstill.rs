@@ -1,8 +1,8 @@
 //! A blow that ends with contacts that hold each other.
 
-use super::{CONTACTS, FrozenFlow, MOMENTUM, OWN, V};
+use super::{CONTACTS, FrozenFlow, MOMENTUM, PER_CONTACT, V};
 use crate::rock::Vec3;
-use crate::solver::block::Moving;
+use crate::solver::block::BlockState;
 use crate::solver::impact::dormand_prince::three;
 
 /// A block whose motion has changed by no more than so many errors allowed (–) for so long (rad of the stiffest contact) is clamped, if a contact
@@ -19,21 +19,21 @@ pub(super) struct Standstill {
 }
 
 impl Standstill {
-    pub(super) fn of(moving: &Moving) -> Self {
-        Self { since_rad: 0.0, v: moving.v, momentum: moving.momentum }
+    pub(super) fn of(state: &BlockState) -> Self {
+        Self { since_rad: 0.0, v: state.v, momentum: state.momentum }
     }
 
     /// For how long (rad) velocity and angular momentum have been the same, but for `nothing` as `change` measures it (–).
     pub(super) fn stays_rad(
         &mut self,
         (v, momentum): (Vec3, Vec3),
-        gone_rad: f64,
+        age_rad: f64,
         is_other: impl Fn(&Vec3, &Vec3) -> bool,
     ) -> f64 {
         if is_other(&(v - self.v), &(momentum - self.momentum)) {
-            *self = Self { since_rad: gone_rad, v, momentum };
+            *self = Self { since_rad: age_rad, v, momentum };
         }
-        gone_rad - self.since_rad
+        age_rad - self.since_rad
     }
 }
 
@@ -54,10 +54,10 @@ impl FrozenFlow<'_, '_> {
             return false;
         }
         for (k, contact) in self.contacts.iter_mut().enumerate() {
-            let at = CONTACTS + OWN * k;
+            let at = CONTACTS + PER_CONTACT * k;
             (contact.penetration, contact.shear) = (y[at], three(y, at + 1));
         }
-        let pressed = self.contacts.iter().filter(|one| !one.waits && one.penetration > 0.0);
+        let pressed = self.contacts.iter().filter(|one| !one.is_suspended && one.penetration > 0.0);
         let deepest = pressed.map(|one| one.penetration).fold(0.0, f64::max);
         deepest * self.omega > HOLDS * self.allowed
     }
@@ -65,6 +65,6 @@ impl FrozenFlow<'_, '_> {
     /// Energy in the contacts that press (J).
     pub(super) fn clamped_j(&self) -> f64 {
         let pressed = self.contacts.iter().filter(|one| one.normal_force > 0.0);
-        pressed.map(|one| one.holds_j(one.penetration, &one.shear)).sum()
+        pressed.map(|one| one.stored_j(one.penetration, &one.shear)).sum()
     }
 }

@@ -1,6 +1,6 @@
 //! What comes to a block within a step: how long that may be, and what its contacts ask for.
 
-use super::{AHEAD, Footing, Moving, TOUCH};
+use super::{BlockContactState, BlockState, DETECTION_REACH, TOUCH};
 use crate::body::Block;
 use crate::contact::block::BlockTouch;
 use crate::rock::Vec3;
@@ -8,39 +8,40 @@ use crate::solver::environment::ContactEnvironment;
 use crate::solver::law::capture_m_s;
 
 /// Looks into the middle of a step that an impact cuts, at most.
-const LOOKS: u32 = 4;
+const MOST_DETECTIONS: u32 = 4;
 /// A step is cut again where the impact comes sooner by more than this (–).
 const SOONER: f64 = 1e-3;
 /// No step is cut shorter (s).
 const SHORTEST_S: f64 = 1e-9;
 
 /// How a contact in the middle of a step came there.
-pub(super) struct Came {
+pub(super) struct MidStepContact {
     /// Velocity of the point of the block at the start of the step, and what turning has added (m/s).
-    began: Vec3,
-    turned: Vec3,
+    start_velocity: Vec3,
+    velocity_change: Vec3,
     /// Gap at the start, and the least it can have been (m).
     gap_m: f64,
     least_gap_m: f64,
 }
 
-impl Came {
+impl MidStepContact {
     /// The contact `touch` of a block in the middle of a step of `dt`.
     pub(super) fn of(
         block: &Block,
-        [start, middle]: [&Moving; 2],
+        [start, middle]: [&BlockState; 2],
         touch: &BlockTouch,
         dt: f64,
     ) -> Self {
         let n = &touch.normal;
         let core = middle.pose.attitude.inverse_transform_vector(&(touch.lever + n * block.ball_m));
-        let began = start.at(block, &(start.pose.attitude * core - n * block.ball_m));
-        let turned = middle.at(block, &touch.lever) - began;
-        let gap_m = touch.gap_m - 0.5 * dt * n.dot(&(began + turned * 0.5));
+        let start_velocity =
+            start.velocity_at(block, &(start.pose.attitude * core - n * block.ball_m));
+        let velocity_change = middle.velocity_at(block, &touch.lever) - start_velocity;
+        let gap_m = touch.gap_m - 0.5 * dt * n.dot(&(start_velocity + velocity_change * 0.5));
         // a pair of edges moves on along both, and so is no point of the block: the slower of the two speeds cannot make a gap of one that was pressed in
-        let slower = n.dot(&began).max(n.dot(&(began + turned)));
+        let slower = n.dot(&start_velocity).max(n.dot(&(start_velocity + velocity_change)));
         let least_gap_m = touch.gap_m - 0.5 * dt * slower;
-        Self { began, turned, gap_m, least_gap_m }
+        Self { start_velocity, velocity_change, gap_m, least_gap_m }
     }
 
     /// Whether it comes to the block as an impact: it did not touch, and closes faster than its ground captures.
@@ -50,7 +51,7 @@ impl Came {
         block: &Block,
         touch: &BlockTouch,
     ) -> bool {
-        let speed = -touch.normal.dot(&self.began);
+        let speed = -touch.normal.dot(&self.start_velocity);
         self.least_gap_m > TOUCH * block.radius_m && speed >= capture_m_s(world.law(touch.triangle))
     }
 
@@ -61,14 +62,14 @@ impl Came {
     /// thrown back so: it ends no faster than what was pressed in is let out, with `out_m_s` (m/s) from `deep_m` (m) on.
     pub(super) fn goal(&self, touch: &BlockTouch, dt: f64, (deep_m, out_m_s): (f64, f64)) -> Vec3 {
         let n = &touch.normal;
-        let up = n.dot(&self.turned);
+        let up = n.dot(&self.velocity_change);
         let most_m_s = out_m_s * (-self.gap_m / deep_m).clamp(0.0, 1.0);
-        let out = (-2.0 * self.gap_m / dt - n.dot(&self.began)).min(most_m_s);
-        n * (out - up) - (self.turned - n * up)
+        let out = (-2.0 * self.gap_m / dt - n.dot(&self.start_velocity)).min(most_m_s);
+        n * (out - up) - (self.velocity_change - n * up)
     }
 }
 
-impl Footing {
+impl BlockContactState {
     /// Drifts from the start to the middle of a step of at most `dt` and looks for contacts there; how long the step is (s).
     ///
     /// What closes faster than its ground captures is an impact, and comes at the end of the step. Where cells are smaller than a step
@@ -77,16 +78,16 @@ impl Footing {
         &mut self,
         world: &ContactEnvironment,
         block: &Block,
-        (start, moving): (&Moving, &mut Moving),
+        (start, state): (&BlockState, &mut BlockState),
         mut dt: f64,
     ) -> f64 {
-        dt = self.closing(world, block, [start, start], (0.0, dt));
-        for look in 1..=LOOKS {
-            *moving = start.clone();
-            moving.drift(block, 0.5 * dt);
-            self.look(world, block, &moving.pose, AHEAD * block.ball_m);
-            let sooner = self.closing(world, block, [start, moving], (0.5 * dt, dt));
-            if look == LOOKS || sooner >= dt * (1.0 - SOONER) {
+        dt = self.time_to_impact(world, block, [start, start], (0.0, dt));
+        for detection in 1..=MOST_DETECTIONS {
+            *state = start.clone();
+            state.drift(block, 0.5 * dt);
+            self.detect(world, block, &state.pose, DETECTION_REACH * block.ball_m);
+            let sooner = self.time_to_impact(world, block, [start, state], (0.5 * dt, dt));
+            if detection == MOST_DETECTIONS || sooner >= dt * (1.0 - SOONER) {
                 break;
             }
             dt = sooner;
@@ -94,19 +95,20 @@ impl Footing {
         dt
     }
 
-    /// Cuts a step of `dt` (s) where an impact comes, as it looks `gone` (s) from its start.
-    fn closing(
+    /// Cuts a step of `dt` (s) where an impact comes, as it looks `elapsed` (s) from its start.
+    fn time_to_impact(
         &self,
         world: &ContactEnvironment,
         block: &Block,
-        [start, now]: [&Moving; 2],
-        (gone, dt): (f64, f64),
+        [start, now]: [&BlockState; 2],
+        (elapsed, dt): (f64, f64),
     ) -> f64 {
         self.touches.found.iter().fold(dt, |dt, touch| {
             let speed = now.approach_m_s(block, touch);
             let strikes = speed > 0.0
-                && Came::of(block, [start, now], touch, 2.0 * gone).strikes(world, block, touch);
-            if strikes { dt.min((gone + touch.gap_m / speed).max(SHORTEST_S)) } else { dt }
+                && MidStepContact::of(block, [start, now], touch, 2.0 * elapsed)
+                    .strikes(world, block, touch);
+            if strikes { dt.min((elapsed + touch.gap_m / speed).max(SHORTEST_S)) } else { dt }
         })
     }
 }

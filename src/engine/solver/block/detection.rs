@@ -1,48 +1,48 @@
 //! What a block can touch where it is.
 
-use super::{Footing, TOUCH};
+use super::{BlockContactState, TOUCH};
 use crate::body::Block;
 use crate::contact::block::{BlockTouch, MOST_TOUCHES, Pose, keep_widest, touches};
 use crate::solver::environment::ContactEnvironment;
 
 /// Features are collected for a way of the centre (–, relative to the radius of the sphere of equal volume) …
-const WAY: f64 = 0.5;
+const COLLECTED_TRAVEL: f64 = 0.5;
 /// … and so far from the balls (–, relative to their radius): a corner that far from all need not be asked for a while.
-const SEES: f64 = 3.0;
+const COLLECTED_REACH: f64 = 3.0;
 
-impl Footing {
+impl BlockContactState {
     /// Forgets all that was seen (before the next block).
     pub(crate) fn forget(&mut self) {
         self.near.forget();
         self.touches.forget();
-        self.looked = None;
+        self.last_detection = None;
         self.clamp.open();
     }
 
     /// Sees to it that the features around a block are known, with room for some looks.
-    fn know(&mut self, world: &ContactEnvironment, block: &Block, pose: &Pose) {
+    fn collect_features(&mut self, world: &ContactEnvironment, block: &Block, pose: &Pose) {
         let core = block.bound_m - block.ball_m;
         if !self.near.covers_around(&pose.centre, core) {
-            let margin = core + WAY * block.radius_m;
-            let slack = SEES * block.ball_m;
+            let margin = core + COLLECTED_TRAVEL * block.radius_m;
+            let slack = COLLECTED_REACH * block.ball_m;
             self.near.collect(world.terrain, &pose.centre, block.ball_m, margin, slack);
         }
     }
 
     /// Looks for all contacts of a block that are no wider apart than `reach_m`.
-    pub(super) fn look_at_all(
+    pub(super) fn detect_all(
         &mut self,
         world: &ContactEnvironment,
         (block, pose): (&Block, &Pose),
         reach_m: f64,
     ) {
-        self.looked = None;
-        self.know(world, block, pose);
+        self.last_detection = None;
+        self.collect_features(world, block, pose);
         touches(&mut self.near, world.terrain, (block, pose), reach_m, &mut self.touches);
     }
 
     /// Looks for the contacts of a block that are no wider apart than `reach_m`, unless that was the last look.
-    pub(crate) fn look(
+    pub(crate) fn detect(
         &mut self,
         world: &ContactEnvironment,
         block: &Block,
@@ -50,27 +50,27 @@ impl Footing {
         reach_m: f64,
     ) {
         // the look that ended a step is the one that the next begins with
-        if self.looked == Some((*pose, reach_m)) {
+        if self.last_detection == Some((*pose, reach_m)) {
             return;
         }
-        self.look_at_all(world, (block, pose), reach_m);
-        self.looked = Some((*pose, reach_m));
+        self.detect_all(world, (block, pose), reach_m);
+        self.last_detection = Some((*pose, reach_m));
     }
 
-    /// Sets aside the contacts that touch, as [`Self::set_aside`].
-    pub(super) fn set_touching_aside(&mut self, block: &Block) {
+    /// Sets aside the contacts that touch, as [`Self::select`].
+    pub(super) fn select_touching(&mut self, block: &Block) {
         let most = TOUCH * block.radius_m;
-        self.set_aside(|touch| touch.gap_m <= most);
+        self.select(|touch| touch.gap_m <= most);
     }
 
     /// Sets aside the contacts found that are `wanted`, and those of a clamp: where more than can act at a time, those that span most.
-    pub(super) fn set_aside(&mut self, wanted: impl Fn(&BlockTouch) -> bool) {
-        self.aside.clear();
-        self.aside.extend(
-            self.touches.found.iter().filter(|touch| self.clamp.holds(touch) || wanted(touch)),
+    pub(super) fn select(&mut self, wanted: impl Fn(&BlockTouch) -> bool) {
+        self.selected.clear();
+        self.selected.extend(
+            self.touches.found.iter().filter(|touch| self.clamp.contains(touch) || wanted(touch)),
         );
-        if self.aside.len() > MOST_TOUCHES {
-            keep_widest(&mut self.aside, MOST_TOUCHES);
+        if self.selected.len() > MOST_TOUCHES {
+            keep_widest(&mut self.selected, MOST_TOUCHES);
         }
     }
 }
