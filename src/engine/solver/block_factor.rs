@@ -20,14 +20,14 @@ use nalgebra::{Cholesky, Const, LU};
 use ordering::Ordering;
 
 /// A block below the diagonal: row and column among the rocks, row > column.
-pub(super) type Below = (usize, usize, Mat6);
+pub(super) type LowerBlock = (usize, usize, Mat6);
 
 /// A system: one block a rock on the diagonal, and those that join rocks.
 /// Sorted by column and row, each block once.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Blocks<'a> {
+pub(super) struct BlockSystem<'a> {
     pub(super) diagonal: &'a [Mat6],
-    pub(super) below: &'a [Below],
+    pub(super) below: &'a [LowerBlock],
     /// The block opposite to each of those below; `None` for a symmetric, positive definite system.
     pub(super) above: Option<&'a [Mat6]>,
 }
@@ -35,18 +35,18 @@ pub(super) struct Blocks<'a> {
 /// A factor whose pattern is kept as long as the same rocks are joined.
 /// Order and pattern cost more than the numbers; a heap at rest keeps them for thousands of steps.
 #[derive(Debug, Default)]
-pub(super) struct Factor {
+pub(super) struct BlockFactor {
     /// Where the blocks below the diagonal stand.
-    joined: Vec<(usize, usize)>,
+    pattern: Vec<(usize, usize)>,
     ordering: Ordering,
     /// Blocks of the factor for each block below the diagonal, and whether rows and columns change places.
-    homes: Vec<(usize, bool)>,
+    positions: Vec<(usize, bool)>,
     /// `L`, in the order of the pattern.
     lower: Vec<Mat6>,
     /// `Uᵀ`, likewise.
     upper: Vec<Mat6>,
     pivots: Vec<Pivot>,
-    walk: Walk,
+    pending: PendingColumns,
     /// How often the pattern was made anew.
     pub(super) analysed: u64,
 }
@@ -63,7 +63,7 @@ enum Pivot {
 /// Linked lists through the columns, as in sparse Cholesky by columns (George and Liu 1981): O(1)
 /// to find the columns that reach row k.
 #[derive(Debug, Default)]
-struct Walk {
+struct PendingColumns {
     /// The columns that wait at each row: the first, and after each the next.
     first: Vec<Option<usize>>,
     after: Vec<Option<usize>>,
@@ -73,19 +73,19 @@ struct Walk {
     slot: Vec<usize>,
 }
 
-impl Factor {
+impl BlockFactor {
     /// Solves a system for `load` in place, six numbers a rock; `None` where [`Self::factorise`] finds none.
-    pub(super) fn solve(&mut self, blocks: Blocks, load: &mut [f64]) -> Option<()> {
+    pub(super) fn solve(&mut self, blocks: BlockSystem, load: &mut [f64]) -> Option<()> {
         self.factorise(blocks)?;
         self.substitute(load)
     }
 
     /// Factorises a system for [`Self::substitute`]; `None` where a pivot is singular, or not positive definite in a
     /// symmetric system.
-    pub(super) fn factorise(&mut self, blocks: Blocks) -> Option<()> {
-        let known = self.joined.iter();
+    pub(super) fn factorise(&mut self, blocks: BlockSystem) -> Option<()> {
+        let known = self.pattern.iter();
         let same = self.ordering.place.len() == blocks.diagonal.len()
-            && self.joined.len() == blocks.below.len()
+            && self.pattern.len() == blocks.below.len()
             && known.zip(blocks.below).all(|(at, block)| *at == (block.0, block.1));
         if !same {
             self.analyse(blocks);
@@ -95,69 +95,69 @@ impl Factor {
     }
 
     /// Finds order and pattern anew, and the place of each block in it.
-    fn analyse(&mut self, blocks: Blocks) {
+    fn analyse(&mut self, blocks: BlockSystem) {
         self.analysed += 1;
-        self.joined = blocks.below.iter().map(|block| (block.0, block.1)).collect();
-        self.ordering = Ordering::of(blocks.diagonal.len(), &self.joined);
+        self.pattern = blocks.below.iter().map(|block| (block.0, block.1)).collect();
+        self.ordering = Ordering::of(blocks.diagonal.len(), &self.pattern);
         let Ordering { place, starts, rows } = &self.ordering;
         // in the order of elimination a block may stand on the other side of the diagonal: then it
         // is the other half of the pair
-        let home = |&(row, column): &(usize, usize)| {
-            let turned = place[row] < place[column];
+        let position = |&(row, column): &(usize, usize)| {
+            let transposed = place[row] < place[column];
             let (row, column) = (place[row].max(place[column]), place[row].min(place[column]));
             let rows = &rows[starts[column]..starts[column + 1]];
-            (starts[column] + rows.partition_point(|&one| one < row), turned)
+            (starts[column] + rows.partition_point(|&one| one < row), transposed)
         };
-        self.homes = self.joined.iter().map(home).collect();
+        self.positions = self.pattern.iter().map(position).collect();
     }
 
     /// Puts the blocks of the matrix in their places; the rest of the pattern is fill and begins as
     /// zero.
-    fn fill(&mut self, blocks: Blocks) {
+    fn fill(&mut self, blocks: BlockSystem) {
         let size = self.ordering.rows.len();
         for half in [&mut self.lower, &mut self.upper] {
             half.clear();
             half.resize(size, Mat6::zeros());
         }
-        for (k, ((_, _, below), &(home, turned))) in
-            blocks.below.iter().zip(&self.homes).enumerate()
+        for (k, ((_, _, below), &(position, transposed))) in
+            blocks.below.iter().zip(&self.positions).enumerate()
         {
             let above = blocks.above.map_or_else(|| below.transpose(), |above| above[k]);
-            let (lower, upper) = if turned { (above, *below) } else { (*below, above) };
-            self.lower[home] += lower;
-            self.upper[home] += upper.transpose();
+            let (lower, upper) = if transposed { (above, *below) } else { (*below, above) };
+            self.lower[position] += lower;
+            self.upper[position] += upper.transpose();
         }
     }
 
     /// Column by column, each after those that reach it.
-    fn eliminate(&mut self, blocks: Blocks) -> Option<()> {
-        let Self { ordering: Ordering { place, starts, rows }, lower, upper, walk, .. } = self;
+    fn eliminate(&mut self, blocks: BlockSystem) -> Option<()> {
+        let Self { ordering: Ordering { place, starts, rows }, lower, upper, pending, .. } = self;
         let symmetric = blocks.above.is_none();
         let mut diagonal = vec![Mat6::zeros(); place.len()];
         place.iter().zip(blocks.diagonal).for_each(|(&at, block)| diagonal[at] = *block);
-        walk.begin(place.len());
+        pending.begin(place.len());
         self.pivots.clear();
         for (k, pivot) in diagonal.iter_mut().enumerate() {
             let (begin, end) = (starts[k], starts[k + 1]);
-            rows[begin..end].iter().enumerate().for_each(|(slot, &row)| walk.slot[row] = slot);
+            rows[begin..end].iter().enumerate().for_each(|(slot, &row)| pending.slot[row] = slot);
             let (known_l, own_l) = lower.split_at_mut(begin);
             let (known_u, own_u) = upper.split_at_mut(begin);
-            let mut waiting = walk.first[k];
+            let mut waiting = pending.first[k];
             while let Some(j) = waiting {
-                waiting = walk.after[j];
-                let at = walk.at[j];
+                waiting = pending.after[j];
+                let at = pending.at[j];
                 let (l, u) = (known_l[at], known_u[at]);
                 // A_kk less the products of the rows above, then the column below, then
                 // (unsymmetric only) the row beside it
-                take(pivot, &known_l[at], &u);
+                subtract_product(pivot, &known_l[at], &u);
                 for r in at + 1..starts[j + 1] {
-                    let slot = walk.slot[rows[r]];
-                    take(&mut own_l[slot], &known_l[r], &u);
+                    let slot = pending.slot[rows[r]];
+                    subtract_product(&mut own_l[slot], &known_l[r], &u);
                     if !symmetric {
-                        take(&mut own_u[slot], &known_u[r], &l);
+                        subtract_product(&mut own_u[slot], &known_u[r], &l);
                     }
                 }
-                walk.wait(j, at + 1, &rows[..starts[j + 1]]);
+                pending.wait(j, at + 1, &rows[..starts[j + 1]]);
             }
             let pivot = Pivot::of(pivot, symmetric)?;
             for (l, u) in own_l[..end - begin].iter().zip(&mut own_u[..end - begin]) {
@@ -166,7 +166,7 @@ impl Factor {
                 *u = row.transpose();
             }
             self.pivots.push(pivot);
-            walk.wait(k, begin, &rows[..end]);
+            pending.wait(k, begin, &rows[..end]);
         }
         Some(())
     }
@@ -205,7 +205,7 @@ impl Factor {
 /// Loops in fixed order, unrolled by the compiler: no library kernel whose order of sums depends on
 /// the processor.
 #[inline]
-fn take(c: &mut Mat6, a: &Mat6, b: &Mat6) {
+fn subtract_product(c: &mut Mat6, a: &Mat6, b: &Mat6) {
     for j in 0..6 {
         let mut column = c.column(j).into_owned();
         for k in 0..6 {
@@ -236,7 +236,7 @@ impl Pivot {
     }
 }
 
-impl Walk {
+impl PendingColumns {
     fn begin(&mut self, rocks: usize) {
         for list in [&mut self.first, &mut self.after] {
             list.clear();
@@ -265,7 +265,7 @@ mod tests {
     }
 
     /// Blocks on the diagonal, below and above it, of a grid of `side²` rocks.
-    fn system(side: usize, round: usize) -> (Vec<Mat6>, Vec<Below>, Vec<Mat6>) {
+    fn system(side: usize, round: usize) -> (Vec<Mat6>, Vec<LowerBlock>, Vec<Mat6>) {
         let rocks = side * side;
         let diagonal = (0..rocks).map(|k| Mat6::identity() * (20 + k % 5 + round) as f64).collect();
         let mut below = Vec::new();
@@ -283,7 +283,7 @@ mod tests {
     }
 
     /// By how much a solution fails the dense system, relative to its right side.
-    fn off(blocks: Blocks, right: &DVector<f64>, solution: Vec<f64>) -> f64 {
+    fn off(blocks: BlockSystem, right: &DVector<f64>, solution: Vec<f64>) -> f64 {
         let size = right.len();
         let mut dense = DMatrix::zeros(size, size);
         for (k, block) in blocks.diagonal.iter().enumerate() {
@@ -301,11 +301,11 @@ mod tests {
     #[test]
     fn the_sparse_solution_is_the_dense_one() {
         for (side, symmetric) in [(2, true), (2, false), (6, true), (6, false)] {
-            let mut factor = Factor::default();
+            let mut factor = BlockFactor::default();
             for round in 0..2 {
                 let (diagonal, below, above) = system(side, round);
                 let above = (!symmetric).then_some(&above[..]);
-                let blocks = Blocks { diagonal: &diagonal, below: &below, above };
+                let blocks = BlockSystem { diagonal: &diagonal, below: &below, above };
                 let right = DVector::from_fn(6 * side * side, |k, _| value(k));
                 let mut load: Vec<f64> = right.iter().copied().collect();
                 factor.solve(blocks, &mut load).unwrap();
@@ -320,9 +320,9 @@ mod tests {
     fn what_is_not_positive_definite_has_no_solution() {
         let mut load = vec![1.0; 6];
         let (negative, nothing) = ([-Mat6::identity()], [Mat6::zeros()]);
-        let symmetric = Blocks { diagonal: &negative, below: &[], above: None };
-        assert_eq!(Factor::default().solve(symmetric, &mut load), None);
-        let general = Blocks { diagonal: &nothing, below: &[], above: Some(&[]) };
-        assert_eq!(Factor::default().solve(general, &mut load), None);
+        let symmetric = BlockSystem { diagonal: &negative, below: &[], above: None };
+        assert_eq!(BlockFactor::default().solve(symmetric, &mut load), None);
+        let general = BlockSystem { diagonal: &nothing, below: &[], above: Some(&[]) };
+        assert_eq!(BlockFactor::default().solve(general, &mut load), None);
     }
 }

@@ -17,7 +17,7 @@ mod changes;
 mod flow;
 
 use super::contact_state::{ContactEnvironment, ContactState};
-use super::impact::dormand_prince::{Attempt, Flow, Stages, Tried, growth, three};
+use super::impact::dormand_prince::{Attempt, Flow, Stages, TrialResult, growth, vec3_at};
 use super::impact::{LOCAL, StepLength};
 use super::loss::Loss;
 use super::plane_ahead::longest_step;
@@ -26,7 +26,7 @@ use super::step_control::{Advance, StepError, TRAVEL};
 use crate::contact::TOUCH;
 use crate::contact::history::{ContactHistory, HISTORIES};
 pub(super) use flow::HeldEnergy;
-use flow::{Among, LOSSES, V, WAY};
+use flow::{LOSSES, SphereFlow, V, WAY};
 
 /// First step of an impact (rad of its oscillation).
 pub(super) const FIRST: f64 = 0.3;
@@ -39,7 +39,7 @@ const KINKED: f64 = 0.3;
 /// A larger one is no error of steps, and hiding it would hide a fault.
 pub(super) const BALANCED: f64 = 0.1;
 /// A step is not cut for contacts that take the place of others at a smaller or a larger share of it (–).
-const WITHIN: (f64, f64) = (0.02, 0.98);
+const INTERIOR: (f64, f64) = (0.02, 0.98);
 /// How much farther than its speed takes it a step may come (–), and for how many steps what is touched is chosen at a time.
 const AHEAD: f64 = 1.25;
 const STEPS_AHEAD: f64 = 4.0;
@@ -60,13 +60,13 @@ struct StepBounds {
 }
 
 /// An accepted step.
-struct Accepted {
+struct AcceptedStep {
     end: End,
     dt: f64,
     /// What contacts took, what springs hold counted in (J).
     loss: Loss,
     /// Whether the rates at its end hold for the next step: the same contacts, and the same normals.
-    is_alike: bool,
+    has_same_contacts: bool,
 }
 
 /// Whether a whole try of `dt` (s) is accepted by its error (squared, over the one allowed), and the step to try next (s). One that was cut
@@ -75,7 +75,7 @@ struct Accepted {
 ///
 /// # Errors
 /// [`StepError`] if what was accepted is no longer finite.
-pub(super) fn judge(
+pub(super) fn control_error(
     (dt, wished): (f64, f64),
     (error2, is_smooth): (f64, bool),
     is_short: bool,
@@ -165,9 +165,9 @@ impl ContactState {
         done: &mut Advance,
     ) -> Result<bool, StepError> {
         let mut bounds = self.step_bounds(world, scale, h_max);
-        let mut flow = Among::<C>::new(world, self, (bounds.omega, bounds.allowed));
+        let mut flow = SphereFlow::<C>::new(world, self, (bounds.omega, bounds.allowed));
         let mut stages = Stages::<N, Q, P>::NONE;
-        flow.rates(0, &flow.begin::<N>(), stages.first());
+        flow.rates(0, &flow.initial_state::<N>(), stages.first());
         // what the present place touches is met whatever becomes of the tries
         flow.state.accept_meetings(world);
         loop {
@@ -176,7 +176,7 @@ impl ContactState {
             };
             flow.state.impact.left -= bounds.omega * accepted.dt;
             flow.state.accept_impact(world, &accepted, &bounds, done);
-            if !(accepted.is_alike && flow.state.goes_on_alone(flow.pressed().len())) {
+            if !(accepted.has_same_contacts && flow.state.can_continue(flow.pressed().len())) {
                 return Ok(true);
             }
             let left_s = h_max - done.dt;
@@ -185,12 +185,12 @@ impl ContactState {
             }
             bounds = flow.state.step_bounds(world, scale, left_s);
             // the rates of the step's end are those of the next one's start
-            stages.pass();
+            stages.reuse_last();
         }
     }
 
     /// Whether an impact in `count` contacts goes on without anything that must be known between its steps.
-    fn goes_on_alone(&self, count: usize) -> bool {
+    fn can_continue(&self, count: usize) -> bool {
         self.is_rebounding()
             && self.histories.len() == count
             && self.histories.iter().all(|history| history.announced)
@@ -202,7 +202,7 @@ impl ContactState {
     fn accept_impact(
         &mut self,
         world: &ContactEnvironment,
-        accepted: &Accepted,
+        accepted: &AcceptedStep,
         bounds: &StepBounds,
         done: &mut Advance,
     ) {
@@ -217,7 +217,7 @@ impl ContactState {
         self.histories.retain(|history| history.closed);
         self.accept_meetings(world);
         self.fresh = false;
-        done.dt += accepted.dt + self.let_go(world, bounds, bounds.h_max - accepted.dt);
+        done.dt += accepted.dt + self.fly_clear(world, bounds, bounds.h_max - accepted.dt);
         // what rebounds no more goes on with other steps, also while something else still presses
         if self.is_free() || !self.is_rebounding() {
             self.balance(world);
@@ -230,7 +230,7 @@ impl ContactState {
     /// returns the time that took (s).
     ///
     /// What still hangs on the contacts then has no force, and the parabola is exact.
-    fn let_go(&mut self, world: &ContactEnvironment, bounds: &StepBounds, longest: f64) -> f64 {
+    fn fly_clear(&mut self, world: &ContactEnvironment, bounds: &StepBounds, longest: f64) -> f64 {
         let dt = LONGEST_RAD / bounds.omega;
         if self.histories.is_empty() || dt > longest.min(bounds.limit) {
             return 0.0;
@@ -282,13 +282,13 @@ impl ContactState {
 /// A try that is cut at a kink is shorter, not wrong; one whose error is too large shrinks by
 /// the usual rule.
 fn step_among<const C: usize, const N: usize, const Q: usize, const P: usize>(
-    flow: &mut Among<C>,
+    flow: &mut SphereFlow<C>,
     stages: &mut Stages<N, Q, P>,
     bounds: &StepBounds,
     done: &mut Advance,
-) -> Result<Option<Accepted>, StepError> {
+) -> Result<Option<AcceptedStep>, StepError> {
     let StepBounds { omega, limit, h_max, allowed } = *bounds;
-    let y = flow.begin::<N>();
+    let y = flow.initial_state::<N>();
     flow.note_start();
     let (known, start) = (flow.state.histories.len(), flow.state.c);
     let mut step = StepLength::new(flow.state.impact.h);
@@ -299,7 +299,7 @@ fn step_among<const C: usize, const N: usize, const Q: usize, const P: usize>(
         let dt = wished.min(h_max);
         let is_short = dt * omega < SHORTEST_RAD;
         let attempt = stages.step(flow, &y, dt, (!is_short).then_some(allowed));
-        if flow.is_crowded && C < HISTORIES {
+        if flow.exceeds_room && C < HISTORIES {
             flow.state.histories.truncate(known);
             flow.state.impact.h = step.wish;
             return Ok(None);
@@ -313,12 +313,13 @@ fn step_among<const C: usize, const N: usize, const Q: usize, const P: usize>(
                 continue;
             }
         };
-        let (accepted, next_h) = judge((dt, wished), (tried.error2, flow.is_smooth), is_short)?;
+        let (accepted, next_h) =
+            control_error((dt, wished), (tried.error2, flow.is_smooth), is_short)?;
         if !accepted {
             done.rejected += 1;
-            let between = stages.between((&y, &tried), dt);
-            let share = flow.exchange_share(|share| start + three(&between.at(share), WAY));
-            let share = share.filter(|share| (WITHIN.0..WITHIN.1).contains(share));
+            let between = stages.dense_output((&y, &tried), dt);
+            let share = flow.exchange_share(|share| start + vec3_at(&between.at(share), WAY));
+            let share = share.filter(|share| (INTERIOR.0..INTERIOR.1).contains(share));
             flow.changes.ends_past_exchange = share.is_some();
             match share {
                 Some(share) => step.cut(dt, share),
@@ -334,21 +335,21 @@ fn step_among<const C: usize, const N: usize, const Q: usize, const P: usize>(
 
 /// A step of `dt` (s) from `y` that is accepted as `tried`, or as far as the first contact that begins or ends within it.
 fn end_of_step<const C: usize, const N: usize, const Q: usize, const P: usize>(
-    flow: &mut Among<C>,
+    flow: &mut SphereFlow<C>,
     stages: &mut Stages<N, Q, P>,
-    (y, tried): (&[f64; N], &Tried<N, Q>),
+    (y, tried): (&[f64; N], &TrialResult<N, Q>),
     dt: f64,
-) -> Accepted {
+) -> AcceptedStep {
     let start = flow.state.c;
-    let between = stages.between((y, tried), dt);
+    let between = stages.dense_output((y, tried), dt);
     let path = |share: f64| {
         let y = between.at(share);
-        (start + three(&y, WAY), three(&y, V))
+        (start + vec3_at(&y, WAY), vec3_at(&y, V))
     };
-    let is_alike = !flow.changes.are_any() && flow.holds_its_normals();
+    let has_same_contacts = !flow.changes.are_any() && flow.holds_its_normals();
     let change = flow.change_share(dt, path);
     let (y_end, sums) = match change {
-        Some(share) => (between.at(share), stages.sums_between(tried, dt).at(share)),
+        Some(share) => (between.at(share), stages.dense_sums(tried, dt).at(share)),
         None => (tried.y, tried.q),
     };
     if change.is_some() {
@@ -356,13 +357,13 @@ fn end_of_step<const C: usize, const N: usize, const Q: usize, const P: usize>(
         flow.rates(0, &y_end, stages.first());
     }
     let end = flow.end(&y_end);
-    let mut loss = flow.taken_up(&sums);
-    loss.add(&summed(&sums), 1.0);
+    let mut loss = flow.normal_energy_stored(&sums);
+    loss.add(&summed_loss(&sums), 1.0);
     flow.remember();
-    Accepted { end, dt: dt * change.unwrap_or(1.0), loss, is_alike }
+    AcceptedStep { end, dt: dt * change.unwrap_or(1.0), loss, has_same_contacts }
 }
 
 /// What contacts took beside what their normal springs hold, from the sums of a step (J).
-fn summed<const Q: usize>(sums: &[f64; Q]) -> Loss {
+fn summed_loss<const Q: usize>(sums: &[f64; Q]) -> Loss {
     Loss { friction: sums[0], damping: sums[1], rolling: sums[2], trees: sums[3] }
 }

@@ -28,7 +28,7 @@
 //!   spring of a patch are not scaled.
 //! - Dashpots share, `c_i = c_N/√(Σ_j max(0, n_i·n_j)²)` over the contacts with penetration now; steps end where one is pressed or
 //!   opens. The springs of a contact that opens are at rest when it is pressed again.
-//! - It ends as [`Settled`] says. Then every approach left, and what a captured contact has given back of itself, is taken out of the
+//! - It ends as [`ImpactOutcome`] says. Then every approach left, and what a captured contact has given back of itself, is taken out of the
 //!   velocity along the normal and booked as damping: no contact approaches afterwards, captured ones do not separate unless thrown
 //!   off by others.
 //! - Energy never rises: should the steps' error make it, velocity and spin are scaled back; where nothing takes any (`e = 1`, no friction),
@@ -51,11 +51,13 @@ mod integrate;
 mod tests;
 
 pub(super) use plane::LOCAL;
-pub(crate) use plane::{BlowTable, NormalPassage, Plane, PressedIn, Rebound, blow_along_a_line};
-pub(super) use rigid_limit::NOTHING;
+pub(crate) use plane::{
+    BlowTable, ContactDeformation, NormalPassage, Plane, Rebound, blow_along_a_line,
+};
+pub(super) use rigid_limit::NEGLIGIBLE;
 pub(crate) use rigid_limit::{
     BODIES, CONTACTS, ContactEnds, FrozenBody, FrozenCollision, FrozenContact, LONGEST_WAIT,
-    collide, most_unlike, throw,
+    frozen_collision, frozen_impact, largest_followed_ratio,
 };
 
 /// What following an impact has cost.
@@ -97,7 +99,7 @@ impl StepLength {
 
 /// How a frozen impact ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Settled {
+pub(crate) enum ImpactOutcome {
     /// Nothing pushes and nothing comes nearer.
     Free,
     /// Friction holds it in a wedge, its springs pressed in: it rests, or rolls along the wedge. What they store is lost.

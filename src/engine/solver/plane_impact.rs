@@ -8,7 +8,7 @@
 //! taken up where it has left it.
 
 use super::contact_state::{ContactEnvironment, ContactState};
-use super::impact::{NormalPassage, Plane, PressedIn, Rebound};
+use super::impact::{ContactDeformation, NormalPassage, Plane, Rebound};
 use super::law::{Action, ContactPlace};
 use super::plane_kernel::is_on_face;
 use super::step_control::Advance;
@@ -62,7 +62,10 @@ impl ContactState {
     /// break is stepped, so that it can break on time.
     ///
     /// Where it is tells how far it is in: touches may have been looked for elsewhere.
-    fn pressed_in_plane(&self, world: &ContactEnvironment) -> Option<(ContactHistory, PressedIn)> {
+    fn pressed_in_plane(
+        &self,
+        world: &ContactEnvironment,
+    ) -> Option<(ContactHistory, ContactDeformation)> {
         if !is_on_face(world, self) || self.may_yield {
             return None;
         }
@@ -71,9 +74,10 @@ impl ContactState {
         match (history.closed, is_sunk) {
             _ if history.captured => None,
             // it has just begun: the closed form is that from penetration 0
-            (false, false) => Some((history, PressedIn::NOT)),
+            (false, false) => Some((history, ContactDeformation::NONE)),
             (true, true) if history.announced => {
-                let pressed = PressedIn { depth_m, shear_m: history.shear, roll_rad: history.roll };
+                let pressed =
+                    ContactDeformation { depth_m, shear_m: history.shear, roll_rad: history.roll };
                 Some((history, pressed))
             }
             _ => None,
@@ -85,7 +89,7 @@ impl ContactState {
         &mut self,
         world: &ContactEnvironment,
         (plane, passage): (&Plane, &NormalPassage),
-        (history, pressed): (&ContactHistory, &PressedIn),
+        (history, pressed): (&ContactHistory, &ContactDeformation),
     ) -> Option<Rebound> {
         let (n, face) = (&history.n, history.feature.id);
         // the way is enclosed between the deepest place and the surface, from which the rock has come

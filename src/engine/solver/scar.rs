@@ -31,11 +31,11 @@ use crate::rock::Vec3;
 /// Share of the speed that one step along the plane may lose to drag, about (–).
 const LOSS_OF_STEP: f64 = 0.02;
 /// Least cosine (–) between a scar's normal and that of what is still its floor and no wall beside it: 60°.
-const STILL_A_FLOOR: f64 = 0.5;
+const FLOOR_COSINE: f64 = 0.5;
 
 /// The scar that a rock is in.
 #[derive(Debug, Clone, Copy)]
-struct Furrow {
+struct ActiveScar {
     /// Approach (m/s) of the impact that has dug it.
     approach_m_s: f64,
     /// The ground that it is in.
@@ -51,10 +51,10 @@ struct Furrow {
     /// Normal of the plane.
     normal: Vec3,
     /// What has been dragged ahead of the way flown next (–), as the logarithm of the speed: what was not ploughed after all, and the way out.
-    paid: f64,
+    prepaid: f64,
 }
 
-impl Furrow {
+impl ActiveScar {
     /// What pulls a rock back to the plane (m/s²).
     fn pull(&self, body: &Body) -> f64 {
         -self.normal.dot(&body.gravity)
@@ -101,8 +101,8 @@ pub(crate) struct Scars {
     is_any: bool,
     /// Whether contacts are springs, which take time.
     has_springs: bool,
-    now: Option<Furrow>,
-    pace: Pace,
+    active: Option<ActiveScar>,
+    split: DragSplit,
 }
 
 /// How drag along the plane is shared out between steps.
@@ -111,14 +111,14 @@ pub(crate) struct Scars {
 /// and rolling friction see the mean of both: all of it after the step would tax what they gave in the
 /// step by half of [`LOSS_OF_STEP`] too much.
 #[derive(Debug, Clone, Copy, Default)]
-struct Pace {
+struct DragSplit {
     /// Way along the plane of the step before (m): the one to come is taken to be as long.
     last_m: f64,
     /// Way to come that has been dragged already (m).
     paid_m: f64,
 }
 
-impl Pace {
+impl DragSplit {
     /// Way (m) to be dragged before a step.
     fn begin_step(&mut self) -> f64 {
         let owed_m = (0.5 * self.last_m - self.paid_m).max(0.0);
@@ -152,7 +152,7 @@ impl Scars {
         self.layers.extend(grounds.iter().map(|ground| ground.scar.filter(drags)));
         self.is_any = self.layers.iter().any(Option::is_some);
         self.has_springs = has_springs;
-        (self.now, self.pace) = (None, Pace::default());
+        (self.active, self.split) = (None, DragSplit::default());
     }
 
     /// Whether any ground has soil that drags.
@@ -170,7 +170,7 @@ impl Scars {
         world: &ContactEnvironment,
         contacts: impl Iterator<Item = (u32, Vec3)>,
     ) -> ScarFloor {
-        let own = self.now.map(|now| now.ground);
+        let own = self.active.map(|now| now.ground);
         let mut floor = ScarFloor::Unknown;
         // of several grounds with soil, whatever the order in which they are touched
         let mut soil: Option<(bool, u16)> = None;
@@ -184,7 +184,7 @@ impl Scars {
                 continue;
             }
             let is_first = matches!(floor, ScarFloor::Unknown);
-            if is_first && !world.terrain.is_tree(triangle) && self.goes_on_along(&n) {
+            if is_first && !world.terrain.is_tree(triangle) && self.continues_floor(&n) {
                 floor = ScarFloor::On(ground, n);
             }
         }
@@ -201,8 +201,8 @@ impl Scars {
     }
 
     /// Whether a plane with this normal continues that of the scar.
-    fn goes_on_along(&self, normal: &Vec3) -> bool {
-        self.now.is_some_and(|now| now.normal.dot(normal) > STILL_A_FLOOR)
+    fn continues_floor(&self, normal: &Vec3) -> bool {
+        self.active.is_some_and(|now| now.normal.dot(normal) > FLOOR_COSINE)
     }
 
     /// The soil of a ground, if it has any that drags.
@@ -211,21 +211,26 @@ impl Scars {
     }
 
     /// The scar of an impact on a ground with an approach (m/s); none on hard ground.
-    fn dug(&self, body: &Body, (ground, normal): (u16, Vec3), approach_m_s: f64) -> Option<Furrow> {
+    fn dug(
+        &self,
+        body: &Body,
+        (ground, normal): (u16, Vec3),
+        approach_m_s: f64,
+    ) -> Option<ActiveScar> {
         let scar = self.layer(ground)?;
         // d = 0.1 M^(1/3) M_E^(−0.4) v_n^0.8 (Lu et al. 2019, Eq. 11), in the units that the
         // formula is bound to
         let depth_m = scar.depth_m(body.mass, approach_m_s);
         let drag_per_m3 = scar.drag_per_m3(body.mass);
         let per_m = drag_per_m3 * cut_area_m2(body.radius, depth_m, 0.0);
-        Some(Furrow { approach_m_s, ground, depth_m, drag_per_m3, per_m, normal, paid: 0.0 })
+        Some(ActiveScar { approach_m_s, ground, depth_m, drag_per_m3, per_m, normal, prepaid: 0.0 })
     }
 
     /// The scar goes on where the rock now stands, or ends.
-    fn stand(&mut self, body: &Body, (ground, normal): (u16, Vec3)) {
-        let Some(now) = self.now else { return };
-        self.now = if ground == now.ground {
-            Some(Furrow { normal, ..now })
+    fn move_to(&mut self, body: &Body, (ground, normal): (u16, Vec3)) {
+        let Some(now) = self.active else { return };
+        self.active = if ground == now.ground {
+            Some(ActiveScar { normal, ..now })
         } else {
             self.dug(body, (ground, normal), now.approach_m_s)
         };
@@ -245,11 +250,11 @@ impl Scars {
         for (_, blow) in struck.iter().enumerate().filter(fastest) {
             let on = (blow.ground, blow.normal);
             let Some(dug) = self.dug(body, on, blow.approach_m_s.max(0.0)) else {
-                ends |= !in_soil && self.goes_on_along(&blow.normal);
+                ends |= !in_soil && self.continues_floor(&blow.normal);
                 continue;
             };
             // of two as deep that which takes less: it is no matter of sides, and on the safe side
-            let is_deeper = |known: Furrow| {
+            let is_deeper = |known: ActiveScar| {
                 let [one, other] = [&dug, &known].map(|of| (of.depth_m, -of.drag_per_m3));
                 one > other
             };
@@ -259,16 +264,16 @@ impl Scars {
         }
         let Some(dug) = deepest else {
             if ends {
-                self.now = None;
+                self.active = None;
             }
             return 1.0;
         };
-        self.stand(body, (dug.ground, dug.normal));
-        let depth_m = self.now.map_or(0.0, |now| now.depth_m);
+        self.move_to(body, (dug.ground, dug.normal));
+        let depth_m = self.active.map_or(0.0, |now| now.depth_m);
         if dug.depth_m <= depth_m {
             return 1.0;
         }
-        self.now = Some(dug);
+        self.active = Some(dug);
         // speed over the way in: ∫ A ds is the volume that the ball sweeps down to d, along the
         // velocity
         let cosine = (dug.approach_m_s / speed_m_s).min(1.0);
@@ -278,8 +283,8 @@ impl Scars {
 
     /// What the rock keeps of its speed before a step along the plane (–): drag on the first half of it.
     pub(crate) fn plough_ahead(&mut self) -> f64 {
-        let Some(now) = &self.now else { return 1.0 };
-        math::exp(-now.per_m * self.pace.begin_step())
+        let Some(now) = &self.active else { return 1.0 };
+        math::exp(-now.per_m * self.split.begin_step())
     }
 
     /// What the rock keeps of its speed after a step with a way (m) along the plane (–), where it stands now; and of the
@@ -292,20 +297,20 @@ impl Scars {
         ends: Option<Vec3>,
     ) -> f64 {
         if let ScarFloor::On(ground, normal) = floor {
-            self.stand(body, (ground, normal));
+            self.move_to(body, (ground, normal));
         }
-        let Some(now) = &self.now else {
-            self.pace = Pace::default();
+        let Some(now) = &self.active else {
+            self.split = DragSplit::default();
             return 1.0;
         };
-        let share = ends.map_or(1.0, |_| self.pace.share_of_last(self.has_springs));
-        let kept = math::exp(-now.per_m * self.pace.end_step(way_m, share));
+        let share = ends.map_or(1.0, |_| self.split.share_of_last(self.has_springs));
+        let kept = math::exp(-now.per_m * self.split.end_step(way_m, share));
         ends.map_or(kept, |v| kept * self.leave(body, &(v * kept)))
     }
 
     /// Longest step along the plane (s) at a speed (m/s): drag acts between steps.
     pub(crate) fn longest_s(&self, speed_m_s: f64) -> f64 {
-        self.now.map_or(f64::INFINITY, |now| LOSS_OF_STEP / (now.per_m * speed_m_s))
+        self.active.map_or(f64::INFINITY, |now| LOSS_OF_STEP / (now.per_m * speed_m_s))
     }
 }
 

@@ -1,7 +1,7 @@
 //! When, within a step of an impact, a contact begins, ends, or takes the place of another.
 
-use super::changes::{Changes, ContactChange};
-use super::flow::Among;
+use super::changes::{ContactChange, ContactChanges};
+use super::flow::SphereFlow;
 use crate::contact::TOUCH;
 use crate::rock::Vec3;
 use crate::solver::impact::dormand_prince::NODES;
@@ -11,15 +11,15 @@ use crate::solver::law::ZERO;
 const BEGUN: f64 = 0.5 * TOUCH;
 const ENDED: f64 = -2.0 * TOUCH;
 /// … by so much (–, relative to R).
-const EXACT: f64 = 0.4 * TOUCH;
+const ACCURACY: f64 = 0.4 * TOUCH;
 /// How far beyond the radius it is looked for contacts that come or go (–, relative to R).
-const AROUND: f64 = 0.05;
+const SEARCH_MARGIN: f64 = 0.05;
 /// Places looked at for it, at most.
-const LOOKS: u32 = 40;
+const ROOT_STEPS: u32 = 40;
 /// How exactly the place is found where a contact takes the place of another (–, relative to the share of the step before it).
-const EXCHANGED: f64 = 0.01;
+const EXCHANGE_ACCURACY: f64 = 0.01;
 
-impl<const C: usize> Among<'_, '_, C> {
+impl<const C: usize> SphereFlow<'_, '_, C> {
     /// Share of the step at which the first contact begins or ends (–), on the `path` of centre and velocity over the step's
     /// share; `None` if none does. `dt` is the step's length (s).
     pub(super) fn change_share(
@@ -27,7 +27,7 @@ impl<const C: usize> Among<'_, '_, C> {
         dt: f64,
         path: impl Fn(f64) -> (Vec3, Vec3),
     ) -> Option<f64> {
-        let Changes { onset, end, .. } = self.changes;
+        let ContactChanges { onset, end, .. } = self.changes;
         let onset = onset.and_then(|seen| self.share_of((ContactChange::Onset, seen), dt, &path));
         let end = end.and_then(|seen| self.share_of((ContactChange::End, seen), dt, &path));
         [onset, end].into_iter().flatten().reduce(f64::min)
@@ -42,7 +42,7 @@ impl<const C: usize> Among<'_, '_, C> {
         dt: f64,
         path: &impl Fn(f64) -> (Vec3, Vec3),
     ) -> Option<f64> {
-        let exact = EXACT * self.radius_m();
+        let exact = ACCURACY * self.radius_m();
         let is_beyond = |place: Option<(f64, Vec3)>| place.is_none_or(|(beyond, _)| beyond > 0.0);
         let mut look = |at: f64| {
             let (c, v) = path(at);
@@ -53,7 +53,7 @@ impl<const C: usize> Among<'_, '_, C> {
         let (mut high, mut seen) =
             places.map(|at| (at, look(at))).find(|(_, (place, _))| is_beyond(*place))?;
         let (mut low, mut at) = (0.0, high);
-        for _ in 0..LOOKS {
+        for _ in 0..ROOT_STEPS {
             let (place, v) = seen;
             if is_beyond(place) {
                 high = at;
@@ -75,7 +75,7 @@ impl<const C: usize> Among<'_, '_, C> {
     /// such contact: then it has ended, or not yet begun.
     fn beyond_m(&mut self, change: ContactChange, c: &Vec3) -> Option<(f64, Vec3)> {
         let radius = self.radius_m();
-        self.look_within(c, radius * (1.0 + AROUND));
+        self.look_within(c, radius * (1.0 + SEARCH_MARGIN));
         let mut first = self.changes.first(change, &self.state.touches);
         if first.is_none() && change == ContactChange::End {
             // Of two sheets that lie on each other the farther one may stand for both where it is in sight: what the step
@@ -88,7 +88,7 @@ impl<const C: usize> Among<'_, '_, C> {
             ContactChange::End => (ENDED * radius - (radius - distance), n),
         };
         match (first, change) {
-            (None, ContactChange::Onset) => Some((-AROUND * radius, ZERO)),
+            (None, ContactChange::Onset) => Some((-SEARCH_MARGIN * radius, ZERO)),
             (first, _) => first.map(beyond),
         }
     }
@@ -96,7 +96,7 @@ impl<const C: usize> Among<'_, '_, C> {
     /// Share of the step just beyond which contacts have taken the place of others (–), on the `path` of the centre.
     pub(super) fn exchange_share(&mut self, path: impl Fn(f64) -> Vec3) -> Option<f64> {
         let (mut low, mut high) = (0.0, NODES[self.changes.exchange?]);
-        while high - low > EXCHANGED * high {
+        while high - low > EXCHANGE_ACCURACY * high {
             let at = 0.5 * (low + high);
             self.look(&path(at));
             let exchanged = self.changes.are_exchanged(&self.state.touches);

@@ -12,12 +12,12 @@ use arrayvec::ArrayVec;
 
 /// The contacts of a step's start, and the first stages that see others.
 #[derive(Debug, Clone)]
-pub(super) struct Changes {
-    begun: ArrayVec<(Feature, Vec3), MOST>,
+pub(super) struct ContactChanges {
+    at_start: ArrayVec<(Feature, Vec3), MOST>,
     /// Whether each of them is a single point.
     are_single: bool,
     /// Normals of those that the current stage does not touch any more.
-    gone: ArrayVec<Vec3, MOST>,
+    ended: ArrayVec<Vec3, MOST>,
     /// First stage at which a contact that waits would press, at which one has ended, at which one has taken the place of another.
     pub(super) onset: Option<usize>,
     pub(super) end: Option<usize>,
@@ -35,7 +35,7 @@ pub(super) enum ContactChange {
 
 /// Touches beside those of the step's start.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Compared {
+enum TouchComparison {
     Same,
     /// All of them, and more.
     More,
@@ -45,12 +45,12 @@ enum Compared {
     Others,
 }
 
-impl Changes {
+impl ContactChanges {
     /// None, and no contacts.
     pub(super) const NONE: Self = Self {
-        begun: ArrayVec::new_const(),
+        at_start: ArrayVec::new_const(),
         are_single: true,
-        gone: ArrayVec::new_const(),
+        ended: ArrayVec::new_const(),
         onset: None,
         end: None,
         exchange: None,
@@ -59,10 +59,10 @@ impl Changes {
 
     /// The contacts of the step's start.
     pub(super) fn begin<'a>(&mut self, touches: impl Iterator<Item = &'a ContactPoint>) {
-        self.begun.clear();
+        self.at_start.clear();
         self.are_single = true;
         for touch in touches {
-            self.begun.push((touch.feature, touch.normal));
+            self.at_start.push((touch.feature, touch.normal));
             self.are_single &= touch.is_single();
         }
     }
@@ -78,51 +78,56 @@ impl Changes {
     }
 
     /// Normals of the contacts that have ended since the step's start.
-    pub(super) fn gone(&self) -> &[Vec3] {
-        &self.gone
+    pub(super) fn ended(&self) -> &[Vec3] {
+        &self.ended
     }
 
     fn has(&self, feature: Feature) -> bool {
-        self.begun.iter().any(|begun| begun.0 == feature)
+        self.at_start.iter().any(|at_start| at_start.0 == feature)
     }
 
     /// How many of the touches were there at the step's start.
-    fn still(&self, touches: &ContactPoints) -> usize {
+    fn count_persisting(&self, touches: &ContactPoints) -> usize {
         touches.iter().filter(|touch| self.has(touch.feature)).count()
     }
 
     /// What the touches are to those of the step's start.
-    fn compared(&self, touches: &ContactPoints) -> Compared {
-        let still = self.still(touches);
+    fn compared(&self, touches: &ContactPoints) -> TouchComparison {
+        let persisting = self.count_persisting(touches);
         let are_single = touches.iter().all(ContactPoint::is_single);
-        match (still == self.begun.len(), still == touches.len()) {
-            (true, true) if are_single == self.are_single => Compared::Same,
-            (true, false) if are_single && self.are_single => Compared::More,
-            (false, true) if are_single && self.are_single => Compared::Fewer,
-            _ => Compared::Others,
+        match (persisting == self.at_start.len(), persisting == touches.len()) {
+            (true, true) if are_single == self.are_single => TouchComparison::Same,
+            (true, false) if are_single && self.are_single => TouchComparison::More,
+            (false, true) if are_single && self.are_single => TouchComparison::Fewer,
+            _ => TouchComparison::Others,
         }
     }
 
     /// Whether contacts have taken the place of others, or a patch that of single points.
     pub(super) fn are_exchanged(&self, touches: &ContactPoints) -> bool {
-        self.compared(touches) == Compared::Others
+        self.compared(touches) == TouchComparison::Others
     }
 
     /// Makes the touches of stage `node` those of the step's start, for a rock of `radius` (m); those of the ends, 0, are what they are.
-    pub(super) fn hold_on(&mut self, node: usize, touches: &mut ContactPoints, radius: f64) {
-        self.gone.clear();
+    pub(super) fn keep_start_contacts(
+        &mut self,
+        node: usize,
+        touches: &mut ContactPoints,
+        radius: f64,
+    ) {
+        self.ended.clear();
         if node == 0 {
             return;
         }
         match self.compared(touches) {
-            Compared::Same => {}
-            Compared::Others => self.exchange = self.exchange.or(Some(node)),
-            Compared::Fewer => {
+            TouchComparison::Same => {}
+            TouchComparison::Others => self.exchange = self.exchange.or(Some(node)),
+            TouchComparison::Fewer => {
                 self.end = self.end.or(Some(node));
                 let is_gone = |one: &&(Feature, Vec3)| touches.iter().all(|at| at.feature != one.0);
-                self.gone.extend(self.begun.iter().filter(is_gone).map(|one| one.1));
+                self.ended.extend(self.at_start.iter().filter(is_gone).map(|one| one.1));
             }
-            Compared::More => {
+            TouchComparison::More => {
                 let mut waits = touches.iter().filter(|touch| !self.has(touch.feature));
                 let presses = waits.any(|touch| touch.distance_m < radius);
                 self.onset = self.onset.or(presses.then_some(node));
@@ -142,7 +147,7 @@ impl Changes {
             ContactChange::Onset => {
                 places.filter(|touch| !self.has(touch.2)).min_by(|a, b| a.0.total_cmp(&b.0))
             }
-            ContactChange::End if self.still(touches) < self.begun.len() => None,
+            ContactChange::End if self.count_persisting(touches) < self.at_start.len() => None,
             ContactChange::End => {
                 places.filter(|touch| self.has(touch.2)).max_by(|a, b| a.0.total_cmp(&b.0))
             }

@@ -10,14 +10,14 @@
 //! its memory: they are turned to the normal of the place before they are asked, and their rates
 //! are turned back.
 
-use super::changes::Changes;
+use super::changes::ContactChanges;
 use crate::contact::TOUCH;
 use crate::contact::history::carry;
 use crate::contact::{ContactPoint, Feature};
 use crate::ground::NormalElement;
 use crate::rock::Vec3;
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
-use crate::solver::impact::dormand_prince::{Flow, NODES, Rates, put, three};
+use crate::solver::impact::dormand_prince::{Flow, NODES, Rates, put_vec3, vec3_at};
 use crate::solver::law::{Action, ContactPlace};
 use crate::solver::loss::Loss;
 use crate::solver::stage::End;
@@ -87,21 +87,21 @@ impl HeldEnergy {
 }
 
 /// A rock with up to `C` contacts; a contact keeps the place of its memory.
-pub(super) struct Among<'a, 'w, const C: usize> {
+pub(super) struct SphereFlow<'a, 'w, const C: usize> {
     world: &'a ContactEnvironment<'w>,
     pub(super) state: &'a mut ContactState,
     /// Stiffest contact (rad/s) and local error allowed (m/s).
     scale: (f64, f64),
     /// Whether there were more contacts than places.
-    pub(super) is_crowded: bool,
+    pub(super) exceeds_room: bool,
     /// Whether the current try has met one face only: no patches, nothing that comes or goes.
     pub(super) is_smooth: bool,
     /// What comes and what goes within the step.
-    pub(super) changes: Changes,
+    pub(super) changes: ContactChanges,
     /// The one face met at the step's start; [`Feature::NONE`] if it was something else.
     face: Option<Feature>,
     /// The normal spring of each contact at the step's start, and which of them have a dashpot.
-    began: [HeldEnergy; C],
+    held_at_start: [HeldEnergy; C],
     damped: u32,
     /// Contacts at the state last asked for.
     pressed: ArrayVec<PressedContact, C>,
@@ -114,7 +114,7 @@ impl PressedContact {
     }
 }
 
-impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
+impl<'a, 'w, const C: usize> SphereFlow<'a, 'w, C> {
     pub(super) fn new(
         world: &'a ContactEnvironment<'w>,
         state: &'a mut ContactState,
@@ -124,11 +124,11 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
             world,
             state,
             scale,
-            is_crowded: false,
+            exceeds_room: false,
             is_smooth: true,
-            changes: Changes::NONE,
+            changes: ContactChanges::NONE,
             face: None,
-            began: [HeldEnergy::NONE; C],
+            held_at_start: [HeldEnergy::NONE; C],
             damped: 0,
             pressed: ArrayVec::new(),
         }
@@ -144,14 +144,14 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
     ///
     /// Way 0: positions are counted from where the step begins, as map coordinates would cost
     /// digits.
-    pub(super) fn begin<const N: usize>(&self) -> [f64; N] {
+    pub(super) fn initial_state<const N: usize>(&self) -> [f64; N] {
         let mut y = [0.0; N];
-        put(&mut y, V, &self.state.v);
-        put(&mut y, W, &self.state.w);
+        put_vec3(&mut y, V, &self.state.v);
+        put_vec3(&mut y, W, &self.state.w);
         for (k, history) in self.state.histories.iter().enumerate().take(C) {
-            put(&mut y, SPRINGS + 3 * k, &history.shear);
+            put_vec3(&mut y, SPRINGS + 3 * k, &history.shear);
             if Self::rolls::<N>() {
-                put(&mut y, SPRINGS + 3 * (C + k), &history.roll);
+                put_vec3(&mut y, SPRINGS + 3 * (C + k), &history.roll);
             }
         }
         y
@@ -190,13 +190,13 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
     pub(super) fn note_start(&mut self) {
         self.changes.begin(self.pressed.iter().map(|contact| &contact.touch));
         for contact in &self.pressed {
-            self.began[contact.place] = contact.held(self.world.body.mass);
+            self.held_at_start[contact.place] = contact.held(self.world.body.mass);
         }
     }
 
     /// What the normal springs have taken up since the step's start (J), at its end, the state last asked for. What was absorbed by a patch holds
     /// nothing by itself, and where patches meet or part they hand over what they hold.
-    pub(super) fn taken_up<const Q: usize>(&self, sums: &[f64; Q]) -> Loss {
+    pub(super) fn normal_energy_stored<const Q: usize>(&self, sums: &[f64; Q]) -> Loss {
         let jumps = self.changes.exchange.is_some();
         let mut taken = Loss::default();
         for (place, history) in self.state.histories.iter().enumerate().take(C) {
@@ -210,7 +210,8 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
                 },
                 |contact| contact.held(self.world.body.mass),
             );
-            let damping = self.began[place].taken_until(&ended, || jumps, sums[LOSSES + place]);
+            let damping =
+                self.held_at_start[place].taken_until(&ended, || jumps, sums[LOSSES + place]);
             let triangle = end.map_or(history.triangle, |contact| contact.touch.triangle);
             taken.add(&Loss { damping, ..Loss::default() }.on(self.world, triangle), 1.0);
         }
@@ -244,22 +245,22 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
 
     /// Where and how fast the rock is.
     pub(super) fn end<const N: usize>(&self, y: &[f64; N]) -> End {
-        End { c: self.state.c + three(y, WAY), v: three(y, V), w: three(y, W) }
+        End { c: self.state.c + vec3_at(y, WAY), v: vec3_at(y, V), w: vec3_at(y, W) }
     }
 }
 
 impl<const C: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, P>
-    for Among<'_, '_, C>
+    for SphereFlow<'_, '_, C>
 {
     /// Writes the rates at `y` over `rates`, at stage `node` of a step, 0 at its ends; its contacts are those of the rock's state then.
     fn rates(&mut self, node: usize, y: &[f64; N], rates: &mut Rates<N, Q, P>) {
         *rates = Rates::NONE;
-        let (c, v, w) = (self.state.c + three(y, WAY), three(y, V), three(y, W));
+        let (c, v, w) = (self.state.c + vec3_at(y, WAY), vec3_at(y, V), vec3_at(y, W));
         self.look(&c);
         let Self { world, state, damped, changes, .. } = self;
         let body = &world.body;
         let (by_mass, by_inertia) = (1.0 / body.mass, 1.0 / body.inertia);
-        changes.hold_on(node, &mut state.touches, body.radius);
+        changes.keep_start_contacts(node, &mut state.touches, body.radius);
         let (mut dv, mut dw, mut taken) = (body.gravity, Vec3::zeros(), 0);
         // patches and edges have kinks that the error estimate hardly sees: a step that meets any
         // is held to a tighter error
@@ -282,21 +283,21 @@ impl<const C: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, 
             // more contacts than places: what is computed now is thrown away, but must not be out
             // of bounds
             if place >= C {
-                self.is_crowded = true;
+                self.exceeds_room = true;
                 continue;
             }
             let (n, memory) = (touch.normal, &state.histories[place]);
             let mut own = None;
             let law = world.law_touched(memory, touch.triangle, &mut own);
             // a patch of stiffness |a|² has its dashpot times |a|; parallel patches share theirs
-            let share = world.dashpot_share_beside(&state.touches, k, changes.gone());
+            let share = world.dashpot_share_beside(&state.touches, k, changes.ended());
             let normal = law.normal(memory.captured).of_patch(touch.gain2, share);
             let at = ContactPlace {
                 n,
                 penetration: (body.radius - touch.distance_m).max(0.0),
-                shear: carry(three(y, SPRINGS + 3 * place), &memory.n, &n),
+                shear: carry(vec3_at(y, SPRINGS + 3 * place), &memory.n, &n),
                 roll: if Self::rolls::<N>() {
-                    three(y, SPRINGS + 3 * (C + place))
+                    vec3_at(y, SPRINGS + 3 * (C + place))
                 } else {
                     Vec3::zeros()
                 },
@@ -305,9 +306,9 @@ impl<const C: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, 
             let Action { normal: [normal_force, pulls], shear, rolling, slip } = action;
             dv += (n * normal_force - shear.force) * by_mass;
             dw += (n.cross(&shear.force) * body.radius - rolling.force) * by_inertia;
-            put(&mut rates.y, SPRINGS + 3 * place, &carry(shear.stretch_rate, &n, &memory.n));
+            put_vec3(&mut rates.y, SPRINGS + 3 * place, &carry(shear.stretch_rate, &n, &memory.n));
             if Self::rolls::<N>() {
-                put(&mut rates.y, SPRINGS + 3 * (C + place), &rolling.stretch_rate);
+                put_vec3(&mut rates.y, SPRINGS + 3 * (C + place), &rolling.stretch_rate);
             }
             let apart = n.dot(&v);
             let others = [normal.dissipating_w(at.penetration, apart), rolling.force.dot(&w)];
@@ -321,17 +322,17 @@ impl<const C: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, 
             let (cap, most) = law.limits().caps(normal_force);
             // In units of acceleration, so that times a step they are speeds.
             let turn = body.radius * by_inertia;
-            rates.kinks[3 * place] =
+            rates.switching[3 * place] =
                 [(normal_force * by_mass).powi(2), (-pulls).max(0.0) * by_mass];
-            rates.kinks[3 * place + 1] = [shear.asked2 * by_mass * by_mass, cap * by_mass];
-            rates.kinks[3 * place + 2] = [rolling.asked2 * turn * turn, most * turn];
+            rates.switching[3 * place + 1] = [shear.asked2 * by_mass * by_mass, cap * by_mass];
+            rates.switching[3 * place + 2] = [rolling.asked2 * turn * turn, most * turn];
             let slides = law.shear.slides2(shear.asked2, normal_force);
             let pressed = PressedContact { place, touch, at, normal, normal_force, slides };
             self.pressed.push(pressed);
         }
-        put(&mut rates.y, WAY, &v);
-        put(&mut rates.y, V, &dv);
-        put(&mut rates.y, W, &dw);
+        put_vec3(&mut rates.y, WAY, &v);
+        put_vec3(&mut rates.y, V, &dv);
+        put_vec3(&mut rates.y, W, &dw);
     }
 
     /// Norm of an error: way and shear stretches times `ω`, spin times `R`, all in m/s. A spring that nothing presses on any more holds nothing: how
@@ -341,11 +342,11 @@ impl<const C: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, 
         let (omega, allowed) = self.scale;
         let pressed = self.pressed().iter().filter(|contact| contact.normal_force > 0.0);
         let stretch2 = pressed
-            .map(|contact| three(off, SPRINGS + 3 * contact.place).norm_squared())
-            .fold(three(off, WAY).norm_squared(), f64::max);
+            .map(|contact| vec3_at(off, SPRINGS + 3 * contact.place).norm_squared())
+            .fold(vec3_at(off, WAY).norm_squared(), f64::max);
         let worst2 = (stretch2 * omega * omega)
-            .max(three(off, V).norm_squared())
-            .max(three(off, W).norm_squared() * self.world.body.radius.powi(2));
+            .max(vec3_at(off, V).norm_squared())
+            .max(vec3_at(off, W).norm_squared() * self.world.body.radius.powi(2));
         worst2 / (allowed * allowed)
     }
 }

@@ -21,13 +21,13 @@ use std::f64::consts::TAU;
 /// Terms of the Taylor series about the end of contact.
 const TERMS: usize = 14;
 /// So far around it (–, in units of its shortest time) they give every digit.
-const NEAR: f64 = 0.3;
+const SERIES_RADIUS: f64 = 0.3;
 /// Last change of a time that is found (1/ω).
-const FOUND: f64 = 1e-13;
+const ROOT_ACCURACY: f64 = 1e-13;
 /// Steps of Newton's rule at most, with halving where it would leave its bracket.
 const NEWTON: u32 = 80;
 /// Damping below this is none (–): what a search for that of `e = 1` leaves.
-pub(super) const NONE: f64 = 1e-12;
+pub(super) const UNDAMPED: f64 = 1e-12;
 /// Damping this near to critical is critical (–).
 const CRITICAL: f64 = 1e-9;
 
@@ -40,27 +40,27 @@ pub(super) struct NormalMotion {
     ///
     /// `e(ζ) = exp(−2ζ acos ζ/√(1−ζ²))`, for a contact that ends where the force is 0 and nothing
     /// pulls.
-    kept: f64,
+    restitution: f64,
     /// When contact ends without gravity (1/ω).
-    pub(super) contact: f64,
+    pub(super) duration: f64,
 }
 
 /// How an impact leaves the plane, in units of `v_n` and `1/ω`.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Exit {
     /// When the force falls to zero.
-    pub(super) lift: f64,
+    pub(super) lift_off: f64,
     /// Free way out of the slab from there on.
-    pub(super) out: f64,
+    pub(super) clearing: f64,
     /// Speed away from the plane where the penetration is zero again.
     pub(super) speed: f64,
 }
 
 impl NormalMotion {
     pub(super) fn new(zeta: f64) -> Self {
-        let zeta = if zeta > NONE { zeta } else { 0.0 };
+        let zeta = if zeta > UNDAMPED { zeta } else { 0.0 };
         // contact ends where S + 2ζ S' = 0, that is S'/S + ζ = ζ − 1/(2ζ)
-        Self { zeta, kept: restitution(zeta), contact: time_at(zeta, zeta - 0.5 / zeta) }
+        Self { zeta, restitution: restitution(zeta), duration: time_at(zeta, zeta - 0.5 / zeta) }
     }
 
     /// Force and its rate at the touch.
@@ -79,7 +79,7 @@ impl NormalMotion {
     }
 
     /// Penetration and speed into the plane after a time `t` from a start with this force and rate, and gravity.
-    pub(super) fn place_at(&self, from: ([f64; 2], f64), t: f64) -> (f64, f64) {
+    pub(super) fn state_at(&self, from: ([f64; 2], f64), t: f64) -> (f64, f64) {
         let damping = 2.0 * self.zeta;
         let [force, rate] = self.force(from, t);
         let inwards = rate - damping * (from.1 - force);
@@ -88,10 +88,10 @@ impl NormalMotion {
 
     /// How the rock leaves; `None` if gravity keeps it.
     pub(super) fn exit(&self, gamma: f64) -> Option<Exit> {
-        let lift = self
+        let lift_off = self
             .lift_nearby(gamma)
-            .or_else(|| self.lift_anywhere((self.onset(gamma), gamma), self.contact))?;
-        let exit = self.exit_at(lift, gamma)?;
+            .or_else(|| self.lift_anywhere((self.onset(gamma), gamma), self.duration))?;
+        let exit = self.exit_at(lift_off, gamma)?;
         // Without damping nothing is lost, and no rounding may say otherwise.
         Some(if self.zeta == 0.0 { Exit { speed: 1.0, ..exit } } else { exit })
     }
@@ -106,12 +106,12 @@ impl NormalMotion {
         let guess = time_at(self.zeta, -rate / (force - gamma) - self.zeta);
         let from = (begin, gamma);
         let near = self.lift_near((guess, self.force(from, guess)), gamma);
-        let falls = near.filter(|(lift, rate)| *lift > 0.0 && *rate < 0.0);
+        let falls = near.filter(|(lift_off, rate)| *lift_off > 0.0 && *rate < 0.0);
         self.exit_at(falls.or_else(|| self.lift_anywhere(from, guess))?, gamma)
     }
 
     /// How the rock leaves that lifts off then, the force falling at that rate.
-    fn exit_at(&self, (lift, rate): (f64, f64), gamma: f64) -> Option<Exit> {
+    fn exit_at(&self, (lift_off, rate): (f64, f64), gamma: f64) -> Option<Exit> {
         // where f = 0: x' = f' − 2ζγ, so the rock rises at −x', still pressed in by x = −2ζ x'
         let up = 2.0 * self.zeta * gamma - rate;
         let x = 2.0 * self.zeta * up;
@@ -122,20 +122,20 @@ impl NormalMotion {
         }
         let speed = left.sqrt();
         // x = up·t − γ t²/2 for the time of the way out, without cancellation
-        Some(Exit { lift, out: 2.0 * x / (up + speed), speed })
+        Some(Exit { lift_off, clearing: 2.0 * x / (up + speed), speed })
     }
 
     /// Time of lift-off and the force's rate there, if it is close to the one without gravity.
     #[inline]
     fn lift_nearby(&self, gamma: f64) -> Option<(f64, f64)> {
-        let (zeta, e) = (self.zeta, self.kept);
+        let (zeta, e) = (self.zeta, self.restitution);
         let late = gamma * (1.0 + e) / e;
         // too far for the series: gravity moves the end of contact by a good part of its time
-        if late.abs() * (2.0 * zeta).max(1.0) > 0.5 * NEAR {
+        if late.abs() * (2.0 * zeta).max(1.0) > 0.5 * SERIES_RADIUS {
             return None;
         }
         // at t_c the free swing has S + 2ζS' = 0 and S' = −e, so there f = γ (1 + e) and f' = −e
-        self.lift_near((self.contact, [gamma * (1.0 + e), -e]), gamma)
+        self.lift_near((self.duration, [gamma * (1.0 + e), -e]), gamma)
     }
 
     /// The same near a time at which force and rate are known.
@@ -145,7 +145,7 @@ impl NormalMotion {
         let series = Series::<TERMS>::new([force, rate], zeta, gamma);
         let (mut t, mut change) = (-force / rate, f64::INFINITY);
         for _ in 0..8 {
-            let [force, rate] = series.both(t);
+            let [force, rate] = series.value_and_rate(t);
             change = force / rate;
             t -= change;
             if change.abs() <= 1e-14 {
@@ -153,11 +153,11 @@ impl NormalMotion {
             }
         }
         // where the force falls to zero much later, or never, the rule wanders
-        if change.is_nan() || change.abs() > FOUND {
+        if change.is_nan() || change.abs() > ROOT_ACCURACY {
             return None;
         }
-        let is_near = t.abs() * (2.0 * zeta).max(1.0) <= NEAR;
-        is_near.then(|| (at + t, series.both(t)[1]))
+        let is_near = t.abs() * (2.0 * zeta).max(1.0) <= SERIES_RADIUS;
+        is_near.then(|| (at + t, series.value_and_rate(t)[1]))
     }
 
     /// The same, wherever it is: between the start and the force's first trough. `from` is force and rate at the start, and gravity.
@@ -206,9 +206,9 @@ impl NormalMotion {
 
     /// Force and its rate at any time: `f − γ = β (S' + 2ζ S) + a S`, written so that a large `γ` costs no digits of a small time.
     fn force(&self, ([force, a], gamma): ([f64; 2], f64), t: f64) -> [f64; 2] {
-        let (damping, [s, ds]) = (2.0 * self.zeta, answer(self.zeta, t));
-        let swing = force * (ds + damping * s) + (a - damping * gamma) * s;
-        [swing + gamma * (1.0 - ds), a * ds - (force - gamma) * s]
+        let (damping, [s, ds]) = (2.0 * self.zeta, impulse_response(self.zeta, t));
+        let oscillator = force * (ds + damping * s) + (a - damping * gamma) * s;
+        [oscillator + gamma * (1.0 - ds), a * ds - (force - gamma) * s]
     }
 
     /// Largest penetration of an impact that leaves: where `S' = −γ S`.
@@ -232,7 +232,7 @@ fn time_at(zeta: f64, y: f64) -> f64 {
 }
 
 /// `S` and `S'`.
-fn answer(zeta: f64, t: f64) -> [f64; 2] {
+fn impulse_response(zeta: f64, t: f64) -> [f64; 2] {
     let off = 1.0 - zeta * zeta;
     let wd = off.abs().sqrt();
     let (s, c) = if off.abs() <= CRITICAL {
@@ -258,7 +258,7 @@ fn answer(zeta: f64, t: f64) -> [f64; 2] {
 pub(super) struct Series<const N: usize>([f64; N]);
 
 /// `1/((k + 1)(k + 2))`.
-const OVER: [f64; 24] = {
+const RECIPROCALS: [f64; 24] = {
     let mut over = [0.0; 24];
     let mut k = 0;
     while k < 24 {
@@ -276,7 +276,7 @@ impl<const N: usize> Series<N> {
         // The equation is that of `f − γ`, which has no constant term.
         let mut below = force - gamma;
         for k in 0..N - 2 {
-            a[k + 2] = -(below + 2.0 * zeta * (k + 1) as f64 * a[k + 1]) * OVER[k];
+            a[k + 2] = -(below + 2.0 * zeta * (k + 1) as f64 * a[k + 1]) * RECIPROCALS[k];
             below = a[k + 1];
         }
         Self(a)
@@ -291,7 +291,7 @@ impl<const N: usize> Series<N> {
 
     /// Its value and its rate `t` later.
     #[inline]
-    pub(super) fn both(&self, t: f64) -> [f64; 2] {
+    pub(super) fn value_and_rate(&self, t: f64) -> [f64; 2] {
         let (mut value, mut rate) = (0.0, 0.0);
         for a in self.0.iter().rev() {
             rate = rate * t + value;

@@ -16,16 +16,18 @@ mod bodies;
 mod contacts;
 mod rates;
 
-use super::dormand_prince::{Attempt, Stages, growth, sum_up};
+use super::dormand_prince::{Attempt, Stages, add_sums, growth};
 use super::plane::{LOCAL, Plane};
-use super::{ImpactEffort, Settled, StepLength};
+use super::{ImpactEffort, ImpactOutcome, StepLength};
 use crate::contact::MOST;
 use crate::ground::Law;
 use crate::math;
 use crate::rock::Vec3;
 use crate::solver::body::{Body, STILL, Twist};
 use crate::solver::loss::{Loss, shared};
-pub(crate) use bodies::{BODIES, CONTACTS, FrozenCollision, collide, most_unlike};
+pub(crate) use bodies::{
+    BODIES, CONTACTS, FrozenCollision, frozen_collision, largest_followed_ratio,
+};
 use contacts::{AfterImpact, SwitchTime};
 use rates::ContactRates;
 use std::f64::consts::TAU;
@@ -122,28 +124,28 @@ pub(crate) struct FrozenRebound {
     /// Energy lost (J) by contact and kind, each ≥ 0: together exactly the energy before less that after.
     pub(crate) loss: [Loss; MOST],
     /// How it ended.
-    pub(crate) settled: Settled,
+    pub(crate) settled: ImpactOutcome,
     /// What it cost.
     pub(crate) effort: ImpactEffort,
 }
 
 /// Tolerance of one contact over that of several (–): it costs little.
-const OF_ONE: f64 = 0.5;
+const SINGLE_TOLERANCE: f64 = 0.5;
 /// First step at a tolerance of 1 (radians of the stiffest contact): the local error of order 5 is about (h/this)⁵.
-const OPENING: f64 = 3.5;
+const FIRST_STEP: f64 = 3.5;
 /// No step is longer, in radians of the stiffest contact …
 const LONGEST_STEP: f64 = 0.9;
 /// A step shorter than this is not cut at a kink (radians).
 const SHORTEST_CUT: f64 = 1e-9;
 /// An approach slower than this share of the error allowed is none (–).
-pub(in crate::solver) const NOTHING: f64 = 1e-3;
+pub(in crate::solver) const NEGLIGIBLE: f64 = 1e-3;
 /// Radians of the slowest swing, of the heaviest body on the softest contact, flights between touches apart, after which an impact is ended: rattling
 /// between walls has no other end.
 const MOST_TIME: f64 = 300.0;
 /// Longest flight to a gap that closes within an impact, in radians of the softest contact: what has let go is still near for as long again as it was pressed.
 pub(crate) const LONGEST_WAIT: f64 = TAU;
 /// A rock whose motion changes by no more than so many errors allowed over a swing of the softest contact is jammed (–).
-const QUIET: f64 = 3.0;
+const JAMMED_ERRORS: f64 = 3.0;
 /// Steps after which it is ended.
 const MOST_STEPS: u32 = 20_000;
 
@@ -154,7 +156,7 @@ const MOST_STEPS: u32 = 20_000;
 /// Never: contacts beyond [`MOST`] are not looked at.
 ///
 /// Cost: one contact is a closed form and a short integration; several are followed step by step.
-pub(crate) fn throw(
+pub(crate) fn frozen_impact(
     body: &Body,
     contacts: &[FrozenContact],
     (v, w): (&Vec3, &Vec3),
@@ -165,7 +167,7 @@ pub(crate) fn throw(
         velocity_m_s: *v,
         spin_rad_s: *w,
         loss: [Loss::default(); MOST],
-        settled: Settled::Free,
+        settled: ImpactOutcome::Free,
         effort: ImpactEffort::default(),
     };
     // nothing comes nearer: no impact
@@ -173,24 +175,28 @@ pub(crate) fn throw(
         return same;
     }
     if let [contact] = contacts {
-        return alone(body, contact, (v, w), tolerance, same);
+        return single_contact(body, contact, (v, w), tolerance, same);
     }
     let rolls = contacts.iter().any(|contact| contact.law.rolling.is_on());
     let how = (body, contacts, tolerance);
     // numbers of contacts and springs are constants: loops on the stack
     match (contacts.len(), rolls) {
-        (2, false) => several::<2, 15, 8, 6>(how, (v, w), same),
-        (2, true) => several::<2, 21, 8, 6>(how, (v, w), same),
-        (3, false) => several::<3, 18, 12, 9>(how, (v, w), same),
-        (3, true) => several::<3, 27, 12, 9>(how, (v, w), same),
-        (4, false) => several::<4, 21, 16, 12>(how, (v, w), same),
-        (4, true) => several::<4, 33, 16, 12>(how, (v, w), same),
-        _ => several::<MOST, { 9 + 6 * MOST }, { 4 * MOST }, { 3 * MOST }>(how, (v, w), same),
+        (2, false) => several_contacts::<2, 15, 8, 6>(how, (v, w), same),
+        (2, true) => several_contacts::<2, 21, 8, 6>(how, (v, w), same),
+        (3, false) => several_contacts::<3, 18, 12, 9>(how, (v, w), same),
+        (3, true) => several_contacts::<3, 27, 12, 9>(how, (v, w), same),
+        (4, false) => several_contacts::<4, 21, 16, 12>(how, (v, w), same),
+        (4, true) => several_contacts::<4, 33, 16, 12>(how, (v, w), same),
+        _ => several_contacts::<MOST, { 9 + 6 * MOST }, { 4 * MOST }, { 3 * MOST }>(
+            how,
+            (v, w),
+            same,
+        ),
     }
 }
 
 /// One contact: the impact on a plane without weight.
-fn alone(
+fn single_contact(
     body: &Body,
     contact: &FrozenContact,
     (v, w): (&Vec3, &Vec3),
@@ -201,7 +207,7 @@ fn alone(
     let (law, n) = (contact.law, &contact.normal);
     // one that gives nothing back is damped over critical, and its rest of rebound taken away below
     let point = (contact.captured, contact.stiffness_scale);
-    let plane = Plane::of_patch(&body, law, point, OF_ONE * tolerance);
+    let plane = Plane::of_patch(&body, law, point, SINGLE_TOLERANCE * tolerance);
     let Some(rebound) = plane.follow(n, v, w) else {
         // Without weight nothing keeps it but a speed too small to be squared.
         end.velocity_m_s -= n * n.dot(v);
@@ -218,7 +224,7 @@ fn alone(
 }
 
 /// Several contacts; `K` of them at most, `N` numbers that change, `Q` that are summed up, `P` possible kinks.
-fn several<const K: usize, const N: usize, const Q: usize, const P: usize>(
+fn several_contacts<const K: usize, const N: usize, const Q: usize, const P: usize>(
     (body, contacts, tolerance): (&Body, &[FrozenContact], f64),
     (v, w): (&Vec3, &Vec3),
     mut end: FrozenRebound,
@@ -232,7 +238,7 @@ fn several<const K: usize, const N: usize, const Q: usize, const P: usize>(
     end.effort = run.effort;
     let [place] = run.motions();
     let AfterImpact { motions: [place], plastic } =
-        run.flow.contacts.come_to_an_end(start, place, run.flow.nothing());
+        run.flow.contacts.finish(start, place, run.flow.negligible());
     // exact energy of the impact; the summed parts only say where it went
     let lost = run.flow.contacts.energy(0, start) - run.flow.contacts.energy(0, place);
     let loss_j = run.loss_j(lost.max(0.0) * (body.mass * speed * speed), plastic);
@@ -261,7 +267,7 @@ impl<const B: usize, const K: usize, const N: usize, const Q: usize, const P: us
         let motion = |k: usize| bodies.get(k).map_or(STILL, |body| body.in_units(speed));
         Self {
             flow: ContactRates::new((bodies, contacts), speed, LOCAL * tolerance),
-            y: rates::begun(&std::array::from_fn::<_, B, _>(motion)),
+            y: rates::initial_state(&std::array::from_fn::<_, B, _>(motion)),
             sums: [0.0; Q],
             effort: ImpactEffort::default(),
         }
@@ -270,30 +276,33 @@ impl<const B: usize, const K: usize, const N: usize, const Q: usize, const P: us
     /// Steps until nothing pushes and nothing comes nearer.
     ///
     /// A rock may fly between touches of one impact (a wedge): a closed form that costs no time.
-    fn follow(&mut self, tolerance: f64) -> Settled {
-        let (mut step, mut time) = (StepLength::new(OPENING * math::pow(tolerance, 0.2)), 0.0);
+    fn follow(&mut self, tolerance: f64) -> ImpactOutcome {
+        let (mut step, mut time) = (StepLength::new(FIRST_STEP * math::pow(tolerance, 0.2)), 0.0);
         let softest = self.flow.contacts.softest;
-        let (most, mut quiet) = (MOST_TIME / self.flow.contacts.slowest_swing(), Quiet::<B>::NONE);
+        let (most, mut unchanged) =
+            (MOST_TIME / self.flow.contacts.slowest_swing(), UnchangedMotion::<B>::NONE);
         // Whether the contacts have been changed without a step: once is enough.
-        let mut turned = false;
-        self.flow.press(&mut self.y);
+        let mut switched = false;
+        self.flow.update_pressed(&mut self.y);
         let mut stages = Stages::<N, Q, P>::NONE;
         self.flow.rates_of(&self.y, stages.first());
         loop {
-            self.note();
+            self.record_approaches();
             if time > most || self.effort.steps + self.effort.rejected > MOST_STEPS {
-                return Settled::OutOfTime;
+                return ImpactOutcome::OutOfTime;
             }
             if self.flow.is_free(&self.y) {
-                let Some(wait) = self.flow.next_touch(&self.y) else { return Settled::Free };
+                let Some(wait) = self.flow.next_touch(&self.y) else { return ImpactOutcome::Free };
                 // Exact and free of cost: not counted.
                 self.flow.drift(&mut self.y, wait);
                 self.effort.steps += 1;
                 self.flow.rates_of(&self.y, stages.first());
                 continue;
             }
-            if quiet.stays(&self.motions(), time, QUIET * self.flow.allowed) > TAU / softest {
-                return Settled::Jammed;
+            if unchanged.stays(&self.motions(), time, JAMMED_ERRORS * self.flow.allowed)
+                > TAU / softest
+            {
+                return ImpactOutcome::Jammed;
             }
             let h = step.wish.min(self.flow.longest);
             let felt = (h > SHORTEST_CUT).then_some(self.flow.allowed);
@@ -313,8 +322,8 @@ impl<const B: usize, const K: usize, const N: usize, const Q: usize, const P: us
             // a contact that opens or closes within the step ends it: dashpots are shared anew
             // among those that are pressed
             match self.flow.crossing(&self.y, &tried.y, h) {
-                Some(SwitchTime::Now) if !turned => {
-                    turned = true;
+                Some(SwitchTime::Now) if !switched => {
+                    switched = true;
                     self.flow.rates_of(&self.y, stages.first());
                 }
                 Some(SwitchTime::At(share)) => {
@@ -322,16 +331,16 @@ impl<const B: usize, const K: usize, const N: usize, const Q: usize, const P: us
                     step.cut(h, share);
                 }
                 _ => {
-                    turned = false;
+                    switched = false;
                     self.y = tried.y;
-                    sum_up(&mut self.sums, &tried.q);
+                    add_sums(&mut self.sums, &tried.q);
                     time += h;
                     self.effort.steps += 1;
                     step.grow(h * growth(tried.error2));
-                    if self.flow.press(&mut self.y) {
+                    if self.flow.update_pressed(&mut self.y) {
                         self.flow.rates_of(&self.y, stages.first());
                     } else {
-                        stages.pass();
+                        stages.reuse_last();
                     }
                 }
             }
@@ -341,17 +350,17 @@ impl<const B: usize, const K: usize, const N: usize, const Q: usize, const P: us
     /// Velocities, and spins times radius.
     fn motions(&self) -> [Twist; B] {
         std::array::from_fn(|k| {
-            (rates::speed_of::<B, N>(&self.y, k), rates::spin_of::<B, N>(&self.y, k))
+            (rates::velocity_of::<B, N>(&self.y, k), rates::spin_of::<B, N>(&self.y, k))
         })
     }
 
     /// Notes how fast the contacts that are pressed come nearer.
     /// The fastest approach of each tells what restitution may give back of it.
-    fn note(&mut self) {
+    fn record_approaches(&mut self) {
         let (y, contacts) = (&self.y, &mut self.flow.contacts);
         for k in 0..contacts.list().len() {
             if self.flow.pressed[k] {
-                let approach = -contacts.parting(k, |k| rates::speed_of::<B, N>(y, k));
+                let approach = -contacts.separation(k, |k| rates::velocity_of::<B, N>(y, k));
                 contacts.fastest[k] = contacts.fastest[k].max(approach);
             }
         }
@@ -377,12 +386,12 @@ impl<const B: usize, const K: usize, const N: usize, const Q: usize, const P: us
 ///
 /// A rock wedged between two contacts keeps its velocity, near 0, while springs and friction hold
 /// each other: no step would end that.
-struct Quiet<const B: usize> {
+struct UnchangedMotion<const B: usize> {
     since: f64,
     motions: [Twist; B],
 }
 
-impl<const B: usize> Quiet<B> {
+impl<const B: usize> UnchangedMotion<B> {
     /// Nothing seen yet.
     const NONE: Self = Self { since: 0.0, motions: [STILL; B] };
 

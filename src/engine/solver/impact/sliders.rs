@@ -64,7 +64,7 @@ impl SliderElement {
     }
 
     /// Energy `k ξ²/2` of the spring that has `s`.
-    pub(super) fn held(&self, s: &[f64]) -> f64 {
+    pub(super) fn stored(&self, s: &[f64]) -> f64 {
         let square: f64 = s.iter().map(|s| s * s).sum();
         if square > 0.0 { 0.5 * self.damping * square / self.rate } else { 0.0 }
     }
@@ -73,13 +73,13 @@ impl SliderElement {
     #[inline]
     pub(super) fn share(&self, asked2: f64, f: f64) -> (f64, f64, f64) {
         let cap = self.cap * f;
-        let (share, by) = Self::part(slips([asked2, cap]), [asked2, cap]);
+        let (share, by) = Self::scale(slips([asked2, cap]), [asked2, cap]);
         (share, by, cap)
     }
 
     /// `p` and its shortening for what is asked, where it slips under a cap, or sticks: `p = asked × share`, and how much slips.
     #[inline]
-    fn part(slips: bool, [asked2, cap]: [f64; 2]) -> (f64, f64) {
+    fn scale(slips: bool, [asked2, cap]: [f64; 2]) -> (f64, f64) {
         if !slips {
             return (1.0, 0.0);
         }
@@ -90,7 +90,7 @@ impl SliderElement {
 
 /// Shear alone: slip and spring.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Shear {
+pub(super) struct ShearFlow {
     pub(super) element: SliderElement,
     /// Mass over that of the contact point along the surface, `1 + m R²/I` (–).
     pub(super) lightness: f64,
@@ -99,7 +99,7 @@ pub(super) struct Shear {
 }
 
 /// Slip, spring `s`; summed up: what slipping takes, slip.
-impl ForcedFlow<4, 3, 1> for Shear {
+impl ForcedFlow<4, 3, 1> for ShearFlow {
     #[inline]
     fn asked(&self, f: f64, y: &[f64; 4]) -> [[f64; 2]; 1] {
         let asked = [y[0] + y[2], y[1] + y[3]];
@@ -109,8 +109,8 @@ impl ForcedFlow<4, 3, 1> for Shear {
     #[inline]
     fn rates(&self, f: f64, y: &[f64; 4], [slips]: &[bool; 1], to: &mut Rates<4, 3, 1>) {
         let SliderElement { damping, rate, .. } = self.element;
-        let kinks = self.asked(f, y);
-        let (share, by) = SliderElement::part(*slips, kinks[0]);
+        let switching = self.asked(f, y);
+        let (share, by) = SliderElement::scale(*slips, switching[0]);
         let p = [y[0] + y[2], y[1] + y[3]].map(|x| x * share);
         // an impulse c p changes the slip by (1 + m R²/I) = 7/2 of it for a sphere: velocity and
         // spin both give way
@@ -123,8 +123,8 @@ impl ForcedFlow<4, 3, 1> for Shear {
                 rate * (p[0] - y[2]),
                 rate * (p[1] - y[3]),
             ],
-            q: [damping * kinks[0][1] * by, y[0], y[1]],
-            kinks,
+            q: [damping * switching[0][1] * by, y[0], y[1]],
+            switching,
         };
     }
 
@@ -139,14 +139,14 @@ impl ForcedFlow<4, 3, 1> for Shear {
 
 /// Shear alone along one line, without gravity.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Straight {
+pub(super) struct LineShearFlow {
     pub(super) element: SliderElement,
     /// Mass over that of the contact point along the surface, `1 + m R²/I` (–).
     pub(super) lightness: f64,
 }
 
 /// Slip, spring `s`; summed up: what slipping takes, slip.
-impl ForcedFlow<2, 2, 1> for Straight {
+impl ForcedFlow<2, 2, 1> for LineShearFlow {
     #[inline]
     fn asked(&self, f: f64, y: &[f64; 2]) -> [[f64; 2]; 1] {
         let asked = y[0] + y[1];
@@ -156,13 +156,13 @@ impl ForcedFlow<2, 2, 1> for Straight {
     #[inline]
     fn rates(&self, f: f64, y: &[f64; 2], [slips]: &[bool; 1], to: &mut Rates<2, 2, 1>) {
         let SliderElement { damping, rate, .. } = self.element;
-        let kinks = self.asked(f, y);
-        let (share, by) = SliderElement::part(*slips, kinks[0]);
+        let switching = self.asked(f, y);
+        let (share, by) = SliderElement::scale(*slips, switching[0]);
         let p = (y[0] + y[1]) * share;
         *to = Rates {
             y: [-self.lightness * damping * p, rate * (p - y[1])],
-            q: [damping * kinks[0][1] * by, y[0]],
-            kinks,
+            q: [damping * switching[0][1] * by, y[0]],
+            switching,
         };
     }
 
@@ -176,7 +176,7 @@ impl ForcedFlow<2, 2, 1> for Straight {
 
 /// Shear and rolling.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Both {
+pub(super) struct ShearRollingFlow {
     pub(super) shear: SliderElement,
     pub(super) rolling: SliderElement,
     /// `m R²/I` (–).
@@ -185,7 +185,7 @@ pub(super) struct Both {
     pub(super) gravity: [f64; 2],
 }
 
-impl Both {
+impl ShearRollingFlow {
     /// `u = (v_s − R ω_t, v_t + R ω_s)`, with `y[2..5] = R ω`.
     #[inline]
     fn slip(y: &[f64; 10]) -> [f64; 2] {
@@ -207,7 +207,7 @@ impl Both {
 }
 
 /// Velocity, spin, springs; summed up: what slipping takes, way, work of rolling and of shear.
-impl ForcedFlow<10, 5, 2> for Both {
+impl ForcedFlow<10, 5, 2> for ShearRollingFlow {
     #[inline]
     fn asked(&self, f: f64, y: &[f64; 10]) -> [[f64; 2]; 2] {
         let (asked, wound) = (Self::slip_asked(y), Self::spin_asked(y));
@@ -228,10 +228,10 @@ impl ForcedFlow<10, 5, 2> for Both {
     ) {
         let (shear, rolling) = (self.shear, self.rolling);
         let slip = Self::slip(y);
-        let kinks = self.asked(f, y);
-        let (share, by) = SliderElement::part(*slips, kinks[0]);
+        let switching = self.asked(f, y);
+        let (share, by) = SliderElement::scale(*slips, switching[0]);
         let p = Self::slip_asked(y).map(|x| x * share);
-        let (share, _) = SliderElement::part(*turns_over, kinks[1]);
+        let (share, _) = SliderElement::scale(*turns_over, switching[1]);
         let m = Self::spin_asked(y).map(|x| x * share);
         let (c, turn, g) = (shear.damping, self.turns * shear.damping, self.gravity);
         let stop = self.turns * rolling.damping;
@@ -249,13 +249,13 @@ impl ForcedFlow<10, 5, 2> for Both {
                 rolling.rate * (m[2] - y[9]),
             ],
             q: [
-                c * kinks[0][1] * by,
+                c * switching[0][1] * by,
                 y[0],
                 y[1],
                 rolling.damping * (m[0] * y[2] + m[1] * y[3] + m[2] * y[4]),
                 c * (p[0] * slip[0] + p[1] * slip[1]),
             ],
-            kinks,
+            switching,
         };
     }
 

@@ -39,7 +39,7 @@ fn a_ball_deep_in_soil_slows_by_the_closed_form_of_drag() {
         let mut ahead = 1.0;
         let parts: f64 =
             (0..7).map(|_| scars.plough(&body, (0.1, ScarFloor::Unknown), None)).product();
-        scars.pace = Pace::default();
+        scars.split = DragSplit::default();
         for way_m in [0.1, 0.2, 0.02, 0.08, 0.1, 0.2] {
             ahead *= scars.plough_ahead();
             ahead *= scars.plough(&body, (way_m, ScarFloor::Unknown), None);
@@ -171,7 +171,7 @@ fn drag_decides_whether_a_ball_leaves_its_scar() {
     let (body, mut scars, per_m) = deep(20.0, 9.81);
     scars.enter(&body, &[square(6.0)], (6.0, false));
     let depth_m = 1.2;
-    let dug = Some(Furrow { depth_m, ..scars.now.unwrap() });
+    let dug = Some(ActiveScar { depth_m, ..scars.now.unwrap() });
     let kept = math::exp(-per_m * (depth_m - body.radius / 3.0));
     for (up_m_s, leaves) in [(8.0_f64, false), (20.0, true)] {
         assert_eq!((kept * up_m_s).powi(2) > 2.0 * 9.81 * depth_m, leaves);
@@ -199,7 +199,7 @@ fn more_drag_never_makes_a_higher_leap() {
         let mut scars = Scars { layers: vec![Some(scar)], is_any: true, ..Scars::default() };
         scars.enter(&body, &[square(40.0)], (40.0, false));
         let depth_m = scars.now.unwrap().depth_m;
-        scars.pace.paid_m = ahead_m;
+        scars.split.paid_m = ahead_m;
         let thrown = v * scars.leave(&body, v);
         let (rise_m, hop_s) = (0.5 * thrown.z * thrown.z / 9.81, 2.0 * thrown.z / 9.81);
         let out = scars.now.is_none();
@@ -240,10 +240,10 @@ fn soil_that_is_paid_for_is_paid_once() {
     scars.enter(&body, &[square(6.0)], (6.0, false));
     let up = Vec3::z() * 4.0;
     let free_m = 0.5 * 16.0 / 9.81;
-    scars.now = Some(Furrow { depth_m: free_m + 2.0 * body.radius, ..scars.now.unwrap() });
+    scars.now = Some(ActiveScar { depth_m: free_m + 2.0 * body.radius, ..scars.now.unwrap() });
     let dug = scars.now;
     for paid_m in [0.0, 0.3 * free_m, 2.0 * free_m] {
-        scars.now = dug.map(|now| Furrow { paid: per_m * paid_m, ..now });
+        scars.now = dug.map(|now| ActiveScar { paid: per_m * paid_m, ..now });
         let rise_m = free_m * scars.leave(&body, &up).powi(2);
         let unpaid_m = (rise_m - paid_m).max(0.0);
         let exact_m = free_m * math::exp(-2.0 * per_m * unpaid_m);

@@ -5,7 +5,7 @@
 //! more with all of the drag, the rock leaves its scar, with a hop as high over the plane as that. Else it rises to the `h` that solves the
 //! equation, at most to the rim: as `S` grows with drag, more of it never makes a hop higher, and the two meet at the rim.
 
-use super::{Furrow, Scars};
+use super::{ActiveScar, Scars};
 use crate::ground::{cut_area_m2, over_unit, swept_m3};
 use crate::math;
 use crate::rock::Vec3;
@@ -20,7 +20,7 @@ const EXACT: f64 = 1e-13;
 /// How a ball leaves the plane: its radius (m), and the cosine of its velocity to the normal.
 type Leaving = (f64, f64);
 
-impl Furrow {
+impl ActiveScar {
     /// What drag takes on a rise (m) from the plane, straight along the velocity (–), as the logarithm of the speed.
     fn drag_up(&self, (radius_m, cosine): Leaving, rise_m: f64) -> f64 {
         let depth_m = self.depth_m;
@@ -37,7 +37,7 @@ impl Furrow {
     ///
     /// `ln h + 2 S(h)` grows ever slower, as the ball is less deep: Newton's steps from below never pass the root.
     fn rise_m(&self, leaving: Leaving, free_m: f64) -> f64 {
-        let drag = |rise_m: f64| self.drag_up(leaving, rise_m) - self.paid;
+        let drag = |rise_m: f64| self.drag_up(leaving, rise_m) - self.prepaid;
         let top_m = free_m.min(self.depth_m);
         if drag(top_m) <= 0.0 {
             return top_m;
@@ -64,18 +64,18 @@ impl Scars {
     /// The rock's contact ends at a velocity: what it keeps of it on its way out (–). One that is then too slow along the normal to climb
     /// `d` against gravity stays in its scar, and pays for the way up to where it stops.
     pub(crate) fn leave(&mut self, body: &Body, v: &Vec3) -> f64 {
-        let paid_m = std::mem::take(&mut self.pace).paid_m;
-        let Some(now) = &mut self.now else { return 1.0 };
-        now.paid += now.per_m * paid_m;
+        let paid_m = std::mem::take(&mut self.split).paid_m;
+        let Some(now) = &mut self.active else { return 1.0 };
+        now.prepaid += now.per_m * paid_m;
         let (speed, up) = (v.norm(), now.normal.dot(v));
         if up <= 0.0 {
             return 1.0;
         }
         let leaving = (body.radius, (up / speed).min(1.0));
-        let kept = math::exp((now.paid - now.drag_up(leaving, now.depth_m)).min(0.0));
+        let kept = math::exp((now.prepaid - now.drag_up(leaving, now.depth_m)).min(0.0));
         let pull = now.pull(body);
         if (up * kept).powi(2) >= 2.0 * pull * now.depth_m {
-            self.now = None;
+            self.active = None;
             return kept;
         }
         let free_m = 0.5 * up * up / pull;
@@ -83,7 +83,7 @@ impl Scars {
             return 1.0;
         }
         let rise_m = now.rise_m(leaving, free_m);
-        now.paid = now.paid.max(now.drag_up(leaving, rise_m));
+        now.prepaid = now.prepaid.max(now.drag_up(leaving, rise_m));
         (rise_m / free_m).sqrt().min(1.0)
     }
 
@@ -92,7 +92,7 @@ impl Scars {
     ///
     /// Over the chord of a flight of `T` it is `g_n t (T − t)/2` high, whatever its speed and wherever it lands.
     pub(crate) fn fly(&mut self, body: &Body, v: &Vec3, flight_s: f64) -> f64 {
-        let Some(now) = &mut self.now else { return 1.0 };
+        let Some(now) = &mut self.active else { return 1.0 };
         let pull = now.pull(body);
         let rises_out = flight_s * flight_s - 8.0 * now.depth_m / pull;
         let is_out = pull <= 0.0 || rises_out > 0.0;
@@ -109,11 +109,11 @@ impl Scars {
         // up and down each: straight up a rock turns round between them
         let halves = [0.0, 0.5].map(|from| over_unit(|x| swept(from + 0.5 * x)));
         let drag = now.drag_per_m3 * until_s * 0.5 * (halves[0] + halves[1]);
-        let kept = math::exp((now.paid - drag).min(0.0));
+        let kept = math::exp((now.prepaid - drag).min(0.0));
         // the end of the contact may be followed by another without a flight
-        now.paid = (now.paid - drag).max(0.0);
+        now.prepaid = (now.prepaid - drag).max(0.0);
         if is_out {
-            self.now = None;
+            self.active = None;
         }
         kept
     }

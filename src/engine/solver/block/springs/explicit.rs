@@ -17,7 +17,7 @@ use crate::contact::block::{BlockTouch, BlockTouches};
 use crate::contact::pair::LASTS_RAD;
 use crate::ground::Law;
 use crate::solver::environment::ContactEnvironment;
-use crate::solver::explicit_impact::{FIRST, LONGEST_RAD, SHORTEST_RAD, judge};
+use crate::solver::explicit_impact::{FIRST, LONGEST_RAD, SHORTEST_RAD, control_error};
 use crate::solver::impact::LOCAL;
 use crate::solver::impact::dormand_prince::{Attempt, Flow, Stages};
 use crate::solver::loss::Loss;
@@ -179,7 +179,8 @@ impl BlockContactState {
                     continue;
                 }
             };
-            let (accepted, next_h) = judge((dt, wished), (tried.error2, flow.is_smooth), is_short)?;
+            let (accepted, next_h) =
+                control_error((dt, wished), (tried.error2, flow.is_smooth), is_short)?;
             h = next_h;
             if accepted {
                 *rejected -= 1;
@@ -243,7 +244,7 @@ impl BlockContactState {
 impl super::SpringContact {
     /// Where it opens and where it slips, for an explicit pair: what is asked of its normal element, squared, and what that would pull with, and
     /// the same of shear. Both in units of acceleration for a mass (kg), so that times a step they are speeds.
-    pub(super) fn kinks(&self, (pulls, asked2): (f64, f64), mass_kg: f64) -> [[f64; 2]; 2] {
+    pub(super) fn switching(&self, (pulls, asked2): (f64, f64), mass_kg: f64) -> [[f64; 2]; 2] {
         let (by_mass, pushes) = (1.0 / mass_kg, self.normal_force);
         let cap = self.law.shear.cap(pushes);
         [

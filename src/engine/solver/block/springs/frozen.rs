@@ -24,9 +24,11 @@ use crate::contact::block::{BlockTouch, MOST_TOUCHES};
 use crate::rock::Vec3;
 use crate::solver::block::solve::Mass;
 use crate::solver::environment::ContactEnvironment;
-use crate::solver::explicit_impact::{FIRST, LONGEST_RAD, SHORTEST_RAD, judge};
-use crate::solver::impact::dormand_prince::{Attempt, Flow, Rates, Stages, put, sum_up, three};
-use crate::solver::impact::{LOCAL, NOTHING};
+use crate::solver::explicit_impact::{FIRST, LONGEST_RAD, SHORTEST_RAD, control_error};
+use crate::solver::impact::dormand_prince::{
+    Attempt, Flow, Rates, Stages, add_sums, put_vec3, vec3_at,
+};
+use crate::solver::impact::{LOCAL, NEGLIGIBLE};
 use crate::solver::law::capture_m_s;
 use crate::solver::loss::{Loss, shared};
 use standstill::Standstill;
@@ -154,12 +156,12 @@ impl FrozenFlow<'_, '_> {
         state: &BlockState,
     ) -> Option<(BlockState, Loss)> {
         let (mut y, mut sums) = ([0.0; N], [0.0; SUMS]);
-        put(&mut y, V, &state.v);
-        put(&mut y, MOMENTUM, &state.momentum);
-        put(&mut y, ROLLED, &self.rolling.stretch);
+        put_vec3(&mut y, V, &state.v);
+        put_vec3(&mut y, MOMENTUM, &state.momentum);
+        put_vec3(&mut y, ROLLED, &self.rolling.stretch);
         for (k, contact) in self.contacts.iter().enumerate() {
             y[CONTACTS + PER_CONTACT * k] = contact.penetration;
-            put(&mut y, CONTACTS + PER_CONTACT * k + 1, &contact.shear);
+            put_vec3(&mut y, CONTACTS + PER_CONTACT * k + 1, &contact.shear);
         }
         let mut still = Standstill::of(state);
         let mut stages = Stages::<N, SUMS, P>::NONE;
@@ -176,7 +178,7 @@ impl FrozenFlow<'_, '_> {
                     continue;
                 }
             };
-            let (accepted, next_h) = judge((dt, h), (tried.error2, true), is_short).ok()?;
+            let (accepted, next_h) = control_error((dt, h), (tried.error2, true), is_short).ok()?;
             h = next_h;
             if !accepted {
                 continue;
@@ -186,9 +188,9 @@ impl FrozenFlow<'_, '_> {
                 continue;
             }
             y = tried.y;
-            sum_up(&mut sums, &tried.q);
+            add_sums(&mut sums, &tried.q);
             gone += dt * self.omega;
-            stages.pass();
+            stages.reuse_last();
             let mut begins = self.update_open(&mut y);
             // the forces are those of the step's end
             if !begins && self.is_free() {
@@ -215,8 +217,8 @@ impl FrozenFlow<'_, '_> {
 
     /// The velocity of a contact's point at a state.
     fn point_m_s<const N: usize>(&self, k: usize, y: &[f64; N]) -> Vec3 {
-        let w = self.mass.inverse * three(y, MOMENTUM);
-        Mass::velocity_at(&self.contacts[k].lever, (&three(y, V), &w))
+        let w = self.mass.inverse * vec3_at(y, MOMENTUM);
+        Mass::velocity_at(&self.contacts[k].lever, (&vec3_at(y, V), &w))
     }
 
     /// Penetration up to which a contact that comes again need not be met more exactly (m).
@@ -234,7 +236,7 @@ impl FrozenFlow<'_, '_> {
         let waits = (0..self.contacts.len()).filter_map(|k| {
             let comes_m_s = -self.contacts[k].n.dot(&self.point_m_s(k, y));
             let gap_m = -y[CONTACTS + PER_CONTACT * k];
-            (comes_m_s > NOTHING * self.allowed).then(|| (gap_m / comes_m_s).max(0.0))
+            (comes_m_s > NEGLIGIBLE * self.allowed).then(|| (gap_m / comes_m_s).max(0.0))
         });
         waits.reduce(f64::min)
     }
@@ -283,7 +285,7 @@ impl FrozenFlow<'_, '_> {
             {
                 self.contacts[k].is_suspended = true;
                 // what its spring held is lost
-                put(y, at + 1, &Vec3::zeros());
+                put_vec3(y, at + 1, &Vec3::zeros());
             }
         }
         is_back
@@ -307,7 +309,7 @@ impl FrozenFlow<'_, '_> {
         contact.captured = approach_m_s < capture_m_s(&law) && !rebounds;
         self.contacts[k] = contact;
         y[at] = y[at].max(0.0);
-        put(y, at + 1, &Vec3::zeros());
+        put_vec3(y, at + 1, &Vec3::zeros());
     }
 
     /// The motion at a state, and what was taken: together exactly what the motion has lost.
@@ -317,7 +319,8 @@ impl FrozenFlow<'_, '_> {
         start: &BlockState,
         sums: &[f64; SUMS],
     ) -> (BlockState, Loss) {
-        let mut end = BlockState { v: three(y, V), momentum: three(y, MOMENTUM), ..start.clone() };
+        let mut end =
+            BlockState { v: vec3_at(y, V), momentum: vec3_at(y, MOMENTUM), ..start.clone() };
         let before_j = start.motion_j(self.block) + self.held_j;
         let holds_j = if self.is_clamped { self.clamped_j() } else { 0.0 };
         // the steps' own error
@@ -342,13 +345,13 @@ impl FrozenFlow<'_, '_> {
 impl<const N: usize, const P: usize> Flow<N, SUMS, P> for FrozenFlow<'_, '_> {
     fn rates(&mut self, _node: usize, y: &[f64; N], to: &mut Rates<N, SUMS, P>) {
         *to = Rates::NONE;
-        let v = three(y, V);
-        let w = self.mass.inverse * three(y, MOMENTUM);
+        let v = vec3_at(y, V);
+        let w = self.mass.inverse * vec3_at(y, MOMENTUM);
         let (mut push, mut torque, mut loss) = (Vec3::zeros(), Vec3::zeros(), Loss::default());
         for (k, contact) in self.contacts.iter_mut().enumerate() {
             let (at, u) = (CONTACTS + PER_CONTACT * k, Mass::velocity_at(&contact.lever, (&v, &w)));
             to.y[at] = -contact.n.dot(&u);
-            (contact.penetration, contact.shear) = (y[at], three(y, at + 1));
+            (contact.penetration, contact.shear) = (y[at], vec3_at(y, at + 1));
             if contact.is_suspended {
                 (contact.normal_force, contact.shear_force) = (0.0, Vec3::zeros());
                 continue;
@@ -357,21 +360,21 @@ impl<const N: usize, const P: usize> Flow<N, SUMS, P> for FrozenFlow<'_, '_> {
             let force = contact.n * contact.normal_force - contact.shear_force;
             push += force;
             torque += contact.lever.cross(&force);
-            put(&mut to.y, at + 1, &shear.stretch_rate);
+            put_vec3(&mut to.y, at + 1, &shear.stretch_rate);
             loss.add(&contact.power(self.world, &u, &shear.stretch_rate), 1.0);
-            let kinks = contact.kinks((pulls, shear.asked2), self.mass.mass);
-            to.kinks[2 * k..2 * k + 2].copy_from_slice(&kinks);
+            let switching = contact.switching((pulls, shear.asked2), self.mass.mass);
+            to.switching[2 * k..2 * k + 2].copy_from_slice(&switching);
         }
         if self.rolling.is_on() {
-            self.rolling.stretch = three(y, ROLLED);
+            self.rolling.stretch = vec3_at(y, ROLLED);
             let rolling = self.rolling.update_moment(&self.contacts, &w);
             torque -= rolling.force;
-            put(&mut to.y, ROLLED, &rolling.stretch_rate);
+            put_vec3(&mut to.y, ROLLED, &rolling.stretch_rate);
             loss.add(&self.rolling.power(self.world, &self.contacts, &w), 1.0);
         }
         to.q = [loss.friction, loss.damping, loss.rolling, loss.trees];
-        put(&mut to.y, V, &(push / self.mass.mass));
-        put(&mut to.y, MOMENTUM, &torque);
+        put_vec3(&mut to.y, V, &(push / self.mass.mass));
+        put_vec3(&mut to.y, MOMENTUM, &torque);
     }
 
     /// Ways and stretches times `ω`, spin and turns times the largest radius, all in m/s.
@@ -380,12 +383,12 @@ impl<const N: usize, const P: usize> Flow<N, SUMS, P> for FrozenFlow<'_, '_> {
         let pressed = self.contacts.iter().enumerate().filter(|(_, one)| one.normal_force > 0.0);
         let ways2 = pressed.map(|(k, _)| {
             let at = CONTACTS + PER_CONTACT * k;
-            (off[at] * off[at]).max(three(off, at + 1).norm_squared())
+            (off[at] * off[at]).max(vec3_at(off, at + 1).norm_squared())
         });
         let worst2 = (ways2.fold(0.0, f64::max) * omega2)
-            .max(three(off, V).norm_squared())
-            .max((self.mass.inverse * three(off, MOMENTUM)).norm_squared() * reach2)
-            .max(three(off, ROLLED).norm_squared() * reach2 * omega2);
+            .max(vec3_at(off, V).norm_squared())
+            .max((self.mass.inverse * vec3_at(off, MOMENTUM)).norm_squared() * reach2)
+            .max(vec3_at(off, ROLLED).norm_squared() * reach2 * omega2);
         worst2 / (self.allowed * self.allowed)
     }
 }

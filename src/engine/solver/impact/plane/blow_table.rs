@@ -36,7 +36,7 @@ impl BlowTable {
     /// An empty table of the blows on `body` that rebound; `None` where there is nothing to follow.
     pub(crate) fn new(body: &Body, law: &Law) -> Option<Self> {
         let plane = blow_plane((body, law), false, TOLERANCE);
-        let exit = plane.swing.exit(0.0).filter(|_| plane.shear.is_on())?;
+        let exit = plane.oscillator.exit(0.0).filter(|_| plane.shear.is_on())?;
         let most = plane.shear.damping * plane.shear.cap * (1.0 + exit.speed);
         let sliding = (1.0 + plane.body.turns()) * most;
         let nodes: Box<[OnceLock<f64>]> = (0..=NODES).map(|_| OnceLock::new()).collect();
@@ -61,7 +61,7 @@ impl BlowTable {
         let (damping_ratio, shear) = Plane::elements((body, law), false);
         let own = &self.plane.shear;
         let pairs = [
-            (damping_ratio, self.plane.swing.zeta, SAME_MATERIAL),
+            (damping_ratio, self.plane.oscillator.zeta, SAME_MATERIAL),
             (shear.damping, own.damping, SAME_MATERIAL),
             (shear.rate, own.rate, SAME_MATERIAL),
             (shear.cap, own.cap, SAME_MATERIAL),
@@ -82,7 +82,7 @@ impl BlowTable {
     fn node(&self, k: usize) -> f64 {
         *self.nodes[k].get_or_init(|| {
             let share = k as f64 / NODES as f64;
-            self.plane.rubbed(self.sliding * share / (1.0 - share), self.exit.lift)
+            self.plane.friction_impulse(self.sliding * share / (1.0 - share), self.exit.lift_off)
         })
     }
 }

@@ -4,8 +4,10 @@
 //! none, but its course is the same: it is followed in its own time as the impact of one rock among several contacts is, with the same
 //! rates. Impulses act on both ends of a contact at one point, so momentum and angular momentum are kept to rounding.
 
-use super::contacts::{AfterImpact, Contacts, REST};
-use super::{ContactEnds, FrozenBody, FrozenContact, ImpactRun, LONGEST_STEP, MOST_STEPS, Settled};
+use super::contacts::{AfterImpact, ImpactContacts, REST};
+use super::{
+    ContactEnds, FrozenBody, FrozenContact, ImpactOutcome, ImpactRun, LONGEST_STEP, MOST_STEPS,
+};
 use crate::rock::Vec3;
 use crate::solver::body::{STILL, Twist};
 use crate::solver::loss::Loss;
@@ -21,7 +23,7 @@ const SWINGS: f64 = 4.0;
 const ROUNDS: usize = 1000;
 
 /// Largest ratio of masses times that of stiffnesses (–) with which a blow of several bodies is followed, where no contact has more than a damping ratio (–).
-pub(crate) fn most_unlike(damping_ratio: f64) -> f64 {
+pub(crate) fn largest_followed_ratio(damping_ratio: f64) -> f64 {
     slowest_followed(LONGEST_STEP / (2.0 * damping_ratio).max(1.0)).powi(-2)
 }
 
@@ -55,21 +57,23 @@ impl FrozenCollision {
 /// to the fastest motion at a contact (–).
 ///
 /// A contact that is pressed together slower than what is captured gives nothing back, whatever it gave in between.
-pub(crate) fn collide(
+pub(crate) fn frozen_collision(
     bodies: &[FrozenBody],
     contacts: &[FrozenContact],
     tolerance: f64,
 ) -> Option<FrozenCollision> {
     let case = (bodies, contacts);
     match (bodies.len(), contacts.len()) {
-        (..=3, ..=6) => followed::<3, 6, 63, 24, 18>(case, tolerance),
-        (..=8, ..=20) => followed::<8, 20, 192, 80, 60>(case, tolerance),
-        (..=BODIES, ..=CONTACTS) => followed::<BODIES, CONTACTS, 432, 192, 144>(case, tolerance),
+        (..=3, ..=6) => follow_bodies::<3, 6, 63, 24, 18>(case, tolerance),
+        (..=8, ..=20) => follow_bodies::<8, 20, 192, 80, 60>(case, tolerance),
+        (..=BODIES, ..=CONTACTS) => {
+            follow_bodies::<BODIES, CONTACTS, 432, 192, 144>(case, tolerance)
+        }
         _ => None,
     }
 }
 
-fn followed<const B: usize, const K: usize, const N: usize, const Q: usize, const P: usize>(
+fn follow_bodies<const B: usize, const K: usize, const N: usize, const Q: usize, const P: usize>(
     (bodies, contacts): (&[FrozenBody], &[FrozenContact]),
     tolerance: f64,
 ) -> Option<FrozenCollision> {
@@ -82,14 +86,15 @@ fn followed<const B: usize, const K: usize, const N: usize, const Q: usize, cons
     let unit_j = run.flow.contacts.mass_kg * speed * speed;
     run.flow.contacts.capture(contacts, speed);
     let settled = run.follow(tolerance);
-    let nothing = run.flow.nothing();
+    let negligible = run.flow.negligible();
     let contacts = &run.flow.contacts;
     let is_over = |k: usize| {
-        run.flow.is_apart(k, &run.y) || (settled == Settled::Free && run.flow.comes_back(k, &run.y))
+        run.flow.is_apart(k, &run.y)
+            || (settled == ImpactOutcome::Free && run.flow.approaches_again(k, &run.y))
     };
     let meets: [bool; K] = std::array::from_fn(|k| k < contacts.list().len() && !is_over(k));
     let AfterImpact { motions: together, plastic } =
-        contacts.part_or_stay((run.motions(), meets), nothing);
+        contacts.project_velocities((run.motions(), meets), negligible);
     let (motions, lost) = contacts.balanced((&start, &together), plastic.iter().sum());
     let loss_j = run.loss_j(lost.max(0.0) * unit_j, plastic);
     let mut end = FrozenCollision::STILL;
@@ -115,21 +120,22 @@ fn fastest_m_s(bodies: &[FrozenBody], contacts: &[FrozenContact]) -> Option<f64>
     comes.then_some(fastest)
 }
 
-impl<const B: usize, const K: usize> Contacts<B, K> {
+impl<const B: usize, const K: usize> ImpactContacts<B, K> {
     /// Brings to rest what gives nothing back, and every approach that is left: the closest motions in which no contact comes nearer, and
     /// those that hold do not part either. Closest in the sense of energy, which is the one that loses least.
     ///
     /// Projected Gauss–Seidel over the normal impulses of what `meets`.
-    fn part_or_stay(
+    fn project_velocities(
         &self,
         (mut motions, meets): ([Twist; B], [bool; K]),
-        nothing: f64,
+        negligible: f64,
     ) -> AfterImpact<B, K> {
-        let parting = |motions: &[Twist; B], k: usize| self.parting(k, |k| motions[k].0);
-        let held: [bool; K] =
-            std::array::from_fn(|k| meets[k] && self.holds(k, parting(&motions, k), nothing));
+        let separation = |motions: &[Twist; B], k: usize| self.separation(k, |k| motions[k].0);
+        let held: [bool; K] = std::array::from_fn(|k| {
+            meets[k] && self.is_held(k, separation(&motions, k), negligible)
+        });
         let speeds: [f64; K] = std::array::from_fn(|k| {
-            let speed = if meets[k] { parting(&motions, k) } else { 0.0 };
+            let speed = if meets[k] { separation(&motions, k) } else { 0.0 };
             if speed < 0.0 || held[k] { speed } else { 0.0 }
         });
         let before = self.energies(&motions);
@@ -148,7 +154,7 @@ impl<const B: usize, const K: usize> Contacts<B, K> {
                 let ContactEnds { first, second, .. } = contact.ends;
                 let lightness = |end: usize| self.bodies[end].lightness;
                 let (one, other) = (lightness(first), second.map_or(0.0, lightness));
-                let wanted = impulses[k] - self.parting(k, |k| motions[k].0) / (one + other);
+                let wanted = impulses[k] - self.separation(k, |k| motions[k].0) / (one + other);
                 let next = if held[k] { wanted } else { wanted.max(0.0) };
                 let change = next - impulses[k];
                 impulses[k] = next;
@@ -180,7 +186,7 @@ impl<const B: usize, const K: usize> Contacts<B, K> {
         let change: [Twist; B] =
             std::array::from_fn(|k| (after[k].0 - before[k].0, after[k].1 - before[k].1));
         let (was, is, b) = (self.energies(before), self.energies(after), self.energies(&change));
-        let is_exact = self.conserve() && plastic <= REST;
+        let is_exact = self.is_conservative() && plastic <= REST;
         if !(is_exact || is > was) || b <= 0.0 {
             return (*after, was - is);
         }

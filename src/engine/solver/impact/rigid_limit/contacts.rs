@@ -7,7 +7,7 @@ use super::{ContactEnds, FrozenBody, FrozenContact};
 use crate::ground::restitution;
 use crate::rock::Vec3;
 use crate::solver::body::{Body, Twist};
-use crate::solver::impact::normal_motion::NONE;
+use crate::solver::impact::normal_motion::UNDAMPED;
 use crate::solver::impact::sliders::SliderElement;
 use crate::solver::law::capture_m_s;
 
@@ -30,9 +30,9 @@ pub(super) struct ImpactContact {
     pub(super) gap: f64,
     captured: bool,
     /// Approach below which it gives nothing back, whether it is captured or not.
-    slowest: f64,
+    capture_speed: f64,
     /// Its restitution when alone (–).
-    kept: f64,
+    restitution: f64,
 }
 
 /// One of the bodies, in units of the mass `m₀`.
@@ -46,7 +46,7 @@ pub(super) struct ImpactBody {
 
 /// Up to `K` contacts of `B` bodies.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Contacts<const B: usize, const K: usize> {
+pub(super) struct ImpactContacts<const B: usize, const K: usize> {
     list: [ImpactContact; K],
     len: usize,
     pub(super) bodies: [ImpactBody; B],
@@ -77,7 +77,7 @@ pub(super) struct AfterImpact<const B: usize, const K: usize> {
     pub(super) plastic: [f64; K],
 }
 
-impl<const B: usize, const K: usize> Contacts<B, K> {
+impl<const B: usize, const K: usize> ImpactContacts<B, K> {
     pub(super) fn new(bodies: &[FrozenBody], struck: &[FrozenContact], speed: f64) -> Self {
         let normal = |struck: &FrozenContact| struck.law.normal(struck.captured);
         let stiffness =
@@ -98,13 +98,13 @@ impl<const B: usize, const K: usize> Contacts<B, K> {
                 n: struck.normal,
                 ends: struck.ends,
                 stiffness: stiffness(struck) / stiffest,
-                damping: if damping > NONE { damping } else { 0.0 },
+                damping: if damping > UNDAMPED { damping } else { 0.0 },
                 shear: SliderElement::shear(&unit, law, stiffest),
                 rolling: if rolls { rolling } else { SliderElement::NONE },
                 gap: if struck.gap_m > 0.0 { struck.gap_m / way_m } else { 0.0 },
                 captured: struck.captured,
-                slowest: 0.0,
-                kept: restitution(normal(struck).damping_ratio(moved(struck))),
+                capture_speed: 0.0,
+                restitution: restitution(normal(struck).damping_ratio(moved(struck))),
             }
         };
         let slowness = |struck: &FrozenContact| stiffness(struck) * (mass_kg / moved(struck));
@@ -142,7 +142,7 @@ impl<const B: usize, const K: usize> Contacts<B, K> {
 
     /// Speed at which the ends of contact `k` part along its normal.
     #[inline]
-    pub(super) fn parting(&self, k: usize, v: impl Fn(usize) -> Vec3) -> f64 {
+    pub(super) fn separation(&self, k: usize, v: impl Fn(usize) -> Vec3) -> f64 {
         let ContactEnds { first, second, .. } = self.list[k].ends;
         let apart = if B > 1
             && let Some(second) = second
@@ -155,22 +155,22 @@ impl<const B: usize, const K: usize> Contacts<B, K> {
     }
 
     /// Whether a captured contact has not been thrown open by others: what it parts with at the end is its own spring's.
-    pub(super) fn holds(&self, k: usize, parting: f64, nothing: f64) -> bool {
-        let own = ALLOWANCE * self.list[k].kept * self.fastest[k] + nothing;
-        let captured = self.list[k].captured || self.fastest[k] < self.list[k].slowest;
-        captured && parting <= own
+    pub(super) fn is_held(&self, k: usize, separation: f64, negligible: f64) -> bool {
+        let own = ALLOWANCE * self.list[k].restitution * self.fastest[k] + negligible;
+        let captured = self.list[k].captured || self.fastest[k] < self.list[k].capture_speed;
+        captured && separation <= own
     }
 
     /// From now on nothing is given back by what is pressed together slower than its capture speed, in units of `speed` (m/s).
     pub(super) fn capture(&mut self, struck: &[FrozenContact], speed: f64) {
         for (contact, struck) in self.list.iter_mut().zip(struck) {
-            contact.slowest = capture_m_s(struck.law) / speed;
+            contact.capture_speed = capture_m_s(struck.law) / speed;
         }
     }
 
     /// Whether nothing in them takes energy.
     /// Then the limit is exactly elastic, and so must be the result.
-    pub(super) fn conserve(&self) -> bool {
+    pub(super) fn is_conservative(&self) -> bool {
         self.list().iter().all(|contact| {
             contact.damping == 0.0 && !contact.shear.is_on() && !contact.rolling.is_on()
         })
@@ -187,17 +187,17 @@ impl<const B: usize, const K: usize> Contacts<B, K> {
     }
 }
 
-impl<const K: usize> Contacts<1, K> {
+impl<const K: usize> ImpactContacts<1, K> {
     /// Takes out of the motion what captured contacts gave back of themselves and every approach that is left, and sees to it
     /// that the energy is not more than it was: exactly the same where nothing in the contacts takes any.
     ///
     /// Captured contacts have a spring too, and would throw the rock back by their own restitution;
     /// that much is taken from them, not what other contacts threw at the rock.
-    pub(super) fn come_to_an_end(
+    pub(super) fn finish(
         &self,
         before: Twist,
         (mut v, mut w): Twist,
-        nothing: f64,
+        negligible: f64,
     ) -> AfterImpact<1, K> {
         let mut plastic = [0.0; K];
         // each round may press the rock against a contact it had left: at most one more for each
@@ -205,7 +205,7 @@ impl<const K: usize> Contacts<1, K> {
         for _ in 0..=self.len {
             let up = |k: usize| self.list[k].n.dot(&v);
             let held: [bool; K] =
-                std::array::from_fn(|k| k < self.len && self.holds(k, up(k), nothing));
+                std::array::from_fn(|k| k < self.len && self.is_held(k, up(k), negligible));
             let next = self.nearest_allowed(&v, held);
             if next == v {
                 break;
@@ -217,7 +217,7 @@ impl<const K: usize> Contacts<1, K> {
             v = next;
         }
         let (was, is) = (self.energy(0, before), self.energy(0, (v, w)));
-        if self.conserve() && plastic.iter().all(|taken| *taken <= nothing * nothing) {
+        if self.is_conservative() && plastic.iter().all(|taken| *taken <= negligible * negligible) {
             // Only rounding can have turned the spin.
             w = before.1;
             v *= before.0.norm() / v.norm();

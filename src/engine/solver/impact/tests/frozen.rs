@@ -6,7 +6,7 @@ use crate::ground::{Ground, Law};
 use crate::rock::Vec3;
 use crate::solver::body::Body;
 use crate::solver::impact::rigid_limit::FrozenRebound;
-use crate::solver::impact::{FrozenContact, Plane, Settled, throw};
+use crate::solver::impact::{FrozenContact, ImpactOutcome, Plane, frozen_impact};
 use crate::solver::loss::Loss;
 use nalgebra::Rotation3;
 use proptest::prelude::*;
@@ -41,7 +41,7 @@ fn the_rebound_is_the_limit_of_the_springs() {
     let of = |rolling: f64, w: Vec3| {
         let (body, law) = case(&ground(1e9, 0.5, rolling), 0.5, 0.0);
         let contact = [slope([0.0, 0.0, 1.0], &law)];
-        let out = throw(&body, &contact, (&v, &w), 1e-10);
+        let out = frozen_impact(&body, &contact, (&v, &w), 1e-10);
         let (slow, _) = oracle::follow(&body, &contact, (v, w), 4000.0);
         assert!(apart(&body, after(&out), [slow.v, slow.w], v.norm()) < 2e-8);
         balances(&body, &out, &v, &w);
@@ -68,7 +68,7 @@ fn stiff_springs_tend_to_it() {
             ([0.0, 0.0, -9.0], [7.0, 0.0, 9.0]),
         ] {
             let (v, w) = (Vec3::from(v), Vec3::from(w));
-            let limit = throw(&body, &[slope([0.0, 0.0, 1.0], &law)], (&v, &w), 1e-10);
+            let limit = frozen_impact(&body, &[slope([0.0, 0.0, 1.0], &law)], (&v, &w), 1e-10);
             let Some(springs) = Plane::new(&body, &law, 1e-10).follow(&Vec3::z(), &v, &w) else {
                 panic!("stays")
             };
@@ -106,10 +106,10 @@ fn several_contacts_are_the_law_as_printed() {
                     let (v, w) = (Vec3::from(v), Vec3::from(w));
                     let (slow, _) = oracle::follow(&body, &contacts, (v, w), 2000.0);
                     for (tolerance, allowed) in [(1e-4, 2e-4), (1e-8, 2e-5)] {
-                        let fast = throw(&body, &contacts, (&v, &w), tolerance);
+                        let fast = frozen_impact(&body, &contacts, (&v, &w), tolerance);
                         let off = apart(&body, after(&fast), [slow.v, slow.w], v.norm());
                         assert!(off < allowed, "{rolling} {e} {normals:?} {count} {v:?}: {off:e}");
-                        assert_eq!(fast.settled, Settled::Free);
+                        assert_eq!(fast.settled, ImpactOutcome::Free);
                         balances(&body, &fast, &v, &w);
                     }
                 }
@@ -125,7 +125,7 @@ fn a_patch_alone_is_the_law_as_printed() {
     let (body, law) = case(&ground(1e9, 0.5, 0.1), 0.5, 0.0);
     let [patch, point] = [1.6, 1.0].map(|stiffness_scale| {
         let contact = [FrozenContact { stiffness_scale, ..slope([0.0, 0.0, 1.0], &law) }];
-        let out = throw(&body, &contact, (&v, &w), 1e-10);
+        let out = frozen_impact(&body, &contact, (&v, &w), 1e-10);
         let (slow, _) = oracle::follow(&body, &contact, (v, w), 4000.0);
         let off = apart(&body, after(&out), [slow.v, slow.w], v.norm());
         assert!(off < 2e-8, "{stiffness_scale}: {off:e}");
@@ -141,7 +141,7 @@ fn walls_at_right_angles_do_not_know_of_each_other() {
     let other = case(&Ground { normal_stiffness_n_m: 3e7, ..smooth(0.3) }, 0.5, 0.0).1;
     let contacts = [slope([1.0, 0.0, 0.0], &law), slope([0.0, 0.0, 1.0], &other)];
     let v = Vec3::new(-4.0, 2.0, -3.0);
-    let out = throw(&body, &contacts, (&v, &Vec3::zeros()), 1e-9);
+    let out = frozen_impact(&body, &contacts, (&v, &Vec3::zeros()), 1e-9);
     let expected = Vec3::new(0.8 * 4.0, 2.0, 0.3 * 3.0);
     assert!((out.velocity_m_s - expected).norm() < 5e-7, "{:?}", out.velocity_m_s);
     // and each pays for itself
@@ -157,15 +157,15 @@ fn restitution_does_not_depend_on_how_many_contacts_there_are() {
     let v = Vec3::new(0.0, 0.0, -5.0);
     for count in 1..=MOST {
         let contacts = [slope([0.0, 0.0, 1.0], &law); MOST];
-        let out = throw(&body, &contacts[..count], (&v, &Vec3::zeros()), 1e-9);
+        let out = frozen_impact(&body, &contacts[..count], (&v, &Vec3::zeros()), 1e-9);
         // local errors of 3e-10 add up over a hundred steps
         assert!((out.velocity_m_s.z - 2.5).abs() < 5e-7, "{count}: {}", out.velocity_m_s.z);
     }
     // a stiffer patch damps alike
     let stiff = FrozenContact { stiffness_scale: 1.7, ..slope([0.0, 0.0, 1.0], &law) };
-    let out = throw(&body, &[stiff], (&v, &Vec3::zeros()), 1e-9);
+    let out = frozen_impact(&body, &[stiff], (&v, &Vec3::zeros()), 1e-9);
     assert!((out.velocity_m_s.z - 2.5).abs() < 1e-12);
-    let out = throw(&body, &[stiff, stiff], (&v, &Vec3::zeros()), 1e-9);
+    let out = frozen_impact(&body, &[stiff, stiff], (&v, &Vec3::zeros()), 1e-9);
     assert!((out.velocity_m_s.z - 2.5).abs() < 5e-7);
 }
 
@@ -175,12 +175,12 @@ fn captured_contacts_give_nothing_back() {
     let (body, law) = case(&ground(1e9, 0.5, 0.3), 0.5, 0.0);
     let caught = FrozenContact { captured: true, ..slope([0.0, 0.0, 1.0], &law) };
     let (v, w) = (Vec3::new(1.0, 0.0, -0.02), Vec3::new(0.0, 1.0, 2.0));
-    let out = throw(&body, &[caught], (&v, &w), 1e-4);
+    let out = frozen_impact(&body, &[caught], (&v, &w), 1e-4);
     assert!(out.velocity_m_s.z.abs() < 1e-15);
     balances(&body, &out, &v, &w);
     let v = Vec3::new(-5.0, 1.0, -0.02);
     let wall = slope([1.0, 0.0, 0.0], &law);
-    let out = throw(&body, &[caught, wall], (&v, &w), 1e-4);
+    let out = frozen_impact(&body, &[caught, wall], (&v, &w), 1e-4);
     assert!(out.velocity_m_s.x > 2.0);
     assert!(out.velocity_m_s.z > -1e-12);
     balances(&body, &out, &v, &w);
@@ -193,7 +193,7 @@ fn rattling_ends() {
         let (body, law) = case(&ground(1e9, e, 0.3), 0.5, 0.0);
         let walls = [slope([1.0, 0.0, 0.0], &law), slope([-1.0, 0.0, 0.0], &law)];
         let (v, w) = (Vec3::new(-5.0, 2.0, 0.5), Vec3::new(3.0, 1.0, 2.0));
-        let out = throw(&body, &walls, (&v, &w), 1e-4);
+        let out = frozen_impact(&body, &walls, (&v, &w), 1e-4);
         assert!(out.velocity_m_s.x.abs() < 1e-6, "{out:?}");
         balances(&body, &out, &v, &w);
     }
@@ -207,15 +207,15 @@ fn order_and_axes_do_not_matter() {
     for normals in FOLDS {
         let contacts = normals.map(|n| slope(n, &law));
         let (v, w) = (Vec3::new(2.0, 1.0, -6.0), Vec3::new(1.0, -5.0, 3.0));
-        let plain = throw(&body, &contacts, (&v, &w), 1e-4);
+        let plain = frozen_impact(&body, &contacts, (&v, &w), 1e-4);
         let [a, b, c] = contacts;
-        let other = throw(&body, &[c, a, b], (&v, &w), 1e-4);
+        let other = frozen_impact(&body, &[c, a, b], (&v, &w), 1e-4);
         assert!(apart(&body, after(&plain), after(&other), v.norm()) < 1e-12);
         assert!((plain.loss[2].sum() - other.loss[0].sum()).abs() < 1e-9 * motion_j(&body, &v, &w));
         let turn = Rotation3::from_euler_angles(6.0 * uniform(), 6.0 * uniform(), 1.0);
         let turned =
             contacts.map(|contact| FrozenContact { normal: turn * contact.normal, ..contact });
-        let turned = throw(&body, &turned, (&(turn * v), &(turn * w)), 1e-4);
+        let turned = frozen_impact(&body, &turned, (&(turn * v), &(turn * w)), 1e-4);
         let back = after(&plain).map(|x| turn * x);
         assert!(apart(&body, after(&turned), back, v.norm()) < 1e-11);
     }
@@ -232,10 +232,10 @@ proptest! {
         let (body, law) = case(&smooth(1.0), 0.5, 0.0);
         let contacts: Vec<FrozenContact> = normals.iter().map(|[x, y, z]| slope([*x, *y, z.abs() + 0.05], &law)).collect();
         let (v, w) = (Vec3::new(3.0, -1.0, -5.0), Vec3::new(1.0, 2.0, 3.0));
-        let out = throw(&body, &contacts, (&v, &w), if fine { 1e-9 } else { 1e-4 });
+        let out = frozen_impact(&body, &contacts, (&v, &w), if fine { 1e-9 } else { 1e-4 });
         prop_assert!((out.velocity_m_s.norm_squared() / v.norm_squared() - 1.0).abs() < 1e-12);
         prop_assert_eq!(out.spin_rad_s, w);
-        prop_assert_eq!(out.settled, Settled::Free);
+        prop_assert_eq!(out.settled, ImpactOutcome::Free);
         for contact in &contacts {
             prop_assert!(contact.normal.dot(&out.velocity_m_s) > -1e-6);
         }
@@ -262,7 +262,7 @@ proptest! {
             captured: caught < 64 && caught >> k & 1 == 1, ..FrozenContact::none() }).collect();
         let v = (Vec3::from(v) - Vec3::z()) * 10f64.powf(speed);
         let w = Vec3::from(w) * (v.norm() / radius);
-        let out = throw(&body, &contacts, (&v, &w), 1e-4);
+        let out = frozen_impact(&body, &contacts, (&v, &w), 1e-4);
         balances(&body, &out, &v, &w);
         prop_assert!(out.effort.steps <= 20_000, "{:?}", out.effort);
         for contact in &contacts {

@@ -4,7 +4,7 @@ use super::{G, case, ground, motion_j, uniforms};
 use crate::ground::Law;
 use crate::rock::Vec3;
 use crate::solver::body::Body;
-use crate::solver::impact::{Plane, PressedIn};
+use crate::solver::impact::{ContactDeformation, Plane};
 use nalgebra::Rotation3;
 
 /// Rocks, grounds and motions of all kinds: restitution from 0.05 to 1, with and without friction and rolling friction, weight aslant.
@@ -35,11 +35,11 @@ fn an_impact_in_parts_is_that_at_once() {
     for ((body, law), [v, w]) in cases() {
         let plane = Plane::new(&body, &law, 1e-9);
         let Some(whole) = plane.passage(&n, &v, 0.0) else { continue };
-        let at_once = plane.pass(&whole, (&v, &w), &PressedIn::NOT);
+        let at_once = plane.pass(&whole, (&v, &w), &ContactDeformation::NONE);
         let unit_j = motion_j(&body, &v, &w);
         for shares in [&[0.03][..], &[0.5], &[0.97], &[0.3, 0.6]] {
             let (mut motion, mut pressed, mut shift, mut time_s) =
-                ((v, w), PressedIn::NOT, Vec3::zeros(), 0.0);
+                ((v, w), ContactDeformation::NONE, Vec3::zeros(), 0.0);
             let mut lost = [0.0; 3];
             for share in shares.iter().copied().chain([1.0]) {
                 let rest = plane.passage(&n, &motion.0, pressed.depth_m);
@@ -55,7 +55,7 @@ fn an_impact_in_parts_is_that_at_once() {
                 let gone_j = before_j + height_j - motion_j(&body, &motion.0, &motion.1);
                 assert!((gone_j - out.loss.sum()).abs() < 1e-12 * unit_j);
                 assert_eq!(out.pressed.is_some(), share < 1.0);
-                pressed = out.pressed.unwrap_or(PressedIn::NOT);
+                pressed = out.pressed.unwrap_or(ContactDeformation::NONE);
                 assert!((pressed.depth_m + (shift + out.shift_m).z).abs() < 1e-15);
                 shift += out.shift_m;
                 time_s += out.time_s;
@@ -93,7 +93,7 @@ fn a_rock_lifts_off_where_the_force_first_falls_to_zero() {
         let depth_m = weight_m * 10f64.powf(3.5 * uniform() - 1.0);
         let speed = depth_m * law.omega_rad_s() * 2.0 * uniform();
         let v = Vec3::z() * if uniform() < 0.3 { speed } else { -speed };
-        let pressed = PressedIn { depth_m, ..PressedIn::NOT };
+        let pressed = ContactDeformation { depth_m, ..ContactDeformation::NONE };
         let Some(whole) = plane.passage(&Vec3::z(), &v, depth_m) else {
             stays += 1;
             continue;

@@ -19,7 +19,7 @@ use crate::contact::pair::between;
 use crate::rock::Vec3;
 use crate::solver::body::Twist;
 use crate::solver::impact::{
-    BODIES, CONTACTS, ContactEnds, FrozenBody, FrozenCollision, FrozenContact, collide,
+    BODIES, CONTACTS, ContactEnds, FrozenBody, FrozenCollision, FrozenContact, frozen_collision,
 };
 use crate::solver::island::body::IslandBody;
 use crate::solver::joint_blow::Breakage;
@@ -179,7 +179,7 @@ impl RigidIsland {
             bodies[0].motion = turned(turn.inverse(), bodies[0].motion);
         }
         let whole = || {
-            let after = collide(&bodies, contacts, self.impact_tolerance())?;
+            let after = frozen_collision(&bodies, contacts, self.impact_tolerance())?;
             Some(Breakage { after, stems: ArrayVec::new() })
         };
         let mut thrown = scene.broken_by(&touching.rocks, &bodies, contacts).or_else(whole)?;

@@ -18,7 +18,7 @@ use crate::rock::Vec3;
 use crate::solver::block::{BlockContactState, BlockState, TOUCH};
 use crate::solver::environment::ContactEnvironment;
 use crate::solver::explicit_impact::HeldEnergy;
-use crate::solver::impact::dormand_prince::{Flow, NODES, Rates, put, three};
+use crate::solver::impact::dormand_prince::{Flow, NODES, Rates, put_vec3, vec3_at};
 use crate::solver::loss::Loss;
 use nalgebra::Matrix3;
 
@@ -108,10 +108,10 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
     /// The present state. Way and rotation vector count from the step's start: map coordinates would cost digits.
     pub(super) fn initial_state<const N: usize>(&self) -> [f64; N] {
         let mut y = [0.0; N];
-        put(&mut y, V, &self.start.v);
-        put(&mut y, MOMENTUM, &self.start.momentum);
+        put_vec3(&mut y, V, &self.start.v);
+        put_vec3(&mut y, MOMENTUM, &self.start.momentum);
         for (k, history) in self.footing.springs.histories.iter().enumerate().take(C) {
-            put(&mut y, SPRINGS + 3 * k, &history.shear);
+            put_vec3(&mut y, SPRINGS + 3 * k, &history.shear);
         }
         y
     }
@@ -172,12 +172,12 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
 
     /// The block at a state, and its rotation vector since the step's start (rad).
     fn at<const N: usize>(&self, y: &[f64; N]) -> (BlockState, Vec3) {
-        let turned = three(y, TURNED);
+        let turned = vec3_at(y, TURNED);
         let pose = Pose {
-            centre: self.start.pose.centre + three(y, WAY),
+            centre: self.start.pose.centre + vec3_at(y, WAY),
             attitude: rotation_by(&turned) * self.start.pose.attitude,
         };
-        (BlockState { pose, v: three(y, V), momentum: three(y, MOMENTUM) }, turned)
+        (BlockState { pose, v: vec3_at(y, V), momentum: vec3_at(y, MOMENTUM) }, turned)
     }
 
     /// Notes down where a contact begins that has come up by stage `node`, moving apart with `up_m_s` (m/s).
@@ -205,7 +205,7 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
         }
         self.footing.update_histories(world, (block, state));
         self.footing.place_contacts(world, (block, self.start, state), 0.0, &|_, k| {
-            if k < C { three(y, SPRINGS + 3 * k) } else { Vec3::zeros() }
+            if k < C { vec3_at(y, SPRINGS + 3 * k) } else { Vec3::zeros() }
         });
         let found = &self.footing.touches.found;
         let pairs = found.iter().map(|touch| (touch.part, touch.feature));
@@ -224,7 +224,7 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
         let place = contact.history;
         let history = &self.footing.springs.histories[place];
         let rate = carry(shear.stretch_rate, &contact.n, &history.n);
-        put(&mut rates.y, SPRINGS + 3 * place, &rate);
+        put_vec3(&mut rates.y, SPRINGS + 3 * place, &rate);
         let (normal, up) = (contact.law.normal(contact.captured), contact.n.dot(u));
         let penetration = contact.penetration.max(0.0);
         let dissipates = normal.dissipating_w(penetration, up);
@@ -235,8 +235,8 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
         }
         rates.q[LOSSES + place] = normal.storing_w(penetration, -up);
         self.damped[place] = normal.is_damped(self.block.mass_kg);
-        let kinks = contact.kinks((pulls, shear.asked2), self.block.mass_kg);
-        rates.kinks[2 * place..2 * place + 2].copy_from_slice(&kinks);
+        let switching = contact.switching((pulls, shear.asked2), self.block.mass_kg);
+        rates.switching[2 * place..2 * place + 2].copy_from_slice(&switching);
         contact.n * contact.normal_force - contact.shear_force
     }
 }
@@ -270,10 +270,10 @@ impl<const C: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, 
             }
         }
         self.footing.springs.contacts = contacts;
-        put(&mut rates.y, WAY, &state.v);
-        put(&mut rates.y, TURNED, &rotation_vector_rate(&turned, &spin));
-        put(&mut rates.y, V, &dv);
-        put(&mut rates.y, MOMENTUM, &torque);
+        put_vec3(&mut rates.y, WAY, &state.v);
+        put_vec3(&mut rates.y, TURNED, &rotation_vector_rate(&turned, &spin));
+        put_vec3(&mut rates.y, V, &dv);
+        put_vec3(&mut rates.y, MOMENTUM, &torque);
         self.state = state;
     }
 
@@ -286,12 +286,12 @@ impl<const C: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, 
         let pressed = self.footing.springs.contacts.iter();
         let pressed = pressed.filter(|one| one.normal_force > 0.0 && one.history < C);
         let ways2 = pressed
-            .map(|contact| three(off, SPRINGS + 3 * contact.history).norm_squared())
-            .fold(three(off, WAY).norm_squared(), f64::max)
-            .max(three(off, TURNED).norm_squared() * reach2);
+            .map(|contact| vec3_at(off, SPRINGS + 3 * contact.history).norm_squared())
+            .fold(vec3_at(off, WAY).norm_squared(), f64::max)
+            .max(vec3_at(off, TURNED).norm_squared() * reach2);
         let worst2 = (ways2 * omega * omega)
-            .max(three(off, V).norm_squared())
-            .max((self.inverse * three(off, MOMENTUM)).norm_squared() * reach2);
+            .max(vec3_at(off, V).norm_squared())
+            .max((self.inverse * vec3_at(off, MOMENTUM)).norm_squared() * reach2);
         worst2 / (allowed * allowed)
     }
 }

@@ -3,7 +3,7 @@
 use super::{CONTACTS, FrozenFlow, MOMENTUM, PER_CONTACT, V};
 use crate::rock::Vec3;
 use crate::solver::block::BlockState;
-use crate::solver::impact::dormand_prince::three;
+use crate::solver::impact::dormand_prince::vec3_at;
 
 /// A block whose motion has changed by no more than so many errors allowed (–) for so long (rad of the stiffest contact) is clamped, if a contact
 /// presses with more than so many of them (–).
@@ -49,13 +49,13 @@ impl FrozenFlow<'_, '_> {
         let nothing = UNCHANGED * self.allowed;
         let is_other =
             |dv: &Vec3, dl: &Vec3| dv.norm() > nothing || (inverse * dl).norm() * reach_m > nothing;
-        let stays = still.stays_rad((three(y, V), three(y, MOMENTUM)), gone, is_other);
+        let stays = still.stays_rad((vec3_at(y, V), vec3_at(y, MOMENTUM)), gone, is_other);
         if stays < STILL_RAD {
             return false;
         }
         for (k, contact) in self.contacts.iter_mut().enumerate() {
             let at = CONTACTS + PER_CONTACT * k;
-            (contact.penetration, contact.shear) = (y[at], three(y, at + 1));
+            (contact.penetration, contact.shear) = (y[at], vec3_at(y, at + 1));
         }
         let pressed = self.contacts.iter().filter(|one| !one.is_suspended && one.penetration > 0.0);
         let deepest = pressed.map(|one| one.penetration).fold(0.0, f64::max);
