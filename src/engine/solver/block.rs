@@ -1,4 +1,14 @@
-//! Scheme `rigid` for blocks: impacts take no time, sustained contact is stepped in velocities.
+//! Scheme `rigid` for blocks: impacts are instantaneous, sustained contact is stepped in
+//! velocities.
+//!
+//! A step drifts freely for half of its time (straight translation, torque-free rotation), solves
+//! the contacts at the midpoint for one set of impulses, weight included, and drifts for the other
+//! half. Each impulse is chosen so that at the end of the step its contact point is back on the
+//! surface and, if it sticks, back at the point where it stuck. The target therefore subtracts
+//! twice the velocity change that rotation alone has caused since the start of the step, and once
+//! the normal velocity at the start. With this target a contact force does no work, a block at rest
+//! stays where it is, and pivoting conserves energy to second order. A contact that closes within
+//! the step does not rebound from it.
 //!
 //! A step drifts for half its time (straight on, and round as a free top), meets the contacts of the middle with one set of impulses,
 //! weight included, and drifts on. Impulses are asked for what brings each contact point back to the surface, and back to where it
@@ -6,7 +16,7 @@
 //! along the normal that it began with once. So a push does no work, a block in rest stays where it is, and pivoting keeps its energy to
 //! second order. What comes down to the surface within the step is not thrown back by it.
 //!
-//! An impact is that of stiff springs ([`strike`](Footing::strike)).
+//! An impact is the limit of stiff springs ([`strike`](BlockContactState::strike)).
 
 mod mid_step;
 mod energy;
@@ -43,27 +53,34 @@ use solve::{BlockContact, Mass, SWEEPS, rigid_rolling, solve};
 pub(crate) use springs::BlockHistory;
 use springs::{Clamp, Springs};
 
-/// Gaps no wider than this touch (–, relative to the radius of the sphere of equal volume).
+/// Contacts with gaps no wider than this touch (–, relative to the radius of the sphere of equal
+/// volume).
 pub(crate) const TOUCH: f64 = 1e-8;
-/// Contacts this far ahead take part in a step (–, relative to the balls' radius).
+/// Contacts with gaps up to this take part in a step (–, relative to the balls' radius).
 const DETECTION_REACH: f64 = 1.0;
-/// A contact slides that is faster along the surface than this (–, relative to 1 m/s and the block's speed).
+/// A contact slides if its tangential speed exceeds this (–, relative to 1 m/s plus the block's
+/// speed).
 const SLIDING_SPEED: f64 = 1e-6;
-/// A block turns no further in one step (rad) than this share of the longest way of a corner over the balls' radius.
+/// Largest rotation of a block in one step (rad), over `corner_way`: the largest travel of a corner
+/// in a step relative to the balls' radius.
 const TURN_LIMIT: f64 = 0.1;
-/// What was pressed in is let out no faster than this (–, relative to the speed `√(g R)` of a fall by half the radius) …
+/// Largest speed at which penetration is recovered (–, relative to the speed `√(g R)` of a fall by
+/// half the radius).
 const RECOVERY_SPEED: f64 = 0.1;
-/// … and so fast only what is as deep as this (–, relative to the radius), the rest in proportion: it comes to the surface slower and slower. Let
-/// out within one step it was thrown up, at the cost of all other motion, and came down again: a block that rolls on two corners rocked on without end.
+/// Penetration from which on it is recovered at that speed (–, relative to the radius). Smaller
+/// penetrations are recovered in proportion, so that the block approaches the surface ever more
+/// slowly. Recovery within one step threw the block up, at the cost of all other motion, and it
+/// fell back: a block that rolls on two corners rocked without end.
 const RECOVERY_DEPTH: f64 = 0.01;
-/// An approach slower than this is none (m/s): rounding.
+/// An approach slower than this is rounding (m/s).
 const NO_APPROACH_M_S: f64 = 1e-9;
-/// A gain of energy that is rounding (–); it is taken off the motion all the same.
+/// A relative gain of energy up to this is rounding (–); it is removed from the motion all the
+/// same.
 const ROUNDING: f64 = 1e-12;
-/// Velocities are known to this (–).
+/// Relative rounding error of velocities (–).
 const ROUNDING_OF_SPEED: f64 = 1e-14;
 
-/// A block in contact.
+/// Pose, velocity and angular momentum of a block in contact.
 #[derive(Debug, Clone)]
 pub(crate) struct BlockState {
     pub(crate) pose: Pose,
@@ -72,58 +89,60 @@ pub(crate) struct BlockState {
     pub(crate) momentum: Vec3,
 }
 
-/// Work space of the contact of one block.
+/// Contacts of one block and the work space of their solver.
 #[derive(Debug, Default)]
 pub(crate) struct BlockContactState {
     pub(crate) near: Neighbours,
     pub(crate) touches: BlockTouches,
-    /// From where, and how far, the last look was (m), as long as its touches stand.
+    /// Pose and reach (m) of the last contact detection, as long as its contacts are valid.
     last_detection: Option<(Pose, f64)>,
     /// Work space of the search for the end of a flight.
     pub(crate) window: WindowScratch,
     contacts: Vec<BlockContact>,
-    /// Rolling friction that they bear.
+    /// Impulse of rolling friction that these contacts bear together.
     rolling: RollingImpulse,
-    /// Those of an impact, and the speed that each shall give back (m/s).
+    /// Contacts of an impact, and the rebound speed that each is to reach (m/s).
     targets: Vec<(BlockContact, f64)>,
-    /// Touches set aside for a moment.
+    /// Contact points selected for the current solve.
     pub(crate) selected: Vec<BlockTouch>,
-    /// What strikes grounds at one instant, and contacts on springs that begin then, by their memories.
+    /// Impacts on grounds at one instant, and the contacts on springs that begin with them, by
+    /// their histories.
     pub(crate) blows: Vec<GroundBlow>,
     pub(crate) begun: Vec<usize>,
-    /// Springs of its contacts, in the schemes that have them, and which belongs to each of the last look.
+    /// Springs of the contacts, in the schemes that have them, and the history of each contact of
+    /// the last detection.
     pub(crate) springs: Springs,
     history_of_touch: Vec<Option<usize>>,
-    /// Those that a blow has left pressed together.
+    /// Contacts that an impact has left pressed together.
     pub(crate) clamp: Clamp,
-    /// The facets it meets on rough ground.
+    /// Facets of rough ground that it meets.
     pub(crate) facets: RoughFacets,
-    /// How far it has slipped.
+    /// Slip distance so far.
     pub(crate) slip: Slip,
-    /// What it has done to the stems.
+    /// Energy that stems have absorbed.
     pub(crate) stem_load: StemLoad,
-    /// Passes over the contacts.
+    /// Sweeps over the contacts, counted.
     pub(crate) sweeps: u64,
-    /// Whether the impulses of the last solve did not settle.
+    /// Whether the impulses of the last solve did not converge.
     pub(crate) unsettled: bool,
 }
 
-/// What a step has done.
+/// Result of one step.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct BlockStepOutcome {
-    /// How long it was (s).
+    /// Length of the step (s).
     pub(crate) dt: f64,
     pub(crate) loss: Loss,
     /// Whether a contact slides.
     pub(crate) slides: bool,
-    /// Whether nothing holds the block any more.
+    /// Whether no contact holds the block any more.
     pub(crate) is_free: bool,
-    /// Whether the impulses did not settle.
+    /// Whether the impulses did not converge.
     pub(crate) unsettled: bool,
 }
 
 impl BlockState {
-    /// A block at a place and turned like this, with the velocity and spin of `motion`.
+    /// A block at this centre (m) and attitude, with the velocity and spin of `motion`.
     pub(crate) fn new(
         block: &Block,
         (centre, attitude): (Vec3, Rotation3<f64>),
@@ -137,7 +156,7 @@ impl BlockState {
         spin_of(block.inertia_kg_m2, &self.pose.attitude, &self.momentum)
     }
 
-    /// Energy of motion (J).
+    /// Kinetic energy (J).
     pub(crate) fn motion_j(&self, block: &Block) -> f64 {
         0.5 * (block.mass_kg * self.v.norm_squared() + self.spin(block).dot(&self.momentum))
     }
@@ -148,14 +167,14 @@ impl BlockState {
         Mass { mass: block.mass_kg, inverse: turned * own * turned.transpose() }
     }
 
-    /// Moves on for `t` (s) without any force.
+    /// Moves freely, without any force, for `t` (s).
     fn drift(&mut self, block: &Block, t: f64) {
         let turned = attitude_after(block.inertia_kg_m2, self.pose.attitude, &self.momentum, t);
         self.pose.centre += self.v * t;
         self.pose.attitude = orthonormal(&turned);
     }
 
-    /// Takes the impulses of the contacts, and of rolling friction.
+    /// Adds the impulses of the contacts and of rolling friction.
     fn apply_impulses(
         &mut self,
         contacts: &[BlockContact],
@@ -192,7 +211,7 @@ impl BlockState {
     }
 }
 
-/// Takes rounding out of a rotation that is multiplied again and again.
+/// Re-orthonormalises a rotation that is multiplied again and again.
 fn orthonormal(turned: &Rotation3<f64>) -> Rotation3<f64> {
     let m = turned.matrix();
     let one = m.column(0).normalize();
@@ -202,14 +221,16 @@ fn orthonormal(turned: &Rotation3<f64>) -> Rotation3<f64> {
 }
 
 impl BlockContactState {
-    /// Contacts that hold the block or strike it: those of the last look that touch.
+    /// Contacts of the last detection that touch: those that support the block and those of an
+    /// impact.
     pub(crate) fn touching(&self, block: &Block) -> impl Iterator<Item = &BlockTouch> {
         let most = TOUCH * block.radius_m;
         let touches = move |touch: &&BlockTouch| touch.gap_m <= most || self.clamp.contains(touch);
         self.touches.found.iter().filter(touches)
     }
 
-    /// One step of sustained contact of at most `most_s`, in which no corner moves further than `corner_way` of its ball.
+    /// One step of sustained contact of at most `most_s`, in which no corner moves further than
+    /// `corner_way` times the radius of its ball.
     pub(crate) fn step(
         &mut self,
         world: &ContactEnvironment,
@@ -232,14 +253,15 @@ impl BlockContactState {
         let recovery =
             (RECOVERY_DEPTH * block.radius_m, RECOVERY_SPEED * world.body.fall_speed_m_s());
         let mid_step = |touch: &BlockTouch| MidStepContact::of(block, [&start, state], touch, dt);
-        // stopped within the step, what strikes would give nothing back
+        // an impact that is stopped within the step would not rebound
         self.select(|touch| !mid_step(touch).strikes(world, block, touch));
         for touch in &self.selected {
             let goal = mid_step(touch).goal(touch, dt, recovery);
             let ahead_m = 0.5 * dt * slip_m_s(block, &start, (&touch.normal, &touch.lever));
             self.contacts.push(self.contact(world, (&mass, touch), ahead_m, goal));
         }
-        // a goal is a gap, which is known as well as places are, over the time of the step
+        // a target velocity is a gap over the step's length, and a gap is known no better than
+        // positions are
         let rounding_m_s =
             f64::EPSILON * state.pose.centre.amax() / dt + ROUNDING_OF_SPEED * v.norm();
         let free = (v + weight, w);
@@ -249,7 +271,8 @@ impl BlockContactState {
         state.v += weight;
         let free_motion = state.clone();
         state.apply_impulses(&self.contacts, &self.rolling, block.mass_kg);
-        // the way of the step is that of the mean velocity, so this is just what the weight gives
+        // the displacement of the step is that of the mean velocity, so this is exactly the work of
+        // the weight
         let weight_j = 0.5 * block.mass_kg * weight.dot(&(v + state.v));
         let lost_j = before_j + weight_j - state.motion_j(block);
         let after = (&state.v, &state.spin(block));
@@ -268,7 +291,7 @@ impl BlockContactState {
         BlockStepOutcome { dt, loss, slides, is_free, unsettled: self.unsettled }
     }
 
-    /// A contact at a touch, where the block will have slipped `ahead_m` (m) further.
+    /// The contact at a contact point, where the block will have slipped `ahead_m` (m) further.
     fn contact(
         &self,
         world: &ContactEnvironment,
@@ -283,7 +306,8 @@ impl BlockContactState {
             .clamped(self.clamp.contains(touch))
     }
 
-    /// Whether a contact still holds the block: it is near, and does not let go faster than its ground captures.
+    /// Whether a contact still supports the block: it is near, and it separates no faster than the
+    /// capture speed of its ground.
     pub(crate) fn stays_in_contact(
         &self,
         world: &ContactEnvironment,

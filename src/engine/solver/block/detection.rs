@@ -1,17 +1,19 @@
-//! What a block can touch where it is.
+//! Contact detection of a block at its present pose.
 
 use super::{BlockContactState, TOUCH};
 use crate::body::Block;
 use crate::contact::block::{BlockTouch, MOST_TOUCHES, Pose, keep_widest, touches};
 use crate::solver::environment::ContactEnvironment;
 
-/// Features are collected for a way of the centre (–, relative to the radius of the sphere of equal volume) …
+/// Travel of the centre for which mesh features are collected at once (–, relative to the radius of
+/// the sphere of equal volume).
 const COLLECTED_TRAVEL: f64 = 0.5;
-/// … and so far from the balls (–, relative to their radius): a corner that far from all need not be asked for a while.
+/// Distance from the balls within which features are collected (–, relative to their radius): a
+/// corner that far from all features need not be tested for a while.
 const COLLECTED_REACH: f64 = 3.0;
 
 impl BlockContactState {
-    /// Forgets all that was seen (before the next block).
+    /// Clears all detected contacts (before the next block).
     pub(crate) fn forget(&mut self) {
         self.near.forget();
         self.touches.forget();
@@ -19,7 +21,8 @@ impl BlockContactState {
         self.clamp.open();
     }
 
-    /// Sees to it that the features around a block are known, with room for some looks.
+    /// Ensures that the mesh features around a block are collected, with room for several
+    /// detections.
     fn collect_features(&mut self, world: &ContactEnvironment, block: &Block, pose: &Pose) {
         let core = block.bound_m - block.ball_m;
         if !self.near.covers_around(&pose.centre, core) {
@@ -29,7 +32,7 @@ impl BlockContactState {
         }
     }
 
-    /// Looks for all contacts of a block that are no wider apart than `reach_m`.
+    /// Detects all contacts of a block with gaps up to `reach_m`.
     pub(super) fn detect_all(
         &mut self,
         world: &ContactEnvironment,
@@ -41,7 +44,8 @@ impl BlockContactState {
         touches(&mut self.near, world.terrain, (block, pose), reach_m, &mut self.touches);
     }
 
-    /// Looks for the contacts of a block that are no wider apart than `reach_m`, unless that was the last look.
+    /// Detects the contacts of a block with gaps up to `reach_m`, unless the last detection was the
+    /// same.
     pub(crate) fn detect(
         &mut self,
         world: &ContactEnvironment,
@@ -49,7 +53,7 @@ impl BlockContactState {
         pose: &Pose,
         reach_m: f64,
     ) {
-        // the look that ended a step is the one that the next begins with
+        // the detection that ended a step is the one that the next step begins with
         if self.last_detection == Some((*pose, reach_m)) {
             return;
         }
@@ -57,13 +61,14 @@ impl BlockContactState {
         self.last_detection = Some((*pose, reach_m));
     }
 
-    /// Sets aside the contacts that touch, as [`Self::select`].
+    /// Selects the contacts that touch, as [`Self::select`].
     pub(super) fn select_touching(&mut self, block: &Block) {
         let most = TOUCH * block.radius_m;
         self.select(|touch| touch.gap_m <= most);
     }
 
-    /// Sets aside the contacts found that are `wanted`, and those of a clamp: where more than can act at a time, those that span most.
+    /// Selects the detected contacts that are `wanted` and those of a clamp. If more are found than
+    /// can act at a time, those that span the largest area are kept.
     pub(super) fn select(&mut self, wanted: impl Fn(&BlockTouch) -> bool) {
         self.selected.clear();
         self.selected.extend(

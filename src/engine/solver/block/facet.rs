@@ -1,6 +1,8 @@
-//! Rough ground. In the rigid limit an impact is one with the facet that is met. In the schemes with springs a block is turned against the
-//! facet while the impact lasts. As for spheres, velocity and spin are turned, not the mesh: the block presses into the surface that is there, and no spring can give
-//! back more than it took. The spin is given the length that keeps its energy, as the moments of inertia stay where they are.
+//! Rough ground. In the rigid limit an impact takes place on the facet that is met. In the schemes
+//! with springs the motion of the block is rotated against the facet while the impact lasts. As for
+//! spheres, velocity and spin are rotated, not the mesh: the block presses into the real surface,
+//! and no spring can return more than it stored. The spin is scaled to conserve its energy, because
+//! the moments of inertia are not rotated.
 
 use super::{BlockContactState, BlockState};
 use crate::body::Block;
@@ -11,7 +13,7 @@ use crate::solver::roughness::{Meeting, Tilt};
 use nalgebra::Rotation3;
 
 impl BlockState {
-    /// Turns velocity and spin; every joule stays.
+    /// Rotates velocity and spin and conserves the kinetic energy.
     pub(super) fn redirect(&mut self, block: &Block, turn: &Rotation3<f64>) {
         let w = self.spin(block);
         let turning_j = 0.5 * w.dot(&self.momentum);
@@ -25,7 +27,7 @@ impl BlockState {
 }
 
 impl BlockContactState {
-    /// Whether a contact that touches is struck, faster than its ground captures.
+    /// Whether a touching contact closes faster than its ground captures, so that it is an impact.
     pub(crate) fn is_struck(
         world: &ContactEnvironment,
         (block, state): (&Block, &BlockState),
@@ -34,7 +36,7 @@ impl BlockContactState {
         state.approach_m_s(block, touch) >= capture_m_s(world.law(touch.triangle))
     }
 
-    /// The facet of rough ground that the fastest of the contacts that touch meets.
+    /// The facet of rough ground met by the touching contact that closes fastest.
     pub(super) fn facet(
         &mut self,
         world: &ContactEnvironment,
@@ -45,7 +47,7 @@ impl BlockContactState {
         self.facets.struck(world, &meeting)
     }
 
-    /// Whether a block that slides or rolls has the last facet behind it, and comes to the next.
+    /// Whether a sliding or rolling block has passed the last facet and reaches the next.
     pub(super) fn reaches_next_facet(
         &self,
         world: &ContactEnvironment,
@@ -56,14 +58,15 @@ impl BlockContactState {
             && self.meeting(block, state).is_some_and(|at| self.facets.meet_next(world, &at))
     }
 
-    /// The fastest of the contacts that touch, as it meets a facet.
+    /// The touching contact that closes fastest, in the form that facets are looked up with.
     fn meeting(&self, block: &Block, state: &BlockState) -> Option<Meeting> {
         let fastest = state.fastest(block, self.touching(block))?;
         let (n, triangle, c) = (fastest.normal, fastest.triangle, state.pose.centre);
         Some(Meeting { n, triangle, c, v: state.velocity_at(block, &fastest.lever) })
     }
 
-    /// With springs: lets the contact that presses hardest begin anew where the block comes to the next facet.
+    /// With springs: restarts the contact with the largest normal force as an impact where the
+    /// block reaches the next facet.
     pub(crate) fn meet_next_facet(
         &mut self,
         world: &ContactEnvironment,
@@ -83,7 +86,7 @@ impl BlockContactState {
         }
     }
 
-    /// Turns the block against a facet until it is turned back, at `until_s` (s) at the latest.
+    /// Rotates the motion against a facet; it is rotated back at `until_s` (s) at the latest.
     pub(crate) fn turn_against(
         &mut self,
         block: &Block,
@@ -95,7 +98,7 @@ impl BlockContactState {
         self.springs.invalidate_rates();
     }
 
-    /// Turns the block back if it is turned; whether it was.
+    /// Rotates the motion back if it is rotated; returns whether it was.
     pub(crate) fn turn_back(&mut self, block: &Block, state: &mut BlockState) -> bool {
         let Some(Tilt { turn, .. }) = self.facets.tilt.take() else { return false };
         state.redirect(block, &turn);

@@ -1,4 +1,5 @@
-//! What comes to a block within a step: how long that may be, and what its contacts ask for.
+//! Contacts that close within a step: the length of the step, and the target velocities of the
+//! contacts at its midpoint.
 
 use super::{BlockContactState, BlockState, DETECTION_REACH, TOUCH};
 use crate::body::Block;
@@ -7,25 +8,25 @@ use crate::rock::Vec3;
 use crate::solver::environment::ContactEnvironment;
 use crate::solver::law::capture_m_s;
 
-/// Looks into the middle of a step that an impact cuts, at most.
+/// Contact detections at the midpoint of a step that an impact shortens, at most.
 const MOST_DETECTIONS: u32 = 4;
-/// A step is cut again where the impact comes sooner by more than this (–).
+/// A step is shortened again if the impact comes sooner by more than this share of it (–).
 const SOONER: f64 = 1e-3;
-/// No step is cut shorter (s).
+/// No step is shortened further than to this (s).
 const SHORTEST_S: f64 = 1e-9;
 
-/// How a contact in the middle of a step came there.
+/// A contact at the midpoint of a step, with its motion since the start of the step.
 pub(super) struct MidStepContact {
-    /// Velocity of the point of the block at the start of the step, and what turning has added (m/s).
+    /// Velocity of the body point at the start of the step, and its change by rotation (m/s).
     start_velocity: Vec3,
     velocity_change: Vec3,
-    /// Gap at the start, and the least it can have been (m).
+    /// Gap at the start, and a lower bound of it (m).
     gap_m: f64,
     least_gap_m: f64,
 }
 
 impl MidStepContact {
-    /// The contact `touch` of a block in the middle of a step of `dt`.
+    /// The contact `touch` of a block at the midpoint of a step of `dt`.
     pub(super) fn of(
         block: &Block,
         [start, middle]: [&BlockState; 2],
@@ -38,13 +39,16 @@ impl MidStepContact {
             start.velocity_at(block, &(start.pose.attitude * core - n * block.ball_m));
         let velocity_change = middle.velocity_at(block, &touch.lever) - start_velocity;
         let gap_m = touch.gap_m - 0.5 * dt * n.dot(&(start_velocity + velocity_change * 0.5));
-        // a pair of edges moves on along both, and so is no point of the block: the slower of the two speeds cannot make a gap of one that was pressed in
+        // The contact point of two edges moves along both and is no fixed point of the block: of
+        // the two velocities the one that separates faster is taken, so that a contact that was
+        // pressed in is not taken for a gap.
         let slower = n.dot(&start_velocity).max(n.dot(&(start_velocity + velocity_change)));
         let least_gap_m = touch.gap_m - 0.5 * dt * slower;
         Self { start_velocity, velocity_change, gap_m, least_gap_m }
     }
 
-    /// Whether it comes to the block as an impact: it did not touch, and closes faster than its ground captures.
+    /// Whether the contact closes as an impact: it did not touch at the start, and it closes faster
+    /// than its ground captures.
     pub(super) fn strikes(
         &self,
         world: &ContactEnvironment,
@@ -55,11 +59,14 @@ impl MidStepContact {
         self.least_gap_m > TOUCH * block.radius_m && speed >= capture_m_s(world.law(touch.triangle))
     }
 
-    /// The velocity that the contact point seeks in the middle of a step: along the normal what ends the step at the surface, along the surface
-    /// what ends it where it began, as far as turning has moved it.
+    /// Target velocity of the contact point at the midpoint of a step. Its normal part ends the
+    /// step at the surface; its tangential part ends the step where the point began, as far as
+    /// rotation has moved it.
     ///
-    /// At the surface a step ends that began with the gap `g` and the speed `b` and ends with `−2g/Δt − b`. A contact that comes down on it would be
-    /// thrown back so: it ends no faster than what was pressed in is let out, with `out_m_s` (m/s) from `deep_m` (m) on.
+    /// A step that begins with the gap `g` and the normal velocity `b` ends at the surface if it
+    /// ends with `−2g/Δt − b`. A contact that closes would rebound at that speed. So the normal
+    /// target is limited to the recovery speed of penetration, which reaches `out_m_s` (m/s) from a
+    /// depth of `deep_m` (m) on.
     pub(super) fn goal(&self, touch: &BlockTouch, dt: f64, (deep_m, out_m_s): (f64, f64)) -> Vec3 {
         let n = &touch.normal;
         let up = n.dot(&self.velocity_change);
@@ -70,10 +77,12 @@ impl MidStepContact {
 }
 
 impl BlockContactState {
-    /// Drifts from the start to the middle of a step of at most `dt` and looks for contacts there; how long the step is (s).
+    /// Drifts from the start to the midpoint of a step of at most `dt` and detects the contacts
+    /// there; returns the length of the step (s).
     ///
-    /// What closes faster than its ground captures is an impact, and comes at the end of the step. Where cells are smaller than a step
-    /// only the look in the middle finds it.
+    /// A contact that closes faster than its ground captures is an impact and is put at the end of
+    /// the step. Where the cells of the mesh are smaller than the travel of a step, only the
+    /// detection at the midpoint finds it.
     pub(super) fn drift_to_middle(
         &mut self,
         world: &ContactEnvironment,
@@ -95,7 +104,8 @@ impl BlockContactState {
         dt
     }
 
-    /// Cuts a step of `dt` (s) where an impact comes, as it looks `elapsed` (s) from its start.
+    /// Shortens a step of `dt` (s) to the first impact; `now` is the state `elapsed` (s) after its
+    /// start.
     fn time_to_impact(
         &self,
         world: &ContactEnvironment,

@@ -1,11 +1,15 @@
 //! Impulses of several contacts with levers on one rigid body.
 //!
-//! With `a` from the centre of mass to the contact point, `T = [1, −[a]×]` and `V_N = nᵀT = [nᵀ, (a×n)ᵀ]` are the submatrices of the paper;
-//! for a sphere `a ∥ n` and the rotational part is 0. The contact point answers an impulse with `G = T M⁻¹ Tᵀ`.
+//! With `a` from the centre of mass to the contact point, `T = [1, −[a]×]` and `V_N = nᵀT = [nᵀ,
+//! (a×n)ᵀ]` are the submatrices of the paper; for a sphere `a ∥ n` and the rotational part is 0. An
+//! impulse changes the velocity of the contact point by `G = T M⁻¹ Tᵀ` times the impulse, the
+//! Delassus matrix of the contact.
 //!
-//! Every contact obeys `u_n + C_n p_n ≥ goal ⊥ p_n ≥ 0` and Coulomb's law for what is left of `u_t + C_t p_t − goal`; contacts are swept
-//! (projected Gauss–Seidel), each solved for its three unknowns at once. In the rigid limit a contact gives way to nothing, `C = 0`. A spring
-//! and dashpot over an implicit step is the same contact with a compliance and a goal of its own ([`SpringCompliance`]): one solver serves both.
+//! Every contact obeys `u_n + C_n p_n ≥ goal ⊥ p_n ≥ 0` and Coulomb's law for the remaining `u_t +
+//! C_t p_t − goal`. Contacts are solved by sweeps (projected Gauss–Seidel), each for its three
+//! unknowns at once. In the rigid limit a contact has no compliance, `C = 0`. A spring and dashpot
+//! over an implicit step is the same contact with a compliance and a goal of its own
+//! ([`SpringCompliance`]), so that one solver serves both.
 
 mod mixing;
 mod newton;
@@ -24,16 +28,19 @@ use sliding::SlidingMatrix;
 
 /// Sweeps over the contacts, at most.
 pub(super) const SWEEPS: u32 = 300;
-/// Change of the body's momentum in a sweep, relative to the largest impulse, below which the sweeps have settled (–).
+/// Change of the body's momentum in a sweep, relative to the largest impulse, below which the
+/// sweeps have converged (–).
 const SETTLED: f64 = 1e-11;
-/// The same for the second half of the sweeps: laws hold to five digits of what contacts do …
+/// The same for the second half of the sweeps: contact laws then hold to five digits of the contact
+/// impulses.
 const NEARLY_SETTLED: f64 = 1e-5;
-/// … and each goes this part of its way (–): what two contacts, or contacts and rolling friction, hand each other to and fro dies out.
+/// Relaxation factor of the second half of the sweeps (–): it damps impulses that two contacts, or
+/// contacts and rolling friction, pass to and fro.
 const RELAXATION: f64 = 0.5;
-/// What presses on a clamped contact (N s): more than anything else.
+/// Normal impulse assumed at a clamped contact (N s): larger than any other.
 const LOCKED_N_S: f64 = 1e100;
 
-/// Mass and inertia of a body as it is turned now.
+/// Mass and inertia of a body at its present attitude.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Mass {
     /// Mass (kg).
@@ -51,23 +58,24 @@ pub(crate) struct BlockContact {
     pub(crate) lever: Vec3,
     /// Coefficient of friction (–).
     pub(crate) friction: f64,
-    /// Velocity of the contact point wanted afterwards (m/s): at least this along the normal, this along the surface if it sticks.
+    /// Target velocity of the contact point (m/s): a lower bound along the normal, the tangential
+    /// velocity if it sticks.
     pub(crate) goal: Vec3,
-    /// Triangle whose ground answers.
+    /// Triangle whose ground is touched.
     pub(crate) triangle: u32,
     /// Impulse on the rock (N s).
     pub(crate) impulse: Vec3,
-    /// What rolling friction bears.
+    /// Capacities of its sliders.
     limits: FrictionLimits,
-    /// `G` (1/kg).
+    /// Delassus matrix `G` (1/kg).
     pub(super) delassus: Matrix3<f64>,
     /// `G + C` and its inverse.
     with_compliance: MatrixAndInverse,
-    /// `G + C` along the normal and two directions of the surface.
+    /// `G + C` in the frame of the normal and two tangents.
     sliding: SlidingMatrix,
-    /// How it gives way; `None` in the rigid limit.
+    /// Compliance of its springs; `None` in the rigid limit.
     springs: Option<SpringCompliance>,
-    /// Whether it is clamped: it neither parts nor slips.
+    /// Whether it is clamped: it neither separates nor slips.
     pub(super) is_clamped: bool,
 }
 
@@ -85,10 +93,10 @@ impl MatrixAndInverse {
     }
 }
 
-/// How a contact with springs and dashpots gives way over an implicit step.
+/// Compliance of a contact with springs and dashpots over an implicit step.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SpringCompliance {
-    /// Compliance along the normal and along the surface (1/kg): speed over impulse.
+    /// Compliance along the normal and along the surface (1/kg): velocity over impulse.
     pub(crate) compliance: [f64; 2],
     /// Speed along the normal that ends the step at the surface (m/s).
     pub(crate) surface_m_s: f64,
@@ -107,7 +115,8 @@ impl Mass {
         Matrix3::identity() / self.mass - across * self.inverse * across
     }
 
-    /// Mass that a contact with this normal and lever moves along the normal, and in the mean along the surface (kg).
+    /// Effective mass of a contact with this normal and lever, along the normal and in the mean
+    /// along the surface (kg).
     pub(crate) fn moved_by(&self, (n, lever): (&Vec3, &Vec3)) -> [f64; 2] {
         let delassus = self.delassus(lever);
         let along = n.dot(&(delassus * n));
@@ -162,7 +171,7 @@ impl BlockContact {
         Self { with_compliance, sliding, springs: Some(springs), ..hard }
     }
 
-    /// The same with what its sliders bear.
+    /// The same with the capacities of its sliders.
     pub(crate) fn rolling(self, limits: FrictionLimits) -> Self {
         Self { limits, ..self }
     }
@@ -177,17 +186,17 @@ impl BlockContact {
         self.n.dot(&self.impulse) > 0.0
     }
 
-    /// Whether it bears rolling friction.
+    /// Whether it has rolling friction.
     pub(super) fn has_rolling(&self) -> bool {
         self.limits.has_rolling()
     }
 
-    /// Whether friction acts at it.
+    /// Whether it has friction.
     pub(super) fn has_friction(&self) -> bool {
         self.friction > 0.0
     }
 
-    /// The largest impulse of turning that its own bears (N m s).
+    /// Largest angular impulse of rolling friction under its own normal impulse (N m s).
     pub(super) fn rolling_limit(&self) -> f64 {
         self.rolling_limit_of(self.n.dot(&self.impulse))
     }
@@ -198,7 +207,7 @@ impl BlockContact {
         self.limits.caps(push).1
     }
 
-    /// How it gives way, in a scheme with springs.
+    /// Its compliance, in a scheme with springs.
     #[inline]
     pub(super) fn springs(&self) -> Option<&SpringCompliance> {
         self.springs.as_ref()
@@ -209,7 +218,7 @@ impl BlockContact {
         Self { goal, ..*self }
     }
 
-    /// Its impulse where the point would move by `u` without it.
+    /// Its impulse if the point would move at `u` (m/s) without it.
     fn local_impulse(&self, u: &Vec3) -> Vec3 {
         if self.is_clamped {
             return self.with_compliance.inverse * (self.goal - u);
@@ -222,7 +231,8 @@ impl BlockContact {
         if self.n.dot(&(u + self.delassus * impulse)) <= springs.surface_m_s {
             return impulse;
         }
-        // the dashpot alone would keep the block out: the impulse that holds it exactly at the surface
+        // the dashpot alone would keep the block outside the surface: the impulse that holds it
+        // exactly at the surface
         let normal = self.n * self.n.transpose();
         let hard = self.with_compliance.matrix - normal * springs.compliance[0];
         let mass_kg = self.with_compliance.inverse.trace() / 3.0;
@@ -233,7 +243,8 @@ impl BlockContact {
         )
     }
 
-    /// Its impulse where the point would move by `u` beyond its goal without it, and answers an impulse by `with_compliance`.
+    /// Its impulse by Coulomb's law if the point would move at `u` (m/s) relative to its goal
+    /// without it, and an impulse changes that by the given matrix.
     fn coulomb_impulse(
         &self,
         u: &Vec3,
@@ -249,7 +260,7 @@ impl BlockContact {
         if push > 0.0 && drag.norm_squared() <= (self.friction * push).powi(2) {
             return stick;
         }
-        // in a sweep it goes on sliding as it did in the one before
+        // first guess: the direction in which it slid in the last sweep
         let begins = [sliding.tangential(&self.impulse), sliding.tangential(&drag)];
         let mut slides = begins.iter().filter_map(|drag| drag.try_normalize(0.0));
         let sliding_impulse =
@@ -260,31 +271,37 @@ impl BlockContact {
     }
 }
 
-/// The impulse of a solve as the next begins with it: one that went astray must not be where that begins.
+/// The impulse of one solve as the initial guess of the next; an impulse that is not finite is
+/// replaced by 0.
 pub(super) fn first_guess(impulse: Vec3) -> Vec3 {
     if impulse.iter().all(|x| x.is_finite()) { impulse } else { Vec3::zeros() }
 }
 
-/// Largest impulse of turning under the impulses of contacts (N m s).
+/// Largest angular impulse of rolling friction under the impulses of contacts (N m s).
 pub(super) fn rolling_limit(contacts: &[BlockContact]) -> f64 {
     contacts.iter().map(BlockContact::rolling_limit).sum()
 }
 
-/// Rolling friction that contacts bear in the rigid limit.
+/// Rolling friction of contacts in the rigid limit.
 pub(super) fn rigid_rolling(contacts: &[BlockContact]) -> RollingImpulse {
     let rolls = contacts.iter().any(BlockContact::has_rolling);
     if rolls { RollingImpulse::RIGID } else { RollingImpulse::NONE }
 }
 
-/// Sweeps until the body moves as it will, from velocity and spin without impulses; whether it did. `sweeps` counts.
+/// Sweeps until the motion of the body has converged, from its velocity and spin without impulses;
+/// returns whether it has. `sweeps` counts.
 ///
-/// What must settle is the motion of the body, not each impulse. Where there are more contacts than a rigid body can tell apart, what one asks
-/// may contradict what another asks, by rounding or by the little that a turn within the step moves two sticking points towards each other; the
-/// sweeps then shift impulse between them without end, and the body does not feel it. Where a third contact slides meanwhile it feels a little,
-/// until one of both begins to slip; and rolling friction that holds a block which slides on several corners leaves open how they share its weight.
-/// After half of the sweeps hard contacts are solved in the six unknowns of the body ([`newton`]). Where that fails too, the others go part of their
-/// way only and are content with five digits ([`NEARLY_SETTLED`]); what has not settled then is counted. Goals are known to `rounding_m_s` (m/s)
-/// only, and there are at most so many sweeps.
+/// Convergence is that of the body's motion, not of each impulse. With more contacts than a rigid
+/// body can distinguish, the contact conditions may contradict each other by rounding, or by the
+/// small amount by which the rotation within the step moves two sticking points towards each other.
+/// The sweeps then shift impulse between the contacts without end, with no effect on the body. If a
+/// third contact slides meanwhile, there is a small effect until one of the two begins to slip.
+/// Rolling friction that holds a block sliding on several corners leaves the distribution of its
+/// weight on them undetermined. After half of the sweeps, hard contacts are solved in the six
+/// unknowns of the body ([`newton`]). If that fails too, the remaining sweeps are under-relaxed and
+/// converge to five digits ([`NEARLY_SETTLED`]); a solve that has not converged then is counted.
+/// Goals are known to `rounding_m_s` (m/s) only. `until` holds that bound and the largest number of
+/// sweeps.
 pub(crate) fn solve(
     mass: &Mass,
     unknowns: (&mut [BlockContact], &mut RollingImpulse),
@@ -292,7 +309,8 @@ pub(crate) fn solve(
     until: (f64, u32),
     sweeps: &mut u64,
 ) -> bool {
-    // a face with many corners is rare, and room for all of them is not cleared for nothing
+    // faces with many corners are rare: the large work space is not cleared for the usual few
+    // contacts
     if unknowns.0.len() <= MOST {
         sweep::<{ MOST + 1 }>(mass, unknowns, free, until, sweeps)
     } else {
@@ -300,7 +318,7 @@ pub(crate) fn solve(
     }
 }
 
-/// The same with room to learn from fewer than `M` contacts.
+/// The same with work space for fewer than `M` contacts.
 fn sweep<const M: usize>(
     mass: &Mass,
     (contacts, rolling): (&mut [BlockContact], &mut RollingImpulse),
@@ -315,7 +333,7 @@ fn sweep<const M: usize>(
     let mut mixing: Option<AndersonMixing<M>> = None;
     for sweep in 0..most {
         *sweeps += 1;
-        // what the last sweeps leave is what the laws allow
+        // the last sweeps are not mixed: they end on the contact laws themselves
         let mixes_now = mixes && (PLAIN_SWEEPS..most / 2).contains(&sweep);
         if mixes_now {
             let count = contacts.len() + usize::from(rolling.is_on());

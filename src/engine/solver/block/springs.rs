@@ -1,18 +1,20 @@
 //! Schemes with springs for blocks: `adaptive`, `reference` and `dda`.
 //!
 //! The unknowns are the body's six. With the lever `a` of a contact, `V_N = [nᵀ, (a×n)ᵀ]` takes the place of the paper's `V_N = (V, 0)`, and
-//! everything else of the paper stays. The state is centre, attitude, velocity and **angular momentum** in the frame of the terrain:
-//! `ℓ' = Σ a × f`, `ω = I⁻¹ℓ`, so that no gyroscopic term has to be stepped and free spin keeps its momentum exactly.
+//! everything else of the paper stays. The state is centre, attitude, velocity and **angular
+//! momentum** in the frame of the terrain: `ℓ' = Σ a × f`, `ω = I⁻¹ℓ`, so that no gyroscopic term
+//! has to be stepped and free spin conserves its momentum exactly.
 //!
-//! A spring and a dashpot over an implicit stage in which an impulse acts for `a` and the block moves for `b` (s) are a contact of the
-//! rigid limit that gives way ([`SpringCompliance`]): from `F = p (pen − b u_n) − c u_n` and `P = a F`
+//! A spring and a dashpot over an implicit stage, in which an impulse acts for `a` and the block
+//! moves for `b` (s), are a contact of the rigid limit with a compliance ([`SpringCompliance`]):
+//! from `F = p (pen − b u_n) − c u_n` and `P = a F`
 //!
 //! ```text
 //! u_n + P_n/(a (p b + c)) = p pen/(p b + c)
 //! ```
 //!
-//! and the same along the surface with `p_s`, `c_s` and the stretch `−ξ`. So all schemes share one solver of contacts
-//! ([`solve`](super::solve::solve)), and `rigid` is its limit for stiff springs.
+//! and the same along the surface with `p_s`, `c_s` and the stretch `−ξ`. So all schemes share one
+//! contact solver ([`solve`](super::solve::solve)), and `rigid` is its limit for stiff springs.
 
 mod clamp;
 mod controlled;
@@ -44,7 +46,7 @@ use impact_energy::ImpactEnergy;
 use nalgebra::{Rotation3, Unit};
 use rolling::RollingSpring;
 
-/// Contacts no further ahead than so many times the way of a stage take part in it (–).
+/// Contacts with gaps up to this multiple of the travel of a stage take part in it (–).
 const STAGE_REACH: f64 = 2.0;
 
 /// Rates of change of a block in contact.
@@ -56,31 +58,32 @@ struct BlockRates {
     /// Of the rotation vector from the step's start (rad/s), and of the angular momentum (N m).
     turned: Vec3,
     momentum: Vec3,
-    /// Of the shear springs (m/s), history by history.
+    /// Of the shear springs (m/s), one for each history.
     shear: Vec<Vec3>,
     /// Of the rolling spring (rad/s).
     rolled: Vec3,
-    /// Power that goes into contacts (W).
+    /// Power into contacts (W).
     loss: Loss,
 }
 
 /// A contact within a stage.
 #[derive(Debug, Clone, Copy)]
 struct SpringContact {
-    /// Which memory it belongs to.
+    /// Index of its history.
     history: usize,
-    /// Its law, with its share of a patch and the friction in force.
+    /// Its law, with its share of a patch and the current friction.
     law: Law,
-    /// Whether it came in too slowly to rebound.
+    /// Whether it closed too slowly to rebound.
     captured: bool,
-    /// Whether it has come up in this step, which is cut where it begins: it presses nothing.
+    /// Whether it exerts no force for now: it began within this step, which is cut where it begins,
+    /// or it is open.
     is_suspended: bool,
     /// Triangle whose ground answers.
     triangle: u32,
     /// Unit normal from the mesh to the block, and lever (m).
     n: Vec3,
     lever: Vec3,
-    /// Penetration at which its spring begins to press (m).
+    /// Penetration at which its spring begins to act (m).
     offset_m: f64,
     /// Penetration (m) and stretch of the shear spring (m) at the stage's base.
     penetration: f64,
@@ -95,67 +98,70 @@ struct SpringContact {
 pub(crate) struct Springs {
     pub(crate) histories: Vec<BlockHistory>,
     contacts: Vec<SpringContact>,
-    /// Those that were solved before others came up.
+    /// The contacts solved before further ones began.
     solved: Vec<SpringContact>,
-    /// What rolling friction remembers.
+    /// The spring of rolling friction.
     rolling: RollingSpring,
-    /// Memories at the step's start, and whether impacts that come up after it wait until a step begins with them.
+    /// Number of histories at the step's start, and whether impacts that begin after it are
+    /// suspended until a step starts with them.
     known: usize,
     suspends_new: bool,
     rates: [BlockRates; STAGES],
-    /// Whether the first rate belongs to the present state.
+    /// Whether the first rates belong to the present state.
     has_current_rates: bool,
-    /// Whether the last look was at the present place.
+    /// Whether the last detection was at the present pose.
     touches_are_current: bool,
-    /// Slip at the step's start (m/s), and how far it goes until friction is asked for (m).
+    /// Slip speed at the step's start (m/s), and the slip distance up to the time at which friction
+    /// is evaluated (m).
     slip_m_s: f64,
     ahead_m: f64,
     /// Energy in the springs at the present state (J).
     stored_j: f64,
-    /// What steps of `dda` have made, and the motion has not paid for as yet (J).
+    /// Energy that steps of `dda` have gained and that the motion has not yet paid for (J).
     debt_j: f64,
     /// The step to try next (s).
     h: f64,
-    /// Fastest approach of the impacts that go on (m/s); 0 if none does.
+    /// Fastest approach of the current impacts (m/s); 0 if there are none.
     impact_m_s: f64,
-    /// Energy in the impact that is followed in its own time.
+    /// Energy account of the current impact.
     energy: Option<ImpactEnergy>,
-    /// When the impacts that go on are over at the latest (s).
+    /// Latest end of the current impacts (s).
     pub(crate) until_s: f64,
     control: Option<Control>,
 }
 
 impl Springs {
-    /// The motion has been changed from outside.
+    /// Invalidates the rates: the motion has been changed from outside.
     pub(crate) fn invalidate_rates(&mut self) {
         self.has_current_rates = false;
     }
 
-    /// What the last look has found is no longer what is there.
+    /// Invalidates the contacts of the last detection.
     pub(crate) fn invalidate_touches(&mut self) {
         self.touches_are_current = false;
     }
 
-    /// Whether nothing presses on the block any more.
+    /// Whether no contact presses on the block.
     pub(crate) fn is_free(&self) -> bool {
         self.histories.iter().all(|history| !history.closed)
     }
 
-    /// Stiffest contact (rad/s).
+    /// Largest contact frequency (rad/s).
     pub(super) fn stiffest(&self, world: &ContactEnvironment) -> f64 {
         let of = |laws: &mut dyn Iterator<Item = f64>| laws.fold(0.0, f64::max);
         let known = of(&mut self.histories.iter().map(|history| history.law.omega_rad_s()));
         if known > 0.0 { known } else { of(&mut world.laws.iter().map(Law::omega_rad_s)) }
     }
 
-    /// Impacts whose time is up at `now_s` (s) are over: what still presses lasts, and is damped for good.
+    /// Ends the impacts whose time is up at `now_s` (s): contacts that still press become lasting
+    /// contacts and are damped as such.
     pub(crate) fn capture(&mut self, now_s: f64) {
         if now_s >= self.until_s {
             self.histories.iter_mut().for_each(|history| history.captured |= history.announced);
         }
     }
 
-    /// Slowest contact (rad/s): the impact of all is over after some of its times.
+    /// Smallest contact frequency (rad/s): an impact is over after some of its periods.
     pub(crate) fn slowest(&self) -> f64 {
         self.histories.iter().map(|history| history.law.omega_rad_s()).fold(f64::INFINITY, f64::min)
     }
@@ -166,12 +172,12 @@ impl Springs {
         self.contacts.iter().map(|contact| contact.shear.norm())
     }
 
-    /// What the contacts of the last stage act along.
+    /// The directions in which the contacts of the last stage act.
     fn acting_along(&self) -> ContactDirections {
         ContactDirections::default().and_springs(&self.contacts)
     }
 
-    /// Energy in the springs of the contacts as they were placed (J), by what it belongs to.
+    /// Energy in the springs of the contacts as they were placed (J), by kind.
     fn stored_by_contacts(&self, world: &ContactEnvironment) -> Loss {
         let mut placed = Loss { rolling: self.rolling.stored_j(), ..Loss::default() };
         for contact in &self.contacts {
@@ -181,17 +187,17 @@ impl Springs {
         placed
     }
 
-    /// Notes the fastest approach of the impacts that go on.
+    /// Updates the fastest approach of the current impacts.
     fn update_impact_speed(&mut self) {
         self.impact_m_s = self.fastest_m_s().map_or(0.0, |own| own.max(self.impact_m_s));
     }
 
-    /// How much springs hold (J), as the memories tell.
+    /// Energy in the springs (J), by the histories.
     pub(crate) fn held_j(&self) -> f64 {
         self.held_on_j(|_| true) + self.rolling.stored_j()
     }
 
-    /// How much those of the contacts on some triangles hold (J).
+    /// Energy in the springs of the contacts on some triangles (J).
     pub(crate) fn held_on_j(&self, is_on: impl Fn(u32) -> bool) -> f64 {
         let holds = |history: &&BlockHistory| history.closed && is_on(history.triangle);
         self.histories.iter().filter(holds).map(BlockHistory::held_j).sum()
@@ -199,7 +205,7 @@ impl Springs {
 }
 
 impl ContactDirections {
-    /// With what these contacts act along.
+    /// Adds the directions in which these contacts act.
     fn and_springs(mut self, contacts: &[SpringContact]) -> Self {
         for contact in contacts {
             self.add(&contact.n, contact.law.limits().caps(1.0) != (0.0, 0.0));
@@ -209,7 +215,7 @@ impl ContactDirections {
 }
 
 impl SpringContact {
-    /// The contact that a stage sees in which impulses act for `a` and the block moves for `b` (s).
+    /// Its contact for a stage in which impulses act for `a` and the block moves for `b` (s).
     fn over_stage(&self, mass: &Mass, (a, b): (f64, f64)) -> BlockContact {
         let stage = self.law.over_stage(self.captured, (a, b));
         let goal = self.n * (stage.out_per_s * self.penetration) - self.shear * stage.back_per_s;
@@ -220,13 +226,14 @@ impl SpringContact {
             .rolling(self.law.limits())
     }
 
-    /// Takes the forces from an impulse that has acted for `a` (s).
+    /// Sets the forces from an impulse that has acted for `a` (s).
     fn set_forces(&mut self, impulse: &Vec3, a: f64) {
         self.normal_force = self.n.dot(impulse) / a;
         self.shear_force = (self.n * self.n.dot(impulse) - impulse) / a;
     }
 
-    /// Takes the forces that it has where its point moves by `u` (m/s): the normal force if it could pull (N), and shear.
+    /// Sets the forces at the velocity `u` (m/s) of its point; returns the normal force without the
+    /// limit to compression (N), and shear.
     fn update_forces(&mut self, u: &Vec3) -> (f64, SliderForce) {
         let (up, element) = (self.n.dot(u), &self.law.shear);
         let normal = self.law.normal(self.captured);
@@ -238,7 +245,7 @@ impl SpringContact {
         (pulls, shear)
     }
 
-    /// Energy in its springs at a penetration and a stretch (J, m): nothing where it does not press.
+    /// Energy in its springs at a penetration and a stretch (J, m): none if it does not press.
     fn stored_j(&self, penetration: f64, shear: &Vec3) -> f64 {
         let shear2 = if penetration > 0.0 { shear.norm_squared() } else { 0.0 };
         self.law.stored_j(penetration.max(0.0), shear2, 0.0)
@@ -259,20 +266,21 @@ impl SpringContact {
         self.law.shear.stretch_after(&self.shear_force, &self.shear, b)
     }
 
-    /// Power that goes into it (W) at a velocity `u` of the contact point (m/s); what springs store is counted in.
+    /// Power into it (W) at a velocity `u` of the contact point (m/s), including the power that its
+    /// springs store.
     fn power(&self, world: &ContactEnvironment, u: &Vec3, shear_rate: &Vec3) -> Loss {
         let pushes = -self.normal_force * self.n.dot(u);
         self.shear_power(u, shear_rate, pushes).on(world, self.triangle)
     }
 
-    /// The same, with what goes into its normal element (W).
+    /// The same, with the given power into its normal element (W).
     fn shear_power(&self, u: &Vec3, shear_rate: &Vec3, normal_w: f64) -> Loss {
         let slip = u - self.n * self.n.dot(u);
         Loss::of_slip((&self.shear_force, &slip, shear_rate), [normal_w, 0.0])
     }
 }
 
-/// A rotation by a rotation vector (rad).
+/// The rotation by a rotation vector (rad).
 fn rotation_by(turned: &Vec3) -> Rotation3<f64> {
     let angle = turned.norm();
     if angle > 0.0 {
@@ -289,7 +297,7 @@ fn rotation_vector_rate(turned: &Vec3, w: &Vec3) -> Vec3 {
 }
 
 impl BlockContactState {
-    /// Begins an episode of a block that has just touched.
+    /// Begins an episode of contact of a block that has just touched.
     pub(crate) fn begin_springs(
         &mut self,
         world: &ContactEnvironment,
@@ -317,7 +325,7 @@ impl BlockContactState {
         self.springs.touches_are_current = true;
     }
 
-    /// Energy in the springs of the contacts of the last look (J), by what it belongs to.
+    /// Energy in the springs of the contacts of the last detection (J), by kind.
     fn stored(&self, world: &ContactEnvironment) -> Loss {
         let mut stored = Loss::default();
         for history in &self.springs.histories {
@@ -334,7 +342,7 @@ impl BlockContactState {
         stored
     }
 
-    /// Energy in the springs at a pose (J), by what it belongs to.
+    /// Energy in the springs at a pose (J), by kind.
     pub(crate) fn springs_j(
         &mut self,
         world: &ContactEnvironment,
@@ -344,10 +352,10 @@ impl BlockContactState {
         self.stored(world)
     }
 
-    /// One step of at most `most_s`, and the steps tried and thrown away.
+    /// One step of at most `most_s`, and the number of rejected trial steps.
     ///
     /// # Errors
-    /// [`StepError`] if no step, however short, settles, or a spring is pressed in too far.
+    /// [`StepError`] if no step, however short, converges, or a penetration is too large.
     pub(crate) fn step_on_springs(
         &mut self,
         world: &ContactEnvironment,
@@ -373,7 +381,7 @@ impl BlockContactState {
         Ok((done, rejected))
     }
 
-    /// How far ahead (m) a block can touch something within a stage of `way_s`.
+    /// Gap (m) up to which a block can touch something within a stage of `way_s`.
     fn ahead_m(
         world: &ContactEnvironment,
         (block, state): (&Block, &BlockState),
@@ -384,7 +392,8 @@ impl BlockContactState {
         TOUCH * block.radius_m + STAGE_REACH * way_m
     }
 
-    /// Whether a spring is pressed in so far, over the balls' radius, that it means nothing any more.
+    /// Fails if a penetration is so large, relative to the balls' radius, that the contact model
+    /// does not apply.
     fn check_depth(&self, block: &Block) -> Result<(), StepError> {
         let deepest = self.touches.found.iter().map(|touch| -touch.gap_m).fold(0.0, f64::max);
         if deepest > DEEPEST * block.ball_m { Err(StepError::SankIn) } else { Ok(()) }

@@ -1,8 +1,10 @@
-//! Stems that give way to a block.
+//! Stems that break under a block.
 //!
-//! The rule is that of spheres (`solver::stems`): what a block puts into its contacts with a stem counts against what the stem can
-//! take; when that is what was left of the stem, the stem is gone and the block goes on. A blow that would take more ends there
-//! ([`BlockContact::yielding`](super::solve::BlockContact), and of several contacts `solver::joint_blow`).
+//! The rule is that of spheres (`solver::stems`). The energy that a block puts into its contacts
+//! with a stem is subtracted from the capacity of the stem. When the capacity is used up, the stem
+//! is removed and the block goes on. An impact that would take more ends there
+//! ([`BlockContact::yielding`](super::solve::BlockContact), and for several contacts
+//! `solver::joint_blow`).
 
 use super::rolling::RollingImpulse;
 use super::springs::BlockHistory;
@@ -23,10 +25,13 @@ use crate::terrain::stems::Stems;
 use arrayvec::ArrayVec;
 
 impl BlockContactState {
-    /// Breaks the stems among the contacts that touch which cannot take the current blow; what it has lost there.
+    /// Breaks the touching stems that cannot withstand the current impact; returns the energy lost
+    /// there.
     ///
-    /// One that is struck by one contact alone breaks as if nothing else were there; the rest of the blow falls with what it leaves. Where several
-    /// contacts with trees are struck, or what else is touched presses the block against one, all are followed together.
+    /// A stem that is struck by a single contact breaks as if there were no other contacts; the
+    /// rest of the impact follows with the motion that remains. If several contacts with trees are
+    /// struck, or if another contact presses the block against a stem, all contacts are followed
+    /// together.
     pub(crate) fn break_stems(
         &mut self,
         world: &ContactEnvironment,
@@ -43,7 +48,7 @@ impl BlockContactState {
         taken
     }
 
-    /// Breaks the next stems that cannot take the blow; what it has lost.
+    /// Breaks the next stems that cannot withstand the impact; returns the energy lost.
     fn break_next(
         &mut self,
         world: &ContactEnvironment,
@@ -62,7 +67,7 @@ impl BlockContactState {
         };
         let struck: ArrayVec<BlockTouch, 2> =
             self.touching(block).filter(comes).take(2).copied().collect();
-        // what springs have pressed already is theirs to follow
+        // a contact that springs have already loaded is followed by them
         let on_trees = |one: &BlockHistory| world.terrain.is_tree(one.triangle);
         let goes_on = |one: &BlockHistory| on_trees(one) && one.normal_force > 0.0;
         let begins = !self.springs.histories.iter().any(goes_on);
@@ -76,7 +81,8 @@ impl BlockContactState {
         if jointly { self.break_jointly(world, (block, state)) } else { alone }
     }
 
-    /// Breaks the stem at a touch, if it is struck there alone and cannot take that; what it had left is lost.
+    /// Breaks the stem at a contact if it is struck there alone and cannot withstand that; its
+    /// remaining capacity is lost.
     fn break_alone(
         &mut self,
         world: &ContactEnvironment,
@@ -93,7 +99,8 @@ impl BlockContactState {
         Some(Loss { trees: left_j, ..Loss::default() })
     }
 
-    /// Breaks the stems among all contacts that touch which cannot take the blow on all of them; what they have lost.
+    /// Breaks the stems among all touching contacts that cannot withstand the joint impact; returns
+    /// the energy lost.
     fn break_jointly(
         &mut self,
         world: &ContactEnvironment,
@@ -129,7 +136,7 @@ impl BlockContactState {
         let mut lost = Loss::default();
         for ((contact, touch), loss) in contacts.iter().zip(&self.selected).zip(&after.loss) {
             lost.add(&loss.on(world, touch.triangle), 1.0);
-            // what stands after the same blow has taken its part too
+            // a stem that withstands the same impact has absorbed its part too
             if let Some(stem) = contact.stem.filter(|&stem| !broken.contains(&(0, stem))) {
                 self.stem_load.take(stem, loss.sum());
             }
@@ -138,8 +145,9 @@ impl BlockContactState {
         Some(lost)
     }
 
-    /// After impulses with these losses: the stems that are touched have taken what went into contacts with trees. One for which that
-    /// is more than it can take gives way, and the block gets back what was too much.
+    /// After impulses with these losses: the touched stems have absorbed the energy that went into
+    /// contacts with trees. A stem whose capacity that exceeds breaks, and the block gets the
+    /// excess back.
     pub(crate) fn bend_stems(
         &mut self,
         world: &ContactEnvironment,
@@ -162,8 +170,9 @@ impl BlockContactState {
         }
     }
 
-    /// Direction of the joint push of the contacts with a stem: by the forces of their springs, or where these are not known, that of the
-    /// contact of the last look that is pressed deepest; 0 if there is none.
+    /// Direction of the resultant push of the contacts with a stem: by the forces of their springs
+    /// or, if these are unknown, the normal of the deepest contact of the last detection; 0 if
+    /// there is none.
     fn push_direction(&self, stems: &Stems, stem: u32) -> Vec3 {
         let is_of = |triangle: u32| stems.of_triangle(triangle) == Some(stem);
         let springs = self.springs.histories.iter().filter(|history| is_of(history.triangle));
@@ -173,7 +182,8 @@ impl BlockContactState {
         if push == Vec3::zeros() { deepest.map_or(push, |touch| touch.normal) } else { push }
     }
 
-    /// Notes which trees are pressed before a blow or a step: by springs, or else what is struck, by the squares of its approaches.
+    /// Records which trees are loaded before an impact or a step: by springs or, without any, the
+    /// trees that are struck, weighted by the squares of their approach speeds.
     pub(crate) fn press_stems(
         &mut self,
         world: &ContactEnvironment,
@@ -192,7 +202,8 @@ impl BlockContactState {
         self.stem_load.pressed = pressed;
     }
 
-    /// The longest step (s) in which it is told what each of several trees takes that springs press.
+    /// Longest step (s) in which the energies can be attributed to each of several trees that
+    /// springs load.
     pub(crate) fn longest_apart_s(
         &self,
         world: &ContactEnvironment,
@@ -206,7 +217,8 @@ impl BlockContactState {
         APART_RAD / self.springs.stiffest(world)
     }
 
-    /// The trees that springs press, with what these hold and the power of their dashpots and of friction.
+    /// The trees that springs load, with the stored energies and the power of their dashpots and of
+    /// friction.
     fn pressed_by_springs(
         &self,
         world: &ContactEnvironment,
@@ -224,7 +236,7 @@ impl BlockContactState {
         pressed
     }
 
-    /// The stem that the contacts of the last look press deepest, if they press one.
+    /// The stem with the deepest contact of the last detection, if there is one.
     fn deepest(&self, stems: &Stems) -> Option<PressedTree> {
         let touched =
             self.touches.found.iter().filter_map(|touch| {
@@ -234,7 +246,7 @@ impl BlockContactState {
         deepest.map(|(stem, _)| PressedTree { stem: Some(stem), held_j: 0.0, weight: 1.0 })
     }
 
-    /// A stem is gone for this block.
+    /// Removes a stem for this block.
     fn remove_stem(&mut self, stem: u32) {
         self.near.gone.push(stem);
         self.near.forget();

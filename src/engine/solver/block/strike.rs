@@ -1,8 +1,10 @@
-//! The impact of a block in no time.
+//! The instantaneous impact of a block.
 //!
-//! A blow fast enough to rebound is the limit of the springs' for stiff ones ([`blow`](Footing::blow)), on plastic ground as on any other.
-//! What comes more slowly and what does not rub is a blow of impulses alone, contact by contact with Newton's restitution. With several
-//! contacts that rule can gain energy (Glocker 2013); where it would, all restitutions are lowered together until it does not.
+//! An impact fast enough to rebound is the limit of the springs' impact for stiff springs
+//! ([`blow`](BlockContactState::blow)), on plastic ground too. Slower impacts and those without
+//! friction are solved by impulses alone, with Newton's restitution at each contact. With several
+//! contacts Newton's rule can gain energy (Glocker 2013); then all restitutions are reduced by one
+//! factor until it does not.
 
 use super::energy::ContactDirections;
 use super::solve::{BlockContact, SWEEPS, rigid_rolling, solve};
@@ -15,12 +17,13 @@ use crate::rock::Vec3;
 use crate::solver::environment::ContactEnvironment;
 use crate::solver::loss::Loss;
 
-/// Halvings of the restitution where it would gain energy.
+/// Bisections for the factor of the restitutions where they would gain energy.
 const HALVINGS: u32 = 30;
 
 impl BlockContactState {
-    /// The impact of all contacts that touch, at the place and in no time; contacts too slow to rebound take part and give
-    /// nothing back. What it takes, and whether there was any.
+    /// The instantaneous impact of all touching contacts, at the present pose. Contacts too slow to
+    /// rebound take part and do not rebound. Returns the energy that it dissipates; `None` if there
+    /// is no impact.
     pub(crate) fn strike(
         &mut self,
         world: &ContactEnvironment,
@@ -39,9 +42,10 @@ impl BlockContactState {
         if !approaches && facet.is_none() {
             return None;
         }
-        // what did not settle before, of this block or of another, is no part of this impact
+        // an earlier solve that did not converge, of this block or of another, is no part of this
+        // impact
         self.unsettled = false;
-        // a facet is met as in the schemes with springs: the motion is turned against it, and back
+        // as in the schemes with springs, the motion is rotated against the facet, and back
         if let Some(turn) = &facet {
             state.redirect(block, &turn.inverse());
         }
@@ -52,7 +56,7 @@ impl BlockContactState {
             }
             loss = loss.or_else(|| self.blow(world, (block, state)));
             if loss.is_none() {
-                // what does not end gives nothing back
+                // an impact that does not end does not rebound
                 self.clamp.open();
             }
         }
@@ -63,10 +67,11 @@ impl BlockContactState {
         Some(loss)
     }
 
-    /// Whether a blow is fast enough to rebound and meets something that rubs and has dashpots. Ground that gives nothing back is no case of its
-    /// own: its dashpots are those of the restitution that tends to 0, and where friction and lever couple, what they leave is not what
-    /// impulses make of a contact that must stop dead. Nor is that what they leave of a contact that lasts and is pressed by the blow of another,
-    /// with friction or without.
+    /// Whether an impact is followed as the limit of stiff springs: it is fast enough to rebound,
+    /// and has friction and dashpots. Plastic ground is no special case. Its dashpots are those of
+    /// a restitution that tends to 0; where friction and lever couple, they leave another motion
+    /// than impulses that stop each contact dead. The same holds for a lasting contact that is
+    /// pressed by the impact of another, with friction or without.
     fn is_followed_to_its_limit(
         &self,
         world: &ContactEnvironment,
@@ -86,8 +91,9 @@ impl BlockContactState {
             && shear().all(|shear| !shear.is_on() || shear.is_damped())
     }
 
-    /// The blow of contacts that do not slip, where pushes alone leave nothing to slip either, as of a face that falls flat: friction has
-    /// nothing to do then, and impulses are exact.
+    /// The impact of contacts that do not slip before it and, with normal impulses alone, not after
+    /// it either, as of a face that falls flat. Friction has no effect then, and impulses are
+    /// exact.
     fn normal_blow(
         &mut self,
         world: &ContactEnvironment,
@@ -106,7 +112,8 @@ impl BlockContactState {
         Some(loss)
     }
 
-    /// The blow of impulses alone, with friction if it `with_friction`; what it takes.
+    /// The impact solved by impulses alone, `with_friction` or without; returns the energy that it
+    /// dissipates.
     fn impulses(
         &mut self,
         world: &ContactEnvironment,

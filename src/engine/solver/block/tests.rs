@@ -166,7 +166,7 @@ impl BlockRun {
                     self.lost.add(&loss, 1.0);
                     self.impacts += 1;
                     see(now, state);
-                    if !footing.holds(&world, (&block, state), true) {
+                    if !footing.stays_in_contact(&world, (&block, state), true) {
                         break;
                     }
                 }

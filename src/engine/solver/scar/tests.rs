@@ -62,11 +62,11 @@ fn a_hop_in_a_scar_is_dragged_as_deep_as_it_is() {
     let mut scars = Scars { layers, is_any: true, ..Scars::default() };
     let blow = GroundBlow { ground: 0, normal: Vec3::z(), approach_m_s: 3.0, of_point_m_s: 3.0 };
     scars.enter(&body, &[blow], (14.0, false));
-    let (dug, k) = (scars.now, scar.drag_per_m3(mass));
+    let (dug, k) = (scars.active, scar.drag_per_m3(mass));
     let depth = scar.depth_m(mass, 3.0);
     for share in [0.02, 0.5, 0.9] {
         let up = share * (2.0 * g * depth).sqrt();
-        scars.now = dug;
+        scars.active = dug;
         let way_out = scars.leave(&body, &Vec3::new(14.0, 0.0, up));
         let (mut at, mut v, dt) = (0.0, Vec3::new(14.0, 0.0, up), 1e-6);
         while at >= 0.0 {
@@ -76,16 +76,16 @@ fn a_hop_in_a_scar_is_dragged_as_deep_as_it_is() {
         }
         let hop_s = 2.0 * way_out * up / g;
         let kept = way_out * scars.fly(&body, &(Vec3::new(14.0, 0.0, -up) * way_out), hop_s);
-        assert!(scars.now.is_some() && way_out < 1.0, "{share}");
+        assert!(scars.active.is_some() && way_out < 1.0, "{share}");
         let taken = [1.0 - kept, 1.0 - v.norm() / 14.0_f64.hypot(up)];
         println!("{share}: {taken:?} way out {way_out}");
         assert!((taken[0] / taken[1] - 1.0).abs() < 0.1, "{share}: {taken:?}");
     }
-    scars.now = dug;
-    assert!(scars.fly(&body, &Vec3::new(14.0, 0.0, 0.0), 0.0) >= 1.0 && scars.now.is_some());
+    scars.active = dug;
+    assert!(scars.fly(&body, &Vec3::new(14.0, 0.0, 0.0), 0.0) >= 1.0 && scars.active.is_some());
     // over ground that falls away: from the plane it is out after d = g t (T − t)/2
     let kept = scars.fly(&body, &Vec3::new(14.0, 0.0, -9.81), 1.0);
-    assert!(scars.now.is_none() && kept < 1.0);
+    assert!(scars.active.is_none() && kept < 1.0);
     let out_s = 0.5 * (1.0 - (1.0 - 8.0 * depth / g).sqrt());
     let most = k * cut_area_m2(radius, depth, 0.0) * 14.9 * out_s;
     assert!(-math::ln(kept) < 0.5 * most && -math::ln(kept) > 0.25 * most, "{kept}");
@@ -134,11 +134,11 @@ fn square(approach_m_s: f64) -> GroundBlow {
 fn a_harder_impact_digs_on_from_the_depth_of_the_first() {
     let (body, mut scars, per_m) = deep(5.0, 0.0);
     scars.enter(&body, &[square(6.0)], (6.0, false));
-    let first_m = scars.now.unwrap().depth_m;
+    let first_m = scars.active.unwrap().depth_m;
     assert!(first_m > 2.0 * body.radius);
     assert!(scars.enter(&body, &[square(4.0)], (4.0, false)) >= 1.0);
     let kept = scars.enter(&body, &[square(9.0)], (9.0, false));
-    let more_m = scars.now.unwrap().depth_m - first_m;
+    let more_m = scars.active.unwrap().depth_m - first_m;
     assert!((kept / math::exp(-per_m * more_m) - 1.0).abs() < 1e-12, "{kept} over {more_m} m");
 }
 
@@ -150,7 +150,7 @@ fn the_way_out_takes_what_was_not_taken_along_the_plane() {
     let in_scar = || {
         let (body, mut scars, per_m) = deep(5.0, 0.0);
         scars.enter(&body, &[square(6.0)], (6.0, false));
-        let out_m = scars.now.unwrap().depth_m - body.radius / 3.0;
+        let out_m = scars.active.unwrap().depth_m - body.radius / 3.0;
         (body, scars, per_m, out_m)
     };
     let is = |kept: f64, exact: f64| assert!((kept / exact - 1.0).abs() < 1e-12, "{kept} {exact}");
@@ -171,18 +171,18 @@ fn drag_decides_whether_a_ball_leaves_its_scar() {
     let (body, mut scars, per_m) = deep(20.0, 9.81);
     scars.enter(&body, &[square(6.0)], (6.0, false));
     let depth_m = 1.2;
-    let dug = Some(ActiveScar { depth_m, ..scars.now.unwrap() });
+    let dug = Some(ActiveScar { depth_m, ..scars.active.unwrap() });
     let kept = math::exp(-per_m * (depth_m - body.radius / 3.0));
     for (up_m_s, leaves) in [(8.0_f64, false), (20.0, true)] {
         assert_eq!((kept * up_m_s).powi(2) > 2.0 * 9.81 * depth_m, leaves);
         assert!(up_m_s.powi(2) > 2.0 * 9.81 * depth_m);
-        scars.now = dug;
+        scars.active = dug;
         let found = scars.leave(&body, &(Vec3::z() * up_m_s));
         let rise_m = (found * up_m_s).powi(2) / (2.0 * 9.81);
         assert!(leaves || rise_m < depth_m - body.radius);
         let exact = if leaves { kept } else { math::exp(-per_m * rise_m) };
         assert!((found / exact - 1.0).abs() < 1e-12, "{up_m_s} m/s: {found}");
-        assert_eq!(scars.now.is_none(), leaves);
+        assert_eq!(scars.active.is_none(), leaves);
         let back = scars.fly(&body, &(Vec3::z() * -up_m_s * found), 2.0 * up_m_s * found / 9.81);
         let exact = if leaves { 1.0 } else { math::exp(-per_m * rise_m) };
         assert!((back / exact - 1.0).abs() < 1e-12, "{up_m_s} m/s back: {back} {exact}");
@@ -198,11 +198,11 @@ fn more_drag_never_makes_a_higher_leap() {
         let scar = Scar { drag, ..soft.layers[0].unwrap() };
         let mut scars = Scars { layers: vec![Some(scar)], is_any: true, ..Scars::default() };
         scars.enter(&body, &[square(40.0)], (40.0, false));
-        let depth_m = scars.now.unwrap().depth_m;
+        let depth_m = scars.active.unwrap().depth_m;
         scars.split.paid_m = ahead_m;
         let thrown = v * scars.leave(&body, v);
         let (rise_m, hop_s) = (0.5 * thrown.z * thrown.z / 9.81, 2.0 * thrown.z / 9.81);
-        let out = scars.now.is_none();
+        let out = scars.active.is_none();
         let back = Vec3::new(thrown.x, 0.0, -thrown.z);
         let kept = scars.fly(&body, &back, hop_s);
         assert!(thrown.x.is_finite() && (0.0..=1.0).contains(&kept), "{drag} {v:?} {kept}");
@@ -240,16 +240,17 @@ fn soil_that_is_paid_for_is_paid_once() {
     scars.enter(&body, &[square(6.0)], (6.0, false));
     let up = Vec3::z() * 4.0;
     let free_m = 0.5 * 16.0 / 9.81;
-    scars.now = Some(ActiveScar { depth_m: free_m + 2.0 * body.radius, ..scars.now.unwrap() });
-    let dug = scars.now;
+    scars.active =
+        Some(ActiveScar { depth_m: free_m + 2.0 * body.radius, ..scars.active.unwrap() });
+    let dug = scars.active;
     for paid_m in [0.0, 0.3 * free_m, 2.0 * free_m] {
-        scars.now = dug.map(|now| ActiveScar { paid: per_m * paid_m, ..now });
+        scars.active = dug.map(|now| ActiveScar { prepaid: per_m * paid_m, ..now });
         let rise_m = free_m * scars.leave(&body, &up).powi(2);
         let unpaid_m = (rise_m - paid_m).max(0.0);
         let exact_m = free_m * math::exp(-2.0 * per_m * unpaid_m);
         assert!((rise_m / exact_m - 1.0).abs() < 1e-9, "{paid_m}: {rise_m} {exact_m}");
     }
-    scars.now = dug;
+    scars.active = dug;
     let first = scars.leave(&body, &up);
     scars.fly(&body, &(-up * first), 2.0 * 4.0 * first / 9.81);
     let second = scars.leave(&body, &up);
@@ -262,7 +263,7 @@ fn soil_that_is_paid_for_is_paid_once() {
 fn a_skimming_ball_is_dragged_along_its_way_and_not_its_rise() {
     let (body, mut scars, _) = deep(3000.0, 9.81);
     scars.enter(&body, &[square(10.0)], (10.0, false));
-    let (now, v) = (scars.now.unwrap(), Vec3::new(200.0, 0.0, 2e-3));
+    let (now, v) = (scars.active.unwrap(), Vec3::new(200.0, 0.0, 2e-3));
     let (free_m, cosine) = (0.5 * v.z * v.z / 9.81, v.z / v.norm());
     assert!(free_m < 1e-6 * now.depth_m);
     let kept = scars.leave(&body, &v);

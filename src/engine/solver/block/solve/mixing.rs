@@ -1,50 +1,55 @@
-//! Sweeps that learn from those before them (Anderson 1965; Walker and Ni 2011).
+//! Anderson acceleration of the sweeps (Anderson 1965; Walker and Ni 2011).
 //!
-//! A sweep turns impulses `x` into `g(x)`; they have settled where `f = g − x` is 0. Sweeps alone come nearer by the same factor each
-//! time, which is near 1 where a face presses on all its corners or friction outweighs the lever. From the last few differences of `f` the
-//! combination is taken that would have left least of it, and the next sweep begins with the same combination of `g`. As
-//! long as every contact keeps sticking or sliding, few unknowns of the body are left, and few sweeps. What a sweep makes of an impulse
-//! is not changed, nor when it has settled. The second half of
-//! the sweeps goes on alone, as those that change between two laws without end would otherwise never come nearer.
+//! A sweep maps impulses `x` to `g(x)`; they have converged where `f = g − x` is 0. Plain sweeps
+//! reduce the error by a constant factor, which is near 1 where a face presses on all its corners
+//! or friction outweighs the lever. The next sweep starts from the combination of the last `g`
+//! whose combination of `f` is least. While every contact keeps sticking or sliding, the body has
+//! few unknowns, so that a few sweeps suffice. The map of a sweep and the test of convergence are
+//! unchanged. The second half of the sweeps runs without acceleration: sweeps that alternate
+//! between two contact states would otherwise never converge.
 
 use super::super::rolling::RollingImpulse;
 use super::{BlockContact, Mass};
 use crate::rock::Vec3;
 
-/// Differences kept (–): a face that slides has three motions to settle, and rounding.
+/// Differences kept (–): a sliding face has three motions to converge, and rounding.
 const DEPTH: usize = 4;
-/// Sweeps that go before: most settle at once.
+/// Plain sweeps before the first mixing: most solves converge in them.
 pub(super) const PLAIN_SWEEPS: u32 = 2;
-/// A difference that adds less than this to those before it tells nothing new (–, relative to its size).
+/// A difference is linearly dependent on those before it if less than this remains of it (–,
+/// relative to its size).
 const LINEARLY_DEPENDENT: f64 = 1e-7;
-/// What is left may grow this much (–) before the differences are forgotten: contacts have changed from sticking to sliding …
+/// The residual may grow by this factor (–) before the differences are discarded: contacts have
+/// changed between sticking and sliding.
 const RESTART_GROWTH: f64 = 2.0;
-/// Impulses that are larger than the largest of the sweeps that went before by more than this (–) are no combination of such: where a
-/// contact that would pull is left out, those beside it grow from sweep to sweep, and velocities would lose their digits …
+/// A mixed impulse may exceed the largest impulse of the plain sweeps by this factor (–). If a
+/// contact that would pull is left out of the mixing, those beside it grow from sweep to sweep, and
+/// velocities would lose their digits.
 const MOST_IMPULSE_GROWTH: f64 = 100.0;
-/// … and so often before sweeps go on alone.
+/// Restarts after which sweeps go on without mixing.
 const MOST_RESTARTS: u32 = 6;
 
-/// The impulses of all contacts, and last that of rolling friction over the reach of the contacts (N s).
+/// The impulses of all contacts and, last, the angular impulse of rolling friction over the reach
+/// of the contacts (N s).
 type ContactImpulses<const M: usize> = [Vec3; M];
 
-/// What the last sweeps have done with up to `M` impulses.
+/// History of the last sweeps for up to `M` impulses.
 #[derive(Debug)]
 pub(super) struct AndersonMixing<const M: usize> {
-    /// How many impulses there are: contacts and rolling friction.
+    /// Number of impulses: contacts and rolling friction.
     count: usize,
     /// Distance of the farthest contact from the centre of mass (m).
     reach_m: f64,
     restarts: u32,
-    /// Size of the largest impulse of the sweeps that went before (N s).
+    /// Size of the largest impulse of the plain sweeps (N s).
     reference_size: Option<f64>,
-    /// Impulses with which the sweep began.
+    /// Impulses at the start of the sweep.
     start: ContactImpulses<M>,
-    /// What the sweep before changed, where it ended, and the size of what it changed squared.
+    /// The last sweep: its residual, its end, and the squared size of its residual.
     last: Option<(ContactImpulses<M>, ContactImpulses<M>, f64)>,
-    /// Differences of what sweeps changed, made square to each other, with the differences of their ends that belong to them.
+    /// Orthonormalised differences of residuals, with the corresponding differences of the ends.
     basis: [(ContactImpulses<M>, ContactImpulses<M>); DEPTH],
-    /// How many of them, and where the next goes.
+    /// Number of differences, and place of the next.
     len: usize,
 }
 
@@ -52,7 +57,7 @@ fn dot<const M: usize>(one: &ContactImpulses<M>, other: &ContactImpulses<M>, cou
     one[..count].iter().zip(&other[..count]).map(|(a, b)| a.dot(b)).sum()
 }
 
-/// Size of the largest of them.
+/// Size of the largest impulse.
 fn largest<const M: usize>(all: &ContactImpulses<M>, count: usize) -> f64 {
     all[..count].iter().map(Vec3::norm_squared).fold(0.0, f64::max).sqrt()
 }
@@ -70,7 +75,7 @@ fn difference<const M: usize>(
     off
 }
 
-/// Takes a share of the one from the other.
+/// Subtracts a multiple of one from the other.
 fn subtract<const M: usize>(
     from: &mut ContactImpulses<M>,
     one: &ContactImpulses<M>,
@@ -85,7 +90,7 @@ fn subtract<const M: usize>(
 impl<const M: usize> AndersonMixing<M> {
     const NONE: ContactImpulses<M> = [Vec3::new(0.0, 0.0, 0.0); M];
 
-    /// Of so many impulses, of contacts that reach so far from the centre of mass (m).
+    /// For `count` impulses, of contacts that reach so far from the centre of mass (m).
     pub(super) fn of(count: usize, reach_m: f64) -> Self {
         let basis = [(Self::NONE, Self::NONE); DEPTH];
         Self {
@@ -100,7 +105,7 @@ impl<const M: usize> AndersonMixing<M> {
         }
     }
 
-    /// A sweep begins with these impulses.
+    /// Records the impulses at the start of a sweep.
     #[inline]
     pub(super) fn begin(&mut self, contacts: &[BlockContact], rolling: &RollingImpulse) {
         self.start = self.collect_impulses(contacts, rolling);
@@ -120,8 +125,8 @@ impl<const M: usize> AndersonMixing<M> {
         all
     }
 
-    /// After a sweep that has not settled: contacts and rolling friction take the impulses that the next begins with; the change of
-    /// velocity and spin.
+    /// After a sweep that has not converged: sets the impulses with which the next one starts;
+    /// returns the change of velocity and spin.
     pub(super) fn mix(
         &mut self,
         mass: &Mass,
@@ -138,7 +143,7 @@ impl<const M: usize> AndersonMixing<M> {
             rolling.impulse = next;
         }
         for (contact, next) in contacts.iter_mut().zip(&next) {
-            // none pulls
+            // no contact may pull
             if contact.n.dot(next) < 0.0 {
                 continue;
             }
@@ -149,7 +154,7 @@ impl<const M: usize> AndersonMixing<M> {
         change
     }
 
-    /// The impulses with which the next sweep begins; `None` = those with which this one ended.
+    /// The impulses with which the next sweep starts; `None` for those with which this one ended.
     fn next(&mut self, end: ContactImpulses<M>) -> Option<ContactImpulses<M>> {
         let count = self.count;
         let left = difference(&end, &self.start, count);
@@ -168,7 +173,8 @@ impl<const M: usize> AndersonMixing<M> {
             subtract(&mut rest, residual, share, count);
             subtract(&mut next, end, share, count);
         }
-        // not than those of this sweep: a hundred times, again and again, is without bound
+        // compared with the plain sweeps, not with this sweep: a factor of a hundred, again and
+        // again, is no bound
         if self.reference_size.is_none_or(|reference_size| {
             largest(&next, count) > MOST_IMPULSE_GROWTH * reference_size
         }) {
@@ -177,17 +183,18 @@ impl<const M: usize> AndersonMixing<M> {
         Some(next)
     }
 
-    /// Forgets the differences: the next sweep begins with what this one ended with.
+    /// Discards the differences: the next sweep starts with the end of this one.
     fn restart(&mut self) -> Option<ContactImpulses<M>> {
         (self.len, self.restarts) = (0, self.restarts + 1);
         None
     }
 
-    /// Learns a difference of what sweeps changed, and of where they ended.
+    /// Adds a difference of residuals, and the corresponding difference of ends.
     fn add_difference(&mut self, mut residual: ContactImpulses<M>, mut end: ContactImpulses<M>) {
         let count = self.count;
         if self.len == DEPTH {
-            // the oldest belongs to other directions of friction; those after it are square to it, so what is lost is its part alone
+            // the oldest belongs to other friction directions; the later ones are orthogonal to it,
+            // so that only its part is lost
             self.basis.rotate_left(1);
             self.len -= 1;
         }

@@ -1,11 +1,14 @@
-//! Impulses of contacts that give way, in the six unknowns of the body.
+//! Impulses of compliant contacts, in the six unknowns of the body.
 //!
-//! Each contact answers the velocity `u` of its point with an impulse `P(u)` in closed form, so what is sought is the one motion with
-//! `M (V − V_free) = Σ Tᵀ P(T V)`: six equations, however many contacts a face has. Newton's method on pieces: contacts open, stick or slip.
-//! Where it does not settle – a dashpot that alone would keep the block out has no closed form – contacts are swept instead.
+//! The impulse `P(u)` of a contact is a closed form of the velocity `u` of its point, so the
+//! unknown is the single motion with `M (V − V_free) = Σ Tᵀ P(T V)`: six equations, however many
+//! contacts a face has. The equations are piecewise smooth, as contacts open, stick or slip, and
+//! are solved by Newton's method. If it does not converge, contacts are swept instead; so is a
+//! dashpot that alone would keep the block outside, which has no closed form.
 //!
-//! Hard contacts are swept. Where that does not settle – more of them than a rigid body can tell apart, or rolling friction that holds a block which
-//! slides on several corners – they are solved as contacts that give way by a millionth of what the body does.
+//! Hard contacts are swept. If that does not converge – more contacts than a rigid body can
+//! distinguish, or rolling friction that holds a block sliding on several corners – they are solved
+//! with a compliance of a millionth of the body's own.
 
 use super::super::rolling::RollingImpulse;
 use super::{BlockContact, Mass, SpringCompliance};
@@ -14,27 +17,30 @@ use crate::rock::Vec3;
 use arrayvec::ArrayVec;
 use nalgebra::{Matrix3, Matrix6, Vector6};
 
-/// Tries of the method before contacts are swept.
+/// Newton steps before contacts are swept instead.
 const NEWTON_STEPS: u32 = 30;
-/// Halvings of one step that does not come nearer.
+/// Halvings of a step that does not reduce the residual.
 const HALVINGS: u32 = 4;
-/// Change of the motion, relative to the largest impulse over the mass, below which it has settled (–).
+/// Change of the motion, relative to the largest impulse over the mass, below which it has
+/// converged (–).
 const MOTION_SETTLED: f64 = 1e-12;
 
-/// What hard contacts and their rolling friction give way, over what the body answers in the mean (–).
+/// Compliance of hard contacts and of their rolling friction, relative to the mean of the body's
+/// own (–).
 const REGULARIZATION: f64 = 1e-6;
 
 /// The impulse of a contact whose point moves by `u` (m/s), and its derivative (kg).
 type ImpulseAndSlope = (Vec3, Matrix3<f64>);
 
 impl BlockContact {
-    /// A hard contact that gives way a little.
+    /// A hard contact with a small compliance.
     fn softened(&self) -> Self {
         let compliance = [REGULARIZATION * self.delassus.trace() / 3.0; 2];
         Self { springs: Some(SpringCompliance { compliance, surface_m_s: f64::INFINITY }), ..*self }
     }
 
-    /// Its impulse at a velocity of its point; `None` where only the sweeps can tell.
+    /// Its impulse at a velocity of its point, and the derivative; `None` where only sweeps can
+    /// find it.
     fn impulse_at(&self, u: &Vec3) -> Option<ImpulseAndSlope> {
         let springs = self.springs()?;
         let [along, across] = springs.compliance.map(|c| 1.0 / c);
@@ -70,14 +76,14 @@ struct BodyEquations<'c> {
 }
 
 impl BodyEquations<'_> {
-    /// What is left of them at a motion, and their derivative; the impulses go into the contacts.
+    /// Residual at a motion, and its derivative; the impulses go into the contacts.
     fn residual_at(&mut self, (v, w): (&Vec3, &Vec3)) -> Option<(Vector6<f64>, Matrix6<f64>)> {
         let (dv, dw) = (v - self.free.0, w - self.free.1);
         let (mut push, mut turn) = (dv * self.mass.mass, self.inertia * dw);
         let mut slope = Matrix6::zeros();
         slope.fixed_view_mut::<3, 3>(0, 0).fill_diagonal(self.mass.mass);
         slope.fixed_view_mut::<3, 3>(3, 3).copy_from(&self.inertia);
-        // what rolling friction bears, and how that changes with the motion
+        // capacity of rolling friction, and its derivative with respect to the motion
         let (mut limit, mut limit_slope) = (0.0, [Vec3::zeros(); 2]);
         for contact in self.contacts.iter_mut() {
             let (impulse, rate) = contact.impulse_at(&Mass::velocity_at(&contact.lever, (v, w)))?;
@@ -112,7 +118,7 @@ impl BodyEquations<'_> {
         Some((Vector6::new(push.x, push.y, push.z, turn.x, turn.y, turn.z), slope))
     }
 
-    /// Size of what is left, as a velocity (m/s).
+    /// Size of a residual, as a velocity (m/s).
     fn residual_m_s(&self, residual: &Vector6<f64>, reach: f64) -> f64 {
         let push: Vec3 = residual.fixed_rows::<3>(0).into();
         let turn: Vec3 = residual.fixed_rows::<3>(3).into();
@@ -120,7 +126,8 @@ impl BodyEquations<'_> {
     }
 }
 
-/// Solves for the impulses of contacts that give way, from the motion without impulses and a first guess; whether it has settled.
+/// Solves for the impulses of compliant contacts, from the motion without impulses and a first
+/// guess; returns whether it has converged.
 pub(in super::super) fn solve_springs(
     mass: &Mass,
     (contacts, rolling): (&mut [BlockContact], &mut RollingImpulse),
@@ -160,7 +167,8 @@ pub(in super::super) fn solve_springs(
     false
 }
 
-/// The same for hard contacts and their rolling friction, which have motion and impulses; all of them stay as they are where it does not settle.
+/// The same for hard contacts and their rolling friction, from their present motion and impulses;
+/// nothing is changed if it does not converge.
 pub(super) fn solve_hard(
     mass: &Mass,
     (contacts, rolling): (&mut [BlockContact], &mut RollingImpulse),

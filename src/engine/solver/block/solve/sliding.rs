@@ -1,4 +1,5 @@
-//! A contact that slides: what it answers in the frame of its normal, and its impulse on the rim of Coulomb's cone.
+//! A sliding contact: its matrix in the frame of its normal, and its impulse on the surface of
+//! Coulomb's cone.
 
 use super::BlockContact;
 use crate::rock::Vec3;
@@ -6,26 +7,27 @@ use crate::solver::contact_frame::ContactFrame;
 use crate::solver::law::within;
 use nalgebra::{Matrix2, Matrix3, Vector2};
 
-/// Turns of the direction of friction, at most, and the widest of them (rad).
+/// Newton steps for the direction of friction, at most, and the largest turn of a step (rad).
 const ANGLE_STEPS: u32 = 20;
 const WIDEST_TURN: f64 = 0.8;
-/// A turn (rad) no wider than this is the last: its square is below rounding.
+/// A turn (rad) up to this is the last: its square is below rounding.
 const LAST_TURN: f64 = 1e-8;
-/// Passes over the impulse of one contact that slides, at most.
+/// Iterations for the impulse of one sliding contact, at most.
 const PASSES: u32 = 100;
-/// Change of it below which they have settled (–).
+/// Relative change of the impulse below which they have converged (–).
 const CONVERGED: f64 = 1e-13;
 
-/// What a contact that slides is solved with: a matrix (1/kg) in the frame of the normal.
+/// The matrix (1/kg) of a sliding contact in the frame of its normal.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SlidingMatrix {
-    /// Directions along the surface.
+    /// Tangents.
     pub(super) first: Vec3,
     pub(super) second: Vec3,
-    /// Along the normal for a push along it, and along the surface for the same; the same along the normal for a drag.
+    /// Normal response to a normal impulse, and tangential response to a normal impulse; by
+    /// symmetry also the normal response to a tangential one.
     pub(super) nn: f64,
     pub(super) tn: Vector2<f64>,
-    /// Along the surface for a drag.
+    /// Tangential response to a tangential impulse.
     pub(super) tt: Matrix2<f64>,
 }
 
@@ -46,9 +48,9 @@ impl SlidingMatrix {
 }
 
 impl BlockContact {
-    /// The impulse on the rim of Coulomb's cone, `p (n + μ d)` with a direction `d` along the surface against the slip that it leaves: one
-    /// equation for the angle of `d`, by Newton's method from a first guess. `None` where it does not settle on a slip that friction
-    /// opposes.
+    /// The impulse on the surface of Coulomb's cone, `p (n + μ d)`, with the unit tangent `d`
+    /// against the slip that it leaves: one equation for the angle of `d`, solved by Newton's
+    /// method from a first guess. `None` if it does not converge to a slip that friction opposes.
     pub(super) fn sliding_impulse(
         &self,
         (up, slip): (f64, Vector2<f64>),
@@ -71,7 +73,7 @@ impl BlockContact {
                 return None;
             }
             d = (d + selected * turn.clamp(-WIDEST_TURN, WIDEST_TURN)).normalize();
-            // Newton's method squares what is left to turn
+            // Newton's method squares the remaining turn
             if turn.abs() <= LAST_TURN {
                 let push = -up / (matrix.nn + friction * matrix.tn.dot(&d));
                 let opposes = d.dot(&left) <= 0.0 && push > 0.0;
@@ -82,8 +84,9 @@ impl BlockContact {
         None
     }
 
-    /// The same by passes over drag and push, slowly. Also where no rigid solution exists (Painlevé): then the last pass, which obeys the
-    /// cone and pushes.
+    /// The same by fixed-point iteration over friction and normal impulse, which is slow. It also
+    /// serves where no rigid solution exists (Painlevé): then the last iterate is taken, which
+    /// obeys the cone and pushes.
     pub(super) fn sliding_impulse_by_iteration(
         &self,
         u: &Vec3,

@@ -1,13 +1,18 @@
 //! A block that is clamped between walls.
 //!
-//! A blow need not end with all contacts open: where the line between two of them lies within both cones of friction their springs press on
-//! each other, and friction holds what they store, however stiff they are. In the limit of stiff springs a clamp moves no more (its ways go with
-//! `p_N^(−1/2)`), but it keeps its energy, and its forces grow beyond all others (with `p_N^(1/2)`). So a block in a clamp
-//! goes on as one whose clamped contacts neither part nor slip, whatever pulls: free to turn about the line between two of them, say.
+//! An impact need not end with all contacts open. If the line between two contacts lies within both
+//! friction cones, their springs press on each other, and friction keeps what they store, however
+//! stiff they are. In the limit of stiff springs a clamped block does not move (its displacements
+//! go with `p_N^(−1/2)`), but the clamp keeps its energy, and its forces exceed all others (they
+//! grow with `p_N^(1/2)`). So the clamped contacts of a block are treated as contacts that neither
+//! separate nor slip, whatever load acts: the block can still rotate about the line between two of
+//! them, say.
 //!
-//! On its way the stretches follow the levers. They stay those in which the contacts balance: what they give way, a small motion `d` of the body,
-//! is the least-squares solution of `Σ Tᵀ K (e + T d) = 0` for the stretches `e` and stiffnesses `K` of all of them. As forces in balance do no work on a rigid body, their
-//! energy stays as it is. Where they leave a cone of friction the clamp bursts: its blow goes on from these stretches.
+//! As the block moves, the stretches follow the levers so that the contacts stay in equilibrium.
+//! The small displacement `d` of the body is the least-squares solution of `Σ Tᵀ K (e + T d) = 0`
+//! for the stretches `e` and stiffnesses `K` of all contacts. Forces in equilibrium do no work on a
+//! rigid body, so that the energy is constant. If a contact leaves its friction cone the clamp
+//! bursts: its impact goes on from these stretches.
 
 use super::super::{BlockContactState, TOUCH};
 use super::SpringContact;
@@ -21,24 +26,27 @@ use crate::solver::rigid::HELD;
 use arrayvec::ArrayVec;
 use nalgebra::{Matrix3, SMatrix, SVector};
 
-/// Springs of a clamp may ask for so much more friction than there is (–) before it is followed in its own time.
+/// Springs of a clamp may exceed the friction cone by this share (–) before it is resolved as an
+/// impact.
 const CONE_TOLERANCE: f64 = 1e-2;
-/// A contact no further away than this joins a blow on one that it can hold (–, relative to the radius of the sphere of equal volume). Between
-/// walls a block rattles to and fro in ever smaller gaps before it is clamped; springs of any stiffness that a ground can have press at
-/// both ends long before they are as small as what touches.
+/// A contact with a gap up to this joins an impact on a contact that it can jam against (–,
+/// relative to the radius of the sphere of equal volume). Between walls a block rattles in ever
+/// smaller gaps before it is clamped. Springs of any realistic stiffness press at both ends long
+/// before the gaps are as small as the touching tolerance.
 const NEARLY_TOUCHING: f64 = 1e-6;
-/// Stiffness of what no contact resists, relative to all (–).
+/// Stiffness of motions that no contact resists, relative to the sum (–).
 const UNRESISTED: f64 = 1e-12;
 
 /// One contact of a clamp.
 #[derive(Debug, Clone, Copy)]
 struct ClampedContact {
-    /// What of the block is clamped.
+    /// Part of the block that is clamped.
     part: u16,
     triangle: u32,
     /// Unit normal into the block.
     n: Vec3,
-    /// From where its point would be without forces to where it is (m): `ξ − x n` of a stretch `ξ` along the surface and a penetration `x`.
+    /// Displacement of its point from the unloaded position (m): `ξ − x n` for a stretch `ξ` along
+    /// the surface and a penetration `x`.
     stretch: Vec3,
     captured: bool,
     /// Stiffness along the normal and along the surface (N/m), and coefficient of friction (–).
@@ -46,16 +54,16 @@ struct ClampedContact {
     friction: f64,
 }
 
-/// Where the contacts of a clamp are, from the centre of mass (m).
+/// Contact points of a clamp, from the centre of mass (m).
 type Levers = ArrayVec<Vec3, MOST_TOUCHES>;
 
-/// Contacts that hold each other; none for a block that is not clamped.
+/// Contacts that jam each other; none for a block that is not clamped.
 #[derive(Debug, Default)]
 pub(crate) struct Clamp {
     contacts: Vec<ClampedContact>,
     /// Stretch of the spring of rolling friction (rad).
     pub(super) rolled: Vec3,
-    /// Energy in all of them (J).
+    /// Energy in all springs (J).
     pub(in super::super) held_j: f64,
 }
 
@@ -73,7 +81,7 @@ impl ClampedContact {
         }
     }
 
-    /// Whether this is the touch that it holds.
+    /// Whether this contact point is its own.
     fn is_at(&self, touch: &BlockTouch) -> bool {
         self.part == touch.part && self.n.dot(&touch.normal) > SAME_GRIP
     }
@@ -96,7 +104,7 @@ impl ClampedContact {
         up * normal + (Matrix3::identity() - up) * shear
     }
 
-    /// Whether friction holds it.
+    /// Whether it lies within its friction cone.
     fn is_held(&self) -> bool {
         let ((deep, along), [normal, shear]) = (self.deformation(), self.stiffness);
         deep > 0.0 && shear * along.norm() <= self.friction * normal * deep * (1.0 + CONE_TOLERANCE)
@@ -104,24 +112,24 @@ impl ClampedContact {
 }
 
 impl Clamp {
-    /// Whether there is one.
+    /// Whether the block is clamped.
     pub(crate) fn is_on(&self) -> bool {
         !self.contacts.is_empty()
     }
 
-    /// Whether a touch is one of its contacts.
+    /// Whether a contact point belongs to the clamp.
     pub(crate) fn contains(&self, touch: &BlockTouch) -> bool {
         self.contacts.iter().any(|one| one.is_at(touch))
     }
 
-    /// Opens; the energy that was in it (J).
+    /// Opens the clamp; returns its energy (J).
     pub(in super::super) fn open(&mut self) -> f64 {
         self.contacts.clear();
         self.rolled = Vec3::zeros();
         std::mem::take(&mut self.held_j)
     }
 
-    /// Closes with these contacts, as far as they press, each at its touch.
+    /// Closes with those of these contacts that press, each at its contact point.
     pub(super) fn close(&mut self, contacts: &[SpringContact], touches: &[BlockTouch]) {
         self.open();
         let pressed = contacts.iter().zip(touches).filter(|(one, _)| one.normal_force > 0.0);
@@ -133,7 +141,7 @@ impl Clamp {
         self.contacts.iter().map(ClampedContact::stored_j).sum()
     }
 
-    /// Energy in it, by what it belongs to.
+    /// Its energy, by kind.
     pub(crate) fn stored(&self, world: &ContactEnvironment) -> Loss {
         let (mut stored, all_j) = (Loss::default(), self.springs_j());
         for one in &self.contacts {
@@ -143,14 +151,15 @@ impl Clamp {
         stored
     }
 
-    /// Gives a contact of a blow what the clamp holds at its touch.
+    /// Gives a contact of an impact the stretch of the clamp at its contact point.
     pub(super) fn load(&self, contact: &mut SpringContact, touch: &BlockTouch) {
         let Some(one) = self.contacts.iter().find(|one| one.is_at(touch)) else { return };
         (contact.penetration, contact.shear) = one.deformation();
         (contact.captured, contact.is_suspended) = (one.captured, false);
     }
 
-    /// Goes with the touches found; whether all are there still.
+    /// Updates the clamp to the detected contact points; returns whether all its contacts are still
+    /// there.
     fn update(&mut self, found: &[BlockTouch], reach_m: f64, levers: &mut Levers) -> bool {
         let before = self.contacts.len();
         self.contacts.retain_mut(|one| {
@@ -166,10 +175,10 @@ impl Clamp {
         self.contacts.len() == before
     }
 
-    /// Lets the body give way until the contacts at these levers (m) balance.
+    /// Moves the body until the contacts at these levers (m) are in equilibrium.
     fn balance(&mut self, levers: &[Vec3], reach_m: f64) {
         let before_j = self.springs_j();
-        // turns times the reach: all unknowns are ways
+        // rotations times the reach: all unknowns are lengths
         let jacobian = |lever: &Vec3| {
             let mut jacobian = SMatrix::<f64, 3, 6>::zeros();
             jacobian.fixed_columns_mut::<3>(0).copy_from(&Matrix3::identity());
@@ -182,7 +191,7 @@ impl Clamp {
             whole += jacobian.transpose() * stiff * jacobian;
             residual += jacobian.transpose() * (stiff * one.stretch);
         }
-        // nothing resists a turn about the line between two contacts
+        // nothing resists a rotation about the line between two contacts
         whole += SMatrix::<f64, 6, 6>::identity() * (UNRESISTED * whole.trace());
         let Some(solved) = whole.cholesky() else { return };
         let displacement = solved.solve(&-residual);
@@ -198,7 +207,8 @@ impl Clamp {
 }
 
 impl BlockContactState {
-    /// Whether two contacts can hold each other: the line between them lies within both cones of friction.
+    /// Whether two contacts can jam each other: the line between them lies within both friction
+    /// cones.
     fn can_jam(&self, world: &ContactEnvironment, [one, other]: [&BlockTouch; 2]) -> bool {
         let bears = |touch: &BlockTouch, way: &Vec3| {
             let (up, law) = (touch.normal.dot(way), world.law(touch.triangle));
@@ -209,14 +219,15 @@ impl BlockContactState {
         one.normal.dot(&other.normal) < 0.0 && bears(one, &way) && bears(other, &-way)
     }
 
-    /// Whether two of the contacts that touch can hold each other.
+    /// Whether two of the touching contacts can jam each other.
     pub(in super::super) fn can_clamp(&self, world: &ContactEnvironment, block: &Block) -> bool {
         self.touching(block).enumerate().any(|(k, one)| {
             self.touching(block).take(k).any(|other| self.can_jam(world, [one, other]))
         })
     }
 
-    /// Sets aside what takes part in a blow: what touches, and what nearly touches and can hold it.
+    /// Selects the contacts of an impact: those that touch, and those that nearly touch and can jam
+    /// against one of them.
     pub(super) fn select_for_blow(&mut self, world: &ContactEnvironment, block: &Block) {
         self.select_touching(block);
         let touching = self.selected.len();
@@ -233,7 +244,7 @@ impl BlockContactState {
         }
     }
 
-    /// Carries a clamp on to where the block is; whether it bursts.
+    /// Updates a clamp to the present pose; returns whether it bursts.
     pub(in super::super) fn carry_clamp(&mut self, block: &Block) -> bool {
         if !self.clamp.is_on() {
             return false;

@@ -14,10 +14,11 @@ use crate::solver::step_control::{
     Control, ONSET, PLACE_ROUNDING, RESOLVED, ROUNDING, StepError, TrialStep, TryOutcome, settle,
 };
 
-/// Energy that a step may make by its error, and pays for by its motion (–, relative to that of the speed which its tolerance allows).
+/// Energy that a step may gain by its error and that is then removed from the motion (–, relative
+/// to the energy of the speed error that the tolerance allows).
 const CORRECTABLE: f64 = 1e-2;
 
-/// A step of a block among any features.
+/// A trial step of a block among any features.
 struct BlockTrial<'a, 'w> {
     world: &'a ContactEnvironment<'w>,
     control: Control,
@@ -30,18 +31,18 @@ struct BlockTrial<'a, 'w> {
     /// Local error allowed (m/s).
     allowed: f64,
     onsets: Onsets,
-    /// Whether the impulses of a stage did not settle.
+    /// Whether the impulses of a stage did not converge.
     unsettled: bool,
-    /// Energy that the step has made by its error (J), ≥ 0.
+    /// Energy gained by the error of the step (J), ≥ 0.
     spurious_j: f64,
     end: Option<StageState>,
 }
 
-/// What the stages of a try came to.
+/// Outcome of the stages of a trial step.
 enum StagesOutcome {
-    /// Where the step ends and its error relative to the one allowed.
+    /// End of the step, and its error relative to the allowed one.
     Whole(StageState, f64),
-    /// An impact begins at this share of it (–).
+    /// An impact begins at this share of the step (–).
     Cut(f64),
 }
 
@@ -69,7 +70,8 @@ impl TrialStep for BlockTrial<'_, '_> {
         };
         let error = self.onsets.bounded(error, dt * self.omega);
         self.spurious_j = if error <= 1.0 { self.spurious_j(&end, dt) } else { 0.0 };
-        // what comes up pressed in, as one feature takes the place of another, is not brought away by a shorter step
+        // a contact that begins with a penetration, as one feature replaces another, is not avoided
+        // by a shorter step
         let is_correctable =
             dt * self.omega <= RESOLVED || self.spurious_j <= self.correctable_j(&end);
         self.end = Some(end);
@@ -82,7 +84,7 @@ impl BlockTrial<'_, '_> {
     fn attempt(&mut self, dt: f64) -> Option<StagesOutcome> {
         let tableau = self.control.tableau;
         let way_s = tableau.diagonal * dt;
-        // friction that grows with slip is that of the middle of the step
+        // slip-dependent friction is evaluated at the middle of the step
         self.footing.springs.ahead_m = 0.5 * dt * self.footing.springs.slip_m_s;
         let mut end = None;
         self.unsettled = false;
@@ -109,7 +111,8 @@ impl BlockTrial<'_, '_> {
         end.map(|end| StagesOutcome::Whole(end, self.error(dt)))
     }
 
-    /// Local error of the step over the one allowed (–): ways by the stiffest contact's frequency, turns by the largest radius.
+    /// Local error of the step over the allowed one (–): lengths times the largest contact
+    /// frequency, rotations times the largest radius.
     fn error(&self, dt: f64) -> f64 {
         let tableau = self.control.tableau;
         let rates = &self.footing.springs.rates;
@@ -129,7 +132,8 @@ impl BlockTrial<'_, '_> {
         dt * worst.into_iter().fold(0.0, f64::max) / self.allowed
     }
 
-    /// How much more motion, height and springs together hold at the step's end than at its start (J); 0 where that is rounding.
+    /// Growth of kinetic, potential and spring energy together over the step (J); 0 if that is
+    /// rounding.
     fn spurious_j(&self, end: &StageState, dt: f64) -> f64 {
         let (block, body) = (self.block, &self.world.body);
         let stored_j = self.footing.springs.stored_j;
@@ -144,9 +148,10 @@ impl BlockTrial<'_, '_> {
         if spurious_j > unknown { spurious_j } else { 0.0 }
     }
 
-    /// Energy (J) that the motion can pay for without being changed by more than a small part of what the tolerance allows: `m |v| δv`.
-    /// A block that tips over a corner loses nothing, so each step makes or loses a little: to refuse all that make some would
-    /// let its steps be bound by rounding. Nothing in an impact, nor where one begins: such a step is too long.
+    /// Energy (J) that can be removed from the motion while changing it by no more than a small
+    /// part of the tolerance: `m |v| δv`. A block that tips over a corner loses nothing, so each
+    /// step gains or loses a little; rejecting every gain would make rounding limit the steps. It
+    /// is 0 during an impact and where one begins: a step that gains energy there is too long.
     fn correctable_j(&self, end: &StageState) -> f64 {
         let springs = &self.footing.springs;
         let begins = springs.histories[springs.known..].iter().any(|one| !one.captured);
@@ -161,14 +166,15 @@ impl BlockTrial<'_, '_> {
 }
 
 impl Springs {
-    /// What a stage of length `way_s` (s) leaves of the fastest motion of the contacts (–).
+    /// Factor by which a stage of length `way_s` (s) reduces the fastest contact motion (–).
     fn left_by_stage(&self, way_s: f64) -> f64 {
         let left = |one: &BlockHistory| one.law.left_by_stage(one.captured, way_s);
         self.histories.iter().map(left).fold(1.0, f64::min)
     }
 
-    /// Takes the energy that an accepted step has made (J) off the motion, with which the next one begins; what contacts have got of it (J).
-    /// What the motion has not `gained` by the step's error, beyond what its contacts gave, is in springs that came up pressed in.
+    /// Removes the energy gained by the error of an accepted step (J) from the motion with which
+    /// the next one begins; returns the part that has gone into contacts (J): what the motion has
+    /// not `gained` by the step's error is in springs that began with a penetration.
     fn correct_energy(
         &mut self,
         (block, state): (&Block, &mut BlockState),
@@ -199,8 +205,8 @@ impl BlockContactState {
         stored.sum::<f64>() + self.springs.rolling.stored_after_j(way_s)
     }
 
-    /// Longest step (s) in which no point of the block goes further than `corner_way` of its balls, and the block turns no further than a
-    /// step may.
+    /// Longest step (s) in which no point of the block travels further than `corner_way` times the
+    /// balls' radius, and the block turns no further than a step may.
     pub(super) fn travel_limit_s(
         world: &ContactEnvironment,
         (block, state): (&Block, &BlockState),
@@ -215,7 +221,7 @@ impl BlockContactState {
     /// One accepted step of at most `most_s`.
     ///
     /// # Errors
-    /// [`StepError`] if the step had to become too short to matter, or a spring is pressed in too far.
+    /// [`StepError`] if the step had to become too short to matter, or a penetration is too large.
     pub(super) fn controlled_step(
         &mut self,
         world: &ContactEnvironment,
@@ -276,7 +282,8 @@ impl BlockContactState {
         Ok((done, rejected))
     }
 
-    /// Books what an accepted step from `start` has taken; the motion pays for what its error has made (J). Of an impact account is kept until it is over.
+    /// Books the losses of an accepted step from `start`; the motion pays for the energy gained by
+    /// its error (J). The energy of an impact is accounted for until it is over.
     fn book(
         &mut self,
         world: &ContactEnvironment,
@@ -298,7 +305,7 @@ impl BlockContactState {
         done
     }
 
-    /// Takes over the step's end: memories and losses.
+    /// Accepts the end of the step: histories and losses.
     fn accept(
         &mut self,
         world: &ContactEnvironment,
@@ -322,7 +329,8 @@ impl BlockContactState {
         done
     }
 
-    /// The contacts of the step's end go into their memories, and those that press no more are forgotten.
+    /// Stores the contacts of the step's end in their histories, and drops the histories that no
+    /// longer press.
     pub(super) fn store_contacts(&mut self, (block, state): (&Block, &BlockState), way_s: f64) {
         let springs = &mut self.springs;
         for history in &mut springs.histories {

@@ -1,11 +1,13 @@
 //! Scheme `dda` for blocks: the paper's step with constant acceleration.
 //!
-//! Over a step the block moves with the mean of its velocities at both ends, forces are those of the springs at its end, and geometry is
-//! that of its start, as in the paper (Eqs. (1)–(5)): impulses act for half the step before the mean velocity is reached.
+//! Over a step the block moves with the mean of its velocities at both ends, forces are those of
+//! the springs at its end, and geometry is that of its start, as in the paper (Eqs. (1)–(5)):
+//! impulses act for half the step before the mean velocity is reached.
 //!
-//! For a sphere on planes that gains nothing, however long the step: work is just what the energy of motion changes by. A block turns, and
-//! with it its levers and its inertia; to the first order of the step that may give as well as take. So what a step has made is taken off
-//! the motion again ([`BlockContactState::limit_energy_to`]).
+//! For a sphere on planes this conserves energy, however long the step: work equals the change of
+//! the kinetic energy. A block rotates, and with it its levers and its inertia, so that a step
+//! gains or loses energy to first order in its length. The energy gained in a step is therefore
+//! removed from the motion ([`BlockContactState::limit_energy_to`]).
 
 use super::super::{BlockContactState, BlockState, BlockStepOutcome, TOUCH};
 use super::stage::{StageBase, StageState};
@@ -21,15 +23,16 @@ use crate::solver::environment::ContactEnvironment;
 use crate::solver::loss::Loss;
 use crate::solver::step_control::StepError;
 
-/// Looks at a step's end for contacts that it has run into, at most.
+/// Solves of a step with the contacts that it has run into, at most.
 const MOST_SOLVES: u32 = 8;
 
 impl SpringContact {
-    /// What dashpots and slider take (J) where its point moves with `u` (m/s) for `b` (s): its springs take, pressed and stretched as at the end, what
-    /// they were pressed and stretched by. A shear spring that is let go runs out against its own dashpot.
+    /// Energy (J) that dashpots and slider dissipate where the point moves with `u` (m/s) for `b`
+    /// (s). Its springs store their force at the end of the step times their change of length. A
+    /// shear spring that is released relaxes against its own dashpot.
     fn dissipated(&self, world: &ContactEnvironment, (u, b): (&Vec3, f64)) -> Loss {
         let (pressed_m, end) = (self.penetration_after(u, b).max(0.0), self.stretch(b));
-        // over ways in place of speeds, powers are energies
+        // with displacements in place of speeds, powers are energies
         let (way, stretched) = (u * b, end - self.shear);
         let closed_m = -self.n.dot(&way);
         let sprung_j = self.law.normal(self.captured).storing_w(pressed_m, closed_m)
@@ -44,7 +47,7 @@ impl BlockContactState {
     /// One step of at most `most_s`.
     ///
     /// # Errors
-    /// [`StepError`] if the block sank in or its motion is no longer finite.
+    /// [`StepError`] if a penetration is too large or the motion is no longer finite.
     pub(super) fn fixed_step(
         &mut self,
         world: &ContactEnvironment,
@@ -95,7 +98,7 @@ impl BlockContactState {
         let fell_j = block.mass_kg * world.body.gravity.dot(&lifted_m);
         let had_j = start.motion_j(block) + held.sum() + fell_j;
         let holds = self.limit_energy_to(world, (block, state), had_j - done.loss.sum(), &shear_of);
-        // what springs hold more at the end than at the start is taken from motion, but not lost
+        // an increase of the spring energy is taken from the motion, but not lost
         done.loss.add(&holds, 1.0);
         done.loss.add(&held, -1.0);
         done.slides = self.springs.histories.iter().any(|history| history.slides);
@@ -103,8 +106,9 @@ impl BlockContactState {
         Ok(done)
     }
 
-    /// Mean velocity and momentum of a step, solved again with the contacts that it ran into: a block that comes into a fold would
-    /// otherwise find itself inside the other flank and be thrown out with energy from nowhere.
+    /// Mean velocity and momentum of a step, solved again with the contacts that it ran into: a
+    /// block that moves into a fold would otherwise penetrate its other flank and be thrown out
+    /// with energy that it did not have.
     fn mean_motion(
         &mut self,
         world: &ContactEnvironment,
@@ -128,7 +132,7 @@ impl BlockContactState {
         mean
     }
 
-    /// Adds the contacts that press at a step's end and took no part in it.
+    /// Adds the contacts that press at the end of a step and took no part in it.
     pub(in crate::solver::block) fn add_new_contacts(
         &mut self,
         world: &ContactEnvironment,
@@ -145,14 +149,14 @@ impl BlockContactState {
                 began.part == touch.part && contact.n.dot(&touch.normal) > SAME_GRIP
             });
             if !took_part {
-                // as far from it as it was at the step's start
+                // with the gap that it had at the step's start
                 let gap_m =
                     touch.gap_m - dt * touch.normal.dot(&mean.velocity_at(block, &touch.lever));
                 self.touches.found.push(BlockTouch { gap_m, ..*touch });
             }
         }
         if self.touches.found.len() > self.springs.contacts.len() {
-            // what has been solved for keeps its place
+            // contacts that have been solved keep their places
             self.touches.found.iter_mut().for_each(|touch| touch.is_past = false);
             self.update_histories(world, (block, mean));
             let springs = &mut self.springs;
@@ -163,8 +167,10 @@ impl BlockContactState {
         }
     }
 
-    /// Slows the block where motion and springs at a step's end, after its look, hold more than `had_j` (J), and than it owes; what the springs hold.
-    /// A block that its springs have just turned round has no motion to pay with: it owes the rest until they have thrown it out.
+    /// Slows the block if motion and springs at the end of a step, after its detection, hold more
+    /// than `had_j` (J) less its energy debt; returns the energy of the springs. A block that its
+    /// springs have just turned round has no motion to correct: the rest is owed until they have
+    /// accelerated it.
     fn limit_energy_to(
         &mut self,
         world: &ContactEnvironment,
@@ -172,7 +178,7 @@ impl BlockContactState {
         had_j: f64,
         shear_of: &impl Fn(&Self, usize) -> Vec3,
     ) -> Loss {
-        // as the next step will find its springs
+        // with the springs as the next step will find them
         let known = self.springs.histories.len();
         self.springs.known = known;
         self.update_histories(world, (block, state));

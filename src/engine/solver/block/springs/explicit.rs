@@ -1,12 +1,13 @@
-//! An impact of a block, followed in its own time.
+//! Explicit integration of an impact of a block.
 //!
-//! As for spheres (`solver::explicit_impact`): while a contact rebounds it lasts about `π/ω`, and in units of `1/ω` nothing is stiff, so
-//! that an explicit pair of order five follows it in a handful of steps, where each implicit stage would cost passes over geometry and
-//! contacts. The error is controlled relative to the speed of the impact; a step is cut where friction begins to slip or to stick, where a
-//! contact lets go, and where a further one begins.
+//! As for spheres (`solver::explicit_impact`): a rebound lasts about `π/ω`, and in units of `1/ω`
+//! nothing is stiff. An explicit pair of order five needs a handful of steps, whereas each implicit
+//! stage would iterate over geometry and contacts. The error is controlled relative to the speed of
+//! the impact. A step is cut where friction changes between slipping and sticking, where a contact
+//! opens, and where a further one begins.
 //!
-//! Impacts with more contacts than there is room for, and those that last too long or come too slowly to rebound, go by the implicit
-//! stages.
+//! Impacts with more contacts than there is room for, and those that last too long or are too slow
+//! to rebound, are integrated by the implicit stages.
 
 mod flow;
 
@@ -24,21 +25,22 @@ use crate::solver::loss::Loss;
 use crate::solver::step_control::{Control, StepError};
 use flow::{BlockFlow, ErrorScale, LOSSES};
 
-/// A contact that lets go is left behind in this times the time that its speed takes (–).
+/// A block flies clear of an open contact for this multiple of the time that its speed needs (–).
 const RELEASE_MARGIN: f64 = 1.2;
-/// Penetration that is rounding of places (–, relative to the radius of the sphere of equal volume).
+/// Penetration that is rounding of positions (–, relative to the radius of the sphere of equal
+/// volume).
 pub(super) const ROUNDING_OF_PLACE: f64 = 1e-11;
-/// Tries that are cut where a contact begins, at most; after them it presses from where it is found.
+/// Trial steps cut where a contact begins, at most; after them it presses from where it is found.
 const ONSETS: u32 = 6;
-/// Contacts with room of their own: the usual case, and the most that are followed here.
+/// Room for contacts: of the usual case, and the most that are integrated here.
 const FEW_PRESS: usize = 2;
 const MOST_PRESS: usize = 6;
 
-/// How far a step may go, and how exactly.
+/// Bounds of a step, and its error scale.
 #[derive(Debug, Clone, Copy)]
 struct ImpactBounds {
     scale: ErrorScale,
-    /// Longest step that cannot jump over a feature (s), and longest step asked for (s).
+    /// Longest step that cannot miss a feature (s), and longest step requested (s).
     limit: f64,
     h_max: f64,
 }
@@ -47,13 +49,13 @@ struct ImpactBounds {
 struct ExplicitStep {
     end: BlockState,
     dt: f64,
-    /// What it took, what springs store counted in.
+    /// Loss of the step, with the energy that springs store counted in.
     loss: Loss,
 }
 
 impl BlockContactState {
-    /// Whether the present contacts are those of an impact whose energy is kept account of: it is followed in its own time, or has too many
-    /// contacts for that.
+    /// Whether the present contacts are those of an impact whose energy is accounted for: it is
+    /// integrated explicitly, or has too many contacts for that.
     pub(super) fn is_accounted(&self, world: &ContactEnvironment, control: &Control) -> bool {
         let springs = &self.springs;
         let least_m_s = world.least_impact_m_s();
@@ -70,15 +72,16 @@ impl BlockContactState {
             && springs.histories.iter().all(|one| !one.law.shear.is_on() || one.law.shear.is_damped())
     }
 
-    /// Whether there is room to follow the present contacts in their own time.
+    /// Whether there is room to integrate the present contacts explicitly.
     pub(super) fn has_room(&self) -> bool {
         self.springs.histories.len() <= MOST_PRESS
     }
 
-    /// One accepted step of an impact of at most `most_s`, and the tries thrown away; `None` if there is no room for its contacts.
+    /// One accepted step of an impact of at most `most_s`, and the number of rejected trial steps;
+    /// `None` if there is no room for its contacts.
     ///
     /// # Errors
-    /// [`StepError`] if the motion is no longer finite, or a spring is pressed in too far.
+    /// [`StepError`] if the motion is no longer finite, or a penetration is too large.
     pub(super) fn explicit_step(
         &mut self,
         world: &ContactEnvironment,
@@ -120,7 +123,7 @@ impl BlockContactState {
         self.springs.stored_j = self.springs.stored_by_contacts(world).sum();
         self.springs.invalidate_rates();
         self.springs.touches_are_current = self.touches_unchanged(block);
-        // what springs store is counted among the losses until they give it back
+        // the energy that springs store is counted as lost until they return it
         let gained_j = gained_j(world, block, (&start, state)) + step.loss.sum();
         self.springs.account((gained_j, step.loss.sum()), held_j);
         let mut done =
@@ -136,9 +139,11 @@ impl BlockContactState {
         Ok(Some((done, rejected)))
     }
 
-    /// Tries steps with room for `C` contacts until one is accurate; `None` if there are more of them.
+    /// Tries steps with room for `C` contacts until one is accurate; `None` if there are more
+    /// contacts.
     ///
-    /// A try that is cut at a kink or where a contact begins is shorter, not wrong.
+    /// A trial step that is cut where a slider switches or a contact begins is shorter, not
+    /// rejected for its error.
     fn try_steps<const C: usize, const N: usize, const Q: usize, const P: usize>(
         &mut self,
         world: &ContactEnvironment,
@@ -193,15 +198,17 @@ impl BlockContactState {
         }
     }
 
-    /// Whether the contacts found at the step's end are those that a look would find now, as the pairs that press have changed.
+    /// Whether a detection now would find the contacts of the step's end, although the pressing
+    /// pairs may have changed.
     fn touches_unchanged(&self, block: &Block) -> bool {
         let BlockTouches { found, held, .. } = &self.touches;
         let holds = |touch: &BlockTouch| held.contains(&(touch.part, touch.feature));
         found.iter().all(|touch| block.core.is_corner(touch.part) || holds(touch))
     }
 
-    /// Flies out of contacts that push no more, if that takes no longer than `longest_s` and nothing else is in the way there; how long it
-    /// took (s). What still hangs on the contacts has no force, so that the motion is that of a free body.
+    /// Flies clear of open contacts if that takes at most `longest_s` and no other contact is met;
+    /// returns the flight time (s). The remaining contacts exert no force, so that the motion is
+    /// free.
     fn fly_clear(
         &mut self,
         world: &ContactEnvironment,
@@ -213,7 +220,7 @@ impl BlockContactState {
         for (contact, touch) in self.springs.contacts.iter().zip(&self.touches.found) {
             let up_m_s = contact.n.dot(&state.velocity_at(block, &contact.lever));
             let weight = contact.n.dot(&gravity).min(0.0);
-            // weight takes less than half of the speed by then
+            // weight reduces the speed by less than half in this time
             let own_s = RELEASE_MARGIN * (clear_m - touch.gap_m).max(0.0) / up_m_s;
             let leaves = contact.normal_force <= 0.0
                 && up_m_s > 0.0
@@ -242,8 +249,10 @@ impl BlockContactState {
 }
 
 impl super::SpringContact {
-    /// Where it opens and where it slips, for an explicit pair: what is asked of its normal element, squared, and what that would pull with, and
-    /// the same of shear. Both in units of acceleration for a mass (kg), so that times a step they are speeds.
+    /// Switching functions of the explicit pair, for the opening of the contact and for slip: the
+    /// squared trial value and the cap of the normal element, whose "cap" is the tension that it
+    /// would exert, and those of shear. Both are accelerations of a mass (kg), so that times a step
+    /// they are velocities.
     pub(super) fn switching(&self, (pulls, asked2): (f64, f64), mass_kg: f64) -> [[f64; 2]; 2] {
         let (by_mass, pushes) = (1.0 / mass_kg, self.normal_force);
         let cap = self.law.shear.cap(pushes);
@@ -255,13 +264,13 @@ impl super::SpringContact {
 }
 
 impl super::Springs {
-    /// Whether the impact that goes on has just begun.
+    /// Whether the current impact has just begun.
     fn is_new(&self) -> bool {
         let mut impacts = self.histories.iter().filter(|one| one.closed && !one.captured);
         impacts.all(|one| one.age_rad <= 0.0)
     }
 
-    /// The contacts have gone on for `dt` (s).
+    /// Advances the ages of the contacts by `dt` (s).
     pub(super) fn advance_ages(&mut self, dt: f64) {
         for history in &mut self.histories {
             history.age_rad += dt * Law::omega_rad_s(&history.law);

@@ -1,18 +1,21 @@
-//! A blow on a block in the limit of stiff springs.
+//! Impact of a block in the limit of stiff springs.
 //!
-//! In that limit nothing moves while the blow lasts: normals, levers and the tensor of inertia stay what they are, weight does nothing, and
-//! what is left of the law of a contact is an equation in the blow's own time `1/ω`,
+//! In that limit the block does not move during the impact: normals, levers and the inertia tensor
+//! are constant, weight has no effect, and the contact law becomes an equation in the impact's own
+//! time `1/ω`,
 //!
 //! ```text
 //! x_k' = −n_k·u_k,   u_k = v + ω × a_k,   m v' = Σ (F_k n_k − q_k),   ℓ' = Σ a_k × (F_k n_k − q_k)
 //! ```
 //!
-//! with the forces of spring, dashpot and slider that all schemes have. Its end depends on ratios of stiffness alone, not on how large they are.
-//! Where friction and lever couple push and slip, this is not what Newton's rule of restitution makes of each contact: a corner
-//! that sticks is thrown back as its spring has it, several corners share what comes as they give way, and nothing can gain energy.
+//! with the forces of spring, dashpot and slider that all schemes have. The outcome depends on
+//! ratios of stiffness only, not on their size. Where friction and lever couple normal and
+//! tangential impulse, this differs from Newton's restitution of each contact: a corner that sticks
+//! rebounds as its spring does, several corners share the impact by their compliance, and nothing
+//! can gain energy.
 //!
-//! A contact that lets go and comes again begins anew, at the speed with which it comes: the step is cut there, as its dashpot pushes
-//! at once.
+//! A contact that opens and closes again begins anew, at its new approach speed: the step is cut
+//! there, because its dashpot acts at once.
 
 mod standstill;
 
@@ -33,43 +36,45 @@ use crate::solver::law::capture_m_s;
 use crate::solver::loss::{Loss, shared};
 use standstill::Standstill;
 
-/// Where velocity, angular momentum and the stretch of the rolling spring begin among the numbers that change; penetration and
+/// Offsets of the state: velocity, angular momentum, stretch of the rolling spring; penetration and
 /// stretch of each contact follow.
 const V: usize = 0;
 const MOMENTUM: usize = 3;
 const ROLLED: usize = 6;
 const CONTACTS: usize = 9;
-/// How many numbers each contact has.
+/// State variables of each contact.
 const PER_CONTACT: usize = 4;
-/// What is summed up: losses by friction, damping, rolling friction and to trees.
+/// Quadratures: losses by friction, damping, rolling friction and to trees.
 const SUMS: usize = 4;
-/// Steps, and radians of the stiffest contact, after which a blow is ended: corners that rattle in a notch have no other end.
+/// Steps, and radians of the stiffest contact, after which an impact is ended: corners that rattle
+/// in a notch have no other end.
 const MOST_STEPS: u32 = 5_000;
 const MOST_RAD: f64 = 300.0;
-/// Local error allowed in a blow (–, relative to the fastest of its contact points): what `adaptive` allows by default.
+/// Tolerance of an impact (–, relative to the fastest of its contact points): the default of
+/// `adaptive`.
 const BLOW_TOLERANCE: f64 = 2e-4;
 
-/// Contacts that do not move, and the block that strikes them.
+/// The block, and contacts of frozen geometry.
 struct FrozenFlow<'a, 'w> {
     world: &'a ContactEnvironment<'w>,
     block: &'a Block,
     mass: Mass,
-    /// What touches, and the contacts with it in the same order; one that has let go `waits`.
+    /// Contact points, and their contacts in the same order; an open contact is suspended.
     touches: &'a [BlockTouch],
     contacts: Vec<SpringContact>,
     rolling: RollingSpring,
     /// Stiffest contact (rad/s), and local error allowed (m/s).
     omega: f64,
     allowed: f64,
-    /// Energy that the contacts have begun with (J).
+    /// Energy of the contacts at the start (J).
     held_j: f64,
-    /// Whether the blow has ended with contacts that hold each other.
+    /// Whether the impact has ended with contacts that jam each other.
     is_clamped: bool,
 }
 
 impl BlockContactState {
-    /// The blow of the contacts that touch, with what springs of any stiffness make of it; `None` where it has no such limit, or does not
-    /// end by itself: the motion is not changed then.
+    /// The impact of the touching contacts in the limit of stiff springs; `None` if there is no
+    /// such limit or the impact does not end by itself: the motion is not changed then.
     pub(in super::super) fn blow(
         &mut self,
         world: &ContactEnvironment,
@@ -84,7 +89,7 @@ impl BlockContactState {
         Some(taken)
     }
 
-    /// The motion after the blow on these touches, and what its contacts have taken.
+    /// The motion after the impact on these contact points, and its loss.
     fn outcome(
         &mut self,
         world: &ContactEnvironment,
@@ -101,7 +106,7 @@ impl BlockContactState {
             let law = Self::law_of_touch(world, &mass, touch, (approach_m_s, touches.iter()));
             let mut contact = SpringContact::just_touching((k, touch), &law, friction);
             contact.captured = approach_m_s < capture_m_s(&law);
-            // what neither comes nor parts lasts, whatever rounding says
+            // a contact that neither closes nor opens lasts, whatever rounding says
             contact.is_suspended = approach_m_s < -capture_m_s(&law);
             self.clamp.load(&mut contact, touch);
             contacts.push(contact);
@@ -128,7 +133,7 @@ impl BlockContactState {
             held_j,
             is_clamped: false,
         };
-        // numbers live on the stack, and loops over them are those of a constant
+        // the state lives on the stack, and its loops have constant lengths
         let end = match touches.len() {
             1 => flow.follow::<{ CONTACTS + PER_CONTACT }, 2>(state),
             2 => flow.follow::<{ CONTACTS + 2 * PER_CONTACT }, 4>(state),
@@ -150,7 +155,7 @@ impl BlockContactState {
 }
 
 impl FrozenFlow<'_, '_> {
-    /// Follows the blow of a block from this motion.
+    /// Integrates the impact of a block from this motion.
     fn follow<const N: usize, const P: usize>(
         &mut self,
         state: &BlockState,
@@ -215,23 +220,23 @@ impl FrozenFlow<'_, '_> {
         None
     }
 
-    /// The velocity of a contact's point at a state.
+    /// The velocity of a contact point at a state.
     fn point_m_s<const N: usize>(&self, k: usize, y: &[f64; N]) -> Vec3 {
         let w = self.mass.inverse * vec3_at(y, MOMENTUM);
         Mass::velocity_at(&self.contacts[k].lever, (&vec3_at(y, V), &w))
     }
 
-    /// Penetration up to which a contact that comes again need not be met more exactly (m).
+    /// Penetration to which the onset of a contact that closes again is resolved (m).
     fn onset_m(&self) -> f64 {
         self.allowed / self.omega
     }
 
-    /// Whether no contact pushes at the state last asked for.
+    /// Whether no contact pushes at the state evaluated last.
     fn is_free(&self) -> bool {
         self.contacts.iter().all(|contact| contact.is_suspended || contact.normal_force <= 0.0)
     }
 
-    /// How long (s) a block that nothing pushes goes on until it touches again, if it does.
+    /// Time (s) until a free block touches again, if it does.
     fn next_touch<const N: usize>(&self, y: &[f64; N]) -> Option<f64> {
         let waits = (0..self.contacts.len()).filter_map(|k| {
             let comes_m_s = -self.contacts[k].n.dot(&self.point_m_s(k, y));
@@ -241,7 +246,7 @@ impl FrozenFlow<'_, '_> {
         waits.reduce(f64::min)
     }
 
-    /// Lets a block that nothing pushes go on for so long (s); what touches then begins anew.
+    /// Moves a free block for `wait_s` (s); contacts that touch then begin anew.
     fn drift<const N: usize>(&mut self, y: &mut [f64; N], wait_s: f64) {
         for k in 0..self.contacts.len() {
             let up_m_s = self.contacts[k].n.dot(&self.point_m_s(k, y));
@@ -255,20 +260,21 @@ impl FrozenFlow<'_, '_> {
         }
     }
 
-    /// At which share of a step from `y` to `end` the first contact that had let go is back, if that is not its very end (–).
+    /// Share of a step from `y` to `end` at which the first open contact closes again (–), unless
+    /// that is at its very end.
     fn recontact_share<const N: usize>(&self, y: &[f64; N], end: &[f64; N]) -> Option<f64> {
         let onset_m = self.onset_m();
         let waits = self.contacts.iter().enumerate().filter(|(_, contact)| contact.is_suspended);
         let back = waits.filter_map(|(k, _)| {
             let [x, reached] = [y, end].map(|y| y[CONTACTS + PER_CONTACT * k]);
             let share = (0.5 * onset_m - x) / (reached - x);
-            // one that was let go while it was pressed in is not met on the way
+            // a contact that opened while it was pressed in has no onset on this path
             (x < 0.0 && reached > onset_m).then_some(share)
         });
         back.reduce(f64::min)
     }
 
-    /// Notes which contacts have let go and which are back; whether one is.
+    /// Updates which contacts are open; returns whether one has closed again.
     fn update_open<const N: usize>(&mut self, y: &mut [f64; N]) -> bool {
         let mut is_back = false;
         for k in 0..self.contacts.len() {
@@ -284,14 +290,15 @@ impl FrozenFlow<'_, '_> {
                 && self.contacts[k].normal_force <= 0.0
             {
                 self.contacts[k].is_suspended = true;
-                // what its spring held is lost
+                // the energy of its spring is lost
                 put_vec3(y, at + 1, &Vec3::zeros());
             }
         }
         is_back
     }
 
-    /// A contact comes again: with the dashpot of its speed, and its share among those that touch with it.
+    /// Restarts a contact that closes again, with the dashpot of its speed and its share among the
+    /// contacts that touch with it.
     fn recontact<const N: usize>(&mut self, k: usize, y: &mut [f64; N]) {
         let at = CONTACTS + PER_CONTACT * k;
         let touch = &self.touches[k];
@@ -312,7 +319,7 @@ impl FrozenFlow<'_, '_> {
         put_vec3(y, at + 1, &Vec3::zeros());
     }
 
-    /// The motion at a state, and what was taken: together exactly what the motion has lost.
+    /// The motion at a state, and the loss: together exactly the energy at the start.
     fn end<const N: usize>(
         &self,
         y: &[f64; N],
@@ -323,7 +330,7 @@ impl FrozenFlow<'_, '_> {
             BlockState { v: vec3_at(y, V), momentum: vec3_at(y, MOMENTUM), ..start.clone() };
         let before_j = start.motion_j(self.block) + self.held_j;
         let holds_j = if self.is_clamped { self.clamped_j() } else { 0.0 };
-        // the steps' own error
+        // the integration error
         let along = ContactDirections::default().and_springs(&self.contacts);
         if self.held_j > 0.0 || self.is_clamped {
             let gained_j = end.motion_j(self.block) + holds_j - before_j;
@@ -336,7 +343,7 @@ impl FrozenFlow<'_, '_> {
         let [friction, damping, rolling, trees] = taken;
         let mut loss = Loss { friction, damping, rolling, trees };
         let stored_j = holds_j - self.held_j;
-        // an episode takes out of the losses what springs hold at its end
+        // an episode of contact subtracts from the losses what springs hold at its end
         loss.damping += stored_j;
         (end, loss)
     }
@@ -377,7 +384,8 @@ impl<const N: usize, const P: usize> Flow<N, SUMS, P> for FrozenFlow<'_, '_> {
         put_vec3(&mut to.y, MOMENTUM, &torque);
     }
 
-    /// Ways and stretches times `ω`, spin and turns times the largest radius, all in m/s.
+    /// Displacements and stretches times `ω`, spin and rotations times the largest radius, all in
+    /// m/s.
     fn size2(&self, off: &[f64; N]) -> f64 {
         let (reach2, omega2) = (self.block.bound_m.powi(2), self.omega * self.omega);
         let pressed = self.contacts.iter().enumerate().filter(|(_, one)| one.normal_force > 0.0);

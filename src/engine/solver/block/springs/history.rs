@@ -1,4 +1,4 @@
-//! What a block remembers of its contacts.
+//! Contact histories of a block.
 
 use super::super::{BlockContactState, BlockState, TOUCH};
 use crate::body::Block;
@@ -12,31 +12,34 @@ use crate::solver::environment::ContactEnvironment;
 use crate::solver::ground_change::{comes_up_pressed, springs_parted_from};
 use crate::solver::law::capture_m_s;
 
-/// What other contacts take off the answer of one at most (–): where they push each other up, its mass would grow without bound.
+/// Lower bound of the coupling of a contact with the others (–): where they push each other apart,
+/// its effective mass would grow without bound.
 const LEAST_SHARED: f64 = 0.25;
 
-/// The memory of one contact of a block.
+/// History of one contact of a block.
 #[derive(Debug, Clone, Copy)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a fact of its own")]
 pub(crate) struct BlockHistory {
-    /// What of the block and of the mesh touch.
+    /// Part of the block and feature of the mesh in contact.
     part: u16,
     pub(crate) feature: Feature,
-    /// Triangle whose ground is touched, and that whose springs answer (`solver::ground_change`).
+    /// Triangle whose ground is touched, and the triangle whose springs act
+    /// (`solver::ground_change`).
     pub(crate) triangle: u32,
     springs_of: u32,
-    /// Its law: damping is that of the mass that it moved at its first touch.
+    /// Its law, with the damping for the effective mass at its first touch.
     pub(crate) law: Law,
-    /// Normal to which `shear` is tangent, and where it was (m).
+    /// Normal to which `shear` is tangent, and position of the contact point (m).
     pub(crate) n: Vec3,
     pub(crate) point: Vec3,
     /// Stretch of the shear spring (m).
     pub(crate) shear: Vec3,
     /// Normal force at the end of the last step (N).
     pub(crate) normal_force: f64,
-    /// Penetration at which its spring begins to press (m): what was pressed in before it became a contact stores nothing.
+    /// Penetration at which its spring begins to act (m): a penetration from before the contact
+    /// existed stores nothing.
     pub(super) offset_m: f64,
-    /// How far its spring was pressed in at the end of the last step (m).
+    /// Compression of its spring at the end of the last step (m).
     pub(super) pressed_m: f64,
     /// Energy in its normal spring then (J).
     pub(super) normal_j: f64,
@@ -44,14 +47,14 @@ pub(crate) struct BlockHistory {
     pub(super) impulse: Vec3,
     /// Speed of approach when it began (m/s).
     pub(crate) approach_m_s: f64,
-    /// How long it has gone on (rad of its oscillation).
+    /// Age of the contact (rad of its oscillation).
     pub(super) age_rad: f64,
-    /// Came in too slowly to rebound.
+    /// Closed too slowly to rebound.
     pub(crate) captured: bool,
     /// Whether it presses.
     pub(crate) closed: bool,
     pub(crate) slides: bool,
-    /// Whether its beginning has been noted down, and as which impact, from 1; 0 where it was none.
+    /// Whether its onset has been recorded, and as which impact, counted from 1; 0 if it was none.
     pub(crate) announced: bool,
     pub(crate) impact: u32,
 }
@@ -61,12 +64,12 @@ impl BlockHistory {
         self.part == touch.part && self.feature == touch.feature
     }
 
-    /// What its springs hold (J).
+    /// Energy in its springs (J).
     pub(crate) fn held_j(&self) -> f64 {
         self.law.stored_j(self.pressed_m, self.shear.norm_squared(), 0.0)
     }
 
-    /// Power that its dashpot and its friction take where the block moves with a velocity (m/s) there (W).
+    /// Power dissipated by its dashpot and its friction at a velocity of its point (m/s) (W).
     pub(crate) fn taking_w(&self, velocity: &Vec3) -> f64 {
         let apart_m_s = self.n.dot(velocity);
         let slip_m_s = (velocity - self.n * apart_m_s).norm();
@@ -74,19 +77,19 @@ impl BlockHistory {
         self.law.normal(self.captured).dissipating_w(self.pressed_m, apart_m_s) + cap * slip_m_s
     }
 
-    /// Which parts of block and mesh touch.
+    /// Parts of block and mesh in contact.
     pub(super) fn pair(&self) -> (u16, Feature) {
         (self.part, self.feature)
     }
 
-    /// Rebounds after all, from an approach of `speed_m_s`: to a facet of rough ground.
+    /// Makes it an impact with the approach speed `speed_m_s`: on a facet of rough ground.
     pub(crate) fn rebound(&mut self, speed_m_s: f64) {
         self.captured = false;
         self.age_rad = 0.0;
         self.approach_m_s = self.approach_m_s.max(speed_m_s);
     }
 
-    /// Goes on where the contact now is.
+    /// Updates it to the present contact point.
     pub(super) fn follow(&mut self, touch: &BlockTouch, centre: &Vec3) {
         (self.part, self.feature, self.triangle) = (touch.part, touch.feature, touch.triangle);
         self.shear = carry(self.shear, &self.n, &touch.normal);
@@ -95,9 +98,10 @@ impl BlockHistory {
 }
 
 impl BlockContactState {
-    /// The law of a contact that begins at a speed of approach (m/s): its dashpots have the damping ratio of the ground for the mass that the
-    /// contact moves, `m_n = 1/(V_N M⁻¹ V_Nᵀ)`, so that restitution without friction is that of the ground; where several touch at once, itself
-    /// among `all`, each has its share.
+    /// The law of a contact that begins at an approach speed (m/s). Its dashpots have the damping
+    /// ratio of the ground for the effective mass of the contact, `m_n = 1/(V_N M⁻¹ V_Nᵀ)`, so that
+    /// restitution without friction is that of the ground. If several contacts touch at once,
+    /// itself among `all`, each gets its share.
     pub(in super::super) fn law_of_touch<'t>(
         world: &ContactEnvironment,
         mass: &Mass,
@@ -119,9 +123,10 @@ impl BlockContactState {
         law_at(ground, mass, (touch.normal, touch.lever), (approach_m_s, others))
     }
 
-    /// Where an impact begins, what presses gets the dashpots of the masses that all of it moves together, as the limit of stiff springs has them:
-    /// corners that come down at once have come up one by one in the looks of a step, and what lasts may have begun long ago, as a block that
-    /// tips about an edge lay flat. Of an impact that goes on nothing is changed.
+    /// Where an impact begins, the pressing contacts get the dashpots for the masses that they move
+    /// together, as in the limit of stiff springs. Corners that land at once are found one after
+    /// the other by the detections of a step, and lasting contacts may have begun long ago, as the
+    /// face of a block that tips about an edge. An impact that is already under way is not changed.
     pub(crate) fn damp_together(
         &mut self,
         world: &ContactEnvironment,
@@ -149,7 +154,8 @@ impl BlockContactState {
         self.springs.invalidate_rates();
     }
 
-    /// Gives contact `k` the dashpots of an impact at another speed (m/s) than it began with, as soil or a facet has it.
+    /// Gives contact `k` the dashpots of an impact at another speed (m/s) than it began with, as
+    /// soil or a facet requires.
     pub(crate) fn strike_anew(
         &mut self,
         k: usize,
@@ -163,8 +169,9 @@ impl BlockContactState {
         self.springs.invalidate_rates();
     }
 
-    /// Gives contacts that have come to another ground its friction; springs and dashpots stay those on which they were pressed, as
-    /// those of spheres do in an impact (`solver::ground_change`).
+    /// Gives contacts that have moved to another ground its friction; springs and dashpots stay
+    /// those of the ground on which they were loaded, as those of spheres do in an impact
+    /// (`solver::ground_change`).
     fn update_friction(
         &mut self,
         world: &ContactEnvironment,
@@ -186,7 +193,8 @@ impl BlockContactState {
         }
     }
 
-    /// The memory of every contact of the last look, in their order; new ones begin.
+    /// Assigns a history to every contact of the last detection, in their order; new contacts get
+    /// new histories.
     pub(super) fn update_histories(
         &mut self,
         world: &ContactEnvironment,
@@ -220,7 +228,8 @@ impl BlockContactState {
         self.update_friction(world, (block, state));
     }
 
-    /// The memory of a contact that has come from a feature nearby, which no other has, or one that is past the ends of its features.
+    /// The history of a contact that has moved from a neighbouring feature. It is one that no other
+    /// contact has, or whose contact lies past the ends of its features.
     fn history_near(
         &self,
         (block, state): (&Block, &BlockState),
@@ -235,8 +244,9 @@ impl BlockContactState {
         self.springs.nearest(touch, (&point, block.ball_m), is_taken)
     }
 
-    /// The springs, by a triangle, of the patch of the same corner from which a new one parts, or which it meets in an impact: they are one at
-    /// a blunt fold, as those of a sphere are (`solver::ground_change`).
+    /// The springs, by a triangle, of the patch of the same corner from which a new one separates,
+    /// or which it meets in an impact: at a blunt fold they are one patch, as those of a sphere are
+    /// (`solver::ground_change`).
     fn springs_parted_from(
         &self,
         world: &ContactEnvironment,
@@ -256,7 +266,7 @@ impl BlockContactState {
         springs_parted_from(&touch.normal, pressed.map(|one| (one.n, one.springs_of)))
     }
 
-    /// A new memory.
+    /// A new history.
     fn new_history(
         &self,
         world: &ContactEnvironment,
@@ -265,7 +275,7 @@ impl BlockContactState {
     ) -> BlockHistory {
         let mass = &state.mass(block);
         let approach_m_s = state.approach_m_s(block, touch);
-        // what is born while an impact rebounds belongs to it, however slow it is
+        // a contact that begins while an impact rebounds belongs to it, however slow it is
         let rebounds = self.springs.is_rebounding();
         let captured = approach_m_s < capture_m_s(world.law(touch.triangle)) && !rebounds;
         let law = Self::law_of_touch(world, mass, touch, (approach_m_s, self.touching(block)));
@@ -303,14 +313,16 @@ impl BlockContactState {
     }
 }
 
-/// Whether a new contact of an edge or a face of the block goes on for one that is past the ends of its features: with the next feature of the
-/// mesh, or the next part of the block. Both would press else, the new one from where it is: at each joint of a
-/// crest a block that slides along it would sink by what its weight presses in.
+/// Whether a new contact of an edge or a face of the block continues one that is past the ends of
+/// its features, with the next feature of the mesh or the next part of the block. Otherwise both
+/// would press, the new one from its present penetration: a block that slides along a crest would
+/// sink at each joint by the penetration of its weight.
 fn hands_over(block: &Block, new: &BlockTouch, before: &BlockTouch) -> bool {
     !block.core.is_corner(new.part) && before.hands_on(new.part, new.feature)
 }
 
-/// The law of a contact with a normal and a lever beside `others`, which begins at a speed of approach (m/s).
+/// The law of a contact with a normal and a lever beside `others`, which begins at an approach
+/// speed (m/s).
 fn law_at(
     ground: &Law,
     mass: &Mass,
@@ -325,7 +337,8 @@ fn law_at(
     law.for_masses([along * mass_share(mass, at, others), across], mass.mass)
 }
 
-/// The share of the mass that a contact moves among those that touch with it (–): `G_ii/Σ_j G_ij` along the normals.
+/// Share of a contact in the effective mass among those that touch with it (–): `G_ii/Σ_j G_ij`
+/// along the normals.
 fn mass_share(mass: &Mass, one: (Vec3, Vec3), others: impl Iterator<Item = (Vec3, Vec3)>) -> f64 {
     let along = |other: (Vec3, Vec3)| {
         let arms = [one, other].map(|(n, lever)| lever.cross(&n));
@@ -337,19 +350,20 @@ fn mass_share(mass: &Mass, one: (Vec3, Vec3), others: impl Iterator<Item = (Vec3
 }
 
 impl super::Springs {
-    /// Whether an impact is going on.
+    /// Whether there is a current impact.
     pub(crate) fn is_rebounding(&self) -> bool {
         self.fastest_m_s().is_some()
     }
 
-    /// Fastest approach of the impacts that go on (m/s); `None` if none does.
+    /// Fastest approach of the current impacts (m/s); `None` if there is none.
     pub(super) fn fastest_m_s(&self) -> Option<f64> {
         let rebounding =
             self.histories.iter().filter(|history| history.closed && !history.captured);
         rebounding.map(|history| history.approach_m_s).reduce(f64::max)
     }
 
-    /// The memory, of those not taken, of a contact that has gone on to a neighbouring feature and is now at `point`.
+    /// The history, among those not taken, of a contact that has moved to a neighbouring feature
+    /// and is now at `point`.
     fn nearest(
         &self,
         touch: &BlockTouch,
@@ -365,14 +379,14 @@ impl super::Springs {
         (away(nearest.1) <= SAME_POINT * ball_m).then_some(nearest.0)
     }
 
-    /// What begins with a step keeps, through it, the penetration that it began with.
+    /// Contacts that begin with a step keep their initial penetration through it.
     pub(super) fn keep_offsets(&mut self) {
         for contact in &self.contacts {
             self.histories[contact.history].offset_m = contact.offset_m;
         }
     }
 
-    /// Adds a memory.
+    /// Adds a history.
     fn add(&mut self, new: &BlockHistory) -> usize {
         self.histories.push(*new);
         let place = self.histories.len() - 1;

@@ -1,8 +1,9 @@
 //! One implicit stage of a block on springs.
 //!
-//! Forces are those at the stage's end: the solve is exact for given normals and levers, and the loop around it moves the block to where it
-//! ends. The penetration from which a pass starts is the one found there, put back by the motion of the pass before; once they agree the
-//! end is exact, however the block turns.
+//! Forces are those at the stage's end. The solve is exact for given normals and levers, and the
+//! loop around it moves the block to the end of the stage. Each pass starts from the penetration
+//! found there, moved back by the motion of the pass before. Once the passes agree the end is
+//! exact, however the block turns.
 
 use super::super::{BlockContactState, BlockState, ROUNDING_OF_SPEED, TOUCH, orthonormal};
 use super::{BlockRates, SpringContact, rotation_by, rotation_vector_rate};
@@ -18,15 +19,15 @@ use crate::solver::loss::Loss;
 use crate::solver::stage::{AGREED, PASSES};
 use crate::solver::tableau::Tableau;
 
-/// So few contacts are swept first (–) …
+/// Up to this number of contacts, sweeps are tried first (–).
 const FEW: usize = 2;
-/// … but no more often than this: where friction outweighs the lever, sweeps hardly come nearer.
+/// Sweeps of that first try: where friction outweighs the lever, sweeps hardly converge.
 const QUICK: u32 = 8;
 
 /// A block within a step.
 #[derive(Debug, Clone)]
 pub(super) struct StageState {
-    /// Where it is, and its motion.
+    /// Pose and motion.
     pub(super) state: BlockState,
     /// Rotation vector from the step's start (rad).
     pub(super) turned: Vec3,
@@ -34,18 +35,18 @@ pub(super) struct StageState {
     pub(super) rolled: Vec3,
 }
 
-/// What a stage starts from.
+/// Base of a stage.
 pub(super) struct StageBase<'m> {
     /// At the step's start.
     pub(super) start: &'m BlockState,
     /// The state plus the explicit part of the stages before.
     pub(super) base: StageState,
-    /// How long impulses act and how long the block moves (s).
+    /// Times for which impulses act and for which the block moves (s).
     pub(super) times_s: (f64, f64),
 }
 
 impl StageBase<'_> {
-    /// The block that goes on with these velocity and momentum, turned about as far as `guess`.
+    /// The block after moving with this velocity and momentum, its rotation evaluated at `guess`.
     fn advanced(&self, block: &Block, v: Vec3, momentum: Vec3, guess: &StageState) -> StageState {
         let w = guess.state.mass(block).inverse * momentum;
         let b = self.times_s.1;
@@ -59,7 +60,7 @@ impl StageBase<'_> {
 }
 
 impl SpringContact {
-    /// The contact of memory `history` where the block just touches, with a coefficient of friction (–).
+    /// The contact of history `history` at penetration zero, with a coefficient of friction (–).
     pub(super) fn just_touching(
         (history, touch): (usize, &BlockTouch),
         law: &Law,
@@ -107,7 +108,8 @@ impl BlockContactState {
         }
     }
 
-    /// Solves a stage; `None` if geometry and forces do not come to agree. `shear_of` tells the stretch of a history at the base.
+    /// Solves a stage; `None` if geometry and forces do not converge. `shear_of` gives the stretch
+    /// of a history at the base.
     pub(super) fn stage(
         &mut self,
         world: &ContactEnvironment,
@@ -140,10 +142,12 @@ impl BlockContactState {
         None
     }
 
-    /// Penetration (m) at which the spring of a contact begins to press: none, but where a contact of an edge or a face of the block
-    /// begins in this step, or goes on to another feature, that was pressed in further at the step's start than the spring was. What a
-    /// feature finds when it comes to own a contact stores nothing, so that no change of features can gain energy. The patches of
-    /// a corner's ball hand over without a jump by themselves, as they have the same springs (`springs_parted_from`).
+    /// Penetration (m) at which the spring of a contact begins to act. It is 0, except where a
+    /// contact of an edge or a face of the block begins in this step, or moves to another feature,
+    /// with a larger penetration at the step's start than its spring had. The penetration that a
+    /// feature finds when it takes over a contact stores nothing, so that no change of features can
+    /// gain energy. The patches of a corner's ball take over from each other without a jump, as
+    /// they have the same springs (`springs_parted_from`).
     fn offset_m(
         &self,
         (start, guess): (&BlockState, &BlockState),
@@ -163,7 +167,7 @@ impl BlockContactState {
         (began_m - history_now.pressed_m).max(0.0)
     }
 
-    /// Makes the touches of the last look, at `guess`, into contacts based at the stage's base.
+    /// Creates the contacts of the last detection, at `guess`, based at the stage's base.
     pub(super) fn place_contacts(
         &mut self,
         world: &ContactEnvironment,
@@ -197,12 +201,13 @@ impl BlockContactState {
         self.springs.contacts = contacts;
     }
 
-    /// What a stage is solved for: its contacts, and the rolling friction that they bear.
+    /// Unknowns of a stage: its contacts, and their rolling friction.
     fn unknowns(&mut self) -> (&mut [BlockContact], &mut RollingImpulse) {
         (&mut self.contacts, &mut self.rolling)
     }
 
-    /// Velocity and momentum at the stage's end with the contacts as they are; the block turned as in `guess`.
+    /// Velocity and momentum at the stage's end for the present contacts, with the attitude of
+    /// `guess`.
     pub(super) fn solve_contacts(
         &mut self,
         block: &Block,
@@ -225,7 +230,7 @@ impl BlockContactState {
         let rounding_m_s = ROUNDING_OF_SPEED * (free_v.norm() + guess.v.norm());
         let free = (free_v, mass.inverse * stage.base.state.momentum);
         let from = (pushed.v, mass.inverse * pushed.momentum);
-        // one or two contacts are swept faster, if they settle at all
+        // sweeps are faster for one or two contacts, if they converge
         let (quick, mut sweeps) = ((rounding_m_s, QUICK), 0);
         self.unsettled = false;
         let settled =
@@ -287,7 +292,7 @@ impl BlockContactState {
         (block, state): (&Block, &BlockState),
     ) {
         self.detect_all(world, (block, &state.pose), TOUCH * block.radius_m);
-        // what touches here and is not yet known begins here
+        // contacts here without a history begin here
         self.springs.known = self.springs.histories.len();
         self.update_histories(world, (block, state));
         self.place_contacts(world, (block, state, state), 0.0, &|footing, k| {

@@ -1,13 +1,14 @@
-//! Rates of a block and of the springs of its contacts, wherever it is and however it is turned.
+//! Rates of a block and of the springs of its contacts, at any pose.
 //!
 //! ```text
 //! c' = v,   θ' = ω − θ×ω/2 + …,   v' = g + Σ (F n − q)/m,   ℓ' = Σ a × (F n − q)
 //! ξ' of each contact from its slider,   F ≥ 0 by spring and dashpot,   |q| ≤ μ F
 //! ```
 //!
-//! `θ` is the rotation vector since the step's start, so levers and normals are those of every stage. Which contacts press is settled at the
-//! step's start: one that comes up on the way presses nothing until the step has been cut where it begins, so that within a step the
-//! right side has no jump and the pair's own estimate of the error holds.
+//! `θ` is the rotation vector since the step's start, so levers and normals are those of every
+//! stage. The set of pressing contacts is fixed at the step's start. A contact that begins within
+//! the step exerts no force until the step has been cut where it begins. So the right side has no
+//! jump within a step, and the error estimate of the pair holds.
 
 use super::super::{SpringContact, rotation_by, rotation_vector_rate};
 use crate::body::Block;
@@ -22,29 +23,32 @@ use crate::solver::impact::dormand_prince::{Flow, NODES, Rates, put_vec3, vec3_a
 use crate::solver::loss::Loss;
 use nalgebra::Matrix3;
 
-/// Where the way of the centre begins among the numbers that change; rotation vector, velocity, momentum and the springs follow.
+/// Offsets of the state: displacement of the centre, rotation vector, velocity, momentum; the shear
+/// springs follow.
 const WAY: usize = 0;
 const TURNED: usize = 3;
 const V: usize = 6;
 const MOMENTUM: usize = 9;
 const SPRINGS: usize = 12;
-/// What is summed up: losses by friction, damping and to trees. What the normal spring of each contact takes up follows.
+/// Quadratures: losses by friction, damping and to trees. The energy that the normal spring of each
+/// contact stores follows.
 pub(super) const LOSSES: usize = 3;
-/// A contact that seems to have begun so near to the step's start has not come up by the way: it popped up, and presses at once (–).
+/// A contact that seems to have begun within this share of the step from its start has not closed
+/// by the motion: it appeared, and presses at once (–).
 const APPEARED: f64 = 0.02;
 
-/// What errors are measured by.
+/// Scale of the errors.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ErrorScale {
     /// Stiffest contact (rad/s).
     pub(super) omega: f64,
     /// Local error allowed (m/s).
     pub(super) allowed: f64,
-    /// Penetration (m) up to which a contact that comes up need not be met more exactly.
+    /// Penetration (m) to which the onset of a contact is resolved.
     pub(super) onset_m: f64,
 }
 
-/// A block with up to `C` contacts that press; a contact keeps the place of its memory.
+/// A block with up to `C` pressing contacts; a contact has the index of its history.
 pub(super) struct BlockFlow<'a, 'w, const C: usize> {
     world: &'a ContactEnvironment<'w>,
     pub(super) footing: &'a mut BlockContactState,
@@ -53,25 +57,26 @@ pub(super) struct BlockFlow<'a, 'w, const C: usize> {
     /// Inverse inertia at the step's start (1/(kg m²)).
     inverse: Matrix3<f64>,
     scale: ErrorScale,
-    /// Memories at the step's start; before the first look, any number.
+    /// Number of histories at the step's start; before the first detection, any number.
     known: usize,
-    /// Pairs of features that touch at the step's start, as many as there are places for.
+    /// Pairs of features in contact at the step's start, as far as there is room.
     first: [(u16, Feature); C],
-    /// Length of the try (s), and whether what comes up in it presses at once.
+    /// Length of the trial step (s), and whether contacts that begin in it press at once.
     dt: f64,
     admits_new: bool,
-    /// Where in the try a further contact begins (–), if one does.
+    /// Share of the trial step at which a further contact begins (–), if one does.
     pub(super) onset: Option<f64>,
-    /// Whether there were more contacts than places.
+    /// Whether there were more contacts than room.
     pub(super) exceeds_room: bool,
-    /// What the normal spring of each contact held at the step's start, and whether it has a dashpot.
+    /// Energy of the normal spring of each contact at the step's start, and whether it has a
+    /// dashpot.
     held_at_start: [HeldEnergy; C],
     damped: [bool; C],
     /// Stiffness of each contact at the step's start relative to that of a single point (–).
     gain2_at_start: [f64; C],
-    /// Whether the try has met the same pairs of features throughout.
+    /// Whether the trial step has met the same pairs of features throughout.
     pub(super) is_smooth: bool,
-    /// The block at the state last asked for.
+    /// The block at the state evaluated last.
     pub(super) state: BlockState,
 }
 
@@ -82,7 +87,7 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
         (block, start): (&'a Block, &'a BlockState),
         scale: ErrorScale,
     ) -> Self {
-        // what touches at the start and is not yet known begins there
+        // contacts at the start without a history begin there
         footing.springs.known = footing.springs.histories.len();
         Self {
             world,
@@ -105,7 +110,8 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
         }
     }
 
-    /// The present state. Way and rotation vector count from the step's start: map coordinates would cost digits.
+    /// The present state. Displacement and rotation vector count from the step's start: map
+    /// coordinates would cost digits.
     pub(super) fn initial_state<const N: usize>(&self) -> [f64; N] {
         let mut y = [0.0; N];
         put_vec3(&mut y, V, &self.start.v);
@@ -116,7 +122,7 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
         y
     }
 
-    /// The contacts of the first look are those that press.
+    /// The contacts of the first detection are those that press.
     pub(super) fn fix_contacts(&mut self) {
         self.known = self.footing.springs.histories.len();
         self.footing.springs.known = self.known;
@@ -131,21 +137,23 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
         }
     }
 
-    /// Begins another try, of length `dt` (s), from the same state; what comes up in it presses at once if it `admits_new`.
+    /// Begins another trial step, of length `dt` (s), from the same state; with `admits_new`
+    /// contacts that begin in it press at once.
     pub(super) fn begin_try(&mut self, dt: f64, admits_new: bool) {
         self.footing.springs.histories.truncate(self.known);
         (self.dt, self.admits_new, self.onset, self.is_smooth) = (dt, admits_new, None, true);
     }
 
-    /// What the normal spring of a contact holds.
+    /// Energy of the normal spring of a contact.
     fn held(&self, contact: &SpringContact) -> HeldEnergy {
         let normal = contact.law.normal(contact.captured);
         let pressed = (contact.penetration.max(0.0), contact.normal_force);
         HeldEnergy::of(&normal, pressed, self.block.mass_kg)
     }
 
-    /// What the step has taken, from its sums, at its end, the state last asked for. At a part of the block that presses with a patch contacts that
-    /// come into it hand over what they hold, and take it with them where it parts.
+    /// Loss of the step from its quadratures, at its end, the state evaluated last. At a part of
+    /// the block that presses with a patch, contacts that merge into the patch hand over their
+    /// energy, and take it back where it splits.
     pub(super) fn taken<const Q: usize>(&self, sums: &[f64; Q]) -> Loss {
         let mut taken = Loss { friction: sums[0], damping: sums[1], trees: sums[2], rolling: 0.0 };
         let springs = &self.footing.springs;
@@ -180,13 +188,14 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
         (BlockState { pose, v: vec3_at(y, V), momentum: vec3_at(y, MOMENTUM) }, turned)
     }
 
-    /// Notes down where a contact begins that has come up by stage `node`, moving apart with `up_m_s` (m/s).
+    /// Records where a contact begins that has closed by stage `node`, with a normal velocity
+    /// `up_m_s` (m/s).
     fn note_onset(&mut self, node: usize, penetration_m: f64, up_m_s: f64) {
         if penetration_m <= self.scale.onset_m {
             return;
         }
         let reached = NODES[node];
-        // half of what is allowed behind its beginning, so that the next step begins with it
+        // half of the tolerance after its onset, so that the next step begins with it
         let since_s = (penetration_m - 0.5 * self.scale.onset_m) / -up_m_s;
         let share = reached - since_s / self.dt;
         let comes = up_m_s < 0.0 && share > APPEARED;
@@ -194,10 +203,10 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
         self.onset = Some(self.onset.map_or(share, |before: f64| before.min(share)));
     }
 
-    /// Looks for the contacts of the block at a state.
+    /// Detects the contacts of the block at a state.
     fn detect_at<const N: usize>(&mut self, state: &BlockState, y: &[f64; N]) {
         let (world, block) = (self.world, self.block);
-        // where the step begins is where the one before has looked last
+        // a step begins where the step before has detected contacts last
         let sees = std::mem::take(&mut self.footing.springs.touches_are_current)
             && self.known == usize::MAX;
         if !sees {
@@ -213,7 +222,8 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
             found.len() <= C && pairs.eq(self.first[..found.len().min(C)].iter().copied());
     }
 
-    /// Force of a contact whose point moves by `u` (m/s); its spring, its losses and its kinks go into `rates`.
+    /// Force of a contact whose point moves at `u` (m/s); the rate of its spring, its losses and
+    /// its switching functions go into `rates`.
     fn contact_force<const N: usize, const Q: usize, const P: usize>(
         &mut self,
         contact: &mut SpringContact,
@@ -244,10 +254,11 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
 impl<const C: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, P>
     for BlockFlow<'_, '_, C>
 {
-    /// Writes the rates at `y`, a state of stage `node`, over `rates`; contacts are those of `y` then.
+    /// Writes the rates at `y`, a state of stage `node`, into `rates`; the contacts are then those
+    /// of `y`.
     fn rates(&mut self, node: usize, y: &[f64; N], rates: &mut Rates<N, Q, P>) {
         *rates = Rates::NONE;
-        // the try is cut where a contact begins: what comes later is thrown away
+        // the trial step is cut where a contact begins: later stages are discarded
         if self.onset.is_some() {
             return;
         }
@@ -277,8 +288,8 @@ impl<const C: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, 
         self.state = state;
     }
 
-    /// Ways, turns and stretches times `ω`, spin times the largest radius, all in m/s. A spring that nothing presses on any more holds
-    /// nothing: how it relaxes does not matter.
+    /// Displacements, rotations and stretches times `ω`, spin times the largest radius, all in m/s.
+    /// The spring of an unloaded contact stores nothing: how it relaxes does not matter.
     #[inline]
     fn size2(&self, off: &[f64; N]) -> f64 {
         let ErrorScale { omega, allowed, .. } = self.scale;

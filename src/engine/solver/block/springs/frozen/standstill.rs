@@ -1,17 +1,18 @@
-//! A blow that ends with contacts that hold each other.
+//! Impacts that end with contacts that jam each other.
 
 use super::{CONTACTS, FrozenFlow, MOMENTUM, PER_CONTACT, V};
 use crate::rock::Vec3;
 use crate::solver::block::BlockState;
 use crate::solver::impact::dormand_prince::vec3_at;
 
-/// A block whose motion has changed by no more than so many errors allowed (–) for so long (rad of the stiffest contact) is clamped, if a contact
-/// presses with more than so many of them (–).
+/// A block is clamped if its motion has changed by at most `UNCHANGED` allowed errors (–) for
+/// `STILL_RAD` radians of the stiffest contact, and a contact presses with more than `HOLDS` of
+/// them (–).
 const UNCHANGED: f64 = 3.0;
 const STILL_RAD: f64 = 12.0;
 const HOLDS: f64 = 100.0;
 
-/// Since when a block in a blow has not changed its motion.
+/// Since when the motion of a block in an impact has not changed.
 pub(super) struct Standstill {
     since_rad: f64,
     v: Vec3,
@@ -23,7 +24,8 @@ impl Standstill {
         Self { since_rad: 0.0, v: state.v, momentum: state.momentum }
     }
 
-    /// For how long (rad) velocity and angular momentum have been the same, but for `nothing` as `change` measures it (–).
+    /// For how long (rad) velocity and angular momentum have been the same, where `is_other` tells
+    /// whether a change counts.
     pub(super) fn stays_rad(
         &mut self,
         (v, momentum): (Vec3, Vec3),
@@ -38,7 +40,8 @@ impl Standstill {
 }
 
 impl FrozenFlow<'_, '_> {
-    /// Whether contacts that press hold each other: the motion has not changed for some swings, and they would push the block away if they did not.
+    /// Whether pressing contacts jam each other: the motion has not changed for some periods,
+    /// although they would otherwise push the block away.
     pub(super) fn stays_clamped<const N: usize>(
         &mut self,
         y: &[f64; N],
@@ -62,7 +65,7 @@ impl FrozenFlow<'_, '_> {
         deepest * self.omega > HOLDS * self.allowed
     }
 
-    /// Energy in the contacts that press (J).
+    /// Energy in the pressing contacts (J).
     pub(super) fn clamped_j(&self) -> f64 {
         let pressed = self.contacts.iter().filter(|one| one.normal_force > 0.0);
         pressed.map(|one| one.stored_j(one.penetration, &one.shear)).sum()
