@@ -1,8 +1,9 @@
-//! The system of an island in blocks of 6×6, factorised: `A = L U` with the blocks of `U` on the diagonal the identity.
+//! The system of an island in blocks of 6×6, factorised: `A = L U` with the blocks of `U` on the
+//! diagonal the identity.
 //!
-//! Numbers are our own work, where a library would be quicker: those choose their kernels, and with them the order of their sums, by the
-//! processor and the sizes of its caches, and a world must have the same bytes on every machine. One thread: islands are
-//! what is computed at once.
+//! The factorisation is our own although a library would be faster: libraries choose their kernels,
+//! and with them the order of their sums, by the processor and its cache sizes, and a world must
+//! have the same bytes on every machine. It uses one thread: islands are computed in parallel.
 //!
 //! ```text
 //! pivot_k = A_kk − Σ_{j<k} L_kj U_jk
@@ -10,8 +11,8 @@
 //! ```
 //!
 //! Crout's form: `L` keeps the pivots' size, so that with `A` symmetric `U_kr = pivot_k⁻¹ L_rkᵀ`
-//! and half of the work falls away. No pivoting between blocks: diagonal blocks carry inertia and
-//! are far from singular. Cost: O(fill) products of 6×6.
+//! and half of the work is saved. No pivoting between blocks: diagonal blocks carry inertia and are
+//! far from singular. Cost: O(fill) products of 6×6.
 
 mod ordering;
 
@@ -19,27 +20,28 @@ use crate::contact::submatrix::{Mat6, Vec6};
 use nalgebra::{Cholesky, Const, LU};
 use ordering::Ordering;
 
-/// A block below the diagonal: row and column among the rocks, row > column.
+/// A block below the diagonal: row and column by rocks, row > column.
 pub(super) type LowerBlock = (usize, usize, Mat6);
 
-/// A system: one block a rock on the diagonal, and those that join rocks.
-/// Sorted by column and row, each block once.
+/// A system: one diagonal block for each rock, and the blocks that couple rocks. Sorted by column
+/// and row, each block once.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct BlockSystem<'a> {
     pub(super) diagonal: &'a [Mat6],
     pub(super) below: &'a [LowerBlock],
-    /// The block opposite to each of those below; `None` for a symmetric, positive definite system.
+    /// The transposed position of each block below; `None` for a symmetric, positive definite
+    /// system.
     pub(super) above: Option<&'a [Mat6]>,
 }
 
-/// A factor whose pattern is kept as long as the same rocks are joined.
-/// Order and pattern cost more than the numbers; a heap at rest keeps them for thousands of steps.
+/// A factor whose pattern is kept while the same rocks are coupled. Order and pattern cost more
+/// than the numbers; a heap at rest keeps them for thousands of steps.
 #[derive(Debug, Default)]
 pub(super) struct BlockFactor {
-    /// Where the blocks below the diagonal stand.
+    /// Rows and columns of the blocks below the diagonal.
     pattern: Vec<(usize, usize)>,
     ordering: Ordering,
-    /// Blocks of the factor for each block below the diagonal, and whether rows and columns change places.
+    /// Position in the factor of each block below the diagonal, and whether it is transposed there.
     positions: Vec<(usize, bool)>,
     /// `L`, in the order of the pattern.
     lower: Vec<Mat6>,
@@ -47,7 +49,7 @@ pub(super) struct BlockFactor {
     upper: Vec<Mat6>,
     pivots: Vec<Pivot>,
     pending: PendingColumns,
-    /// How often the pattern was made anew.
+    /// Number of symbolic analyses.
     pub(super) analysed: u64,
 }
 
@@ -58,30 +60,32 @@ enum Pivot {
     General(LU<f64, Const<6>, Const<6>>),
 }
 
-/// Which columns take part in the next ones: each waits at the first of its rows that is still to come.
+/// Columns that contribute to later ones: each waits at the first of its rows that is still to be
+/// eliminated.
 ///
 /// Linked lists through the columns, as in sparse Cholesky by columns (George and Liu 1981): O(1)
 /// to find the columns that reach row k.
 #[derive(Debug, Default)]
 struct PendingColumns {
-    /// The columns that wait at each row: the first, and after each the next.
+    /// Linked lists of the columns that wait at each row: the first, and after each the next.
     first: Vec<Option<usize>>,
     after: Vec<Option<usize>>,
-    /// Where in its rows each column waits.
+    /// Position in its rows at which each column waits.
     at: Vec<usize>,
-    /// Where each row stands in the current column.
+    /// Position of each row in the current column.
     slot: Vec<usize>,
 }
 
 impl BlockFactor {
-    /// Solves a system for `load` in place, six numbers a rock; `None` where [`Self::factorise`] finds none.
+    /// Solves a system for `load` in place, six numbers a rock; `None` where [`Self::factorise`]
+    /// finds none.
     pub(super) fn solve(&mut self, blocks: BlockSystem, load: &mut [f64]) -> Option<()> {
         self.factorise(blocks)?;
         self.substitute(load)
     }
 
-    /// Factorises a system for [`Self::substitute`]; `None` where a pivot is singular, or not positive definite in a
-    /// symmetric system.
+    /// Factorises a system for [`Self::substitute`]; `None` where a pivot is singular, or not
+    /// positive definite in a symmetric system.
     pub(super) fn factorise(&mut self, blocks: BlockSystem) -> Option<()> {
         let known = self.pattern.iter();
         let same = self.ordering.place.len() == blocks.diagonal.len()
@@ -94,14 +98,14 @@ impl BlockFactor {
         self.eliminate(blocks)
     }
 
-    /// Finds order and pattern anew, and the place of each block in it.
+    /// Computes order and pattern anew, and the position of each block in it.
     fn analyse(&mut self, blocks: BlockSystem) {
         self.analysed += 1;
         self.pattern = blocks.below.iter().map(|block| (block.0, block.1)).collect();
         self.ordering = Ordering::of(blocks.diagonal.len(), &self.pattern);
         let Ordering { place, starts, rows } = &self.ordering;
-        // in the order of elimination a block may stand on the other side of the diagonal: then it
-        // is the other half of the pair
+        // in the elimination order a block may be on the other side of the diagonal: then it is the
+        // other half of the pair
         let position = |&(row, column): &(usize, usize)| {
             let transposed = place[row] < place[column];
             let (row, column) = (place[row].max(place[column]), place[row].min(place[column]));
@@ -111,8 +115,8 @@ impl BlockFactor {
         self.positions = self.pattern.iter().map(position).collect();
     }
 
-    /// Puts the blocks of the matrix in their places; the rest of the pattern is fill and begins as
-    /// zero.
+    /// Copies the blocks of the matrix to their positions; the rest of the pattern is fill and
+    /// starts as zero.
     fn fill(&mut self, blocks: BlockSystem) {
         let size = self.ordering.rows.len();
         for half in [&mut self.lower, &mut self.upper] {
@@ -172,7 +176,7 @@ impl BlockFactor {
     }
 
     /// `L y = b`, then `U x = y`.
-    /// The load is put in the order of elimination first, and the solution taken out of it.
+    /// The load is first permuted to the elimination order, and the solution permuted back.
     pub(super) fn substitute(&self, load: &mut [f64]) -> Option<()> {
         let Ordering { place, starts, rows } = &self.ordering;
         let mut x = vec![Vec6::zeros(); place.len()];
@@ -202,8 +206,8 @@ impl BlockFactor {
 
 /// `c − a bᵀ` in place.
 ///
-/// Loops in fixed order, unrolled by the compiler: no library kernel whose order of sums depends on
-/// the processor.
+/// Loops in fixed order, unrolled by the compiler; no library kernel whose summation order depends
+/// on the processor.
 #[inline]
 fn subtract_product(c: &mut Mat6, a: &Mat6, b: &Mat6) {
     for j in 0..6 {
@@ -248,7 +252,8 @@ impl PendingColumns {
         }
     }
 
-    /// Lets column `j` wait at the row that stands `at` among `rows`, which end with its own; nothing after the last.
+    /// Makes column `j` wait at the row at position `at` of `rows`, which end with its own; nothing
+    /// after the last.
     fn wait(&mut self, j: usize, at: usize, rows: &[usize]) {
         let Some(&row) = rows.get(at) else { return };
         self.at[j] = at;

@@ -1,16 +1,18 @@
-//! An impact among any features, followed in its own time.
+//! Explicit integration of an impact on any features.
 //!
-//! While a contact rebounds it lasts about `π/ω`, `ω = √(p_N/m)`: in units of `1/ω` nothing is stiff, and an explicit pair of
-//! order five is the cheapest way to follow it ([`dormand_prince`](super::impact::dormand_prince)). The error is controlled
-//! relative to the speed of the impact, so that restitution is as right for a pebble as for a block. Geometry is that of every
-//! stage; force is continuous wherever patches meet (`contact::patch`), and where friction begins to slip or a further contact
-//! begins the step is cut.
+//! A rebound lasts about `π/ω`, `ω = √(p_N/m)`. In units of `1/ω` nothing is stiff, and an explicit
+//! pair of order five is the cheapest integrator
+//! ([`dormand_prince`](super::impact::dormand_prince)). The error is controlled relative to the
+//! speed of the impact, so that restitution is equally accurate for a pebble and for a boulder.
+//! Geometry is that of every stage. The force is continuous where patches meet (`contact::patch`);
+//! where friction switches between slipping and sticking, or a further contact begins, the step is
+//! cut.
 //!
-//! State: way, velocity and spin of the rock, shear and rolling stretch of each contact; summed
-//! along: what friction, dashpots, rolling and trees take. What normal springs hold is a matter of place,
-//! known at both ends of a step. Why explicit: the implicit stage costs
-//! an iteration over geometry and contacts, and a rebound is over in `π` radians, a handful of
-//! steps; stiffness enters only by the unit of time.
+//! State: displacement, velocity and spin of the rock, shear and rolling stretch of each contact.
+//! Quadratures: losses by friction, damping, rolling and to trees. The energy of normal springs
+//! depends on position only and is known at both ends of a step. The pair is explicit because an
+//! implicit stage costs an iteration over geometry and contacts, whereas a rebound is over in `π`
+//! radians, a handful of steps; stiffness enters only through the unit of time.
 
 mod change_time;
 mod changes;
@@ -30,30 +32,31 @@ use flow::{LOSSES, SphereFlow, V, WAY};
 
 /// First step of an impact (rad of its oscillation).
 pub(super) const FIRST: f64 = 0.3;
-/// Longest step (rad).
-/// Beyond about a radian the error estimate of the pair is no longer to be trusted.
+/// Longest step (rad). Beyond about a radian the error estimate of the pair is no longer reliable.
 pub(super) const LONGEST_RAD: f64 = 0.9;
-/// Local error allowed where patches meet and part, relative to that on a plane (–): the estimate sees too little of a kink.
+/// Local error allowed where patches meet and separate, relative to that on a plane (–): the
+/// estimate sees too little of a switching point.
 const KINKED: f64 = 0.3;
-/// Largest error of energy that is balanced (–, relative to motion).
-/// A larger one is no error of steps, and hiding it would hide a fault.
+/// Largest energy error that is corrected (–, relative to the kinetic energy). A larger one is no
+/// integration error, and correcting it would hide a fault.
 pub(super) const BALANCED: f64 = 0.1;
-/// A step is not cut for contacts that take the place of others at a smaller or a larger share of it (–).
+/// A step is cut where contacts replace others only at shares of it within these (–).
 const INTERIOR: (f64, f64) = (0.02, 0.98);
-/// How much farther than its speed takes it a step may come (–), and for how many steps what is touched is chosen at a time.
+/// Travel for which contacts are collected, over that of its speed in a step (–), and the number of
+/// steps for which features are chosen at a time.
 const AHEAD: f64 = 1.25;
 const STEPS_AHEAD: f64 = 4.0;
-/// Shortest step (rad): a contact that begins within a step is met this exactly.
+/// Shortest step (rad): the accuracy to which an onset within a step is located.
 pub(super) const SHORTEST_RAD: f64 = 1e-9;
 
-/// How far a step may go, and how exactly.
+/// Bounds of a step.
 #[derive(Debug, Clone, Copy)]
 struct StepBounds {
     /// Stiffest contact (rad/s).
     omega: f64,
-    /// Longest step that cannot jump over a feature (s).
+    /// Longest step that cannot miss a feature (s).
     limit: f64,
-    /// Longest step asked for (s).
+    /// Longest step requested (s).
     h_max: f64,
     /// Local error allowed (m/s).
     allowed: f64,
@@ -63,18 +66,20 @@ struct StepBounds {
 struct AcceptedStep {
     end: End,
     dt: f64,
-    /// What contacts took, what springs hold counted in (J).
+    /// Loss, with the energy in springs counted in (J).
     loss: Loss,
-    /// Whether the rates at its end hold for the next step: the same contacts, and the same normals.
+    /// Whether the rates at its end hold for the next step: the same contacts, and the same
+    /// normals.
     has_same_contacts: bool,
 }
 
-/// Whether a whole try of `dt` (s) is accepted by its error (squared, over the one allowed), and the step to try next (s). One that was cut
-/// short from outside says nothing of how long it could have been: what was `wished` stays. One that `is_short` is accepted
-/// whatever its error.
+/// Whether a complete trial step of `dt` (s) is accepted by its error (squared, over the allowed
+/// one), and the length of the next trial step (s). A step that was cut short from outside gives no
+/// information on the possible length: the `wished` one stays. One that `is_short` is accepted with
+/// any error.
 ///
 /// # Errors
-/// [`StepError`] if what was accepted is no longer finite.
+/// [`StepError`] if an accepted state is no longer finite.
 pub(super) fn control_error(
     (dt, wished): (f64, f64),
     (error2, is_smooth): (f64, bool),
@@ -91,19 +96,19 @@ pub(super) fn control_error(
 }
 
 impl ContactState {
-    /// Whether an impact is going on.
+    /// Whether there is a current impact.
     pub(crate) fn is_rebounding(&self) -> bool {
         self.impact.left > 0.0 && self.histories.iter().any(|history| !history.captured)
     }
 
-    /// One accepted step of an impact, of at most `h_max` (s), in contacts of at most `omega` (rad/s); `tolerance` is the local
-    /// error allowed relative to the speed of the impact.
+    /// One accepted step of an impact, of at most `h_max` (s), in contacts of at most `omega`
+    /// (rad/s); `tolerance` is the local error allowed relative to the speed of the impact.
     ///
     /// # Errors
     /// [`StepError`] if the motion is no longer finite.
     ///
-    /// Tried with room for two contacts first, the usual case: the numbers of a state live on the
-    /// stack, and their count is a constant that the compiler unrolls. With more contacts the step
+    /// Tried with room for two contacts first, the usual case: the state lives on the stack, and
+    /// its length is a constant for which the compiler unrolls loops. With more contacts the step
     /// is tried anew with room for all.
     pub(crate) fn step_impact(
         &mut self,
@@ -124,7 +129,7 @@ impl ContactState {
                 self.steps_among::<2, 15, { LOSSES + 2 }, 6>(world, scale, h_max, done)?
             };
         if !is_done {
-            // what the crowded try has met is forgotten
+            // contacts found by the trial that ran out of room are dropped
             self.histories.truncate(known);
             self.steps_among::<HISTORIES, { 9 + 6 * HISTORIES }, { LOSSES + HISTORIES }, { 3 * HISTORIES }>(
                 world, scale, h_max, done,
@@ -133,8 +138,8 @@ impl ContactState {
         Ok(())
     }
 
-    /// How far the next step may go, of an impact in contacts of `omega` (rad/s) and with its error relative to its speed, at most
-    /// `h_max` (s).
+    /// Bounds of the next step of an impact with contacts of `omega` (rad/s) and a tolerance
+    /// relative to its speed, of at most `h_max` (s).
     fn step_bounds(
         &mut self,
         world: &ContactEnvironment,
@@ -155,8 +160,8 @@ impl ContactState {
         StepBounds { omega, limit, h_max, allowed }
     }
 
-    /// Steps with room for `C` contacts, as many as there are in which nothing comes or goes that others must know of; false if there are more
-    /// contacts than that at the first.
+    /// Steps with room for `C` contacts, as many in succession as pass without an event that others
+    /// must know of; false if there are more contacts than that at the first.
     fn steps_among<const C: usize, const N: usize, const Q: usize, const P: usize>(
         &mut self,
         world: &ContactEnvironment,
@@ -168,7 +173,7 @@ impl ContactState {
         let mut flow = SphereFlow::<C>::new(world, self, (bounds.omega, bounds.allowed));
         let mut stages = Stages::<N, Q, P>::NONE;
         flow.rates(0, &flow.initial_state::<N>(), stages.first());
-        // what the present place touches is met whatever becomes of the tries
+        // contacts at the present position are recorded whatever becomes of the trial steps
         flow.state.accept_meetings(world);
         loop {
             let Some(accepted) = step_among(&mut flow, &mut stages, &bounds, done)? else {
@@ -189,7 +194,8 @@ impl ContactState {
         }
     }
 
-    /// Whether an impact in `count` contacts goes on without anything that must be known between its steps.
+    /// Whether an impact with `count` contacts can continue without an event that must be known
+    /// between its steps.
     fn can_continue(&self, count: usize) -> bool {
         self.is_rebounding()
             && self.histories.len() == count
@@ -198,7 +204,7 @@ impl ContactState {
             && !self.facets.are_any()
     }
 
-    /// Takes over the step's end: motion, memories, losses. The last stage was there.
+    /// Accepts the end of the step: motion, histories, losses. The last stage was there.
     fn accept_impact(
         &mut self,
         world: &ContactEnvironment,
@@ -210,7 +216,7 @@ impl ContactState {
         let before = self.motion_j(body);
         let lifted = body.lifted_j(&(end.c - self.c));
         (self.c, self.v, self.w) = (end.c, end.v, end.w);
-        // what the springs store is counted among the losses until they give it back
+        // the energy that springs store is counted as lost until they return it
         self.impact.gained += self.motion_j(body) + lifted + loss.sum() - before;
         self.impact.mixes |= self.is_on_several_grounds(world);
         self.merge_lost(world);
@@ -218,7 +224,7 @@ impl ContactState {
         self.accept_meetings(world);
         self.fresh = false;
         done.dt += accepted.dt + self.fly_clear(world, bounds, bounds.h_max - accepted.dt);
-        // what rebounds no more goes on with other steps, also while something else still presses
+        // after the rebound other steps follow, also while another contact still presses
         if self.is_free() || !self.is_rebounding() {
             self.balance(world);
         }
@@ -226,10 +232,10 @@ impl ContactState {
         done.steps += 1;
     }
 
-    /// Flies out of contacts that push no more, if nothing else is in the way there and it takes no longer than `longest` (s);
-    /// returns the time that took (s).
+    /// Flies clear of open contacts if no other contact is met and it takes at most `longest` (s);
+    /// returns the flight time (s).
     ///
-    /// What still hangs on the contacts then has no force, and the parabola is exact.
+    /// The remaining contacts exert no force, and the parabola is exact.
     fn fly_clear(&mut self, world: &ContactEnvironment, bounds: &StepBounds, longest: f64) -> f64 {
         let dt = LONGEST_RAD / bounds.omega;
         if self.histories.is_empty() || dt > longest.min(bounds.limit) {
@@ -255,13 +261,14 @@ impl ContactState {
         dt
     }
 
-    /// Gives motion back what the steps of the impact have lost by themselves, or takes what they have gained: what is left of
-    /// the energy is what came in less what the contacts took.
+    /// Corrects the motion by the energy that the errors of the steps of the impact have lost or
+    /// gained: the remaining energy is the initial energy less the losses of the contacts.
     ///
     /// Velocity and spin are scaled by one factor, so the direction of the rebound does not change.
-    /// An impact with `e = 1` and no friction then keeps its energy to rounding. Where no ground has
-    /// friction nothing can turn the rock, and the velocity alone is scaled. More than [`BALANCED`] is taken only where springs of several
-    /// grounds were pressed at once: what these hand over to each other is no error of steps.
+    /// An impact with `e = 1` and no friction then keeps its energy to rounding. Where no ground
+    /// has friction nothing can turn the rock, and the velocity alone is scaled. More than
+    /// [`BALANCED`] is taken only where springs of several grounds were pressed at once: what these
+    /// hand over to each other is no error of steps.
     pub(super) fn balance(&mut self, world: &ContactEnvironment) {
         let (body, gained) = (&world.body, self.impact.gained);
         let turns = world.laws.iter().any(|law| law.limits().caps(1.0) != (0.0, 0.0));
@@ -279,8 +286,8 @@ impl ContactState {
 
 /// Tries steps until one is accurate; `None` if there are more contacts than `C`.
 ///
-/// A try that is cut at a kink is shorter, not wrong; one whose error is too large shrinks by
-/// the usual rule.
+/// A trial step that is cut at a switching point is shorter; one whose error is too large shrinks
+/// by the usual rule.
 fn step_among<const C: usize, const N: usize, const Q: usize, const P: usize>(
     flow: &mut SphereFlow<C>,
     stages: &mut Stages<N, Q, P>,
@@ -333,7 +340,8 @@ fn step_among<const C: usize, const N: usize, const Q: usize, const P: usize>(
     }
 }
 
-/// A step of `dt` (s) from `y` that is accepted as `tried`, or as far as the first contact that begins or ends within it.
+/// A step of `dt` (s) from `y` that is accepted as `tried`, or up to the first contact that begins
+/// or ends within it.
 fn end_of_step<const C: usize, const N: usize, const Q: usize, const P: usize>(
     flow: &mut SphereFlow<C>,
     stages: &mut Stages<N, Q, P>,
@@ -353,7 +361,7 @@ fn end_of_step<const C: usize, const N: usize, const Q: usize, const P: usize>(
         None => (tried.y, tried.q),
     };
     if change.is_some() {
-        // from now on what has waited presses, and what has ended counts no more
+        // from now on contacts that have begun press, and contacts that have ended are dropped
         flow.rates(0, &y_end, stages.first());
     }
     let end = flow.end(&y_end);
@@ -363,7 +371,7 @@ fn end_of_step<const C: usize, const N: usize, const Q: usize, const P: usize>(
     AcceptedStep { end, dt: dt * change.unwrap_or(1.0), loss, has_same_contacts }
 }
 
-/// What contacts took beside what their normal springs hold, from the sums of a step (J).
+/// Loss by the quadratures of a step, without the energy in normal springs (J).
 fn summed_loss<const Q: usize>(sums: &[f64; Q]) -> Loss {
     Loss { friction: sums[0], damping: sums[1], rolling: sums[2], trees: sums[3] }
 }

@@ -1,9 +1,10 @@
 //! Schemes with springs for blocks: `adaptive`, `reference` and `dda`.
 //!
-//! The unknowns are the body's six. With the lever `a` of a contact, `V_N = [nᵀ, (a×n)ᵀ]` takes the place of the paper's `V_N = (V, 0)`, and
-//! everything else of the paper stays. The state is centre, attitude, velocity and **angular
-//! momentum** in the frame of the terrain: `ℓ' = Σ a × f`, `ω = I⁻¹ℓ`, so that no gyroscopic term
-//! has to be stepped and free spin conserves its momentum exactly.
+//! The unknowns are the body's six. With the lever `a` of a contact, `V_N = [nᵀ, (a×n)ᵀ]` takes the
+//! place of the paper's `V_N = (V, 0)`, and everything else of the paper stays. The state is
+//! centre, attitude, velocity and **angular momentum** in the frame of the terrain: `ℓ' = Σ a × f`,
+//! `ω = I⁻¹ℓ`, so that no gyroscopic term has to be stepped and free spin conserves its momentum
+//! exactly.
 //!
 //! A spring and a dashpot over an implicit stage, in which an impulse acts for `a` and the block
 //! moves for `b` (s), are a contact of the rigid limit with a compliance ([`SpringCompliance`]):
@@ -24,6 +25,7 @@ mod frozen;
 mod history;
 mod impact_energy;
 mod rolling;
+mod rotation_vector;
 mod onset;
 mod stage;
 
@@ -32,7 +34,6 @@ use super::solve::{BlockContact, Mass, SpringCompliance};
 use super::{BlockContactState, BlockState, BlockStepOutcome, TOUCH};
 use crate::body::Block;
 use crate::ground::{Law, SliderForce};
-use crate::math;
 use crate::rock::Vec3;
 use crate::solver::Settings;
 use crate::solver::dda::DEEPEST;
@@ -43,7 +44,6 @@ use crate::solver::tableau::STAGES;
 pub(crate) use clamp::Clamp;
 pub(crate) use history::BlockHistory;
 use impact_energy::ImpactEnergy;
-use nalgebra::{Rotation3, Unit};
 use rolling::RollingSpring;
 
 /// Contacts with gaps up to this multiple of the travel of a stage take part in it (–).
@@ -278,22 +278,6 @@ impl SpringContact {
         let slip = u - self.n * self.n.dot(u);
         Loss::of_slip((&self.shear_force, &slip, shear_rate), [normal_w, 0.0])
     }
-}
-
-/// The rotation by a rotation vector (rad).
-fn rotation_by(turned: &Vec3) -> Rotation3<f64> {
-    let angle = turned.norm();
-    if angle > 0.0 {
-        math::turn(&Unit::new_unchecked(turned / angle), angle)
-    } else {
-        Rotation3::identity()
-    }
-}
-
-/// Rate of the rotation vector `θ` of a body that turns with `w`: `θ' = ω − θ×ω/2 + θ×(θ×ω)/12 − …` (Bortz 1971), for small `θ`.
-fn rotation_vector_rate(turned: &Vec3, w: &Vec3) -> Vec3 {
-    let once = turned.cross(w);
-    w - once * 0.5 + turned.cross(&once) / 12.0
 }
 
 impl BlockContactState {

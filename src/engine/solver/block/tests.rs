@@ -31,7 +31,8 @@ use std::path::Path;
 
 /// Gravity of the exact cases (m/s²).
 const G: f64 = 9.81;
-/// A capture speed up to which every blow of a case comes too slowly to rebound (m/s): it stops dead.
+/// A capture speed up to which every blow of a case comes too slowly to rebound (m/s): it stops
+/// dead.
 const TOO_SLOW_M_S: f64 = 100.0;
 
 fn terrain(facets: Vec<Facet>) -> Terrain {
@@ -99,7 +100,8 @@ impl BlockRun {
         BlockState::new(&self.block, (centre - self.terrain.origin_m, attitude), &motion)
     }
 
-    /// Follows it for `longest_s`; `see` is told the time and the motion after every flight, impact and step.
+    /// Follows it for `longest_s`; `see` is told the time and the motion after every flight, impact
+    /// and step.
     fn follow(
         &mut self,
         state: &mut BlockState,
@@ -209,7 +211,8 @@ fn a_cube_rests_without_creeping() {
     assert!(way < 1e-6 && state.v.norm() < 1e-9, "{way:e} {:e}", state.v.norm());
 }
 
-/// A cube slides on its face at 40° with μ = 0.5: a = g (sin 40° − 0.5 cos 40°) = 2.5483 m/s², and does not turn.
+/// A cube slides on its face at 40° with μ = 0.5: a = g (sin 40° − 0.5 cos 40°) = 2.5483 m/s², and
+/// does not turn.
 #[test]
 fn a_cube_slides_as_a_point_does() {
     let angle = 40_f64.to_radians();
@@ -225,8 +228,8 @@ fn a_cube_slides_as_a_point_does() {
     assert!(state.v.dot(&up).abs() < 1e-8 && spin < 1e-8, "{} {spin}", state.v.dot(&up));
 }
 
-/// A cube on 50° with μ = 1.3 begins to tip about its lower edge with ¾ g/a (sin 50° − cos 50°); the balls at the corners set that
-/// edge a little inside.
+/// A cube on 50° with μ = 1.3 begins to tip about its lower edge with ¾ g/a (sin 50° − cos 50°);
+/// the balls at the corners set that edge a little inside.
 #[test]
 fn a_cube_tips_about_its_lower_edge() {
     let angle = 50_f64.to_radians();
@@ -243,8 +246,9 @@ fn a_cube_tips_about_its_lower_edge() {
     assert!((found / rounded - 1.0).abs() < 2e-3, "{found} {rounded}");
 }
 
-/// A box 2 x 0.2 x 0.2 m tilted by 30° falls at 3 m/s on its lower corners, without friction, e = 0.5: with the lever of those
-/// corners its centre keeps `v' = −v + (1 + e) v m_n/m`, and it spins with `m_n (1 + e) v a/I`.
+/// A box 2 x 0.2 x 0.2 m tilted by 30° falls at 3 m/s on its lower corners, without friction, e =
+/// 0.5: with the lever of those corners its centre keeps `v' = −v + (1 + e) v m_n/m`, and it spins
+/// with `m_n (1 + e) v a/I`.
 #[test]
 fn a_tilted_box_is_thrown_by_its_corners() {
     for ball in [0.002, 0.02] {
@@ -292,8 +296,8 @@ fn prism_on_its_side(sides: u32) -> Surface {
     surface
 }
 
-/// A plastic slap of a rolling prism from one edge to the next: ω'/ω = η = (k + cos 2π/n)/(k + 1), k = I/(m ρ²), whatever its
-/// corners' number; rounded corners put the edges at ρ inside.
+/// A plastic slap of a rolling prism from one edge to the next: ω'/ω = η = (k + cos 2π/n)/(k + 1),
+/// k = I/(m ρ²), whatever its corners' number; rounded corners put the edges at ρ inside.
 #[test]
 fn a_slap_takes_what_it_must() {
     for (sides, sharp) in [(4, 0.25), (5, 0.501_036_279_4), (6, 11.0 / 17.0), (8, 0.798_169_546_2)]
@@ -321,7 +325,8 @@ fn a_slap_takes_what_it_must() {
     }
 }
 
-/// e = 1 without friction: a box bounces hundreds of times and keeps energy, horizontal momentum and spin about the vertical.
+/// e = 1 without friction: a box bounces hundreds of times and keeps energy, horizontal momentum
+/// and spin about the vertical.
 #[test]
 fn a_frictionless_elastic_box_keeps_what_it_should() {
     let mut case =

@@ -1,39 +1,42 @@
-//! What comes and what goes within a step of an impact.
+//! Contacts that begin, end or replace others within a step of an impact.
 //!
-//! Where a contact begins or ends the force jumps: its own dashpot acts from one instant to the next, and the others' dashpots share with
-//! it. No pair of any order sees where that is. So the contacts of a step are those of its start: one that begins waits, one that ends is
-//! still counted, and the step ends where that happens first, found on its own path. Where a contact takes the place of another, from
-//! a face over an edge to the next, forces go on and only their rates jump: it acts at once, and a step whose error is too large for
-//! that is tried anew up to there.
+//! Where a contact begins or ends the force jumps: its own dashpot acts at once, and the dashpots
+//! of the other contacts are shared with it. No pair of any order can locate that. So the contacts
+//! of a step are those of its start: a contact that begins is suspended, one that ends is still
+//! counted, and the step ends where the first change happens on its dense output. Where a contact
+//! replaces another, from a face over an edge to the next face, the force is continuous and only
+//! its rate jumps: the new contact acts at once, and a step whose error is then too large is tried
+//! anew up to there.
 
 use crate::contact::{ContactPoint, ContactPoints, Feature, MOST};
 use crate::rock::Vec3;
 use arrayvec::ArrayVec;
 
-/// The contacts of a step's start, and the first stages that see others.
+/// The contacts of a step's start, and the first stages that see other contacts.
 #[derive(Debug, Clone)]
 pub(super) struct ContactChanges {
     at_start: ArrayVec<(Feature, Vec3), MOST>,
     /// Whether each of them is a single point.
     are_single: bool,
-    /// Normals of those that the current stage does not touch any more.
+    /// Normals of those that the current stage no longer touches.
     ended: ArrayVec<Vec3, MOST>,
-    /// First stage at which a contact that waits would press, at which one has ended, at which one has taken the place of another.
+    /// First stage at which a suspended contact would press, at which a contact has ended, and at
+    /// which one has replaced another.
     pub(super) onset: Option<usize>,
     pub(super) end: Option<usize>,
     pub(super) exchange: Option<usize>,
-    /// Whether the step ends just past an exchange that is known.
+    /// Whether the step ends just past a known exchange.
     pub(super) ends_past_exchange: bool,
 }
 
-/// Which change is looked for.
+/// Kind of change that is located.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum ContactChange {
     Onset,
     End,
 }
 
-/// Touches beside those of the step's start.
+/// Contact points compared with those of the step's start.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum TouchComparison {
     Same,
@@ -46,7 +49,7 @@ enum TouchComparison {
 }
 
 impl ContactChanges {
-    /// None, and no contacts.
+    /// No changes, and no contacts.
     pub(super) const NONE: Self = Self {
         at_start: ArrayVec::new_const(),
         are_single: true,
@@ -67,12 +70,12 @@ impl ContactChanges {
         }
     }
 
-    /// Begins another try.
+    /// Begins another trial step.
     pub(super) fn begin_try(&mut self) {
         (self.onset, self.end, self.exchange) = (None, None, None);
     }
 
-    /// Whether a stage has seen any.
+    /// Whether a stage has seen a change.
     pub(super) fn are_any(&self) -> bool {
         self.onset.or(self.end).or(self.exchange).is_some()
     }
@@ -86,12 +89,12 @@ impl ContactChanges {
         self.at_start.iter().any(|at_start| at_start.0 == feature)
     }
 
-    /// How many of the touches were there at the step's start.
+    /// Number of the contact points that existed at the step's start.
     fn count_persisting(&self, touches: &ContactPoints) -> usize {
         touches.iter().filter(|touch| self.has(touch.feature)).count()
     }
 
-    /// What the touches are to those of the step's start.
+    /// Compares the contact points with those of the step's start.
     fn compared(&self, touches: &ContactPoints) -> TouchComparison {
         let persisting = self.count_persisting(touches);
         let are_single = touches.iter().all(ContactPoint::is_single);
@@ -103,12 +106,13 @@ impl ContactChanges {
         }
     }
 
-    /// Whether contacts have taken the place of others, or a patch that of single points.
+    /// Whether contacts have replaced others, or a patch has replaced single points.
     pub(super) fn are_exchanged(&self, touches: &ContactPoints) -> bool {
         self.compared(touches) == TouchComparison::Others
     }
 
-    /// Makes the touches of stage `node` those of the step's start, for a rock of `radius` (m); those of the ends, 0, are what they are.
+    /// Restricts the contact points of stage `node` to those of the step's start, for a rock of
+    /// `radius` (m); those at the ends, node 0, are kept.
     pub(super) fn keep_start_contacts(
         &mut self,
         node: usize,
@@ -136,7 +140,7 @@ impl ContactChanges {
         }
     }
 
-    /// The contact that comes first, or goes first, by its distance (m) and its normal.
+    /// The contact that begins first, or ends first: its distance (m) and its normal.
     pub(super) fn first(
         &self,
         change: ContactChange,
@@ -157,7 +161,7 @@ impl ContactChanges {
 }
 
 impl ContactChange {
-    /// Whether penetration grows towards it.
+    /// Sign of the penetration rate at the change.
     pub(super) fn sign(self) -> f64 {
         match self {
             Self::Onset => 1.0,

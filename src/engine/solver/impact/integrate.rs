@@ -1,11 +1,12 @@
-//! Steps through the time of one contact on a plane, with the local error under control.
+//! Integration of the tangential motion of one contact on a plane, with error control.
 //!
-//! The normal force is known in closed form before slip is followed: on a plane normal motion does
-//! not feel friction. So the law of slip is an ordinary differential equation with a given force,
-//! smooth but for the kinks where an element begins or ends to slip.
+//! The normal force is known in closed form before slip is integrated: on a plane the normal motion
+//! does not depend on friction. So slip obeys an ordinary differential equation with a given force,
+//! smooth except where an element begins or ends to slip.
 //!
-//! In a step each element slips or sticks as it does at its start, also beyond where it would change: that is smooth, and what is
-//! between the ends of the step is known to order 4. Where an element changes there, the step ends, and nothing of it is lost.
+//! In a step each element slips or sticks as at its start, also beyond the point where it would
+//! switch. This keeps the right side smooth and the dense output at order 4. Where an element
+//! switches the step ends, and no work is lost.
 
 use super::ImpactEffort;
 use super::dormand_prince::{
@@ -13,34 +14,38 @@ use super::dormand_prince::{
 };
 use super::normal_motion::{NormalMotion, Series};
 
-/// No step is longer (1/ω, times the shorter of 1 and `1/2ζ`): as far as the series below gives all its digits, and the estimate of
-/// the error is to be trusted.
+/// Longest step (1/ω, times the smaller of 1 and `1/2ζ`): as far as the series below has full
+/// precision and the error estimate is reliable.
 const LONGEST: f64 = 0.9;
-/// Steps below this share of the whole are taken as they are (–): rounding.
+/// Steps below this share of the whole are accepted as they are (–): rounding.
 const SHORTEST_SHARE: f64 = 1e-9;
-/// What a step may miss behind a change that is left as it is (–, relative to the local error allowed).
+/// Largest error of a step behind a switching point that is ignored (–, relative to the local error
+/// allowed).
 const SWITCH_THRESHOLD: f64 = 0.3;
-/// What a step may miss between the moment that is found for a change and its own (–, relative to the local error allowed).
+/// Largest error of a step by the inexact time of a switching point (–, relative to the local error
+/// allowed).
 const SWITCH_ACCURACY: f64 = 0.1;
-/// By how much a step behind a change is shorter than the one before lets expect (–).
+/// Factor of the step length behind a switching point (–).
 const AFTER_SWITCH: f64 = 0.8;
-/// Most looks for the moment of a change.
+/// Iterations for the time of a switching point, at most.
 const ROOT_STEPS: u32 = 8;
-/// Changes one after the other without a step between them, after which one is taken whatever changes.
+/// Switching points in succession without a step between them, after which a step is accepted
+/// whatever switches.
 const SIMULTANEOUS: u32 = 4;
 
-/// A flow under a force that is known.
+/// A system of differential equations under a known normal force.
 pub(super) trait ForcedFlow<const N: usize, const Q: usize, const K: usize> {
-    /// What each element asks for, squared, and its cap, under the force `f`: beyond it slips.
+    /// Squared trial value of each element and its cap under the force `f`; an element beyond its
+    /// cap slips.
     fn asked(&self, f: f64, y: &[f64; N]) -> [[f64; 2]; K];
-    /// Writes the rates under the force `f` over `to`, with the elements that slip.
+    /// Writes the rates under the force `f` into `to`, with the elements that slip.
     fn rates(&self, f: f64, y: &[f64; N], slips: &[bool; K], to: &mut Rates<N, Q, K>);
-    /// Square of an error.
+    /// Squared norm of an error.
     fn size2(&self, off: &[f64; N]) -> f64;
 }
 
-/// The force along a contact, by series from step to step.
-/// Forces in `m ω v_n`; times in `1/ω`.
+/// The normal force of a contact, by a series from step to step. Forces in `m ω v_n`; times in
+/// `1/ω`.
 struct NormalForceSeries<const D: usize> {
     oscillator: NormalMotion,
     /// Gravity into the plane over `ω v_n` (–).
@@ -70,9 +75,9 @@ impl<const D: usize> NormalForceSeries<D> {
         self.nodes = NODES.map(|node| self.at(node * h));
     }
 
-    /// Goes on by `h`.
+    /// Advances by `h`.
     ///
-    /// A new series from force and rate at the step's end: each holds its digits over one step
+    /// A new series from force and rate at the step's end: each has full precision over one step
     /// only.
     #[inline]
     fn advance(&mut self, h: f64) {
@@ -106,7 +111,7 @@ impl<P: ForcedFlow<N, Q, K>, const N: usize, const Q: usize, const K: usize, con
     }
 }
 
-/// What is asked of a run.
+/// Input of an integration.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct IntegrationSpan {
     pub(super) oscillator: NormalMotion,
@@ -121,13 +126,15 @@ pub(super) struct IntegrationSpan {
     pub(super) allowed: f64,
 }
 
-/// By how much an element is beyond its law, if it slips as it asks for less than its cap or sticks as it asks for more.
+/// Excess of an element beyond its law: it slips although its trial value is below the cap, or
+/// sticks although it is above.
 #[inline]
 fn beyond(switching: [f64; 2], slips: bool) -> f64 {
     if slips { -excess(switching) } else { excess(switching) }
 }
 
-/// Runs from `y` over the whole span; `D` terms of the force's series. Returns the end and the sums.
+/// Integrates from `y` over the whole span; `D` terms of the force's series. Returns the end and
+/// the quadratures.
 pub(super) fn run<
     P: ForcedFlow<N, Q, K>,
     const N: usize,
@@ -163,7 +170,7 @@ pub(super) fn run<
     (integration.y, integration.sum)
 }
 
-/// How far a run has come.
+/// State of an integration.
 struct ForcedIntegration<'a, P, const N: usize, const Q: usize, const K: usize, const D: usize> {
     law: &'a P,
     span: &'a IntegrationSpan,
@@ -171,16 +178,17 @@ struct ForcedIntegration<'a, P, const N: usize, const Q: usize, const K: usize, 
     y: [f64; N],
     sum: [f64; Q],
     t: f64,
-    /// The step to try next.
+    /// Length of the next trial step.
     next_h: f64,
-    /// Elements that slip, as they do in all of the next step.
+    /// Elements that slip throughout the next step.
     slips: [bool; K],
-    /// Elements that have changed at this time.
+    /// Elements that have switched at this time.
     simultaneous: u32,
     stages: Stages<N, Q, K>,
 }
 
-/// Where an element begins to slip or to stick: which, after which share of the step (–), and the numbers there.
+/// Where an element begins to slip or to stick: which one, after which share of the step (–), and
+/// the state there.
 struct SliderSwitch<const N: usize> {
     element: usize,
     share: f64,
@@ -211,7 +219,7 @@ impl<'a, P: ForcedFlow<N, Q, K>, const N: usize, const Q: usize, const K: usize,
         let left = self.span.length - self.t;
         // a strong dashpot makes the force's series short-lived
         let wished = self.next_h.min(LONGEST / (2.0 * self.span.oscillator.zeta).max(1.0));
-        // the last two steps share what is left, so that none is a remnant
+        // the last two steps share the remainder equally
         if wished >= left {
             left
         } else if 2.0 * wished > left {
@@ -221,12 +229,12 @@ impl<'a, P: ForcedFlow<N, Q, K>, const N: usize, const Q: usize, const K: usize,
         }
     }
 
-    /// A step this short is taken as it is.
+    /// A step up to this is accepted as it is.
     fn shortest(&self) -> f64 {
         SHORTEST_SHARE * self.span.length
     }
 
-    /// Goes on by a whole step of length `h`.
+    /// Accepts a whole step of length `h`.
     fn accept(&mut self, tried: &TrialResult<N, Q>, h: f64) {
         let left = self.span.length - self.t;
         self.t = if h >= left { self.span.length } else { self.t + h };
@@ -242,7 +250,7 @@ impl<'a, P: ForcedFlow<N, Q, K>, const N: usize, const Q: usize, const K: usize,
         }
     }
 
-    /// Goes on to where an element changes in a step of length `h`.
+    /// Advances to where an element switches in a step of length `h`.
     fn switch_at(&mut self, switch: &SliderSwitch<N>, tried: &TrialResult<N, Q>, h: f64) {
         let elapsed = switch.share * h;
         self.t += elapsed;
@@ -256,7 +264,7 @@ impl<'a, P: ForcedFlow<N, Q, K>, const N: usize, const Q: usize, const K: usize,
         self.begin();
     }
 
-    /// The first change that is felt in a step of length `h`.
+    /// The first significant switching point in a step of length `h`.
     #[inline]
     fn switch(&self, tried: &TrialResult<N, Q>, h: f64) -> Option<SliderSwitch<N>> {
         if self.simultaneous >= SIMULTANEOUS {
@@ -280,7 +288,8 @@ impl<'a, P: ForcedFlow<N, Q, K>, const N: usize, const Q: usize, const K: usize,
         first
     }
 
-    /// Where one element changes in a step of length `h` for which stages say that it does, if that is felt.
+    /// Where one element switches in a step of length `h` in which the stages say that it does, if
+    /// that is significant.
     fn switch_of(
         &self,
         element: usize,
@@ -289,7 +298,7 @@ impl<'a, P: ForcedFlow<N, Q, K>, const N: usize, const Q: usize, const K: usize,
     ) -> Option<SliderSwitch<N>> {
         let (slips, allowed) = (self.slips[element], self.span.allowed);
         let switching = self.stages.switching().map(|switching| beyond(switching[element], slips));
-        // how far it gets beyond its law, as far as the stages tell
+        // largest excess beyond its law, as far as the stages tell
         if switching[1..].iter().fold(0.0, |most, x| f64::max(most, *x)) * h <= allowed {
             return None;
         }
@@ -302,24 +311,25 @@ impl<'a, P: ForcedFlow<N, Q, K>, const N: usize, const Q: usize, const K: usize,
         let high = if end > 0.0 {
             (1.0, end)
         } else {
-            // it is back at the end of the step
+            // it has returned by the end of the step
             let seen = NODES.into_iter().zip(switching).skip(1).filter(|(_, excess)| *excess > 0.0);
             let mut looks = seen.map(|(node, _)| (node, look(node).0));
             looks.find(|(_, excess)| *excess > 0.0)?
         };
         let found = illinois_root((switching[0], high), look, SWITCH_ACCURACY * allowed / h);
-        // what the step would miss behind the change, on the mean
+        // mean error of the step behind the switching point
         let is_felt =
             end <= 0.0 || 0.5 * end * (1.0 - found.share) * h > SWITCH_THRESHOLD * allowed;
         is_felt.then_some(found)
     }
 }
 
-/// Where an element gets beyond its law in a step that it begins with `start` beyond it, below 0 but for rounding; at the share
-/// `high.0` of the step it is beyond by `high.1`. Over the part of the step by which the place is wrong it is then off its law by
-/// `missed` on the mean, times that part.
+/// Where an element gets beyond its law in a step. The excess is `start` at the start of the step,
+/// below 0 except for rounding, and `high.1` at the share `high.0` of the step. Over the part of
+/// the step by which the point is inaccurate, the mean excess is `missed` times that part.
 ///
-/// By straight lines between a place on this side and one beyond, the one that stays with half of its weight (the Illinois rule).
+/// By the Illinois variant of regula falsi: linear interpolation between a point on each side,
+/// where the side that stays gets half of its weight.
 fn illinois_root<const N: usize>(
     (start, mut high): (f64, (f64, f64)),
     look: impl Fn(f64) -> (f64, SliderSwitch<N>),

@@ -1,4 +1,4 @@
-//! The limit of stiff springs: contacts whose geometry does not change while the impact lasts.
+//! The limit of stiff springs: impacts of frozen geometry.
 //!
 //! ```text
 //! c' = v,   v' = Σ (F n − q)/m,   R ω' = (m R²/I) Σ (n × q − M/R)/m
@@ -6,15 +6,16 @@
 //! ```
 //!
 //! in units of mass, `|v|`, `R` and `1/ω` of the stiffest contact; normals are fixed, so `x` is
-//! linear in the way.
+//! linear in the displacement.
 //!
-//! Ratios of stiffness stay as `p_N` grows, and with them the outcome: what is computed here is the
-//! limit itself, not a large stiffness. The penetration goes to 0 in it, so weight, the turn of
-//! normals and the time of the impact do not matter.
+//! Ratios of stiffness stay constant as `p_N` grows, and with them the outcome: the limit itself is
+//! computed, not a large stiffness. The penetration goes to 0 in it, so weight, the rotation of
+//! normals and the duration of the impact have no effect.
 
 mod bodies;
 mod contacts;
 mod rates;
+mod unchanged_motion;
 
 use super::dormand_prince::{Attempt, Stages, add_sums, growth};
 use super::plane::{LOCAL, Plane};
@@ -31,6 +32,7 @@ pub(crate) use bodies::{
 use contacts::{AfterImpact, SwitchTime};
 use rates::ContactRates;
 use std::f64::consts::TAU;
+use unchanged_motion::UnchangedMotion;
 
 /// One contact of a frozen impact.
 #[derive(Debug, Clone, Copy)]
@@ -41,22 +43,23 @@ pub(crate) struct FrozenContact<'a> {
     pub(crate) law: &'a Law,
     /// Normal stiffness over `p_N` (–): `|a|²` of a patch.
     pub(crate) stiffness_scale: f64,
-    /// Whether it gives nothing back.
+    /// Whether it does not rebound.
     pub(crate) captured: bool,
-    /// Gap (m) that is left when the impact begins, 0 or more: springs that are pressed for long enough close it. Of several bodies only.
+    /// Gap (m) at the start of the impact, ≥ 0: springs that are compressed for long enough close
+    /// it. Of several bodies only.
     pub(crate) gap_m: f64,
-    /// What it joins.
+    /// The bodies that it joins.
     pub(crate) ends: ContactEnds,
 }
 
-/// What a contact of a frozen impact joins.
+/// The bodies that a contact of a frozen impact joins.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ContactEnds {
-    /// Place of the body into which its normal points.
+    /// Index of the body into which its normal points.
     pub(crate) first: usize,
-    /// Place of the other, `None` for the mesh.
+    /// Index of the other body, `None` for the mesh.
     pub(crate) second: Option<usize>,
-    /// Distances from their centres to the common point that is touched, over their radii (–).
+    /// Distances from their centres to the common contact point, over their radii (–).
     pub(crate) levers: [f64; 2],
 }
 
@@ -64,7 +67,7 @@ impl ContactEnds {
     /// The first body and the mesh.
     pub(crate) const MESH: Self = Self { first: 0, second: None, levers: [1.0; 2] };
 
-    /// Mass that it moves (kg): that of a body, or the reduced mass of two.
+    /// Effective mass (kg): that of a body, or the reduced mass of two.
     fn moved_kg(&self, bodies: &[FrozenBody]) -> f64 {
         let mass_kg = |k: usize| bodies[k].body.mass;
         match self.second {
@@ -73,7 +76,7 @@ impl ContactEnds {
         }
     }
 
-    /// Whether two contacts with the mesh are of one body, which share their dashpots.
+    /// Whether two contacts are of one body with the mesh: they share their dashpots.
     fn shares_with(&self, other: &Self) -> bool {
         self.second.is_none() && other.second.is_none() && self.first == other.first
     }
@@ -121,7 +124,8 @@ pub(crate) struct FrozenRebound {
     pub(crate) velocity_m_s: Vec3,
     /// Spin (rad/s).
     pub(crate) spin_rad_s: Vec3,
-    /// Energy lost (J) by contact and kind, each ≥ 0: together exactly the energy before less that after.
+    /// Energy lost (J) by contact and kind, each ≥ 0: together exactly the energy before less that
+    /// after.
     pub(crate) loss: [Loss; MOST],
     /// How it ended.
     pub(crate) settled: ImpactOutcome,
@@ -129,31 +133,35 @@ pub(crate) struct FrozenRebound {
     pub(crate) effort: ImpactEffort,
 }
 
-/// Tolerance of one contact over that of several (–): it costs little.
+/// Tolerance of a single contact over that of several (–): it is cheap.
 const SINGLE_TOLERANCE: f64 = 0.5;
-/// First step at a tolerance of 1 (radians of the stiffest contact): the local error of order 5 is about (h/this)⁵.
+/// First step at a tolerance of 1 (radians of the stiffest contact): the local error of order 5 is
+/// about (h/this)⁵.
 const FIRST_STEP: f64 = 3.5;
-/// No step is longer, in radians of the stiffest contact …
+/// Longest step (radians of the stiffest contact).
 const LONGEST_STEP: f64 = 0.9;
-/// A step shorter than this is not cut at a kink (radians).
+/// A step up to this is not cut at a switching point (radians).
 const SHORTEST_CUT: f64 = 1e-9;
-/// An approach slower than this share of the error allowed is none (–).
+/// An approach slower than this share of the allowed error is zero (–).
 pub(in crate::solver) const NEGLIGIBLE: f64 = 1e-3;
-/// Radians of the slowest swing, of the heaviest body on the softest contact, flights between touches apart, after which an impact is ended: rattling
-/// between walls has no other end.
+/// Radians of the slowest oscillation, that of the heaviest body on the softest contact, after
+/// which an impact is ended, flights between contacts not counted: rattling between walls has no
+/// other end.
 const MOST_TIME: f64 = 300.0;
-/// Longest flight to a gap that closes within an impact, in radians of the softest contact: what has let go is still near for as long again as it was pressed.
+/// Longest flight to a gap that closes within an impact, in radians of the softest contact: a
+/// contact that has opened counts as near for as long again as it was closed.
 pub(crate) const LONGEST_WAIT: f64 = TAU;
-/// A rock whose motion changes by no more than so many errors allowed over a swing of the softest contact is jammed (–).
+/// A rock whose motion changes by at most this number of allowed errors over a period of the
+/// softest contact is jammed (–).
 const JAMMED_ERRORS: f64 = 3.0;
-/// Steps after which it is ended.
+/// Steps after which an impact is ended.
 const MOST_STEPS: u32 = 20_000;
 
-/// Follows one rock with velocity `v` (m/s) and spin `w` (rad/s) through an impact on all `contacts` (1 … [`MOST`]) at once, each
-/// of them at penetration zero; `tolerance` is relative to `|v|` (–).
+/// Integrates the impact of one rock with velocity `v` (m/s) and spin `w` (rad/s) on all `contacts`
+/// (1 … [`MOST`]) at once, each of them at penetration zero; `tolerance` is relative to `|v|` (–).
 ///
 /// # Panics
-/// Never: contacts beyond [`MOST`] are not looked at.
+/// Never: contacts beyond [`MOST`] are ignored.
 ///
 /// Cost: one contact is a closed form and a short integration; several are followed step by step.
 pub(crate) fn frozen_impact(
@@ -170,7 +178,7 @@ pub(crate) fn frozen_impact(
         settled: ImpactOutcome::Free,
         effort: ImpactEffort::default(),
     };
-    // nothing comes nearer: no impact
+    // no contact closes: no impact
     if contacts.iter().all(|contact| contact.normal.dot(v) >= 0.0) {
         return same;
     }
@@ -179,7 +187,7 @@ pub(crate) fn frozen_impact(
     }
     let rolls = contacts.iter().any(|contact| contact.law.rolling.is_on());
     let how = (body, contacts, tolerance);
-    // numbers of contacts and springs are constants: loops on the stack
+    // the numbers of contacts and springs are constants: arrays on the stack
     match (contacts.len(), rolls) {
         (2, false) => several_contacts::<2, 15, 8, 6>(how, (v, w), same),
         (2, true) => several_contacts::<2, 21, 8, 6>(how, (v, w), same),
@@ -205,7 +213,7 @@ fn single_contact(
 ) -> FrozenRebound {
     let body = Body { gravity: Vec3::zeros(), ..*body };
     let (law, n) = (contact.law, &contact.normal);
-    // one that gives nothing back is damped over critical, and its rest of rebound taken away below
+    // a captured contact is damped over critical, and its remaining rebound is removed below
     let point = (contact.captured, contact.stiffness_scale);
     let plane = Plane::of_patch(&body, law, point, SINGLE_TOLERANCE * tolerance);
     let Some(rebound) = plane.follow(n, v, w) else {
@@ -223,7 +231,8 @@ fn single_contact(
     end
 }
 
-/// Several contacts; `K` of them at most, `N` numbers that change, `Q` that are summed up, `P` possible kinks.
+/// Several contacts; at most `K` of them, `N` state variables, `Q` quadratures, `P` switching
+/// functions.
 fn several_contacts<const K: usize, const N: usize, const Q: usize, const P: usize>(
     (body, contacts, tolerance): (&Body, &[FrozenContact], f64),
     (v, w): (&Vec3, &Vec3),
@@ -239,7 +248,7 @@ fn several_contacts<const K: usize, const N: usize, const Q: usize, const P: usi
     let [place] = run.motions();
     let AfterImpact { motions: [place], plastic } =
         run.flow.contacts.finish(start, place, run.flow.negligible());
-    // exact energy of the impact; the summed parts only say where it went
+    // exact energy of the impact; the quadratures only distribute it
     let lost = run.flow.contacts.energy(0, start) - run.flow.contacts.energy(0, place);
     let loss_j = run.loss_j(lost.max(0.0) * (body.mass * speed * speed), plastic);
     end.loss[..K].copy_from_slice(&loss_j);
@@ -247,7 +256,7 @@ fn several_contacts<const K: usize, const N: usize, const Q: usize, const P: usi
     end
 }
 
-/// An impact being followed.
+/// An impact during its integration.
 struct ImpactRun<const B: usize, const K: usize, const N: usize, const Q: usize, const P: usize> {
     flow: ContactRates<B, K>,
     y: [f64; N],
@@ -258,7 +267,7 @@ struct ImpactRun<const B: usize, const K: usize, const N: usize, const Q: usize,
 impl<const B: usize, const K: usize, const N: usize, const Q: usize, const P: usize>
     ImpactRun<B, K, N, Q, P>
 {
-    /// At the first touch, with `speed` (m/s) for a unit.
+    /// At first contact, with `speed` (m/s) as the unit.
     fn new(
         (bodies, contacts): (&[FrozenBody], &[FrozenContact]),
         speed: f64,
@@ -273,15 +282,15 @@ impl<const B: usize, const K: usize, const N: usize, const Q: usize, const P: us
         }
     }
 
-    /// Steps until nothing pushes and nothing comes nearer.
+    /// Steps until no contact pushes and none closes.
     ///
-    /// A rock may fly between touches of one impact (a wedge): a closed form that costs no time.
+    /// A rock may fly between the contacts of one impact (a wedge): a closed form at no cost.
     fn follow(&mut self, tolerance: f64) -> ImpactOutcome {
         let (mut step, mut time) = (StepLength::new(FIRST_STEP * math::pow(tolerance, 0.2)), 0.0);
         let softest = self.flow.contacts.softest;
         let (most, mut unchanged) =
             (MOST_TIME / self.flow.contacts.slowest_swing(), UnchangedMotion::<B>::NONE);
-        // Whether the contacts have been changed without a step: once is enough.
+        // Whether the set of closed contacts has been switched without a step: once is enough.
         let mut switched = false;
         self.flow.update_pressed(&mut self.y);
         let mut stages = Stages::<N, Q, P>::NONE;
@@ -293,7 +302,7 @@ impl<const B: usize, const K: usize, const N: usize, const Q: usize, const P: us
             }
             if self.flow.is_free(&self.y) {
                 let Some(wait) = self.flow.next_touch(&self.y) else { return ImpactOutcome::Free };
-                // Exact and free of cost: not counted.
+                // Exact and free of cost: its time is not counted.
                 self.flow.drift(&mut self.y, wait);
                 self.effort.steps += 1;
                 self.flow.rates_of(&self.y, stages.first());
@@ -320,7 +329,7 @@ impl<const B: usize, const K: usize, const N: usize, const Q: usize, const P: us
                 }
             };
             // a contact that opens or closes within the step ends it: dashpots are shared anew
-            // among those that are pressed
+            // among the closed contacts
             match self.flow.crossing(&self.y, &tried.y, h) {
                 Some(SwitchTime::Now) if !switched => {
                     switched = true;
@@ -354,8 +363,8 @@ impl<const B: usize, const K: usize, const N: usize, const Q: usize, const P: us
         })
     }
 
-    /// Notes how fast the contacts that are pressed come nearer.
-    /// The fastest approach of each tells what restitution may give back of it.
+    /// Records the approach speeds of the closed contacts. The fastest approach of each decides how
+    /// much of it restitution may return.
     fn record_approaches(&mut self) {
         let (y, contacts) = (&self.y, &mut self.flow.contacts);
         for k in 0..contacts.list().len() {
@@ -366,12 +375,12 @@ impl<const B: usize, const K: usize, const N: usize, const Q: usize, const P: us
         }
     }
 
-    /// What each contact has taken of a loss (J), as friction, dashpots and rolling have summed up along the steps and as what gave
-    /// nothing back has taken at the end.
+    /// Distributes a loss (J) over the contacts by the quadratures of friction, dashpots and
+    /// rolling, and by the energy that captured contacts absorbed at the end.
     fn loss_j(&self, lost_j: f64, plastic: [f64; K]) -> [Loss; K] {
         let mut parts = [[0.0; 3]; K];
         for ((part, sums), plastic) in parts.iter_mut().zip(self.sums.chunks(4)).zip(plastic) {
-            // none below 0: the error of the steps may make a small one negative
+            // none below 0: the integration error may make a small one negative
             let [slipping, shear, rolling, normal] = [sums[0], sums[1], sums[2], sums[3]];
             let slipping = slipping.max(0.0);
             let damping = (shear - slipping).max(0.0) + normal.max(0.0);
@@ -379,31 +388,5 @@ impl<const B: usize, const K: usize, const N: usize, const Q: usize, const P: us
         }
         shared(lost_j, parts.as_flattened_mut());
         parts.map(Loss::on_slope)
-    }
-}
-
-/// Since when the motions have not changed.
-///
-/// A rock wedged between two contacts keeps its velocity, near 0, while springs and friction hold
-/// each other: no step would end that.
-struct UnchangedMotion<const B: usize> {
-    since: f64,
-    motions: [Twist; B],
-}
-
-impl<const B: usize> UnchangedMotion<B> {
-    /// Nothing seen yet.
-    const NONE: Self = Self { since: 0.0, motions: [STILL; B] };
-
-    /// For how long velocities and spins have been the same, to `allowed`.
-    fn stays(&mut self, motions: &[Twist; B], time: f64, allowed: f64) -> f64 {
-        let change2 = |((v, w), (was_v, was_w)): (&Twist, &Twist)| {
-            (v - was_v).norm_squared().max((w - was_w).norm_squared())
-        };
-        let change2 = motions.iter().zip(&self.motions).map(change2).fold(0.0, f64::max);
-        if change2 > allowed * allowed {
-            (self.since, self.motions) = (time, *motions);
-        }
-        time - self.since
     }
 }

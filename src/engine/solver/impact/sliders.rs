@@ -1,11 +1,13 @@
-//! Shear and rolling of one contact under a known force: slider in series with (spring ∥ dashpot), explicitly.
+//! Shear and rolling of one contact under a known force: slider in series with (spring ∥ dashpot),
+//! explicitly.
 //!
-//! In units of mass, radius, approach speed and `1/ω`. With `s = k ξ/c`, the speed at which the dashpot would hold what the
-//! spring holds, the law of an element reads `p = proj_{cap}(u + s)`, `s' = (k/c)(p − s)`, force `c p`: the slider slips by
-//! `u + s − p`, the dashpot moves by `p − s`.
+//! In units of mass, radius, approach speed and `1/ω`. With `s = k ξ/c`, the velocity at which the
+//! dashpot has the force of the spring, the law of an element reads `p = proj_{cap}(u + s)`, `s' =
+//! (k/c)(p − s)`, force `c p`: the slider slips by `u + s − p`, the dashpot moves by `p − s`.
 //!
-//! Why `s` and not `ξ`: it is a speed, so slip and spring add up before the projection. Losses: the slider takes `c p (u + s − p)`, the dashpot `c
-//! (p − s)²`; what is left goes into the spring.
+//! `s` is used instead of `ξ` because it is a velocity: slip and spring add up before the
+//! projection. Losses: the slider takes `c p (u + s − p)`, the dashpot `c (p − s)²`; the rest goes
+//! into the spring.
 
 use super::dormand_prince::{Rates, slips};
 use super::integrate::ForcedFlow;
@@ -53,23 +55,24 @@ impl SliderElement {
         self.damping > 0.0
     }
 
-    /// What a spring stretched by `ξ` has as a speed, `s = k ξ/c`.
+    /// The stretch `ξ` of a spring as a velocity, `s = k ξ/c`.
     pub(super) fn stretched<const N: usize>(&self, stretch: [f64; N]) -> [f64; N] {
         stretch.map(|x| x * self.rate)
     }
 
-    /// The stretch of a spring that has `s`.
+    /// The stretch of a spring from `s`.
     pub(super) fn stretch<const N: usize>(&self, s: [f64; N]) -> [f64; N] {
         if self.is_on() { s.map(|s| s / self.rate) } else { [0.0; N] }
     }
 
-    /// Energy `k ξ²/2` of the spring that has `s`.
+    /// Energy `k ξ²/2` of a spring from `s`.
     pub(super) fn stored(&self, s: &[f64]) -> f64 {
         let square: f64 = s.iter().map(|s| s * s).sum();
         if square > 0.0 { 0.5 * self.damping * square / self.rate } else { 0.0 }
     }
 
-    /// `p` and its shortening for what is asked, under the force `f`: `p = asked × share`, and both sizes.
+    /// Projection of a trial value under the force `f`: the factor of `p = asked × share`, the
+    /// excess over the cap, and the cap.
     #[inline]
     pub(super) fn share(&self, asked2: f64, f: f64) -> (f64, f64, f64) {
         let cap = self.cap * f;
@@ -77,7 +80,8 @@ impl SliderElement {
         (share, by, cap)
     }
 
-    /// `p` and its shortening for what is asked, where it slips under a cap, or sticks: `p = asked × share`, and how much slips.
+    /// Projection of a trial value for an element that slips under a cap, or sticks: the factor of
+    /// `p = asked × share`, and the excess.
     #[inline]
     fn scale(slips: bool, [asked2, cap]: [f64; 2]) -> (f64, f64) {
         if !slips {
@@ -98,7 +102,7 @@ pub(super) struct ShearFlow {
     pub(super) gravity: [f64; 2],
 }
 
-/// Slip, spring `s`; summed up: what slipping takes, slip.
+/// State: slip, spring `s`; quadratures: loss by slip, slip.
 impl ForcedFlow<4, 3, 1> for ShearFlow {
     #[inline]
     fn asked(&self, f: f64, y: &[f64; 4]) -> [[f64; 2]; 1] {
@@ -128,7 +132,7 @@ impl ForcedFlow<4, 3, 1> for ShearFlow {
         };
     }
 
-    /// Springs over their rate, so that an error of `s` counts as the stretch it means.
+    /// Springs over their rate, so that an error of `s` counts as the stretch it stands for.
     #[inline]
     fn size2(&self, off: &[f64; 4]) -> f64 {
         let over = 1.0 / self.element.rate;
@@ -145,7 +149,7 @@ pub(super) struct LineShearFlow {
     pub(super) lightness: f64,
 }
 
-/// Slip, spring `s`; summed up: what slipping takes, slip.
+/// State: slip, spring `s`; quadratures: loss by slip, slip.
 impl ForcedFlow<2, 2, 1> for LineShearFlow {
     #[inline]
     fn asked(&self, f: f64, y: &[f64; 2]) -> [[f64; 2]; 1] {
@@ -192,21 +196,23 @@ impl ShearRollingFlow {
         [y[0] - y[3], y[1] + y[2]]
     }
 
-    /// What the shear element is asked for …
+    /// Trial value of the shear element.
     #[inline]
     fn slip_asked(y: &[f64; 10]) -> [f64; 2] {
         let slip = Self::slip(y);
         [slip[0] + y[5], slip[1] + y[6]]
     }
 
-    /// … and the rolling one, which acts on all of the spin, that about the normal too.
+    /// Trial value of the rolling element, which acts on the whole spin, including that about the
+    /// normal.
     #[inline]
     fn spin_asked(y: &[f64; 10]) -> [f64; 3] {
         [y[2] + y[7], y[3] + y[8], y[4] + y[9]]
     }
 }
 
-/// Velocity, spin, springs; summed up: what slipping takes, way, work of rolling and of shear.
+/// State: velocity, spin, springs; quadratures: loss by slip, displacement, work of rolling and of
+/// shear.
 impl ForcedFlow<10, 5, 2> for ShearRollingFlow {
     #[inline]
     fn asked(&self, f: f64, y: &[f64; 10]) -> [[f64; 2]; 2] {

@@ -3,8 +3,9 @@
 use super::*;
 use std::f64::consts::PI;
 
-/// The hard plane lies far below the ball, so that all of it is cut, without gravity: `v = v₀ exp(−C ρ_s A z/2m)` with `A = π R²`, on the
-/// way in, square and at an angle, and along the plane, in one step or many.
+/// The hard plane lies far below the ball, so that all of it is cut, without gravity: `v = v₀
+/// exp(−C ρ_s A z/2m)` with `A = π R²`, on the way in, square and at an angle, and along the plane,
+/// in one step or many.
 #[test]
 fn a_ball_deep_in_soil_slows_by_the_closed_form_of_drag() {
     let radius = 0.5;
@@ -49,8 +50,9 @@ fn a_ball_deep_in_soil_slows_by_the_closed_form_of_drag() {
     }
 }
 
-/// A hop within the soil takes what drag takes on the way flown, step by step, as deep as the ball then is; so little is left out where
-/// gravity alone bends the way. One that rises out is dragged until it is out, and a flight of no time takes nothing.
+/// A hop within the soil takes what drag takes on the way flown, step by step, as deep as the ball
+/// then is; so little is left out where gravity alone bends the way. One that rises out is dragged
+/// until it is out, and a flight of no time takes nothing.
 #[test]
 fn a_hop_in_a_scar_is_dragged_as_deep_as_it_is() {
     let (radius, g) = (0.4, 9.81);
@@ -115,7 +117,8 @@ fn of_two_soils_as_deep_the_weaker_drag_counts() {
     assert!((beside - weak).abs() < 1e-15 && weak < 0.99, "{beside} {weak}");
 }
 
-/// A ball of stone of radius 0.5 m on soil of this strength, where gravity is `g`, and what drags it on each metre when all of it is cut (1/m).
+/// A ball of stone of radius 0.5 m on soil of this strength, where gravity is `g`, and what drags
+/// it on each metre when all of it is cut (1/m).
 fn deep(strength_kn_m2: f64, g: f64) -> (Body, Scars, f64) {
     let (radius, scar) = (0.5_f64, Scar { strength_kn_m2, drag: 2.5, soil_density_kg_m3: 1700.0 });
     let mass = 2700.0 * 4.0 / 3.0 * PI * radius.powi(3);
@@ -128,8 +131,8 @@ fn square(approach_m_s: f64) -> GroundBlow {
     GroundBlow { ground: 0, normal: Vec3::z(), approach_m_s, of_point_m_s: approach_m_s }
 }
 
-/// A harder impact in a scar digs on from where the ball is: it takes the way from the depth of the first to its own, and a softer one takes
-/// nothing.
+/// A harder impact in a scar digs on from where the ball is: it takes the way from the depth of the
+/// first to its own, and a softer one takes nothing.
 #[test]
 fn a_harder_impact_digs_on_from_the_depth_of_the_first() {
     let (body, mut scars, per_m) = deep(5.0, 0.0);
@@ -142,8 +145,9 @@ fn a_harder_impact_digs_on_from_the_depth_of_the_first() {
     assert!((kept / math::exp(-per_m * more_m) - 1.0).abs() < 1e-12, "{kept} over {more_m} m");
 }
 
-/// Square out of a depth `d ≥ R` a ball cuts `π R² (d − R/3)`. Half of the step in which contact ends is along the plane, and what was dragged
-/// ahead of a step that never came is not dragged again on the way out.
+/// Square out of a depth `d ≥ R` a ball cuts `π R² (d − R/3)`. Half of the step in which contact
+/// ends is along the plane, and what was dragged ahead of a step that never came is not dragged
+/// again on the way out.
 #[test]
 fn the_way_out_takes_what_was_not_taken_along_the_plane() {
     let up = Vec3::z() * 10.0;
@@ -164,8 +168,9 @@ fn the_way_out_takes_what_was_not_taken_along_the_plane() {
     is(ahead * scars.leave(&body, &up), math::exp(-per_m * out_m));
 }
 
-/// A ball 1.2 m deep needs 4.9 m/s to rise to the surface, after what drag takes on the way, seven tenths: at 8 m/s it stays in its scar, at 20
-/// m/s it is out. In the scar it rises, all of it cut, to `h = u²/2g exp(−2 k h)`, and falls back over as much soil.
+/// A ball 1.2 m deep needs 4.9 m/s to rise to the surface, after what drag takes on the way, seven
+/// tenths: at 8 m/s it stays in its scar, at 20 m/s it is out. In the scar it rises, all of it cut,
+/// to `h = u²/2g exp(−2 k h)`, and falls back over as much soil.
 #[test]
 fn drag_decides_whether_a_ball_leaves_its_scar() {
     let (body, mut scars, per_m) = deep(20.0, 9.81);
@@ -189,8 +194,9 @@ fn drag_decides_whether_a_ball_leaves_its_scar() {
     }
 }
 
-/// More drag never makes a leap higher or longer, and where it begins to hold the rock in its scar the leap is as high as the rim: square and
-/// at angles, slow and fast. A rock that could not climb out flew as if there were no soil.
+/// More drag never makes a leap higher or longer, and where it begins to hold the rock in its scar
+/// the leap is as high as the rim: square and at angles, slow and fast. A rock that could not climb
+/// out flew as if there were no soil.
 #[test]
 fn more_drag_never_makes_a_higher_leap() {
     let (body, soft, _) = deep(3000.0, 9.81);
@@ -221,7 +227,8 @@ fn more_drag_never_makes_a_higher_leap() {
                 assert!(rise <= high * (1.0 + 1e-9), "{x} {z}: {rise} after {high}");
                 assert!(length <= long * (1.0 + 1e-9), "{x} {z}: {length} after {long}");
                 assert!(out == (rise > 1.0 - 1e-9), "{x} {z}: {rise} of the depth, out {out}");
-                // no jump where it no longer climbs out: of 3 % more drag, less than a tenth of the leap
+                // no jump where it no longer climbs out: of 3 % more drag, less than a tenth of the
+                // leap
                 if pair[0].2 != out {
                     rims += 1;
                     assert!(rise > 0.8 && high < 1.2, "{x} {z}: {rise} after {high}");
@@ -232,8 +239,9 @@ fn more_drag_never_makes_a_higher_leap() {
     assert!(rims >= 6, "{rims}");
 }
 
-/// All of the ball is cut on its way up, so that a hop of which soil over a way `p` is paid rises to `h = u²/2g exp(−2 k (h − p))`, and freely where
-/// that is no more than `p`. When it has come down again nothing is paid, and the next hop is one of its own.
+/// All of the ball is cut on its way up, so that a hop of which soil over a way `p` is paid rises
+/// to `h = u²/2g exp(−2 k (h − p))`, and freely where that is no more than `p`. When it has come
+/// down again nothing is paid, and the next hop is one of its own.
 #[test]
 fn soil_that_is_paid_for_is_paid_once() {
     let (body, mut scars, per_m) = deep(20.0, 9.81);
@@ -257,8 +265,9 @@ fn soil_that_is_paid_for_is_paid_once() {
     assert!((second / first - 1.0).abs() < 1e-9, "{first}, then {second}");
 }
 
-/// A hop of a fraction of a micrometre is centimetres long where a ball skims over soil, and is dragged over all of them: up to
-/// `h = h₀ exp(−2 k A h/c)` with the area `A` that is cut at the bottom and the cosine `c` of the way to the normal.
+/// A hop of a fraction of a micrometre is centimetres long where a ball skims over soil, and is
+/// dragged over all of them: up to `h = h₀ exp(−2 k A h/c)` with the area `A` that is cut at the
+/// bottom and the cosine `c` of the way to the normal.
 #[test]
 fn a_skimming_ball_is_dragged_along_its_way_and_not_its_rise() {
     let (body, mut scars, _) = deep(3000.0, 9.81);

@@ -6,7 +6,8 @@
 //! exact, however the block turns.
 
 use super::super::{BlockContactState, BlockState, ROUNDING_OF_SPEED, TOUCH, orthonormal};
-use super::{BlockRates, SpringContact, rotation_by, rotation_vector_rate};
+use super::rotation_vector::{rotation_by, rotation_vector_rate};
+use super::{BlockRates, SpringContact};
 use crate::body::Block;
 use crate::contact::block::{BlockTouch, Pose};
 use crate::contact::history::carry;

@@ -7,7 +7,8 @@ use super::*;
 const AFTER_S: f64 = 1e-3;
 use nalgebra::Unit;
 
-/// Velocity and spin times the largest radius (m/s) of a block that has just touched a plane, a millisecond later, without what weight has added.
+/// Velocity and spin times the largest radius (m/s) of a block that has just touched a plane, a
+/// millisecond later, without what weight has added.
 fn rebounded(case: &mut BlockRun, attitude: Rotation3<f64>, spin: Vec3) -> (Vec3, Vec3) {
     const AFTER_S: f64 = 1e-3;
     let corners = &case.block.core.corners;
@@ -18,8 +19,9 @@ fn rebounded(case: &mut BlockRun, attitude: Rotation3<f64>, spin: Vec3) -> (Vec3
     (state.v + Vec3::z() * (G * AFTER_S), state.spin(&case.block) * case.block.bound_m)
 }
 
-/// The difference between blow `k` of two dozen in the rigid limit and on springs of two stiffnesses, over its speed (–), of ground with a restitution: a
-/// box or a prism strikes a plane with a corner, with an edge or with a face, at 10 m/s, spinning, with friction of all sizes.
+/// The difference between blow `k` of two dozen in the rigid limit and on springs of two
+/// stiffnesses, over its speed (–), of ground with a restitution: a box or a prism strikes a plane
+/// with a corner, with an edge or with a face, at 10 m/s, spinning, with friction of all sizes.
 fn off_the_limit(k: u8, restitution: f64) -> [f64; 2] {
     let surfaces = [box_surface([1.0, 0.7, 0.4]), prism_surface(6, 0.5)];
     let x = f64::from(k);
@@ -46,9 +48,11 @@ fn off_the_limit(k: u8, restitution: f64) -> [f64; 2] {
     })
 }
 
-/// With restitution of all sizes, also one that falls with speed, and with none. On springs a blow takes a time of order `p_N^(−1/2)`, in which
-/// levers turn and weight acts: so a hundred times the stiffness leaves a tenth of the difference to the rigid limit, and nothing else is left.
-/// Ground that gives nothing back is no case of its own: with impulses that stop each contact dead its blows were off by up to a third of the speed.
+/// With restitution of all sizes, also one that falls with speed, and with none. On springs a blow
+/// takes a time of order `p_N^(−1/2)`, in which levers turn and weight acts: so a hundred times the
+/// stiffness leaves a tenth of the difference to the rigid limit, and nothing else is left. Ground
+/// that gives nothing back is no case of its own: with impulses that stop each contact dead its
+/// blows were off by up to a third of the speed.
 #[test]
 fn blows_on_stiffer_springs_come_to_those_of_the_rigid_limit() {
     for rebounds in [1.0, 0.0] {
@@ -59,7 +63,8 @@ fn blows_on_stiffer_springs_come_to_those_of_the_rigid_limit() {
             worst = worst.max(off[1]);
             sums.iter_mut().zip(off).for_each(|(sum, off)| *sum += off);
         }
-        // 2e-4 of the speed is what a step of the rigid limit may be wrong by; where nothing rebounds a blow is so short that little else is left
+        // 2e-4 of the speed is what a step of the rigid limit may be wrong by; where nothing
+        // rebounds a blow is so short that little else is left
         assert!(worst < 1e-3, "{rebounds}: {worst:e}");
         let own = if rebounds > 0.0 { 0.0 } else { 24.0 * 1e-4 };
         assert!(sums[1] < 0.2 * sums[0] + own, "{rebounds}: {sums:?}");
@@ -78,9 +83,10 @@ fn roof(parts: u32) -> Terrain {
     terrain((0..parts).flat_map(sides).collect())
 }
 
-/// A plate falls onto a straight ridge, first with one end of its face and then with the other, and rocks on: the ridge holds it where the edges of its
-/// face cross it. Vertices that divide the ridge are no contacts of their own: as such they took their share of the second blow, and 40 parts
-/// for one made speed and spin together differ by 0.3 m/s and rad/s.
+/// A plate falls onto a straight ridge, first with one end of its face and then with the other, and
+/// rocks on: the ridge holds it where the edges of its face cross it. Vertices that divide the
+/// ridge are no contacts of their own: as such they took their share of the second blow, and 40
+/// parts for one made speed and spin together differ by 0.3 m/s and rad/s.
 #[test]
 fn a_straight_ridge_throws_a_face_however_it_is_divided() {
     for scheme in every_scheme() {
@@ -101,8 +107,9 @@ fn a_straight_ridge_throws_a_face_however_it_is_divided() {
     }
 }
 
-/// Prisms of many sides that land on an end, all corners at once, sliding along a plane in which they are mirrored, stay in it. Only eight corners
-/// joined the blow: with nine and twelve sides a landing at (3, 1, −6) m/s left 0.08 and 0.05 m/s across the way.
+/// Prisms of many sides that land on an end, all corners at once, sliding along a plane in which
+/// they are mirrored, stay in it. Only eight corners joined the blow: with nine and twelve sides a
+/// landing at (3, 1, −6) m/s left 0.08 and 0.05 m/s across the way.
 #[test]
 fn every_corner_of_a_face_joins_a_blow() {
     for (sides, (friction, e)) in [9, 12, 16, 24, 32]

@@ -1,4 +1,5 @@
-//! Exact cases of rounded bodies: a sphere as one ball, a capsule, bounces run backwards, meshes that are planes.
+//! Exact cases of rounded bodies: a sphere as one ball, a capsule, bounces run backwards, meshes
+//! that are planes.
 
 use super::*;
 use crate::body::Core;
@@ -11,8 +12,8 @@ pub(super) fn balls(corners: Vec<Vec3>, ball_m: f64, (mass_kg, moments): (f64, [
     Block { core, ball_m, mass_kg, inertia_kg_m2: moments, bound_m, radius_m }
 }
 
-/// A capsule of two balls of 0.3 m, 0.8 m apart, rolls across 20° without slipping on both balls: with I/(m r²) = 7/15 about its axis
-/// a = g sin 20°/(1 + 7/15) = 2.287648367744 m/s², straight on.
+/// A capsule of two balls of 0.3 m, 0.8 m apart, rolls across 20° without slipping on both balls:
+/// with I/(m r²) = 7/15 about its axis a = g sin 20°/(1 + 7/15) = 2.287648367744 m/s², straight on.
 #[test]
 fn a_capsule_rolls_on_both_of_its_balls() {
     let angle = 20_f64.to_radians();
@@ -50,9 +51,9 @@ fn one_ball_rolls_as_a_sphere_does() {
     assert!((state.v.dot(&along) / speed - 1.0).abs() < 1e-6, "{}", state.v.dot(&along) / speed);
 }
 
-/// Bounces with e = 1 and without friction, then all velocities turned round: the block comes back to its start. A tumbling box is
-/// chaotic: each bounce multiplies the gap of 1e-10 R at which a touch is one. So the way back is held to what a twin tells that starts
-/// 1e-8 m higher.
+/// Bounces with e = 1 and without friction, then all velocities turned round: the block comes back
+/// to its start. A tumbling box is chaotic: each bounce multiplies the gap of 1e-10 R at which a
+/// touch is one. So the way back is held to what a twin tells that starts 1e-8 m higher.
 #[test]
 fn elastic_bounces_run_backwards() {
     run_backwards(elastic_box(), &[2, 10], 1e-9);
@@ -64,7 +65,8 @@ pub(super) fn elastic_box() -> BlockRun {
     BlockRun::new(slope(0.0, 1e3), body, (0.0, 1.0))
 }
 
-/// Goes on for so many bounces and back again; `near` is how near it comes, for a twin that has not been driven away.
+/// Goes on for so many bounces and back again; `near` is how near it comes, for a twin that has not
+/// been driven away.
 pub(super) fn run_backwards(mut case: BlockRun, bounces: &[usize], near: f64) {
     let start = [Vec3::z() * 3.0, Vec3::new(1.0, 0.5, 0.0), Vec3::new(0.3, -0.7, 0.4)];
     let begun = case.start(Rotation3::identity(), start);
@@ -112,7 +114,8 @@ pub(super) fn finely(angle: f64, rows: u32) -> Terrain {
     terrain(all.collect())
 }
 
-/// A block whose face lies on a plane of many small triangles slides 50 m as on two large ones: nothing throws it up.
+/// A block whose face lies on a plane of many small triangles slides 50 m as on two large ones:
+/// nothing throws it up.
 #[test]
 fn a_face_slides_over_any_triangulation() {
     let angle = 40_f64.to_radians();
@@ -137,14 +140,16 @@ fn a_face_slides_over_any_triangulation() {
     );
 }
 
-/// How many of three slabs of 2.5 x 3 x 1 m that roll down 27° with rough friction, e = 0 (Leine 2014, 5.2), as `made` for a scheme, come
-/// to turn about the axis of largest inertia within 60 s. They begin a thousandth of a radian apart: that is enough for times between 7 and
-/// 60 s, with every scheme, and one of ten takes longer.
+/// How many of three slabs of 2.5 x 3 x 1 m that roll down 27° with rough friction, e = 0 (Leine
+/// 2014, 5.2), as `made` for a scheme, come to turn about the axis of largest inertia within 60 s.
+/// They begin a thousandth of a radian apart: that is enough for times between 7 and 60 s, with
+/// every scheme, and one of ten takes longer.
 pub(super) fn rolling_slabs(made: impl Fn(BlockRun) -> BlockRun) -> usize {
     [0.2, 0.201, 0.202].into_iter().filter(|tilt| rolling_slab(*tilt, &made).is_some()).count()
 }
 
-/// When (s) that axis first carries 95 % of the energy of the spin of one that leans sideways so much at first (rad).
+/// When (s) that axis first carries 95 % of the energy of the spin of one that leans sideways so
+/// much at first (rad).
 fn rolling_slab(tilt: f64, made: impl Fn(BlockRun) -> BlockRun) -> Option<f64> {
     let angle = 27_f64.to_radians();
     let body = block(&box_surface([2.5, 3.0, 1.0]), 0.05);
@@ -210,7 +215,8 @@ pub(super) fn peak() -> Terrain {
     terrain(vec![[tip, a, b], [tip, b, c], [tip, c, a]])
 }
 
-/// An edge of a block across a ridge: one contact, and a plate over a peak: one contact, pushing with the weight.
+/// An edge of a block across a ridge: one contact, and a plate over a peak: one contact, pushing
+/// with the weight.
 #[test]
 fn edges_and_faces_meet_edges_and_peaks() {
     // on its edge across the ridge; its face over the peak
@@ -255,8 +261,9 @@ fn edges_and_faces_meet_edges_and_peaks() {
     }
 }
 
-/// A block is let out with a tenth of `√(g R)` of the scene's gravity at most, on the moon as on Jupiter, and from less than a hundredth of its
-/// radius in proportion to the depth: slower and slower.
+/// A block is let out with a tenth of `√(g R)` of the scene's gravity at most, on the moon as on
+/// Jupiter, and from less than a hundredth of its radius in proportion to the depth: slower and
+/// slower.
 #[test]
 fn what_is_pressed_in_is_let_out_as_gravity_has_it() {
     let case = BlockRun::new(slope(0.0, 50.0), block(&box_surface([1.0; 3]), 0.05), (0.5, 0.4));
@@ -279,7 +286,8 @@ fn what_is_pressed_in_is_let_out_as_gravity_has_it() {
     }
 }
 
-/// What of its energy of motion a block has lost that tips over its rear edge, without slip, when its front edge strikes the level (–).
+/// What of its energy of motion a block has lost that tips over its rear edge, without slip, when
+/// its front edge strikes the level (–).
 fn lost_by_tipping(sides: [f64; 3], ball: f64, (tilt, step_s): (f64, f64)) -> f64 {
     let body = block(&box_surface(sides), ball);
     let mut case = BlockRun::new(slope(0.0, 50.0), body, (10.0, 0.5));
@@ -300,7 +308,8 @@ fn lost_by_tipping(sides: [f64; 3], ball: f64, (tilt, step_s): (f64, f64)) -> f6
     lost_j.unwrap() / (had_j - own.mass_kg * G * 0.5 * sides[2])
 }
 
-/// A step that ends where the front edge closes takes nothing of what weight adds in it: what is left is the steps' own error, of second order.
+/// A step that ends where the front edge closes takes nothing of what weight adds in it: what is
+/// left is the steps' own error, of second order.
 #[test]
 fn a_tipping_block_strikes_as_fast_as_it_has_fallen() {
     for (sides, ball) in [([2.0, 1.0, 0.2], 0.01), ([2.0, 1.0, 0.2], 0.08), ([0.6, 1.0, 0.5], 0.08)]

@@ -4,7 +4,8 @@ use super::springs::{FINEST, on_springs};
 use super::*;
 use nalgebra::{Quaternion, UnitQuaternion};
 
-/// A chute along the falling diagonal of y and z, whose walls rise 8 m for each metre that they go apart to one side.
+/// A chute along the falling diagonal of y and z, whose walls rise 8 m for each metre that they go
+/// apart to one side.
 fn chute() -> Terrain {
     let wall = |side: f64| {
         let at = |y: f64, up: f64| Vec3::new(-side * up, y, 8.0 * up - y);
@@ -19,9 +20,11 @@ fn has_friction() -> f64 {
     3_f64.sqrt().recip()
 }
 
-/// A box that falls through a chute strikes one wall with a corner and half a millisecond later the other with another; the line between them lies
-/// within both cones of friction. On springs of any stiffness they hold each other, and the box turns about that line, which throws its
-/// centre round: from 1.8 m/s along the chute to 1.2 m/s within 8 ms. With contacts that only push it flew on at 1.87 m/s.
+/// A box that falls through a chute strikes one wall with a corner and half a millisecond later the
+/// other with another; the line between them lies within both cones of friction. On springs of any
+/// stiffness they hold each other, and the box turns about that line, which throws its centre
+/// round: from 1.8 m/s along the chute to 1.2 m/s within 8 ms. With contacts that only push it flew
+/// on at 1.87 m/s.
 #[test]
 fn a_box_turns_about_two_corners_that_walls_clamp() {
     let turned_after = |p_n: Option<f64>| {

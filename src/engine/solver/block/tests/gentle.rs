@@ -1,4 +1,5 @@
-//! Compact blocks that roll down slopes hardly steep enough to keep them rolling: every joule that a step loses stops one.
+//! Compact blocks that roll down slopes hardly steep enough to keep them rolling: every joule that
+//! a step loses stops one.
 
 use super::springs::{SCHEMES, on_springs};
 use super::*;
@@ -35,8 +36,9 @@ fn roll(made: impl Fn(BlockRun) -> BlockRun) -> (f64, u32) {
     (way_m, rolling)
 }
 
-/// They roll on with `rigid` as with springs. Corners that came in too slowly to rebound were let out within one step, and so thrown up: a
-/// block rocked from one of the two on which it rolled to the other, until hardly any had energy to come over the next edge.
+/// They roll on with `rigid` as with springs. Corners that came in too slowly to rebound were let
+/// out within one step, and so thrown up: a block rocked from one of the two on which it rolled to
+/// the other, until hardly any had energy to come over the next edge.
 #[test]
 fn compact_blocks_roll_on_down_a_gentle_slope() {
     let [rigid, fine] = [0.01, 0.002].map(|step_s| roll(|case| BlockRun { step_s, ..case }));

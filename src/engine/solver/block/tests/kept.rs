@@ -1,4 +1,5 @@
-//! What no contact without friction can change: momentum along a plane and along a valley, and the angular momentum about the normal.
+//! What no contact without friction can change: momentum along a plane and along a valley, and the
+//! angular momentum about the normal.
 
 use super::springs::{every_scheme, on_springs, with_long_steps};
 use super::*;
@@ -9,12 +10,14 @@ use nalgebra::{Quaternion, UnitQuaternion};
 
 /// Stiffness of the springs (N/m).
 const STIFFNESS_N_M: f64 = 1e9;
-/// Height from which blocks fall (m, above the ball around them), and how long they are followed (s).
+/// Height from which blocks fall (m, above the ball around them), and how long they are followed
+/// (s).
 const FALLS_M: f64 = 0.3;
 const LASTS_S: f64 = 2.5;
 /// What rounding may add up to (–): some 1e-16 a step, of which `dda` takes 1e4.
 const ROUNDING: f64 = 1e-10;
-/// The same with springs (–): an impact that leaves hardly any motion along its contacts is balanced by all of the motion.
+/// The same with springs (–): an impact that leaves hardly any motion along its contacts is
+/// balanced by all of the motion.
 const GRAZING: f64 = 1e-4;
 
 fn allowed(scheme: Scheme) -> f64 {
@@ -63,7 +66,8 @@ fn rebounded(case: &BlockRun, k: u32) -> BlockState {
     case.start(attitude, [centre, v, w])
 }
 
-/// The largest drift of momentum along `kept` over the fastest speed, and of the angular momentum about `about` over the largest momentum (–).
+/// The largest drift of momentum along `kept` over the fastest speed, and of the angular momentum
+/// about `about` over the largest momentum (–).
 fn drifts(case: &mut BlockRun, k: u32, (kept, about): (&[Vec3], Option<Vec3>)) -> [f64; 2] {
     let mut state = rebounded(case, k);
     let (start, momentum, had_j) = (state.v, state.momentum, case.energy_j(&state));
@@ -97,9 +101,11 @@ fn throws(scheme: Scheme) -> u32 {
     scheme.of([2, 4, 2, 4])
 }
 
-/// Contacts without friction push along the normal of a plane: however a block bounces, rocks and slides, `v·s − g·s t` stays along the plane, and
-/// with `a × n` square to `n` the angular momentum about the normal. What steps made of energy was taken off the whole motion: 1.7e-3 of the speed and
-/// 2e-3 of the momentum within 2.5 s (`rigid`), 1e-5 (`adaptive`). What is left is rounding, step by step.
+/// Contacts without friction push along the normal of a plane: however a block bounces, rocks and
+/// slides, `v·s − g·s t` stays along the plane, and with `a × n` square to `n` the angular momentum
+/// about the normal. What steps made of energy was taken off the whole motion: 1.7e-3 of the speed
+/// and 2e-3 of the momentum within 2.5 s (`rigid`), 1e-5 (`adaptive`). What is left is rounding,
+/// step by step.
 #[test]
 fn a_plane_without_friction_keeps_what_it_must() {
     let angle = 35_f64.to_radians();
@@ -149,8 +155,8 @@ fn a_valley_without_friction_keeps_momentum_along_it() {
     }
 }
 
-/// The largest difference between what a mirror shows of a block that has fallen for so long and one that falls mirrored (–): of velocity, and of
-/// spin times the largest radius, over the speed.
+/// The largest difference between what a mirror shows of a block that has fallen for so long and
+/// one that falls mirrored (–): of velocity, and of spin times the largest radius, over the speed.
 fn off_the_mirror(made: impl Fn() -> BlockRun, (k, lasts_s): (u32, f64)) -> f64 {
     let flip = Matrix3::from_diagonal(&Vec3::new(1.0, -1.0, 1.0));
     let (mut case, mut mirrored) = (made(), made());
@@ -166,8 +172,9 @@ fn off_the_mirror(made: impl Fn() -> BlockRun, (k, lasts_s): (u32, f64)) -> f64 
     ((image.v - flip * state.v).norm() + turned.norm()) / state.v.norm()
 }
 
-/// The same in a mirror, as far as rounding lets two blocks fall alike: what springs make of it grows with the steps that the error control
-/// takes. Later paths part: a rest on more corners than a body can tell apart has no one answer, and sweeps come to one by their order.
+/// The same in a mirror, as far as rounding lets two blocks fall alike: what springs make of it
+/// grows with the steps that the error control takes. Later paths part: a rest on more corners than
+/// a body can tell apart has no one answer, and sweeps come to one by their order.
 #[test]
 fn a_mirrored_block_falls_as_the_mirror_shows() {
     for scheme in every_scheme() {
@@ -197,8 +204,9 @@ fn roof() -> Terrain {
     terrain([-50.0, 50.0].into_iter().flat_map(side).collect())
 }
 
-/// What an elastic box without friction keeps of its energy (–) that falls with an edge on the ridge of a roof, `ahead_m` from its lower end, which slides
-/// over the ridge while the edge is pressed in.
+/// What an elastic box without friction keeps of its energy (–) that falls with an edge on the
+/// ridge of a roof, `ahead_m` from its lower end, which slides over the ridge while the edge is
+/// pressed in.
 fn kept_over_an_end(scheme: Scheme, ahead_m: f64) -> f64 {
     let body = block(&box_surface([0.7, 0.3, 0.7]), 0.05);
     let mut case = in_scheme(BlockRun::new(roof(), body, (0.0, 1.0)), scheme);
@@ -214,8 +222,8 @@ fn kept_over_an_end(scheme: Scheme, ahead_m: f64) -> f64 {
     case.energy_j(&state) / had_j
 }
 
-/// An edge that slides off over its end, where the corner has come to press too, keeps what its spring holds until it lets go: 16 % of
-/// the energy was lost.
+/// An edge that slides off over its end, where the corner has come to press too, keeps what its
+/// spring holds until it lets go: 16 % of the energy was lost.
 #[test]
 fn an_edge_that_slides_off_over_its_end_keeps_its_energy() {
     for scheme in every_scheme().into_iter().filter(|scheme| scheme.controls_error()) {
@@ -226,7 +234,8 @@ fn an_edge_that_slides_off_over_its_end_keeps_its_energy() {
     }
 }
 
-/// Straight crests along x, 0.4 m apart, from so many cells of so many metres before the origin to so many past it.
+/// Straight crests along x, 0.4 m apart, from so many cells of so many metres before the origin to
+/// so many past it.
 fn crests(cell_m: f64, cells: std::ops::Range<i32>) -> Terrain {
     let at = |i: i32, j: i32| {
         let z = if j.rem_euclid(2) == 1 { 0.0 } else { -0.2 };
@@ -239,7 +248,8 @@ fn crests(cell_m: f64, cells: std::ops::Range<i32>) -> Terrain {
     terrain(cells.flat_map(|i| (-4..4).map(move |j| (i, j))).flat_map(cell).collect())
 }
 
-/// How deep a box is that has slid along two crests from 2 m/s, over the depth at rest, and how fast (–, m/s).
+/// How deep a box is that has slid along two crests from 2 m/s, over the depth at rest, and how
+/// fast (–, m/s).
 fn slid_along(scheme: Scheme, crests: Terrain, (friction, lasts_s): (f64, f64)) -> (f64, f64) {
     let body = block(&box_surface([0.7, 0.7, 0.4]), 0.05);
     let mut case = on_springs(BlockRun::new(crests, body, (friction, 0.4)), scheme, 1e8);
@@ -254,7 +264,8 @@ fn slid_along(scheme: Scheme, crests: Terrain, (friction, lasts_s): (f64, f64)) 
     ((level - state.pose.centre.z) / pressed_m, state.v.x)
 }
 
-/// With springs of every scheme such a box is as deep as its weight presses it in, and has the speed (m/s) that `is_right` says.
+/// With springs of every scheme such a box is as deep as its weight presses it in, and has the
+/// speed (m/s) that `is_right` says.
 fn slides_as_deep_as_at_rest(
     (cell_m, cells): (f64, std::ops::Range<i32>),
     slide: (f64, f64),
@@ -267,30 +278,33 @@ fn slides_as_deep_as_at_rest(
     }
 }
 
-/// A box slides along two divided crests as deep as its weight presses it in: edges of the box go on from one edge of the mesh to the next with
-/// the spring that they have. It sank by that depth at each joint, 0.4 mm (30 times) in 3 m, and was faster for it.
+/// A box slides along two divided crests as deep as its weight presses it in: edges of the box go
+/// on from one edge of the mesh to the next with the spring that they have. It sank by that depth
+/// at each joint, 0.4 mm (30 times) in 3 m, and was faster for it.
 #[test]
 fn a_block_slides_along_divided_crests_without_sinking() {
     slides_as_deep_as_at_rest((0.1, -10..50), (0.0, 1.5), |fast| (fast - 2.0).abs() < 1e-6);
 }
 
-/// Friction tips the box forward by a hair, and the crests are then nearest to its front edge alone: its rear edge presses all the same, and hands its
-/// spring on at each joint. It was let go there, and the rear sank until it lay flat again: 5.7 times the depth at rest where the box has stopped.
+/// Friction tips the box forward by a hair, and the crests are then nearest to its front edge
+/// alone: its rear edge presses all the same, and hands its spring on at each joint. It was let go
+/// there, and the rear sank until it lay flat again: 5.7 times the depth at rest where the box has
+/// stopped.
 #[test]
 fn a_block_that_friction_slows_does_not_sink_into_divided_crests() {
     let slowed = |fast: f64| (fast - (2.0 - 0.3 * G * 0.6)).abs() < 1e-4;
     slides_as_deep_as_at_rest((0.1, -10..50), (0.3, 0.6), slowed);
 }
 
-/// Where the crests begin under the box, its face lies on their ends until its rear edge comes to them, and then that edge on the crests: 1.57 times
-/// the depth at rest was left of that.
+/// Where the crests begin under the box, its face lies on their ends until its rear edge comes to
+/// them, and then that edge on the crests: 1.57 times the depth at rest was left of that.
 #[test]
 fn a_face_hands_its_springs_on_to_its_edge() {
     slides_as_deep_as_at_rest((12.0, 0..1), (0.3, 0.6), |_| true);
 }
 
-/// A block that has come to rest, or slides, takes long steps: what it may climb with is nothing, and not a rounding of its energy, which made
-/// a million steps of a second.
+/// A block that has come to rest, or slides, takes long steps: what it may climb with is nothing,
+/// and not a rounding of its energy, which made a million steps of a second.
 #[test]
 fn a_block_at_rest_takes_long_steps() {
     for (name, body) in bodies() {
@@ -304,9 +318,10 @@ fn a_block_at_rest_takes_long_steps() {
     }
 }
 
-/// Far from the origin gaps are known to rounding, and a block that rests is let out again and again by that: a climb within a gap that is none
-/// bounds no step. It made steps of 1e-6 s as long as the block was watched, 300 000 of them, on uneven ground two of 300 blocks. What climbs
-/// on next to no energy is bounded as ever.
+/// Far from the origin gaps are known to rounding, and a block that rests is let out again and
+/// again by that: a climb within a gap that is none bounds no step. It made steps of 1e-6 s as long
+/// as the block was watched, 300 000 of them, on uneven ground two of 300 blocks. What climbs on
+/// next to no energy is bounded as ever.
 #[test]
 fn rounding_that_lifts_a_block_cuts_no_step() {
     let case =
@@ -323,8 +338,9 @@ fn rounding_that_lifts_a_block_cuts_no_step() {
     assert!((slow_s - 1e-2 / G).abs() < 1e-6 * slow_s, "{slow_s}");
 }
 
-/// A box that slides with its face on a plane comes to a ramp of 20°, and is thrown off it with all of its energy wherever steps fall. A look before the
-/// fold need not find the pair of a corner and the ramp, whose foot lies below it.
+/// A box that slides with its face on a plane comes to a ramp of 20°, and is thrown off it with all
+/// of its energy wherever steps fall. A look before the fold need not find the pair of a corner and
+/// the ramp, whose foot lies below it.
 #[test]
 fn what_comes_within_a_step_is_struck_and_not_stopped() {
     let angle = 20_f64.to_radians();

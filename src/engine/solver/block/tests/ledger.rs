@@ -20,8 +20,9 @@ fn uneven() -> Terrain {
     terrain((0..40).flat_map(|i| (0..20).map(move |j| (i, j))).flat_map(cell).collect())
 }
 
-/// Without dashpots and friction nothing is taken and nothing made, however often features come and go within a step, as a box
-/// strikes folds with its corners, edges and faces. By sums over steps 5e-4 of its energy was booked as damping.
+/// Without dashpots and friction nothing is taken and nothing made, however often features come and
+/// go within a step, as a box strikes folds with its corners, edges and faces. By sums over steps
+/// 5e-4 of its energy was booked as damping.
 #[test]
 fn dashpots_that_are_not_there_take_nothing_of_a_block() {
     let mut impacts = 0;
@@ -48,12 +49,14 @@ fn dashpots_that_are_not_there_take_nothing_of_a_block() {
     assert!(impacts > 32, "{impacts}");
 }
 
-/// Depth at which contacts that have let go are found again (m), and the stiffness of their springs (N/m).
+/// Depth at which contacts that have let go are found again (m), and the stiffness of their springs
+/// (N/m).
 const SUNK_M: f64 = 1e-4;
 const STIFFNESS_N_M: f64 = 1e9;
 
-/// A box that lies on a mesh at the origin, whose contacts let go, and that slides on at 1 m/s with what it touches pressed in: what springs hold
-/// after a short step, what the motion has lost in it, and what contacts are said to have taken (J).
+/// A box that lies on a mesh at the origin, whose contacts let go, and that slides on at 1 m/s with
+/// what it touches pressed in: what springs hold after a short step, what the motion has lost in
+/// it, and what contacts are said to have taken (J).
 fn found_again(mesh: Terrain, sides: [f64; 3], scheme: Scheme) -> [f64; 3] {
     let made = BlockRun::new(mesh, block(&box_surface(sides), 0.05), (0.5, 0.0));
     let case = on_springs(made, scheme, STIFFNESS_N_M);
@@ -75,8 +78,9 @@ fn found_again(mesh: Terrain, sides: [f64; 3], scheme: Scheme) -> [f64; 3] {
     [footing.springs.held_j(), before_j - case.energy_j(&state), done.0.loss.sum()]
 }
 
-/// The contact of a face with a peak that is found again pressed in at the start of a step begins there: it stores nothing, and the motion pays
-/// for nothing. Its number was taken for that of one of the step before, and its spring had 5 J from nowhere.
+/// The contact of a face with a peak that is found again pressed in at the start of a step begins
+/// there: it stores nothing, and the motion pays for nothing. Its number was taken for that of one
+/// of the step before, and its spring had 5 J from nowhere.
 #[test]
 fn what_is_found_pressed_in_stores_nothing() {
     for scheme in SCHEMES.into_iter().filter(|scheme| !scheme.has_fixed_step()) {
@@ -87,7 +91,8 @@ fn what_is_found_pressed_in_stores_nothing() {
     }
 }
 
-/// Corners that come up pressed in have springs that store: the motion pays for them, and that goes into the contacts. It was in no entry.
+/// Corners that come up pressed in have springs that store: the motion pays for them, and that goes
+/// into the contacts. It was in no entry.
 #[test]
 fn what_the_motion_pays_for_is_booked() {
     for scheme in SCHEMES.into_iter().filter(|scheme| !scheme.has_fixed_step()) {
@@ -99,7 +104,8 @@ fn what_the_motion_pays_for_is_booked() {
     }
 }
 
-/// Boxes that spin on a plane about an axis near its normal, and touch it with any corner, `k` of them.
+/// Boxes that spin on a plane about an axis near its normal, and touch it with any corner, `k` of
+/// them.
 fn tops(k: u8) -> impl Iterator<Item = (Rotation3<f64>, Vec3)> {
     (0..k).map(|k| {
         let x = f64::from(k);
@@ -108,8 +114,9 @@ fn tops(k: u8) -> impl Iterator<Item = (Rotation3<f64>, Vec3)> {
     })
 }
 
-/// A contact without friction cannot change the angular momentum `L` about its normal. Of the energy of turning that leaves `L²/(2 n·I n)`, that of
-/// the spin `n L/(n·I n)`; what it can change is the rest, which is never below 0, and all of it can be paid with.
+/// A contact without friction cannot change the angular momentum `L` about its normal. Of the
+/// energy of turning that leaves `L²/(2 n·I n)`, that of the spin `n L/(n·I n)`; what it can change
+/// is the rest, which is never below 0, and all of it can be paid with.
 #[test]
 fn what_a_contact_acts_along_has_an_energy_of_its_own() {
     let made =
@@ -134,8 +141,9 @@ fn what_a_contact_acts_along_has_an_energy_of_its_own() {
     }
 }
 
-/// A blow of a box with one corner, `off_m` beside the axis of a blunt valley, at e = 0.5 without friction: what one of its steps has made of the energy,
-/// at most, and how many contacts there were at most (J, –).
+/// A blow of a box with one corner, `off_m` beside the axis of a blunt valley, at e = 0.5 without
+/// friction: what one of its steps has made of the energy, at most, and how many contacts there
+/// were at most (J, –).
 fn made_in_a_fold(scheme: Scheme, off_m: f64) -> (f64, usize) {
     let body = block(&box_surface([1.0, 0.7, 0.4]), 0.05);
     let case = on_springs(BlockRun::new(valley(0.15), body, (0.0, 0.5)), scheme, STIFFNESS_N_M);
@@ -161,8 +169,9 @@ fn made_in_a_fold(scheme: Scheme, off_m: f64) -> (f64, usize) {
     (spurious_j, most)
 }
 
-/// Two contacts of a corner that come together into one patch hand on what their springs hold. That of the one that was gone was booked as taken besides, and
-/// then taken off the motion, or left in no entry where that had not so much.
+/// Two contacts of a corner that come together into one patch hand on what their springs hold. That
+/// of the one that was gone was booked as taken besides, and then taken off the motion, or left in
+/// no entry where that had not so much.
 #[test]
 fn contacts_that_meet_in_a_fold_keep_their_energy() {
     let schemes = SCHEMES.into_iter().filter(|scheme| !scheme.has_fixed_step());

@@ -3,7 +3,8 @@
 use super::springs::{SCHEMES, every_scheme, on_springs, with_long_steps};
 use super::*;
 
-/// Forces along the normal of the upper and the lower corners of a cube that lies on a slope (N), of its springs.
+/// Forces along the normal of the upper and the lower corners of a cube that lies on a slope (N),
+/// of its springs.
 fn pairs_n(case: &BlockRun, state: &BlockState, angle: f64) -> [f64; 2] {
     let (along, up) = axes(angle);
     let mut pairs = [0.0; 2];
@@ -16,8 +17,9 @@ fn pairs_n(case: &BlockRun, state: &BlockState, angle: f64) -> [f64; 2] {
     pairs
 }
 
-/// S7: a cube at rest on 20° presses with (cos 20° ± sin 20°)/2 of its weight on its lower and upper corners, a little more unlike as their
-/// balls set them inside: 0.6408563821 and 0.2988362387 where it is sharp.
+/// S7: a cube at rest on 20° presses with (cos 20° ± sin 20°)/2 of its weight on its lower and
+/// upper corners, a little more unlike as their balls set them inside: 0.6408563821 and
+/// 0.2988362387 where it is sharp.
 #[test]
 fn a_cube_at_rest_presses_as_statics_says() {
     let angle = 20_f64.to_radians();
@@ -58,8 +60,9 @@ fn a_cube_at_rest_presses_as_statics_says() {
     }
 }
 
-/// S8 and S9: on 50° a cube tips about its lower edge if friction exceeds the slenderness of its base, with the closed form's angular
-/// acceleration, and slides on its face if not; on 40° it does neither with friction enough.
+/// S8 and S9: on 50° a cube tips about its lower edge if friction exceeds the slenderness of its
+/// base, with the closed form's angular acceleration, and slides on its face if not; on 40° it does
+/// neither with friction enough.
 #[test]
 fn a_cube_slides_or_tips_as_friction_says() {
     let ball = 0.01;

@@ -2,8 +2,8 @@
 
 use super::*;
 
-/// Spin of a hexagonal prism of side 1 m that rolls down, as `made` for a scheme: before its last slap, and where it was slowest after it;
-/// and what it is before a slap in its limit cycle.
+/// Spin of a hexagonal prism of side 1 m that rolls down, as `made` for a scheme: before its last
+/// slap, and where it was slowest after it; and what it is before a slap in its limit cycle.
 pub(super) fn rolling_prism(
     degrees: f64,
     made: impl Fn(BlockRun) -> BlockRun,
@@ -46,7 +46,8 @@ fn prism_start(case: &BlockRun, angle: f64) -> BlockState {
     case.start(tilted(angle), [up * (height + 1e-7) - along * 100.0, spin.cross(&arm), spin])
 }
 
-/// Spin before a slap in its limit cycle (rad/s), and the share that a slap leaves (–): edges a little inside, and arcs between them.
+/// Spin before a slap in its limit cycle (rad/s), and the share that a slap leaves (–): edges a
+/// little inside, and arcs between them.
 fn prism_cycle(angle: f64) -> (f64, f64) {
     // half a face, height, what a slap keeps and how far it takes the prism
     let s = 0.5 - PRISM_BALL_M * crate::math::tan(std::f64::consts::FRAC_PI_6);
@@ -57,10 +58,12 @@ fn prism_cycle(angle: f64) -> (f64, f64) {
     (square.sqrt(), eta)
 }
 
-/// A blow of the ground that gives nothing back throws the prism up by so little that it is back after this (s).
+/// A blow of the ground that gives nothing back throws the prism up by so little that it is back
+/// after this (s).
 const SETTLED_S: f64 = 0.05;
 
-/// A hexagonal prism of side 1 m rolls down with plastic slaps: its spin settles where a slap takes what a sixth of a turn gives.
+/// A hexagonal prism of side 1 m rolls down with plastic slaps: its spin settles where a slap takes
+/// what a sixth of a turn gives.
 #[test]
 fn a_hexagonal_prism_rolls_into_its_limit_cycle() {
     for (degrees, before, after) in
@@ -69,8 +72,8 @@ fn a_hexagonal_prism_rolls_into_its_limit_cycle() {
         let angle = degrees.to_radians();
         let mut case = prism_run(angle);
         let mut state = prism_start(&case, angle);
-        // the last slap: the spin before it, and what is left once the weight has brought the prism to rest on its front edge, about which
-        // it turns without loss
+        // the last slap: the spin before it, and what is left once the weight has brought the prism
+        // to rest on its front edge, about which it turns without loss
         let (mut slap, mut known, mut fell) = ((0.0, 0.0), 1.7, (0.0, 0.0));
         let own = case.block.clone();
         let s = 0.5 - PRISM_BALL_M * crate::math::tan(std::f64::consts::FRAC_PI_6);

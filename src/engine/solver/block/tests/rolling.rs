@@ -1,4 +1,5 @@
-//! Rolling friction of blocks: a moment of up to ρ N R against the spin, R of the sphere of equal volume, in every scheme.
+//! Rolling friction of blocks: a moment of up to ρ N R against the spin, R of the sphere of equal
+//! volume, in every scheme.
 
 use super::cases::balls;
 use super::springs::{SCHEMES, every_scheme, on_springs};
@@ -38,7 +39,8 @@ fn tolerance(scheme: Scheme) -> f64 {
     if scheme.has_springs() { 2e-3 } else { 1e-6 }
 }
 
-/// A capsule rolls across 20°: a = g (sin 20° − ρ R/r cos 20°)/(1 + 7/15), and rolling friction takes ρ R N for every radian.
+/// A capsule rolls across 20°: a = g (sin 20° − ρ R/r cos 20°)/(1 + 7/15), and rolling friction
+/// takes ρ R N for every radian.
 #[test]
 fn a_capsule_is_held_back_by_rolling_friction() {
     let (angle, rho, r) = (20_f64.to_radians(), 0.1, 0.3);
@@ -61,7 +63,8 @@ fn a_capsule_is_held_back_by_rolling_friction() {
     }
 }
 
-/// On a level a capsule that rolls at 2 m/s stops after v² (1 + 7/15) r/(2 ρ R g), and stays where it is.
+/// On a level a capsule that rolls at 2 m/s stops after v² (1 + 7/15) r/(2 ρ R g), and stays where
+/// it is.
 #[test]
 fn a_capsule_stops_where_rolling_friction_has_its_energy() {
     let (rho, r, v) = (0.15, 0.3, 2.0);
@@ -112,7 +115,8 @@ fn a_ball_rests_below_the_slope_that_rolling_friction_holds() {
     }
 }
 
-/// One ball at the centre with rolling friction bounces and rolls on as the sphere of the same scheme does.
+/// One ball at the centre with rolling friction bounces and rolls on as the sphere of the same
+/// scheme does.
 #[test]
 fn one_ball_with_rolling_friction_is_a_sphere() {
     let (angle, r) = (20_f64.to_radians(), 0.5);
@@ -144,7 +148,8 @@ fn one_ball_with_rolling_friction_is_a_sphere() {
     }
 }
 
-/// A tumbling slab with rolling friction: no impact and no step gains energy, and rolling friction takes some of it.
+/// A tumbling slab with rolling friction: no impact and no step gains energy, and rolling friction
+/// takes some of it.
 #[test]
 fn a_tumbling_slab_gains_nothing_by_rolling_friction() {
     let angle = 30_f64.to_radians();
@@ -173,7 +178,8 @@ fn a_tumbling_slab_gains_nothing_by_rolling_friction() {
     }
 }
 
-/// The impulse of turning is at its limit against what the spin and the spring ask for, or leaves no spin.
+/// The impulse of turning is at its limit against what the spin and the spring ask for, or leaves
+/// no spin.
 #[test]
 fn turning_acts_against_the_spin() {
     let inverse = Matrix3::from_diagonal(&Vec3::new(1.0, 0.4, 0.25));

@@ -6,10 +6,12 @@ use super::springs::{SCHEMES, on_springs, with_long_steps};
 use super::*;
 use crate::solver::Scheme;
 
-/// A prism of so many sides that has turned about its rear edge with 1 rad/s until its front edge lands.
+/// A prism of so many sides that has turned about its rear edge with 1 rad/s until its front edge
+/// lands.
 struct Slap {
     case: BlockRun,
-    /// Half the way between both edges, height of the centre (m), and moment of inertia about the axis over the mass (m²).
+    /// Half the way between both edges, height of the centre (m), and moment of inertia about the
+    /// axis over the mass (m²).
     half: f64,
     height: f64,
     inertia: f64,
@@ -34,7 +36,8 @@ impl Slap {
         (self.inertia + height2 - half2) / (self.inertia + height2 + half2)
     }
 
-    /// What is left of the spin (–) after some radians of `√(p_N/m)`, less what the weight takes of it about the front edge.
+    /// What is left of the spin (–) after some radians of `√(p_N/m)`, less what the weight takes of
+    /// it about the front edge.
     fn follow(&mut self, rad: f64) -> f64 {
         let (spin, arm) = (Vec3::y(), Vec3::new(self.half, 0.0, self.height));
         let start = [Vec3::z() * self.height, spin.cross(&arm), spin];
@@ -45,13 +48,15 @@ impl Slap {
         state.spin(&self.case.block).y + G * self.half / pivot * time_s
     }
 
-    /// The same by a model of its own: two edges that do not move far, each on the springs and dashpots of its two corners, in the plane,
-    /// stepped by the classical Runge–Kutta method in units of `1/ω`. Damping ratio 5 along the normal and along the surface.
+    /// The same by a model of its own: two edges that do not move far, each on the springs and
+    /// dashpots of its two corners, in the plane, stepped by the classical Runge–Kutta method in
+    /// units of `1/ω`. Damping ratio 5 along the normal and along the surface.
     fn in_the_plane(&self, rad: f64) -> f64 {
         let block = &self.case.block;
         let [about_x, about_y, _] = block.inertia_kg_m2.map(|i| i / block.mass_kg);
         let wide2 = block.core.corners[0].y.powi(2);
-        // what a corner answers an impulse with, along the normal and in the mean along the surface, in units of 1/m
+        // what a corner answers an impulse with, along the normal and in the mean along the
+        // surface, in units of 1/m
         let along = 1.0 + wide2 / about_x + self.half.powi(2) / about_y;
         let about_z = block.inertia_kg_m2[2] / block.mass_kg;
         let flat = (wide2 + self.half.powi(2)) / about_z;
@@ -83,7 +88,8 @@ struct PlanarLaw {
 }
 
 impl PlanarLaw {
-    /// Rates of `[v_x, v_z, w, pressed, stretched, pressed, stretched]`, of the rear edge and of the front edge.
+    /// Rates of `[v_x, v_z, w, pressed, stretched, pressed, stretched]`, of the rear edge and of
+    /// the front edge.
     fn rate(&self, y: &[f64; 7], (half, height): (f64, f64), inertia: f64) -> [f64; 7] {
         let mut rate = [0.0; 7];
         for (k, x) in [-half, half].into_iter().enumerate() {
@@ -106,9 +112,10 @@ impl PlanarLaw {
     }
 }
 
-/// S10: on stiff springs a slap is what a model of its own in the plane tells, and once the weight has brought the prism to rest on its front
-/// edge, five sides and more have left of their spin what the rigid limit has: their rear edge is lifted off at once. That of four
-/// sides is pressed in by the blow in front of it, however stiff the springs are: it keeps a little more.
+/// S10: on stiff springs a slap is what a model of its own in the plane tells, and once the weight
+/// has brought the prism to rest on its front edge, five sides and more have left of their spin
+/// what the rigid limit has: their rear edge is lifted off at once. That of four sides is pressed
+/// in by the blow in front of it, however stiff the springs are: it keeps a little more.
 #[test]
 fn a_slap_on_springs_takes_what_it_must() {
     for sides in [4, 5, 6, 8] {
@@ -126,8 +133,8 @@ fn a_slap_on_springs_takes_what_it_must() {
     }
 }
 
-/// S18: a face slides 50 m over a plane of many small triangles as over two large ones; once its springs have settled it has no speed along
-/// the normal.
+/// S18: a face slides 50 m over a plane of many small triangles as over two large ones; once its
+/// springs have settled it has no speed along the normal.
 #[test]
 fn a_face_slides_on_springs_over_any_triangulation() {
     let angle = 40_f64.to_radians();
@@ -155,9 +162,10 @@ fn a_face_slides_on_springs_over_any_triangulation() {
     }
 }
 
-/// S11, S12: a hexagonal prism on stiff springs comes into the limit cycle of the rigid limit, as fast before a slap and as slow at the top
-/// of its way, to a hundredth of a per cent, and with the steps of `dda` to a tenth or two. With a critical dashpot along the surface it was off
-/// by a third: its friction came after its push. `adaptive` and `reference` agree on it.
+/// S11, S12: a hexagonal prism on stiff springs comes into the limit cycle of the rigid limit, as
+/// fast before a slap and as slow at the top of its way, to a hundredth of a per cent, and with the
+/// steps of `dda` to a tenth or two. With a critical dashpot along the surface it was off by a
+/// third: its friction came after its push. `adaptive` and `reference` agree on it.
 #[test]
 fn a_hexagonal_prism_rolls_on_springs_into_its_limit_cycle() {
     for degrees in [10.0, 15.0] {
@@ -166,7 +174,8 @@ fn a_hexagonal_prism_rolls_on_springs_into_its_limit_cycle() {
         let found = SCHEMES.map(|scheme| {
             let (found, _) = rolling_prism(degrees, |case| {
                 let mut case = with_long_steps(on_springs(case, scheme, 1e10));
-                // what the fixed step leaves of it depends on where in a step a slap begins: half the step
+                // what the fixed step leaves of it depends on where in a step a slap begins: half
+                // the step
                 let finer = |own: Settings| Settings {
                     step_s: 0.5 * own.step_s,
                     tolerance_m_s: 1e-5,
@@ -198,7 +207,8 @@ fn a_slab_on_springs_comes_to_roll_as_a_wheel() {
     }
 }
 
-/// S19: an edge across a ridge, and a face over a peak, rest on one contact that bears the weight: it is pressed in by its weight over `p_N`.
+/// S19: an edge across a ridge, and a face over a peak, rest on one contact that bears the weight:
+/// it is pressed in by its weight over `p_N`.
 #[test]
 fn one_contact_of_an_edge_or_a_face_bears_the_weight() {
     let on_edge = turn(&Vec3::x_axis(), std::f64::consts::FRAC_PI_4);

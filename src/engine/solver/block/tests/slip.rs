@@ -4,8 +4,9 @@ use super::springs::{every_scheme, on_springs, with_long_steps};
 use super::*;
 use crate::ground::SlipFriction;
 
-/// Leine's square block on 45°, with μ = 0.2 + (2/π) 1.1 atan(0.7 s), slides on its face with the speed that the closed integral
-/// of friction leaves it, 3.49176205 m/s where μ = 1 after 3.12813509 m; there it tips over its lower edge.
+/// Leine's square block on 45°, with μ = 0.2 + (2/π) 1.1 atan(0.7 s), slides on its face with the
+/// speed that the closed integral of friction leaves it, 3.49176205 m/s where μ = 1 after
+/// 3.12813509 m; there it tips over its lower edge.
 #[test]
 fn friction_that_grows_with_slip_tips_a_block() {
     let angle = 45_f64.to_radians();

@@ -1,4 +1,5 @@
-//! The exact cases with springs: `adaptive`, `reference` and `dda` come to what the rigid limit does as their springs get stiff.
+//! The exact cases with springs: `adaptive`, `reference` and `dda` come to what the rigid limit
+//! does as their springs get stiff.
 
 use super::cases::{balls, elastic_box, run_backwards};
 use super::*;
@@ -60,7 +61,8 @@ fn a_cube_rests_on_its_springs() {
         case.follow(&mut state, longest_s, |_, _| ());
         let way = state.pose.centre - start;
         let weight = case.block.mass_kg * G;
-        // four springs along the normal and four along the surface, which also let the cube lean: its centre is 0.5 m up
+        // four springs along the normal and four along the surface, which also let the cube lean:
+        // its centre is 0.5 m up
         let (pressed, sheared) = (weight * cos(angle) / 4e8, weight * sin(angle) / 1e8);
         let lean = weight * sin(angle) * 0.25 / (4e8 * 0.45 * 0.45);
         assert!((way.dot(&up) / -pressed - 1.0).abs() < 1e-3, "{scheme:?} {way}");
@@ -69,7 +71,8 @@ fn a_cube_rests_on_its_springs() {
     }
 }
 
-/// A cube slides on its face with a = g (sin 40° − 0.5 cos 40°) and does not turn; it has sunk into its springs before.
+/// A cube slides on its face with a = g (sin 40° − 0.5 cos 40°) and does not turn; it has sunk into
+/// its springs before.
 #[test]
 fn a_cube_slides_on_its_springs() {
     let angle = 40_f64.to_radians();
@@ -92,7 +95,8 @@ fn a_cube_slides_on_its_springs() {
     }
 }
 
-/// Motion of a bar that has struck with its lower corners, at `friction` and e = 0.5: velocity and spin.
+/// Motion of a bar that has struck with its lower corners, at `friction` and e = 0.5: velocity and
+/// spin.
 fn rebounded(case: &mut BlockRun) -> (Vec3, Vec3) {
     let attitude = tilted(30_f64.to_radians());
     let low = attitude * Vec3::new(0.98, 0.08, -0.08);
@@ -108,7 +112,8 @@ fn rebounded(case: &mut BlockRun) -> (Vec3, Vec3) {
     (state.v + Vec3::z() * (G * 5e-3), state.spin(&own))
 }
 
-/// Case S6: the tilted bar is thrown by its corners as the rigid impact says, to 1e-4 at 1e12 N/m, and the nearer the stiffer.
+/// Case S6: the tilted bar is thrown by its corners as the rigid impact says, to 1e-4 at 1e12 N/m,
+/// and the nearer the stiffer.
 #[test]
 fn a_tilted_bar_is_thrown_as_in_the_rigid_limit() {
     let bar =
@@ -125,7 +130,8 @@ fn a_tilted_bar_is_thrown_as_in_the_rigid_limit() {
     }
 }
 
-/// One ball at the centre is a sphere: oblique impacts with friction leave it as the sphere's own scheme does.
+/// One ball at the centre is a sphere: oblique impacts with friction leave it as the sphere's own
+/// scheme does.
 #[test]
 fn one_ball_bounces_as_a_sphere_does() {
     let (r, mass) = (0.5, 2700.0 * 4.0 / 3.0 * std::f64::consts::PI * 0.125);
@@ -184,7 +190,8 @@ fn a_capsule_rolls_on_springs() {
     }
 }
 
-/// Elastic bounces backwards on springs of the finest scheme, whose local error is 1e-9 of an impact.
+/// Elastic bounces backwards on springs of the finest scheme, whose local error is 1e-9 of an
+/// impact.
 #[test]
 fn elastic_bounces_on_springs_run_backwards() {
     run_backwards(on_springs(elastic_box(), Scheme::Reference, 1e9), &[2, 5], 1e-7);
@@ -204,8 +211,8 @@ fn folds(cells: i32, most_m: f64) -> Terrain {
     terrain((0..cells).flat_map(|i| (0..cells).map(move |j| (i, j))).flat_map(cell).collect())
 }
 
-/// e = 1 without friction on folds that the block is larger than: nothing gains energy, whatever touches, and the finer scheme keeps
-/// it.
+/// e = 1 without friction on folds that the block is larger than: nothing gains energy, whatever
+/// touches, and the finer scheme keeps it.
 #[test]
 fn elastic_blocks_keep_their_energy_over_folds() {
     for (scheme, most) in [(Scheme::Adaptive, 0.05), (Scheme::Reference, 1e-5), (Scheme::Dda, 1.0)]
@@ -235,7 +242,8 @@ fn elastic_blocks_keep_their_energy_over_folds() {
     }
 }
 
-/// Motion of a block after its first episode of contact: velocity without what weight has added since its start, and spin.
+/// Motion of a block after its first episode of contact: velocity without what weight has added
+/// since its start, and spin.
 fn after_first_contact(case: &mut BlockRun, attitude: Rotation3<f64>) -> (Vec3, Vec3) {
     let start = [Vec3::z() * 2.0, Vec3::new(2.0, 1.0, -6.0), Vec3::new(1.0, -2.0, 1.5)];
     let mut state = case.start(attitude, start);
@@ -251,8 +259,9 @@ fn after_first_contact(case: &mut BlockRun, attitude: Rotation3<f64>) -> (Vec3, 
     (last.1.v + Vec3::z() * (G * last.0), last.1.spin(&own))
 }
 
-/// Impacts by explicit stages in their own time come out as the implicit stages have them, the nearer the finer those are: corners and
-/// edges on a plane and on folds, with friction, each turned otherwise, against the finest scheme.
+/// Impacts by explicit stages in their own time come out as the implicit stages have them, the
+/// nearer the finer those are: corners and edges on a plane and on folds, with friction, each
+/// turned otherwise, against the finest scheme.
 #[test]
 fn explicit_impacts_are_the_implicit_ones() {
     let surfaces = [box_surface([1.4, 0.9, 0.35]), prism_surface(6, 0.7)];
@@ -286,7 +295,8 @@ fn explicit_impacts_are_the_implicit_ones() {
     assert!(2.0 * explicit < implicit, "{explicit} {implicit}");
 }
 
-/// A contact that a step of `dda` runs into begins with the stretch that its memory holds, or, as printed in the paper, with none.
+/// A contact that a step of `dda` runs into begins with the stretch that its memory holds, or, as
+/// printed in the paper, with none.
 #[test]
 fn what_a_step_runs_into_is_without_memory_as_printed() {
     let case = on_springs(cube(0.0, (0.5, 0.4)), Scheme::Dda, 1e9);

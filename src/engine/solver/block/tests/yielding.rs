@@ -21,8 +21,8 @@ fn mass() -> (Block, Mass) {
     (block, mass)
 }
 
-/// Struck straight through its centre of mass and without friction a block goes on with `√(v² − 2E/m)`, and stops where the stem
-/// can take all of its motion.
+/// Struck straight through its centre of mass and without friction a block goes on with `√(v² −
+/// 2E/m)`, and stops where the stem can take all of its motion.
 #[test]
 fn a_central_blow_takes_its_limit_off_the_speed() {
     let (block, mass) = mass();
@@ -38,7 +38,8 @@ fn a_central_blow_takes_its_limit_off_the_speed() {
 }
 
 proptest! {
-    /// Wherever it is struck: what gives way has taken its limit to rounding, pushes and never pulls, and obeys Coulomb's cone.
+    /// Wherever it is struck: what gives way has taken its limit to rounding, pushes and never
+    /// pulls, and obeys Coulomb's cone.
     #[test]
     fn a_blow_takes_its_limit_within_the_cone(
         lever in vector(1.0),

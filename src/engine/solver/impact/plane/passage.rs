@@ -1,7 +1,8 @@
-//! The way of a rock through an impact on a plane, from the touch or from any place within it.
+//! The motion of a rock through an impact on a plane, from first contact or from any state within
+//! it.
 //!
-//! The normal motion is a closed form whatever it begins with: how long the impact still lasts, how deep the rock may get and how
-//! fast it leaves are known before anything is followed along the plane.
+//! The normal motion is a closed form for any initial state: the remaining time of the impact, the
+//! largest penetration and the exit speed are known before the tangential motion is integrated.
 
 use super::{ImpactStart, Plane, Rebound, SMOOTH};
 use crate::math;
@@ -11,7 +12,7 @@ use crate::solver::impact::ImpactEffort;
 use crate::solver::impact::normal_motion::Exit;
 use crate::solver::loss::Loss;
 
-/// How far a rock is in a plane, and what the springs of its contact hold.
+/// Penetration of a rock into a plane, and the stretches of the springs of its contact.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ContactDeformation {
     /// Penetration (m).
@@ -22,7 +23,7 @@ pub(crate) struct ContactDeformation {
 }
 
 impl ContactDeformation {
-    /// Not yet: it has just touched.
+    /// At first contact.
     pub(crate) const NONE: Self = Self {
         depth_m: 0.0,
         shear_m: Vec3::new(0.0, 0.0, 0.0),
@@ -30,14 +31,15 @@ impl ContactDeformation {
     };
 }
 
-/// The normal motion until the penetration is zero again, or for a part of that time, in units of a speed and of `1/ω`.
+/// The normal motion until the penetration is zero again, or for a part of that time, in units of a
+/// speed and of `1/ω`.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct NormalPassage {
     frame: ContactFrame,
     omega: f64,
     /// The unit of speed (m/s).
     speed: f64,
-    /// Gravity, against the normal the last.
+    /// Gravity; the last component is against the normal.
     gravity: Local,
     /// Penetration and speed into the plane.
     depth: f64,
@@ -51,17 +53,17 @@ pub(crate) struct NormalPassage {
 }
 
 impl NormalPassage {
-    /// How long it takes (s).
+    /// Duration (s).
     pub(crate) fn time_s(&self) -> f64 {
         (self.exit.lift_off + self.exit.clearing) / self.omega
     }
 
-    /// Whether the rock is out at its end.
+    /// Whether the penetration is zero at its end.
     pub(crate) fn leaves(&self) -> bool {
         self.end_depth == 0.0
     }
 
-    /// Penetration that is not passed (m).
+    /// Upper bound of the penetration (m).
     pub(crate) fn deepest_m(&self) -> f64 {
         self.deepest * self.speed / self.omega
     }
@@ -74,8 +76,8 @@ impl NormalPassage {
 }
 
 impl Plane {
-    /// The way of a rock with velocity `v` (m/s) through the plane with unit normal `n`, into which it is pressed by `depth_m`; `None` if
-    /// gravity keeps it, or nothing pushes it any more.
+    /// The normal motion of a rock with velocity `v` (m/s) in the plane with unit normal `n` and
+    /// the penetration `depth_m`; `None` if gravity keeps it, or nothing pushes it any more.
     pub(crate) fn passage(&self, n: &Vec3, v: &Vec3, depth_m: f64) -> Option<NormalPassage> {
         let frame = ContactFrame::of(n);
         let inwards_m_s = -n.dot(v);
@@ -92,7 +94,7 @@ impl Plane {
             (oscillator.onset(gamma), oscillator.exit(gamma)?, oscillator.deepest(gamma))
         } else {
             let begin = oscillator.force_at((depth, inwards), gamma);
-            // about the place where gravity is balanced the swing gets no wider
+            // about the equilibrium with gravity the amplitude of the oscillation does not grow
             let deepest = gamma + math::hypot(depth - gamma, inwards);
             (begin, oscillator.exit_from(begin, gamma)?, deepest)
         };
@@ -111,7 +113,7 @@ impl Plane {
         })
     }
 
-    /// The first part of a passage, a `share` of the time until the rock lifts off.
+    /// The first part of a passage, for a `share` of the time until lift-off.
     pub(crate) fn part(&self, passage: &NormalPassage, share: f64) -> NormalPassage {
         let lift_off = share * passage.exit.lift_off;
         let (end_depth, inwards) =
@@ -123,9 +125,11 @@ impl Plane {
         }
     }
 
-    /// Follows what happens along the plane to a rock with velocity `v` (m/s) and spin `w` (rad/s) on its `passage`.
+    /// Integrates the tangential motion of a rock with velocity `v` (m/s) and spin `w` (rad/s) on
+    /// its `passage`.
     ///
-    /// Losses are what motion and height lose: what springs give back is taken off, as it was counted among them when it went in.
+    /// Losses are those of the kinetic and potential energy: energy that springs return is
+    /// subtracted, as it was counted among them when it was stored.
     pub(crate) fn pass(
         &self,
         passage: &NormalPassage,
@@ -154,17 +158,18 @@ impl Plane {
             gamma,
             begin: passage.begin,
             leaves: passage.leaves(),
-            // a rock that stands still at its deepest has the speed that its springs give it
+            // at the largest penetration a rock without velocity has the speed that its springs
+            // will give it
             allowed: SMOOTH * self.tolerance * v.norm().max(speed) * over,
         };
         let mut effort = ImpactEffort::default();
         let along = self.tangential_motion(&start, &exit, &mut effort);
         let unit_j = self.body.mass * speed * speed;
-        // normal energy: dashpot, and weight over the way out
+        // normal energy: dashpot, and weight over the exit
         let held = 0.5 * (depth * depth - end_depth * end_depth);
         let motion = 0.5 * (inwards * inwards - exit.speed * exit.speed);
         let damped = motion + held - gamma * (depth - end_depth);
-        // in units of what weight alone would press in
+        // in units of the penetration by weight alone
         debug_assert!(
             damped >= -1e-9 * (1.0 + gamma * gamma),
             "a spring that gives energy: {passage:?}"

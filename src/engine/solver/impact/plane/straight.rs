@@ -1,7 +1,9 @@
-//! A blow without weight and without rolling: what slips keeps its line, and one number of slip and one of the spring tell all.
+//! An impact without weight and without rolling: slip keeps its line, so that one variable for slip
+//! and one for the spring suffice.
 //!
-//! Two rocks that strike each other are such a case: their slip is a straight line as long as nothing but the contact acts on it.
-//! The law, its steps and their error are those of [`Plane::follow`]; only the impulses are asked for, neither ways nor losses.
+//! Two rocks that strike each other are such a case: their slip stays on a straight line while only
+//! the contact acts on it. The law, its steps and their error are those of [`Plane::follow`]; only
+//! the impulses are returned, neither displacements nor losses.
 
 use super::{ImpactStart, Plane, SMOOTH};
 use crate::ground::Law;
@@ -11,10 +13,12 @@ use crate::solver::contact_frame::{Along, square};
 use crate::solver::impact::ImpactEffort;
 use crate::solver::impact::sliders::LineShearFlow;
 
-/// Impulses over the mass (m/s) of a blow on `body` at a normal speed and a slip, both in m/s and the first positive: along the
-/// normal, and against the slip. `tolerance` is relative to the speed of both (–).
+/// Impulses over the mass (m/s) of an impact on `body` at a normal speed and a slip, both in m/s
+/// and the first positive: along the normal, and against the slip. `tolerance` is relative to the
+/// magnitude of both (–).
 ///
-/// The same as [`throw`](super::super::throw) gives for one contact without rolling, to rounding.
+/// The same as [`frozen_impact`](super::super::frozen_impact) gives for one contact without
+/// rolling, to rounding.
 pub(crate) fn blow_along_a_line(
     (body, law): (&Body, &Law),
     captured: bool,
@@ -22,7 +26,7 @@ pub(crate) fn blow_along_a_line(
     tolerance: f64,
 ) -> [f64; 2] {
     let plane = blow_plane((body, law), captured, tolerance);
-    // without weight nothing keeps it but a speed too small to be squared
+    // without weight nothing keeps the rock except a speed too small to be squared
     let Some(exit) = plane.oscillator.exit(0.0) else { return [approach, 0.0] };
     let kept = if captured { 0.0 } else { exit.speed };
     let against = if slip > 0.0 && plane.shear.is_on() {
@@ -40,7 +44,8 @@ pub(super) fn blow_plane((body, law): (&Body, &Law), captured: bool, tolerance: 
 }
 
 impl Plane {
-    /// Impulse against the slip `u` of a blow of so long, in units of mass, approach speed and `1/ω`.
+    /// Impulse against the slip `u` of an impact of this length, in units of mass, approach speed
+    /// and `1/ω`.
     pub(super) fn friction_impulse(&self, u: f64, length: f64) -> f64 {
         let start = ImpactStart {
             v: [u, 0.0],
@@ -57,7 +62,8 @@ impl Plane {
         (u - after) / (1.0 + self.body.turns())
     }
 
-    /// As [`LineShearFlow`] from a slip in two directions: slip at the end, what slipping took, and the way of the slip.
+    /// As [`LineShearFlow`] from a slip in two directions: slip at the end, loss by slip, and the
+    /// slip distance.
     pub(super) fn slips_along_a_line(
         &self,
         slip: Along,
@@ -73,7 +79,7 @@ impl Plane {
         (slip.map(|u| u * (after / size)), taken, slip.map(|u| u * (way / size)))
     }
 
-    /// The slip `u` at the end, what slipping took, and its way.
+    /// The slip at the end from the slip `u`, the loss by slip, and the slip distance.
     fn along_a_line(
         &self,
         u: f64,
@@ -83,7 +89,7 @@ impl Plane {
     ) -> (f64, [f64; 2]) {
         let flow = LineShearFlow { element: self.shear, lightness: 1.0 + self.body.turns() };
         let ([after, _], sums) = self.run(&flow, [u, 0.0], start, length, effort);
-        // the spring gives back no more than it has had, whatever the error of the steps
+        // the spring returns no more than it had, whatever the integration error
         (after.clamp(-u, u), sums)
     }
 }

@@ -34,7 +34,8 @@ fn balances(body: &Body, out: &FrozenRebound, v: &Vec3, w: &Vec3) {
     assert!(out.loss.iter().flat_map(Loss::parts).all(|part| part >= 0.0));
 }
 
-/// The limit that the printed law tends to, as read off stiff springs (3.394 and 4.12); and the same law followed slowly.
+/// The limit that the printed law tends to, as read off stiff springs (3.394 and 4.12); and the
+/// same law followed slowly.
 #[test]
 fn the_rebound_is_the_limit_of_the_springs() {
     let v = Vec3::new(5.0, 1.0, -5.0);
@@ -53,8 +54,9 @@ fn the_rebound_is_the_limit_of_the_springs() {
     assert!((y - 4.12).abs() < 5e-3, "{y}");
 }
 
-/// The rebound from springs of 10¹² N/m is that of the limit: velocity to 1e-4 of the impact speed. There weight still adds
-/// about `g t_c` to the approach, of which friction turns `m R²/I` as much into spin; without weight only the tolerance is left.
+/// The rebound from springs of 10¹² N/m is that of the limit: velocity to 1e-4 of the impact speed.
+/// There weight still adds about `g t_c` to the approach, of which friction turns `m R²/I` as much
+/// into spin; without weight only the tolerance is left.
 #[test]
 fn stiff_springs_tend_to_it() {
     for (rolling, gravity, allowed) in
@@ -87,8 +89,8 @@ const FOLDS: [[[f64; 3]; 3]; 5] = [
     [[1.0, 0.0, 0.1], [-1.0, 0.0, 0.1], [0.0, 0.0, 1.0]],
 ];
 
-/// Two and three contacts on unlike grounds and with unlike stiffness, followed slowly: that finds a touch up to one of its
-/// 2000 steps a radian late, where dashpots jump, which is 1e-5 or so.
+/// Two and three contacts on unlike grounds and with unlike stiffness, followed slowly: that finds
+/// a touch up to one of its 2000 steps a radian late, where dashpots jump, which is 1e-5 or so.
 #[test]
 fn several_contacts_are_the_law_as_printed() {
     for (rolling, e) in [(0.0, 1.0), (0.0, 0.5), (0.3, 1.0), (0.3, 0.5)] {
@@ -118,7 +120,8 @@ fn several_contacts_are_the_law_as_printed() {
     }
 }
 
-/// A patch that is struck alone has a stiffer normal spring than a point, and the same along the surface: friction takes another part of the blow.
+/// A patch that is struck alone has a stiffer normal spring than a point, and the same along the
+/// surface: friction takes another part of the blow.
 #[test]
 fn a_patch_alone_is_the_law_as_printed() {
     let (v, w) = (Vec3::new(1.0, 1.0, -5.0), Vec3::new(3.0, -2.0, 4.0));
@@ -134,7 +137,8 @@ fn a_patch_alone_is_the_law_as_printed() {
     assert!(apart(&body, after(&patch), after(&point), v.norm()) > 1e-3);
 }
 
-/// A smooth right angle between two walls: each throws back its own part of the speed, whatever the other does.
+/// A smooth right angle between two walls: each throws back its own part of the speed, whatever the
+/// other does.
 #[test]
 fn walls_at_right_angles_do_not_know_of_each_other() {
     let (body, law) = case(&smooth(0.8), 0.5, 0.0);
@@ -169,7 +173,8 @@ fn restitution_does_not_depend_on_how_many_contacts_there_are() {
     assert!((out.velocity_m_s.z - 2.5).abs() < 5e-7);
 }
 
-/// A captured contact leaves no speed away from it and none towards it; one that rebounds beside it still does.
+/// A captured contact leaves no speed away from it and none towards it; one that rebounds beside it
+/// still does.
 #[test]
 fn captured_contacts_give_nothing_back() {
     let (body, law) = case(&ground(1e9, 0.5, 0.3), 0.5, 0.0);
@@ -186,7 +191,8 @@ fn captured_contacts_give_nothing_back() {
     balances(&body, &out, &v, &w);
 }
 
-/// Between parallel walls a rock rattles until it is too slow; nothing is lost with e = 1, and it ends.
+/// Between parallel walls a rock rattles until it is too slow; nothing is lost with e = 1, and it
+/// ends.
 #[test]
 fn rattling_ends() {
     for e in [0.5, 0.9] {
@@ -199,7 +205,8 @@ fn rattling_ends() {
     }
 }
 
-/// The order in which contacts are listed changes nothing, and a turned scene gives the turned answer.
+/// The order in which contacts are listed changes nothing, and a turned scene gives the turned
+/// answer.
 #[test]
 fn order_and_axes_do_not_matter() {
     let mut uniform = uniforms(5);
@@ -226,7 +233,8 @@ fn direction() -> impl Strategy<Value = [f64; 3]> {
 }
 
 proptest! {
-    /// e = 1 without friction on any number of contacts in any directions: energy is kept to 1e-12, spin to the bit.
+    /// e = 1 without friction on any number of contacts in any directions: energy is kept to 1e-12,
+    /// spin to the bit.
     #[test]
     fn elastic_impacts_conserve(normals in prop::collection::vec(direction(), 1..5), fine in prop::bool::ANY) {
         let (body, law) = case(&smooth(1.0), 0.5, 0.0);
@@ -241,8 +249,8 @@ proptest! {
         }
     }
 
-    /// Any contacts, grounds, rocks and motions: no gain, losses add up, nothing comes nearer, however it ends; about one in a
-    /// thousand of these wild cases rattles on until it is stopped.
+    /// Any contacts, grounds, rocks and motions: no gain, losses add up, nothing comes nearer,
+    /// however it ends; about one in a thousand of these wild cases rattles on until it is stopped.
     #[test]
     fn several_contacts_account_for_their_energy(
         normals in prop::collection::vec(direction(), 1..9), e in 0.0f64..1.0, other in 0.05f64..1.0, rolling in -0.2f64..0.5,

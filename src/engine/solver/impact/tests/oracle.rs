@@ -1,5 +1,5 @@
-//! The same law written as it is printed, in SI units and world vectors, followed by a fixed classical step that is far too
-//! short: slow and independent.
+//! The same law written as it is printed, in SI units and world vectors, followed by a fixed
+//! classical step that is far too short: slow and independent.
 
 use crate::math;
 use crate::rock::Vec3;
@@ -107,8 +107,8 @@ fn step(
     end
 }
 
-/// Follows an impact with `per_radian` steps until no contact pushes and none comes nearer, then out of the slab of the one
-/// contact if there is but one; returns the end and its time (s).
+/// Follows an impact with `per_radian` steps until no contact pushes and none comes nearer, then
+/// out of the slab of the one contact if there is but one; returns the end and its time (s).
 pub(super) fn follow(
     body: &Body,
     touches: &[FrozenContact],

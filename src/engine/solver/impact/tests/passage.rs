@@ -7,7 +7,8 @@ use crate::solver::body::Body;
 use crate::solver::impact::{ContactDeformation, Plane};
 use nalgebra::Rotation3;
 
-/// Rocks, grounds and motions of all kinds: restitution from 0.05 to 1, with and without friction and rolling friction, weight aslant.
+/// Rocks, grounds and motions of all kinds: restitution from 0.05 to 1, with and without friction
+/// and rolling friction, weight aslant.
 fn cases() -> impl Iterator<Item = ((Body, Law), [Vec3; 2])> {
     let mut uniform = uniforms(7);
     (0..60).map(move |k| {
@@ -28,7 +29,8 @@ fn cases() -> impl Iterator<Item = ((Body, Law), [Vec3; 2])> {
     })
 }
 
-/// In two or three parts it goes the way that it goes at once, takes the same, and each part takes what motion and height lose.
+/// In two or three parts it goes the way that it goes at once, takes the same, and each part takes
+/// what motion and height lose.
 #[test]
 fn an_impact_in_parts_is_that_at_once() {
     let n = Vec3::z();
@@ -77,8 +79,9 @@ fn an_impact_in_parts_is_that_at_once() {
     }
 }
 
-/// A rock lifts off where the force first falls to zero, wherever it is taken up and however long gravity holds it; where it never does so, no
-/// passage is told. One that ends too early makes energy of what the spring still holds.
+/// A rock lifts off where the force first falls to zero, wherever it is taken up and however long
+/// gravity holds it; where it never does so, no passage is told. One that ends too early makes
+/// energy of what the spring still holds.
 #[test]
 fn a_rock_lifts_off_where_the_force_first_falls_to_zero() {
     let mut uniform = uniforms(3);

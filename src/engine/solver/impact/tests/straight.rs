@@ -9,8 +9,9 @@ use crate::solver::impact::{BlowTable, Plane, blow_along_a_line};
 /// Tolerance that leaves rounding and little more (–).
 const FINE: f64 = 1e-10;
 
-/// Impulses over the mass, along the normal and against the slip (m/s), of an impact in two directions. A weight along the surface
-/// that no number feels keeps it from being followed along its line.
+/// Impulses over the mass, along the normal and against the slip (m/s), of an impact in two
+/// directions. A weight along the surface that no number feels keeps it from being followed along
+/// its line.
 fn in_two_directions(
     (body, law): (&Body, &Law),
     captured: bool,
@@ -26,7 +27,8 @@ fn in_two_directions(
     [kept + approach, slip - along.dot(&after)]
 }
 
-/// Largest difference of the impulses over the speed (–) from those in two directions, by the tolerance of the blow.
+/// Largest difference of the impulses over the speed (–) from those in two directions, by the
+/// tolerance of the blow.
 fn difference(tolerance: f64) -> f64 {
     let mut uniform = uniforms(7);
     let mut largest = 0.0f64;
@@ -50,8 +52,9 @@ fn difference(tolerance: f64) -> f64 {
     largest
 }
 
-/// Slip that nothing turns stays on its line: the same impulses, with a third of the numbers. Both err by their tolerance: at that of blows
-/// in a large island (1e-3) by 3.7e-4 of the speed, a thirtieth or less of what sustained contact may leave, 3e-2 of a rock's speed.
+/// Slip that nothing turns stays on its line: the same impulses, with a third of the numbers. Both
+/// err by their tolerance: at that of blows in a large island (1e-3) by 3.7e-4 of the speed, a
+/// thirtieth or less of what sustained contact may leave, 3e-2 of a rock's speed.
 #[test]
 fn a_blow_along_a_line_is_that_in_two_directions() {
     for (tolerance, allowed) in [(FINE, 1e-8), (1e-3, 1e-3)] {
@@ -60,8 +63,9 @@ fn a_blow_along_a_line_is_that_in_two_directions() {
     }
 }
 
-/// Spheres of one material rebound by one table, whatever their mass: its impulse of friction is off by less than a blow that is followed to
-/// 2e-5 of its speed, the rebound is the closed form, and no blow gives energy. Another material has another.
+/// Spheres of one material rebound by one table, whatever their mass: its impulse of friction is
+/// off by less than a blow that is followed to 2e-5 of its speed, the rebound is the closed form,
+/// and no blow gives energy. Another material has another.
 #[test]
 fn a_table_is_that_of_all_spheres_of_a_material() {
     let mut uniform = uniforms(11);

@@ -10,7 +10,8 @@
 //! the step exerts no force until the step has been cut where it begins. So the right side has no
 //! jump within a step, and the error estimate of the pair holds.
 
-use super::super::{SpringContact, rotation_by, rotation_vector_rate};
+use super::super::SpringContact;
+use super::super::rotation_vector::{rotation_by, rotation_vector_rate};
 use crate::body::Block;
 use crate::contact::Feature;
 use crate::contact::block::Pose;
