@@ -285,7 +285,7 @@ impl Roll<'_> {
     /// Digs into the soil of the blows, as fast as the centre comes to it.
     fn dig(&mut self, blows: &[GroundBlow]) {
         let holding = self.footing.touching(self.block).map(|touch| touch.triangle);
-        let in_soil = self.scars.holds(&self.world, holding);
+        let in_soil = self.scars.is_in_soil(&self.world, holding);
         let how = (self.moving.v.norm(), in_soil);
         let kept = self.scars.enter(&self.world.body, blows, how);
         self.slow(kept);

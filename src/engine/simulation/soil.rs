@@ -58,7 +58,7 @@ impl Fall<'_> {
         let world = self.settings.around(self.body, self.laws);
         let (state, scars) = (&self.state, &mut *self.soil.scars);
         let holding = state.histories.iter().chain(state.struck.iter());
-        let in_soil = scars.holds(&world, holding.map(|history| history.triangle));
+        let in_soil = scars.is_in_soil(&world, holding.map(|history| history.triangle));
         let blow = |&Blow { approach_m_s, n: normal, triangle }: &Blow| {
             let ground = world.ground_of(triangle);
             GroundBlow { ground, normal, approach_m_s, of_point_m_s: approach_m_s }

@@ -10,14 +10,6 @@
 //! stays where it is, and pivoting conserves energy to second order. A contact that closes within
 //! the step does not rebound from it.
 //!
-//! A step drifts for half its time (straight on, and round as a free top), meets the contacts of
-//! the middle with one set of impulses, weight included, and drifts on. Impulses are asked for what
-//! brings each contact point back to the surface, and back to where it stuck, at the end of the
-//! step: what changed its velocity since the start of the step by turning alone is taken off twice,
-//! and the velocity along the normal that it began with once. So a push does no work, a block in
-//! rest stays where it is, and pivoting keeps its energy to second order. What comes down to the
-//! surface within the step is not thrown back by it.
-//!
 //! An impact is the limit of stiff springs ([`strike`](BlockContactState::strike)).
 
 mod mid_step;
@@ -216,10 +208,10 @@ impl BlockState {
 /// Re-orthonormalises a rotation that is multiplied again and again.
 fn orthonormal(turned: &Rotation3<f64>) -> Rotation3<f64> {
     let m = turned.matrix();
-    let one = m.column(0).normalize();
-    let two = m.column(1) - one * one.dot(&m.column(1));
-    let two = two.normalize();
-    Rotation3::from_matrix_unchecked(Matrix3::from_columns(&[one, two, one.cross(&two)]))
+    let x = m.column(0).normalize();
+    let y = m.column(1) - x * x.dot(&m.column(1));
+    let y = y.normalize();
+    Rotation3::from_matrix_unchecked(Matrix3::from_columns(&[x, y, x.cross(&y)]))
 }
 
 impl BlockContactState {

@@ -20,7 +20,7 @@ mod flow;
 
 use super::contact_state::{ContactEnvironment, ContactState};
 use super::impact::dormand_prince::{Attempt, Flow, Stages, TrialResult, growth, vec3_at};
-use super::impact::{LOCAL, StepLength};
+use super::impact::{LOCAL_ERROR, StepLength};
 use super::loss::Loss;
 use super::plane_ahead::longest_step;
 use super::stage::End;
@@ -28,7 +28,7 @@ use super::step_control::{Advance, StepError, TRAVEL};
 use crate::contact::TOUCH;
 use crate::contact::history::{ContactHistory, HISTORIES};
 pub(super) use flow::HeldEnergy;
-use flow::{LOSSES, SphereFlow, V, WAY};
+use flow::{DISPLACEMENT, LOSSES, SphereFlow, V};
 
 /// First step of an impact (rad of its oscillation).
 pub(super) const FIRST: f64 = 0.3;
@@ -156,7 +156,7 @@ impl ContactState {
         self.near.come_close(world.terrain, &c, (next_m, STEPS_AHEAD * next_m), reach);
         // a share of the tolerance, as an impact takes a handful of steps; relative to the speed of
         // the impact, so it has no unit of its own
-        let allowed = LOCAL * tolerance * self.impact.speed_m_s;
+        let allowed = LOCAL_ERROR * tolerance * self.impact.speed_m_s;
         StepBounds { omega, limit, h_max, allowed }
     }
 
@@ -296,7 +296,7 @@ fn step_among<const C: usize, const N: usize, const Q: usize, const P: usize>(
 ) -> Result<Option<AcceptedStep>, StepError> {
     let StepBounds { omega, limit, h_max, allowed } = *bounds;
     let y = flow.initial_state::<N>();
-    flow.note_start();
+    flow.record_start();
     let (known, start) = (flow.state.histories.len(), flow.state.c);
     let mut step = StepLength::new(flow.state.impact.h);
     loop {
@@ -325,7 +325,8 @@ fn step_among<const C: usize, const N: usize, const Q: usize, const P: usize>(
         if !accepted {
             done.rejected += 1;
             let between = stages.dense_output((&y, &tried), dt);
-            let share = flow.exchange_share(|share| start + vec3_at(&between.at(share), WAY));
+            let share =
+                flow.exchange_share(|share| start + vec3_at(&between.at(share), DISPLACEMENT));
             let share = share.filter(|share| (INTERIOR.0..INTERIOR.1).contains(share));
             flow.changes.ends_past_exchange = share.is_some();
             match share {
@@ -352,9 +353,9 @@ fn end_of_step<const C: usize, const N: usize, const Q: usize, const P: usize>(
     let between = stages.dense_output((y, tried), dt);
     let path = |share: f64| {
         let y = between.at(share);
-        (start + vec3_at(&y, WAY), vec3_at(&y, V))
+        (start + vec3_at(&y, DISPLACEMENT), vec3_at(&y, V))
     };
-    let has_same_contacts = !flow.changes.are_any() && flow.holds_its_normals();
+    let has_same_contacts = !flow.changes.are_any() && flow.has_unchanged_normals();
     let change = flow.change_share(dt, path);
     let (y_end, sums) = match change {
         Some(share) => (between.at(share), stages.dense_sums(tried, dt).at(share)),

@@ -55,7 +55,7 @@ mod integrate;
 #[cfg(test)]
 mod tests;
 
-pub(super) use plane::LOCAL;
+pub(super) use plane::LOCAL_ERROR;
 pub(crate) use plane::{
     BlowTable, ContactDeformation, NormalPassage, Plane, Rebound, blow_along_a_line,
 };

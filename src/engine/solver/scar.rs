@@ -204,7 +204,7 @@ impl Scars {
     }
 
     /// Whether a rock with these contacts, by triangle, stands in soil that drags.
-    pub(crate) fn holds(
+    pub(crate) fn is_in_soil(
         &self,
         world: &ContactEnvironment,
         mut triangles: impl Iterator<Item = u32>,

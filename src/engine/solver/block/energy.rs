@@ -152,16 +152,17 @@ impl BlockState {
         }
     }
 
-    /// Scales the whole motion down if its kinetic energy exceeds `had_j` plus `comes_j` (J).
-    /// `had_j` is the energy that the block had, with the work of its weight so far; `comes_j` is
+    /// Scales the whole motion down if its kinetic energy exceeds `had_j` plus `remaining_work_j` (J).
+    /// `had_j` is the energy that the block had, with the work of its weight so far; `remaining_work_j` is
     /// the work of its weight over the rest of the step, which scales with the motion. A block
     /// without energy to climb with stops and does not creep.
-    fn scale_to_energy(&mut self, block: &Block, [had_j, comes_j]: [f64; 2]) {
+    fn scale_to_energy(&mut self, block: &Block, [had_j, remaining_work_j]: [f64; 2]) {
         let motion_j = self.motion_j(block);
-        if motion_j > had_j + comes_j && motion_j > 0.0 {
+        if motion_j > had_j + remaining_work_j && motion_j > 0.0 {
             // motion k² = had + comes k
-            let root = (comes_j * comes_j + 4.0 * motion_j * had_j.max(0.0)).sqrt();
-            let kept = ((comes_j + root) / (2.0 * motion_j)).clamp(0.0, 1.0);
+            let root =
+                (remaining_work_j * remaining_work_j + 4.0 * motion_j * had_j.max(0.0)).sqrt();
+            let kept = ((remaining_work_j + root) / (2.0 * motion_j)).clamp(0.0, 1.0);
             self.v *= kept;
             self.momentum *= kept;
         }
@@ -253,11 +254,11 @@ impl BlockContactState {
         let part = |contact: &BlockContact| {
             let [before, after] = motion.map(|motion| Mass::velocity_at(&contact.lever, motion));
             let (mean, spin) = ((before + after) * 0.5, (motion[0].1 + motion[1].1) * 0.5);
-            let (push, up) = (contact.n.dot(&contact.impulse), contact.n.dot(&mean));
-            let drag = contact.impulse - contact.n * push;
+            let (normal_impulse, up) = (contact.n.dot(&contact.impulse), contact.n.dot(&mean));
+            let friction_impulse = contact.impulse - contact.n * normal_impulse;
             let borne = contact.rolling_limit() / limit.max(f64::MIN_POSITIVE);
             let rolling = -self.rolling.impulse.dot(&spin) * borne;
-            let taken = [-drag.dot(&mean), -push * up, rolling];
+            let taken = [-friction_impulse.dot(&mean), -normal_impulse * up, rolling];
             (taken.map(|joule| joule.max(0.0)), contact.triangle)
         };
         let sum: f64 = self.contacts.iter().flat_map(|contact| part(contact).0).sum();

@@ -14,7 +14,7 @@ use nalgebra::Rotation3;
 
 impl BlockState {
     /// Rotates velocity and spin and conserves the kinetic energy.
-    pub(super) fn redirect(&mut self, block: &Block, turn: &Rotation3<f64>) {
+    pub(super) fn rotate(&mut self, block: &Block, turn: &Rotation3<f64>) {
         let w = self.spin(block);
         let turning_j = 0.5 * w.dot(&self.momentum);
         let mass = self.mass(block);
@@ -93,7 +93,7 @@ impl BlockContactState {
         state: &mut BlockState,
         (turn, until_s): (Rotation3<f64>, f64),
     ) {
-        state.redirect(block, &turn.inverse());
+        state.rotate(block, &turn.inverse());
         self.facets.tilt = Some(Tilt { turn, until_s });
         self.springs.invalidate_rates();
     }
@@ -101,7 +101,7 @@ impl BlockContactState {
     /// Rotates the motion back if it is rotated; returns whether it was.
     pub(crate) fn turn_back(&mut self, block: &Block, state: &mut BlockState) -> bool {
         let Some(Tilt { turn, .. }) = self.facets.tilt.take() else { return false };
-        state.redirect(block, &turn);
+        state.rotate(block, &turn);
         self.springs.invalidate_rates();
         true
     }

@@ -117,7 +117,7 @@ impl Mass {
 
     /// Effective mass of a contact with this normal and lever, along the normal and in the mean
     /// along the surface (kg).
-    pub(crate) fn moved_by(&self, (n, lever): (&Vec3, &Vec3)) -> [f64; 2] {
+    pub(crate) fn effective_masses(&self, (n, lever): (&Vec3, &Vec3)) -> [f64; 2] {
         let delassus = self.delassus(lever);
         let along = n.dot(&(delassus * n));
         [1.0 / along, 2.0 / (delassus.trace() - along)]
@@ -202,9 +202,9 @@ impl BlockContact {
     }
 
     /// The same for a normal impulse (N s).
-    pub(super) fn rolling_limit_of(&self, push: f64) -> f64 {
-        let push = if self.is_clamped { LOCKED_N_S } else { push };
-        self.limits.caps(push).1
+    pub(super) fn rolling_limit_of(&self, normal_impulse: f64) -> f64 {
+        let normal_impulse = if self.is_clamped { LOCKED_N_S } else { normal_impulse };
+        self.limits.caps(normal_impulse).1
     }
 
     /// Its compliance, in a scheme with springs.
@@ -255,18 +255,21 @@ impl BlockContact {
             return Vec3::zeros();
         }
         let stick = -(with_compliance.inverse * u);
-        let push = self.n.dot(&stick);
-        let drag = stick - self.n * push;
-        if push > 0.0 && drag.norm_squared() <= (self.friction * push).powi(2) {
+        let normal_impulse = self.n.dot(&stick);
+        let friction_impulse = stick - self.n * normal_impulse;
+        if normal_impulse > 0.0
+            && friction_impulse.norm_squared() <= (self.friction * normal_impulse).powi(2)
+        {
             return stick;
         }
         // first guess: the direction in which it slid in the last sweep
-        let begins = [sliding.tangential(&self.impulse), sliding.tangential(&drag)];
-        let mut slides = begins.iter().filter_map(|drag| drag.try_normalize(0.0));
+        let begins = [sliding.tangential(&self.impulse), sliding.tangential(&friction_impulse)];
+        let mut slides =
+            begins.iter().filter_map(|friction_impulse| friction_impulse.try_normalize(0.0));
         let sliding_impulse =
             slides.find_map(|d| self.sliding_impulse((up, sliding.tangential(u)), d, sliding));
         sliding_impulse.unwrap_or_else(|| {
-            self.sliding_impulse_by_iteration(u, (drag, &with_compliance.matrix))
+            self.sliding_impulse_by_iteration(u, (friction_impulse, &with_compliance.matrix))
         })
     }
 }

@@ -61,16 +61,16 @@ impl BlockContactState {
         if !self.touching(block).any(may_break) {
             return None;
         }
-        let comes = |touch: &&BlockTouch| {
+        let approaches = |touch: &&BlockTouch| {
             world.terrain.is_tree(touch.triangle)
                 && state.approach_m_s(block, touch) > NO_APPROACH_M_S
         };
         let struck: ArrayVec<BlockTouch, 2> =
-            self.touching(block).filter(comes).take(2).copied().collect();
+            self.touching(block).filter(approaches).take(2).copied().collect();
         // a contact that springs have already loaded is followed by them
         let on_trees = |one: &BlockHistory| world.terrain.is_tree(one.triangle);
-        let goes_on = |one: &BlockHistory| on_trees(one) && one.normal_force > 0.0;
-        let begins = !self.springs.histories.iter().any(goes_on);
+        let continues = |one: &BlockHistory| on_trees(one) && one.normal_force > 0.0;
+        let begins = !self.springs.histories.iter().any(continues);
         let is_among = begins && self.touching(block).nth(1).is_some();
         let alone = match struck.as_slice() {
             [] => return None,
@@ -229,7 +229,7 @@ impl BlockContactState {
         let histories = self.springs.histories.iter();
         for history in histories.filter(|one| one.closed && world.terrain.is_tree(one.triangle)) {
             let velocity = state.velocity_at(block, &(history.point - state.pose.centre));
-            let (held_j, weight) = (history.held_j(), history.taking_w(&velocity));
+            let (held_j, weight) = (history.held_j(), history.dissipating_w(&velocity));
             let stem = stems.of_triangle(history.triangle);
             pressed.press(PressedTree { stem, held_j, weight });
         }

@@ -47,7 +47,7 @@ impl BlockContactState {
         self.unsettled = false;
         // as in the schemes with springs, the motion is rotated against the facet, and back
         if let Some(turn) = &facet {
-            state.redirect(block, &turn.inverse());
+            state.rotate(block, &turn.inverse());
         }
         let mut loss = None;
         if bursts || self.is_followed_to_its_limit(world, (block, state)) {
@@ -62,7 +62,7 @@ impl BlockContactState {
         }
         let loss = loss.unwrap_or_else(|| self.impulses(world, (block, state), true));
         if let Some(turn) = &facet {
-            state.redirect(block, turn);
+            state.rotate(block, turn);
         }
         Some(loss)
     }

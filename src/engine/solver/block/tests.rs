@@ -114,8 +114,8 @@ impl BlockRun {
             body: Body::of_block(&block, G),
             laws: &laws,
         };
-        let (mut footing, mut now) = (BlockContactState::default(), 0.0);
-        footing.slip.begin(&[self.ground]);
+        let (mut contact_state, mut now) = (BlockContactState::default(), 0.0);
+        contact_state.slip.begin(&[self.ground]);
         while now < longest_s {
             let path = Parabola {
                 start: state.pose.centre,
@@ -130,7 +130,7 @@ impl BlockRun {
                 &self.terrain,
                 &tumble,
                 left,
-                (&mut footing.near, &mut footing.window),
+                (&mut contact_state.near, &mut contact_state.window),
             ) {
                 FlightEnd::Touch(dt) => dt,
                 FlightEnd::Flies => left,
@@ -140,16 +140,16 @@ impl BlockRun {
             now += dt;
             see(now, state);
             if let Some(settings) = &self.springs {
-                footing.begin_springs(&world, settings, (&block, state));
+                contact_state.begin_springs(&world, settings, (&block, state));
             }
             while now < longest_s {
                 if let Some(settings) = &self.springs {
                     let on = (&block, &mut *state);
-                    let done = footing.step_on_springs(&world, settings, on, longest_s - now);
+                    let done = contact_state.step_on_springs(&world, settings, on, longest_s - now);
                     let (done, _) = done.unwrap_or_else(|why| {
                         panic!(
                             "{:?} after {now} s: {why}; {:?}",
-                            settings.scheme, footing.touches.found
+                            settings.scheme, contact_state.touches.found
                         )
                     });
                     self.lost.add(&done.loss, 1.0);
@@ -163,17 +163,17 @@ impl BlockRun {
                     continue;
                 }
                 let pose = state.pose;
-                footing.detect(&world, &block, &pose, block.ball_m);
-                if let Some(loss) = footing.strike(&world, &block, state) {
+                contact_state.detect(&world, &block, &pose, block.ball_m);
+                if let Some(loss) = contact_state.strike(&world, &block, state) {
                     self.lost.add(&loss, 1.0);
                     self.impacts += 1;
                     see(now, state);
-                    if !footing.stays_in_contact(&world, (&block, state), true) {
+                    if !contact_state.stays_in_contact(&world, (&block, state), true) {
                         break;
                     }
                 }
                 let most = (self.step_s.min(longest_s - now), CORNER_WAY);
-                let done = footing.step(&world, &block, state, most);
+                let done = contact_state.step(&world, &block, state, most);
                 self.lost.add(&done.loss, 1.0);
                 self.steps += 1;
                 now += done.dt;
@@ -265,11 +265,11 @@ fn a_tilted_box_is_thrown_by_its_corners() {
             body: Body::of_block(&block, G),
             laws: &laws,
         };
-        let mut footing = BlockContactState::default();
+        let mut contact_state = BlockContactState::default();
         let pose = state.pose;
-        footing.detect(&world, &block, &pose, block.ball_m);
-        assert_eq!(footing.touching(&block).count(), 2);
-        let loss = footing.strike(&world, &block, &mut state).unwrap();
+        contact_state.detect(&world, &block, &pose, block.ball_m);
+        assert_eq!(contact_state.touching(&block).count(), 2);
+        let loss = contact_state.strike(&world, &block, &mut state).unwrap();
         let (arm, inertia) = (low.x, 4.04 / 12.0);
         let share = 1.0 / (1.0 + arm * arm / inertia);
         assert!((state.v.z - (-3.0 + 4.5 * share)).abs() < 1e-9, "{}", state.v.z);

@@ -23,18 +23,18 @@ const PASSES: u32 = 40;
 
 impl BlockContact {
     /// Energy (J) that an impulse takes from a body whose contact point moved at `u` (m/s).
-    fn taken_j(&self, u: &Vec3, impulse: &Vec3) -> f64 {
+    fn dissipated_j(&self, u: &Vec3, impulse: &Vec3) -> f64 {
         -(u.dot(impulse) + 0.5 * impulse.dot(&(self.delassus * impulse)))
     }
 
     /// Tangential over normal impulse (–), at a velocity `u` of the contact point, for an increment
-    /// `push` (N s) of the normal impulse; and whether the point slips throughout.
-    fn friction_ratio(&self, u: &Vec3, push: f64) -> (Vec3, bool) {
+    /// `increment` (N s) of the normal impulse; and whether the point slips throughout.
+    fn friction_ratio(&self, u: &Vec3, increment: f64) -> (Vec3, bool) {
         let along = |x: Vec3| x - self.n * self.n.dot(&x);
         let slip = along(*u);
         let against = |x: &Vec3| -x.try_normalize(0.0).unwrap_or_default() * self.friction;
         let slides = against(&slip);
-        let after = slip + along(self.delassus * (self.n + slides)) * push;
+        let after = slip + along(self.delassus * (self.n + slides)) * increment;
         if slip.dot(&after) > 0.0 {
             return (slides, true);
         }
@@ -43,37 +43,37 @@ impl BlockContact {
         let rate = 1.0 / (self.delassus.trace() - self.n.dot(&(self.delassus * self.n)));
         let mut stick = Vec3::zeros();
         for _ in 0..PASSES {
-            let next = stick - along(slip / push + self.delassus * (self.n + stick)) * rate;
+            let next = stick - along(slip / increment + self.delassus * (self.n + stick)) * rate;
             stick = within(next, self.friction);
         }
         (stick, false)
     }
 
-    /// Impulse after another increment `push` (N s) of the normal impulse. While the point slips,
+    /// Impulse after another increment `increment` (N s) of the normal impulse. While the point slips,
     /// the direction of slip at the middle of the increment is used.
-    fn advance_impulse(&self, u: &Vec3, impulse: &Vec3, push: f64) -> Vec3 {
-        let (mut ratio, slips) = self.friction_ratio(&(u + self.delassus * impulse), push);
+    fn advance_impulse(&self, u: &Vec3, impulse: &Vec3, increment: f64) -> Vec3 {
+        let (mut ratio, slips) = self.friction_ratio(&(u + self.delassus * impulse), increment);
         if slips {
-            let half = impulse + (self.n + ratio) * (0.5 * push);
-            (ratio, _) = self.friction_ratio(&(u + self.delassus * half), 0.5 * push);
+            let half = impulse + (self.n + ratio) * (0.5 * increment);
+            (ratio, _) = self.friction_ratio(&(u + self.delassus * half), 0.5 * increment);
         }
-        impulse + (self.n + ratio) * push
+        impulse + (self.n + ratio) * increment
     }
 
     /// Impulse (N s) on a body whose contact point strikes, at the velocity `u` (m/s), something
     /// that breaks once it has absorbed `limit_j`, friction included. `None` if it does not break
     /// before the point comes to rest along the normal.
     pub(super) fn yielding(&self, u: &Vec3, limit_j: f64) -> Option<Vec3> {
-        let push = -self.n.dot(u) / self.n.dot(&(self.delassus * self.n)) * PUSH_STEP;
+        let increment = -self.n.dot(u) / self.n.dot(&(self.delassus * self.n)) * PUSH_STEP;
         let mut impulse = Vec3::zeros();
         for _ in 0..STEPS {
             if self.n.dot(&(u + self.delassus * impulse)) >= 0.0 {
                 return None;
             }
-            let next = self.advance_impulse(u, &impulse, push);
-            if self.taken_j(u, &next) >= limit_j {
+            let next = self.advance_impulse(u, &impulse, increment);
+            if self.dissipated_j(u, &next) >= limit_j {
                 let after = |share: f64| impulse + (next - impulse) * share;
-                let stands = |share: f64| self.taken_j(u, &after(share)) < limit_j;
+                let stands = |share: f64| self.dissipated_j(u, &after(share)) < limit_j;
                 let [_, yields] = math::bisected([0.0, 1.0], BISECTIONS, stands);
                 return Some(after(yields));
             }

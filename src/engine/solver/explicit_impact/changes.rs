@@ -128,8 +128,9 @@ impl ContactChanges {
             TouchComparison::Others => self.exchange = self.exchange.or(Some(node)),
             TouchComparison::Fewer => {
                 self.end = self.end.or(Some(node));
-                let is_gone = |one: &&(Feature, Vec3)| touches.iter().all(|at| at.feature != one.0);
-                self.ended.extend(self.at_start.iter().filter(is_gone).map(|one| one.1));
+                let has_ended =
+                    |one: &&(Feature, Vec3)| touches.iter().all(|at| at.feature != one.0);
+                self.ended.extend(self.at_start.iter().filter(has_ended).map(|one| one.1));
             }
             TouchComparison::More => {
                 let mut waits = touches.iter().filter(|touch| !self.has(touch.feature));

@@ -24,7 +24,7 @@ use crate::solver::stage::End;
 use arrayvec::ArrayVec;
 
 /// Offsets of the state: displacement of the centre, velocity, spin; the springs follow.
-pub(super) const WAY: usize = 0;
+pub(super) const DISPLACEMENT: usize = 0;
 pub(super) const V: usize = 3;
 const W: usize = 6;
 /// The stage at a step's end.
@@ -81,7 +81,7 @@ impl HeldEnergy {
     /// returned its energy; then the quadratures are used, which cancel against those of the
     /// dashpot. They are not used where contacts hand `over` their energies to each other: these
     /// jump, and only their sum, each energy by its compression, is continuous.
-    pub(in crate::solver) fn taken_until(
+    pub(in crate::solver) fn stored_until(
         &self,
         end: &Self,
         over: impl FnOnce() -> bool,
@@ -196,7 +196,7 @@ impl<'a, 'w, const C: usize> SphereFlow<'a, 'w, C> {
     /// They are those of its rates. Contact points may have been detected elsewhere since, at the
     /// end of a possible flight; a contact of that position would end at the start of the step,
     /// again and again.
-    pub(super) fn note_start(&mut self) {
+    pub(super) fn record_start(&mut self) {
         self.changes.begin(self.pressed.iter().map(|contact| &contact.touch));
         for contact in &self.pressed {
             self.held_at_start[contact.place] = contact.held(self.world.body.mass);
@@ -221,7 +221,7 @@ impl<'a, 'w, const C: usize> SphereFlow<'a, 'w, C> {
                 |contact| contact.held(self.world.body.mass),
             );
             let damping =
-                self.held_at_start[place].taken_until(&ended, || jumps, sums[LOSSES + place]);
+                self.held_at_start[place].stored_until(&ended, || jumps, sums[LOSSES + place]);
             let triangle = end.map_or(history.triangle, |contact| contact.touch.triangle);
             taken.add(&Loss { damping, ..Loss::default() }.on(self.world, triangle), 1.0);
         }
@@ -230,7 +230,7 @@ impl<'a, 'w, const C: usize> SphereFlow<'a, 'w, C> {
 
     /// Whether the contacts at the state evaluated last are those of the histories, with the same
     /// normals.
-    pub(super) fn holds_its_normals(&self) -> bool {
+    pub(super) fn has_unchanged_normals(&self) -> bool {
         let histories = &self.state.histories;
         self.pressed.len() == histories.len()
             && self.pressed().iter().all(|contact| {
@@ -256,7 +256,7 @@ impl<'a, 'w, const C: usize> SphereFlow<'a, 'w, C> {
 
     /// Position, velocity and spin of the rock.
     pub(super) fn end<const N: usize>(&self, y: &[f64; N]) -> End {
-        End { c: self.state.c + vec3_at(y, WAY), v: vec3_at(y, V), w: vec3_at(y, W) }
+        End { c: self.state.c + vec3_at(y, DISPLACEMENT), v: vec3_at(y, V), w: vec3_at(y, W) }
     }
 }
 
@@ -267,7 +267,7 @@ impl<const C: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, 
     /// are then those of the rock's state.
     fn rates(&mut self, node: usize, y: &[f64; N], rates: &mut Rates<N, Q, P>) {
         *rates = Rates::NONE;
-        let (c, v, w) = (self.state.c + vec3_at(y, WAY), vec3_at(y, V), vec3_at(y, W));
+        let (c, v, w) = (self.state.c + vec3_at(y, DISPLACEMENT), vec3_at(y, V), vec3_at(y, W));
         self.look(&c);
         let Self { world, state, damped, changes, .. } = self;
         let body = &world.body;
@@ -297,16 +297,16 @@ impl<const C: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, 
                 self.exceeds_room = true;
                 continue;
             }
-            let (n, memory) = (touch.normal, &state.histories[place]);
+            let (n, history) = (touch.normal, &state.histories[place]);
             let mut own = None;
-            let law = world.law_touched(memory, touch.triangle, &mut own);
+            let law = world.law_touched(history, touch.triangle, &mut own);
             // a patch of stiffness |a|² has its dashpot times |a|; parallel patches share theirs
             let share = world.dashpot_share_beside(&state.touches, k, changes.ended());
-            let normal = law.normal(memory.captured).of_patch(touch.gain2, share);
+            let normal = law.normal(history.captured).of_patch(touch.gain2, share);
             let at = ContactPlace {
                 n,
                 penetration: (body.radius - touch.distance_m).max(0.0),
-                shear: carry(vec3_at(y, SPRINGS + 3 * place), &memory.n, &n),
+                shear: carry(vec3_at(y, SPRINGS + 3 * place), &history.n, &n),
                 roll: if Self::rolls::<N>() {
                     vec3_at(y, SPRINGS + 3 * (C + place))
                 } else {
@@ -317,7 +317,7 @@ impl<const C: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, 
             let Action { normal: [normal_force, pulls], shear, rolling, slip } = action;
             dv += (n * normal_force - shear.force) * by_mass;
             dw += (n.cross(&shear.force) * body.radius - rolling.force) * by_inertia;
-            put_vec3(&mut rates.y, SPRINGS + 3 * place, &carry(shear.stretch_rate, &n, &memory.n));
+            put_vec3(&mut rates.y, SPRINGS + 3 * place, &carry(shear.stretch_rate, &n, &history.n));
             if Self::rolls::<N>() {
                 put_vec3(&mut rates.y, SPRINGS + 3 * (C + place), &rolling.stretch_rate);
             }
@@ -341,7 +341,7 @@ impl<const C: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, 
             let pressed = PressedContact { place, touch, at, normal, normal_force, slides };
             self.pressed.push(pressed);
         }
-        put_vec3(&mut rates.y, WAY, &v);
+        put_vec3(&mut rates.y, DISPLACEMENT, &v);
         put_vec3(&mut rates.y, V, &dv);
         put_vec3(&mut rates.y, W, &dw);
     }
@@ -354,7 +354,7 @@ impl<const C: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, 
         let pressed = self.pressed().iter().filter(|contact| contact.normal_force > 0.0);
         let stretch2 = pressed
             .map(|contact| vec3_at(off, SPRINGS + 3 * contact.place).norm_squared())
-            .fold(vec3_at(off, WAY).norm_squared(), f64::max);
+            .fold(vec3_at(off, DISPLACEMENT).norm_squared(), f64::max);
         let worst2 = (stretch2 * omega * omega)
             .max(vec3_at(off, V).norm_squared())
             .max(vec3_at(off, W).norm_squared() * self.world.body.radius.powi(2));

@@ -85,14 +85,14 @@ pub(in crate::solver) trait Flow<const N: usize, const Q: usize, const P: usize>
 
 /// Whether an element with this squared trial value and cap slips, or is open.
 #[inline]
-pub(in crate::solver) fn slips([asked2, cap]: [f64; 2]) -> bool {
-    asked2 > cap * cap
+pub(in crate::solver) fn slips([trial2, cap]: [f64; 2]) -> bool {
+    trial2 > cap * cap
 }
 
 /// Trial value less the cap.
 #[inline]
-pub(in crate::solver) fn excess([asked2, cap]: [f64; 2]) -> f64 {
-    asked2.sqrt() - cap
+pub(in crate::solver) fn excess([trial2, cap]: [f64; 2]) -> f64 {
+    trial2.sqrt() - cap
 }
 
 /// Adds the quadratures of a step.

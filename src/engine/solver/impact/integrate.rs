@@ -37,7 +37,7 @@ const SIMULTANEOUS: u32 = 4;
 pub(super) trait ForcedFlow<const N: usize, const Q: usize, const K: usize> {
     /// Squared trial value of each element and its cap under the force `f`; an element beyond its
     /// cap slips.
-    fn asked(&self, f: f64, y: &[f64; N]) -> [[f64; 2]; K];
+    fn trial_values(&self, f: f64, y: &[f64; N]) -> [[f64; 2]; K];
     /// Writes the rates under the force `f` into `to`, with the elements that slip.
     fn rates(&self, f: f64, y: &[f64; N], slips: &[bool; K], to: &mut Rates<N, Q, K>);
     /// Squared norm of an error.
@@ -200,7 +200,7 @@ impl<'a, P: ForcedFlow<N, Q, K>, const N: usize, const Q: usize, const K: usize,
 {
     fn new(law: &'a P, y: [f64; N], span: &'a IntegrationSpan) -> Self {
         let (force, stages) = (NormalForceSeries::new(span), Stages::NONE);
-        let slips = law.asked(force.now[0], &y).map(slips);
+        let slips = law.trial_values(force.now[0], &y).map(slips);
         let (sum, next_h) = ([0.0; Q], span.first);
         let mut integration =
             Self { law, span, force, y, sum, t: 0.0, next_h, slips, simultaneous: 0, stages };
@@ -304,8 +304,8 @@ impl<'a, P: ForcedFlow<N, Q, K>, const N: usize, const Q: usize, const K: usize,
         }
         let look = |share: f64| {
             let state = between.at(share);
-            let asked = self.law.asked(self.force.at(share * h), &state);
-            (beyond(asked[element], slips), SliderSwitch { element, share, state })
+            let trial = self.law.trial_values(self.force.at(share * h), &state);
+            (beyond(trial[element], slips), SliderSwitch { element, share, state })
         };
         let end = switching[6];
         let high = if end > 0.0 {

@@ -173,7 +173,7 @@ impl NormalMotion {
     fn lift_anywhere(&self, from: ([f64; 2], f64), guess: f64) -> Option<(f64, f64)> {
         // the force rises, falls and has its first minimum; if it is below 0 there, it has crossed
         // 0 just once before
-        let mut hi = self.trough(from);
+        let mut hi = self.first_minimum(from);
         if hi.is_none() && from.1 < 0.0 {
             // Nothing holds the rock: the force becomes negative in the end.
             hi = (0..60).map(|k| 2f64.powi(k)).find(|t| self.force(from, *t)[0] <= 0.0);
@@ -200,7 +200,7 @@ impl NormalMotion {
 
     /// Time of the first minimum of the force, if it has one: `f' = a S' − β S`, `a` its rate and
     /// `β = f − γ` at the start.
-    fn trough(&self, ([force, a], gamma): ([f64; 2], f64)) -> Option<f64> {
+    fn first_minimum(&self, ([force, a], gamma): ([f64; 2], f64)) -> Option<f64> {
         let (zeta, beta) = (self.zeta, force - gamma);
         if 1.0 - zeta * zeta > CRITICAL {
             let wd = (1.0 - zeta * zeta).sqrt();

@@ -27,7 +27,7 @@ pub(crate) use straight::blow_along_a_line;
 const COARSE: f64 = 1e-6;
 /// Local error of one step over the tolerance (–): the few steps of an impact then stay within
 /// about the tolerance.
-pub(in crate::solver) const LOCAL: f64 = 0.3;
+pub(in crate::solver) const LOCAL_ERROR: f64 = 0.3;
 /// The same along a plane, where steps contain no switching points (–).
 const SMOOTH: f64 = 0.6;
 /// First step along a plane at a local error of 1 (1/ω): that of order 5 is about (h/this)⁵.

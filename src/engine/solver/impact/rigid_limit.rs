@@ -18,7 +18,7 @@ mod rates;
 mod unchanged_motion;
 
 use super::dormand_prince::{Attempt, Stages, add_sums, growth};
-use super::plane::{LOCAL, Plane};
+use super::plane::{LOCAL_ERROR, Plane};
 use super::{ImpactEffort, ImpactOutcome, StepLength};
 use crate::contact::MOST;
 use crate::ground::Law;
@@ -68,7 +68,7 @@ impl ContactEnds {
     pub(crate) const MESH: Self = Self { first: 0, second: None, levers: [1.0; 2] };
 
     /// Effective mass (kg): that of a body, or the reduced mass of two.
-    fn moved_kg(&self, bodies: &[FrozenBody]) -> f64 {
+    fn effective_mass_kg(&self, bodies: &[FrozenBody]) -> f64 {
         let mass_kg = |k: usize| bodies[k].body.mass;
         match self.second {
             Some(second) => 1.0 / (1.0 / mass_kg(self.first) + 1.0 / mass_kg(second)),
@@ -275,7 +275,7 @@ impl<const B: usize, const K: usize, const N: usize, const Q: usize, const P: us
     ) -> Self {
         let motion = |k: usize| bodies.get(k).map_or(STILL, |body| body.in_units(speed));
         Self {
-            flow: ContactRates::new((bodies, contacts), speed, LOCAL * tolerance),
+            flow: ContactRates::new((bodies, contacts), speed, LOCAL_ERROR * tolerance),
             y: rates::initial_state(&std::array::from_fn::<_, B, _>(motion)),
             sums: [0.0; Q],
             effort: ImpactEffort::default(),
@@ -289,7 +289,7 @@ impl<const B: usize, const K: usize, const N: usize, const Q: usize, const P: us
         let (mut step, mut time) = (StepLength::new(FIRST_STEP * math::pow(tolerance, 0.2)), 0.0);
         let softest = self.flow.contacts.softest;
         let (most, mut unchanged) =
-            (MOST_TIME / self.flow.contacts.slowest_swing(), UnchangedMotion::<B>::NONE);
+            (MOST_TIME / self.flow.contacts.lowest_frequency(), UnchangedMotion::<B>::NONE);
         // Whether the set of closed contacts has been switched without a step: once is enough.
         let mut switched = false;
         self.flow.update_pressed(&mut self.y);
@@ -308,7 +308,7 @@ impl<const B: usize, const K: usize, const N: usize, const Q: usize, const P: us
                 self.flow.rates_of(&self.y, stages.first());
                 continue;
             }
-            if unchanged.stays(&self.motions(), time, JAMMED_ERRORS * self.flow.allowed)
+            if unchanged.unchanged_for(&self.motions(), time, JAMMED_ERRORS * self.flow.allowed)
                 > TAU / softest
             {
                 return ImpactOutcome::Jammed;

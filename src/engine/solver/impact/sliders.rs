@@ -71,24 +71,24 @@ impl SliderElement {
         if square > 0.0 { 0.5 * self.damping * square / self.rate } else { 0.0 }
     }
 
-    /// Projection of a trial value under the force `f`: the factor of `p = asked × share`, the
+    /// Projection of a trial value under the force `f`: the factor of `p = trial × share`, the
     /// excess over the cap, and the cap.
     #[inline]
-    pub(super) fn share(&self, asked2: f64, f: f64) -> (f64, f64, f64) {
+    pub(super) fn share(&self, trial2: f64, f: f64) -> (f64, f64, f64) {
         let cap = self.cap * f;
-        let (share, by) = Self::scale(slips([asked2, cap]), [asked2, cap]);
+        let (share, by) = Self::scale(slips([trial2, cap]), [trial2, cap]);
         (share, by, cap)
     }
 
     /// Projection of a trial value for an element that slips under a cap, or sticks: the factor of
-    /// `p = asked × share`, and the excess.
+    /// `p = trial × share`, and the excess.
     #[inline]
-    fn scale(slips: bool, [asked2, cap]: [f64; 2]) -> (f64, f64) {
+    fn scale(slips: bool, [trial2, cap]: [f64; 2]) -> (f64, f64) {
         if !slips {
             return (1.0, 0.0);
         }
-        let asked = asked2.sqrt().max(f64::MIN_POSITIVE);
-        (cap / asked, asked - cap)
+        let trial = trial2.sqrt().max(f64::MIN_POSITIVE);
+        (cap / trial, trial - cap)
     }
 }
 
@@ -105,15 +105,15 @@ pub(super) struct ShearFlow {
 /// State: slip, spring `s`; quadratures: loss by slip, slip.
 impl ForcedFlow<4, 3, 1> for ShearFlow {
     #[inline]
-    fn asked(&self, f: f64, y: &[f64; 4]) -> [[f64; 2]; 1] {
-        let asked = [y[0] + y[2], y[1] + y[3]];
-        [[asked[0] * asked[0] + asked[1] * asked[1], self.element.cap * f]]
+    fn trial_values(&self, f: f64, y: &[f64; 4]) -> [[f64; 2]; 1] {
+        let trial = [y[0] + y[2], y[1] + y[3]];
+        [[trial[0] * trial[0] + trial[1] * trial[1], self.element.cap * f]]
     }
 
     #[inline]
     fn rates(&self, f: f64, y: &[f64; 4], [slips]: &[bool; 1], to: &mut Rates<4, 3, 1>) {
         let SliderElement { damping, rate, .. } = self.element;
-        let switching = self.asked(f, y);
+        let switching = self.trial_values(f, y);
         let (share, by) = SliderElement::scale(*slips, switching[0]);
         let p = [y[0] + y[2], y[1] + y[3]].map(|x| x * share);
         // an impulse c p changes the slip by (1 + m R²/I) = 7/2 of it for a sphere: velocity and
@@ -152,15 +152,15 @@ pub(super) struct LineShearFlow {
 /// State: slip, spring `s`; quadratures: loss by slip, slip.
 impl ForcedFlow<2, 2, 1> for LineShearFlow {
     #[inline]
-    fn asked(&self, f: f64, y: &[f64; 2]) -> [[f64; 2]; 1] {
-        let asked = y[0] + y[1];
-        [[asked * asked, self.element.cap * f]]
+    fn trial_values(&self, f: f64, y: &[f64; 2]) -> [[f64; 2]; 1] {
+        let trial = y[0] + y[1];
+        [[trial * trial, self.element.cap * f]]
     }
 
     #[inline]
     fn rates(&self, f: f64, y: &[f64; 2], [slips]: &[bool; 1], to: &mut Rates<2, 2, 1>) {
         let SliderElement { damping, rate, .. } = self.element;
-        let switching = self.asked(f, y);
+        let switching = self.trial_values(f, y);
         let (share, by) = SliderElement::scale(*slips, switching[0]);
         let p = (y[0] + y[1]) * share;
         *to = Rates {
@@ -198,7 +198,7 @@ impl ShearRollingFlow {
 
     /// Trial value of the shear element.
     #[inline]
-    fn slip_asked(y: &[f64; 10]) -> [f64; 2] {
+    fn slip_trial(y: &[f64; 10]) -> [f64; 2] {
         let slip = Self::slip(y);
         [slip[0] + y[5], slip[1] + y[6]]
     }
@@ -206,7 +206,7 @@ impl ShearRollingFlow {
     /// Trial value of the rolling element, which acts on the whole spin, including that about the
     /// normal.
     #[inline]
-    fn spin_asked(y: &[f64; 10]) -> [f64; 3] {
+    fn spin_trial(y: &[f64; 10]) -> [f64; 3] {
         [y[2] + y[7], y[3] + y[8], y[4] + y[9]]
     }
 }
@@ -215,11 +215,16 @@ impl ShearRollingFlow {
 /// shear.
 impl ForcedFlow<10, 5, 2> for ShearRollingFlow {
     #[inline]
-    fn asked(&self, f: f64, y: &[f64; 10]) -> [[f64; 2]; 2] {
-        let (asked, wound) = (Self::slip_asked(y), Self::spin_asked(y));
+    fn trial_values(&self, f: f64, y: &[f64; 10]) -> [[f64; 2]; 2] {
+        let (trial, spring_spin) = (Self::slip_trial(y), Self::spin_trial(y));
         [
-            [asked[0] * asked[0] + asked[1] * asked[1], self.shear.cap * f],
-            [wound[0] * wound[0] + wound[1] * wound[1] + wound[2] * wound[2], self.rolling.cap * f],
+            [trial[0] * trial[0] + trial[1] * trial[1], self.shear.cap * f],
+            [
+                spring_spin[0] * spring_spin[0]
+                    + spring_spin[1] * spring_spin[1]
+                    + spring_spin[2] * spring_spin[2],
+                self.rolling.cap * f,
+            ],
         ]
     }
 
@@ -234,11 +239,11 @@ impl ForcedFlow<10, 5, 2> for ShearRollingFlow {
     ) {
         let (shear, rolling) = (self.shear, self.rolling);
         let slip = Self::slip(y);
-        let switching = self.asked(f, y);
+        let switching = self.trial_values(f, y);
         let (share, by) = SliderElement::scale(*slips, switching[0]);
-        let p = Self::slip_asked(y).map(|x| x * share);
+        let p = Self::slip_trial(y).map(|x| x * share);
         let (share, _) = SliderElement::scale(*turns_over, switching[1]);
-        let m = Self::spin_asked(y).map(|x| x * share);
+        let m = Self::spin_trial(y).map(|x| x * share);
         let (c, turn, g) = (shear.damping, self.turns * shear.damping, self.gravity);
         let stop = self.turns * rolling.damping;
         *to = Rates {

@@ -52,17 +52,17 @@ impl BlockContact {
         if self.n.dot(u) > springs.surface_m_s {
             return None;
         }
-        let (normal, push) = (self.n * self.n.transpose(), up * along);
+        let (normal, normal_impulse) = (self.n * self.n.transpose(), up * along);
         let held = (off - self.n * up) * across;
-        let (cap, size) = (self.friction * push, held.norm());
+        let (cap, size) = (self.friction * normal_impulse, held.norm());
         let plane = Matrix3::identity() - normal;
         if size <= cap {
-            return Some((self.n * push + held, normal * -along - plane * across));
+            return Some((self.n * normal_impulse + held, normal * -along - plane * across));
         }
         let direction = held / size;
         let turns = (plane - direction * direction.transpose()) * (-across * cap / size);
         let grows = (direction * self.n.transpose()) * (-along * self.friction);
-        Some((self.n * push + direction * cap, normal * -along + turns + grows))
+        Some((self.n * normal_impulse + direction * cap, normal * -along + turns + grows))
     }
 }
 
@@ -79,7 +79,7 @@ impl BodyEquations<'_> {
     /// Residual at a motion, and its derivative; the impulses go into the contacts.
     fn residual_at(&mut self, (v, w): (&Vec3, &Vec3)) -> Option<(Vector6<f64>, Matrix6<f64>)> {
         let (dv, dw) = (v - self.free.0, w - self.free.1);
-        let (mut push, mut turn) = (dv * self.mass.mass, self.inertia * dw);
+        let (mut linear, mut angular) = (dv * self.mass.mass, self.inertia * dw);
         let mut slope = Matrix6::zeros();
         slope.fixed_view_mut::<3, 3>(0, 0).fill_diagonal(self.mass.mass);
         slope.fixed_view_mut::<3, 3>(3, 3).copy_from(&self.inertia);
@@ -88,8 +88,8 @@ impl BodyEquations<'_> {
         for contact in self.contacts.iter_mut() {
             let (impulse, rate) = contact.impulse_at(&Mass::velocity_at(&contact.lever, (v, w)))?;
             contact.impulse = impulse;
-            push -= impulse;
-            turn -= contact.lever.cross(&impulse);
+            linear -= impulse;
+            angular -= contact.lever.cross(&impulse);
             // Tᵀ P' T with T = [1, −[a]×]
             let arm = contact.lever.cross_matrix();
             let (right, both) = (rate * arm, arm * rate);
@@ -103,26 +103,26 @@ impl BodyEquations<'_> {
             block += arm * right;
             if contact.has_rolling() {
                 limit += contact.rolling_limit();
-                let push_slope = rate.tr_mul(&contact.n) * contact.rolling_limit_of(1.0);
-                limit_slope[0] += push_slope;
-                limit_slope[1] -= arm.tr_mul(&push_slope);
+                let normal_slope = rate.tr_mul(&contact.n) * contact.rolling_limit_of(1.0);
+                limit_slope[0] += normal_slope;
+                limit_slope[1] -= arm.tr_mul(&normal_slope);
             }
         }
         if let Some((taken, rate, direction)) = self.rolling.impulse_at(w, limit) {
-            turn += taken;
+            angular += taken;
             let mut block = slope.fixed_view_mut::<3, 3>(3, 0);
             block += direction * limit_slope[0].transpose();
             let mut block = slope.fixed_view_mut::<3, 3>(3, 3);
             block += rate + direction * limit_slope[1].transpose();
         }
-        Some((Vector6::new(push.x, push.y, push.z, turn.x, turn.y, turn.z), slope))
+        Some((Vector6::new(linear.x, linear.y, linear.z, angular.x, angular.y, angular.z), slope))
     }
 
     /// Size of a residual, as a velocity (m/s).
     fn residual_m_s(&self, residual: &Vector6<f64>, reach: f64) -> f64 {
-        let push: Vec3 = residual.fixed_rows::<3>(0).into();
-        let turn: Vec3 = residual.fixed_rows::<3>(3).into();
-        push.norm() / self.mass.mass + (self.mass.inverse * turn).norm() * reach
+        let linear: Vec3 = residual.fixed_rows::<3>(0).into();
+        let angular: Vec3 = residual.fixed_rows::<3>(3).into();
+        linear.norm() / self.mass.mass + (self.mass.inverse * angular).norm() * reach
     }
 }
 

@@ -59,26 +59,26 @@ impl BlockContact {
     ) -> Option<Vec3> {
         let friction = self.friction;
         for _ in 0..ANGLE_STEPS {
-            let selected = Vector2::new(-d.y, d.x);
+            let perpendicular = Vector2::new(-d.y, d.x);
             let own = matrix.nn + friction * matrix.tn.dot(&d);
-            let push = -up / own;
+            let normal_impulse = -up / own;
             let answer = matrix.tn + matrix.tt * d * friction;
-            let left = slip + answer * push;
-            let push_turns = -push * friction * matrix.tn.dot(&selected) / own;
-            let turns = selected
-                .dot(&(answer * push_turns + matrix.tt * selected * (friction * push)))
+            let left = slip + answer * normal_impulse;
+            let push_turns = -normal_impulse * friction * matrix.tn.dot(&perpendicular) / own;
+            let turns = perpendicular
+                .dot(&(answer * push_turns + matrix.tt * perpendicular * (friction * normal_impulse)))
                 - d.dot(&left);
-            let turn = -selected.dot(&left) / turns;
+            let turn = -perpendicular.dot(&left) / turns;
             if own <= 0.0 || !turn.is_finite() {
                 return None;
             }
-            d = (d + selected * turn.clamp(-WIDEST_TURN, WIDEST_TURN)).normalize();
+            d = (d + perpendicular * turn.clamp(-WIDEST_TURN, WIDEST_TURN)).normalize();
             // Newton's method squares the remaining turn
             if turn.abs() <= LAST_TURN {
-                let push = -up / (matrix.nn + friction * matrix.tn.dot(&d));
-                let opposes = d.dot(&left) <= 0.0 && push > 0.0;
-                let drag = matrix.first * d.x + matrix.second * d.y;
-                return opposes.then(|| (self.n + drag * friction) * push);
+                let normal_impulse = -up / (matrix.nn + friction * matrix.tn.dot(&d));
+                let opposes = d.dot(&left) <= 0.0 && normal_impulse > 0.0;
+                let tangent = matrix.first * d.x + matrix.second * d.y;
+                return opposes.then(|| (self.n + tangent * friction) * normal_impulse);
             }
         }
         None
@@ -90,24 +90,24 @@ impl BlockContact {
     pub(super) fn sliding_impulse_by_iteration(
         &self,
         u: &Vec3,
-        (mut drag, whole): (Vec3, &Matrix3<f64>),
+        (mut friction_impulse, whole): (Vec3, &Matrix3<f64>),
     ) -> Vec3 {
         let n = &self.n;
         let along = |x: &Vec3| x - n * n.dot(x);
         let to_n = whole * n;
         let (own, rate) = (n.dot(&to_n), 1.0 / (whole.trace() - n.dot(&to_n)));
-        let mut push = 0.0;
+        let mut normal_impulse = 0.0;
         for _ in 0..PASSES {
-            let asked = -(n.dot(u) + to_n.dot(&drag)) / own;
-            push = asked.max(0.0);
-            let slip = along(&(u + whole * drag + to_n * push));
-            let next = within(drag - slip * rate, self.friction * push);
-            let change = (next - drag).norm();
-            drag = next;
-            if change <= CONVERGED * push {
+            let asked = -(n.dot(u) + to_n.dot(&friction_impulse)) / own;
+            normal_impulse = asked.max(0.0);
+            let slip = along(&(u + whole * friction_impulse + to_n * normal_impulse));
+            let next = within(friction_impulse - slip * rate, self.friction * normal_impulse);
+            let change = (next - friction_impulse).norm();
+            friction_impulse = next;
+            if change <= CONVERGED * normal_impulse {
                 break;
             }
         }
-        n * push + drag
+        n * normal_impulse + friction_impulse
     }
 }

@@ -210,13 +210,13 @@ impl BlockContactState {
     /// Whether two contacts can jam each other: the line between them lies within both friction
     /// cones.
     fn can_jam(&self, world: &ContactEnvironment, [one, other]: [&BlockTouch; 2]) -> bool {
-        let bears = |touch: &BlockTouch, way: &Vec3| {
-            let (up, law) = (touch.normal.dot(way), world.law(touch.triangle));
+        let supports = |touch: &BlockTouch, line: &Vec3| {
+            let (up, law) = (touch.normal.dot(line), world.law(touch.triangle));
             let friction = self.slip.friction(world.ground_of(touch.triangle), law, 0.0);
-            up > 0.0 && (way - touch.normal * up).norm() <= friction * up
+            up > 0.0 && (line - touch.normal * up).norm() <= friction * up
         };
-        let way = other.lever - one.lever;
-        one.normal.dot(&other.normal) < 0.0 && bears(one, &way) && bears(other, &-way)
+        let line = other.lever - one.lever;
+        one.normal.dot(&other.normal) < 0.0 && supports(one, &line) && supports(other, &-line)
     }
 
     /// Whether two of the touching contacts can jam each other.

@@ -22,7 +22,7 @@ const CORRECTABLE: f64 = 1e-2;
 struct BlockTrial<'a, 'w> {
     world: &'a ContactEnvironment<'w>,
     control: Control,
-    footing: &'a mut BlockContactState,
+    contact_state: &'a mut BlockContactState,
     block: &'a Block,
     start: &'a BlockState,
     h: f64,
@@ -56,11 +56,11 @@ impl TrialStep for BlockTrial<'_, '_> {
     }
 
     fn try_step(&mut self, dt: f64) -> TryOutcome {
-        let springs = &mut self.footing.springs;
+        let springs = &mut self.contact_state.springs;
         springs.histories.truncate(springs.known);
         springs.suspends_new = !self.onsets.acts_at_once;
         let tried = self.attempt(dt);
-        self.footing.springs.suspends_new = false;
+        self.contact_state.springs.suspends_new = false;
         let (end, error) = match tried {
             None => return TryOutcome::Unsettled,
             Some(StagesOutcome::Cut(share)) => {
@@ -85,27 +85,27 @@ impl BlockTrial<'_, '_> {
         let tableau = self.control.tableau;
         let way_s = tableau.diagonal * dt;
         // slip-dependent friction is evaluated at the middle of the step
-        self.footing.springs.ahead_m = 0.5 * dt * self.footing.springs.slip_m_s;
+        self.contact_state.springs.ahead_m = 0.5 * dt * self.contact_state.springs.slip_m_s;
         let mut end = None;
         self.unsettled = false;
         for i in 1..tableau.stages {
-            let base = self.footing.base(self.start, tableau, (i, dt));
+            let base = self.contact_state.base(self.start, tableau, (i, dt));
             let stage = StageBase { start: self.start, base, times_s: (way_s, way_s) };
             let shear = |BlockContactState { springs, .. }: &BlockContactState, k: usize| {
                 let from = (springs.histories[k].shear, &springs.rates[..]);
                 tableau.base((i, dt), from, |rate| rate.shear[k])
             };
-            let ends = self.footing.stage(self.world, self.block, &stage, shear)?;
-            self.unsettled |= self.footing.unsettled;
+            let ends = self.contact_state.stage(self.world, self.block, &stage, shear)?;
+            self.unsettled |= self.contact_state.unsettled;
             let onset_s = self.onsets.first(
-                &self.footing.springs,
+                &self.contact_state.springs,
                 (self.block, &ends.state, way_s),
                 tableau.node(i) * dt,
             );
             if let Some(onset_s) = onset_s {
                 return Some(StagesOutcome::Cut(onset_s / dt));
             }
-            self.footing.store_rates(self.world, (self.block, &stage), (i, &ends));
+            self.contact_state.store_rates(self.world, (self.block, &stage), (i, &ends));
             end = Some(ends);
         }
         end.map(|end| StagesOutcome::Whole(end, self.error(dt)))
@@ -115,11 +115,11 @@ impl BlockTrial<'_, '_> {
     /// frequency, rotations times the largest radius.
     fn error(&self, dt: f64) -> f64 {
         let tableau = self.control.tableau;
-        let rates = &self.footing.springs.rates;
+        let rates = &self.contact_state.springs.rates;
         let off = |part: fn(&BlockRates) -> Vec3| tableau.off(rates, part);
         let (omega, reach) = (self.omega, self.block.bound_m);
         let spin = self.start.mass(self.block).inverse * off(|rate| rate.momentum);
-        let histories = 0..self.footing.springs.histories.len();
+        let histories = 0..self.contact_state.springs.histories.len();
         let stretch = histories.map(|k| tableau.off(rates, |rate| rate.shear[k]).norm());
         let worst = [
             off(|rate| rate.centre).norm() * omega,
@@ -136,14 +136,15 @@ impl BlockTrial<'_, '_> {
     /// rounding.
     fn spurious_j(&self, end: &StageState, dt: f64) -> f64 {
         let (block, body) = (self.block, &self.world.body);
-        let stored_j = self.footing.springs.stored_j;
+        let stored_j = self.contact_state.springs.stored_j;
         let before = self.start.motion_j(block) + stored_j;
-        let contacts = self.footing.springs.contacts.iter();
+        let contacts = self.contact_state.springs.contacts.iter();
         let force = block.mass_kg * body.gravity.norm()
             + contacts.map(|contact| contact.normal_force).sum::<f64>();
         let unknown = ROUNDING * before + PLACE_ROUNDING * block.radius_m * force;
-        let pressed =
-            self.footing.stored_at_end_j((block, &end.state), self.control.tableau.diagonal * dt);
+        let pressed = self
+            .contact_state
+            .stored_at_end_j((block, &end.state), self.control.tableau.diagonal * dt);
         let spurious_j = gained_j(self.world, block, (self.start, &end.state)) + pressed - stored_j;
         if spurious_j > unknown { spurious_j } else { 0.0 }
     }
@@ -153,7 +154,7 @@ impl BlockTrial<'_, '_> {
     /// step gains or loses a little; rejecting every gain would make rounding limit the steps. It
     /// is 0 during an impact and where one begins: a step that gains energy there is too long.
     fn correctable_j(&self, end: &StageState) -> f64 {
-        let springs = &self.footing.springs;
+        let springs = &self.contact_state.springs;
         let begins = springs.histories[springs.known..].iter().any(|one| !one.captured);
         if begins || springs.impact_m_s > 0.0 {
             return 0.0;
@@ -251,11 +252,11 @@ impl BlockContactState {
         let omega = self.springs.stiffest(world);
         let (h, start) = (self.springs.h, state.clone());
         let mut rejected = 0;
-        let footing = &mut *self;
+        let contact_state = &mut *self;
         let mut trial = BlockTrial {
             world,
             control,
-            footing,
+            contact_state,
             block,
             start: &start,
             h,

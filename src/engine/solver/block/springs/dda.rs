@@ -63,8 +63,8 @@ impl BlockContactState {
         self.springs.known = self.springs.histories.len();
         self.update_histories(world, (block, &start));
         let memory = settings.shear_memory;
-        let shear_of = |footing: &Self, k: usize| {
-            if memory { footing.springs.histories[k].shear } else { Vec3::zeros() }
+        let shear_of = |contact_state: &Self, k: usize| {
+            if memory { contact_state.springs.histories[k].shear } else { Vec3::zeros() }
         };
         self.place_contacts(world, (block, &start, &start), 0.0, &shear_of);
         let held = self.springs.stored_by_contacts(world);

@@ -19,7 +19,7 @@ use crate::contact::pair::LASTS_RAD;
 use crate::ground::Law;
 use crate::solver::environment::ContactEnvironment;
 use crate::solver::explicit_impact::{FIRST, LONGEST_RAD, SHORTEST_RAD, control_error};
-use crate::solver::impact::LOCAL;
+use crate::solver::impact::LOCAL_ERROR;
 use crate::solver::impact::dormand_prince::{Attempt, Flow, Stages};
 use crate::solver::loss::Loss;
 use crate::solver::step_control::{Control, StepError};
@@ -31,10 +31,10 @@ const RELEASE_MARGIN: f64 = 1.2;
 /// volume).
 pub(super) const ROUNDING_OF_PLACE: f64 = 1e-11;
 /// Trial steps cut where a contact begins, at most; after them it presses from where it is found.
-const ONSETS: u32 = 6;
+const MOST_ONSET_CUTS: u32 = 6;
 /// Room for contacts: of the usual case, and the most that are integrated here.
-const FEW_PRESS: usize = 2;
-const MOST_PRESS: usize = 6;
+const FEW_CONTACTS: usize = 2;
+const MOST_CONTACTS: usize = 6;
 
 /// Bounds of a step, and its error scale.
 #[derive(Debug, Clone, Copy)]
@@ -74,7 +74,7 @@ impl BlockContactState {
 
     /// Whether there is room to integrate the present contacts explicitly.
     pub(super) fn has_room(&self) -> bool {
-        self.springs.histories.len() <= MOST_PRESS
+        self.springs.histories.len() <= MOST_CONTACTS
     }
 
     /// One accepted step of an impact of at most `most_s`, and the number of rejected trial steps;
@@ -89,7 +89,7 @@ impl BlockContactState {
         (control, most_s, limit): (&Control, f64, f64),
     ) -> Result<Option<(BlockStepOutcome, u64)>, StepError> {
         let omega = self.springs.stiffest(world);
-        let allowed = LOCAL * control.impact * self.springs.impact_m_s;
+        let allowed = LOCAL_ERROR * control.impact * self.springs.impact_m_s;
         let onset_m = (allowed / omega).max(ROUNDING_OF_PLACE * block.radius_m);
         let scale = ErrorScale { omega, allowed, onset_m };
         let bounds = ImpactBounds { scale, limit: limit.min(LONGEST_RAD / omega), h_max: most_s };
@@ -99,8 +99,8 @@ impl BlockContactState {
         let start = state.clone();
         let mut rejected = 0;
         let mut step = None;
-        if self.springs.histories.len() <= FEW_PRESS {
-            step = self.try_steps::<FEW_PRESS, { 12 + 3 * FEW_PRESS }, { LOSSES + FEW_PRESS }, { 2 * FEW_PRESS }>(
+        if self.springs.histories.len() <= FEW_CONTACTS {
+            step = self.try_steps::<FEW_CONTACTS, { 12 + 3 * FEW_CONTACTS }, { LOSSES + FEW_CONTACTS }, { 2 * FEW_CONTACTS }>(
                 world,
                 (block, &start),
                 &bounds,
@@ -108,7 +108,7 @@ impl BlockContactState {
             )?;
         }
         if step.is_none() {
-            step = self.try_steps::<MOST_PRESS, { 12 + 3 * MOST_PRESS }, { LOSSES + MOST_PRESS }, { 2 * MOST_PRESS }>(
+            step = self.try_steps::<MOST_CONTACTS, { 12 + 3 * MOST_CONTACTS }, { LOSSES + MOST_CONTACTS }, { 2 * MOST_CONTACTS }>(
                 world,
                 (block, &start),
                 &bounds,
@@ -167,13 +167,13 @@ impl BlockContactState {
             let felt = (!is_short).then_some(scale.allowed);
             let attempt = stages.step(&mut flow, &y, dt, felt);
             if flow.exceeds_room {
-                flow.footing.springs.histories.truncate(flow.footing.springs.known);
+                flow.contact_state.springs.histories.truncate(flow.contact_state.springs.known);
                 return Ok(None);
             }
             *rejected += 1;
             if let Some(share) = flow.onset {
                 onsets += 1;
-                admits_new = share <= 0.0 || onsets >= ONSETS;
+                admits_new = share <= 0.0 || onsets >= MOST_ONSET_CUTS;
                 h = if share > 0.0 { dt * share } else { dt };
                 continue;
             }
@@ -189,7 +189,7 @@ impl BlockContactState {
             h = next_h;
             if accepted {
                 *rejected -= 1;
-                let loss = flow.taken(&tried.q);
+                let loss = flow.loss(&tried.q);
                 let mut end = flow.state;
                 self.springs.h = h;
                 end.pose.attitude = orthonormal(&end.pose.attitude);

@@ -32,7 +32,7 @@ use crate::solver::explicit_impact::{FIRST, LONGEST_RAD, SHORTEST_RAD, control_e
 use crate::solver::impact::dormand_prince::{
     Attempt, Flow, Rates, Stages, add_sums, put_vec3, vec3_at,
 };
-use crate::solver::impact::{LOCAL, NEGLIGIBLE};
+use crate::solver::impact::{LOCAL_ERROR, NEGLIGIBLE};
 use crate::solver::law::capture_m_s;
 use crate::solver::loss::{Loss, shared};
 use standstill::Standstill;
@@ -41,7 +41,7 @@ use standstill::Standstill;
 /// stretch of each contact follow.
 const V: usize = 0;
 const MOMENTUM: usize = 3;
-const ROLLED: usize = 6;
+const ROLLING: usize = 6;
 const CONTACTS: usize = 9;
 /// State variables of each contact.
 const PER_CONTACT: usize = 4;
@@ -117,9 +117,9 @@ impl BlockContactState {
         let pressed = contacts
             .iter()
             .map(|one| omega * (one.penetration.powi(2) + one.shear.norm_squared()).sqrt());
-        let allowed = LOCAL * BLOW_TOLERANCE * fastest.chain(pressed).fold(0.0, f64::max);
+        let allowed = LOCAL_ERROR * BLOW_TOLERANCE * fastest.chain(pressed).fold(0.0, f64::max);
         let mut rolling = RollingSpring::default();
-        rolling.take_up(&contacts);
+        rolling.adopt_element(&contacts);
         rolling.stretch = self.clamp.rolled;
         let held_j = self.clamp.held_j;
         let mut flow = FrozenFlow {
@@ -164,14 +164,14 @@ impl FrozenFlow<'_, '_> {
         let (mut y, mut sums) = ([0.0; N], [0.0; SUMS]);
         put_vec3(&mut y, V, &state.v);
         put_vec3(&mut y, MOMENTUM, &state.momentum);
-        put_vec3(&mut y, ROLLED, &self.rolling.stretch);
+        put_vec3(&mut y, ROLLING, &self.rolling.stretch);
         for (k, contact) in self.contacts.iter().enumerate() {
             y[CONTACTS + PER_CONTACT * k] = contact.penetration;
             put_vec3(&mut y, CONTACTS + PER_CONTACT * k + 1, &contact.shear);
         }
         let mut still = Standstill::of(state);
         let mut stages = Stages::<N, SUMS, P>::NONE;
-        let (mut h, mut gone) = (FIRST / self.omega, 0.0);
+        let (mut h, mut elapsed_rad) = (FIRST / self.omega, 0.0);
         self.rates(0, &y, stages.first());
         for _ in 0..MOST_STEPS {
             let dt = h.min(LONGEST_RAD / self.omega);
@@ -195,7 +195,7 @@ impl FrozenFlow<'_, '_> {
             }
             y = tried.y;
             add_sums(&mut sums, &tried.q);
-            gone += dt * self.omega;
+            elapsed_rad += dt * self.omega;
             stages.reuse_last();
             let mut begins = self.update_open(&mut y);
             // the forces are those of the step's end
@@ -204,13 +204,13 @@ impl FrozenFlow<'_, '_> {
                     return Some(self.end(&y, state, &sums));
                 };
                 self.drift(&mut y, wait_s);
-                (begins, gone) = (true, gone + wait_s * self.omega);
+                (begins, elapsed_rad) = (true, elapsed_rad + wait_s * self.omega);
             }
-            if self.stays_clamped(&y, gone, &mut still) {
+            if self.stays_clamped(&y, elapsed_rad, &mut still) {
                 self.is_clamped = true;
                 return Some(self.end(&y, state, &sums));
             }
-            if gone > MOST_RAD {
+            if elapsed_rad > MOST_RAD {
                 return None;
             }
             if begins {
@@ -240,9 +240,9 @@ impl FrozenFlow<'_, '_> {
     /// Time (s) until a free block touches again, if it does.
     fn next_touch<const N: usize>(&self, y: &[f64; N]) -> Option<f64> {
         let waits = (0..self.contacts.len()).filter_map(|k| {
-            let comes_m_s = -self.contacts[k].n.dot(&self.point_m_s(k, y));
+            let closing_m_s = -self.contacts[k].n.dot(&self.point_m_s(k, y));
             let gap_m = -y[CONTACTS + PER_CONTACT * k];
-            (comes_m_s > NEGLIGIBLE * self.allowed).then(|| (gap_m / comes_m_s).max(0.0))
+            (closing_m_s > NEGLIGIBLE * self.allowed).then(|| (gap_m / closing_m_s).max(0.0))
         });
         waits.reduce(f64::min)
     }
@@ -296,7 +296,7 @@ impl<const N: usize, const P: usize> Flow<N, SUMS, P> for FrozenFlow<'_, '_> {
         *to = Rates::NONE;
         let v = vec3_at(y, V);
         let w = self.mass.inverse * vec3_at(y, MOMENTUM);
-        let (mut push, mut torque, mut loss) = (Vec3::zeros(), Vec3::zeros(), Loss::default());
+        let (mut force_sum, mut torque, mut loss) = (Vec3::zeros(), Vec3::zeros(), Loss::default());
         for (k, contact) in self.contacts.iter_mut().enumerate() {
             let (at, u) = (CONTACTS + PER_CONTACT * k, Mass::velocity_at(&contact.lever, (&v, &w)));
             to.y[at] = -contact.n.dot(&u);
@@ -307,7 +307,7 @@ impl<const N: usize, const P: usize> Flow<N, SUMS, P> for FrozenFlow<'_, '_> {
             }
             let (pulls, shear) = contact.update_forces(&u);
             let force = contact.n * contact.normal_force - contact.shear_force;
-            push += force;
+            force_sum += force;
             torque += contact.lever.cross(&force);
             put_vec3(&mut to.y, at + 1, &shear.stretch_rate);
             loss.add(&contact.power(self.world, &u, &shear.stretch_rate), 1.0);
@@ -315,14 +315,14 @@ impl<const N: usize, const P: usize> Flow<N, SUMS, P> for FrozenFlow<'_, '_> {
             to.switching[2 * k..2 * k + 2].copy_from_slice(&switching);
         }
         if self.rolling.is_on() {
-            self.rolling.stretch = vec3_at(y, ROLLED);
+            self.rolling.stretch = vec3_at(y, ROLLING);
             let rolling = self.rolling.update_moment(&self.contacts, &w);
             torque -= rolling.force;
-            put_vec3(&mut to.y, ROLLED, &rolling.stretch_rate);
+            put_vec3(&mut to.y, ROLLING, &rolling.stretch_rate);
             loss.add(&self.rolling.power(self.world, &self.contacts, &w), 1.0);
         }
         to.q = [loss.friction, loss.damping, loss.rolling, loss.trees];
-        put_vec3(&mut to.y, V, &(push / self.mass.mass));
+        put_vec3(&mut to.y, V, &(force_sum / self.mass.mass));
         put_vec3(&mut to.y, MOMENTUM, &torque);
     }
 
@@ -338,7 +338,7 @@ impl<const N: usize, const P: usize> Flow<N, SUMS, P> for FrozenFlow<'_, '_> {
         let worst2 = (ways2.fold(0.0, f64::max) * omega2)
             .max(vec3_at(off, V).norm_squared())
             .max((self.mass.inverse * vec3_at(off, MOMENTUM)).norm_squared() * reach2)
-            .max(vec3_at(off, ROLLED).norm_squared() * reach2 * omega2);
+            .max(vec3_at(off, ROLLING).norm_squared() * reach2 * omega2);
         worst2 / (self.allowed * self.allowed)
     }
 }

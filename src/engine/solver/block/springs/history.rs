@@ -70,7 +70,7 @@ impl BlockHistory {
     }
 
     /// Power dissipated by its dashpot and its friction at a velocity of its point (m/s) (W).
-    pub(crate) fn taking_w(&self, velocity: &Vec3) -> f64 {
+    pub(crate) fn dissipating_w(&self, velocity: &Vec3) -> f64 {
         let apart_m_s = self.n.dot(velocity);
         let slip_m_s = (velocity - self.n * apart_m_s).norm();
         let cap = if self.slides { self.law.limits().caps(self.normal_force).0 } else { 0.0 };
@@ -137,11 +137,11 @@ impl BlockContactState {
             return;
         }
         let rebounds = |one: &BlockHistory| !one.captured && one.closed;
-        let goes_on = histories.iter().any(|one| one.announced && rebounds(one));
+        let continues = histories.iter().any(|one| one.announced && rebounds(one));
         let mass = state.mass(block);
         for k in 0..histories.len() {
             let one = histories[k];
-            if one.announced && goes_on {
+            if one.announced && continues {
                 continue;
             }
             let at = |one: &BlockHistory| (one.n, one.point - state.pose.centre);
@@ -164,7 +164,7 @@ impl BlockContactState {
     ) {
         let (mass, history) = (state.mass(block), &mut self.springs.histories[k]);
         let lever = history.point - state.pose.centre;
-        let across = mass.moved_by((&history.n, &lever))[1];
+        let across = mass.effective_masses((&history.n, &lever))[1];
         history.law = history.law.struck_anew(approach_m_s, [across, mass.mass]);
         self.springs.invalidate_rates();
     }
@@ -333,7 +333,7 @@ fn law_at(
     if approach_m_s >= capture_m_s(&law) {
         law.struck_at(approach_m_s);
     }
-    let [along, across] = mass.moved_by((&at.0, &at.1));
+    let [along, across] = mass.effective_masses((&at.0, &at.1));
     law.for_masses([along * mass_share(mass, at, others), across], mass.mass)
 }
 

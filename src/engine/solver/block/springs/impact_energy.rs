@@ -112,8 +112,8 @@ impl BlockContactState {
         // if the contact directions hold hardly any motion, the whole motion is scaled
         let ways = [energy.along, ContactDirections::ALL].into_iter();
         let mut parts = ways.map(|along| state.motion_component(block, &along));
-        let answers = |part: &MotionComponent| gained_j.abs() < BALANCED * part.energy_j();
-        let Some(part) = parts.find(answers) else { return 0.0 };
+        let suffices = |part: &MotionComponent| gained_j.abs() < BALANCED * part.energy_j();
+        let Some(part) = parts.find(suffices) else { return 0.0 };
         state.take_energy_from(&part, gained_j);
         self.springs.invalidate_rates();
         beyond_j

@@ -40,15 +40,16 @@ impl Onsets {
         let begun = springs.contacts.iter().filter(|contact| contact.is_suspended);
         let begun = begun.filter_map(|contact| {
             let u = end.velocity_at(block, &contact.lever);
-            let (pressed_m, comes_m_s) = (contact.penetration_after(&u, way_s), -contact.n.dot(&u));
-            let onset_m = (self.onset_s * comes_m_s).max(self.least_m);
+            let (pressed_m, closing_m_s) =
+                (contact.penetration_after(&u, way_s), -contact.n.dot(&u));
+            let onset_m = (self.onset_s * closing_m_s).max(self.least_m);
             if pressed_m <= onset_m {
                 return None;
             }
             // a little after its onset, so that the next step begins with it; a contact that does
             // not close has appeared where it is
-            let since_s = (pressed_m - 0.5 * onset_m) / comes_m_s;
-            Some(if comes_m_s > 0.0 { (now_s - since_s).max(0.0) } else { 0.0 })
+            let since_s = (pressed_m - 0.5 * onset_m) / closing_m_s;
+            Some(if closing_m_s > 0.0 { (now_s - since_s).max(0.0) } else { 0.0 })
         });
         begun.reduce(f64::min)
     }

@@ -27,7 +27,7 @@ pub(super) struct RollingSpring {
 
 impl RollingSpring {
     /// Adopts the element of the first of these contacts that has one.
-    pub(super) fn take_up(&mut self, contacts: &[SpringContact]) {
+    pub(super) fn adopt_element(&mut self, contacts: &[SpringContact]) {
         if self.element.is_none() {
             let elements = contacts.iter().map(|contact| contact.law.rolling);
             self.element = elements.into_iter().find(FrictionElement::is_on);

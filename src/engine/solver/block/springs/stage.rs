@@ -23,7 +23,7 @@ use crate::solver::tableau::Tableau;
 /// Up to this number of contacts, sweeps are tried first (–).
 const FEW: usize = 2;
 /// Sweeps of that first try: where friction outweighs the lever, sweeps hardly converge.
-const QUICK: u32 = 8;
+const FIRST_SWEEPS: u32 = 8;
 
 /// A block within a step.
 #[derive(Debug, Clone)]
@@ -155,17 +155,17 @@ impl BlockContactState {
         touch: &BlockTouch,
         (block, history): (&Block, usize),
     ) -> f64 {
-        let history_now = &self.springs.histories[history];
+        let recorded = &self.springs.histories[history];
         if block.core.is_corner(touch.part) {
             return 0.0;
         }
-        if history < self.springs.known && history_now.is_of(touch) {
-            return history_now.offset_m;
+        if history < self.springs.known && recorded.is_of(touch) {
+            return recorded.offset_m;
         }
         let own = guess.pose.attitude.inverse_transform_vector(&touch.lever);
         let way = guess.pose.centre + touch.lever - start.pose.point(&own);
         let began_m = touch.normal.dot(&way) - touch.gap_m;
-        (began_m - history_now.pressed_m).max(0.0)
+        (began_m - recorded.pressed_m).max(0.0)
     }
 
     /// Creates the contacts of the last detection, at `guess`, based at the stage's base.
@@ -180,25 +180,25 @@ impl BlockContactState {
         contacts.clear();
         for (k, touch) in self.touches.found.iter().enumerate() {
             let Some(history) = self.history_of_touch[k] else { continue };
-            let history_now = &self.springs.histories[history];
+            let recorded = &self.springs.histories[history];
             let ground = world.ground_of(touch.triangle);
-            let friction = self.slip.friction(ground, &history_now.law, self.springs.ahead_m);
+            let friction = self.slip.friction(ground, &recorded.law, self.springs.ahead_m);
             let offset_m = self.offset_m((start, guess), touch, (block, history));
             contacts.push(SpringContact {
                 offset_m,
-                captured: history_now.captured,
+                captured: recorded.captured,
                 is_suspended: self.springs.suspends_new
                     && history >= self.springs.known
-                    && !history_now.captured
-                    && history_now.approach_m_s > 0.0,
+                    && !recorded.captured
+                    && recorded.approach_m_s > 0.0,
                 penetration: way_s * touch.normal.dot(&guess.velocity_at(block, &touch.lever))
                     - touch.gap_m
                     - offset_m,
-                shear: carry(shear_of(self, history), &history_now.n, &touch.normal),
-                ..SpringContact::just_touching((history, touch), &history_now.law, friction)
+                shear: carry(shear_of(self, history), &recorded.n, &touch.normal),
+                ..SpringContact::just_touching((history, touch), &recorded.law, friction)
             });
         }
-        self.springs.rolling.take_up(&contacts);
+        self.springs.rolling.adopt_element(&contacts);
         self.springs.contacts = contacts;
     }
 
@@ -232,7 +232,7 @@ impl BlockContactState {
         let free = (free_v, mass.inverse * stage.base.state.momentum);
         let from = (pushed.v, mass.inverse * pushed.momentum);
         // sweeps are faster for one or two contacts, if they converge
-        let (quick, mut sweeps) = ((rounding_m_s, QUICK), 0);
+        let (quick, mut sweeps) = ((rounding_m_s, FIRST_SWEEPS), 0);
         self.unsettled = false;
         let settled =
             self.contacts.len() <= FEW && solve(&mass, self.unknowns(), from, quick, &mut sweeps);
@@ -296,8 +296,8 @@ impl BlockContactState {
         // contacts here without a history begin here
         self.springs.known = self.springs.histories.len();
         self.update_histories(world, (block, state));
-        self.place_contacts(world, (block, state, state), 0.0, &|footing, k| {
-            footing.springs.histories[k].shear
+        self.place_contacts(world, (block, state, state), 0.0, &|contact_state, k| {
+            contact_state.springs.histories[k].shear
         });
         let springs = &mut self.springs;
         springs.keep_offsets();

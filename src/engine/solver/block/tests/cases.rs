@@ -237,9 +237,13 @@ fn edges_and_faces_meet_edges_and_peaks() {
         };
         let top = Top::new(body.inertia_kg_m2, attitude, Vec3::zeros());
         let tumble = Tumble { block: &body, top, path };
-        let mut footing = BlockContactState::default();
-        let landing =
-            first_touch(&case.terrain, &tumble, 10.0, (&mut footing.near, &mut footing.window));
+        let mut contact_state = BlockContactState::default();
+        let landing = first_touch(
+            &case.terrain,
+            &tumble,
+            10.0,
+            (&mut contact_state.near, &mut contact_state.window),
+        );
         let FlightEnd::Touch(t) = landing else { panic!("{landing:?}") };
         assert!((t - (0.6_f64 / G).sqrt()).abs() < 1e-6, "{t}");
         let laws = [case.law];
@@ -251,11 +255,11 @@ fn edges_and_faces_meet_edges_and_peaks() {
         let mut state = above.clone();
         (state.pose, state.v) = (tumble.pose(t), path.velocity(t));
         let pose = state.pose;
-        footing.detect(&world, &body, &pose, body.ball_m);
-        assert_eq!(footing.touching(&body).count(), 1, "{:?}", footing.touches);
-        assert!((footing.touches.found[0].normal - Vec3::z()).norm() < 1e-7);
+        contact_state.detect(&world, &body, &pose, body.ball_m);
+        assert_eq!(contact_state.touching(&body).count(), 1, "{:?}", contact_state.touches);
+        assert!((contact_state.touches.found[0].normal - Vec3::z()).norm() < 1e-7);
         // a balanced fall on one point stops dead
-        footing.strike(&world, &body, &mut state).unwrap();
+        contact_state.strike(&world, &body, &mut state).unwrap();
         assert!(state.v.norm() < 1e-7 && state.spin(&body).norm() < 1e-7, "{}", state.v);
         case.impacts += 1;
     }
@@ -273,12 +277,12 @@ fn what_is_pressed_in_is_let_out_as_gravity_has_it() {
         let body = Body::of_block(&own, gravity);
         let world = ContactEnvironment { terrain: &case.terrain, body, laws: &laws };
         for (deep_m, share) in [(0.02, 1.0), (0.001, 0.001 / (0.01 * own.radius_m))] {
-            let mut footing = BlockContactState::default();
+            let mut contact_state = BlockContactState::default();
             let mut state = case.start(Rotation3::identity(), still(Vec3::z() * (0.5 - deep_m)));
-            footing.step(&world, &own, &mut state, (1e-4, CORNER_WAY));
+            contact_state.step(&world, &own, &mut state, (1e-4, CORNER_WAY));
             let right = share * 0.1 * (gravity * own.radius_m).sqrt();
-            assert!(!footing.contacts.is_empty());
-            for contact in &footing.contacts {
+            assert!(!contact_state.contacts.is_empty());
+            for contact in &contact_state.contacts {
                 let out = contact.goal.dot(&contact.n);
                 assert!((out / right - 1.0).abs() < 2e-3, "{gravity}, {deep_m}: {out} {right}");
             }

@@ -64,18 +64,18 @@ fn found_again(mesh: Terrain, sides: [f64; 3], scheme: Scheme) -> [f64; 3] {
     let body = Body::of_block(block, G);
     let world = ContactEnvironment { terrain: &case.terrain, body, laws: &laws };
     let mut state = case.start(Rotation3::identity(), still(Vec3::z() * 0.5 * sides[2]));
-    let mut footing = BlockContactState::default();
-    footing.slip.begin(&[case.ground]);
-    footing.begin_springs(&world, settings, (block, &state));
-    footing.step_on_springs(&world, settings, (block, &mut state), 1e-4).unwrap();
-    assert!(!footing.springs.histories.is_empty());
-    footing.springs.histories.clear();
-    footing.springs.invalidate_rates();
+    let mut contact_state = BlockContactState::default();
+    contact_state.slip.begin(&[case.ground]);
+    contact_state.begin_springs(&world, settings, (block, &state));
+    contact_state.step_on_springs(&world, settings, (block, &mut state), 1e-4).unwrap();
+    assert!(!contact_state.springs.histories.is_empty());
+    contact_state.springs.histories.clear();
+    contact_state.springs.invalidate_rates();
     state = case.start(Rotation3::identity(), still(Vec3::z() * (0.5 * sides[2] - SUNK_M)));
     state.v = Vec3::x();
     let before_j = case.energy_j(&state);
-    let done = footing.step_on_springs(&world, settings, (block, &mut state), 1e-9).unwrap();
-    [footing.springs.held_j(), before_j - case.energy_j(&state), done.0.loss.sum()]
+    let done = contact_state.step_on_springs(&world, settings, (block, &mut state), 1e-9).unwrap();
+    [contact_state.springs.held_j(), before_j - case.energy_j(&state), done.0.loss.sum()]
 }
 
 /// The contact of a face with a peak that is found again pressed in at the start of a step begins
@@ -156,15 +156,16 @@ fn made_in_a_fold(scheme: Scheme, off_m: f64) -> (f64, usize) {
     let up_m = 0.05 / cos(0.15) + off_m.abs() * crate::math::tan(0.15);
     let centre = Vec3::new(-low.x, off_m - low.y, up_m - low.z);
     let mut state = case.start(attitude, [centre, Vec3::z() * -5.0, Vec3::zeros()]);
-    let mut footing = BlockContactState::default();
-    footing.slip.begin(&[case.ground]);
-    footing.begin_springs(&world, settings, (block, &state));
+    let mut contact_state = BlockContactState::default();
+    contact_state.slip.begin(&[case.ground]);
+    contact_state.begin_springs(&world, settings, (block, &state));
     let (mut spurious_j, mut most, mut is_free) = (0.0_f64, 0, false);
     while !is_free {
         let before_j = case.energy_j(&state);
-        let done = footing.step_on_springs(&world, settings, (block, &mut state), 0.01).unwrap();
+        let done =
+            contact_state.step_on_springs(&world, settings, (block, &mut state), 0.01).unwrap();
         spurious_j = spurious_j.max((case.energy_j(&state) + done.0.loss.sum() - before_j).abs());
-        (most, is_free) = (most.max(footing.springs.histories.len()), done.0.is_free);
+        (most, is_free) = (most.max(contact_state.springs.histories.len()), done.0.is_free);
     }
     (spurious_j, most)
 }

@@ -45,13 +45,13 @@ fn a_cube_at_rest_presses_as_statics_says() {
     let (own, laws) = (case.block.clone(), [case.law]);
     let world =
         ContactEnvironment { terrain: &case.terrain, body: Body::of_block(&own, G), laws: &laws };
-    let mut footing = BlockContactState::default();
+    let mut contact_state = BlockContactState::default();
     let mut state = case.start(tilted(angle), still(up * 0.5));
     for _ in 0..20 {
-        footing.step(&world, &own, &mut state, (1e-3, CORNER_WAY));
+        contact_state.step(&world, &own, &mut state, (1e-3, CORNER_WAY));
     }
     let mut pairs = [0.0; 2];
-    for contact in &footing.contacts {
+    for contact in &contact_state.contacts {
         let lower = contact.lever.dot(&axes(angle).0) > 0.0;
         pairs[usize::from(lower)] += contact.n.dot(&contact.impulse) / (1e-3 * own.mass_kg * G);
     }

@@ -194,9 +194,9 @@ fn turning_acts_against_the_spin() {
             BlockContact::new(&mass, (Vec3::z(), -Vec3::z()), (1.0, 0), Vec3::zeros())
                 .rolling(law(rho).limits());
         contact.impulse = Vec3::z() * 4.0;
-        let (mut rolling, bears) = (rigid_rolling(&[contact]), contact.rolling_limit());
-        let after = w + rolling.update(&mass.inverse, &w, bears);
-        let again = rolling.update(&mass.inverse, &after, bears);
+        let (mut rolling, capacity) = (rigid_rolling(&[contact]), contact.rolling_limit());
+        let after = w + rolling.update(&mass.inverse, &w, capacity);
+        let again = rolling.update(&mass.inverse, &after, capacity);
         assert!(again.norm() < 1e-12, "{rho}: {again}");
         if stops {
             assert!(after.norm() < 1e-12, "{after}");

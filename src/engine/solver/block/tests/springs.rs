@@ -305,16 +305,16 @@ fn what_a_step_runs_into_is_without_memory_as_printed() {
         ContactEnvironment { terrain: &case.terrain, body: Body::of_block(&own, G), laws: &laws };
     let end = case.start(Rotation3::identity(), still(Vec3::z() * 0.499));
     for remembers in [true, false] {
-        let mut footing = BlockContactState::default();
-        footing.begin_springs(&world, &case.springs.unwrap(), (&own, &end));
-        assert_eq!(footing.springs.histories.len(), 4);
-        footing.springs.histories.iter_mut().for_each(|history| history.shear.x = 1e-3);
-        footing.touches.found.clear();
-        let stretch = |footing: &BlockContactState, k: usize| {
-            if remembers { footing.springs.histories[k].shear } else { Vec3::zeros() }
+        let mut contact_state = BlockContactState::default();
+        contact_state.begin_springs(&world, &case.springs.unwrap(), (&own, &end));
+        assert_eq!(contact_state.springs.histories.len(), 4);
+        contact_state.springs.histories.iter_mut().for_each(|history| history.shear.x = 1e-3);
+        contact_state.touches.found.clear();
+        let stretch = |contact_state: &BlockContactState, k: usize| {
+            if remembers { contact_state.springs.histories[k].shear } else { Vec3::zeros() }
         };
-        footing.add_new_contacts(&world, (&own, &end, &end), 1e-5, &stretch);
-        let known: Vec<f64> = footing.springs.stretches_m().collect();
+        contact_state.add_new_contacts(&world, (&own, &end, &end), 1e-5, &stretch);
+        let known: Vec<f64> = contact_state.springs.stretches_m().collect();
         let expected = if remembers { 1e-3 } else { 0.0 };
         assert!(
             known.len() == 4 && known.iter().all(|x| (x - expected).abs() < 1e-12),

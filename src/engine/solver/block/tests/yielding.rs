@@ -31,8 +31,11 @@ fn a_central_blow_takes_its_limit_off_the_speed() {
     for share in [1e-6, 0.1, 0.5, 0.9, 0.999] {
         let limit_j = share * 0.5 * m * 100.0;
         let impulse = contact.yielding(&u, limit_j).unwrap();
-        let goes_on = 10.0 * f64::sqrt(1.0 - share);
-        assert!((impulse / m - Vec3::x() * (10.0 - goes_on)).norm() < 1e-9, "{share}: {impulse:?}");
+        let speed_left = 10.0 * f64::sqrt(1.0 - share);
+        assert!(
+            (impulse / m - Vec3::x() * (10.0 - speed_left)).norm() < 1e-9,
+            "{share}: {impulse:?}"
+        );
     }
     assert!(contact.yielding(&u, 1.001 * 0.5 * m * 100.0).is_none());
 }

@@ -21,20 +21,20 @@ pub(crate) const CONTACTS: usize = 48;
 /// Half periods of the heaviest body on the softest contact for which there must be steps. A stiff
 /// spring, or a light stone between heavy ones, oscillates thousands of times meanwhile, and an
 /// impact that is not integrated to its end would stop bodies that still move.
-const SWINGS: f64 = 4.0;
+const HALF_PERIODS: f64 = 4.0;
 /// Sweeps over the contacts in which captured contacts are brought to rest, at most.
 const ROUNDS: usize = 1000;
 
 /// Largest ratio of masses times ratio of stiffnesses (–) up to which an impact of several bodies
 /// is integrated, if no contact has more than this damping ratio (–).
 pub(crate) fn largest_followed_ratio(damping_ratio: f64) -> f64 {
-    slowest_followed(LONGEST_STEP / (2.0 * damping_ratio).max(1.0)).powi(-2)
+    lowest_followed_frequency(LONGEST_STEP / (2.0 * damping_ratio).max(1.0)).powi(-2)
 }
 
 /// Lowest frequency that the number of steps covers (rad of the stiffest contact), with steps of at
 /// most `longest`.
-fn slowest_followed(longest: f64) -> f64 {
-    SWINGS * PI / (longest * f64::from(MOST_STEPS))
+fn lowest_followed_frequency(longest: f64) -> f64 {
+    HALF_PERIODS * PI / (longest * f64::from(MOST_STEPS))
 }
 
 /// Motions after a frozen impact of several bodies.
@@ -87,7 +87,7 @@ fn follow_bodies<const B: usize, const K: usize, const N: usize, const Q: usize,
 ) -> Option<FrozenCollision> {
     let speed = fastest_m_s(bodies, contacts)?;
     let mut run = ImpactRun::<B, K, N, Q, P>::new((bodies, contacts), speed, tolerance);
-    if run.flow.contacts.slowest_swing() < slowest_followed(run.flow.longest) {
+    if run.flow.contacts.lowest_frequency() < lowest_followed_frequency(run.flow.longest) {
         return None;
     }
     let start = run.motions();
@@ -123,9 +123,9 @@ fn fastest_m_s(bodies: &[FrozenBody], contacts: &[FrozenContact]) -> Option<f64>
         let v = velocity(ends.first) - ends.second.map_or_else(Vec3::zeros, velocity);
         (v.norm(), normal.dot(&v) < 0.0)
     });
-    let (fastest, comes) =
-        apart.fold((0.0f64, false), |(most, any), (speed, comes)| (most.max(speed), any || comes));
-    comes.then_some(fastest)
+    let (fastest, closes) = apart
+        .fold((0.0f64, false), |(most, any), (speed, closes)| (most.max(speed), any || closes));
+    closes.then_some(fastest)
 }
 
 impl<const B: usize, const K: usize> ImpactContacts<B, K> {

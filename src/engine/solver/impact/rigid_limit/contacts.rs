@@ -82,7 +82,7 @@ impl<const B: usize, const K: usize> ImpactContacts<B, K> {
         let normal = |struck: &FrozenContact| struck.law.normal(struck.captured);
         let stiffness =
             |struck: &FrozenContact| normal(struck).stiffness_n_m(struck.stiffness_scale);
-        let moved = |struck: &FrozenContact| struck.ends.moved_kg(bodies);
+        let moved = |struck: &FrozenContact| struck.ends.effective_mass_kg(bodies);
         let stiffest = struck.iter().map(stiffness).fold(0.0, f64::max);
         let mass_kg = struck.iter().map(moved).fold(f64::INFINITY, f64::min);
         let momentum = (stiffest * mass_kg).sqrt();
@@ -130,7 +130,7 @@ impl<const B: usize, const K: usize> ImpactContacts<B, K> {
 
     /// Frequency of the heaviest body on the softest contact: that of a boulder on a stone is far
     /// below the stone's.
-    pub(super) fn slowest_swing(&self) -> f64 {
+    pub(super) fn lowest_frequency(&self) -> f64 {
         self.softest * self.bodies.iter().fold(1.0, |least, one| one.lightness.min(least)).sqrt()
     }
 

@@ -13,7 +13,7 @@ use crate::solver::impact::dormand_prince::{Flow, Rates, put_vec3, vec3_at};
 
 /// Offset of the displacements of the centres, body by body; velocities, spins times radius and the
 /// springs follow.
-const WAY: usize = 0;
+const DISPLACEMENT: usize = 0;
 
 /// Velocity of body `k` of `B`.
 pub(super) fn velocity_of<const B: usize, const N: usize>(y: &[f64; N], k: usize) -> Vec3 {
@@ -83,7 +83,7 @@ impl<const B: usize, const K: usize> ContactRates<B, K> {
     /// Penetration of contact `k` and its rate.
     /// `x = −n·way − gap`, `x' = −n·v`: at first contact the displacement is 0.
     fn depth<const N: usize>(&self, k: usize, y: &[f64; N]) -> [f64; 2] {
-        let way = |k: usize| vec3_at(y, WAY + 3 * k);
+        let way = |k: usize| vec3_at(y, DISPLACEMENT + 3 * k);
         let gap = if B > 1 { self.contacts.list()[k].gap } else { 0.0 };
         [
             -self.contacts.separation(k, way) - gap,
@@ -194,7 +194,7 @@ impl<const B: usize, const K: usize> ContactRates<B, K> {
     /// the end is found anew.
     pub(super) fn drift<const N: usize>(&mut self, y: &mut [f64; N], wait: f64) {
         for k in 0..3 * B {
-            y[WAY + k] += wait * y[3 * B + k];
+            y[DISPLACEMENT + k] += wait * y[3 * B + k];
         }
         y[Self::SPRINGS..].fill(0.0);
         self.update_pressed(y);
@@ -255,11 +255,11 @@ impl<const B: usize, const K: usize> ContactRates<B, K> {
             }
             let (n, at) = (&contact.n, Self::SPRINGS + 3 * k);
             let ContactEnds { first, second, levers } = contact.ends;
-            let asked = self.signed_force(k, y);
-            let normal_force = asked.max(0.0);
+            let trial = self.signed_force(k, y);
+            let normal_force = trial.max(0.0);
             // opening is a switching point too: the "cap" is the tension that the contact would
             // exert
-            rates.switching[3 * k] = [normal_force * normal_force, (-asked).max(0.0)];
+            rates.switching[3 * k] = [normal_force * normal_force, (-trial).max(0.0)];
             let (mut v, w) = (velocity_of::<B, N>(y, first), spin_of::<B, N>(y, first));
             let mut turning = w;
             if B > 1
@@ -273,9 +273,9 @@ impl<const B: usize, const K: usize> ContactRates<B, K> {
             // s of the shear element (`sliders`): the velocity at which its dashpot has the force
             // of its spring
             let held = vec3_at(y, at);
-            let asked = slip + held;
-            let (share, slips, cap) = contact.shear.share(asked.norm_squared(), normal_force);
-            let p = asked * share;
+            let trial = slip + held;
+            let (share, slips, cap) = contact.shear.share(trial.norm_squared(), normal_force);
+            let p = trial * share;
             let shear_force = p * contact.shear.damping;
             put_vec3(&mut rates.y, at, &((p - held) * contact.shear.rate));
             let (force, turn) = (n * normal_force - shear_force, n.cross(&shear_force));
@@ -283,23 +283,23 @@ impl<const B: usize, const K: usize> ContactRates<B, K> {
             rates.q[4 * k] = contact.shear.damping * cap * slips;
             rates.q[4 * k + 1] = shear_force.dot(&slip);
             rates.q[4 * k + 3] = normal_force * approach;
-            rates.switching[3 * k + 1] = [asked.norm_squared(), cap];
+            rates.switching[3 * k + 1] = [trial.norm_squared(), cap];
             if rolls {
                 let at = Self::SPRINGS + 3 * (K + k);
                 // the same for the rolling element, over all three components of the spin
-                let wound = vec3_at(y, at);
-                let asked = w + wound;
-                let (share, _, cap) = contact.rolling.share(asked.norm_squared(), normal_force);
-                rates.switching[3 * k + 2] = [asked.norm_squared(), cap];
-                let p = asked * share;
+                let spring_spin = vec3_at(y, at);
+                let trial = w + spring_spin;
+                let (share, _, cap) = contact.rolling.share(trial.norm_squared(), normal_force);
+                rates.switching[3 * k + 2] = [trial.norm_squared(), cap];
+                let p = trial * share;
                 let rolling_moment = p * contact.rolling.damping;
-                put_vec3(&mut rates.y, at, &((p - wound) * contact.rolling.rate));
+                put_vec3(&mut rates.y, at, &((p - spring_spin) * contact.rolling.rate));
                 gained[first].1 -= rolling_moment * self.contacts.bodies[first].turns;
                 rates.q[4 * k + 2] = rolling_moment.dot(&w);
             }
         }
         for (k, (dv, dw)) in gained.iter().enumerate() {
-            put_vec3(&mut rates.y, WAY + 3 * k, &velocity_of::<B, N>(y, k));
+            put_vec3(&mut rates.y, DISPLACEMENT + 3 * k, &velocity_of::<B, N>(y, k));
             put_vec3(&mut rates.y, 3 * (B + k), dv);
             put_vec3(&mut rates.y, 3 * (2 * B + k), dw);
         }

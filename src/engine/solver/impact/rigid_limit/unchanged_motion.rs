@@ -16,7 +16,7 @@ impl<const B: usize> UnchangedMotion<B> {
     pub(super) const NONE: Self = Self { since: 0.0, motions: [STILL; B] };
 
     /// For how long velocities and spins have been the same, to `allowed`.
-    pub(super) fn stays(&mut self, motions: &[Twist; B], time: f64, allowed: f64) -> f64 {
+    pub(super) fn unchanged_for(&mut self, motions: &[Twist; B], time: f64, allowed: f64) -> f64 {
         let change2 = |((v, w), (was_v, was_w)): (&Twist, &Twist)| {
             (v - was_v).norm_squared().max((w - was_w).norm_squared())
         };

@@ -26,8 +26,8 @@ use nalgebra::Matrix3;
 
 /// Offsets of the state: displacement of the centre, rotation vector, velocity, momentum; the shear
 /// springs follow.
-const WAY: usize = 0;
-const TURNED: usize = 3;
+const DISPLACEMENT: usize = 0;
+const ROTATION: usize = 3;
 const V: usize = 6;
 const MOMENTUM: usize = 9;
 const SPRINGS: usize = 12;
@@ -52,7 +52,7 @@ pub(super) struct ErrorScale {
 /// A block with up to `C` pressing contacts; a contact has the index of its history.
 pub(super) struct BlockFlow<'a, 'w, const C: usize> {
     world: &'a ContactEnvironment<'w>,
-    pub(super) footing: &'a mut BlockContactState,
+    pub(super) contact_state: &'a mut BlockContactState,
     block: &'a Block,
     start: &'a BlockState,
     /// Inverse inertia at the step's start (1/(kg m²)).
@@ -84,15 +84,15 @@ pub(super) struct BlockFlow<'a, 'w, const C: usize> {
 impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
     pub(super) fn new(
         world: &'a ContactEnvironment<'w>,
-        footing: &'a mut BlockContactState,
+        contact_state: &'a mut BlockContactState,
         (block, start): (&'a Block, &'a BlockState),
         scale: ErrorScale,
     ) -> Self {
         // contacts at the start without a history begin there
-        footing.springs.known = footing.springs.histories.len();
+        contact_state.springs.known = contact_state.springs.histories.len();
         Self {
             world,
-            footing,
+            contact_state,
             block,
             start,
             inverse: start.mass(block).inverse,
@@ -117,7 +117,7 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
         let mut y = [0.0; N];
         put_vec3(&mut y, V, &self.start.v);
         put_vec3(&mut y, MOMENTUM, &self.start.momentum);
-        for (k, history) in self.footing.springs.histories.iter().enumerate().take(C) {
+        for (k, history) in self.contact_state.springs.histories.iter().enumerate().take(C) {
             put_vec3(&mut y, SPRINGS + 3 * k, &history.shear);
         }
         y
@@ -125,13 +125,14 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
 
     /// The contacts of the first detection are those that press.
     pub(super) fn fix_contacts(&mut self) {
-        self.known = self.footing.springs.histories.len();
-        self.footing.springs.known = self.known;
-        self.footing.springs.keep_offsets();
-        for (first, touch) in self.first.iter_mut().zip(&self.footing.touches.found) {
+        self.known = self.contact_state.springs.histories.len();
+        self.contact_state.springs.known = self.known;
+        self.contact_state.springs.keep_offsets();
+        for (first, touch) in self.first.iter_mut().zip(&self.contact_state.touches.found) {
             *first = (touch.part, touch.feature);
         }
-        let contacts = self.footing.springs.contacts.iter().zip(&self.footing.touches.found);
+        let contacts =
+            self.contact_state.springs.contacts.iter().zip(&self.contact_state.touches.found);
         for (contact, touch) in contacts.filter(|(contact, _)| contact.history < C) {
             self.held_at_start[contact.history] = self.held(contact);
             self.gain2_at_start[contact.history] = touch.gain2;
@@ -141,7 +142,7 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
     /// Begins another trial step, of length `dt` (s), from the same state; with `admits_new`
     /// contacts that begin in it press at once.
     pub(super) fn begin_try(&mut self, dt: f64, admits_new: bool) {
-        self.footing.springs.histories.truncate(self.known);
+        self.contact_state.springs.histories.truncate(self.known);
         (self.dt, self.admits_new, self.onset, self.is_smooth) = (dt, admits_new, None, true);
     }
 
@@ -155,15 +156,16 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
     /// Loss of the step from its quadratures, at its end, the state evaluated last. At a part of
     /// the block that presses with a patch, contacts that merge into the patch hand over their
     /// energy, and take it back where it splits.
-    pub(super) fn taken<const Q: usize>(&self, sums: &[f64; Q]) -> Loss {
+    pub(super) fn loss<const Q: usize>(&self, sums: &[f64; Q]) -> Loss {
         let mut taken = Loss { friction: sums[0], damping: sums[1], trees: sums[2], rolling: 0.0 };
-        let springs = &self.footing.springs;
+        let springs = &self.contact_state.springs;
         for (place, history) in springs.histories.iter().enumerate().take(C) {
             let end = springs.contacts.iter().find(|contact| contact.history == place);
-            let gone = HeldEnergy { stored_j: 0.0, gives_back: !self.damped[place] };
-            let ended = end.map_or(gone, |contact| self.held(contact));
+            let released = HeldEnergy { stored_j: 0.0, gives_back: !self.damped[place] };
+            let ended = end.map_or(released, |contact| self.held(contact));
             let over = || self.has_patch(history.pair().0);
-            let damping = self.held_at_start[place].taken_until(&ended, over, sums[LOSSES + place]);
+            let damping =
+                self.held_at_start[place].stored_until(&ended, over, sums[LOSSES + place]);
             let triangle = end.map_or(history.triangle, |contact| contact.triangle);
             taken.add(&Loss { damping, ..Loss::default() }.on(self.world, triangle), 1.0);
         }
@@ -173,17 +175,18 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
     /// Whether a part of the block presses with a patch of several points at an end of the step.
     fn has_patch(&self, part: u16) -> bool {
         let several = |gain2: f64| (gain2 - 1.0).abs() > 0.0;
-        let mut held_at_start = self.footing.springs.histories.iter().zip(self.gain2_at_start);
-        let mut ends = self.footing.touches.found.iter();
+        let mut held_at_start =
+            self.contact_state.springs.histories.iter().zip(self.gain2_at_start);
+        let mut ends = self.contact_state.touches.found.iter();
         held_at_start.any(|(history, gain2)| history.pair().0 == part && several(gain2))
             || ends.any(|touch| touch.part == part && several(touch.gain2))
     }
 
     /// The block at a state, and its rotation vector since the step's start (rad).
     fn at<const N: usize>(&self, y: &[f64; N]) -> (BlockState, Vec3) {
-        let turned = vec3_at(y, TURNED);
+        let turned = vec3_at(y, ROTATION);
         let pose = Pose {
-            centre: self.start.pose.centre + vec3_at(y, WAY),
+            centre: self.start.pose.centre + vec3_at(y, DISPLACEMENT),
             attitude: rotation_by(&turned) * self.start.pose.attitude,
         };
         (BlockState { pose, v: vec3_at(y, V), momentum: vec3_at(y, MOMENTUM) }, turned)
@@ -191,7 +194,7 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
 
     /// Records where a contact begins that has closed by stage `node`, with a normal velocity
     /// `up_m_s` (m/s).
-    fn note_onset(&mut self, node: usize, penetration_m: f64, up_m_s: f64) {
+    fn record_onset(&mut self, node: usize, penetration_m: f64, up_m_s: f64) {
         if penetration_m <= self.scale.onset_m {
             return;
         }
@@ -199,8 +202,8 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
         // half of the tolerance after its onset, so that the next step begins with it
         let since_s = (penetration_m - 0.5 * self.scale.onset_m) / -up_m_s;
         let share = reached - since_s / self.dt;
-        let comes = up_m_s < 0.0 && share > APPEARED;
-        let share = if comes { share.min(reached) } else { 0.0 };
+        let closes = up_m_s < 0.0 && share > APPEARED;
+        let share = if closes { share.min(reached) } else { 0.0 };
         self.onset = Some(self.onset.map_or(share, |before: f64| before.min(share)));
     }
 
@@ -208,16 +211,16 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
     fn detect_at<const N: usize>(&mut self, state: &BlockState, y: &[f64; N]) {
         let (world, block) = (self.world, self.block);
         // a step begins where the step before has detected contacts last
-        let sees = std::mem::take(&mut self.footing.springs.touches_are_current)
+        let sees = std::mem::take(&mut self.contact_state.springs.touches_are_current)
             && self.known == usize::MAX;
         if !sees {
-            self.footing.detect_all(world, (block, &state.pose), TOUCH * block.radius_m);
+            self.contact_state.detect_all(world, (block, &state.pose), TOUCH * block.radius_m);
         }
-        self.footing.update_histories(world, (block, state));
-        self.footing.place_contacts(world, (block, self.start, state), 0.0, &|_, k| {
+        self.contact_state.update_histories(world, (block, state));
+        self.contact_state.place_contacts(world, (block, self.start, state), 0.0, &|_, k| {
             if k < C { vec3_at(y, SPRINGS + 3 * k) } else { Vec3::zeros() }
         });
-        let found = &self.footing.touches.found;
+        let found = &self.contact_state.touches.found;
         let pairs = found.iter().map(|touch| (touch.part, touch.feature));
         self.is_smooth &=
             found.len() <= C && pairs.eq(self.first[..found.len().min(C)].iter().copied());
@@ -233,7 +236,7 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
     ) -> Vec3 {
         let (pulls, shear) = contact.update_forces(u);
         let place = contact.history;
-        let history = &self.footing.springs.histories[place];
+        let history = &self.contact_state.springs.histories[place];
         let rate = carry(shear.stretch_rate, &contact.n, &history.n);
         put_vec3(&mut rates.y, SPRINGS + 3 * place, &rate);
         let (normal, up) = (contact.law.normal(contact.captured), contact.n.dot(u));
@@ -266,13 +269,13 @@ impl<const C: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, 
         let (state, turned) = self.at(y);
         self.detect_at(&state, y);
         let spin = state.spin(self.block);
-        let mut contacts = std::mem::take(&mut self.footing.springs.contacts);
+        let mut contacts = std::mem::take(&mut self.contact_state.springs.contacts);
         let (mut dv, mut torque) = (self.world.body.gravity, Vec3::zeros());
         for contact in &mut contacts {
             let u = state.v + spin.cross(&contact.lever);
             let place = contact.history;
             if place >= self.known && !self.admits_new {
-                self.note_onset(node, contact.penetration, contact.n.dot(&u));
+                self.record_onset(node, contact.penetration, contact.n.dot(&u));
             } else if place < C {
                 let force = self.contact_force(contact, &u, rates);
                 dv += force / self.block.mass_kg;
@@ -281,9 +284,9 @@ impl<const C: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, 
                 self.exceeds_room = true;
             }
         }
-        self.footing.springs.contacts = contacts;
-        put_vec3(&mut rates.y, WAY, &state.v);
-        put_vec3(&mut rates.y, TURNED, &rotation_vector_rate(&turned, &spin));
+        self.contact_state.springs.contacts = contacts;
+        put_vec3(&mut rates.y, DISPLACEMENT, &state.v);
+        put_vec3(&mut rates.y, ROTATION, &rotation_vector_rate(&turned, &spin));
         put_vec3(&mut rates.y, V, &dv);
         put_vec3(&mut rates.y, MOMENTUM, &torque);
         self.state = state;
@@ -295,12 +298,12 @@ impl<const C: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, 
     fn size2(&self, off: &[f64; N]) -> f64 {
         let ErrorScale { omega, allowed, .. } = self.scale;
         let reach2 = self.block.bound_m.powi(2);
-        let pressed = self.footing.springs.contacts.iter();
+        let pressed = self.contact_state.springs.contacts.iter();
         let pressed = pressed.filter(|one| one.normal_force > 0.0 && one.history < C);
         let ways2 = pressed
             .map(|contact| vec3_at(off, SPRINGS + 3 * contact.history).norm_squared())
-            .fold(vec3_at(off, WAY).norm_squared(), f64::max)
-            .max(vec3_at(off, TURNED).norm_squared() * reach2);
+            .fold(vec3_at(off, DISPLACEMENT).norm_squared(), f64::max)
+            .max(vec3_at(off, ROTATION).norm_squared() * reach2);
         let worst2 = (ways2 * omega * omega)
             .max(vec3_at(off, V).norm_squared())
             .max((self.inverse * vec3_at(off, MOMENTUM)).norm_squared() * reach2);

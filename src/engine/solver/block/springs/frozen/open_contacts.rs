@@ -30,11 +30,11 @@ impl FrozenFlow<'_, '_> {
         for k in 0..self.contacts.len() {
             let at = CONTACTS + PER_CONTACT * k;
             if self.contacts[k].is_suspended && y[at] >= 0.0 {
-                let comes = self.contacts[k].n.dot(&self.point_m_s(k, y)) < 0.0;
-                if comes {
+                let closes = self.contacts[k].n.dot(&self.point_m_s(k, y)) < 0.0;
+                if closes {
                     self.recontact(k, y);
                 }
-                is_back |= comes;
+                is_back |= closes;
             } else if !self.contacts[k].is_suspended
                 && y[at] <= 0.0
                 && self.contacts[k].normal_force <= 0.0
@@ -53,10 +53,11 @@ impl FrozenFlow<'_, '_> {
         let at = CONTACTS + PER_CONTACT * k;
         let touch = &self.touches[k];
         let approach_m_s = -touch.normal.dot(&self.point_m_s(k, y));
-        let with = self.touches.iter().enumerate();
-        let with = with.filter(|(j, _)| !self.contacts[*j].is_suspended).map(|(_, other)| other);
+        let others = self.touches.iter().enumerate();
+        let others =
+            others.filter(|(j, _)| !self.contacts[*j].is_suspended).map(|(_, other)| other);
         let law =
-            BlockContactState::law_of_touch(self.world, &self.mass, touch, (approach_m_s, with));
+            BlockContactState::law_of_touch(self.world, &self.mass, touch, (approach_m_s, others));
         let friction = self.contacts[k].law.friction_coefficient();
         let rebounds = self
             .contacts

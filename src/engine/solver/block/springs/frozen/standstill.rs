@@ -6,11 +6,11 @@ use crate::solver::block::BlockState;
 use crate::solver::impact::dormand_prince::vec3_at;
 
 /// A block is clamped if its motion has changed by at most `UNCHANGED` allowed errors (–) for
-/// `STILL_RAD` radians of the stiffest contact, and a contact presses with more than `HOLDS` of
+/// `STILL_RAD` radians of the stiffest contact, and a contact presses with more than `CLAMPED_ERRORS` of
 /// them (–).
 const UNCHANGED: f64 = 3.0;
 const STILL_RAD: f64 = 12.0;
-const HOLDS: f64 = 100.0;
+const CLAMPED_ERRORS: f64 = 100.0;
 
 /// Since when the motion of a block in an impact has not changed.
 pub(super) struct Standstill {
@@ -26,7 +26,7 @@ impl Standstill {
 
     /// For how long (rad) velocity and angular momentum have been the same, where `is_other` tells
     /// whether a change counts.
-    pub(super) fn stays_rad(
+    pub(super) fn unchanged_rad(
         &mut self,
         (v, momentum): (Vec3, Vec3),
         age_rad: f64,
@@ -45,14 +45,15 @@ impl FrozenFlow<'_, '_> {
     pub(super) fn stays_clamped<const N: usize>(
         &mut self,
         y: &[f64; N],
-        gone: f64,
+        elapsed_rad: f64,
         still: &mut Standstill,
     ) -> bool {
         let (inverse, reach_m) = (self.mass.inverse, self.block.bound_m);
         let nothing = UNCHANGED * self.allowed;
         let is_other =
             |dv: &Vec3, dl: &Vec3| dv.norm() > nothing || (inverse * dl).norm() * reach_m > nothing;
-        let stays = still.stays_rad((vec3_at(y, V), vec3_at(y, MOMENTUM)), gone, is_other);
+        let stays =
+            still.unchanged_rad((vec3_at(y, V), vec3_at(y, MOMENTUM)), elapsed_rad, is_other);
         if stays < STILL_RAD {
             return false;
         }
@@ -62,7 +63,7 @@ impl FrozenFlow<'_, '_> {
         }
         let pressed = self.contacts.iter().filter(|one| !one.is_suspended && one.penetration > 0.0);
         let deepest = pressed.map(|one| one.penetration).fold(0.0, f64::max);
-        deepest * self.omega > HOLDS * self.allowed
+        deepest * self.omega > CLAMPED_ERRORS * self.allowed
     }
 
     /// Energy in the pressing contacts (J).
