@@ -31,8 +31,7 @@ use std::path::Path;
 
 /// Gravity of the exact cases (m/s²).
 const G: f64 = 9.81;
-/// A capture speed up to which every blow of a case comes too slowly to rebound (m/s): it stops
-/// dead.
+/// A capture speed above every impact of a case (m/s): no impact rebounds.
 const TOO_SLOW_M_S: f64 = 100.0;
 
 fn terrain(facets: Vec<Facet>) -> Terrain {
@@ -63,7 +62,7 @@ fn block(surface: &Surface, ball_m: f64) -> Block {
     Block::new(&shape, &Rock { radius_m, density_kg_m3: 2700.0 })
 }
 
-/// One block on a mesh, followed without notes.
+/// One block on a mesh, simulated without a recorder.
 struct BlockRun {
     terrain: Terrain,
     block: Block,
@@ -88,7 +87,7 @@ fn law_of(ground: &Ground, block: &Block, capture_m_s: f64) -> Law {
 impl BlockRun {
     fn new(terrain: Terrain, block: Block, (friction, e): (f64, f64)) -> Self {
         let ground = Ground::smooth([1e9, 0.25e9], atan(friction), Some(e));
-        // slower than that an elastic block would lose what is captured
+        // below that speed an elastic block would lose energy by capture
         let law = law_of(&ground, &block, if e < 1.0 { 1e-3 } else { 0.0 });
         let lost = Loss::default();
         let springs = None;
@@ -100,7 +99,7 @@ impl BlockRun {
         BlockState::new(&self.block, (centre - self.terrain.origin_m, attitude), &motion)
     }
 
-    /// Follows it for `longest_s`; `see` is told the time and the motion after every flight, impact
+    /// Simulates it for `longest_s`; `see` gets the time and the motion after every flight, impact
     /// and step.
     fn follow(
         &mut self,
@@ -296,8 +295,9 @@ fn prism_on_its_side(sides: u32) -> Surface {
     surface
 }
 
-/// A plastic slap of a rolling prism from one edge to the next: ω'/ω = η = (k + cos 2π/n)/(k + 1),
-/// k = I/(m ρ²), whatever its corners' number; rounded corners put the edges at ρ inside.
+/// A plastic impact of a rolling prism from one edge to the next: ω'/ω = η = (k + cos 2π/n)/(k +
+/// 1), k = I/(m ρ²), for any number of corners; rounded corners put the edges at the distance ρ, a
+/// little inside.
 #[test]
 fn a_slap_takes_what_it_must() {
     for (sides, sharp) in [(4, 0.25), (5, 0.501_036_279_4), (6, 11.0 / 17.0), (8, 0.798_169_546_2)]

@@ -50,9 +50,9 @@ fn a_ball_deep_in_soil_slows_by_the_closed_form_of_drag() {
     }
 }
 
-/// A hop within the soil takes what drag takes on the way flown, step by step, as deep as the ball
-/// then is; so little is left out where gravity alone bends the way. One that rises out is dragged
-/// until it is out, and a flight of no time takes nothing.
+/// A hop within the soil loses what drag takes on the flown path, step by step, at the depth that
+/// the ball then has; the error by the curvature of the path is small. A hop that rises out is
+/// dragged until it is out, and a flight of no duration loses nothing.
 #[test]
 fn a_hop_in_a_scar_is_dragged_as_deep_as_it_is() {
     let (radius, g) = (0.4, 9.81);
@@ -93,7 +93,8 @@ fn a_hop_in_a_scar_is_dragged_as_deep_as_it_is() {
     assert!(-math::ln(kept) < 0.5 * most && -math::ln(kept) > 0.25 * most, "{kept}");
 }
 
-/// Of two soils that are dug as deep that counts which takes less, whichever is struck first.
+/// Of two soils that are dug to equal depth the one with less drag counts, whichever is struck
+/// first.
 #[test]
 fn of_two_soils_as_deep_the_weaker_drag_counts() {
     let mass = 1400.0;
@@ -131,8 +132,8 @@ fn square(approach_m_s: f64) -> GroundBlow {
     GroundBlow { ground: 0, normal: Vec3::z(), approach_m_s, of_point_m_s: approach_m_s }
 }
 
-/// A harder impact in a scar digs on from where the ball is: it takes the way from the depth of the
-/// first to its own, and a softer one takes nothing.
+/// A faster impact in a scar digs on from the depth of the ball: it pays for the path from the
+/// first depth to its own, and a slower one pays nothing.
 #[test]
 fn a_harder_impact_digs_on_from_the_depth_of_the_first() {
     let (body, mut scars, per_m) = deep(5.0, 0.0);
@@ -145,9 +146,9 @@ fn a_harder_impact_digs_on_from_the_depth_of_the_first() {
     assert!((kept / math::exp(-per_m * more_m) - 1.0).abs() < 1e-12, "{kept} over {more_m} m");
 }
 
-/// Square out of a depth `d ≥ R` a ball cuts `π R² (d − R/3)`. Half of the step in which contact
-/// ends is along the plane, and what was dragged ahead of a step that never came is not dragged
-/// again on the way out.
+/// Perpendicularly out of a depth `d ≥ R` a ball cuts `π R² (d − R/3)`. Half of the step in which
+/// contact ends is along the plane, and the prepaid drag of a step that never came is not applied
+/// again on the exit.
 #[test]
 fn the_way_out_takes_what_was_not_taken_along_the_plane() {
     let up = Vec3::z() * 10.0;
@@ -168,9 +169,9 @@ fn the_way_out_takes_what_was_not_taken_along_the_plane() {
     is(ahead * scars.leave(&body, &up), math::exp(-per_m * out_m));
 }
 
-/// A ball 1.2 m deep needs 4.9 m/s to rise to the surface, after what drag takes on the way, seven
-/// tenths: at 8 m/s it stays in its scar, at 20 m/s it is out. In the scar it rises, all of it cut,
-/// to `h = u²/2g exp(−2 k h)`, and falls back over as much soil.
+/// A ball 1.2 m deep needs 4.9 m/s to rise to the surface after the drag of the exit, seven tenths:
+/// at 8 m/s it stays in its scar, at 20 m/s it is out. In the scar it rises, all of it cut, to `h =
+/// u²/2g exp(−2 k h)`, and falls back through the same height of soil.
 #[test]
 fn drag_decides_whether_a_ball_leaves_its_scar() {
     let (body, mut scars, per_m) = deep(20.0, 9.81);
@@ -194,9 +195,9 @@ fn drag_decides_whether_a_ball_leaves_its_scar() {
     }
 }
 
-/// More drag never makes a leap higher or longer, and where it begins to hold the rock in its scar
-/// the leap is as high as the rim: square and at angles, slow and fast. A rock that could not climb
-/// out flew as if there were no soil.
+/// More drag never makes a hop higher or longer, and where it begins to hold the rock in its scar
+/// the hop is as high as the rim: perpendicular and at angles, slow and fast. Formerly a rock that
+/// could not climb out flew as if there were no soil.
 #[test]
 fn more_drag_never_makes_a_higher_leap() {
     let (body, soft, _) = deep(3000.0, 9.81);
@@ -227,8 +228,8 @@ fn more_drag_never_makes_a_higher_leap() {
                 assert!(rise <= high * (1.0 + 1e-9), "{x} {z}: {rise} after {high}");
                 assert!(length <= long * (1.0 + 1e-9), "{x} {z}: {length} after {long}");
                 assert!(out == (rise > 1.0 - 1e-9), "{x} {z}: {rise} of the depth, out {out}");
-                // no jump where it no longer climbs out: of 3 % more drag, less than a tenth of the
-                // leap
+                // no jump where it no longer climbs out: less than a tenth of the hop for 3 % more
+                // drag
                 if pair[0].2 != out {
                     rims += 1;
                     assert!(rise > 0.8 && high < 1.2, "{x} {z}: {rise} after {high}");
@@ -239,9 +240,9 @@ fn more_drag_never_makes_a_higher_leap() {
     assert!(rims >= 6, "{rims}");
 }
 
-/// All of the ball is cut on its way up, so that a hop of which soil over a way `p` is paid rises
-/// to `h = u²/2g exp(−2 k (h − p))`, and freely where that is no more than `p`. When it has come
-/// down again nothing is paid, and the next hop is one of its own.
+/// All of the ball is cut on its rise, so that a hop of which soil over a length `p` is prepaid
+/// rises to `h = u²/2g exp(−2 k (h − p))`, and freely if that is at most `p`. When it has come down
+/// again nothing is prepaid, and the next hop is independent.
 #[test]
 fn soil_that_is_paid_for_is_paid_once() {
     let (body, mut scars, per_m) = deep(20.0, 9.81);
@@ -266,8 +267,8 @@ fn soil_that_is_paid_for_is_paid_once() {
 }
 
 /// A hop of a fraction of a micrometre is centimetres long where a ball skims over soil, and is
-/// dragged over all of them: up to `h = h₀ exp(−2 k A h/c)` with the area `A` that is cut at the
-/// bottom and the cosine `c` of the way to the normal.
+/// dragged over all of them: up to `h = h₀ exp(−2 k A h/c)` with the cut area `A` at the bottom and
+/// the cosine `c` of the path to the normal.
 #[test]
 fn a_skimming_ball_is_dragged_along_its_way_and_not_its_rise() {
     let (body, mut scars, _) = deep(3000.0, 9.81);

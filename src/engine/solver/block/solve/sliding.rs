@@ -65,9 +65,9 @@ impl BlockContact {
             let answer = matrix.tn + matrix.tt * d * friction;
             let left = slip + answer * normal_impulse;
             let push_turns = -normal_impulse * friction * matrix.tn.dot(&perpendicular) / own;
-            let turns = perpendicular
-                .dot(&(answer * push_turns + matrix.tt * perpendicular * (friction * normal_impulse)))
-                - d.dot(&left);
+            let turns = perpendicular.dot(
+                &(answer * push_turns + matrix.tt * perpendicular * (friction * normal_impulse)),
+            ) - d.dot(&left);
             let turn = -perpendicular.dot(&left) / turns;
             if own <= 0.0 || !turn.is_finite() {
                 return None;

@@ -51,9 +51,9 @@ fn one_ball_rolls_as_a_sphere_does() {
     assert!((state.v.dot(&along) / speed - 1.0).abs() < 1e-6, "{}", state.v.dot(&along) / speed);
 }
 
-/// Bounces with e = 1 and without friction, then all velocities turned round: the block comes back
-/// to its start. A tumbling box is chaotic: each bounce multiplies the gap of 1e-10 R at which a
-/// touch is one. So the way back is held to what a twin tells that starts 1e-8 m higher.
+/// Bounces with e = 1 and without friction, then all velocities reversed: the block returns to its
+/// start. A tumbling box is chaotic: each bounce multiplies the touching tolerance of 1e-10 R. So
+/// the error of the return is compared with that of a twin that starts 1e-8 m higher.
 #[test]
 fn elastic_bounces_run_backwards() {
     run_backwards(elastic_box(), &[2, 10], 1e-9);
@@ -65,14 +65,14 @@ pub(super) fn elastic_box() -> BlockRun {
     BlockRun::new(slope(0.0, 1e3), body, (0.0, 1.0))
 }
 
-/// Goes on for so many bounces and back again; `near` is how near it comes, for a twin that has not
-/// been driven away.
+/// Simulates this number of bounces and the return; `near` is the closest approach to the start,
+/// for a twin that has not diverged.
 pub(super) fn run_backwards(mut case: BlockRun, bounces: &[usize], near: f64) {
     let start = [Vec3::z() * 3.0, Vec3::new(1.0, 0.5, 0.0), Vec3::new(0.3, -0.7, 0.4)];
     let begun = case.start(Rotation3::identity(), start);
     for &asked in bounces {
         let (mut state, mut longest) = (begun.clone(), 0.0);
-        // the time that so many bounces take is not known before
+        // the time of this number of bounces is not known in advance
         while case.impacts < asked {
             (state, case.impacts) = (begun.clone(), 0);
             longest += 0.25;
@@ -140,16 +140,16 @@ fn a_face_slides_over_any_triangulation() {
     );
 }
 
-/// How many of three slabs of 2.5 x 3 x 1 m that roll down 27° with rough friction, e = 0 (Leine
-/// 2014, 5.2), as `made` for a scheme, come to turn about the axis of largest inertia within 60 s.
-/// They begin a thousandth of a radian apart: that is enough for times between 7 and 60 s, with
-/// every scheme, and one of ten takes longer.
+/// Number of slabs out of three, 2.5 x 3 x 1 m, that roll down 27° with rough friction, e = 0
+/// (Leine 2014, 5.2), as `made` for a scheme, and come to rotate about the axis of largest inertia
+/// within 60 s. They start a thousandth of a radian apart, which is enough for times between 7 and
+/// 60 s with every scheme; one of ten takes longer.
 pub(super) fn rolling_slabs(made: impl Fn(BlockRun) -> BlockRun) -> usize {
     [0.2, 0.201, 0.202].into_iter().filter(|tilt| rolling_slab(*tilt, &made).is_some()).count()
 }
 
-/// When (s) that axis first carries 95 % of the energy of the spin of one that leans sideways so
-/// much at first (rad).
+/// Time (s) at which that axis first carries 95 % of the rotational energy of a slab that leans
+/// sideways by this angle at first (rad).
 fn rolling_slab(tilt: f64, made: impl Fn(BlockRun) -> BlockRun) -> Option<f64> {
     let angle = 27_f64.to_radians();
     let body = block(&box_surface([2.5, 3.0, 1.0]), 0.05);
@@ -265,9 +265,9 @@ fn edges_and_faces_meet_edges_and_peaks() {
     }
 }
 
-/// A block is let out with a tenth of `√(g R)` of the scene's gravity at most, on the moon as on
-/// Jupiter, and from less than a hundredth of its radius in proportion to the depth: slower and
-/// slower.
+/// Penetration of a block is recovered with at most a tenth of `√(g R)` of the scene's gravity, on
+/// the moon as on Jupiter, and below a hundredth of its radius in proportion to the depth: ever
+/// more slowly.
 #[test]
 fn what_is_pressed_in_is_let_out_as_gravity_has_it() {
     let case = BlockRun::new(slope(0.0, 50.0), block(&box_surface([1.0; 3]), 0.05), (0.5, 0.4));
@@ -290,8 +290,8 @@ fn what_is_pressed_in_is_let_out_as_gravity_has_it() {
     }
 }
 
-/// What of its energy of motion a block has lost that tips over its rear edge, without slip, when
-/// its front edge strikes the level (–).
+/// Share of its kinetic energy that a block has lost (–) that tips over its rear edge, without
+/// slip, when its front edge strikes the level.
 fn lost_by_tipping(sides: [f64; 3], ball: f64, (tilt, step_s): (f64, f64)) -> f64 {
     let body = block(&box_surface(sides), ball);
     let mut case = BlockRun::new(slope(0.0, 50.0), body, (10.0, 0.5));
@@ -312,8 +312,8 @@ fn lost_by_tipping(sides: [f64; 3], ball: f64, (tilt, step_s): (f64, f64)) -> f6
     lost_j.unwrap() / (had_j - own.mass_kg * G * 0.5 * sides[2])
 }
 
-/// A step that ends where the front edge closes takes nothing of what weight adds in it: what is
-/// left is the steps' own error, of second order.
+/// A step that ends where the front edge closes does not dissipate the work of the weight in it:
+/// only the steps' own error remains, of second order.
 #[test]
 fn a_tipping_block_strikes_as_fast_as_it_has_fallen() {
     for (sides, ball) in [([2.0, 1.0, 0.2], 0.01), ([2.0, 1.0, 0.2], 0.08), ([0.6, 1.0, 0.5], 0.08)]

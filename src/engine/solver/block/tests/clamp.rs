@@ -21,10 +21,10 @@ fn has_friction() -> f64 {
 }
 
 /// A box that falls through a chute strikes one wall with a corner and half a millisecond later the
-/// other with another; the line between them lies within both cones of friction. On springs of any
-/// stiffness they hold each other, and the box turns about that line, which throws its centre
-/// round: from 1.8 m/s along the chute to 1.2 m/s within 8 ms. With contacts that only push it flew
-/// on at 1.87 m/s.
+/// other with another; the line between them lies within both friction cones. On springs of any
+/// stiffness they jam each other, and the box rotates about that line, which changes the velocity
+/// of its centre from 1.8 m/s along the chute to 1.2 m/s within 8 ms. With contacts that only push
+/// it flew on at 1.87 m/s.
 #[test]
 fn a_box_turns_about_two_corners_that_walls_clamp() {
     let turned_after = |p_n: Option<f64>| {

@@ -1,4 +1,4 @@
-//! What contacts of a block with springs are said to have taken.
+//! Booked losses of the contacts of a block with springs.
 
 use super::cases::peak;
 use super::kept::valley;
@@ -20,8 +20,8 @@ fn uneven() -> Terrain {
     terrain((0..40).flat_map(|i| (0..20).map(move |j| (i, j))).flat_map(cell).collect())
 }
 
-/// Without dashpots and friction nothing is taken and nothing made, however often features come and
-/// go within a step, as a box strikes folds with its corners, edges and faces. By sums over steps
+/// Without dashpots and friction there is no loss and no gain, however often features change within
+/// a step, as a box strikes folds with its corners, edges and faces. With quadrature over steps
 /// 5e-4 of its energy was booked as damping.
 #[test]
 fn dashpots_that_are_not_there_take_nothing_of_a_block() {
@@ -49,14 +49,14 @@ fn dashpots_that_are_not_there_take_nothing_of_a_block() {
     assert!(impacts > 32, "{impacts}");
 }
 
-/// Depth at which contacts that have let go are found again (m), and the stiffness of their springs
+/// Penetration at which opened contacts are found again (m), and the stiffness of their springs
 /// (N/m).
 const SUNK_M: f64 = 1e-4;
 const STIFFNESS_N_M: f64 = 1e9;
 
-/// A box that lies on a mesh at the origin, whose contacts let go, and that slides on at 1 m/s with
-/// what it touches pressed in: what springs hold after a short step, what the motion has lost in
-/// it, and what contacts are said to have taken (J).
+/// A box that lies on a mesh at the origin, whose contacts are opened, and that slides on at 1 m/s
+/// with its contacts pressed in: the energy of the springs after a short step, the energy that the
+/// motion has lost in it, and the booked losses (J).
 fn found_again(mesh: Terrain, sides: [f64; 3], scheme: Scheme) -> [f64; 3] {
     let made = BlockRun::new(mesh, block(&box_surface(sides), 0.05), (0.5, 0.0));
     let case = on_springs(made, scheme, STIFFNESS_N_M);
@@ -79,8 +79,8 @@ fn found_again(mesh: Terrain, sides: [f64; 3], scheme: Scheme) -> [f64; 3] {
 }
 
 /// The contact of a face with a peak that is found again pressed in at the start of a step begins
-/// there: it stores nothing, and the motion pays for nothing. Its number was taken for that of one
-/// of the step before, and its spring had 5 J from nowhere.
+/// there: it stores nothing, and the motion pays for nothing. Its index was taken for that of a
+/// contact of the step before, and its spring had 5 J from nowhere.
 #[test]
 fn what_is_found_pressed_in_stores_nothing() {
     for scheme in SCHEMES.into_iter().filter(|scheme| !scheme.has_fixed_step()) {
@@ -91,8 +91,8 @@ fn what_is_found_pressed_in_stores_nothing() {
     }
 }
 
-/// Corners that come up pressed in have springs that store: the motion pays for them, and that goes
-/// into the contacts. It was in no entry.
+/// Corners that begin with a penetration have springs that store energy: the motion pays for it,
+/// and it is booked as going into the contacts. It was in no entry.
 #[test]
 fn what_the_motion_pays_for_is_booked() {
     for scheme in SCHEMES.into_iter().filter(|scheme| !scheme.has_fixed_step()) {
@@ -115,8 +115,8 @@ fn tops(k: u8) -> impl Iterator<Item = (Rotation3<f64>, Vec3)> {
 }
 
 /// A contact without friction cannot change the angular momentum `L` about its normal. Of the
-/// energy of turning that leaves `L²/(2 n·I n)`, that of the spin `n L/(n·I n)`; what it can change
-/// is the rest, which is never below 0, and all of it can be paid with.
+/// rotational energy that leaves `L²/(2 n·I n)`, that of the spin `n L/(n·I n)`. The contact can
+/// change the rest, which is never below 0, and all of which can be removed.
 #[test]
 fn what_a_contact_acts_along_has_an_energy_of_its_own() {
     let made =
@@ -141,9 +141,9 @@ fn what_a_contact_acts_along_has_an_energy_of_its_own() {
     }
 }
 
-/// A blow of a box with one corner, `off_m` beside the axis of a blunt valley, at e = 0.5 without
-/// friction: what one of its steps has made of the energy, at most, and how many contacts there
-/// were at most (J, –).
+/// An impact of a box with one corner, `off_m` beside the axis of a blunt valley, at e = 0.5
+/// without friction: the largest energy gain of one of its steps, and the largest number of
+/// contacts (J, –).
 fn made_in_a_fold(scheme: Scheme, off_m: f64) -> (f64, usize) {
     let body = block(&box_surface([1.0, 0.7, 0.4]), 0.05);
     let case = on_springs(BlockRun::new(valley(0.15), body, (0.0, 0.5)), scheme, STIFFNESS_N_M);
@@ -170,9 +170,9 @@ fn made_in_a_fold(scheme: Scheme, off_m: f64) -> (f64, usize) {
     (spurious_j, most)
 }
 
-/// Two contacts of a corner that come together into one patch hand on what their springs hold. That
-/// of the one that was gone was booked as taken besides, and then taken off the motion, or left in
-/// no entry where that had not so much.
+/// Two contacts of a corner that merge into one patch hand on the energy of their springs. The
+/// energy of the one that ended was also booked as a loss, and then taken off the motion, or left
+/// in no entry where the motion had too little.
 #[test]
 fn contacts_that_meet_in_a_fold_keep_their_energy() {
     let schemes = SCHEMES.into_iter().filter(|scheme| !scheme.has_fixed_step());

@@ -18,7 +18,7 @@ fn pairs_n(case: &BlockRun, state: &BlockState, angle: f64) -> [f64; 2] {
 }
 
 /// S7: a cube at rest on 20° presses with (cos 20° ± sin 20°)/2 of its weight on its lower and
-/// upper corners, a little more unlike as their balls set them inside: 0.6408563821 and
+/// upper corners; their balls, set inside, make the difference a little larger: 0.6408563821 and
 /// 0.2988362387 where it is sharp.
 #[test]
 fn a_cube_at_rest_presses_as_statics_says() {

@@ -92,7 +92,7 @@ fn a_capsule_stops_where_rolling_friction_has_its_energy() {
     }
 }
 
-/// A ball stays on 10° where rolling friction bears tan 10°, and rolls where it bears less.
+/// A ball stays on 10° if the capacity of rolling friction is tan 10°, and rolls if it is less.
 #[test]
 fn a_ball_rests_below_the_slope_that_rolling_friction_holds() {
     let (angle, r) = (10_f64.to_radians(), 0.5);
@@ -108,7 +108,7 @@ fn a_ball_rests_below_the_slope_that_rolling_friction_holds() {
             let rolls = 5.0 / 7.0 * G * sin(angle) * 0.05 * 2.0;
             println!("{scheme:?} {part} {speed:e} m/s of {rolls}");
             let known = if stays { 0.0 } else { rolls };
-            // the spring must be wound up before it bears all it can
+            // the spring must be stretched before it reaches its capacity
             let share = if scheme.has_springs() { 0.05 } else { 1e-3 };
             assert!((speed - known).abs() < share * rolls, "{scheme:?} {part}: {speed} {known}");
         }
@@ -178,8 +178,8 @@ fn a_tumbling_slab_gains_nothing_by_rolling_friction() {
     }
 }
 
-/// The impulse of turning is at its limit against what the spin and the spring ask for, or leaves
-/// no spin.
+/// The angular impulse is at its limit against the trial value of spin and spring, or leaves no
+/// spin.
 #[test]
 fn turning_acts_against_the_spin() {
     let inverse = Matrix3::from_diagonal(&Vec3::new(1.0, 0.4, 0.25));

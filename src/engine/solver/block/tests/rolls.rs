@@ -8,7 +8,7 @@ use crate::solver::Scheme;
 
 /// A prism of so many sides that has turned about its rear edge with 1 rad/s until its front edge
 /// lands.
-struct Slap {
+struct EdgeImpact {
     case: BlockRun,
     /// Half the way between both edges, height of the centre (m), and moment of inertia about the
     /// axis over the mass (m²).
@@ -17,7 +17,7 @@ struct Slap {
     inertia: f64,
 }
 
-impl Slap {
+impl EdgeImpact {
     fn new(sides: u32, (scheme, p_n): (Scheme, f64)) -> Self {
         let ball = 0.001;
         let body = block(&prism_on_its_side(sides), ball);
@@ -30,14 +30,14 @@ impl Slap {
         Self { half, height: ball - low, inertia, case }
     }
 
-    /// What the rigid limit leaves of the spin (–): the rear edge lets go at once.
+    /// Share of the spin that the rigid limit leaves (–): the rear edge opens at once.
     fn rigid(&self) -> f64 {
         let [height2, half2] = [self.height, self.half].map(|x| x * x);
         (self.inertia + height2 - half2) / (self.inertia + height2 + half2)
     }
 
-    /// What is left of the spin (–) after some radians of `√(p_N/m)`, less what the weight takes of
-    /// it about the front edge.
+    /// Share of the spin that is left (–) after some radians of `√(p_N/m)`, without the effect of
+    /// the weight about the front edge.
     fn follow(&mut self, rad: f64) -> f64 {
         let (spin, arm) = (Vec3::y(), Vec3::new(self.half, 0.0, self.height));
         let start = [Vec3::z() * self.height, spin.cross(&arm), spin];
@@ -48,28 +48,28 @@ impl Slap {
         state.spin(&self.case.block).y + G * self.half / pivot * time_s
     }
 
-    /// The same by a model of its own: two edges that do not move far, each on the springs and
+    /// The same by an independent model: two edges that move little, each on the springs and
     /// dashpots of its two corners, in the plane, stepped by the classical Runge–Kutta method in
     /// units of `1/ω`. Damping ratio 5 along the normal and along the surface.
     fn in_the_plane(&self, rad: f64) -> f64 {
         let block = &self.case.block;
         let [about_x, about_y, _] = block.inertia_kg_m2.map(|i| i / block.mass_kg);
         let wide2 = block.core.corners[0].y.powi(2);
-        // what a corner answers an impulse with, along the normal and in the mean along the
-        // surface, in units of 1/m
+        // velocity of a corner per impulse, along the normal and in the mean along the surface, in
+        // units of 1/m
         let along = 1.0 + wide2 / about_x + self.half.powi(2) / about_y;
         let about_z = block.inertia_kg_m2[2] / block.mass_kg;
         let flat = (wide2 + self.half.powi(2)) / about_z;
         let tilts = self.height.powi(2) * (1.0 / about_x + 1.0 / about_y);
         let across = 0.5 * (2.0 + flat + tilts);
-        // four corners begin at once: the others answer with 4 in all
+        // four corners begin at once: all couplings together are 4
         let share = along / f64::max(4.0, 0.25 * along);
         let law = PlanarLaw {
             spring: [2.0, 0.5],
             dashpot: [(share / along).sqrt(), (0.25 / across).sqrt()].map(|one| 2.0 * 10.0 * one),
             friction: 10.0,
         };
-        // velocity, then pressed in and stretched at the rear and at the front edge
+        // velocity, then penetration and stretch at the rear and at the front edge
         let arm = (self.half, self.height);
         let mut y = [arm.1, -arm.0, 1.0, 0.0, 0.0, 0.0, 0.0];
         let h = 2e-3;
@@ -112,19 +112,20 @@ impl PlanarLaw {
     }
 }
 
-/// S10: on stiff springs a slap is what a model of its own in the plane tells, and once the weight
-/// has brought the prism to rest on its front edge, five sides and more have left of their spin
-/// what the rigid limit has: their rear edge is lifted off at once. That of four sides is pressed
-/// in by the blow in front of it, however stiff the springs are: it keeps a little more.
+/// S10: on stiff springs an edge impact is that of an independent model in the plane. Once the
+/// weight has brought the prism to rest on its front edge, prisms with five sides and more keep the
+/// share of the rigid limit: their rear edge is lifted off at once. The rear edge of a prism with
+/// four sides is pressed in by the impact in front of it, however stiff the springs are: that prism
+/// keeps a little more.
 #[test]
 fn a_slap_on_springs_takes_what_it_must() {
     for sides in [4, 5, 6, 8] {
         for scheme in SCHEMES {
             // a ten-thousandth of a second: no weight
-            let mut blow = Slap::new(sides, (scheme, 1e15));
+            let mut blow = EdgeImpact::new(sides, (scheme, 1e15));
             let (found, planar) = (blow.follow(60.0), blow.in_the_plane(60.0));
-            let mut slap = Slap::new(sides, (scheme, 1e12));
-            let (rests, rigid) = (slap.follow(200.0), slap.rigid());
+            let mut edge_impact = EdgeImpact::new(sides, (scheme, 1e12));
+            let (rests, rigid) = (edge_impact.follow(200.0), edge_impact.rigid());
             println!("{sides} {scheme:?}: {found} planar {planar}; {rests} rigid {rigid}");
             assert!((found - planar).abs() < 2e-3, "{sides} {scheme:?}: {found} {planar}");
             let known = if sides == 4 { 0.2685 } else { rigid };
@@ -162,10 +163,10 @@ fn a_face_slides_on_springs_over_any_triangulation() {
     }
 }
 
-/// S11, S12: a hexagonal prism on stiff springs comes into the limit cycle of the rigid limit, as
-/// fast before a slap and as slow at the top of its way, to a hundredth of a per cent, and with the
-/// steps of `dda` to a tenth or two. With a critical dashpot along the surface it was off by a
-/// third: its friction came after its push. `adaptive` and `reference` agree on it.
+/// S11, S12: a hexagonal prism on stiff springs converges to the limit cycle of the rigid limit,
+/// with the same spin before an impact and at the top of its path to a hundredth of a per cent, and
+/// with the steps of `dda` to a tenth or two. With a critical dashpot along the surface it was off
+/// by a third: its friction lagged behind its normal force. `adaptive` and `reference` agree on it.
 #[test]
 fn a_hexagonal_prism_rolls_on_springs_into_its_limit_cycle() {
     for degrees in [10.0, 15.0] {
@@ -174,8 +175,8 @@ fn a_hexagonal_prism_rolls_on_springs_into_its_limit_cycle() {
         let found = SCHEMES.map(|scheme| {
             let (found, _) = rolling_prism(degrees, |case| {
                 let mut case = with_long_steps(on_springs(case, scheme, 1e10));
-                // what the fixed step leaves of it depends on where in a step a slap begins: half
-                // the step
+                // the result of a fixed step depends on where in a step an impact begins: half the
+                // step
                 let finer = |own: Settings| Settings {
                     step_s: 0.5 * own.step_s,
                     tolerance_m_s: 1e-5,

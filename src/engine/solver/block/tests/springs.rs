@@ -1,12 +1,12 @@
-//! The exact cases with springs: `adaptive`, `reference` and `dda` come to what the rigid limit
-//! does as their springs get stiff.
+//! The exact cases with springs: `adaptive`, `reference` and `dda` converge to the rigid limit as
+//! their springs get stiff.
 
 use super::cases::{balls, elastic_box, run_backwards};
 use super::*;
 use crate::solver::Scheme;
 use nalgebra::Unit;
 
-/// The one whose own error is least.
+/// The scheme with the least error of its own.
 pub(super) const FINEST: Scheme = Scheme::Reference;
 pub(super) const SCHEMES: [Scheme; 3] = [Scheme::Adaptive, Scheme::Reference, Scheme::Dda];
 
@@ -112,8 +112,8 @@ fn rebounded(case: &mut BlockRun) -> (Vec3, Vec3) {
     (state.v + Vec3::z() * (G * 5e-3), state.spin(&own))
 }
 
-/// Case S6: the tilted bar is thrown by its corners as the rigid impact says, to 1e-4 at 1e12 N/m,
-/// and the nearer the stiffer.
+/// Case S6: the tilted bar rebounds from its corners as in the rigid impact, to 1e-4 at 1e12 N/m,
+/// and the more exactly the stiffer.
 #[test]
 fn a_tilted_bar_is_thrown_as_in_the_rigid_limit() {
     let bar =
@@ -242,7 +242,7 @@ fn elastic_blocks_keep_their_energy_over_folds() {
     }
 }
 
-/// Motion of a block after its first episode of contact: velocity without what weight has added
+/// Motion of a block after its first episode of contact: velocity without the effect of weight
 /// since its start, and spin.
 fn after_first_contact(case: &mut BlockRun, attitude: Rotation3<f64>) -> (Vec3, Vec3) {
     let start = [Vec3::z() * 2.0, Vec3::new(2.0, 1.0, -6.0), Vec3::new(1.0, -2.0, 1.5)];
@@ -259,9 +259,9 @@ fn after_first_contact(case: &mut BlockRun, attitude: Rotation3<f64>) -> (Vec3, 
     (last.1.v + Vec3::z() * (G * last.0), last.1.spin(&own))
 }
 
-/// Impacts by explicit stages in their own time come out as the implicit stages have them, the
-/// nearer the finer those are: corners and edges on a plane and on folds, with friction, each
-/// turned otherwise, against the finest scheme.
+/// Explicitly integrated impacts agree with the implicit stages, the more closely the finer those
+/// are: corners and edges on a plane and on folds, with friction, each with another attitude,
+/// against the finest scheme.
 #[test]
 fn explicit_impacts_are_the_implicit_ones() {
     let surfaces = [box_surface([1.4, 0.9, 0.35]), prism_surface(6, 0.7)];
@@ -295,8 +295,8 @@ fn explicit_impacts_are_the_implicit_ones() {
     assert!(2.0 * explicit < implicit, "{explicit} {implicit}");
 }
 
-/// A contact that a step of `dda` runs into begins with the stretch that its memory holds, or, as
-/// printed in the paper, with none.
+/// A contact that a step of `dda` runs into begins with the stretch of its history or, as printed
+/// in the paper, with none.
 #[test]
 fn what_a_step_runs_into_is_without_memory_as_printed() {
     let case = on_springs(cube(0.0, (0.5, 0.4)), Scheme::Dda, 1e9);

@@ -1,4 +1,4 @@
-//! Blows on something that gives way.
+//! Impacts on something that breaks.
 
 use super::*;
 use proptest::prelude::*;
@@ -41,8 +41,8 @@ fn a_central_blow_takes_its_limit_off_the_speed() {
 }
 
 proptest! {
-    /// Wherever it is struck: what gives way has taken its limit to rounding, pushes and never
-    /// pulls, and obeys Coulomb's cone.
+    /// Wherever it is struck: the broken stem has absorbed its limit to rounding, the impulse
+    /// pushes and never pulls, and obeys Coulomb's cone.
     #[test]
     fn a_blow_takes_its_limit_within_the_cone(
         lever in vector(1.0),
@@ -56,7 +56,7 @@ proptest! {
         let n = n.normalize();
         prop_assume!(n.dot(&u) < -0.1);
         let contact = BlockContact::new(&mass, (n, lever), (friction, 0), Vec3::zeros());
-        // all that a blow without friction takes until the point stops along the normal
+        // the energy that an impact without friction absorbs until the point stops along the normal
         let available_j: f64 = 0.5 * n.dot(&u).powi(2) / n.dot(&(contact.delassus * n));
         let Some(impulse) = contact.yielding(&u, share * available_j) else {
             prop_assert!(friction > 0.0 || share >= 1.0);
@@ -68,7 +68,7 @@ proptest! {
         prop_assert!(push > 0.0 && (impulse - n * push).norm() <= friction * push * (1.0 + 1e-9));
     }
 
-    /// With friction enough to hold it a contact point that slips in stops slipping, and stays so.
+    /// With enough friction a contact point that slips at first stops slipping, and stays so.
     #[test]
     fn enough_friction_ends_the_slip(lever in vector(0.3), selected in -1.0..1.0f64) {
         let (_, mass) = mass();

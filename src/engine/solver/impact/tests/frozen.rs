@@ -34,8 +34,8 @@ fn balances(body: &Body, out: &FrozenRebound, v: &Vec3, w: &Vec3) {
     assert!(out.loss.iter().flat_map(Loss::parts).all(|part| part >= 0.0));
 }
 
-/// The limit that the printed law tends to, as read off stiff springs (3.394 and 4.12); and the
-/// same law followed slowly.
+/// The limit of the printed law, as read off stiff springs (3.394 and 4.12); and the same law
+/// integrated slowly.
 #[test]
 fn the_rebound_is_the_limit_of_the_springs() {
     let v = Vec3::new(5.0, 1.0, -5.0);
@@ -89,8 +89,9 @@ const FOLDS: [[[f64; 3]; 3]; 5] = [
     [[1.0, 0.0, 0.1], [-1.0, 0.0, 0.1], [0.0, 0.0, 1.0]],
 ];
 
-/// Two and three contacts on unlike grounds and with unlike stiffness, followed slowly: that finds
-/// a touch up to one of its 2000 steps a radian late, where dashpots jump, which is 1e-5 or so.
+/// Two and three contacts on different grounds and with different stiffness, against the slow
+/// integration: that one finds a contact up to one of its 2000 steps a radian late, where dashpots
+/// jump, which is 1e-5 or so.
 #[test]
 fn several_contacts_are_the_law_as_printed() {
     for (rolling, e) in [(0.0, 1.0), (0.0, 0.5), (0.3, 1.0), (0.3, 0.5)] {
@@ -120,8 +121,8 @@ fn several_contacts_are_the_law_as_printed() {
     }
 }
 
-/// A patch that is struck alone has a stiffer normal spring than a point, and the same along the
-/// surface: friction takes another part of the blow.
+/// A single patch has a stiffer normal spring than a point, and the same tangential one: friction
+/// takes another part of the impact.
 #[test]
 fn a_patch_alone_is_the_law_as_printed() {
     let (v, w) = (Vec3::new(1.0, 1.0, -5.0), Vec3::new(3.0, -2.0, 4.0));
@@ -137,8 +138,8 @@ fn a_patch_alone_is_the_law_as_printed() {
     assert!(apart(&body, after(&patch), after(&point), v.norm()) > 1e-3);
 }
 
-/// A smooth right angle between two walls: each throws back its own part of the speed, whatever the
-/// other does.
+/// A smooth right angle between two walls: each returns its own component of the velocity,
+/// independent of the other.
 #[test]
 fn walls_at_right_angles_do_not_know_of_each_other() {
     let (body, law) = case(&smooth(0.8), 0.5, 0.0);
@@ -148,13 +149,13 @@ fn walls_at_right_angles_do_not_know_of_each_other() {
     let out = frozen_impact(&body, &contacts, (&v, &Vec3::zeros()), 1e-9);
     let expected = Vec3::new(0.8 * 4.0, 2.0, 0.3 * 3.0);
     assert!((out.velocity_m_s - expected).norm() < 5e-7, "{:?}", out.velocity_m_s);
-    // and each pays for itself
+    // and each has its own loss
     let paid = |e: f64, speed: f64| 0.5 * body.mass * (1.0 - e * e) * speed * speed;
     assert!((out.loss[0].damping / paid(0.8, 4.0) - 1.0).abs() < 1e-7);
     assert!((out.loss[1].damping / paid(0.3, 3.0) - 1.0).abs() < 1e-7);
 }
 
-/// However many contacts carry one impact, its restitution is the same: the dashpots share.
+/// However many contacts share one impact, its restitution is the same: the dashpots share.
 #[test]
 fn restitution_does_not_depend_on_how_many_contacts_there_are() {
     let (body, law) = case(&smooth(0.5), 0.5, 0.0);
@@ -173,8 +174,7 @@ fn restitution_does_not_depend_on_how_many_contacts_there_are() {
     assert!((out.velocity_m_s.z - 2.5).abs() < 5e-7);
 }
 
-/// A captured contact leaves no speed away from it and none towards it; one that rebounds beside it
-/// still does.
+/// A captured contact leaves no velocity along its normal; one that rebounds beside it still does.
 #[test]
 fn captured_contacts_give_nothing_back() {
     let (body, law) = case(&ground(1e9, 0.5, 0.3), 0.5, 0.0);
@@ -249,8 +249,8 @@ proptest! {
         }
     }
 
-    /// Any contacts, grounds, rocks and motions: no gain, losses add up, nothing comes nearer,
-    /// however it ends; about one in a thousand of these wild cases rattles on until it is stopped.
+    /// Any contacts, grounds, rocks and motions: no gain, losses add up, nothing closes at the end,
+    /// however it ends; about one in a thousand of these wild cases rattles until it is stopped.
     #[test]
     fn several_contacts_account_for_their_energy(
         normals in prop::collection::vec(direction(), 1..9), e in 0.0f64..1.0, other in 0.05f64..1.0, rolling in -0.2f64..0.5,

@@ -1,4 +1,4 @@
-//! An impact on a plane that is taken up from any place within it.
+//! An impact on a plane, continued from any state within it.
 
 use super::{G, case, ground, motion_j, uniforms};
 use crate::ground::Law;
@@ -29,8 +29,8 @@ fn cases() -> impl Iterator<Item = ((Body, Law), [Vec3; 2])> {
     })
 }
 
-/// In two or three parts it goes the way that it goes at once, takes the same, and each part takes
-/// what motion and height lose.
+/// In two or three parts the motion is that of the whole, with the same losses, and each part loses
+/// what its kinetic and potential energy lose.
 #[test]
 fn an_impact_in_parts_is_that_at_once() {
     let n = Vec3::z();
@@ -79,9 +79,9 @@ fn an_impact_in_parts_is_that_at_once() {
     }
 }
 
-/// A rock lifts off where the force first falls to zero, wherever it is taken up and however long
-/// gravity holds it; where it never does so, no passage is told. One that ends too early makes
-/// energy of what the spring still holds.
+/// A rock lifts off where the force first falls to zero, from whatever state it is continued and
+/// however long gravity holds it; if that never happens, there is no passage. One that ends too
+/// early gains the energy still in the spring.
 #[test]
 fn a_rock_lifts_off_where_the_force_first_falls_to_zero() {
     let mut uniform = uniforms(3);
@@ -91,7 +91,7 @@ fn a_rock_lifts_off_where_the_force_first_falls_to_zero() {
         let ground = ground(1e6 * 10f64.powf(3.0 * uniform()), restitution, 0.0);
         let (body, law) = case(&ground, 0.1 + 2.0 * uniform(), G);
         let plane = Plane::new(&body, &law, 1e-4);
-        // from what weight presses in to many times that, on the way in or out
+        // from the penetration of the weight to many times that, inwards or outwards
         let weight_m = G / law.omega_rad_s().powi(2);
         let depth_m = weight_m * 10f64.powf(3.5 * uniform() - 1.0);
         let speed = depth_m * law.omega_rad_s() * 2.0 * uniform();

@@ -131,8 +131,8 @@ fn gravity_keeps_what_is_too_slow() {
     }
 }
 
-/// Against the law as it is printed, with 4000 classical steps a radian: the kinks cost it up to
-/// 1e-8 or so, the kernel about its tolerance.
+/// Against the law as printed, with 4000 classical steps a radian: switching points cost those up
+/// to 1e-8 or so, the kernel about its tolerance.
 #[test]
 fn it_is_the_law_as_printed() {
     for (rolling, e) in [(0.0, 0.5), (0.3, 0.5), (0.3, 1.0), (0.0, 0.2), (0.3, 0.2)] {
