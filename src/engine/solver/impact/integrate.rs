@@ -98,7 +98,7 @@ impl<P: ForcedFlow<N, Q, K>, const N: usize, const Q: usize, const K: usize, con
 {
     #[expect(
         clippy::inline_always,
-        reason = "seven times a step, in loops excess a constant count"
+        reason = "seven times a step, in loops over a constant count"
     )]
     #[inline(always)]
     fn rates(&mut self, node: usize, y: &[f64; N], to: &mut Rates<N, Q, K>) {
