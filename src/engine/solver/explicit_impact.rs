@@ -41,7 +41,7 @@ const KINKED: f64 = 0.3;
 /// integration error, and correcting it would hide a fault.
 pub(super) const BALANCED: f64 = 0.1;
 /// A step is cut where contacts replace others only at shares of it within these (–).
-const INTERIOR: (f64, f64) = (0.02, 0.98);
+const EXCHANGE_WITHIN: (f64, f64) = (0.02, 0.98);
 /// Travel for which contacts are collected, over that of its speed in a step (–), and the number of
 /// steps for which features are chosen at a time.
 const AHEAD: f64 = 1.25;
@@ -327,7 +327,8 @@ fn step_among<const C: usize, const N: usize, const Q: usize, const P: usize>(
             let between = stages.dense_output((&y, &tried), dt);
             let share =
                 flow.exchange_share(|share| start + vec3_at(&between.at(share), DISPLACEMENT));
-            let share = share.filter(|share| (INTERIOR.0..INTERIOR.1).contains(share));
+            let share =
+                share.filter(|share| (EXCHANGE_WITHIN.0..EXCHANGE_WITHIN.1).contains(share));
             flow.changes.ends_past_exchange = share.is_some();
             match share {
                 Some(share) => step.cut(dt, share),

@@ -96,10 +96,7 @@ struct ForcedRates<'a, P, const K: usize, const D: usize> {
 impl<P: ForcedFlow<N, Q, K>, const N: usize, const Q: usize, const K: usize, const D: usize>
     Flow<N, Q, K> for ForcedRates<'_, P, K, D>
 {
-    #[expect(
-        clippy::inline_always,
-        reason = "seven times a step, in loops over a constant count"
-    )]
+    #[expect(clippy::inline_always, reason = "seven times a step, in loops over a constant count")]
     #[inline(always)]
     fn rates(&mut self, node: usize, y: &[f64; N], to: &mut Rates<N, Q, K>) {
         self.law.rates(self.force.nodes[node], y, self.slips, to);
