@@ -51,8 +51,8 @@ struct ActiveScar {
     depth_m: f64,
     /// `C ρ_s/(2 m)` (1/m³).
     ///
-    /// The constant of `|v|' = −(C ρ_s A/2m)|v|²`; over a way `s` the speed falls by `exp(−C ρ_s A
-    /// s/(2m))`.
+    /// The constant of `|v|' = −(C ρ_s A/2m)|v|²`; over a way `s` the speed falls by
+    /// `exp(−C ρ_s A s/(2m))`.
     drag_per_m3: f64,
     /// Share of its speed that the rock loses per metre along the plane (1/m), small.
     per_m: f64,

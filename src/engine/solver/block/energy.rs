@@ -20,11 +20,11 @@ const NOTHING_LEFT: f64 = 1e-7;
 /// nor the angular momentum about it; with two normals it does not change the momentum
 /// perpendicular to both. Contacts with friction can change the whole motion.
 ///
-/// The angular momentum `L = n·ℓ` about a single normal leaves the block at least the spin `n
-/// L/(n·I n)`, the one of least energy. A contact can change the rest of the rotation, whose energy
-/// is ≥ 0. The component of `ℓ` perpendicular to `n` has no such energy unless `n` is a principal
-/// axis: with it a box that slid on its corner had less than no energy to correct the error of a
-/// step with.
+/// The angular momentum `L = n·ℓ` about a single normal leaves the block at least the spin
+/// `n L/(n·I n)`, the one of least energy. A contact can change the rest of the rotation, whose
+/// energy is ≥ 0. The component of `ℓ` perpendicular to `n` has no such energy unless `n` is a
+/// principal axis: with it a box that slid on its corner had a negative energy to correct the error
+/// of a step with.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct ContactDirections {
     /// Orthonormal directions, and how many.
@@ -52,9 +52,9 @@ impl ContactDirections {
     pub(super) const ALL: Self =
         Self { normals: [Vec3::new(0.0, 0.0, 0.0); 3], count: 0, all_directions: true };
 
-    /// Adds a contact with this normal; `rubs` if it has friction.
-    pub(super) fn add(&mut self, n: &Vec3, rubs: bool) {
-        self.all_directions |= rubs;
+    /// Adds a contact with this normal; `has_friction` if it has friction.
+    pub(super) fn add(&mut self, n: &Vec3, has_friction: bool) {
+        self.all_directions |= has_friction;
         let known = &self.normals[..self.count];
         let new = known.iter().fold(*n, |rest, one| rest - one * one.dot(&rest));
         if self.count < self.normals.len() && new.norm_squared() > SAME_NORMAL * SAME_NORMAL {
@@ -152,14 +152,14 @@ impl BlockState {
         }
     }
 
-    /// Scales the whole motion down if its kinetic energy exceeds `had_j` plus `remaining_work_j` (J).
-    /// `had_j` is the energy that the block had, with the work of its weight so far; `remaining_work_j` is
-    /// the work of its weight over the rest of the step, which scales with the motion. A block
-    /// without energy to climb with stops and does not creep.
+    /// Scales the whole motion down if its kinetic energy exceeds `had_j` plus `remaining_work_j`
+    /// (J). `had_j` is the energy that the block had, with the work of its weight so far;
+    /// `remaining_work_j` is the work of its weight over the rest of the step, which scales with
+    /// the motion. A block without energy to climb with stops and does not creep.
     fn scale_to_energy(&mut self, block: &Block, [had_j, remaining_work_j]: [f64; 2]) {
         let motion_j = self.motion_j(block);
         if motion_j > had_j + remaining_work_j && motion_j > 0.0 {
-            // motion k² = had + comes k
+            // motion k² = had + remaining work · k
             let root =
                 (remaining_work_j * remaining_work_j + 4.0 * motion_j * had_j.max(0.0)).sqrt();
             let kept = ((remaining_work_j + root) / (2.0 * motion_j)).clamp(0.0, 1.0);
@@ -181,8 +181,8 @@ impl BlockState {
     /// s (P·(v − W/2) + T·ω) + s²/2 (P·P/m + T·I⁻¹T)
     /// ```
     ///
-    /// with `v` and `ω` of the free motion. The displacement is that of the mean velocity, and `W =
-    /// g Δt` is contained in `v`. The growth is 0 for `s = 0`.
+    /// with `v` and `ω` of the free motion. The displacement is that of the mean velocity, and
+    /// `W = g Δt` is contained in `v`. The growth is 0 for `s = 0`.
     ///
     /// Contacts that can change the whole motion are limited by comparing the energies directly: at
     /// rest, where the whole motion stops, nothing of it may remain.

@@ -3,8 +3,8 @@
 //! As for a sphere, it is a spring and a dashpot in series with a slider of capacity `ρ R N`, with
 //! `R` the radius of the sphere of equal volume. All contacts rotate the same body, so there is one
 //! moment, whose capacity is the sum over the contacts. In a stage in which the moment acts for `a`
-//! and the block turns for `b` (s), the moment `M = k θ + (k b + c) ω` takes the angular impulse `T
-//! = a M` from the body:
+//! and the block turns for `b` (s), the moment `M = k θ + (k b + c) ω` takes the angular impulse
+//! `T = a M` from the body:
 //!
 //! ```text
 //! (s + I⁻¹) T = ω₀ + k θ/(k b + c),   s = 1/(a (k b + c)),   |T| ≤ a ρ R N

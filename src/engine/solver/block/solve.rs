@@ -1,14 +1,14 @@
 //! Impulses of several contacts with levers on one rigid body.
 //!
-//! With `a` from the centre of mass to the contact point, `T = [1, −[a]×]` and `V_N = nᵀT = [nᵀ,
-//! (a×n)ᵀ]` are the submatrices of the paper; for a sphere `a ∥ n` and the rotational part is 0. An
-//! impulse changes the velocity of the contact point by `G = T M⁻¹ Tᵀ` times the impulse, the
-//! Delassus matrix of the contact.
+//! With `a` from the centre of mass to the contact point, `T = [1, −[a]×]` and
+//! `V_N = nᵀT = [nᵀ, (a×n)ᵀ]` are the submatrices of the paper; for a sphere `a ∥ n` and the
+//! rotational part is 0. An impulse changes the velocity of the contact point by `G = T M⁻¹ Tᵀ`
+//! times the impulse, the Delassus matrix of the contact.
 //!
-//! Every contact obeys `u_n + C_n p_n ≥ goal ⊥ p_n ≥ 0` and Coulomb's law for the remaining `u_t +
-//! C_t p_t − goal`. Contacts are solved by sweeps (projected Gauss–Seidel), each for its three
-//! unknowns at once. In the rigid limit a contact has no compliance, `C = 0`. A spring and dashpot
-//! over an implicit step is the same contact with a compliance and a goal of its own
+//! Every contact obeys `u_n + C_n p_n ≥ goal ⊥ p_n ≥ 0` and Coulomb's law for the remaining
+//! `u_t + C_t p_t − goal`. Contacts are solved by sweeps (projected Gauss–Seidel), each for its
+//! three unknowns at once. In the rigid limit a contact has no compliance, `C = 0`. A spring and
+//! dashpot over an implicit step is the same contact with a compliance and a goal of its own
 //! ([`SpringCompliance`]), so that one solver serves both.
 
 mod mixing;

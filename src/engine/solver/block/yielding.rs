@@ -49,8 +49,8 @@ impl BlockContact {
         (stick, false)
     }
 
-    /// Impulse after another increment `increment` (N s) of the normal impulse. While the point slips,
-    /// the direction of slip at the middle of the increment is used.
+    /// Impulse after another increment `increment` (N s) of the normal impulse. While the point
+    /// slips, the direction of slip at the middle of the increment is used.
     fn advance_impulse(&self, u: &Vec3, impulse: &Vec3, increment: f64) -> Vec3 {
         let (mut ratio, slips) = self.friction_ratio(&(u + self.delassus * impulse), increment);
         if slips {

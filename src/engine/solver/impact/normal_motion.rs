@@ -5,8 +5,8 @@
 //! oscillator, `S(0) = 0`, `S'(0) = 1`,
 //!
 //! - `x = S + γ (1 − S' − 2ζ S)` and `x' = S' + γ S`;
-//! - the force over `m ω v_n` is `f = x + 2ζ x' = S + 2ζ S' + γ (1 − S')`, and `f'' = γ − f − 2ζ
-//!   f'`;
+//! - the force over `m ω v_n` is `f = x + 2ζ x' = S + 2ζ S' + γ (1 − S')`, and
+//!   `f'' = γ − f − 2ζ f'`;
 //! - it ends where `f` first falls to zero. There `x'' = γ`, so `x' = f' − 2ζ γ` and `x = −2ζ x'`.
 //!
 //! Without gravity that is at `t_c`, where `f' = −e`; gravity moves it by about `γ (1 + e)/e`. From
@@ -263,8 +263,8 @@ fn impulse_response(zeta: f64, t: f64) -> [f64; 2] {
 
 /// The force's Taylor series about some time, of `N` terms.
 ///
-/// `f'' = γ − f − 2ζ f'` gives each coefficient from the two before it: `(k+1)(k+2) a_(k+2) = −a_k
-/// − 2ζ (k+1) a_(k+1)`.
+/// `f'' = γ − f − 2ζ f'` gives each coefficient from the two before it:
+/// `(k+1)(k+2) a_(k+2) = −a_k − 2ζ (k+1) a_(k+1)`.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Series<const N: usize>([f64; N]);
 

@@ -2,8 +2,8 @@
 //! explicitly.
 //!
 //! In units of mass, radius, approach speed and `1/ω`. With `s = k ξ/c`, the velocity at which the
-//! dashpot has the force of the spring, the law of an element reads `p = proj_{cap}(u + s)`, `s' =
-//! (k/c)(p − s)`, force `c p`: the slider slips by `u + s − p`, the dashpot moves by `p − s`.
+//! dashpot has the force of the spring, the law of an element reads `p = proj_{cap}(u + s)`,
+//! `s' = (k/c)(p − s)`, force `c p`: the slider slips by `u + s − p`, the dashpot moves by `p − s`.
 //!
 //! `s` is used instead of `ξ` because it is a velocity: slip and spring add up before the
 //! projection. Losses: the slider takes `c p (u + s − p)`, the dashpot `c (p − s)²`; the rest goes

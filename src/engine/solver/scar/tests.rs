@@ -3,9 +3,9 @@
 use super::*;
 use std::f64::consts::PI;
 
-/// The hard plane lies far below the ball, so that all of it is cut, without gravity: `v = v₀
-/// exp(−C ρ_s A z/2m)` with `A = π R²`, on the way in, square and at an angle, and along the plane,
-/// in one step or many.
+/// The hard plane lies far below the ball, so that all of it is cut, without gravity:
+/// `v = v₀ exp(−C ρ_s A z/2m)` with `A = π R²`, on the way in, square and at an angle, and along
+/// the plane, in one step or many.
 #[test]
 fn a_ball_deep_in_soil_slows_by_the_closed_form_of_drag() {
     let radius = 0.5;
@@ -170,8 +170,8 @@ fn the_way_out_takes_what_was_not_taken_along_the_plane() {
 }
 
 /// A ball 1.2 m deep needs 4.9 m/s to rise to the surface after the drag of the exit, seven tenths:
-/// at 8 m/s it stays in its scar, at 20 m/s it is out. In the scar it rises, all of it cut, to `h =
-/// u²/2g exp(−2 k h)`, and falls back through the same height of soil.
+/// at 8 m/s it stays in its scar, at 20 m/s it is out. In the scar it rises, all of it cut, to
+/// `h = u²/2g exp(−2 k h)`, and falls back through the same height of soil.
 #[test]
 fn drag_decides_whether_a_ball_leaves_its_scar() {
     let (body, mut scars, per_m) = deep(20.0, 9.81);

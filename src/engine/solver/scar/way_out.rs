@@ -37,8 +37,8 @@ impl ActiveScar {
         self.drag_per_m3 * swept_m3
     }
 
-    /// Height (m) of a hop in the soil that would rise to `free_m` without it: the `h` of `h = h₀
-    /// exp(−2 S(h))`.
+    /// Height (m) of a hop in the soil that would rise to `free_m` without it: the `h` of
+    /// `h = h₀ exp(−2 S(h))`.
     ///
     /// `ln h + 2 S(h)` is concave, because the ball gets less deep: Newton steps from below never
     /// pass the root.

@@ -21,8 +21,8 @@ fn mass() -> (Block, Mass) {
     (block, mass)
 }
 
-/// Struck straight through its centre of mass and without friction a block goes on with `√(v² −
-/// 2E/m)`, and stops where the stem can take all of its motion.
+/// Struck straight through its centre of mass and without friction a block goes on with
+/// `√(v² − 2E/m)`, and stops where the stem can take all of its motion.
 #[test]
 fn a_central_blow_takes_its_limit_off_the_speed() {
     let (block, mass) = mass();

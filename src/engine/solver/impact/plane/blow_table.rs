@@ -4,8 +4,8 @@
 //! In units of the approach speed and of the spring's own time, an impact without weight and
 //! rolling depends on its damping ratio, its shear element, `1 + m R²/I` and the slip over the
 //! approach speed `x`. With springs and dashpots of one material the first three are the same for
-//! spheres of all sizes. So the impulse against the slip is one function `J(x)`: 0 at rest, and `μ
-//! (1 + e)` where the contact slides throughout. It is integrated once at nodes and interpolated
+//! spheres of all sizes. So the impulse against the slip is one function `J(x)`: 0 at rest, and
+//! `μ (1 + e)` where the contact slides throughout. It is integrated once at nodes and interpolated
 //! linearly between them.
 
 use super::straight::blow_plane;

@@ -6,8 +6,8 @@ use crate::solver::block::BlockState;
 use crate::solver::impact::dormand_prince::vec3_at;
 
 /// A block is clamped if its motion has changed by at most `UNCHANGED` allowed errors (–) for
-/// `STILL_RAD` radians of the stiffest contact, and a contact presses with more than `CLAMPED_ERRORS` of
-/// them (–).
+/// `STILL_RAD` radians of the stiffest contact, and a contact presses with more than
+/// `CLAMPED_ERRORS` of them (–).
 const UNCHANGED: f64 = 3.0;
 const STILL_RAD: f64 = 12.0;
 const CLAMPED_ERRORS: f64 = 100.0;
