@@ -54,7 +54,7 @@ fn no_name_means_two_types() {
 /// Constants that may stand twice: a figure's layout in pixels, which is its own affair, and where the parts of a state begin
 /// in the arrays of two integrators.
 fn is_layout(name: &str) -> bool {
-    name.ends_with("_PX") || matches!(name, "WAY" | "SPRINGS")
+    name.ends_with("_PX") || matches!(name, "DISPLACEMENT" | "SPRINGS")
 }
 
 /// Name and value of the constants of a text, unit tests left out.

@@ -82,8 +82,11 @@ fn a_pebble_takes_no_facet_away() {
 fn schemes_agree_on_facets_under_two_rocks() {
     for friction_rad in [0.0, std::f64::consts::FRAC_PI_6] {
         let thrown = SCHEMES.map(|scheme| {
-            let falls = world(scheme, (0.4, friction_rad))
-                .falls(&plane(), &groups([0.5, 0.5], (1e-6, 0.0)), 0.03);
+            let falls = world(scheme, (0.4, friction_rad)).falls(
+                &plane(),
+                &groups([0.5, 0.5], (1e-6, 0.0)),
+                0.03,
+            );
             falls.iter().map(|fall| fall.end.velocity_m_s).collect::<Vec<_>>()
         });
         let [adaptive, rigid] = [0, 2].map(|k| farthest(&thrown[k], &thrown[1]));

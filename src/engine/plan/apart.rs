@@ -6,7 +6,7 @@ use crate::ground::{Ground, damping_ratio};
 use crate::math;
 use crate::release::{Release, TYPED_DEPTH};
 use crate::scene::Scene;
-use crate::solver::impact::most_unlike;
+use crate::solver::impact::largest_followed_ratio;
 use crate::solver::island::broad_phase::{Ball, overlapping};
 
 /// Overlap allowed over that which the weight above presses in (–): a wedge presses more than a column.
@@ -55,7 +55,7 @@ fn unlike_blows(scene: &Scene) -> Option<String> {
     let least = given_back.chain(contact.restitution).fold(1.0, f64::min);
     let [smallest_m, _, largest_m] = scene.rocks.radius_m().reckoned();
     let (masses, springs) = ((largest_m / smallest_m).powi(3), stiffest / softest);
-    let most = most_unlike(damping_ratio(least));
+    let most = largest_followed_ratio(damping_ratio(least));
     (masses * springs > most).then(|| {
         format!(
             "rocks differ up to {masses:.0} times in mass and contacts up to {springs:.0} times in stiffness: where the product is more than {most:.0e} blows through several contacts are taken one by one, and a boulder on a light stone comes off too slowly; write stiffnesses that are nearer to each other, or scheme = \"adaptive\""

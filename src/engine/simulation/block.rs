@@ -24,7 +24,7 @@ use crate::ground::Law;
 use crate::random::RandomStream;
 use crate::release::{DrawnShape, Release};
 use crate::rock::{Motion, Vec3};
-use crate::solver::block::{Footing, Moving, Stepped};
+use crate::solver::block::{BlockContactState, BlockState, BlockStepOutcome};
 use crate::solver::body::Body;
 use crate::solver::environment::ContactEnvironment;
 use crate::solver::impact_point::ImpactPoint;
@@ -42,12 +42,12 @@ struct BlockSimulation<'a> {
     /// Its shape, mass and moments of inertia.
     block: &'a Block,
     /// Contacts found by the last detection, with the work space of the solver.
-    footing: &'a mut Footing,
+    footing: &'a mut BlockContactState,
     /// Scars that the block has made in soil.
     scars: &'a mut Scars,
     /// Pose, velocity and angular momentum. The state variable is momentum, not spin: in flight
     /// momentum is constant, while the spin changes direction.
-    moving: Moving,
+    moving: BlockState,
     /// Recorder of the trajectory.
     recorder: Recorder<'a>,
     /// Whether no contact held it at the end of its last step.
@@ -60,7 +60,7 @@ pub(super) fn run_block(
     (release, drawn): (&Release, &DrawnShape),
     options: RecordOptions,
     (laws, random): (&[Law], RandomStream),
-    (footing, scars): (&mut Footing, &mut Scars),
+    (footing, scars): (&mut BlockContactState, &mut Scars),
 ) -> Trajectory {
     let block = &drawn.block;
     let world = settings.contact_environment(Body::of_block(block, settings.gravity_m_s2), laws);
@@ -69,7 +69,8 @@ pub(super) fn run_block(
     (footing.near.tested, footing.sweeps) = (0, 0);
     footing.facets = RoughFacets::of(random, laws);
     footing.slip.begin(&release.grounds);
-    let moving = Moving::new(block, (release.motion.position_m, drawn.attitude), &release.motion);
+    let moving =
+        BlockState::new(block, (release.motion.position_m, drawn.attitude), &release.motion);
     let geometry = RockGeometry { rock: release.rock, block: Some(block) };
     let rotation = rotation(block, &moving);
     let start = (release.motion, Some(rotation));
@@ -81,7 +82,7 @@ pub(super) fn run_block(
 }
 
 /// Attitude and rotational energy `ω·L/2` (J), for the recorder.
-fn rotation(block: &Block, moving: &Moving) -> BlockRotation {
+fn rotation(block: &Block, moving: &BlockState) -> BlockRotation {
     let rotational_j = 0.5 * moving.spin(block).dot(&moving.momentum);
     BlockRotation { attitude: moving.pose.attitude, rotational_j }
 }
@@ -144,7 +145,7 @@ impl<'a> RockSimulation<'a> for BlockSimulation<'a> {
         }
         // contacts are detected anew in every step: the block rotates, and other corners come near
         let pose = self.moving.pose;
-        self.footing.look(&self.world, self.block, &pose, self.block.ball_m);
+        self.footing.detect(&self.world, self.block, &pose, self.block.ball_m);
         self.resolve_impact()
     }
 
@@ -167,7 +168,7 @@ impl<'a> RockSimulation<'a> for BlockSimulation<'a> {
         if !self.moving.pose.centre.iter().chain(spin_rad_s.iter()).all(|x| x.is_finite()) {
             return Err(StepError::NotFinite);
         }
-        let Stepped { dt, loss, slides, unsettled, .. } = done;
+        let BlockStepOutcome { dt, loss, slides, unsettled, .. } = done;
         Ok((Advance { dt, loss, steps: 1, rejected, unsettled }, slides))
     }
 
@@ -207,7 +208,7 @@ impl BlockSimulation<'_> {
     }
 
     /// One step of at most `longest_s` (s), and the number of rejected steps.
-    fn advance(&mut self, longest_s: f64) -> Result<(Stepped, u64), StepError> {
+    fn advance(&mut self, longest_s: f64) -> Result<(BlockStepOutcome, u64), StepError> {
         let (settings, block) = (self.settings.step, self.block);
         if !self.has_springs() {
             let most = (settings.step_s.min(longest_s), settings.corner_way);
@@ -223,16 +224,16 @@ impl BlockSimulation<'_> {
         let (block, now_s) = (self.block, self.recorder.now.time_s);
         // touching contacts whose approach is faster than the capture speed of their ground: one
         // impact, solved together
-        let mut struck = std::mem::take(&mut self.footing.aside);
+        let mut struck = std::mem::take(&mut self.footing.selected);
         struck.clear();
         let is_struck = |touch: &&BlockContactPoint| {
-            Footing::is_struck(&self.world, (block, &self.moving), touch)
+            BlockContactState::is_struck(&self.world, (block, &self.moving), touch)
         };
         struck.extend(self.footing.touching(block).filter(is_struck));
         // at most as many rows as impacts can be recorded at a time
         for touch in struck.iter().take(MAX_CONTACTS) {
             // velocity of the contact point, spin included: v + ω × r
-            let velocity = self.moving.at(block, &touch.lever);
+            let velocity = self.moving.velocity_at(block, &touch.lever);
             let struck = ImpactPoint {
                 point_m: self.moving.pose.centre + touch.lever,
                 normal: touch.normal,
@@ -243,7 +244,7 @@ impl BlockSimulation<'_> {
             self.recorder.begin_impact(&struck, now_s, &MeshEnergy::default());
         }
         self.enter_soil_at(&struck);
-        self.footing.aside = struck;
+        self.footing.selected = struck;
         let broken = self.break_stems();
         self.footing.press_stems(&self.world, (block, &self.moving));
         let loss = self.footing.strike(&self.world, block, &mut self.moving);
@@ -254,7 +255,7 @@ impl BlockSimulation<'_> {
         let mut loss = loss.unwrap_or_default();
         self.footing.bend_stems(&self.world, (block, &mut self.moving), &mut loss);
         self.recorder.book_losses(&loss);
-        let is_free = !self.footing.holds(&self.world, (block, &self.moving), true);
+        let is_free = !self.footing.stays_in_contact(&self.world, (block, &self.moving), true);
         if is_free {
             let speed_factor = self.scars.leave(&self.world.body, &self.moving.v);
             self.slow(speed_factor);
@@ -302,7 +303,7 @@ impl BlockSimulation<'_> {
     /// Enters the soil at these impacts; the depth follows from the approach speed of the centre.
     fn enter_soil(&mut self, blows: &[GroundBlow]) {
         let holding = self.footing.touching(self.block).map(|touch| touch.triangle);
-        let in_soil = self.scars.holds(&self.world, holding);
+        let in_soil = self.scars.is_in_soil(&self.world, holding);
         let speed_and_soil = (self.moving.v.norm(), in_soil);
         let speed_factor = self.scars.enter(&self.world.body, blows, speed_and_soil);
         self.slow(speed_factor);
@@ -327,13 +328,16 @@ impl BlockSimulation<'_> {
             return;
         }
         self.moving.v = self.recorder.slow_in_soil(&self.moving.v, speed_factor);
-        self.footing.springs.refresh();
+        self.footing.springs.invalidate_rates();
     }
 
     /// The complete trajectory, with the shape as drawn.
     fn end(mut self, (release, drawn): (&Release, &DrawnShape), stop: Stop) -> Trajectory {
-        let start =
-            Moving::new(self.block, (release.motion.position_m, drawn.attitude), &release.motion);
+        let start = BlockState::new(
+            self.block,
+            (release.motion.position_m, drawn.attitude),
+            &release.motion,
+        );
         self.recorder.effort.sweeps += self.footing.sweeps;
         self.recorder.effort.triangles += self.footing.near.tested;
         let weight_n = self.block.mass_kg * self.settings.gravity_m_s2;

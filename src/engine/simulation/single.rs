@@ -10,7 +10,7 @@ use crate::ground::{Damping, Law};
 use crate::plan::{PATH_STEP_S, Part, Plan};
 use crate::random::{Purpose, RandomStream, stream};
 use crate::release::{DrawnShape, Release};
-use crate::solver::block::Footing;
+use crate::solver::block::BlockContactState;
 use crate::solver::contact_state::ContactState;
 use crate::solver::scar::Scars;
 use crate::solver::slip::Slip;
@@ -23,7 +23,7 @@ pub struct Scratch {
     /// Contacts, springs and neighbour list of a sphere; see [`ContactState`].
     state: ContactState,
     /// The same for a block.
-    footing: Footing,
+    footing: BlockContactState,
     /// Scars that the rock has made in soil.
     scars: Scars,
     /// Slip distance on each ground where friction grows with slip.

@@ -5,7 +5,7 @@
 //!
 //! Two laws, each on grounds that ask for it: the scar of Lu et al. (2019), `solver::scar`, and
 //! friction that grows with slip of Leine et al. (2014), `solver::slip`. A third law, restitution
-//! that falls with impact speed, belongs to the ground itself (`Law::struck_at`).
+//! that falls with impact speed, belongs to the ground itself (`Law::set_impact_speed`).
 
 use super::sphere::{SlippingContact, SphereSimulation};
 use crate::contact::MAX_CONTACTS;
@@ -64,7 +64,7 @@ impl SphereSimulation<'_> {
         let world = self.settings.contact_environment(self.body, self.laws);
         let (state, scars) = (&self.state, &mut *self.soil.scars);
         let holding = state.histories.iter().chain(state.upcoming_impacts.iter());
-        let in_soil = scars.holds(&world, holding.map(|history| history.triangle));
+        let in_soil = scars.is_in_soil(&world, holding.map(|history| history.triangle));
         let blow = |&Blow { approach_m_s, n: normal, triangle }: &Blow| {
             let ground = world.ground_of(triangle);
             GroundBlow { ground, normal, approach_m_s, of_point_m_s: approach_m_s }

@@ -1,24 +1,26 @@
-//! An impact among any features, followed in its own time.
+//! Explicit integration of an impact on any features.
 //!
-//! While a contact rebounds it lasts about `π/ω`, `ω = √(p_N/m)`: in units of `1/ω` nothing is stiff, and an explicit pair of
-//! order five is the cheapest way to follow it ([`dormand_prince`](super::impact::dormand_prince)). The error is controlled
-//! relative to the speed of the impact, so that restitution is as right for a pebble as for a block. Geometry is that of every
-//! stage; force is continuous wherever patches meet (`contact::patch`), and where friction begins to slip or a further contact
-//! begins the step is cut.
+//! A rebound lasts about `π/ω`, `ω = √(p_N/m)`. In units of `1/ω` nothing is stiff, and an explicit
+//! pair of order five is the cheapest integrator
+//! ([`dormand_prince`](super::impact::dormand_prince)). The error is controlled relative to the
+//! speed of the impact, so that restitution is equally accurate for a pebble and for a boulder.
+//! Geometry is that of every stage. The force is continuous where patches meet (`contact::patch`);
+//! where friction switches between slipping and sticking, or a further contact begins, the step is
+//! cut.
 //!
-//! State: way, velocity and spin of the rock, shear and rolling stretch of each contact; summed
-//! along: what friction, dashpots, rolling and trees take. What normal springs hold is a matter of place,
-//! known at both ends of a step. Why explicit: the implicit stage costs
-//! an iteration over geometry and contacts, and a rebound is over in `π` radians, a handful of
-//! steps; stiffness enters only by the unit of time.
+//! State: displacement, velocity and spin of the rock, shear and rolling stretch of each contact.
+//! Quadratures: losses by friction, damping, rolling and to trees. The energy of normal springs
+//! depends on position only and is known at both ends of a step. The pair is explicit because an
+//! implicit stage costs an iteration over geometry and contacts, whereas a rebound is over in `π`
+//! radians, a handful of steps; stiffness enters only through the unit of time.
 
 mod change_time;
 mod changes;
 mod flow;
 
 use super::contact_state::{ContactEnvironment, ContactState};
-use super::impact::dormand_prince::{Attempt, Flow, Stages, Tried, growth, three};
-use super::impact::{LOCAL, StepLength};
+use super::impact::dormand_prince::{Attempt, Flow, Stages, TrialResult, growth, vec3_at};
+use super::impact::{LOCAL_ERROR, StepLength};
 use super::loss::Loss;
 use super::plane_ahead::longest_step;
 use super::stage::StageMotion;
@@ -26,56 +28,59 @@ use super::step_control::{Advance, StepError, TRAVEL};
 use crate::contact::TOUCH;
 use crate::contact::history::{ContactHistory, MAX_HISTORIES};
 pub(super) use flow::HeldEnergy;
-use flow::{Among, LOSSES, V, WAY};
+use flow::{DISPLACEMENT, LOSSES, SphereFlow, V};
 
 /// First step of an impact (rad of its oscillation).
 pub(super) const FIRST: f64 = 0.3;
-/// Longest step (rad).
-/// Beyond about a radian the error estimate of the pair is no longer to be trusted.
+/// Longest step (rad). Beyond about a radian the error estimate of the pair is no longer reliable.
 pub(super) const LONGEST_RAD: f64 = 0.9;
-/// Local error allowed where patches meet and part, relative to that on a plane (–): the estimate sees too little of a kink.
+/// Local error allowed where patches meet and separate, relative to that on a plane (–): the
+/// estimate sees too little of a switching point.
 const KINKED: f64 = 0.3;
-/// Largest error of energy that is balanced (–, relative to motion).
-/// A larger one is no error of steps, and hiding it would hide a fault.
+/// Largest energy error that is corrected (–, relative to the kinetic energy). A larger one is no
+/// integration error, and correcting it would hide a fault.
 pub(super) const BALANCED: f64 = 0.1;
-/// A step is not cut for contacts that take the place of others at a smaller or a larger share of it (–).
-const WITHIN: (f64, f64) = (0.02, 0.98);
-/// How much farther than its speed takes it a step may come (–), and for how many steps what is touched is chosen at a time.
+/// A step is cut where contacts replace others only at shares of it within these (–).
+const EXCHANGE_WITHIN: (f64, f64) = (0.02, 0.98);
+/// Travel for which contacts are collected, over that of its speed in a step (–), and the number of
+/// steps for which features are chosen at a time.
 const AHEAD: f64 = 1.25;
 const STEPS_AHEAD: f64 = 4.0;
-/// Shortest step (rad): a contact that begins within a step is met this exactly.
+/// Shortest step (rad): the accuracy to which an onset within a step is located.
 pub(super) const SHORTEST_RAD: f64 = 1e-9;
 
-/// How far a step may go, and how exactly.
+/// Bounds of a step.
 #[derive(Debug, Clone, Copy)]
 struct StepBounds {
     /// Stiffest contact (rad/s).
     omega: f64,
-    /// Longest step that cannot jump over a feature (s).
+    /// Longest step that cannot miss a feature (s).
     limit: f64,
-    /// Longest step asked for (s).
+    /// Longest step requested (s).
     h_max: f64,
     /// Local error allowed (m/s).
     allowed: f64,
 }
 
 /// An accepted step.
-struct Accepted {
+struct AcceptedStep {
     end: StageMotion,
     dt: f64,
-    /// What contacts took, what springs hold counted in (J).
+    /// Loss, with the energy in springs counted in (J).
     loss: Loss,
-    /// Whether the rates at its end hold for the next step: the same contacts, and the same normals.
-    is_alike: bool,
+    /// Whether the rates at its end hold for the next step: the same contacts, and the same
+    /// normals.
+    has_same_contacts: bool,
 }
 
-/// Whether a whole try of `dt` (s) is accepted by its error (squared, over the one allowed), and the step to try next (s). One that was cut
-/// short from outside says nothing of how long it could have been: what was `wished` stays. One that `is_short` is accepted
-/// whatever its error.
+/// Whether a complete trial step of `dt` (s) is accepted by its error (squared, over the allowed
+/// one), and the length of the next trial step (s). A step that was cut short from outside gives no
+/// information on the possible length: the `wished` one stays. One that `is_short` is accepted with
+/// any error.
 ///
 /// # Errors
-/// [`StepError`] if what was accepted is no longer finite.
-pub(super) fn judge(
+/// [`StepError`] if an accepted state is no longer finite.
+pub(super) fn control_error(
     (dt, wished): (f64, f64),
     (error2, is_smooth): (f64, bool),
     is_short: bool,
@@ -91,19 +96,19 @@ pub(super) fn judge(
 }
 
 impl ContactState {
-    /// Whether an impact is going on.
+    /// Whether there is a current impact.
     pub(crate) fn is_rebounding(&self) -> bool {
         self.impact.left_rad > 0.0 && self.histories.iter().any(|history| !history.captured)
     }
 
-    /// One accepted step of an impact, of at most `h_max` (s), in contacts of at most `omega` (rad/s); `tolerance` is the local
-    /// error allowed relative to the speed of the impact.
+    /// One accepted step of an impact, of at most `h_max` (s), in contacts of at most `omega`
+    /// (rad/s); `tolerance` is the local error allowed relative to the speed of the impact.
     ///
     /// # Errors
     /// [`StepError`] if the motion is no longer finite.
     ///
-    /// Tried with room for two contacts first, the usual case: the numbers of a state live on the
-    /// stack, and their count is a constant that the compiler unrolls. With more contacts the step
+    /// Tried with room for two contacts first, the usual case: the state lives on the stack, and
+    /// its length is a constant for which the compiler unrolls loops. With more contacts the step
     /// is tried anew with room for all.
     pub(crate) fn step_impact(
         &mut self,
@@ -124,7 +129,7 @@ impl ContactState {
                 self.steps_among::<2, 15, { LOSSES + 2 }, 6>(world, scale, h_max, done)?
             };
         if !is_done {
-            // what the crowded try has met is forgotten
+            // contacts found by the trial that ran out of room are dropped
             self.histories.truncate(known);
             self.steps_among::<MAX_HISTORIES, { 9 + 6 * MAX_HISTORIES }, { LOSSES + MAX_HISTORIES }, { 3 * MAX_HISTORIES }>(
                 world, scale, h_max, done,
@@ -133,8 +138,8 @@ impl ContactState {
         Ok(())
     }
 
-    /// How far the next step may go, of an impact in contacts of `omega` (rad/s) and with its error relative to its speed, at most
-    /// `h_max` (s).
+    /// Bounds of the next step of an impact with contacts of `omega` (rad/s) and a tolerance
+    /// relative to its speed, of at most `h_max` (s).
     fn step_bounds(
         &mut self,
         world: &ContactEnvironment,
@@ -151,12 +156,12 @@ impl ContactState {
         self.near.prepare_short_path(world.terrain, &c, (next_m, STEPS_AHEAD * next_m), reach);
         // a share of the tolerance, as an impact takes a handful of steps; relative to the speed of
         // the impact, so it has no unit of its own
-        let allowed = LOCAL * tolerance * self.impact.speed_m_s;
+        let allowed = LOCAL_ERROR * tolerance * self.impact.speed_m_s;
         StepBounds { omega, limit, h_max, allowed }
     }
 
-    /// Steps with room for `C` contacts, as many as there are in which nothing comes or goes that others must know of; false if there are more
-    /// contacts than that at the first.
+    /// Steps with room for `C` contacts, as many in succession as pass without an event that others
+    /// must know of; false if there are more contacts than that at the first.
     fn steps_among<const C: usize, const N: usize, const Q: usize, const P: usize>(
         &mut self,
         world: &ContactEnvironment,
@@ -165,10 +170,10 @@ impl ContactState {
         done: &mut Advance,
     ) -> Result<bool, StepError> {
         let mut bounds = self.step_bounds(world, scale, h_max);
-        let mut flow = Among::<C>::new(world, self, (bounds.omega, bounds.allowed));
+        let mut flow = SphereFlow::<C>::new(world, self, (bounds.omega, bounds.allowed));
         let mut stages = Stages::<N, Q, P>::NONE;
-        flow.rates(0, &flow.begin::<N>(), stages.first());
-        // what the present place touches is met whatever becomes of the tries
+        flow.rates(0, &flow.initial_state::<N>(), stages.first());
+        // contacts at the present position are recorded whatever becomes of the trial steps
         flow.state.accept_new_contacts(world);
         loop {
             let Some(accepted) = step_among(&mut flow, &mut stages, &bounds, done)? else {
@@ -176,7 +181,7 @@ impl ContactState {
             };
             flow.state.impact.left_rad -= bounds.omega * accepted.dt;
             flow.state.accept_impact(world, &accepted, &bounds, done);
-            if !(accepted.is_alike && flow.state.goes_on_alone(flow.pressed().len())) {
+            if !(accepted.has_same_contacts && flow.state.can_continue(flow.pressed().len())) {
                 return Ok(true);
             }
             let left_s = h_max - done.dt;
@@ -185,12 +190,13 @@ impl ContactState {
             }
             bounds = flow.state.step_bounds(world, scale, left_s);
             // the rates of the step's end are those of the next one's start
-            stages.pass();
+            stages.reuse_last();
         }
     }
 
-    /// Whether an impact in `count` contacts goes on without anything that must be known between its steps.
-    fn goes_on_alone(&self, count: usize) -> bool {
+    /// Whether an impact with `count` contacts can continue without an event that must be known
+    /// between its steps.
+    fn can_continue(&self, count: usize) -> bool {
         self.is_rebounding()
             && self.histories.len() == count
             && self.histories.iter().all(|history| history.announced)
@@ -198,11 +204,11 @@ impl ContactState {
             && !self.facets.are_rough()
     }
 
-    /// Takes over the step's end: motion, memories, losses. The last stage was there.
+    /// Accepts the end of the step: motion, histories, losses. The last stage was there.
     fn accept_impact(
         &mut self,
         world: &ContactEnvironment,
-        accepted: &Accepted,
+        accepted: &AcceptedStep,
         bounds: &StepBounds,
         done: &mut Advance,
     ) {
@@ -210,15 +216,15 @@ impl ContactState {
         let before = self.motion_j(body);
         let lifted = body.lifted_j(&(end.c - self.c));
         (self.c, self.v, self.w) = (end.c, end.v, end.w);
-        // what the springs store is counted among the losses until they give it back
+        // the energy that springs store is counted as lost until they return it
         self.impact.gained_j += self.motion_j(body) + lifted + loss.sum() - before;
         self.impact.mixes_grounds |= self.is_on_several_grounds(world);
         self.merge_lost(world);
         self.histories.retain(|history| history.closed);
         self.accept_new_contacts(world);
         self.fresh = false;
-        done.dt += accepted.dt + self.let_go(world, bounds, bounds.h_max - accepted.dt);
-        // what rebounds no more goes on with other steps, also while something else still presses
+        done.dt += accepted.dt + self.fly_clear(world, bounds, bounds.h_max - accepted.dt);
+        // after the rebound other steps follow, also while another contact still presses
         if self.is_free() || !self.is_rebounding() {
             self.balance(world);
         }
@@ -226,11 +232,11 @@ impl ContactState {
         done.steps += 1;
     }
 
-    /// Flies out of contacts that push no more, if nothing else is in the way there and it takes no longer than `longest` (s);
-    /// returns the time that took (s).
+    /// Flies clear of open contacts if no other contact is met and it takes at most `longest` (s);
+    /// returns the flight time (s).
     ///
-    /// What still hangs on the contacts then has no force, and the parabola is exact.
-    fn let_go(&mut self, world: &ContactEnvironment, bounds: &StepBounds, longest: f64) -> f64 {
+    /// The remaining contacts exert no force, and the parabola is exact.
+    fn fly_clear(&mut self, world: &ContactEnvironment, bounds: &StepBounds, longest: f64) -> f64 {
         let dt = LONGEST_RAD / bounds.omega;
         if self.histories.is_empty() || dt > longest.min(bounds.limit) {
             return 0.0;
@@ -255,13 +261,14 @@ impl ContactState {
         dt
     }
 
-    /// Gives motion back what the steps of the impact have lost by themselves, or takes what they have gained: what is left of
-    /// the energy is what came in less what the contacts took.
+    /// Corrects the motion by the energy that the errors of the steps of the impact have lost or
+    /// gained: the remaining energy is the initial energy less the losses of the contacts.
     ///
     /// Velocity and spin are scaled by one factor, so the direction of the rebound does not change.
-    /// An impact with `e = 1` and no friction then keeps its energy to rounding. Where no ground has
-    /// friction nothing can turn the rock, and the velocity alone is scaled. More than [`BALANCED`] is taken only where springs of several
-    /// grounds were pressed at once: what these hand over to each other is no error of steps.
+    /// An impact with `e = 1` and no friction then keeps its energy to rounding. Where no ground
+    /// has friction nothing can turn the rock, and the velocity alone is scaled. More than
+    /// [`BALANCED`] is taken only where springs of several grounds were pressed at once: what these
+    /// hand over to each other is no error of steps.
     pub(super) fn balance(&mut self, world: &ContactEnvironment) {
         let (body, gained) = (&world.body, self.impact.gained_j);
         let turns = world.laws.iter().any(|law| law.limits().caps(1.0) != (0.0, 0.0));
@@ -279,17 +286,17 @@ impl ContactState {
 
 /// Tries steps until one is accurate; `None` if there are more contacts than `C`.
 ///
-/// A try that is cut at a kink is shorter, not wrong; one whose error is too large shrinks by
-/// the usual rule.
+/// A trial step that is cut at a switching point is shorter; one whose error is too large shrinks
+/// by the usual rule.
 fn step_among<const C: usize, const N: usize, const Q: usize, const P: usize>(
-    flow: &mut Among<C>,
+    flow: &mut SphereFlow<C>,
     stages: &mut Stages<N, Q, P>,
     bounds: &StepBounds,
     done: &mut Advance,
-) -> Result<Option<Accepted>, StepError> {
+) -> Result<Option<AcceptedStep>, StepError> {
     let StepBounds { omega, limit, h_max, allowed } = *bounds;
-    let y = flow.begin::<N>();
-    flow.note_start();
+    let y = flow.initial_state::<N>();
+    flow.record_start();
     let (known, start) = (flow.state.histories.len(), flow.state.c);
     let mut step = StepLength::new(flow.state.impact.h);
     loop {
@@ -299,7 +306,7 @@ fn step_among<const C: usize, const N: usize, const Q: usize, const P: usize>(
         let dt = wished.min(h_max);
         let is_short = dt * omega < SHORTEST_RAD;
         let attempt = stages.step(flow, &y, dt, (!is_short).then_some(allowed));
-        if flow.is_crowded && C < MAX_HISTORIES {
+        if flow.exceeds_room && C < MAX_HISTORIES {
             flow.state.histories.truncate(known);
             flow.state.impact.h = step.wish;
             return Ok(None);
@@ -313,12 +320,15 @@ fn step_among<const C: usize, const N: usize, const Q: usize, const P: usize>(
                 continue;
             }
         };
-        let (accepted, next_h) = judge((dt, wished), (tried.error2, flow.is_smooth), is_short)?;
+        let (accepted, next_h) =
+            control_error((dt, wished), (tried.error2, flow.is_smooth), is_short)?;
         if !accepted {
             done.rejected += 1;
-            let between = stages.between((&y, &tried), dt);
-            let share = flow.exchange_share(|share| start + three(&between.at(share), WAY));
-            let share = share.filter(|share| (WITHIN.0..WITHIN.1).contains(share));
+            let between = stages.dense_output((&y, &tried), dt);
+            let share =
+                flow.exchange_share(|share| start + vec3_at(&between.at(share), DISPLACEMENT));
+            let share =
+                share.filter(|share| (EXCHANGE_WITHIN.0..EXCHANGE_WITHIN.1).contains(share));
             flow.changes.ends_past_exchange = share.is_some();
             match share {
                 Some(share) => step.cut(dt, share),
@@ -332,37 +342,38 @@ fn step_among<const C: usize, const N: usize, const Q: usize, const P: usize>(
     }
 }
 
-/// A step of `dt` (s) from `y` that is accepted as `tried`, or as far as the first contact that begins or ends within it.
+/// A step of `dt` (s) from `y` that is accepted as `tried`, or up to the first contact that begins
+/// or ends within it.
 fn end_of_step<const C: usize, const N: usize, const Q: usize, const P: usize>(
-    flow: &mut Among<C>,
+    flow: &mut SphereFlow<C>,
     stages: &mut Stages<N, Q, P>,
-    (y, tried): (&[f64; N], &Tried<N, Q>),
+    (y, tried): (&[f64; N], &TrialResult<N, Q>),
     dt: f64,
-) -> Accepted {
+) -> AcceptedStep {
     let start = flow.state.c;
-    let between = stages.between((y, tried), dt);
+    let between = stages.dense_output((y, tried), dt);
     let path = |share: f64| {
         let y = between.at(share);
-        (start + three(&y, WAY), three(&y, V))
+        (start + vec3_at(&y, DISPLACEMENT), vec3_at(&y, V))
     };
-    let is_alike = !flow.changes.are_any() && flow.holds_its_normals();
+    let has_same_contacts = !flow.changes.are_any() && flow.has_unchanged_normals();
     let change = flow.change_share(dt, path);
     let (y_end, sums) = match change {
-        Some(share) => (between.at(share), stages.sums_between(tried, dt).at(share)),
+        Some(share) => (between.at(share), stages.dense_sums(tried, dt).at(share)),
         None => (tried.y, tried.q),
     };
     if change.is_some() {
-        // from now on what has waited presses, and what has ended counts no more
+        // from now on contacts that have begun press, and contacts that have ended are dropped
         flow.rates(0, &y_end, stages.first());
     }
     let end = flow.end(&y_end);
-    let mut loss = flow.taken_up(&sums);
-    loss.add(&summed(&sums), 1.0);
+    let mut loss = flow.normal_energy_stored(&sums);
+    loss.add(&summed_loss(&sums), 1.0);
     flow.remember();
-    Accepted { end, dt: dt * change.unwrap_or(1.0), loss, is_alike }
+    AcceptedStep { end, dt: dt * change.unwrap_or(1.0), loss, has_same_contacts }
 }
 
-/// What contacts took beside what their normal springs hold, from the sums of a step (J).
-fn summed<const Q: usize>(sums: &[f64; Q]) -> Loss {
+/// Loss by the quadratures of a step, without the energy in normal springs (J).
+fn summed_loss<const Q: usize>(sums: &[f64; Q]) -> Loss {
     Loss { friction: sums[0], damping: sums[1], rolling: sums[2], trees: sums[3] }
 }

@@ -1,8 +1,9 @@
-//! Impacts followed in their own time `τ = ω t`, `ω = √(p_N/m)`, where nothing is stiff.
+//! Impacts integrated in their own time `τ = ω t`, `ω = √(p_N/m)`, in which nothing is stiff.
 //!
-//! The law is the one of `law.rs`, all three elements of it: normal force `max(0, p_N x + c_N x')`, shear and rolling a slider in
-//! series with (spring ∥ dashpot). An element whose dashpot or friction is zero is left out. Only mass, inertia and radius of
-//! [`Body`](super::body::Body) enter.
+//! The law is the one of `law.rs`, with all three elements: normal force `max(0, p_N x + c_N x')`,
+//! and shear and rolling, each a slider in series with (spring ∥ dashpot). An element without
+//! dashpot or friction is left out. Only mass, inertia and radius of [`Body`](super::body::Body)
+//! enter.
 //!
 //! **One plane, with weight** (schemes `adaptive` and `reference`):
 //!
@@ -13,33 +14,37 @@
 //! let first = plane.part(&passage, 0.5);             // the first half of the time alone
 //! ```
 //!
-//! Normal motion is a closed form (`normal_motion.rs`); slip, spin and springs are integrated by an
-//! explicit pair of order 5(4) under the known force (`dormand_prince.rs`, `integrate.rs`,
-//! `sliders.rs`), steps ending where an element begins to slip or stick. `tolerance` is relative to
-//! `|v|`: at 1e-4 errors stay within about it, at 1e-6 and below rare ones reach some ten times it.
-//! Without friction and rolling friction nothing is integrated. Whether an impact is captured is
-//! the caller's to ask before.
+//! The normal motion is a closed form (`normal_motion.rs`). Slip, spin and springs are integrated
+//! by an explicit pair of order 5(4) under the known normal force (`dormand_prince.rs`,
+//! `integrate.rs`, `sliders.rs`); steps end where an element begins to slip or to stick.
+//! `tolerance` is relative to `|v|`: at 1e-4 errors stay within about the tolerance, at 1e-6 and
+//! below rare ones reach some ten times it. Without friction and rolling friction nothing is
+//! integrated. The caller must check before whether an impact is captured.
 //!
-//! **Frozen geometry, no weight** (scheme `rigid`, the limit `p_N → ∞`): [`throw`] with up to [`MAX_CONTACTS`](crate::contact::MAX_CONTACTS)
-//! contacts, all at penetration zero; those that do not approach are pressed as soon as motion presses them.
+//! **Frozen geometry, no weight** (scheme `rigid`, the limit `p_N → ∞`): [`frozen_impact`] with up
+//! to [`MAX_CONTACTS`](crate::contact::MAX_CONTACTS) contacts, all at penetration zero; contacts that do not close
+//! at first act as soon as the motion closes them.
 //!
 //! - Ratios of stiffness between grounds are kept; own time is that of the stiffest contact.
-//! - `stiffness_scale` (`|a|²` of a patch) multiplies `p_N`, its root `c_N`: the damping ratio stays. The shear and the rolling
-//!   spring of a patch are not scaled.
-//! - Dashpots share, `c_i = c_N/√(Σ_j max(0, n_i·n_j)²)` over the contacts with penetration now; steps end where one is pressed or
-//!   opens. The springs of a contact that opens are at rest when it is pressed again.
-//! - It ends as [`Settled`] says. Then every approach left, and what a captured contact has given back of itself, is taken out of the
-//!   velocity along the normal and booked as damping: no contact approaches afterwards, captured ones do not separate unless thrown
-//!   off by others.
-//! - Energy never rises: should the steps' error make it, velocity and spin are scaled back; where nothing takes any (`e = 1`, no friction),
-//!   velocity is scaled to its size before.
-//! - One contact is the impact on a plane without weight: exact normal restitution.
+//! - `stiffness_scale` (`|a|²` of a patch) multiplies `p_N`, its root `c_N`: the damping ratio
+//!   stays. The shear and the rolling spring of a patch are not scaled.
+//! - Dashpots share, `c_i = c_N/√(Σ_j max(0, n_i·n_j)²)` over the currently closed contacts; steps
+//!   end where a contact closes or opens. A contact that closes again starts with unloaded springs.
+//! - It ends as [`ImpactOutcome`] says. Every remaining approach speed, and the rebound of a
+//!   captured contact by its own spring, is then removed from the normal velocity and booked as
+//!   damping. Afterwards no contact closes, and captured contacts do not separate unless others
+//!   throw them off.
+//! - Energy never grows: if the integration error would make it grow, velocity and spin are scaled
+//!   back. Without any loss (`e = 1`, no friction) the velocity is scaled to its magnitude before.
+//! - A single contact is the impact on a plane without weight: exact normal restitution.
 //!
-//! **Several bodies** that touch each other and the mesh: [`collide`], the same rates with two ends to a contact; which contacts give
-//! nothing back is told by how fast each was pressed together.
+//! **Several bodies** that touch each other and the mesh: [`frozen_collision`], the same rates with
+//! two ends for each contact. A contact is captured if it was closed more slowly than its capture
+//! speed.
 //!
-//! Losses are each ≥ 0 and add up to the energy that is gone to rounding: the parts are summed along the steps and scaled by the
-//! exact total. What springs store when a contact opens is in them, under damping and rolling.
+//! Losses are each ≥ 0 and add up to the lost energy to rounding: the parts are integrated along
+//! the steps and scaled by the exact total. The energy of a spring whose contact opens is included,
+//! under damping and rolling.
 
 mod rigid_limit;
 mod normal_motion;
@@ -50,24 +55,27 @@ mod integrate;
 #[cfg(test)]
 mod tests;
 
-pub(super) use plane::LOCAL;
-pub(crate) use plane::{BlowTable, NormalPassage, Plane, PressedIn, Rebound, blow_along_a_line};
-pub(super) use rigid_limit::NOTHING;
+pub(super) use plane::LOCAL_ERROR;
+pub(crate) use plane::{
+    BlowTable, InitialDeformation, NormalPassage, Plane, Rebound, blow_along_a_line,
+};
+pub(super) use rigid_limit::NEGLIGIBLE;
 pub(crate) use rigid_limit::{
     BODIES, CONTACTS, ContactEnds, FrozenBody, FrozenCollision, FrozenContact, LONGEST_WAIT,
-    collide, most_unlike, throw,
+    frozen_collision, frozen_impact, largest_followed_ratio,
 };
 
-/// What following an impact has cost.
+/// Number of steps of an impact.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(crate) struct ImpactEffort {
     /// Steps taken.
     pub(crate) steps: u32,
-    /// Steps thrown away.
+    /// Steps rejected.
     pub(crate) rejected: u32,
 }
 
-/// The step to try next, and that before it was cut: beyond a kink the law is as smooth as before it, and its length is taken up again.
+/// Length of the next trial step, and the length before a cut. Beyond a switching point the law is
+/// as smooth as before it, so that the earlier length is taken up again.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::solver) struct StepLength {
     pub(in crate::solver) wish: f64,
@@ -79,29 +87,31 @@ impl StepLength {
         Self { wish, before_cut: 0.0 }
     }
 
-    /// A try of length `h` has to end at this share of it (–).
+    /// A trial step of length `h` has to end at this share of it (–).
     pub(in crate::solver) fn cut(&mut self, h: f64, share: f64) {
         *self = Self { wish: h * share, before_cut: h.max(self.before_cut) };
     }
 
-    /// The error of a try was too large.
+    /// A trial step is rejected for its error.
     pub(in crate::solver) fn shrink(&mut self, wish: f64) {
         *self = Self::new(wish);
     }
 
-    /// A try is taken.
+    /// A trial step is accepted.
     pub(in crate::solver) fn grow(&mut self, wish: f64) {
         *self = Self::new(wish.max(self.before_cut));
     }
 }
 
-/// How a frozen impact ended.
+/// End of a frozen impact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Settled {
-    /// Nothing pushes and nothing comes nearer.
+pub(crate) enum ImpactOutcome {
+    /// No contact pushes and none closes.
     Free,
-    /// Friction holds it in a wedge, its springs pressed in: it rests, or rolls along the wedge. What they store is lost.
+    /// Friction jams the rock in a wedge, with compressed springs: it rests, or rolls along the
+    /// wedge. The energy of the springs is lost.
     Jammed,
-    /// It went on rattling: what was still coming nearer has been stopped without rebound.
+    /// It rattled until the time limit: the remaining approach speeds have been stopped without
+    /// rebound.
     OutOfTime,
 }

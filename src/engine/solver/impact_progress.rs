@@ -1,6 +1,6 @@
 //! Progress of an impact that is resolved on its own time scale.
 //!
-//! An impact that has not ended after `LASTS_RAD` radians of its contact has become sustained
+//! An impact that has not ended after `IMPACT_DURATION_RAD` radians of its contact has become sustained
 //! contact: the rock rolls, slides or rests. Implicit steps take over, whose length does not depend
 //! on `ω`.
 use crate::contact::pair::IMPACT_DURATION_RAD;

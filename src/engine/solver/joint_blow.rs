@@ -200,7 +200,7 @@ impl JointBlow<'_> {
     }
 
     /// When (s) rocks that nothing pushes touch again, and at which contact; beside a gap that stays open for longer than the softest spring is pressed the
-    /// blow is over before that, as it is in [`collide`](super::impact::collide).
+    /// blow is over before that, as it is in [`frozen_collision`](super::impact::frozen_collision).
     fn next_touch_s(&self, at: &Instant) -> Option<(f64, usize)> {
         let waits = (0..self.contacts.len()).filter_map(|k| {
             let (contact, depth_m) = (&self.contacts[k], at.pressed[k].depth_m);

@@ -129,11 +129,11 @@ impl ContactState {
         if self.near.plane() == Some(face) {
             return true;
         }
-        let (start, into, off_m) = (self.c, Vec3::zeros(), PATH_OFFSET * way.norm());
-        let way_m = way.norm() + off_m;
+        let (start, into, deviation_m) = (self.c, Vec3::zeros(), PATH_OFFSET * way.norm());
+        let reach_m = way.norm() + deviation_m;
         self.near.meets_only_plane(
             face,
-            &PressedPath { start, along: *way, into, deviation_m: off_m, reach_m: way_m },
+            &PressedPath { start, along: *way, into, deviation_m: deviation_m, reach_m: reach_m },
         )
     }
 }

@@ -8,7 +8,7 @@
 //! over where it has left it.
 
 use super::contact_state::{ContactEnvironment, ContactState};
-use super::impact::{NormalPassage, Plane, PressedIn, Rebound};
+use super::impact::{InitialDeformation, NormalPassage, Plane, Rebound};
 use super::law::{ContactDeformation, ContactForces};
 use super::plane_kernel::is_on_face;
 use super::step_control::Advance;
@@ -64,7 +64,10 @@ impl ContactState {
     /// its time.
     ///
     /// The penetration follows from the position: contact points may have been found elsewhere.
-    fn pressed_in_plane(&self, world: &ContactEnvironment) -> Option<(ContactHistory, PressedIn)> {
+    fn pressed_in_plane(
+        &self,
+        world: &ContactEnvironment,
+    ) -> Option<(ContactHistory, InitialDeformation)> {
         if !is_on_face(world, self) || self.may_yield {
             return None;
         }
@@ -73,9 +76,10 @@ impl ContactState {
         match (history.closed, is_sunk) {
             _ if history.captured => None,
             // just begun: the closed form starts at penetration 0
-            (false, false) => Some((history, PressedIn::NOT)),
+            (false, false) => Some((history, InitialDeformation::NONE)),
             (true, true) if history.announced => {
-                let pressed = PressedIn { depth_m, shear_m: history.shear, roll_rad: history.roll };
+                let pressed =
+                    InitialDeformation { depth_m, shear_m: history.shear, roll_rad: history.roll };
                 Some((history, pressed))
             }
             _ => None,
@@ -87,7 +91,7 @@ impl ContactState {
         &mut self,
         world: &ContactEnvironment,
         (plane, passage): (&Plane, &NormalPassage),
-        (history, pressed): (&ContactHistory, &PressedIn),
+        (history, pressed): (&ContactHistory, &InitialDeformation),
     ) -> Option<Rebound> {
         let (n, face) = (&history.n, history.feature.id);
         // the path is enclosed between the deepest position and the surface, from which the rock

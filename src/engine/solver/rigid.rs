@@ -26,7 +26,7 @@ mod plane_step;
 mod sustained;
 
 use super::contact_state::{ContactEnvironment, ContactState};
-use super::impact::{FrozenContact, throw};
+use super::impact::{FrozenContact, frozen_impact};
 use super::law::capture_m_s;
 use super::roughness;
 use super::step_control::{Advance, StepError, TRAVEL};
@@ -159,7 +159,7 @@ fn impact(
     done: &mut Advance,
 ) {
     let (v, w) = (state.v, state.w);
-    let thrown = throw(&world.body, &frozen(world, touches, &v), (&v, &w), IMPACT);
+    let thrown = frozen_impact(&world.body, &frozen(world, touches, &v), (&v, &w), IMPACT);
     (state.v, state.w) = (thrown.velocity_m_s, thrown.spin_rad_s);
     for (loss, touch) in thrown.loss.iter().zip(touches) {
         state.stem_load.book((world, touch.triangle), loss, &mut done.loss);

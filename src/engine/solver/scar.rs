@@ -1,24 +1,31 @@
 //! The scar that a rock digs into soft soil, and the drag of the soil in it.
 //!
-//! Lu et al. (2019) let a rock sink into the soil to a depth `d` that follows from its normal speed of impact, meet a hard plane
-//! there, and leave; in the soil a drag acts against the velocity, at the centre. Here **the mesh is the hard plane and the soil lies on it,
-//! `d` deep, as long as the scar lasts**: contact, whatever its scheme and the rock's shape, is the same as without soil. What is added are
-//! changes of speed at three instants and along one way, each the closed form of the drag alone, `|v|' = −(C ρ_s A/2m) |v|²`:
+//! In the model of Lu et al. (2019) a rock sinks into the soil to a depth `d` that follows from its
+//! normal impact speed, meets a hard plane there, and leaves; in the soil a drag acts at its centre
+//! against the velocity. Here **the mesh is the hard plane and the soil lies on it, `d` deep, as
+//! long as the scar lasts**: contact, for any scheme and shape, is the same as without soil. Added
+//! are changes of speed at three instants and along one path, each the closed form of drag alone,
+//! `|v|' = −(C ρ_s A/2m) |v|²`:
 //!
-//! - at the touch: the way in, straight along the velocity from the surface to the depth `d`;
-//! - while contact lasts: the way along the plane, at the depth `d`, half of that of each step before it and the rest after it;
-//! - when contact ends: the way out, straight again, and the scar is left; or, where what is left of the speed along the normal is too small to
-//!   rise through the soil against gravity, the way up to where it is used up: the scar goes on;
-//! - at the end of a flight in a scar: the rest of the way flown, as deep below the surface as gravity lets a hop of so long rise over its chord.
+//! - at first contact: the entry, straight along the velocity from the surface to the depth `d`;
+//! - during contact: the travel along the plane, at the depth `d`, half of that of each step before
+//!   it and the rest after it;
+//! - at the end of contact: the exit, straight again, and the scar is left; or, if the remaining
+//!   normal speed is too small to rise through the soil against gravity, the rise up to where it is
+//!   used up, and the scar goes on;
+//! - at the end of a flight in a scar: the rest of the flown path, at a depth reduced by the height
+//!   to which gravity lets a hop of that duration rise over its chord.
 //!
-//! The scar is in the soil on which the rock stands: on another soil it is as deep as the same impact digs there, and on hard ground it ends.
+//! The scar is in the soil on which the rock stands: on another soil it is as deep as the same
+//! impact digs there, and on hard ground it ends.
 //!
-//! Left out of the way in and out: gravity, the time it takes, and where it leads (`d/cos θ` along the surface, some tenths of a metre). Nothing
-//! is moved up or down, so nothing can gain energy: every change takes a share of the speed of the centre. Spin stays. A block cuts the soil as
-//! the ball of equal volume does.
+//! Neglected on entry and exit: gravity, the time they take, and the displacement (`d/cos θ` along
+//! the surface, some tenths of a metre). Nothing is moved up or down, so nothing can gain energy:
+//! every change takes a share of the speed of the centre. Spin is unchanged. A block cuts the soil
+//! as the ball of equal volume does.
 //!
-//! `d` goes to 0 with the normal speed, and with it all drag: a rock that comes to lie or to roll on gently is in no scar. A further impact in
-//! a scar counts where it digs deeper.
+//! `d` goes to 0 with the normal speed, and with it all drag: a rock that comes to rest or begins
+//! to roll gently is in no scar. A further impact in a scar counts if it digs deeper.
 
 mod way_out;
 
@@ -30,51 +37,53 @@ use crate::rock::Vec3;
 
 /// Share of the speed that one step along the plane may lose to drag, about (–).
 const LOSS_OF_STEP: f64 = 0.02;
-/// Least cosine (–) between a scar's normal and that of what is still its floor and no wall beside it: 60°.
-const STILL_A_FLOOR: f64 = 0.5;
+/// Least cosine (–) between the normal of a scar and that of a surface that continues its floor and
+/// is no wall beside it: 60°.
+const FLOOR_COSINE: f64 = 0.5;
 
-/// The scar that a rock is in.
+/// The current scar of a rock.
 #[derive(Debug, Clone, Copy)]
-struct Furrow {
-    /// Approach (m/s) of the impact that has dug it.
+struct ActiveScar {
+    /// Approach speed (m/s) of the impact that has dug it.
     approach_m_s: f64,
     /// The ground that it is in.
     ground: u16,
     depth_m: f64,
     /// `C ρ_s/(2 m)` (1/m³).
     ///
-    /// The constant of `|v|' = −(C ρ_s A/2m)|v|²`; over a way `s` the speed falls by `exp(−C ρ_s A
-    /// s/(2m))`.
+    /// The constant of `|v|' = −(C ρ_s A/2m)|v|²`; over a way `s` the speed falls by
+    /// `exp(−C ρ_s A s/(2m))`.
     drag_per_m3: f64,
-    /// Share of its speed that the rock loses on each metre along the plane (1/m), small.
+    /// Share of its speed that the rock loses per metre along the plane (1/m), small.
     per_m: f64,
     /// Normal of the plane.
     normal: Vec3,
-    /// What has been dragged ahead of the way flown next (–), as the logarithm of the speed: what was not ploughed after all, and the way out.
-    paid: f64,
+    /// Drag applied in advance of the next flight (–), as a logarithm of the speed: the prepaid
+    /// travel that was not ploughed after all, and the exit.
+    prepaid: f64,
 }
 
-impl Furrow {
-    /// What pulls a rock back to the plane (m/s²).
+impl ActiveScar {
+    /// Acceleration of a rock back to the plane (m/s²).
     fn pull(&self, body: &Body) -> f64 {
         -self.normal.dot(&body.gravity)
     }
 }
 
-/// What strikes the rock: a ground, on a plane.
+/// Impact of a rock on a ground, with its plane.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct GroundBlow {
     pub(crate) ground: u16,
     /// Unit normal, from the mesh to the rock.
     pub(crate) normal: Vec3,
-    /// How fast the centre comes to it (m/s).
+    /// Approach speed of the centre (m/s).
     pub(crate) approach_m_s: f64,
-    /// The same of the point that touches, spin included (m/s).
+    /// Approach speed of the contact point, spin included (m/s).
     pub(crate) of_point_m_s: f64,
 }
 
 impl GroundBlow {
-    /// Whether none of all that strike the same ground comes in faster; of equal ones the first.
+    /// Whether no other impact on the same ground is faster; of equal ones the first counts.
     fn is_fastest_of(&self, place: usize, all: &[Self]) -> bool {
         let is_before = |(k, other): (usize, &Self)| {
             let [one, other_m_s] = [self, other].map(|blow| blow.of_point_m_s);
@@ -88,9 +97,9 @@ impl GroundBlow {
 /// What a rock in contact stands on.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum ScarFloor {
-    /// On a ground that bears it as a plane with this normal does, with soil or without.
+    /// On a ground that supports it as a plane with this normal, with soil or without.
     On(u16, Vec3),
-    /// On nothing that tells: it flies, or leans on a stem or a wall.
+    /// Undetermined: it flies, or leans on a stem or a wall.
     Unknown,
 }
 
@@ -101,32 +110,33 @@ pub(crate) struct Scars {
     is_any: bool,
     /// Whether contacts are springs, which take time.
     has_springs: bool,
-    now: Option<Furrow>,
-    pace: Pace,
+    active: Option<ActiveScar>,
+    split: DragSplit,
 }
 
 /// How drag along the plane is shared out between steps.
 ///
-/// Half of a step's way is dragged before it and the rest after it (Strang splitting), so that gravity
-/// and rolling friction see the mean of both: all of it after the step would tax what they gave in the
-/// step by half of [`LOSS_OF_STEP`] too much.
+/// Drag acts on half of a step's travel before it and on the rest after it (Strang splitting), so
+/// that gravity and rolling friction see the mean of both. With all of it after the step, their
+/// work in the step would be reduced by half of [`LOSS_OF_STEP`] too much.
 #[derive(Debug, Clone, Copy, Default)]
-struct Pace {
-    /// Way along the plane of the step before (m): the one to come is taken to be as long.
+struct DragSplit {
+    /// Travel along the plane in the step before (m): the next one is assumed to be as long.
     last_m: f64,
-    /// Way to come that has been dragged already (m).
+    /// Travel to come on which drag has already acted (m).
     paid_m: f64,
 }
 
-impl Pace {
-    /// Way (m) to be dragged before a step.
+impl DragSplit {
+    /// Travel (m) on which drag acts before a step.
     fn begin_step(&mut self) -> f64 {
         let owed_m = (0.5 * self.last_m - self.paid_m).max(0.0);
         self.paid_m += owed_m;
         owed_m
     }
 
-    /// Way (m) still to be dragged after a step of so long a way (m), of which a share (–) was in contact.
+    /// Travel (m) on which drag still has to act after a step with the travel `way_m` (m), of which
+    /// a share (–) was in contact.
     fn end_step(&mut self, way_m: f64, share: f64) -> f64 {
         let dragged_m = share * way_m;
         let paid_m = self.paid_m.min(dragged_m);
@@ -135,24 +145,24 @@ impl Pace {
         dragged_m - paid_m
     }
 
-    /// Share of its way (–) that the last step of a contact is in contact.
+    /// Share of its travel (–) that the last step of a contact is in contact.
     ///
-    /// Contact ends somewhere in it, and where is not resolved: half is as likely too much as too little.
-    /// But an impact on springs that is followed as a whole ends where it lets go.
+    /// Contact ends somewhere in it at an unresolved point: half is as likely too much as too
+    /// little. But an impact on springs that is integrated as a whole ends where it opens.
     fn share_of_last(&self, has_springs: bool) -> f64 {
         if has_springs && self.last_m == 0.0 { 1.0 } else { 0.5 }
     }
 }
 
 impl Scars {
-    /// None yet on these grounds; soil that does not drag is none.
+    /// No scar yet on these grounds; soil without drag is none.
     pub(crate) fn begin(&mut self, grounds: &[Ground], has_springs: bool) {
         let drags = |scar: &Scar| scar.drag * scar.soil_density_kg_m3 > 0.0;
         self.layers.clear();
         self.layers.extend(grounds.iter().map(|ground| ground.scar.filter(drags)));
         self.is_any = self.layers.iter().any(Option::is_some);
         self.has_springs = has_springs;
-        (self.now, self.pace) = (None, Pace::default());
+        (self.active, self.split) = (None, DragSplit::default());
     }
 
     /// Whether any ground has soil that drags.
@@ -161,18 +171,20 @@ impl Scars {
         self.is_any
     }
 
-    /// What of these contacts, by triangle and normal, the rock stands on in its scar: what has soil that drags, first of all that which it is in
-    /// and else the first ground, or, without any, the first that goes on as the plane of the scar does.
+    /// The floor of the rock in its scar, from its contacts by triangle and normal: a ground with
+    /// soil that drags, first of all the ground of the scar, else the first ground; without any,
+    /// the first contact that continues the plane of the scar.
     ///
-    /// A stem that it leans on, or a wall beside the soil, is no floor: the rock has not climbed out of the soil by it.
+    /// A stem that it leans on, or a wall beside the soil, is no floor: it has not lifted the rock
+    /// out of the soil.
     pub(crate) fn floor(
         &self,
         world: &ContactEnvironment,
         contacts: impl Iterator<Item = (u32, Vec3)>,
     ) -> ScarFloor {
-        let own = self.now.map(|now| now.ground);
+        let own = self.active.map(|now| now.ground);
         let mut floor = ScarFloor::Unknown;
-        // of several grounds with soil, whatever the order in which they are touched
+        // of several grounds with soil, independent of the order of contacts
         let mut soil: Option<(bool, u16)> = None;
         for (triangle, n) in contacts {
             let ground = world.ground_of(triangle);
@@ -184,7 +196,7 @@ impl Scars {
                 continue;
             }
             let is_first = matches!(floor, ScarFloor::Unknown);
-            if is_first && !world.terrain.is_tree(triangle) && self.goes_on_along(&n) {
+            if is_first && !world.terrain.is_tree(triangle) && self.continues_floor(&n) {
                 floor = ScarFloor::On(ground, n);
             }
         }
@@ -192,7 +204,7 @@ impl Scars {
     }
 
     /// Whether a rock with these contacts, by triangle, stands in soil that drags.
-    pub(crate) fn holds(
+    pub(crate) fn is_in_soil(
         &self,
         world: &ContactEnvironment,
         mut triangles: impl Iterator<Item = u32>,
@@ -201,8 +213,8 @@ impl Scars {
     }
 
     /// Whether a plane with this normal continues that of the scar.
-    fn goes_on_along(&self, normal: &Vec3) -> bool {
-        self.now.is_some_and(|now| now.normal.dot(normal) > STILL_A_FLOOR)
+    fn continues_floor(&self, normal: &Vec3) -> bool {
+        self.active.is_some_and(|now| now.normal.dot(normal) > FLOOR_COSINE)
     }
 
     /// The soil of a ground, if it has any that drags.
@@ -211,29 +223,35 @@ impl Scars {
     }
 
     /// The scar of an impact on a ground with an approach (m/s); none on hard ground.
-    fn dug(&self, body: &Body, (ground, normal): (u16, Vec3), approach_m_s: f64) -> Option<Furrow> {
+    fn dug(
+        &self,
+        body: &Body,
+        (ground, normal): (u16, Vec3),
+        approach_m_s: f64,
+    ) -> Option<ActiveScar> {
         let scar = self.layer(ground)?;
         // d = 0.1 M^(1/3) M_E^(−0.4) v_n^0.8 (Lu et al. 2019, Eq. 11), in the units that the
         // formula is bound to
         let depth_m = scar.depth_m(body.mass, approach_m_s);
         let drag_per_m3 = scar.drag_per_m3(body.mass);
         let per_m = drag_per_m3 * cut_area_m2(body.radius, depth_m, 0.0);
-        Some(Furrow { approach_m_s, ground, depth_m, drag_per_m3, per_m, normal, paid: 0.0 })
+        Some(ActiveScar { approach_m_s, ground, depth_m, drag_per_m3, per_m, normal, prepaid: 0.0 })
     }
 
-    /// The scar goes on where the rock now stands, or ends.
-    fn stand(&mut self, body: &Body, (ground, normal): (u16, Vec3)) {
-        let Some(now) = self.now else { return };
-        self.now = if ground == now.ground {
-            Some(Furrow { normal, ..now })
+    /// Moves the scar to where the rock now stands, or ends it.
+    fn move_to(&mut self, body: &Body, (ground, normal): (u16, Vec3)) {
+        let Some(now) = self.active else { return };
+        self.active = if ground == now.ground {
+            Some(ActiveScar { normal, ..now })
         } else {
             self.dug(body, (ground, normal), now.approach_m_s)
         };
     }
 
-    /// What strikes at one instant a rock at a speed (m/s), which is `in_soil` by other contacts or not: what it keeps of its speed on the
-    /// way in (–), from the depth that it is in already. Of the grounds that are struck, each by what comes in fastest, that counts which is
-    /// dug deepest: whichever comes first or is hit fastest, soil beside a hard wall is dug.
+    /// Impacts at one instant on a rock at a speed (m/s), which is already `in_soil` by other
+    /// contacts or not: the share of its speed that it keeps on entry (–), from its present depth
+    /// on. Each struck ground is represented by its fastest impact, and the ground that is dug
+    /// deepest counts: soil beside a hard wall is dug whichever is struck first or fastest.
     pub(crate) fn enter(
         &mut self,
         body: &Body,
@@ -245,11 +263,12 @@ impl Scars {
         for (_, blow) in struck.iter().enumerate().filter(fastest) {
             let on = (blow.ground, blow.normal);
             let Some(dug) = self.dug(body, on, blow.approach_m_s.max(0.0)) else {
-                ends |= !in_soil && self.goes_on_along(&blow.normal);
+                ends |= !in_soil && self.continues_floor(&blow.normal);
                 continue;
             };
-            // of two as deep that which takes less: it is no matter of sides, and on the safe side
-            let is_deeper = |known: Furrow| {
+            // of two of equal depth the one with less drag: independent of their order, and on the
+            // safe side
+            let is_deeper = |known: ActiveScar| {
                 let [one, other] = [&dug, &known].map(|of| (of.depth_m, -of.drag_per_m3));
                 one > other
             };
@@ -259,32 +278,33 @@ impl Scars {
         }
         let Some(dug) = deepest else {
             if ends {
-                self.now = None;
+                self.active = None;
             }
             return 1.0;
         };
-        self.stand(body, (dug.ground, dug.normal));
-        let depth_m = self.now.map_or(0.0, |now| now.depth_m);
+        self.move_to(body, (dug.ground, dug.normal));
+        let depth_m = self.active.map_or(0.0, |now| now.depth_m);
         if dug.depth_m <= depth_m {
             return 1.0;
         }
-        self.now = Some(dug);
-        // speed over the way in: ∫ A ds is the volume that the ball sweeps down to d, along the
+        self.active = Some(dug);
+        // speed over the entry: ∫ A ds is the volume that the ball sweeps down to d, along the
         // velocity
         let cosine = (dug.approach_m_s / speed_m_s).min(1.0);
         let swept = |to_m| swept_m3(body.radius, to_m, cosine);
         math::exp(-dug.drag_per_m3 * (swept(dug.depth_m) - swept(depth_m)))
     }
 
-    /// What the rock keeps of its speed before a step along the plane (–): drag on the first half of it.
+    /// Share of its speed that the rock keeps before a step along the plane (–): drag on the first
+    /// half of it.
     pub(crate) fn plough_ahead(&mut self) -> f64 {
-        let Some(now) = &self.now else { return 1.0 };
-        math::exp(-now.per_m * self.pace.begin_step())
+        let Some(now) = &self.active else { return 1.0 };
+        math::exp(-now.per_m * self.split.begin_step())
     }
 
-    /// What the rock keeps of its speed after a step with a way (m) along the plane (–), where it stands now; and of the
-    /// velocity before with which the contact `ends`, if it does. What [`Self::plough_ahead`] took is
-    /// taken off.
+    /// Share of its speed that the rock keeps after a step with the travel `way_m` (m) along the
+    /// plane (–), where it stands now. If the contact `ends`, with the velocity before that, the
+    /// exit is included. The part that [`Self::plough_ahead`] took is subtracted.
     pub(crate) fn plough(
         &mut self,
         body: &Body,
@@ -292,20 +312,20 @@ impl Scars {
         ends: Option<Vec3>,
     ) -> f64 {
         if let ScarFloor::On(ground, normal) = floor {
-            self.stand(body, (ground, normal));
+            self.move_to(body, (ground, normal));
         }
-        let Some(now) = &self.now else {
-            self.pace = Pace::default();
+        let Some(now) = &self.active else {
+            self.split = DragSplit::default();
             return 1.0;
         };
-        let share = ends.map_or(1.0, |_| self.pace.share_of_last(self.has_springs));
-        let kept = math::exp(-now.per_m * self.pace.end_step(way_m, share));
+        let share = ends.map_or(1.0, |_| self.split.share_of_last(self.has_springs));
+        let kept = math::exp(-now.per_m * self.split.end_step(way_m, share));
         ends.map_or(kept, |v| kept * self.leave(body, &(v * kept)))
     }
 
     /// Longest step along the plane (s) at a speed (m/s): drag acts between steps.
     pub(crate) fn longest_s(&self, speed_m_s: f64) -> f64 {
-        self.now.map_or(f64::INFINITY, |now| LOSS_OF_STEP / (now.per_m * speed_m_s))
+        self.active.map_or(f64::INFINITY, |now| LOSS_OF_STEP / (now.per_m * speed_m_s))
     }
 }
 

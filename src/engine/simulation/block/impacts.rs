@@ -83,7 +83,7 @@ impl BlockSimulation<'_> {
     /// State of the block at a contact with normal `n` at `point`.
     fn meeting(&self, triangle: u32, n: &Vec3, point: &Vec3) -> SurfaceApproach {
         let c = self.moving.pose.centre;
-        SurfaceApproach { n: *n, triangle, c, v: self.moving.at(self.block, &(point - c)) }
+        SurfaceApproach { n: *n, triangle, c, v: self.moving.velocity_at(self.block, &(point - c)) }
     }
 
     /// Recomputes the dashpots of the contacts that have begun, from the speed that soil has left
@@ -117,7 +117,7 @@ impl BlockSimulation<'_> {
             self.reset_dashpots(begun, facet);
         }
         if self.break_stems() {
-            self.footing.springs.refresh();
+            self.footing.springs.invalidate_rates();
         }
         self.footing.springs.until_s = until_s;
     }

@@ -1,8 +1,10 @@
-//! Rough ground. In the rigid limit an impact is one with the facet that is met. In the schemes with springs a block is turned against the
-//! facet while the impact lasts. As for spheres, velocity and spin are turned, not the mesh: the block presses into the surface that is there, and no spring can give
-//! back more than it took. The spin is given the length that keeps its energy, as the moments of inertia stay where they are.
+//! Rough ground. In the rigid limit an impact takes place on the facet that is met. In the schemes
+//! with springs the motion of the block is rotated against the facet while the impact lasts. As for
+//! spheres, velocity and spin are rotated, not the mesh: the block presses into the real surface,
+//! and no spring can return more than it stored. The spin is scaled to conserve its energy, because
+//! the moments of inertia are not rotated.
 
-use super::{Footing, Moving};
+use super::{BlockContactState, BlockState};
 use crate::body::Block;
 use crate::contact::block::BlockContactPoint;
 use crate::solver::environment::ContactEnvironment;
@@ -10,9 +12,9 @@ use crate::solver::law::capture_m_s;
 use crate::solver::roughness::{SurfaceApproach, Tilt};
 use nalgebra::Rotation3;
 
-impl Moving {
-    /// Turns velocity and spin; every joule stays.
-    pub(super) fn redirect(&mut self, block: &Block, turn: &Rotation3<f64>) {
+impl BlockState {
+    /// Rotates velocity and spin and conserves the kinetic energy.
+    pub(super) fn rotate(&mut self, block: &Block, turn: &Rotation3<f64>) {
         let w = self.spin(block);
         let turning_j = 0.5 * w.dot(&self.momentum);
         let mass = self.mass(block);
@@ -24,50 +26,51 @@ impl Moving {
     }
 }
 
-impl Footing {
-    /// Whether a contact that touches is struck, faster than its ground captures.
+impl BlockContactState {
+    /// Whether a touching contact closes faster than its ground captures, so that it is an impact.
     pub(crate) fn is_struck(
         world: &ContactEnvironment,
-        (block, moving): (&Block, &Moving),
+        (block, state): (&Block, &BlockState),
         touch: &BlockContactPoint,
     ) -> bool {
-        moving.approach_m_s(block, touch) >= capture_m_s(world.law(touch.triangle))
+        state.approach_m_s(block, touch) >= capture_m_s(world.law(touch.triangle))
     }
 
-    /// The facet of rough ground that the fastest of the contacts that touch meets.
+    /// The facet of rough ground met by the touching contact that closes fastest.
     pub(super) fn facet(
         &mut self,
         world: &ContactEnvironment,
         block: &Block,
-        moving: &Moving,
+        state: &BlockState,
     ) -> Option<Rotation3<f64>> {
-        let meeting = self.meeting(block, moving)?;
+        let meeting = self.meeting(block, state)?;
         self.facets.draw_facet(world, &meeting)
     }
 
-    /// Whether a block that slides or rolls has the last facet behind it, and comes to the next.
-    pub(super) fn comes_to_next_facet(
+    /// Whether a sliding or rolling block has passed the last facet and reaches the next.
+    pub(super) fn reaches_next_facet(
         &self,
         world: &ContactEnvironment,
         block: &Block,
-        moving: &Moving,
+        state: &BlockState,
     ) -> bool {
         self.facets.are_rough()
-            && self.meeting(block, moving).is_some_and(|at| self.facets.meets_new_facet(world, &at))
+            && self.meeting(block, state).is_some_and(|at| self.facets.meets_new_facet(world, &at))
     }
 
-    /// The fastest of the contacts that touch, as it meets a facet.
-    fn meeting(&self, block: &Block, moving: &Moving) -> Option<SurfaceApproach> {
-        let fastest = moving.fastest(block, self.touching(block))?;
-        let (n, triangle, c) = (fastest.normal, fastest.triangle, moving.pose.centre);
-        Some(SurfaceApproach { n, triangle, c, v: moving.at(block, &fastest.lever) })
+    /// The touching contact that closes fastest, in the form that facets are looked up with.
+    fn meeting(&self, block: &Block, state: &BlockState) -> Option<SurfaceApproach> {
+        let fastest = state.fastest(block, self.touching(block))?;
+        let (n, triangle, c) = (fastest.normal, fastest.triangle, state.pose.centre);
+        Some(SurfaceApproach { n, triangle, c, v: state.velocity_at(block, &fastest.lever) })
     }
 
-    /// With springs: lets the contact that presses hardest begin anew where the block comes to the next facet.
+    /// With springs: restarts the contact with the largest normal force as an impact where the
+    /// block reaches the next facet.
     pub(crate) fn meet_next_facet(
         &mut self,
         world: &ContactEnvironment,
-        (block, moving): (&Block, &Moving),
+        (block, state): (&Block, &BlockState),
     ) {
         if !self.facets.are_rough() || self.facets.is_tilted() {
             return;
@@ -75,31 +78,31 @@ impl Footing {
         let pressed = self.springs.histories.iter_mut().filter(|one| one.closed && one.announced);
         let hardest = pressed.max_by(|one, other| one.normal_force.total_cmp(&other.normal_force));
         let Some(history) = hardest else { return };
-        let v = moving.at(block, &(history.point - moving.pose.centre));
-        let (n, triangle, c) = (history.n, history.triangle, moving.pose.centre);
+        let v = state.velocity_at(block, &(history.point - state.pose.centre));
+        let (n, triangle, c) = (history.n, history.triangle, state.pose.centre);
         if self.facets.meets_new_facet(world, &SurfaceApproach { n, triangle, c, v }) {
             (history.announced, history.captured) = (false, true);
             history.approach_m_s = -n.dot(&v);
         }
     }
 
-    /// Turns the block against a facet until it is turned back, at `until_s` (s) at the latest.
+    /// Rotates the motion against a facet; it is rotated back at `until_s` (s) at the latest.
     pub(crate) fn turn_against(
         &mut self,
         block: &Block,
-        moving: &mut Moving,
+        state: &mut BlockState,
         (turn, until_s): (Rotation3<f64>, f64),
     ) {
-        moving.redirect(block, &turn.inverse());
+        state.rotate(block, &turn.inverse());
         self.facets.tilt = Some(Tilt { turn, until_s });
-        self.springs.refresh();
+        self.springs.invalidate_rates();
     }
 
-    /// Turns the block back if it is turned; whether it was.
-    pub(crate) fn turn_back(&mut self, block: &Block, moving: &mut Moving) -> bool {
+    /// Rotates the motion back if it is rotated; returns whether it was.
+    pub(crate) fn turn_back(&mut self, block: &Block, state: &mut BlockState) -> bool {
         let Some(Tilt { turn, .. }) = self.facets.tilt.take() else { return false };
-        moving.redirect(block, &turn);
-        self.springs.refresh();
+        state.rotate(block, &turn);
+        self.springs.invalidate_rates();
         true
     }
 }

@@ -1,18 +1,21 @@
 //! Schemes with springs for blocks: `adaptive`, `reference` and `dda`.
 //!
-//! The unknowns are the body's six. With the lever `a` of a contact, `V_N = [nᵀ, (a×n)ᵀ]` takes the place of the paper's `V_N = (V, 0)`, and
-//! everything else of the paper stays. The state is centre, attitude, velocity and **angular momentum** in the frame of the terrain:
-//! `ℓ' = Σ a × f`, `ω = I⁻¹ℓ`, so that no gyroscopic term has to be stepped and free spin keeps its momentum exactly.
+//! The unknowns are the body's six. With the lever `a` of a contact, `V_N = [nᵀ, (a×n)ᵀ]` takes the
+//! place of the paper's `V_N = (V, 0)`, and everything else of the paper stays. The state is
+//! centre, attitude, velocity and **angular momentum** in the frame of the terrain: `ℓ' = Σ a × f`,
+//! `ω = I⁻¹ℓ`, so that no gyroscopic term has to be stepped and free spin conserves its momentum
+//! exactly.
 //!
-//! A spring and a dashpot over an implicit stage in which an impulse acts for `a` and the block moves for `b` (s) are a contact of the
-//! rigid limit that gives way ([`GivingWay`]): from `F = p (pen − b u_n) − c u_n` and `P = a F`
+//! A spring and a dashpot over an implicit stage, in which an impulse acts for `a` and the block
+//! moves for `b` (s), are a contact of the rigid limit with a compliance ([`SpringCompliance`]):
+//! from `F = p (pen − b u_n) − c u_n` and `P = a F`
 //!
 //! ```text
 //! u_n + P_n/(a (p b + c)) = p pen/(p b + c)
 //! ```
 //!
-//! and the same along the surface with `p_s`, `c_s` and the stretch `−ξ`. So all schemes share one solver of contacts
-//! ([`solve`](super::solve::solve)), and `rigid` is its limit for stiff springs.
+//! and the same along the surface with `p_s`, `c_s` and the stretch `−ξ`. So all schemes share one
+//! contact solver ([`solve`](super::solve::solve)), and `rigid` is its limit for stiff springs.
 
 mod clamp;
 mod controlled;
@@ -22,15 +25,15 @@ mod frozen;
 mod history;
 mod impact_energy;
 mod rolling;
+mod rotation_vector;
 mod onset;
 mod stage;
 
-use super::energy::ActingAlong;
-use super::solve::{BlockContact, GivingWay, Mass};
-use super::{Footing, Moving, Stepped, TOUCH};
+use super::energy::ContactDirections;
+use super::solve::{BlockContact, Mass, SpringCompliance};
+use super::{BlockContactState, BlockState, BlockStepOutcome, TOUCH};
 use crate::body::Block;
 use crate::ground::{Law, SliderForce};
-use crate::math;
 use crate::rock::Vec3;
 use crate::solver::Settings;
 use crate::solver::dda::DEEPEST;
@@ -41,11 +44,10 @@ use crate::solver::tableau::STAGES;
 pub(crate) use clamp::Clamp;
 pub(crate) use history::BlockHistory;
 use impact_energy::ImpactEnergy;
-use nalgebra::{Rotation3, Unit};
 use rolling::RollingSpring;
 
-/// Contacts no further ahead than so many times the way of a stage take part in it (–).
-const AHEAD: f64 = 2.0;
+/// Contacts with gaps up to this multiple of the travel of a stage take part in it (–).
+const STAGE_REACH: f64 = 2.0;
 
 /// Rates of change of a block in contact.
 #[derive(Debug, Clone, Default)]
@@ -56,31 +58,32 @@ struct BlockRates {
     /// Of the rotation vector from the step's start (rad/s), and of the angular momentum (N m).
     turned: Vec3,
     momentum: Vec3,
-    /// Of the shear springs (m/s), history by history.
+    /// Of the shear springs (m/s), one for each history.
     shear: Vec<Vec3>,
     /// Of the rolling spring (rad/s).
     rolled: Vec3,
-    /// Power that goes into contacts (W).
+    /// Power into contacts (W).
     loss: Loss,
 }
 
 /// A contact within a stage.
 #[derive(Debug, Clone, Copy)]
 struct SpringContact {
-    /// Which memory it belongs to.
+    /// Index of its history.
     history: usize,
-    /// Its law, with its share of a patch and the friction in force.
+    /// Its law, with its share of a patch and the current friction.
     law: Law,
-    /// Whether it came in too slowly to rebound.
+    /// Whether it closed too slowly to rebound.
     captured: bool,
-    /// Whether it has come up in this step, which is cut where it begins: it presses nothing.
-    waits: bool,
+    /// Whether it exerts no force for now: it began within this step, which is cut where it begins,
+    /// or it is open.
+    is_suspended: bool,
     /// Triangle whose ground answers.
     triangle: u32,
     /// Unit normal from the mesh to the block, and lever (m).
     n: Vec3,
     lever: Vec3,
-    /// Penetration at which its spring begins to press (m).
+    /// Penetration at which its spring begins to act (m).
     offset_m: f64,
     /// Penetration (m) and stretch of the shear spring (m) at the stage's base.
     penetration: f64,
@@ -95,67 +98,70 @@ struct SpringContact {
 pub(crate) struct Springs {
     pub(crate) histories: Vec<BlockHistory>,
     contacts: Vec<SpringContact>,
-    /// Those that were solved before others came up.
+    /// The contacts solved before further ones began.
     solved: Vec<SpringContact>,
-    /// What rolling friction remembers.
+    /// The spring of rolling friction.
     rolling: RollingSpring,
-    /// Memories at the step's start, and whether impacts that come up after it wait until a step begins with them.
+    /// Number of histories at the step's start, and whether impacts that begin after it are
+    /// suspended until a step starts with them.
     known: usize,
-    new_wait: bool,
+    suspends_new: bool,
     rates: [BlockRates; STAGES],
-    /// Whether the first rate belongs to the present state.
-    fresh: bool,
-    /// Whether the last look was at the present place.
-    seen: bool,
-    /// Slip at the step's start (m/s), and how far it goes until friction is asked for (m).
+    /// Whether the first rates belong to the present state.
+    has_current_rates: bool,
+    /// Whether the last detection was at the present pose.
+    touches_are_current: bool,
+    /// Slip speed at the step's start (m/s), and the slip distance up to the time at which friction
+    /// is evaluated (m).
     slip_m_s: f64,
     ahead_m: f64,
     /// Energy in the springs at the present state (J).
     stored_j: f64,
-    /// What steps of `dda` have made, and the motion has not paid for as yet (J).
-    owed_j: f64,
+    /// Energy that steps of `dda` have gained and that the motion has not yet paid for (J).
+    debt_j: f64,
     /// The step to try next (s).
     h: f64,
-    /// Fastest approach of the impacts that go on (m/s); 0 if none does.
+    /// Fastest approach of the current impacts (m/s); 0 if there are none.
     impact_m_s: f64,
-    /// Energy in the impact that is followed in its own time.
+    /// Energy account of the current impact.
     energy: Option<ImpactEnergy>,
-    /// When the impacts that go on are over at the latest (s).
+    /// Latest end of the current impacts (s).
     pub(crate) until_s: f64,
     control: Option<Control>,
 }
 
 impl Springs {
-    /// The motion has been changed from outside.
-    pub(crate) fn refresh(&mut self) {
-        self.fresh = false;
+    /// Invalidates the rates: the motion has been changed from outside.
+    pub(crate) fn invalidate_rates(&mut self) {
+        self.has_current_rates = false;
     }
 
-    /// What the last look has found is no longer what is there.
-    pub(crate) fn forget_look(&mut self) {
-        self.seen = false;
+    /// Invalidates the contacts of the last detection.
+    pub(crate) fn invalidate_touches(&mut self) {
+        self.touches_are_current = false;
     }
 
-    /// Whether nothing presses on the block any more.
+    /// Whether no contact presses on the block.
     pub(crate) fn is_free(&self) -> bool {
         self.histories.iter().all(|history| !history.closed)
     }
 
-    /// Stiffest contact (rad/s).
+    /// Largest contact frequency (rad/s).
     pub(super) fn stiffest(&self, world: &ContactEnvironment) -> f64 {
         let of = |laws: &mut dyn Iterator<Item = f64>| laws.fold(0.0, f64::max);
         let known = of(&mut self.histories.iter().map(|history| history.law.omega_rad_s()));
         if known > 0.0 { known } else { of(&mut world.laws.iter().map(Law::omega_rad_s)) }
     }
 
-    /// Impacts whose time is up at `now_s` (s) are over: what still presses lasts, and is damped for good.
+    /// Ends the impacts whose time is up at `now_s` (s): contacts that still press become lasting
+    /// contacts and are damped as such.
     pub(crate) fn capture(&mut self, now_s: f64) {
         if now_s >= self.until_s {
             self.histories.iter_mut().for_each(|history| history.captured |= history.announced);
         }
     }
 
-    /// Slowest contact (rad/s): the impact of all is over after some of its times.
+    /// Smallest contact frequency (rad/s): an impact is over after some of its periods.
     pub(crate) fn slowest(&self) -> f64 {
         self.histories.iter().map(|history| history.law.omega_rad_s()).fold(f64::INFINITY, f64::min)
     }
@@ -166,68 +172,70 @@ impl Springs {
         self.contacts.iter().map(|contact| contact.shear.norm())
     }
 
-    /// What the contacts of the last stage act along.
-    fn acting_along(&self) -> ActingAlong {
-        ActingAlong::default().and_springs(&self.contacts)
+    /// The directions in which the contacts of the last stage act.
+    fn acting_along(&self) -> ContactDirections {
+        ContactDirections::default().and_springs(&self.contacts)
     }
 
-    /// Energy in the springs of the contacts as they were placed (J), by what it belongs to.
-    fn placed(&self, world: &ContactEnvironment) -> Loss {
-        let mut placed = Loss { rolling: self.rolling.holds_j(), ..Loss::default() };
+    /// Energy in the springs of the contacts as they were placed (J), by kind.
+    fn stored_by_contacts(&self, world: &ContactEnvironment) -> Loss {
+        let mut placed = Loss { rolling: self.rolling.stored_j(), ..Loss::default() };
         for contact in &self.contacts {
-            let damping = contact.holds_j(contact.penetration, &contact.shear);
+            let damping = contact.stored_j(contact.penetration, &contact.shear);
             placed.add(&Loss { damping, ..Loss::default() }.on(world, contact.triangle), 1.0);
         }
         placed
     }
 
-    /// Notes the fastest approach of the impacts that go on.
-    fn note_fastest(&mut self) {
+    /// Updates the fastest approach of the current impacts.
+    fn update_impact_speed(&mut self) {
         self.impact_m_s = self.fastest_m_s().map_or(0.0, |own| own.max(self.impact_m_s));
     }
 
-    /// How much springs hold (J), as the memories tell.
+    /// Energy in the springs (J), by the histories.
     pub(crate) fn held_j(&self) -> f64 {
-        self.held_on_j(|_| true) + self.rolling.holds_j()
+        self.held_on_j(|_| true) + self.rolling.stored_j()
     }
 
-    /// How much those of the contacts on some triangles hold (J).
+    /// Energy in the springs of the contacts on some triangles (J).
     pub(crate) fn held_on_j(&self, is_on: impl Fn(u32) -> bool) -> f64 {
         let holds = |history: &&BlockHistory| history.closed && is_on(history.triangle);
         self.histories.iter().filter(holds).map(BlockHistory::held_j).sum()
     }
 }
 
-impl ActingAlong {
-    /// With what these contacts act along.
+impl ContactDirections {
+    /// Adds the directions in which these contacts act.
     fn and_springs(mut self, contacts: &[SpringContact]) -> Self {
         for contact in contacts {
-            self.take_in(&contact.n, contact.law.limits().caps(1.0) != (0.0, 0.0));
+            self.add(&contact.n, contact.law.limits().caps(1.0) != (0.0, 0.0));
         }
         self
     }
 }
 
 impl SpringContact {
-    /// The contact that a stage sees in which impulses act for `a` and the block moves for `b` (s).
-    fn giving_way(&self, mass: &Mass, (a, b): (f64, f64)) -> BlockContact {
+    /// Its contact for a stage in which impulses act for `a` and the block moves for `b` (s).
+    fn stage_compliance(&self, mass: &Mass, (a, b): (f64, f64)) -> BlockContact {
         let stage = self.law.stage_compliance(self.captured, (a, b));
         let goal = self.n * (stage.normal_recovery_per_s * self.penetration)
             - self.shear * stage.shear_recovery_per_s;
-        let springs = GivingWay { compliance: stage.compliance, surface_m_s: self.penetration / b };
+        let springs =
+            SpringCompliance { compliance: stage.compliance, surface_m_s: self.penetration / b };
         let slides = (self.law.friction_coefficient(), self.triangle);
         BlockContact::on_springs(mass, (self.n, self.lever), slides, (goal, springs))
             .rolling(self.law.limits())
     }
 
-    /// Takes the forces from an impulse that has acted for `a` (s).
-    fn take(&mut self, impulse: &Vec3, a: f64) {
+    /// Sets the forces from an impulse that has acted for `a` (s).
+    fn set_forces(&mut self, impulse: &Vec3, a: f64) {
         self.normal_force = self.n.dot(impulse) / a;
         self.shear_force = (self.n * self.n.dot(impulse) - impulse) / a;
     }
 
-    /// Takes the forces that it has where its point moves by `u` (m/s): the normal force if it could pull (N), and shear.
-    fn press(&mut self, u: &Vec3) -> (f64, SliderForce) {
+    /// Sets the forces at the velocity `u` (m/s) of its point; returns the normal force without the
+    /// limit to compression (N), and shear.
+    fn update_forces(&mut self, u: &Vec3) -> (f64, SliderForce) {
         let (up, element) = (self.n.dot(u), &self.law.shear);
         let normal = self.law.normal(self.captured);
         let pulls = normal.bilateral_force(self.penetration.max(0.0), up);
@@ -238,8 +246,8 @@ impl SpringContact {
         (pulls, shear)
     }
 
-    /// Energy in its springs at a penetration and a stretch (J, m): nothing where it does not press.
-    fn holds_j(&self, penetration: f64, shear: &Vec3) -> f64 {
+    /// Energy in its springs at a penetration and a stretch (J, m): none if it does not press.
+    fn stored_j(&self, penetration: f64, shear: &Vec3) -> f64 {
         let shear2 = if penetration > 0.0 { shear.norm_squared() } else { 0.0 };
         self.law.stored_j(penetration.max(0.0), shear2, 0.0)
     }
@@ -250,7 +258,7 @@ impl SpringContact {
     }
 
     /// Penetration (m) after a motion of the contact point at `u` (m/s) for `b` (s).
-    fn pen_at(&self, u: &Vec3, b: f64) -> f64 {
+    fn penetration_after(&self, u: &Vec3, b: f64) -> f64 {
         self.penetration - b * self.n.dot(u)
     }
 
@@ -259,65 +267,50 @@ impl SpringContact {
         self.law.shear.stretch_after(&self.shear_force, &self.shear, b)
     }
 
-    /// Power that goes into it (W) at a velocity `u` of the contact point (m/s); what springs store is counted in.
+    /// Power into it (W) at a velocity `u` of the contact point (m/s), including the power that its
+    /// springs store.
     fn power(&self, world: &ContactEnvironment, u: &Vec3, shear_rate: &Vec3) -> Loss {
         let pushes = -self.normal_force * self.n.dot(u);
         self.shear_power(u, shear_rate, pushes).on(world, self.triangle)
     }
 
-    /// The same, with what goes into its normal element (W).
+    /// The same, with the given power into its normal element (W).
     fn shear_power(&self, u: &Vec3, shear_rate: &Vec3, normal_w: f64) -> Loss {
         let slip = u - self.n * self.n.dot(u);
         Loss::of_slip((&self.shear_force, &slip, shear_rate), [normal_w, 0.0])
     }
 }
 
-/// A rotation by a rotation vector (rad).
-fn turn_by(turned: &Vec3) -> Rotation3<f64> {
-    let angle = turned.norm();
-    if angle > 0.0 {
-        math::turn(&Unit::new_unchecked(turned / angle), angle)
-    } else {
-        Rotation3::identity()
-    }
-}
-
-/// Rate of the rotation vector `θ` of a body that turns with `w`: `θ' = ω − θ×ω/2 + θ×(θ×ω)/12 − …` (Bortz 1971), for small `θ`.
-fn turning(turned: &Vec3, w: &Vec3) -> Vec3 {
-    let once = turned.cross(w);
-    w - once * 0.5 + turned.cross(&once) / 12.0
-}
-
-impl Footing {
-    /// Begins an episode of a block that has just touched.
+impl BlockContactState {
+    /// Begins an episode of contact of a block that has just touched.
     pub(crate) fn begin_springs(
         &mut self,
         world: &ContactEnvironment,
         settings: &Settings,
-        (block, moving): (&Block, &Moving),
+        (block, state): (&Block, &BlockState),
     ) {
         self.springs.histories.clear();
         self.springs.rolling = RollingSpring::default();
         self.touches.active.clear();
         (self.springs.impact_m_s, self.springs.energy, self.springs.until_s) = (0.0, None, 0.0);
-        self.look_at_all(world, (block, &moving.pose), TOUCH * block.radius_m);
+        self.detect_all(world, (block, &state.pose), TOUCH * block.radius_m);
         self.springs.known = 0;
-        self.remember(world, (block, moving));
-        for (touch, history) in self.touches.found.iter().zip(&self.of_touch) {
+        self.update_histories(world, (block, state));
+        for (touch, history) in self.touches.found.iter().zip(&self.history_of_touch) {
             let offset_m = if block.core.is_corner(touch.part) { 0.0 } else { -touch.gap_m };
             let Some(k) = *history else { continue };
             self.springs.histories[k].offset_m = offset_m.max(0.0);
         }
-        (self.springs.stored_j, self.springs.owed_j) = (self.stored(world).sum(), 0.0);
+        (self.springs.stored_j, self.springs.debt_j) = (self.stored(world).sum(), 0.0);
         let control =
             settings.scheme.tableau().map(|tableau| Control::new(tableau, settings, world));
         self.springs.control = control;
         self.springs.h = self.first_step_s(world);
-        self.springs.refresh();
-        self.springs.seen = true;
+        self.springs.invalidate_rates();
+        self.springs.touches_are_current = true;
     }
 
-    /// Energy in the springs of the contacts of the last look (J), by what it belongs to.
+    /// Energy in the springs of the contacts of the last detection (J), by kind.
     fn stored(&self, world: &ContactEnvironment) -> Loss {
         let mut stored = Loss::default();
         for history in &self.springs.histories {
@@ -330,41 +323,41 @@ impl Footing {
             let damping = law.stored_j(penetration, history.shear.norm_squared(), 0.0);
             stored.add(&Loss { damping, ..Loss::default() }.on(world, history.triangle), 1.0);
         }
-        stored.rolling += self.springs.rolling.holds_j();
+        stored.rolling += self.springs.rolling.stored_j();
         stored
     }
 
-    /// Energy in the springs at a pose (J), by what it belongs to.
+    /// Energy in the springs at a pose (J), by kind.
     pub(crate) fn springs_j(
         &mut self,
         world: &ContactEnvironment,
-        (block, moving): (&Block, &Moving),
+        (block, state): (&Block, &BlockState),
     ) -> Loss {
-        self.look_at_all(world, (block, &moving.pose), TOUCH * block.radius_m);
+        self.detect_all(world, (block, &state.pose), TOUCH * block.radius_m);
         self.stored(world)
     }
 
-    /// One step of at most `most_s`, and the steps tried and thrown away.
+    /// One step of at most `most_s`, and the number of rejected trial steps.
     ///
     /// # Errors
-    /// [`StepError`] if no step, however short, settles, or a spring is pressed in too far.
+    /// [`StepError`] if no step, however short, converges, or a penetration is too large.
     pub(crate) fn step_on_springs(
         &mut self,
         world: &ContactEnvironment,
         settings: &Settings,
-        (block, moving): (&Block, &mut Moving),
+        (block, state): (&Block, &mut BlockState),
         most_s: f64,
-    ) -> Result<(Stepped, u64), StepError> {
-        let slip_m_s = self.slip_m_s(block, moving);
+    ) -> Result<(BlockStepOutcome, u64), StepError> {
+        let slip_m_s = self.slip_m_s(block, state);
         (self.springs.slip_m_s, self.springs.ahead_m) = (slip_m_s, 0.0);
         let (done, rejected) = match self.springs.control {
             Some(control) => {
-                let limit = Self::travel_limit_s(world, (block, moving), settings.corner_way);
-                self.controlled_step(world, (block, moving), (control, most_s, limit))?
+                let limit = Self::travel_limit_s(world, (block, state), settings.corner_way);
+                self.controlled_step(world, (block, state), (control, most_s, limit))?
             }
-            None => (self.fixed_step(world, settings, (block, moving), most_s)?, 0),
+            None => (self.fixed_step(world, settings, (block, state), most_s)?, 0),
         };
-        let slipped_m = 0.5 * done.dt * (slip_m_s + self.slip_m_s(block, moving));
+        let slipped_m = 0.5 * done.dt * (slip_m_s + self.slip_m_s(block, state));
         let on = self.touching(block).next().map(|touch| world.ground_of(touch.triangle));
         self.slip.grow(slipped_m, on);
         if done.is_free {
@@ -373,14 +366,19 @@ impl Footing {
         Ok((done, rejected))
     }
 
-    /// How far ahead (m) a block can touch something within a stage of `way_s`.
-    fn ahead_m(world: &ContactEnvironment, (block, moving): (&Block, &Moving), way_s: f64) -> f64 {
-        let fastest = moving.v.norm() + moving.spin(block).norm() * block.bound_m;
+    /// Gap (m) up to which a block can touch something within a stage of `way_s`.
+    fn ahead_m(
+        world: &ContactEnvironment,
+        (block, state): (&Block, &BlockState),
+        way_s: f64,
+    ) -> f64 {
+        let fastest = state.v.norm() + state.spin(block).norm() * block.bound_m;
         let way_m = way_s * (fastest + world.body.gravity.norm() * way_s);
-        TOUCH * block.radius_m + AHEAD * way_m
+        TOUCH * block.radius_m + STAGE_REACH * way_m
     }
 
-    /// Whether a spring is pressed in so far, over the balls' radius, that it means nothing any more.
+    /// Fails if a penetration is so large, relative to the balls' radius, that the contact model
+    /// does not apply.
     fn check_depth(&self, block: &Block) -> Result<(), StepError> {
         let deepest = self.touches.found.iter().map(|touch| -touch.gap_m).fold(0.0, f64::max);
         if deepest > DEEPEST * block.ball_m { Err(StepError::SankIn) } else { Ok(()) }

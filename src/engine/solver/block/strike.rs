@@ -1,12 +1,14 @@
-//! The impact of a block in no time.
+//! The instantaneous impact of a block.
 //!
-//! A blow fast enough to rebound is the limit of the springs' for stiff ones ([`blow`](Footing::blow)), on plastic ground as on any other.
-//! What comes more slowly and what does not rub is a blow of impulses alone, contact by contact with Newton's restitution. With several
-//! contacts that rule can gain energy (Glocker 2013); where it would, all restitutions are lowered together until it does not.
+//! An impact fast enough to rebound is the limit of the springs' impact for stiff springs
+//! ([`blow`](BlockContactState::blow)), on plastic ground too. Slower impacts and those without
+//! friction are solved by impulses alone, with Newton's restitution at each contact. With several
+//! contacts Newton's rule can gain energy (Glocker 2013); then all restitutions are reduced by one
+//! factor until it does not.
 
-use super::energy::ActingAlong;
-use super::solve::{BlockContact, SWEEPS, rigid_turning, solve};
-use super::{Footing, Moving, ROUNDING, ROUNDING_OF_SPEED, STILL_M_S};
+use super::energy::ContactDirections;
+use super::solve::{BlockContact, SWEEPS, rigid_rolling, solve};
+use super::{BlockContactState, BlockState, NO_APPROACH_M_S, ROUNDING, ROUNDING_OF_SPEED};
 use crate::body::Block;
 use crate::contact::block::BlockContactPoint;
 use crate::ground::FrictionElement;
@@ -15,65 +17,68 @@ use crate::rock::Vec3;
 use crate::solver::environment::ContactEnvironment;
 use crate::solver::loss::Loss;
 
-/// Halvings of the restitution where it would gain energy.
+/// Bisections for the factor of the restitutions where they would gain energy.
 const HALVINGS: u32 = 30;
 
-impl Footing {
-    /// The impact of all contacts that touch, at the place and in no time; contacts too slow to rebound take part and give
-    /// nothing back. What it takes, and whether there was any.
+impl BlockContactState {
+    /// The instantaneous impact of all touching contacts, at the present pose. Contacts too slow to
+    /// rebound take part and do not rebound. Returns the energy that it dissipates; `None` if there
+    /// is no impact.
     pub(crate) fn strike(
         &mut self,
         world: &ContactEnvironment,
         block: &Block,
-        moving: &mut Moving,
+        state: &mut BlockState,
     ) -> Option<Loss> {
         let bursts = self.carry_clamp(block);
-        let comes = |touch: &BlockContactPoint| {
-            moving.approach_m_s(block, touch) > STILL_M_S && !self.clamp.holds(touch)
+        let approaches = |touch: &BlockContactPoint| {
+            state.approach_m_s(block, touch) > NO_APPROACH_M_S && !self.clamp.contains(touch)
         };
-        let comes = bursts || self.touching(block).any(comes);
-        if !comes && !self.comes_to_next_facet(world, block, moving) {
+        let approaches = bursts || self.touching(block).any(approaches);
+        if !approaches && !self.reaches_next_facet(world, block, state) {
             return None;
         }
-        let facet = self.facet(world, block, moving);
-        if !comes && facet.is_none() {
+        let facet = self.facet(world, block, state);
+        if !approaches && facet.is_none() {
             return None;
         }
-        // what did not settle before, of this block or of another, is no part of this impact
+        // an earlier solve that did not converge, of this block or of another, is no part of this
+        // impact
         self.unsettled = false;
-        // a facet is met as in the schemes with springs: the motion is turned against it, and back
+        // as in the schemes with springs, the motion is rotated against the facet, and back
         if let Some(turn) = &facet {
-            moving.redirect(block, &turn.inverse());
+            state.rotate(block, &turn.inverse());
         }
         let mut loss = None;
-        if bursts || self.is_followed_to_its_limit(world, (block, moving)) {
+        if bursts || self.is_followed_to_its_limit(world, (block, state)) {
             if !self.clamp.is_on() {
-                loss = self.square_blow(world, (block, moving));
+                loss = self.normal_blow(world, (block, state));
             }
-            loss = loss.or_else(|| self.blow(world, (block, moving)));
+            loss = loss.or_else(|| self.blow(world, (block, state)));
             if loss.is_none() {
-                // what does not end gives nothing back
+                // an impact that does not end does not rebound
                 self.clamp.open();
             }
         }
-        let loss = loss.unwrap_or_else(|| self.impulses(world, (block, moving), true));
+        let loss = loss.unwrap_or_else(|| self.impulses(world, (block, state), true));
         if let Some(turn) = &facet {
-            moving.redirect(block, turn);
+            state.rotate(block, turn);
         }
         Some(loss)
     }
 
-    /// Whether a blow is fast enough to rebound and meets something that rubs and has dashpots. Ground that gives nothing back is no case of its
-    /// own: its dashpots are those of the restitution that tends to 0, and where friction and lever couple, what they leave is not what
-    /// impulses make of a contact that must stop dead. Nor is that what they leave of a contact that lasts and is pressed by the blow of another,
-    /// with friction or without.
+    /// Whether an impact is followed as the limit of stiff springs: it is fast enough to rebound,
+    /// and has friction and dashpots. Plastic ground is no special case. Its dashpots are those of
+    /// a restitution that tends to 0; where friction and lever couple, they leave another motion
+    /// than impulses that stop each contact dead. The same holds for a lasting contact that is
+    /// pressed by the impact of another, with friction or without.
     fn is_followed_to_its_limit(
         &self,
         world: &ContactEnvironment,
-        (block, moving): (&Block, &Moving),
+        (block, state): (&Block, &BlockState),
     ) -> bool {
         let law = |touch: &BlockContactPoint| world.law(touch.triangle);
-        let is_struck = |touch: &BlockContactPoint| Self::is_struck(world, (block, moving), touch);
+        let is_struck = |touch: &BlockContactPoint| Self::is_struck(world, (block, state), touch);
         let shear = || self.touching(block).map(|touch| &law(touch).shear);
         let is_damped =
             |touch: &BlockContactPoint| law(touch).normal(false).is_damped(block.mass_kg);
@@ -87,75 +92,79 @@ impl Footing {
             && shear().all(|shear| !shear.is_on() || shear.is_damped())
     }
 
-    /// The blow of contacts that do not slip, where pushes alone leave nothing to slip either, as of a face that falls flat: friction has
-    /// nothing to do then, and impulses are exact.
-    fn square_blow(
+    /// The impact of contacts that do not slip before it and, with normal impulses alone, not after
+    /// it either, as of a face that falls flat. Friction has no effect then, and impulses are
+    /// exact.
+    fn normal_blow(
         &mut self,
         world: &ContactEnvironment,
-        (block, moving): (&Block, &mut Moving),
+        (block, state): (&Block, &mut BlockState),
     ) -> Option<Loss> {
-        if self.slip_m_s(block, moving) > STILL_M_S {
+        if self.slip_m_s(block, state) > NO_APPROACH_M_S {
             return None;
         }
-        let mut thrown = moving.clone();
-        let loss = self.impulses(world, (block, &mut thrown), false);
-        if self.slip_m_s(block, &thrown) > STILL_M_S {
+        let mut rebounded = state.clone();
+        let loss = self.impulses(world, (block, &mut rebounded), false);
+        if self.slip_m_s(block, &rebounded) > NO_APPROACH_M_S {
             self.unsettled = false;
             return None;
         }
-        *moving = thrown;
+        *state = rebounded;
         Some(loss)
     }
 
-    /// The blow of impulses alone, with friction if it `rubs`; what it takes.
+    /// The impact solved by impulses alone, `with_friction` or without; returns the energy that it
+    /// dissipates.
     fn impulses(
         &mut self,
         world: &ContactEnvironment,
-        (block, moving): (&Block, &mut Moving),
-        rubs: bool,
+        (block, state): (&Block, &mut BlockState),
+        with_friction: bool,
     ) -> Loss {
-        let mass = moving.mass(block);
-        let (v, w) = (moving.v, moving.spin(block));
-        let mut wanted = std::mem::take(&mut self.wanted);
-        wanted.clear();
-        self.set_touching_aside(block);
-        wanted.extend(self.aside.iter().map(|touch| {
+        let mass = state.mass(block);
+        let (v, w) = (state.v, state.spin(block));
+        let mut targets = std::mem::take(&mut self.targets);
+        targets.clear();
+        self.select_touching(block);
+        targets.extend(self.selected.iter().map(|touch| {
             let law = world.law(touch.triangle);
-            let back = if Self::is_struck(world, (block, moving), touch) {
-                let speed = moving.approach_m_s(block, touch);
+            let back = if Self::is_struck(world, (block, state), touch) {
+                let speed = state.approach_m_s(block, touch);
                 law.restitution_at(speed) * speed
             } else {
                 0.0
             };
             let mut contact = self.contact(world, (&mass, touch), 0.0, Vec3::zeros());
-            if !rubs {
+            if !with_friction {
                 contact.friction = 0.0;
             }
             (contact, back)
         }));
-        let (before_j, rounding_m_s) = (moving.motion_j(block), ROUNDING_OF_SPEED * v.norm());
-        let mut thrown = moving.clone();
+        let (before_j, rounding_m_s) = (state.motion_j(block), ROUNDING_OF_SPEED * v.norm());
+        let mut rebounded = state.clone();
         let mut try_with = |share: f64| {
             self.contacts.clear();
             let goal = |(one, back): &(BlockContact, f64)| one.with_goal(one.n * (back * share));
-            self.contacts.extend(wanted.iter().map(goal));
-            self.turning = rigid_turning(&self.contacts);
-            let asked = (&mut self.contacts[..], &mut self.turning);
-            self.unsettled = !solve(&mass, asked, (v, w), (rounding_m_s, SWEEPS), &mut self.sweeps);
-            thrown = moving.clone();
-            thrown.take(&self.contacts, &self.turning, block.mass_kg);
-            thrown.motion_j(block) <= before_j * (1.0 + ROUNDING)
+            self.contacts.extend(targets.iter().map(goal));
+            self.rolling = rigid_rolling(&self.contacts);
+            let unknowns = (&mut self.contacts[..], &mut self.rolling);
+            self.unsettled =
+                !solve(&mass, unknowns, (v, w), (rounding_m_s, SWEEPS), &mut self.sweeps);
+            rebounded = state.clone();
+            rebounded.apply_impulses(&self.contacts, &self.rolling, block.mass_kg);
+            rebounded.motion_j(block) <= before_j * (1.0 + ROUNDING)
         };
         if !try_with(1.0) {
             let [most, _] = math::bisected([0.0, 1.0], HALVINGS, &mut try_with);
             try_with(most);
         }
-        self.wanted = wanted;
-        let after = (&thrown.v, &thrown.spin(block));
-        let loss = self.booked(world, [(&v, &w), after], before_j - thrown.motion_j(block));
-        let along = ActingAlong::of_impulses(&self.contacts, &self.turning);
-        thrown.hold_energy(block, (moving, &Vec3::zeros()), &along);
-        *moving = thrown;
+        self.targets = targets;
+        let after = (&rebounded.v, &rebounded.spin(block));
+        let loss =
+            self.loss_of_impulses(world, [(&v, &w), after], before_j - rebounded.motion_j(block));
+        let along = ContactDirections::of_impulses(&self.contacts, &self.rolling);
+        rebounded.limit_energy_gain(block, (state, &Vec3::zeros()), &along);
+        *state = rebounded;
         loss
     }
 }

@@ -31,7 +31,7 @@ use std::path::Path;
 
 /// Gravity of the exact cases (m/s²).
 const G: f64 = 9.81;
-/// A capture speed up to which every blow of a case comes too slowly to rebound (m/s): it stops dead.
+/// A capture speed above every impact of a case (m/s): no impact rebounds.
 const TOO_SLOW_M_S: f64 = 100.0;
 
 fn terrain(facets: Vec<Facet>) -> Terrain {
@@ -62,7 +62,7 @@ fn block(surface: &Surface, ball_m: f64) -> Block {
     Block::new(&shape, &Rock { radius_m, density_kg_m3: 2700.0 })
 }
 
-/// One block on a mesh, followed without notes.
+/// One block on a mesh, simulated without a recorder.
 struct BlockRun {
     terrain: Terrain,
     block: Block,
@@ -87,90 +87,96 @@ fn law_of(ground: &Ground, block: &Block, capture_m_s: f64) -> Law {
 impl BlockRun {
     fn new(terrain: Terrain, block: Block, (friction, e): (f64, f64)) -> Self {
         let ground = Ground::smooth([1e9, 0.25e9], atan(friction), Some(e));
-        // slower than that an elastic block would lose what is captured
+        // below that speed an elastic block would lose energy by capture
         let law = law_of(&ground, &block, if e < 1.0 { 1e-3 } else { 0.0 });
         let lost = Loss::default();
         let springs = None;
         Self { terrain, block, law, ground, step_s: 0.01, springs, lost, impacts: 0, steps: 0 }
     }
 
-    fn start(&self, attitude: Rotation3<f64>, [centre, v, w]: [Vec3; 3]) -> Moving {
+    fn start(&self, attitude: Rotation3<f64>, [centre, v, w]: [Vec3; 3]) -> BlockState {
         let motion = Motion { time_s: 0.0, position_m: centre, velocity_m_s: v, spin_rad_s: w };
-        Moving::new(&self.block, (centre - self.terrain.origin_m, attitude), &motion)
+        BlockState::new(&self.block, (centre - self.terrain.origin_m, attitude), &motion)
     }
 
-    /// Follows it for `longest_s`; `see` is told the time and the motion after every flight, impact and step.
-    fn follow(&mut self, moving: &mut Moving, longest_s: f64, mut see: impl FnMut(f64, &Moving)) {
+    /// Simulates it for `longest_s`; `see` gets the time and the motion after every flight, impact
+    /// and step.
+    fn follow(
+        &mut self,
+        state: &mut BlockState,
+        longest_s: f64,
+        mut see: impl FnMut(f64, &BlockState),
+    ) {
         let (block, laws) = (self.block.clone(), [self.law]);
         let world = ContactEnvironment {
             terrain: &self.terrain,
             body: Body::of_block(&block, G),
             laws: &laws,
         };
-        let (mut footing, mut now) = (Footing::default(), 0.0);
-        footing.slip.begin(&[self.ground]);
+        let (mut contact_state, mut now) = (BlockContactState::default(), 0.0);
+        contact_state.slip.begin(&[self.ground]);
         while now < longest_s {
             let path = Parabola {
-                start: moving.pose.centre,
-                velocity: moving.v,
+                start: state.pose.centre,
+                velocity: state.v,
                 gravity: G,
                 radius: block.bound_m,
             };
-            let top = Top::new(block.inertia_kg_m2, moving.pose.attitude, moving.momentum);
+            let top = Top::new(block.inertia_kg_m2, state.pose.attitude, state.momentum);
             let tumble = BlockFlight { block: &block, top, path };
             let left = longest_s - now;
             let dt = match first_touch(
                 &self.terrain,
                 &tumble,
                 left,
-                (&mut footing.near, &mut footing.window),
+                (&mut contact_state.near, &mut contact_state.window),
             ) {
                 FlightEnd::Touch(dt) => dt,
                 FlightEnd::Flies => left,
                 FlightEnd::Leaves(_) => panic!("it has left the plane after {now} s"),
             };
-            (moving.pose, moving.v) = (tumble.pose(dt), path.velocity(dt));
+            (state.pose, state.v) = (tumble.pose(dt), path.velocity(dt));
             now += dt;
-            see(now, moving);
+            see(now, state);
             if let Some(settings) = &self.springs {
-                footing.begin_springs(&world, settings, (&block, moving));
+                contact_state.begin_springs(&world, settings, (&block, state));
             }
             while now < longest_s {
                 if let Some(settings) = &self.springs {
-                    let on = (&block, &mut *moving);
-                    let done = footing.step_on_springs(&world, settings, on, longest_s - now);
+                    let on = (&block, &mut *state);
+                    let done = contact_state.step_on_springs(&world, settings, on, longest_s - now);
                     let (done, _) = done.unwrap_or_else(|why| {
                         panic!(
                             "{:?} after {now} s: {why}; {:?}",
-                            settings.scheme, footing.touches.found
+                            settings.scheme, contact_state.touches.found
                         )
                     });
                     self.lost.add(&done.loss, 1.0);
                     self.steps += 1;
                     now += done.dt;
-                    see(now, moving);
+                    see(now, state);
                     if done.is_free {
                         self.impacts += 1;
                         break;
                     }
                     continue;
                 }
-                let pose = moving.pose;
-                footing.look(&world, &block, &pose, block.ball_m);
-                if let Some(loss) = footing.strike(&world, &block, moving) {
+                let pose = state.pose;
+                contact_state.detect(&world, &block, &pose, block.ball_m);
+                if let Some(loss) = contact_state.strike(&world, &block, state) {
                     self.lost.add(&loss, 1.0);
                     self.impacts += 1;
-                    see(now, moving);
-                    if !footing.holds(&world, (&block, moving), true) {
+                    see(now, state);
+                    if !contact_state.stays_in_contact(&world, (&block, state), true) {
                         break;
                     }
                 }
                 let most = (self.step_s.min(longest_s - now), CORNER_WAY);
-                let done = footing.step(&world, &block, moving, most);
+                let done = contact_state.step(&world, &block, state, most);
                 self.lost.add(&done.loss, 1.0);
                 self.steps += 1;
                 now += done.dt;
-                see(now, moving);
+                see(now, state);
                 if done.is_free {
                     break;
                 }
@@ -178,8 +184,8 @@ impl BlockRun {
         }
     }
 
-    fn energy_j(&self, moving: &Moving) -> f64 {
-        moving.motion_j(&self.block) + self.block.mass_kg * G * moving.pose.centre.z
+    fn energy_j(&self, state: &BlockState) -> f64 {
+        state.motion_j(&self.block) + self.block.mass_kg * G * state.pose.centre.z
     }
 }
 
@@ -197,49 +203,51 @@ fn a_cube_rests_without_creeping() {
     let angle = 20_f64.to_radians();
     let mut case =
         BlockRun::new(slope(angle, 10.0), block(&box_surface([1.0; 3]), 0.05), (1.0, 0.4));
-    let mut moving = case.start(tilted(angle), still(axes(angle).1 * 0.5));
-    let start = moving.pose.centre;
-    case.follow(&mut moving, 100.0, |_, _| ());
-    let way = (moving.pose.centre - start).norm();
-    assert!(way < 1e-6 && moving.v.norm() < 1e-9, "{way:e} {:e}", moving.v.norm());
+    let mut state = case.start(tilted(angle), still(axes(angle).1 * 0.5));
+    let start = state.pose.centre;
+    case.follow(&mut state, 100.0, |_, _| ());
+    let way = (state.pose.centre - start).norm();
+    assert!(way < 1e-6 && state.v.norm() < 1e-9, "{way:e} {:e}", state.v.norm());
 }
 
-/// A cube slides on its face at 40° with μ = 0.5: a = g (sin 40° − 0.5 cos 40°) = 2.5483 m/s², and does not turn.
+/// A cube slides on its face at 40° with μ = 0.5: a = g (sin 40° − 0.5 cos 40°) = 2.5483 m/s², and
+/// does not turn.
 #[test]
 fn a_cube_slides_as_a_point_does() {
     let angle = 40_f64.to_radians();
     let mut case =
         BlockRun::new(slope(angle, 100.0), block(&box_surface([1.0; 3]), 0.05), (0.5, 0.4));
     let (along, up) = axes(angle);
-    let mut moving = case.start(tilted(angle), still(up * 0.5));
-    case.follow(&mut moving, 4.0, |_, _| ());
+    let mut state = case.start(tilted(angle), still(up * 0.5));
+    case.follow(&mut state, 4.0, |_, _| ());
     let a = G * (sin(angle) - 0.5 * cos(angle));
     assert!((a - 2.5483).abs() < 1e-4);
-    assert!((moving.v.dot(&along) / (4.0 * a) - 1.0).abs() < 1e-8, "{}", moving.v.dot(&along));
-    let spin = moving.spin(&case.block).norm();
-    assert!(moving.v.dot(&up).abs() < 1e-8 && spin < 1e-8, "{} {spin}", moving.v.dot(&up));
+    assert!((state.v.dot(&along) / (4.0 * a) - 1.0).abs() < 1e-8, "{}", state.v.dot(&along));
+    let spin = state.spin(&case.block).norm();
+    assert!(state.v.dot(&up).abs() < 1e-8 && spin < 1e-8, "{} {spin}", state.v.dot(&up));
 }
 
-/// A cube on 50° with μ = 1.3 begins to tip about its lower edge with ¾ g/a (sin 50° − cos 50°); the balls at the corners set that
-/// edge a little inside.
+/// A cube on 50° with μ = 1.3 begins to tip about its lower edge with ¾ g/a (sin 50° − cos 50°);
+/// the balls at the corners set that edge a little inside.
 #[test]
 fn a_cube_tips_about_its_lower_edge() {
     let angle = 50_f64.to_radians();
     let ball = 0.01;
     let mut case =
         BlockRun::new(slope(angle, 100.0), block(&box_surface([1.0; 3]), ball), (1.3, 0.0));
-    let mut moving = case.start(tilted(angle), still(axes(angle).1 * 0.5));
-    case.follow(&mut moving, 0.02, |_, _| ());
+    let mut state = case.start(tilted(angle), still(axes(angle).1 * 0.5));
+    case.follow(&mut state, 0.02, |_, _| ());
     let sharp = 0.75 * G * (sin(angle) - cos(angle));
     assert!((sharp - 0.9068).abs() < 1e-4);
     let arm = 0.5 - ball;
     let rounded = G * (0.5 * sin(angle) - arm * cos(angle)) / (1.0 / 6.0 + 0.25 + arm * arm);
-    let found = moving.spin(&case.block).y / 0.02;
+    let found = state.spin(&case.block).y / 0.02;
     assert!((found / rounded - 1.0).abs() < 2e-3, "{found} {rounded}");
 }
 
-/// A box 2 x 0.2 x 0.2 m tilted by 30° falls at 3 m/s on its lower corners, without friction, e = 0.5: with the lever of those
-/// corners its centre keeps `v' = −v + (1 + e) v m_n/m`, and it spins with `m_n (1 + e) v a/I`.
+/// A box 2 x 0.2 x 0.2 m tilted by 30° falls at 3 m/s on its lower corners, without friction, e =
+/// 0.5: with the lever of those corners its centre keeps `v' = −v + (1 + e) v m_n/m`, and it spins
+/// with `m_n (1 + e) v a/I`.
 #[test]
 fn a_tilted_box_is_thrown_by_its_corners() {
     for ball in [0.002, 0.02] {
@@ -249,26 +257,26 @@ fn a_tilted_box_is_thrown_by_its_corners() {
         let attitude = tilted(angle);
         let low = attitude * Vec3::new(1.0 - ball, 0.1 - ball, -0.1 + ball);
         let centre = Vec3::z() * (ball - low.z);
-        let mut moving = case.start(attitude, [centre, Vec3::z() * -3.0, Vec3::zeros()]);
+        let mut state = case.start(attitude, [centre, Vec3::z() * -3.0, Vec3::zeros()]);
         let (block, laws) = (case.block.clone(), [case.law]);
         let world = ContactEnvironment {
             terrain: &case.terrain,
             body: Body::of_block(&block, G),
             laws: &laws,
         };
-        let mut footing = Footing::default();
-        let pose = moving.pose;
-        footing.look(&world, &block, &pose, block.ball_m);
-        assert_eq!(footing.touching(&block).count(), 2);
-        let loss = footing.strike(&world, &block, &mut moving).unwrap();
+        let mut contact_state = BlockContactState::default();
+        let pose = state.pose;
+        contact_state.detect(&world, &block, &pose, block.ball_m);
+        assert_eq!(contact_state.touching(&block).count(), 2);
+        let loss = contact_state.strike(&world, &block, &mut state).unwrap();
         let (arm, inertia) = (low.x, 4.04 / 12.0);
         let share = 1.0 / (1.0 + arm * arm / inertia);
-        assert!((moving.v.z - (-3.0 + 4.5 * share)).abs() < 1e-9, "{}", moving.v.z);
-        let spin = moving.spin(&block);
+        assert!((state.v.z - (-3.0 + 4.5 * share)).abs() < 1e-9, "{}", state.v.z);
+        let spin = state.spin(&block);
         assert!((spin.norm() - 4.5 * share * arm / inertia).abs() < 1e-9, "{spin}");
         if ball < 0.01 {
             // the sharp corner's digits
-            assert!((share - 0.335_805_618_7).abs() < 2e-3 && (moving.v.z + 1.488_87).abs() < 5e-3);
+            assert!((share - 0.335_805_618_7).abs() < 2e-3 && (state.v.z + 1.488_87).abs() < 5e-3);
         }
         let lost = 0.5 * block.mass_kg * 0.75 * 9.0 * share;
         assert!((loss.damping / lost - 1.0).abs() < 1e-9 && loss.friction == 0.0, "{loss:?}");
@@ -287,8 +295,9 @@ fn prism_on_its_side(sides: u32) -> Surface {
     surface
 }
 
-/// A plastic slap of a rolling prism from one edge to the next: ω'/ω = η = (k + cos 2π/n)/(k + 1), k = I/(m ρ²), whatever its
-/// corners' number; rounded corners put the edges at ρ inside.
+/// A plastic impact of a rolling prism from one edge to the next: ω'/ω = η = (k + cos 2π/n)/(k +
+/// 1), k = I/(m ρ²), for any number of corners; rounded corners put the edges at the distance ρ, a
+/// little inside.
 #[test]
 fn a_slap_takes_what_it_must() {
     for (sides, sharp) in [(4, 0.25), (5, 0.501_036_279_4), (6, 11.0 / 17.0), (8, 0.798_169_546_2)]
@@ -305,10 +314,10 @@ fn a_slap_takes_what_it_must() {
         // it has turned about the rear edge until the front edge lands
         let spin = Vec3::y();
         let arm = Vec3::new(half, 0.0, height);
-        let mut moving =
+        let mut state =
             case.start(Rotation3::identity(), [Vec3::z() * height, spin.cross(&arm), spin]);
-        case.follow(&mut moving, 1e-9, |_, _| ());
-        let found = moving.spin(&case.block).y;
+        case.follow(&mut state, 1e-9, |_, _| ());
+        let found = state.spin(&case.block).y;
         let known =
             (inertia + height * height - half * half) / (inertia + height * height + half * half);
         assert!((found - known).abs() < 1e-6, "{sides}: {found} {known}");
@@ -316,18 +325,19 @@ fn a_slap_takes_what_it_must() {
     }
 }
 
-/// e = 1 without friction: a box bounces hundreds of times and keeps energy, horizontal momentum and spin about the vertical.
+/// e = 1 without friction: a box bounces hundreds of times and keeps energy, horizontal momentum
+/// and spin about the vertical.
 #[test]
 fn a_frictionless_elastic_box_keeps_what_it_should() {
     let mut case =
         BlockRun::new(slope(0.0, 1e5), block(&box_surface([3.0, 2.0, 1.0]), 0.1), (0.0, 1.0));
     let start = [Vec3::z() * 5.0, Vec3::new(1.0, 0.5, 0.0), Vec3::new(0.3, -2.0, 1.0)];
-    let mut moving = case.start(Rotation3::identity(), start);
-    let (before, about) = (case.energy_j(&moving), moving.momentum.z);
-    case.follow(&mut moving, 300.0, |_, _| ());
+    let mut state = case.start(Rotation3::identity(), start);
+    let (before, about) = (case.energy_j(&state), state.momentum.z);
+    case.follow(&mut state, 300.0, |_, _| ());
     assert!(case.impacts > 100 && case.steps < case.impacts, "{} {}", case.impacts, case.steps);
-    assert!((moving.v.x - 1.0).abs() < 1e-12 && (moving.v.y - 0.5).abs() < 1e-12);
-    assert!((moving.momentum.z / about - 1.0).abs() < 1e-9, "{} {about}", moving.momentum.z);
-    let change = case.energy_j(&moving) / before - 1.0;
+    assert!((state.v.x - 1.0).abs() < 1e-12 && (state.v.y - 0.5).abs() < 1e-12);
+    assert!((state.momentum.z / about - 1.0).abs() < 1e-9, "{} {about}", state.momentum.z);
+    let change = case.energy_j(&state) / before - 1.0;
     assert!(change.abs() < 1e-9, "{change:e}");
 }

@@ -1,11 +1,11 @@
-//! In which order the rocks of an island are eliminated, and which blocks their factor then has.
+//! Elimination order of the rocks of an island, and the pattern of the factor.
 //!
-//! Approximate minimum degree (Amestoy, Davis & Duff 1996) on the graph of rocks, by faer. Integers only: the order is the
-//! same on every machine.
+//! Approximate minimum degree (Amestoy, Davis & Duff 1996) on the graph of rocks, by faer. It uses
+//! integers only, so the order is the same on every machine.
 //!
-//! Eliminating a rock joins all its neighbours that are left: that is the fill. Taking the rock
+//! Eliminating a rock couples all its remaining neighbours: that is the fill. Eliminating the rock
 //! with the fewest neighbours first keeps it small; for heaps, whose graphs are like grids in
-//! space, far below that of any order by place.
+//! space, far below that of any order by position.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::SymbolicSparseColMatRef;
@@ -14,20 +14,20 @@ use faer::sparse::linalg::amd;
 /// Order of elimination and pattern of the factor; rows and columns count places in the order.
 #[derive(Debug, Default)]
 pub(super) struct Ordering {
-    /// Place of each rock.
+    /// Place of each rock in the order.
     pub(super) place: Vec<usize>,
-    /// Where the rows of each column begin, and the end of the last.
+    /// Start of the rows of each column, and the end of the last.
     pub(super) starts: Vec<usize>,
     /// Rows below the diagonal, column by column, ascending.
     pub(super) rows: Vec<usize>,
 }
 
 impl Ordering {
-    /// Orders `rocks` rocks of which these pairs are joined.
+    /// Orders `rocks` rocks of which these pairs are coupled.
     pub(super) fn of(rocks: usize, pairs: &[(usize, usize)]) -> Self {
         let place = places(rocks, pairs);
-        // Columns of the matrix in the new order, then of its factor: what a column has left below its first row joins the
-        // column of that row.
+        // Columns of the matrix in the new order, then of its factor: the rows of a column below
+        // its first row are added to the column of that row.
         let mut columns = vec![Vec::new(); rocks];
         for (a, b) in pairs.iter().map(|&(a, b)| (place[a], place[b])) {
             columns[a.min(b)].push(a.max(b));
@@ -49,7 +49,7 @@ impl Ordering {
     }
 }
 
-/// The place of each rock in the order; as they come, if none can be found.
+/// The place of each rock in the order; the given order if none can be found.
 fn places(rocks: usize, pairs: &[(usize, usize)]) -> Vec<usize> {
     let mut lower = vec![Vec::new(); rocks];
     for &(a, b) in pairs {
@@ -143,7 +143,8 @@ mod tests {
         }
     }
 
-    /// A star has no fill when its middle comes late; of a grid, minimum degree leaves a good part of the band's fill out.
+    /// A star has no fill when its middle comes late; of a grid, minimum degree leaves a good part
+    /// of the band's fill out.
     #[test]
     fn the_order_keeps_the_fill_small() {
         let star: Vec<(usize, usize)> = (1..9).map(|k| (k, 0)).collect();

@@ -9,7 +9,7 @@ use super::DEEPEST;
 use super::body::DdaBody;
 use crate::contact::pair::PairHistory;
 use crate::contact::submatrix::{Mat6, Vec6};
-use crate::solver::block_factor::{Below, Blocks, Factor};
+use crate::solver::block_factor::{BlockFactor, BlockSystem, LowerBlock};
 use crate::solver::dda_system::pair_contact::DdaPairContact;
 use crate::solver::dda_system::slider::Change;
 use crate::solver::loss::EnergyGiven;
@@ -21,7 +21,7 @@ pub(in crate::solver) struct DdaPairs {
     pairs: Vec<DdaPairContact>,
     /// Place of each rock in the coupled system; `None` without contact to another rock.
     places: Vec<Option<usize>>,
-    factor: Option<Box<Factor>>,
+    factor: Option<Box<BlockFactor>>,
 }
 
 impl DdaPairs {
@@ -83,7 +83,7 @@ impl DdaPairs {
     fn factorise(&mut self, bodies: &[DdaBody]) -> Option<()> {
         let joined = bodies.iter().zip(&self.places).filter(|(_, place)| place.is_some());
         let mut diagonal: Vec<Mat6> = joined.map(|(body, _)| body.state.scratch.block()).collect();
-        let mut below: Vec<Below> = Vec::with_capacity(self.pairs.len());
+        let mut below: Vec<LowerBlock> = Vec::with_capacity(self.pairs.len());
         for pair in &self.pairs {
             let [a, b] = pair.ends.map(|end| self.places[end]);
             let (a, b) = (a?, b?);
@@ -91,7 +91,7 @@ impl DdaPairs {
             diagonal[b] += pair.stiffness(1, 1);
             below.push((b, a, pair.stiffness(1, 0)));
         }
-        let blocks = Blocks { diagonal: &diagonal, below: &below, above: None };
+        let blocks = BlockSystem { diagonal: &diagonal, below: &below, above: None };
         self.factor.get_or_insert_default().factorise(blocks)
     }
 

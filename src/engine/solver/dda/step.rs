@@ -65,7 +65,7 @@ impl DdaStep<'_, '_> {
     /// into a fold would otherwise get inside the other flank and be thrown out with created
     /// energy. Returns whether states converged.
     ///
-    /// It terminates: each round adds a contact, and no rock has more than `MOST`.
+    /// It terminates: each round adds a contact, and no rock has more than `MAX_CONTACTS`.
     fn solve(&mut self, solves: &mut u32) -> Option<bool> {
         loop {
             let settled = self.iterate_open_close(solves)?;

@@ -6,10 +6,11 @@
 //! k_7 = f(y₁)                       is k_1 of the next step
 //! ```
 //!
-//! Kinks: where a slider reaches its cap or a contact opens the right side is continuous, but its
-//! derivative jumps. A pair of order five falls to order two there, and its estimate sees little of
-//! it. So each element says what it asks for and its cap; where they cross within a step, the step
-//! is cut. Flows that go on smoothly beyond a kink end the step where it lies instead, by what is between its ends.
+//! Switching points: where a slider reaches its cap or a contact opens, the right side is
+//! continuous, but its derivative jumps. There a pair of order five falls to order two, and its
+//! error estimate sees little of it. So each element states its trial value and its cap, and a step
+//! is cut where they cross. Flows that continue smoothly beyond a switching point end the step
+//! there instead, by dense output.
 
 use crate::rock::Vec3;
 use crate::solver::tableau::RATIO;
@@ -26,7 +27,7 @@ const A6: [f64; 5] =
     [9017.0 / 3168.0, -355.0 / 33.0, 46732.0 / 5247.0, 49.0 / 176.0, -5103.0 / 18656.0];
 /// Weights of the first, third … sixth stage in the step.
 const B: [f64; 5] = [35.0 / 384.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0];
-/// The same, and of the seventh stage, in the difference to order four.
+/// The same, and of the seventh stage, in the error estimate.
 const E: [f64; 6] = [
     71.0 / 57600.0,
     -71.0 / 16695.0,
@@ -36,7 +37,8 @@ const E: [f64; 6] = [
     -1.0 / 40.0,
 ];
 
-/// Weights of the first, third … seventh stage in what is between the ends of a step (Hairer, Nørsett and Wanner 1993, II.6).
+/// Weights of the first, third … seventh stage in the dense output (Hairer, Nørsett and Wanner
+/// 1993, II.6).
 const D: [f64; 6] = [
     -12_715_105_075.0 / 11_282_082_432.0,
     87_487_479_700.0 / 32_700_410_799.0,
@@ -46,87 +48,90 @@ const D: [f64; 6] = [
     69_997_945.0 / 29_380_423.0,
 ];
 
-/// Rates of `N` numbers that change and of `Q` that are only summed up, and `P` places where the law may have a kink.
+/// Rates of `N` state variables and of `Q` quadratures, and `P` switching functions.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::solver) struct Rates<const N: usize, const Q: usize, const P: usize> {
     pub(in crate::solver) y: [f64; N],
     pub(in crate::solver) q: [f64; Q],
-    /// What an element asks for, squared, and its cap: where they cross, the law has a kink.
-    pub(in crate::solver) kinks: [[f64; 2]; P],
+    /// Squared trial value of an element, and its cap: where they cross, the element switches.
+    pub(in crate::solver) switching: [[f64; 2]; P],
 }
 
-/// The vector that begins at place `at`.
+/// The vector at offset `at`.
 #[inline]
-pub(in crate::solver) fn three<const N: usize>(y: &[f64; N], at: usize) -> Vec3 {
+pub(in crate::solver) fn vec3_at<const N: usize>(y: &[f64; N], at: usize) -> Vec3 {
     Vec3::new(y[at], y[at + 1], y[at + 2])
 }
 
-/// Writes a vector to place `at`.
+/// Writes a vector to offset `at`.
 #[inline]
-pub(in crate::solver) fn put<const N: usize>(y: &mut [f64; N], at: usize, x: &Vec3) {
+pub(in crate::solver) fn put_vec3<const N: usize>(y: &mut [f64; N], at: usize, x: &Vec3) {
     y[at..at + 3].copy_from_slice(x.as_slice());
 }
 
 impl<const N: usize, const Q: usize, const P: usize> Rates<N, Q, P> {
     /// Nothing changes.
     pub(in crate::solver) const NONE: Self =
-        Self { y: [0.0; N], q: [0.0; Q], kinks: [[0.0; 2]; P] };
+        Self { y: [0.0; N], q: [0.0; Q], switching: [[0.0; 2]; P] };
 }
 
-/// Something that changes.
+/// A system of ordinary differential equations.
 pub(in crate::solver) trait Flow<const N: usize, const Q: usize, const P: usize> {
-    /// Writes the rates at the time of stage `node` over `to`.
+    /// Writes the rates at the time of stage `node` into `to`.
     fn rates(&mut self, node: usize, y: &[f64; N], to: &mut Rates<N, Q, P>);
-    /// Square of a local error over the one allowed.
+    /// Squared norm of a local error over the allowed one.
     fn size2(&self, off: &[f64; N]) -> f64;
 }
 
-/// Whether an element slips, or has opened, that asks for so much, squared, under a cap.
+/// Whether an element with this squared trial value and cap slips, or is open.
 #[inline]
-pub(in crate::solver) fn slips([asked2, cap]: [f64; 2]) -> bool {
-    asked2 > cap * cap
+pub(in crate::solver) fn slips([trial2, cap]: [f64; 2]) -> bool {
+    trial2 > cap * cap
 }
 
-/// By how much it is over its cap.
+/// Trial value less the cap.
 #[inline]
-pub(in crate::solver) fn over([asked2, cap]: [f64; 2]) -> f64 {
-    asked2.sqrt() - cap
+pub(in crate::solver) fn excess([trial2, cap]: [f64; 2]) -> f64 {
+    trial2.sqrt() - cap
 }
 
-/// Adds what a step has summed up.
+/// Adds the quadratures of a step.
 #[inline]
-pub(in crate::solver) fn sum_up<const Q: usize>(sums: &mut [f64; Q], more: &[f64; Q]) {
+pub(in crate::solver) fn add_sums<const Q: usize>(sums: &mut [f64; Q], more: &[f64; Q]) {
     for (sum, more) in sums.iter_mut().zip(more) {
         *sum += more;
     }
 }
 
-/// A step tried.
+/// A trial step.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::solver) struct Tried<const N: usize, const Q: usize> {
+pub(in crate::solver) struct TrialResult<const N: usize, const Q: usize> {
     pub(in crate::solver) y: [f64; N],
     pub(in crate::solver) q: [f64; Q],
-    /// Square of its local error over the one allowed.
+    /// Squared norm of its local error over the allowed one.
     pub(in crate::solver) error2: f64,
 }
 
-/// What comes of trying a step.
+/// Outcome of a trial step.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::solver) enum Attempt<const N: usize, const Q: usize> {
-    /// It holds no kink that is felt.
-    Whole(Tried<N, Q>),
-    /// It should end after this share of it (–): an element begins to slip, to stick or to open there.
+    /// It contains no significant switching point.
+    Whole(TrialResult<N, Q>),
+    /// It should end after this share of it (–): an element begins to slip, to stick or to open
+    /// there.
     Cut(f64),
 }
 
-/// The stages of a step, the first at its start: kept from step to step, so that none is copied.
+/// The stages of a step, the first at its start; the storage is reused from step to step, so that
+/// none is copied.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::solver) struct Stages<const N: usize, const Q: usize, const P: usize>(
     [Rates<N, Q, P>; 7],
 );
 
-/// Stages up to the one at four fifths of the step: a kink among them is found before the others are asked for.
-const EARLY: usize = 4;
+/// Stages up to the one at four fifths of the step: a switching point among them is found before
+/// the others are evaluated.
+const EARLY_STAGES: usize = 4;
 
 impl<const N: usize, const Q: usize, const P: usize> Stages<N, Q, P> {
     /// None yet.
@@ -137,13 +142,13 @@ impl<const N: usize, const Q: usize, const P: usize> Stages<N, Q, P> {
         &mut self.0[0]
     }
 
-    /// The step's end is the start of the next.
-    pub(in crate::solver) fn pass(&mut self) {
+    /// Makes the last stage the first of the next step (first same as last).
+    pub(in crate::solver) fn reuse_last(&mut self) {
         self.0[0] = self.0[6];
     }
 
-    /// Tries a step of length `h` from `y`, at whose rates the first stage stands; `felt` is the error allowed, from which a
-    /// kink is told, `None` if none is looked for.
+    /// Tries a step of length `h` from `y`, whose rates are in the first stage. `felt` is the
+    /// allowed error, by which switching points are judged; `None` if none are searched for.
     #[inline]
     pub(in crate::solver) fn step(
         &mut self,
@@ -153,8 +158,9 @@ impl<const N: usize, const Q: usize, const P: usize> Stages<N, Q, P> {
         felt: Option<f64>,
     ) -> Attempt<N, Q> {
         self.begin(flow, y, h);
-        // a kink in the first four fifths is found before the last three stages are paid for
-        if let Some(cut) = felt.and_then(|allowed| self.cut(EARLY, h, allowed)) {
+        // a switching point in the first four fifths is found before the last three stages are
+        // evaluated
+        if let Some(cut) = felt.and_then(|allowed| self.cut(EARLY_STAGES, h, allowed)) {
             return Attempt::Cut(cut);
         }
         let tried = self.finish(flow, y, h);
@@ -162,14 +168,15 @@ impl<const N: usize, const Q: usize, const P: usize> Stages<N, Q, P> {
         cut.map_or(Attempt::Whole(tried), Attempt::Cut)
     }
 
-    /// Tries a step of length `h` from `y`, at whose rates the first stage stands, that has no kinks.
+    /// Tries a step of length `h` from `y`, whose rates are in the first stage, without switching
+    /// points.
     #[inline]
     pub(in crate::solver) fn smooth_step(
         &mut self,
         flow: &mut impl Flow<N, Q, P>,
         y: &[f64; N],
         h: f64,
-    ) -> Tried<N, Q> {
+    ) -> TrialResult<N, Q> {
         self.begin(flow, y, h);
         self.finish(flow, y, h)
     }
@@ -178,89 +185,95 @@ impl<const N: usize, const Q: usize, const P: usize> Stages<N, Q, P> {
     #[inline]
     fn begin(&mut self, flow: &mut impl Flow<N, Q, P>, y: &[f64; N], h: f64) {
         let [k1, k2, k3, k4, ..] = &mut self.0;
-        flow.rates(1, &mixed(y, h, [&k1.y], A2), k2);
-        flow.rates(2, &mixed(y, h, [&k1.y, &k2.y], A3), k3);
-        flow.rates(3, &mixed(y, h, [&k1.y, &k2.y, &k3.y], A4), k4);
+        flow.rates(1, &combined(y, h, [&k1.y], A2), k2);
+        flow.rates(2, &combined(y, h, [&k1.y, &k2.y], A3), k3);
+        flow.rates(3, &combined(y, h, [&k1.y, &k2.y, &k3.y], A4), k4);
     }
 
-    /// The last three, and what comes of the step.
+    /// The last three stages, and the result of the step.
     #[inline]
-    fn finish(&mut self, flow: &mut impl Flow<N, Q, P>, y: &[f64; N], h: f64) -> Tried<N, Q> {
+    fn finish(&mut self, flow: &mut impl Flow<N, Q, P>, y: &[f64; N], h: f64) -> TrialResult<N, Q> {
         let [k1, k2, k3, k4, k5, k6, k7] = &mut self.0;
-        flow.rates(4, &mixed(y, h, [&k1.y, &k2.y, &k3.y, &k4.y], A5), k5);
-        flow.rates(5, &mixed(y, h, [&k1.y, &k2.y, &k3.y, &k4.y, &k5.y], A6), k6);
-        let end = mixed(y, h, [&k1.y, &k3.y, &k4.y, &k5.y, &k6.y], B);
+        flow.rates(4, &combined(y, h, [&k1.y, &k2.y, &k3.y, &k4.y], A5), k5);
+        flow.rates(5, &combined(y, h, [&k1.y, &k2.y, &k3.y, &k4.y, &k5.y], A6), k6);
+        let end = combined(y, h, [&k1.y, &k3.y, &k4.y, &k5.y, &k6.y], B);
         // the seventh stage is at the step's end: it serves the error, and opens the next step
         flow.rates(5, &end, k7);
-        let off = mixed(&[0.0; N], h, [&k1.y, &k3.y, &k4.y, &k5.y, &k6.y, &k7.y], E);
-        Tried {
+        let off = combined(&[0.0; N], h, [&k1.y, &k3.y, &k4.y, &k5.y, &k6.y, &k7.y], E);
+        TrialResult {
             y: end,
-            q: mixed(&[0.0; Q], h, [&k1.q, &k3.q, &k4.q, &k5.q, &k6.q], B),
+            q: combined(&[0.0; Q], h, [&k1.q, &k3.q, &k4.q, &k5.q, &k6.q], B),
             error2: flow.size2(&off),
         }
     }
 
-    /// What elements ask for, squared, and their caps, at the stages of the step: the first at its start, the last at its end.
-    pub(in crate::solver) fn kinks(&self) -> [&[[f64; 2]; P]; 7] {
-        self.0.each_ref().map(|stage| &stage.kinks)
+    /// Squared trial values and caps of the elements at the stages of the step: the first at its
+    /// start, the last at its end.
+    pub(in crate::solver) fn switching(&self) -> [&[[f64; 2]; P]; 7] {
+        self.0.each_ref().map(|stage| &stage.switching)
     }
 }
 
-/// A step between its ends, of order 4.
+/// Dense output of a step, of order 4.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::solver) struct Between<const M: usize> {
+pub(in crate::solver) struct DenseOutput<const M: usize> {
     from: [f64; M],
-    whole: [f64; M],
-    /// What bends it at its start, at its end, and beyond the cubic of both.
-    begins: [f64; M],
-    ends: [f64; M],
-    bent: [f64; M],
+    difference: [f64; M],
+    /// Corrections by the rate at its start, by the rate at its end, and beyond the cubic of both.
+    start_bend: [f64; M],
+    end_bend: [f64; M],
+    quartic: [f64; M],
 }
 
-impl<const M: usize> Between<M> {
-    /// From one place to another in a step of length `h` with the rates `k` of its first, third … seventh stage.
+impl<const M: usize> DenseOutput<M> {
+    /// From one state to another in a step of length `h`, with the rates `k` of its first, third …
+    /// seventh stage.
     #[inline]
     fn of((from, to): (&[f64; M], &[f64; M]), k: [&[f64; M]; 6], h: f64) -> Self {
         let [first, .., last] = k;
-        let bent = mixed(&[0.0; M], h, k, D);
-        let whole: [f64; M] = std::array::from_fn(|i| to[i] - from[i]);
-        let begins: [f64; M] = std::array::from_fn(|i| h * first[i] - whole[i]);
-        let ends = std::array::from_fn(|i| whole[i] - h * last[i] - begins[i]);
-        Self { from: *from, whole, begins, ends, bent }
+        let quartic = combined(&[0.0; M], h, k, D);
+        let difference: [f64; M] = std::array::from_fn(|i| to[i] - from[i]);
+        let start_bend: [f64; M] = std::array::from_fn(|i| h * first[i] - difference[i]);
+        let end_bend = std::array::from_fn(|i| difference[i] - h * last[i] - start_bend[i]);
+        Self { from: *from, difference, start_bend, end_bend, quartic }
     }
 
     /// After this `share` of the step (–).
     #[inline]
     pub(in crate::solver) fn at(&self, share: f64) -> [f64; M] {
-        let (Self { from, whole, begins, ends, bent }, left) = (self, 1.0 - share);
+        let (Self { from, difference, start_bend, end_bend, quartic }, left) = (self, 1.0 - share);
         std::array::from_fn(|i| {
-            let curve = begins[i] + share * (ends[i] + left * bent[i]);
-            from[i] + share * (whole[i] + left * curve)
+            let curve = start_bend[i] + share * (end_bend[i] + left * quartic[i]);
+            from[i] + share * (difference[i] + left * curve)
         })
     }
 }
 
 impl<const N: usize, const Q: usize, const P: usize> Stages<N, Q, P> {
-    /// A step of length `h` from `y` between its ends.
-    pub(in crate::solver) fn between(
+    /// Dense output of a step of length `h` from `y`.
+    pub(in crate::solver) fn dense_output(
         &self,
-        (y, tried): (&[f64; N], &Tried<N, Q>),
+        (y, tried): (&[f64; N], &TrialResult<N, Q>),
         h: f64,
-    ) -> Between<N> {
+    ) -> DenseOutput<N> {
         let [k1, _, k3, k4, k5, k6, k7] = &self.0;
-        Between::of((y, &tried.y), [&k1.y, &k3.y, &k4.y, &k5.y, &k6.y, &k7.y], h)
+        DenseOutput::of((y, &tried.y), [&k1.y, &k3.y, &k4.y, &k5.y, &k6.y, &k7.y], h)
     }
 
-    /// What it has summed up, from 0.
-    pub(in crate::solver) fn sums_between(&self, tried: &Tried<N, Q>, h: f64) -> Between<Q> {
+    /// Dense output of its quadratures, from 0.
+    pub(in crate::solver) fn dense_sums(
+        &self,
+        tried: &TrialResult<N, Q>,
+        h: f64,
+    ) -> DenseOutput<Q> {
         let [k1, _, k3, k4, k5, k6, k7] = &self.0;
-        Between::of((&[0.0; Q], &tried.q), [&k1.q, &k3.q, &k4.q, &k5.q, &k6.q, &k7.q], h)
+        DenseOutput::of((&[0.0; Q], &tried.q), [&k1.q, &k3.q, &k4.q, &k5.q, &k6.q, &k7.q], h)
     }
 }
 
 /// `y + h Σ a k`.
 #[inline]
-fn mixed<const N: usize, const K: usize>(
+fn combined<const N: usize, const K: usize>(
     y: &[f64; N],
     h: f64,
     k: [&[f64; N]; K],
@@ -279,51 +292,54 @@ fn mixed<const N: usize, const K: usize>(
 /// Safety factor of the next step (–).
 const SAFETY: f64 = 0.85;
 
-/// By how much the next step may be longer.
-/// `clamp(0.85 err^(−1/4), 0.2, 4)`, with `err² = error2`.
+/// Growth factor of the next step: `clamp(0.85 err^(−1/4), 0.2, 4)`, with `err² = error2`.
 #[inline]
 pub(in crate::solver) fn growth(error2: f64) -> f64 {
-    // The fourth root, between those of the orders 4 and 5 for little more than three roots.
+    // Between the exponents of orders 4 and 5: the fourth root takes hardly more than three square
+    // roots.
     let root = error2.sqrt().sqrt().sqrt();
     if root * RATIO.1 <= SAFETY { RATIO.1 } else { (SAFETY / root).max(RATIO.0) }
 }
 
-/// A kink nearer to an end of a step than this share of it is not looked for (–) …
-const AT_AN_END: (f64, f64) = (0.02, 0.98);
-/// … and one found is passed by this share, so that it lies in the shorter step (–).
-const PAST: f64 = 1.01;
-/// A kink is cut at where what is beyond it, times the step, is more than so many errors allowed (–): the pair's own estimate
-/// may not see it.
-const FELT: f64 = 20.0;
+/// A switching point outside these shares of a step is ignored (–): too near to one of its ends.
+const INTERIOR: (f64, f64) = (0.02, 0.98);
+/// A step is cut behind a switching point by this factor, so that the point lies in the shorter
+/// step (–).
+const OVERSHOOT: f64 = 1.01;
+/// A step is cut at a switching point if the excess beyond it, times the step, is more than this
+/// number of allowed errors (–): the error estimate of the pair may not see it.
+const CUT_THRESHOLD: f64 = 20.0;
 
 impl<const N: usize, const Q: usize, const P: usize> Stages<N, Q, P> {
-    /// At which share of the step of length `h` it should end instead (–), because an element begins to slip, to stick or to
-    /// open there, and not little beyond it; by the first `known` stages.
+    /// Share of the step of length `h` at which it should end (–), because an element begins to
+    /// slip, to stick or to open there and goes well beyond; by the first `known` stages.
     #[inline]
     fn cut(&self, known: usize, h: f64, allowed: f64) -> Option<f64> {
         let mut cut: Option<f64> = None;
-        for (k, first) in self.0[0].kinks.into_iter().map(slips).enumerate() {
-            if self.0[1..known].iter().any(|stage| slips(stage.kinks[k]) != first) {
-                let (at, beyond) = self.kink(k, known);
-                let is_felt = at > AT_AN_END.0 && at < AT_AN_END.1 && beyond * h > FELT * allowed;
+        for (k, first) in self.0[0].switching.into_iter().map(slips).enumerate() {
+            if self.0[1..known].iter().any(|stage| slips(stage.switching[k]) != first) {
+                let (at, beyond) = self.crossing(k, known);
+                let is_felt =
+                    at > INTERIOR.0 && at < INTERIOR.1 && beyond * h > CUT_THRESHOLD * allowed;
                 if is_felt && cut.is_none_or(|cut| at < cut) {
                     cut = Some(at);
                 }
             }
         }
-        cut.map(|at| at * PAST)
+        cut.map(|at| at * OVERSHOOT)
     }
 
-    /// Where in the step element `k` first crosses its cap, and how far beyond it gets, by the first `known` stages.
+    /// Share of the step at which element `k` first crosses its cap, and its largest excess beyond,
+    /// by the first `known` stages.
     ///
-    /// Linear between stages; the shorter step finds it again, nearer.
-    fn kink(&self, k: usize, known: usize) -> (f64, f64) {
-        // what is asked less the cap: above 0 it slips, or the contact is open
-        let over = |stage: &Rates<N, Q, P>| over(stage.kinks[k]);
-        let first = over(&self.0[0]);
+    /// Linear between stages; the shorter step finds it again, more accurately.
+    fn crossing(&self, k: usize, known: usize) -> (f64, f64) {
+        // trial value less the cap: above 0 the element slips, or the contact is open
+        let excess_of = |stage: &Rates<N, Q, P>| excess(stage.switching[k]);
+        let first = excess_of(&self.0[0]);
         let (mut before, mut at, mut found, mut beyond) = (first, 0.0, None, 0.0f64);
         for (stage, node) in self.0[..known].iter().zip(NODES.into_iter().chain([1.0])).skip(1) {
-            let here = over(stage);
+            let here = excess_of(stage);
             if (here > 0.0) != (first > 0.0) {
                 beyond = beyond.max(here.abs());
                 let share = before / (before - here);
@@ -331,7 +347,8 @@ impl<const N: usize, const Q: usize, const P: usize> Stages<N, Q, P> {
             }
             (before, at) = (here, node);
         }
-        // a kink hardly left at the start is hardly felt: the lesser of both sides counts
+        // if the step starts close to the cap the switching has little effect: the lesser excess of
+        // both sides counts
         (found.unwrap_or(1.0), beyond.min(first.abs()))
     }
 }
@@ -364,7 +381,7 @@ mod tests {
                 unreachable!("nothing is cut where nothing is felt")
             };
             let (place, sums) =
-                (stages.between((&start, &tried), h), stages.sums_between(&tried, h));
+                (stages.dense_output((&start, &tried), h), stages.dense_sums(&tried, h));
             assert_eq!((place.at(0.0), sums.at(0.0)), (start, [0.0]));
             assert!((place.at(1.0)[0] - tried.y[0]).abs() < 1e-15);
             assert!((sums.at(1.0)[0] - tried.q[0]).abs() < 1e-15);

@@ -1,4 +1,4 @@
-//! The limit of stiff springs: contacts whose geometry does not change while the impact lasts.
+//! The limit of stiff springs: impacts of frozen geometry.
 //!
 //! ```text
 //! c' = v,   v' = Σ (F n − q)/m,   R ω' = (m R²/I) Σ (n × q − M/R)/m
@@ -6,29 +6,33 @@
 //! ```
 //!
 //! in units of mass, `|v|`, `R` and `1/ω` of the stiffest contact; normals are fixed, so `x` is
-//! linear in the way.
+//! linear in the displacement.
 //!
-//! Ratios of stiffness stay as `p_N` grows, and with them the outcome: what is computed here is the
-//! limit itself, not a large stiffness. The penetration goes to 0 in it, so weight, the turn of
-//! normals and the time of the impact do not matter.
+//! Ratios of stiffness stay constant as `p_N` grows, and with them the outcome: the limit itself is
+//! computed, not a large stiffness. The penetration goes to 0 in it, so weight, the rotation of
+//! normals and the duration of the impact have no effect.
 
 mod bodies;
 mod contacts;
 mod rates;
+mod unchanged_motion;
 
-use super::dormand_prince::{Attempt, Stages, growth, sum_up};
-use super::plane::{LOCAL, Plane};
-use super::{ImpactEffort, Settled, StepLength};
+use super::dormand_prince::{Attempt, Stages, add_sums, growth};
+use super::plane::{LOCAL_ERROR, Plane};
+use super::{ImpactEffort, ImpactOutcome, StepLength};
 use crate::contact::MAX_CONTACTS;
 use crate::ground::Law;
 use crate::math;
 use crate::rock::Vec3;
 use crate::solver::body::{Body, STILL, Twist};
 use crate::solver::loss::{Loss, scale_to_total};
-pub(crate) use bodies::{BODIES, CONTACTS, FrozenCollision, collide, most_unlike};
+pub(crate) use bodies::{
+    BODIES, CONTACTS, FrozenCollision, frozen_collision, largest_followed_ratio,
+};
 use contacts::{AfterImpact, SwitchTime};
 use rates::ContactRates;
 use std::f64::consts::TAU;
+use unchanged_motion::UnchangedMotion;
 
 /// One contact of a frozen impact.
 #[derive(Debug, Clone, Copy)]
@@ -39,22 +43,23 @@ pub(crate) struct FrozenContact<'a> {
     pub(crate) law: &'a Law,
     /// Normal stiffness over `p_N` (–): `|a|²` of a patch.
     pub(crate) stiffness_scale: f64,
-    /// Whether it gives nothing back.
+    /// Whether it does not rebound.
     pub(crate) captured: bool,
-    /// Gap (m) that is left when the impact begins, 0 or more: springs that are pressed for long enough close it. Of several bodies only.
+    /// Gap (m) at the start of the impact, ≥ 0: springs that are compressed for long enough close
+    /// it. Of several bodies only.
     pub(crate) gap_m: f64,
-    /// What it joins.
+    /// The bodies that it joins.
     pub(crate) ends: ContactEnds,
 }
 
-/// What a contact of a frozen impact joins.
+/// The bodies that a contact of a frozen impact joins.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ContactEnds {
-    /// Place of the body into which its normal points.
+    /// Index of the body into which its normal points.
     pub(crate) first: usize,
-    /// Place of the other, `None` for the mesh.
+    /// Index of the other body, `None` for the mesh.
     pub(crate) second: Option<usize>,
-    /// Distances from their centres to the common point that is touched, over their radii (–).
+    /// Distances from their centres to the common contact point, over their radii (–).
     pub(crate) levers: [f64; 2],
 }
 
@@ -62,8 +67,8 @@ impl ContactEnds {
     /// The first body and the mesh.
     pub(crate) const MESH: Self = Self { first: 0, second: None, levers: [1.0; 2] };
 
-    /// Mass that it moves (kg): that of a body, or the reduced mass of two.
-    fn moved_kg(&self, bodies: &[FrozenBody]) -> f64 {
+    /// Effective mass (kg): that of a body, or the reduced mass of two.
+    fn effective_mass_kg(&self, bodies: &[FrozenBody]) -> f64 {
         let mass_kg = |k: usize| bodies[k].body.mass;
         match self.second {
             Some(second) => 1.0 / (1.0 / mass_kg(self.first) + 1.0 / mass_kg(second)),
@@ -71,7 +76,7 @@ impl ContactEnds {
         }
     }
 
-    /// Whether two contacts with the mesh are of one body, which share their dashpots.
+    /// Whether two contacts are of one body with the mesh: they share their dashpots.
     fn shares_with(&self, other: &Self) -> bool {
         self.second.is_none() && other.second.is_none() && self.first == other.first
     }
@@ -119,39 +124,47 @@ pub(crate) struct FrozenRebound {
     pub(crate) velocity_m_s: Vec3,
     /// Spin (rad/s).
     pub(crate) spin_rad_s: Vec3,
-    /// Energy lost (J) by contact and kind, each ≥ 0: together exactly the energy before less that after.
+    /// Energy lost (J) by contact and kind, each ≥ 0: together exactly the energy before less that
+    /// after.
     pub(crate) loss: [Loss; MAX_CONTACTS],
     /// How it ended.
-    pub(crate) settled: Settled,
+    pub(crate) settled: ImpactOutcome,
     /// What it cost.
     pub(crate) effort: ImpactEffort,
 }
 
-/// Tolerance of one contact over that of several (–): it costs little.
-const OF_ONE: f64 = 0.5;
-/// First step at a tolerance of 1 (radians of the stiffest contact): the local error of order 5 is about (h/this)⁵.
-const OPENING: f64 = 3.5;
-/// No step is longer, in radians of the stiffest contact …
+/// Tolerance of a single contact over that of several (–): it is cheap.
+const SINGLE_TOLERANCE: f64 = 0.5;
+/// First step at a tolerance of 1 (radians of the stiffest contact): the local error of order 5 is
+/// about (h/this)⁵.
+const FIRST_STEP: f64 = 3.5;
+/// Longest step (radians of the stiffest contact).
 const LONGEST_STEP: f64 = 0.9;
-/// A step shorter than this is not cut at a kink (radians).
+/// A step up to this is not cut at a switching point (radians).
 const SHORTEST_CUT: f64 = 1e-9;
-/// An approach slower than this share of the error allowed is none (–).
-pub(in crate::solver) const NOTHING: f64 = 1e-3;
-/// Radians of the slowest swing, of the heaviest body on the softest contact, flights between touches apart, after which an impact is ended: rattling
-/// between walls has no other end.
+/// An approach slower than this share of the allowed error is zero (–).
+pub(in crate::solver) const NEGLIGIBLE: f64 = 1e-3;
+/// Radians of the slowest oscillation, that of the heaviest body on the softest contact, after
+/// which an impact is ended, flights between contacts not counted: rattling between walls has no
+/// other end.
 const MOST_TIME: f64 = 300.0;
-/// Longest flight to a gap that closes within an impact, in radians of the softest contact: what has let go is still near for as long again as it was pressed.
+/// Longest flight to a gap that closes within an impact, in radians of the softest contact: a
+/// contact that has opened counts as near for as long again as it was closed.
 pub(crate) const LONGEST_WAIT: f64 = TAU;
-/// A rock whose motion changes by no more than so many errors allowed over a swing of the softest contact is jammed (–).
-const QUIET: f64 = 3.0;
-/// Steps after which it is ended.
+/// A rock whose motion changes by at most this number of allowed errors over a period of the
+/// softest contact is jammed (–).
+const JAMMED_ERRORS: f64 = 3.0;
+/// Steps after which an impact is ended.
 const MOST_STEPS: u32 = 20_000;
 
-/// Follows one rock with velocity `v` (m/s) and spin `w` (rad/s) through an impact on all `contacts` (1 … [`MAX_CONTACTS`], the
-/// others are ignored) at once, each of them at penetration zero; `tolerance` is relative to `|v|` (–).
+/// Integrates the impact of one rock with velocity `v` (m/s) and spin `w` (rad/s) on all `contacts`
+/// (1 … [`MAX_CONTACTS`]) at once, each of them at penetration zero; `tolerance` is relative to `|v|` (–).
+///
+/// # Panics
+/// Never: contacts beyond [`MAX_CONTACTS`] are ignored.
 ///
 /// Cost: one contact is a closed form and a short integration; several are followed step by step.
-pub(crate) fn throw(
+pub(crate) fn frozen_impact(
     body: &Body,
     contacts: &[FrozenContact],
     (v, w): (&Vec3, &Vec3),
@@ -163,32 +176,37 @@ pub(crate) fn throw(
         velocity_m_s: *v,
         spin_rad_s: *w,
         loss: [Loss::default(); MAX_CONTACTS],
-        settled: Settled::Free,
+        settled: ImpactOutcome::Free,
         effort: ImpactEffort::default(),
     };
-    // nothing comes nearer: no impact
+    // no contact closes: no impact
     if contacts.iter().all(|contact| contact.normal.dot(v) >= 0.0) {
         return same;
     }
     if let [contact] = contacts {
-        return alone(body, contact, (v, w), tolerance, same);
+        return single_contact(body, contact, (v, w), tolerance, same);
     }
     let rolls = contacts.iter().any(|contact| contact.law.rolling.is_on());
     let how = (body, contacts, tolerance);
-    // numbers of contacts and springs are constants: loops on the stack
+    // the numbers of contacts and springs are constants: arrays on the stack
     match (contacts.len(), rolls) {
-        (2, false) => several::<2, 15, 8, 6>(how, (v, w), same),
-        (2, true) => several::<2, 21, 8, 6>(how, (v, w), same),
-        (3, false) => several::<3, 18, 12, 9>(how, (v, w), same),
-        (3, true) => several::<3, 27, 12, 9>(how, (v, w), same),
-        (4, false) => several::<4, 21, 16, 12>(how, (v, w), same),
-        (4, true) => several::<4, 33, 16, 12>(how, (v, w), same),
-        _ => several::<N, { 9 + 6 * N }, { 4 * N }, { 3 * N }>(how, (v, w), same),
+        (2, false) => several_contacts::<2, 15, 8, 6>(how, (v, w), same),
+        (2, true) => several_contacts::<2, 21, 8, 6>(how, (v, w), same),
+        (3, false) => several_contacts::<3, 18, 12, 9>(how, (v, w), same),
+        (3, true) => several_contacts::<3, 27, 12, 9>(how, (v, w), same),
+        (4, false) => several_contacts::<4, 21, 16, 12>(how, (v, w), same),
+        (4, true) => several_contacts::<4, 33, 16, 12>(how, (v, w), same),
+        _ => several_contacts::<
+            MAX_CONTACTS,
+            { 9 + 6 * MAX_CONTACTS },
+            { 4 * MAX_CONTACTS },
+            { 3 * MAX_CONTACTS },
+        >(how, (v, w), same),
     }
 }
 
 /// One contact: the impact on a plane without weight.
-fn alone(
+fn single_contact(
     body: &Body,
     contact: &FrozenContact,
     (v, w): (&Vec3, &Vec3),
@@ -197,9 +215,9 @@ fn alone(
 ) -> FrozenRebound {
     let body = Body { gravity: Vec3::zeros(), ..*body };
     let (law, n) = (contact.law, &contact.normal);
-    // one that gives nothing back is damped over critical, and its rest of rebound taken away below
+    // a captured contact is damped over critical, and its remaining rebound is removed below
     let point = (contact.captured, contact.stiffness_scale);
-    let plane = Plane::of_patch(&body, law, point, OF_ONE * tolerance);
+    let plane = Plane::of_patch(&body, law, point, SINGLE_TOLERANCE * tolerance);
     let Some(rebound) = plane.follow(n, v, w) else {
         // Without weight nothing keeps it but a speed too small to be squared.
         end.velocity_m_s -= n * n.dot(v);
@@ -215,8 +233,9 @@ fn alone(
     end
 }
 
-/// Several contacts; `K` of them at most, `N` numbers that change, `Q` that are summed up, `P` possible kinks.
-fn several<const K: usize, const N: usize, const Q: usize, const P: usize>(
+/// Several contacts; at most `K` of them, `N` state variables, `Q` quadratures, `P` switching
+/// functions.
+fn several_contacts<const K: usize, const N: usize, const Q: usize, const P: usize>(
     (body, contacts, tolerance): (&Body, &[FrozenContact], f64),
     (v, w): (&Vec3, &Vec3),
     mut end: FrozenRebound,
@@ -230,8 +249,8 @@ fn several<const K: usize, const N: usize, const Q: usize, const P: usize>(
     end.effort = run.effort;
     let [place] = run.motions();
     let AfterImpact { motions: [place], plastic } =
-        run.flow.contacts.come_to_an_end(start, place, run.flow.nothing());
-    // exact energy of the impact; the summed parts only say where it went
+        run.flow.contacts.finish(start, place, run.flow.negligible());
+    // exact energy of the impact; the quadratures only distribute it
     let lost = run.flow.contacts.energy(0, start) - run.flow.contacts.energy(0, place);
     let loss_j = run.loss_j(lost.max(0.0) * (body.mass * speed * speed), plastic);
     end.loss[..K].copy_from_slice(&loss_j);
@@ -239,7 +258,7 @@ fn several<const K: usize, const N: usize, const Q: usize, const P: usize>(
     end
 }
 
-/// An impact being followed.
+/// An impact during its integration.
 struct ImpactRun<const B: usize, const K: usize, const N: usize, const Q: usize, const P: usize> {
     flow: ContactRates<B, K>,
     y: [f64; N],
@@ -250,7 +269,7 @@ struct ImpactRun<const B: usize, const K: usize, const N: usize, const Q: usize,
 impl<const B: usize, const K: usize, const N: usize, const Q: usize, const P: usize>
     ImpactRun<B, K, N, Q, P>
 {
-    /// At the first touch, with `speed` (m/s) for a unit.
+    /// At first contact, with `speed` (m/s) as the unit.
     fn new(
         (bodies, contacts): (&[FrozenBody], &[FrozenContact]),
         speed: f64,
@@ -258,40 +277,43 @@ impl<const B: usize, const K: usize, const N: usize, const Q: usize, const P: us
     ) -> Self {
         let motion = |k: usize| bodies.get(k).map_or(STILL, |body| body.in_units(speed));
         Self {
-            flow: ContactRates::new((bodies, contacts), speed, LOCAL * tolerance),
-            y: rates::begun(&std::array::from_fn::<_, B, _>(motion)),
+            flow: ContactRates::new((bodies, contacts), speed, LOCAL_ERROR * tolerance),
+            y: rates::initial_state(&std::array::from_fn::<_, B, _>(motion)),
             sums: [0.0; Q],
             effort: ImpactEffort::default(),
         }
     }
 
-    /// Steps until nothing pushes and nothing comes nearer.
+    /// Steps until no contact pushes and none closes.
     ///
-    /// A rock may fly between touches of one impact (a wedge): a closed form that costs no time.
-    fn follow(&mut self, tolerance: f64) -> Settled {
-        let (mut step, mut time) = (StepLength::new(OPENING * math::pow(tolerance, 0.2)), 0.0);
+    /// A rock may fly between the contacts of one impact (a wedge): a closed form at no cost.
+    fn follow(&mut self, tolerance: f64) -> ImpactOutcome {
+        let (mut step, mut time) = (StepLength::new(FIRST_STEP * math::pow(tolerance, 0.2)), 0.0);
         let softest = self.flow.contacts.softest;
-        let (most, mut quiet) = (MOST_TIME / self.flow.contacts.slowest_swing(), Quiet::<B>::NONE);
-        // Whether the contacts have been changed without a step: once is enough.
-        let mut turned = false;
-        self.flow.press(&mut self.y);
+        let (most, mut unchanged) =
+            (MOST_TIME / self.flow.contacts.lowest_frequency(), UnchangedMotion::<B>::NONE);
+        // Whether the set of closed contacts has been switched without a step: once is enough.
+        let mut switched = false;
+        self.flow.update_pressed(&mut self.y);
         let mut stages = Stages::<N, Q, P>::NONE;
         self.flow.rates_of(&self.y, stages.first());
         loop {
-            self.note();
+            self.record_approaches();
             if time > most || self.effort.steps + self.effort.rejected > MOST_STEPS {
-                return Settled::OutOfTime;
+                return ImpactOutcome::OutOfTime;
             }
             if self.flow.is_free(&self.y) {
-                let Some(wait) = self.flow.next_touch(&self.y) else { return Settled::Free };
-                // Exact and free of cost: not counted.
+                let Some(wait) = self.flow.next_touch(&self.y) else { return ImpactOutcome::Free };
+                // Exact and free of cost: its time is not counted.
                 self.flow.drift(&mut self.y, wait);
                 self.effort.steps += 1;
                 self.flow.rates_of(&self.y, stages.first());
                 continue;
             }
-            if quiet.stays(&self.motions(), time, QUIET * self.flow.allowed) > TAU / softest {
-                return Settled::Jammed;
+            if unchanged.unchanged_for(&self.motions(), time, JAMMED_ERRORS * self.flow.allowed)
+                > TAU / softest
+            {
+                return ImpactOutcome::Jammed;
             }
             let h = step.wish.min(self.flow.longest);
             let felt = (h > SHORTEST_CUT).then_some(self.flow.allowed);
@@ -309,10 +331,10 @@ impl<const B: usize, const K: usize, const N: usize, const Q: usize, const P: us
                 }
             };
             // a contact that opens or closes within the step ends it: dashpots are shared anew
-            // among those that are pressed
+            // among the closed contacts
             match self.flow.crossing(&self.y, &tried.y, h) {
-                Some(SwitchTime::Now) if !turned => {
-                    turned = true;
+                Some(SwitchTime::Now) if !switched => {
+                    switched = true;
                     self.flow.rates_of(&self.y, stages.first());
                 }
                 Some(SwitchTime::At(share)) => {
@@ -320,16 +342,16 @@ impl<const B: usize, const K: usize, const N: usize, const Q: usize, const P: us
                     step.cut(h, share);
                 }
                 _ => {
-                    turned = false;
+                    switched = false;
                     self.y = tried.y;
-                    sum_up(&mut self.sums, &tried.q);
+                    add_sums(&mut self.sums, &tried.q);
                     time += h;
                     self.effort.steps += 1;
                     step.grow(h * growth(tried.error2));
-                    if self.flow.press(&mut self.y) {
+                    if self.flow.update_pressed(&mut self.y) {
                         self.flow.rates_of(&self.y, stages.first());
                     } else {
-                        stages.pass();
+                        stages.reuse_last();
                     }
                 }
             }
@@ -339,28 +361,28 @@ impl<const B: usize, const K: usize, const N: usize, const Q: usize, const P: us
     /// Velocities, and spins times radius.
     fn motions(&self) -> [Twist; B] {
         std::array::from_fn(|k| {
-            (rates::speed_of::<B, N>(&self.y, k), rates::spin_of::<B, N>(&self.y, k))
+            (rates::velocity_of::<B, N>(&self.y, k), rates::spin_of::<B, N>(&self.y, k))
         })
     }
 
-    /// Notes how fast the contacts that are pressed come nearer.
-    /// The fastest approach of each tells what restitution may give back of it.
-    fn note(&mut self) {
+    /// Records the approach speeds of the closed contacts. The fastest approach of each decides how
+    /// much of it restitution may return.
+    fn record_approaches(&mut self) {
         let (y, contacts) = (&self.y, &mut self.flow.contacts);
         for k in 0..contacts.list().len() {
             if self.flow.pressed[k] {
-                let approach = -contacts.parting(k, |k| rates::speed_of::<B, N>(y, k));
+                let approach = -contacts.separation(k, |k| rates::velocity_of::<B, N>(y, k));
                 contacts.fastest[k] = contacts.fastest[k].max(approach);
             }
         }
     }
 
-    /// What each contact has taken of a loss (J), as friction, dashpots and rolling have summed up along the steps and as what gave
-    /// nothing back has taken at the end.
+    /// Distributes a loss (J) over the contacts by the quadratures of friction, dashpots and
+    /// rolling, and by the energy that captured contacts absorbed at the end.
     fn loss_j(&self, lost_j: f64, plastic: [f64; K]) -> [Loss; K] {
         let mut parts = [[0.0; 3]; K];
         for ((part, sums), plastic) in parts.iter_mut().zip(self.sums.chunks(4)).zip(plastic) {
-            // none below 0: the error of the steps may make a small one negative
+            // none below 0: the integration error may make a small one negative
             let [slipping, shear, rolling, normal] = [sums[0], sums[1], sums[2], sums[3]];
             let slipping = slipping.max(0.0);
             let damping = (shear - slipping).max(0.0) + normal.max(0.0);
@@ -368,31 +390,5 @@ impl<const B: usize, const K: usize, const N: usize, const Q: usize, const P: us
         }
         scale_to_total(lost_j, parts.as_flattened_mut());
         parts.map(Loss::on_slope)
-    }
-}
-
-/// Since when the motions have not changed.
-///
-/// A rock wedged between two contacts keeps its velocity, near 0, while springs and friction hold
-/// each other: no step would end that.
-struct Quiet<const B: usize> {
-    since: f64,
-    motions: [Twist; B],
-}
-
-impl<const B: usize> Quiet<B> {
-    /// Nothing seen yet.
-    const NONE: Self = Self { since: 0.0, motions: [STILL; B] };
-
-    /// For how long velocities and spins have been the same, to `allowed`.
-    fn stays(&mut self, motions: &[Twist; B], time: f64, allowed: f64) -> f64 {
-        let change2 = |((v, w), (was_v, was_w)): (&Twist, &Twist)| {
-            (v - was_v).norm_squared().max((w - was_w).norm_squared())
-        };
-        let change2 = motions.iter().zip(&self.motions).map(change2).fold(0.0, f64::max);
-        if change2 > allowed * allowed {
-            (self.since, self.motions) = (time, *motions);
-        }
-        time - self.since
     }
 }

@@ -1,11 +1,13 @@
-//! Shear and rolling of one contact under a known force: slider in series with (spring ∥ dashpot), explicitly.
+//! Shear and rolling of one contact under a known force: slider in series with (spring ∥ dashpot),
+//! explicitly.
 //!
-//! In units of mass, radius, approach speed and `1/ω`. With `s = k ξ/c`, the speed at which the dashpot would hold what the
-//! spring holds, the law of an element reads `p = proj_{cap}(u + s)`, `s' = (k/c)(p − s)`, force `c p`: the slider slips by
-//! `u + s − p`, the dashpot moves by `p − s`.
+//! In units of mass, radius, approach speed and `1/ω`. With `s = k ξ/c`, the velocity at which the
+//! dashpot has the force of the spring, the law of an element reads `p = proj_{cap}(u + s)`,
+//! `s' = (k/c)(p − s)`, force `c p`: the slider slips by `u + s − p`, the dashpot moves by `p − s`.
 //!
-//! Why `s` and not `ξ`: it is a speed, so slip and spring add up before the projection. Losses: the slider takes `c p (u + s − p)`, the dashpot `c
-//! (p − s)²`; what is left goes into the spring.
+//! `s` is used instead of `ξ` because it is a velocity: slip and spring add up before the
+//! projection. Losses: the slider takes `c p (u + s − p)`, the dashpot `c (p − s)²`; the rest goes
+//! into the spring.
 
 use super::dormand_prince::{Rates, slips};
 use super::integrate::ForcedFlow;
@@ -53,44 +55,46 @@ impl SliderElement {
         self.damping > 0.0
     }
 
-    /// What a spring stretched by `ξ` has as a speed, `s = k ξ/c`.
+    /// The stretch `ξ` of a spring as a velocity, `s = k ξ/c`.
     pub(super) fn stretched<const N: usize>(&self, stretch: [f64; N]) -> [f64; N] {
         stretch.map(|x| x * self.rate)
     }
 
-    /// The stretch of a spring that has `s`.
+    /// The stretch of a spring from `s`.
     pub(super) fn stretch<const N: usize>(&self, s: [f64; N]) -> [f64; N] {
         if self.is_on() { s.map(|s| s / self.rate) } else { [0.0; N] }
     }
 
-    /// Energy `k ξ²/2` of the spring that has `s`.
-    pub(super) fn held(&self, s: &[f64]) -> f64 {
+    /// Energy `k ξ²/2` of a spring from `s`.
+    pub(super) fn stored(&self, s: &[f64]) -> f64 {
         let square: f64 = s.iter().map(|s| s * s).sum();
         if square > 0.0 { 0.5 * self.damping * square / self.rate } else { 0.0 }
     }
 
-    /// `p` and its shortening for what is asked, under the force `f`: `p = asked × share`, and both sizes.
+    /// Projection of a trial value under the force `f`: the factor of `p = trial × share`, the
+    /// excess over the cap, and the cap.
     #[inline]
-    pub(super) fn share(&self, asked2: f64, f: f64) -> (f64, f64, f64) {
+    pub(super) fn share(&self, trial2: f64, f: f64) -> (f64, f64, f64) {
         let cap = self.cap * f;
-        let (share, by) = Self::part(slips([asked2, cap]), [asked2, cap]);
+        let (share, by) = Self::scale(slips([trial2, cap]), [trial2, cap]);
         (share, by, cap)
     }
 
-    /// `p` and its shortening for what is asked, where it slips under a cap, or sticks: `p = asked × share`, and how much slips.
+    /// Projection of a trial value for an element that slips under a cap, or sticks: the factor of
+    /// `p = trial × share`, and the excess.
     #[inline]
-    fn part(slips: bool, [asked2, cap]: [f64; 2]) -> (f64, f64) {
+    fn scale(slips: bool, [trial2, cap]: [f64; 2]) -> (f64, f64) {
         if !slips {
             return (1.0, 0.0);
         }
-        let asked = asked2.sqrt().max(f64::MIN_POSITIVE);
-        (cap / asked, asked - cap)
+        let trial = trial2.sqrt().max(f64::MIN_POSITIVE);
+        (cap / trial, trial - cap)
     }
 }
 
 /// Shear alone: slip and spring.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Shear {
+pub(super) struct ShearFlow {
     pub(super) element: SliderElement,
     /// Mass over that of the contact point along the surface, `1 + m R²/I` (–).
     pub(super) lightness: f64,
@@ -98,19 +102,19 @@ pub(super) struct Shear {
     pub(super) gravity: [f64; 2],
 }
 
-/// Slip, spring `s`; summed up: what slipping takes, slip.
-impl ForcedFlow<4, 3, 1> for Shear {
+/// State: slip, spring `s`; quadratures: loss by slip, slip.
+impl ForcedFlow<4, 3, 1> for ShearFlow {
     #[inline]
-    fn asked(&self, f: f64, y: &[f64; 4]) -> [[f64; 2]; 1] {
-        let asked = [y[0] + y[2], y[1] + y[3]];
-        [[asked[0] * asked[0] + asked[1] * asked[1], self.element.cap * f]]
+    fn trial_values(&self, f: f64, y: &[f64; 4]) -> [[f64; 2]; 1] {
+        let trial = [y[0] + y[2], y[1] + y[3]];
+        [[trial[0] * trial[0] + trial[1] * trial[1], self.element.cap * f]]
     }
 
     #[inline]
     fn rates(&self, f: f64, y: &[f64; 4], [slips]: &[bool; 1], to: &mut Rates<4, 3, 1>) {
         let SliderElement { damping, rate, .. } = self.element;
-        let kinks = self.asked(f, y);
-        let (share, by) = SliderElement::part(*slips, kinks[0]);
+        let switching = self.trial_values(f, y);
+        let (share, by) = SliderElement::scale(*slips, switching[0]);
         let p = [y[0] + y[2], y[1] + y[3]].map(|x| x * share);
         // an impulse c p changes the slip by (1 + m R²/I) = 7/2 of it for a sphere: velocity and
         // spin both give way
@@ -123,12 +127,12 @@ impl ForcedFlow<4, 3, 1> for Shear {
                 rate * (p[0] - y[2]),
                 rate * (p[1] - y[3]),
             ],
-            q: [damping * kinks[0][1] * by, y[0], y[1]],
-            kinks,
+            q: [damping * switching[0][1] * by, y[0], y[1]],
+            switching,
         };
     }
 
-    /// Springs over their rate, so that an error of `s` counts as the stretch it means.
+    /// Springs over their rate, so that an error of `s` counts as the stretch it stands for.
     #[inline]
     fn size2(&self, off: &[f64; 4]) -> f64 {
         let over = 1.0 / self.element.rate;
@@ -139,30 +143,30 @@ impl ForcedFlow<4, 3, 1> for Shear {
 
 /// Shear alone along one line, without gravity.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Straight {
+pub(super) struct LineShearFlow {
     pub(super) element: SliderElement,
     /// Mass over that of the contact point along the surface, `1 + m R²/I` (–).
     pub(super) lightness: f64,
 }
 
-/// Slip, spring `s`; summed up: what slipping takes, slip.
-impl ForcedFlow<2, 2, 1> for Straight {
+/// State: slip, spring `s`; quadratures: loss by slip, slip.
+impl ForcedFlow<2, 2, 1> for LineShearFlow {
     #[inline]
-    fn asked(&self, f: f64, y: &[f64; 2]) -> [[f64; 2]; 1] {
-        let asked = y[0] + y[1];
-        [[asked * asked, self.element.cap * f]]
+    fn trial_values(&self, f: f64, y: &[f64; 2]) -> [[f64; 2]; 1] {
+        let trial = y[0] + y[1];
+        [[trial * trial, self.element.cap * f]]
     }
 
     #[inline]
     fn rates(&self, f: f64, y: &[f64; 2], [slips]: &[bool; 1], to: &mut Rates<2, 2, 1>) {
         let SliderElement { damping, rate, .. } = self.element;
-        let kinks = self.asked(f, y);
-        let (share, by) = SliderElement::part(*slips, kinks[0]);
+        let switching = self.trial_values(f, y);
+        let (share, by) = SliderElement::scale(*slips, switching[0]);
         let p = (y[0] + y[1]) * share;
         *to = Rates {
             y: [-self.lightness * damping * p, rate * (p - y[1])],
-            q: [damping * kinks[0][1] * by, y[0]],
-            kinks,
+            q: [damping * switching[0][1] * by, y[0]],
+            switching,
         };
     }
 
@@ -176,7 +180,7 @@ impl ForcedFlow<2, 2, 1> for Straight {
 
 /// Shear and rolling.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Both {
+pub(super) struct ShearRollingFlow {
     pub(super) shear: SliderElement,
     pub(super) rolling: SliderElement,
     /// `m R²/I` (–).
@@ -185,35 +189,42 @@ pub(super) struct Both {
     pub(super) gravity: [f64; 2],
 }
 
-impl Both {
+impl ShearRollingFlow {
     /// `u = (v_s − R ω_t, v_t + R ω_s)`, with `y[2..5] = R ω`.
     #[inline]
     fn slip(y: &[f64; 10]) -> [f64; 2] {
         [y[0] - y[3], y[1] + y[2]]
     }
 
-    /// What the shear element is asked for …
+    /// Trial value of the shear element.
     #[inline]
-    fn slip_asked(y: &[f64; 10]) -> [f64; 2] {
+    fn slip_trial(y: &[f64; 10]) -> [f64; 2] {
         let slip = Self::slip(y);
         [slip[0] + y[5], slip[1] + y[6]]
     }
 
-    /// … and the rolling one, which acts on all of the spin, that about the normal too.
+    /// Trial value of the rolling element, which acts on the whole spin, including that about the
+    /// normal.
     #[inline]
-    fn spin_asked(y: &[f64; 10]) -> [f64; 3] {
+    fn spin_trial(y: &[f64; 10]) -> [f64; 3] {
         [y[2] + y[7], y[3] + y[8], y[4] + y[9]]
     }
 }
 
-/// Velocity, spin, springs; summed up: what slipping takes, way, work of rolling and of shear.
-impl ForcedFlow<10, 5, 2> for Both {
+/// State: velocity, spin, springs; quadratures: loss by slip, displacement, work of rolling and of
+/// shear.
+impl ForcedFlow<10, 5, 2> for ShearRollingFlow {
     #[inline]
-    fn asked(&self, f: f64, y: &[f64; 10]) -> [[f64; 2]; 2] {
-        let (asked, wound) = (Self::slip_asked(y), Self::spin_asked(y));
+    fn trial_values(&self, f: f64, y: &[f64; 10]) -> [[f64; 2]; 2] {
+        let (trial, spring_spin) = (Self::slip_trial(y), Self::spin_trial(y));
         [
-            [asked[0] * asked[0] + asked[1] * asked[1], self.shear.cap * f],
-            [wound[0] * wound[0] + wound[1] * wound[1] + wound[2] * wound[2], self.rolling.cap * f],
+            [trial[0] * trial[0] + trial[1] * trial[1], self.shear.cap * f],
+            [
+                spring_spin[0] * spring_spin[0]
+                    + spring_spin[1] * spring_spin[1]
+                    + spring_spin[2] * spring_spin[2],
+                self.rolling.cap * f,
+            ],
         ]
     }
 
@@ -228,11 +239,11 @@ impl ForcedFlow<10, 5, 2> for Both {
     ) {
         let (shear, rolling) = (self.shear, self.rolling);
         let slip = Self::slip(y);
-        let kinks = self.asked(f, y);
-        let (share, by) = SliderElement::part(*slips, kinks[0]);
-        let p = Self::slip_asked(y).map(|x| x * share);
-        let (share, _) = SliderElement::part(*turns_over, kinks[1]);
-        let m = Self::spin_asked(y).map(|x| x * share);
+        let switching = self.trial_values(f, y);
+        let (share, by) = SliderElement::scale(*slips, switching[0]);
+        let p = Self::slip_trial(y).map(|x| x * share);
+        let (share, _) = SliderElement::scale(*turns_over, switching[1]);
+        let m = Self::spin_trial(y).map(|x| x * share);
         let (c, turn, g) = (shear.damping, self.turns * shear.damping, self.gravity);
         let stop = self.turns * rolling.damping;
         *to = Rates {
@@ -249,13 +260,13 @@ impl ForcedFlow<10, 5, 2> for Both {
                 rolling.rate * (m[2] - y[9]),
             ],
             q: [
-                c * kinks[0][1] * by,
+                c * switching[0][1] * by,
                 y[0],
                 y[1],
                 rolling.damping * (m[0] * y[2] + m[1] * y[3] + m[2] * y[4]),
                 c * (p[0] * slip[0] + p[1] * slip[1]),
             ],
-            kinks,
+            switching,
         };
     }
 

@@ -35,7 +35,8 @@ fn uniforms(mut seed: u64) -> impl FnMut() -> f64 {
     }
 }
 
-/// The greater difference of velocity and of spin times radius, relative to the speed of the impact.
+/// The greater difference of velocity and of spin times radius, relative to the speed of the
+/// impact.
 fn apart(body: &Body, [v, w]: [Vec3; 2], [v1, w1]: [Vec3; 2], speed: f64) -> f64 {
     (v - v1).norm().max((w - w1).norm() * body.radius) / speed
 }

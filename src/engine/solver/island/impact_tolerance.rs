@@ -16,7 +16,7 @@ use super::pair_contact::PairContact;
 use crate::contact::history::ContactHistory;
 use crate::rock::Vec3;
 use crate::solver::Settings;
-use crate::solver::impact::LOCAL;
+use crate::solver::impact::LOCAL_ERROR;
 use crate::solver::step_control::{Control, sustained_tolerance_m_s};
 use crate::solver::tableau::{ESDIRK4, TR_BDF2};
 
@@ -44,7 +44,7 @@ impl Island<'_> {
     /// The control of the next step: what the rocks may be wrong by, and by which method.
     pub(super) fn control(&mut self, settings: &Settings) -> Control {
         let usual = settings.scheme.tableau().unwrap_or(&TR_BDF2);
-        let relative = LOCAL * (IMPACT.0 * settings.tolerance_m_s).min(IMPACT.1);
+        let relative = LOCAL_ERROR * (IMPACT.0 * settings.tolerance_m_s).min(IMPACT.1);
         self.note_impacts(false);
         let mut has_impact = false;
         for member in self.members.iter_mut().map(|slot| &mut **slot) {

@@ -18,7 +18,7 @@ use super::pair_contact::PairContact;
 use crate::contact::submatrix::{Mat3x6, Mat6, Vec6};
 use crate::ground::{LinearFriction, NormalLine};
 use crate::rock::Vec3;
-use crate::solver::block_factor::{Below, Blocks, Factor};
+use crate::solver::block_factor::{BlockFactor, BlockSystem, LowerBlock};
 use crate::solver::body::Twist;
 use crate::solver::linear_forces::LinearForces;
 use nalgebra::{DMatrix, DVector, Matrix3};
@@ -46,7 +46,7 @@ struct NewtonSystem {
     /// `K_kk`: inertia over `h`, and the contacts of rock `k` with mesh and others (kg/s, kg m²/s).
     diagonal: Vec<Mat6>,
     /// Blocks that join two rocks: the one below the diagonal, and the one opposite.
-    off_diagonal: Vec<(Below, Mat6)>,
+    off_diagonal: Vec<(LowerBlock, Mat6)>,
     /// Right side: impulse rates of free motion and of the constant parts of contacts (N, N m), six a rock.
     load: Vec<f64>,
 }
@@ -177,10 +177,10 @@ impl NewtonSystem {
 
     /// Blocks where rocks touch, and nothing elsewhere.
     fn solve_sparse(self) -> Option<Vec<f64>> {
-        let (below, above): (Vec<Below>, Vec<Mat6>) = self.off_diagonal.into_iter().unzip();
-        let blocks = Blocks { diagonal: &self.diagonal, below: &below, above: Some(&above) };
+        let (below, above): (Vec<LowerBlock>, Vec<Mat6>) = self.off_diagonal.into_iter().unzip();
+        let blocks = BlockSystem { diagonal: &self.diagonal, below: &below, above: Some(&above) };
         let mut load = self.load;
-        Factor::default().solve(blocks, &mut load).map(|()| load)
+        BlockFactor::default().solve(blocks, &mut load).map(|()| load)
     }
 }
 

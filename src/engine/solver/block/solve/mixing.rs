@@ -1,50 +1,55 @@
-//! Sweeps that learn from those before them (Anderson 1965; Walker and Ni 2011).
+//! Anderson acceleration of the sweeps (Anderson 1965; Walker and Ni 2011).
 //!
-//! A sweep turns impulses `x` into `g(x)`; they have settled where `f = g − x` is 0. Sweeps alone come nearer by the same factor each
-//! time, which is near 1 where a face presses on all its corners or friction outweighs the lever. From the last few differences of `f` the
-//! combination is taken that would have left least of it, and the next sweep begins with the same combination of `g`. As
-//! long as every contact keeps sticking or sliding, few unknowns of the body are left, and few sweeps. What a sweep makes of an impulse
-//! is not changed, nor when it has settled. The second half of
-//! the sweeps goes on alone, as those that change between two laws without end would otherwise never come nearer.
+//! A sweep maps impulses `x` to `g(x)`; they have converged where `f = g − x` is 0. Plain sweeps
+//! reduce the error by a constant factor, which is near 1 where a face presses on all its corners
+//! or friction outweighs the lever. The next sweep starts from the combination of the last `g`
+//! whose combination of `f` is least. While every contact keeps sticking or sliding, the body has
+//! few unknowns, so that a few sweeps suffice. The map of a sweep and the test of convergence are
+//! unchanged. The second half of the sweeps runs without acceleration: sweeps that alternate
+//! between two contact states would otherwise never converge.
 
-use super::super::rolling::Turning;
+use super::super::rolling::RollingImpulse;
 use super::{BlockContact, Mass};
 use crate::rock::Vec3;
 
-/// Differences kept (–): a face that slides has three motions to settle, and rounding.
-const KEPT: usize = 4;
-/// Sweeps that go before: most settle at once.
-pub(super) const BEFORE: u32 = 2;
-/// A difference that adds less than this to those before it tells nothing new (–, relative to its size).
-const NOTHING_NEW: f64 = 1e-7;
-/// What is left may grow this much (–) before the differences are forgotten: contacts have changed from sticking to sliding …
-const GROWS: f64 = 2.0;
-/// Impulses that are larger than the largest of the sweeps that went before by more than this (–) are no combination of such: where a
-/// contact that would pull is left out, those beside it grow from sweep to sweep, and velocities would lose their digits …
-const WILD: f64 = 100.0;
-/// … and so often before sweeps go on alone.
-const SETBACKS: u32 = 6;
+/// Differences kept (–): a sliding face has three motions to converge, and rounding.
+const DEPTH: usize = 4;
+/// Plain sweeps before the first mixing: most solves converge in them.
+pub(super) const PLAIN_SWEEPS: u32 = 2;
+/// A difference is linearly dependent on those before it if less than this remains of it (–,
+/// relative to its size).
+const LINEARLY_DEPENDENT: f64 = 1e-7;
+/// The residual may grow by this factor (–) before the differences are discarded: contacts have
+/// changed between sticking and sliding.
+const RESTART_GROWTH: f64 = 2.0;
+/// A mixed impulse may exceed the largest impulse of the plain sweeps by this factor (–). If a
+/// contact that would pull is left out of the mixing, those beside it grow from sweep to sweep, and
+/// velocities would lose their digits.
+const MOST_IMPULSE_GROWTH: f64 = 100.0;
+/// Restarts after which sweeps go on without mixing.
+const MOST_RESTARTS: u32 = 6;
 
-/// The impulses of all contacts, and last that of rolling friction over the reach of the contacts (N s).
+/// The impulses of all contacts and, last, the angular impulse of rolling friction over the reach
+/// of the contacts (N s).
 type ContactImpulses<const M: usize> = [Vec3; M];
 
-/// What the last sweeps have done with up to `M` impulses.
+/// History of the last sweeps for up to `M` impulses.
 #[derive(Debug)]
-pub(super) struct Mixing<const M: usize> {
-    /// How many impulses there are: contacts and rolling friction.
+pub(super) struct AndersonMixing<const M: usize> {
+    /// Number of impulses: contacts and rolling friction.
     count: usize,
     /// Distance of the farthest contact from the centre of mass (m).
     reach_m: f64,
-    setbacks: u32,
-    /// Size of the largest impulse of the sweeps that went before (N s).
-    usual: Option<f64>,
-    /// Impulses with which the sweep began.
-    began: ContactImpulses<M>,
-    /// What the sweep before changed, where it ended, and the size of what it changed squared.
+    restarts: u32,
+    /// Size of the largest impulse of the plain sweeps (N s).
+    reference_size: Option<f64>,
+    /// Impulses at the start of the sweep.
+    start: ContactImpulses<M>,
+    /// The last sweep: its residual, its end, and the squared size of its residual.
     last: Option<(ContactImpulses<M>, ContactImpulses<M>, f64)>,
-    /// Differences of what sweeps changed, made square to each other, with the differences of their ends that belong to them.
-    known: [(ContactImpulses<M>, ContactImpulses<M>); KEPT],
-    /// How many of them, and where the next goes.
+    /// Orthonormalised differences of residuals, with the corresponding differences of the ends.
+    basis: [(ContactImpulses<M>, ContactImpulses<M>); DEPTH],
+    /// Number of differences, and place of the next.
     len: usize,
 }
 
@@ -52,13 +57,13 @@ fn dot<const M: usize>(one: &ContactImpulses<M>, other: &ContactImpulses<M>, cou
     one[..count].iter().zip(&other[..count]).map(|(a, b)| a.dot(b)).sum()
 }
 
-/// Size of the largest of them.
+/// Size of the largest impulse.
 fn largest<const M: usize>(all: &ContactImpulses<M>, count: usize) -> f64 {
     all[..count].iter().map(Vec3::norm_squared).fold(0.0, f64::max).sqrt()
 }
 
 /// `to − from`.
-fn less<const M: usize>(
+fn difference<const M: usize>(
     to: &ContactImpulses<M>,
     from: &ContactImpulses<M>,
     count: usize,
@@ -70,8 +75,8 @@ fn less<const M: usize>(
     off
 }
 
-/// Takes a share of the one from the other.
-fn take<const M: usize>(
+/// Subtracts a multiple of one from the other.
+fn subtract<const M: usize>(
     from: &mut ContactImpulses<M>,
     one: &ContactImpulses<M>,
     share: f64,
@@ -82,119 +87,130 @@ fn take<const M: usize>(
     }
 }
 
-impl<const M: usize> Mixing<M> {
+impl<const M: usize> AndersonMixing<M> {
     const NONE: ContactImpulses<M> = [Vec3::new(0.0, 0.0, 0.0); M];
 
-    /// Of so many impulses, of contacts that reach so far from the centre of mass (m).
+    /// For `count` impulses, of contacts that reach so far from the centre of mass (m).
     pub(super) fn of(count: usize, reach_m: f64) -> Self {
-        let known = [(Self::NONE, Self::NONE); KEPT];
+        let basis = [(Self::NONE, Self::NONE); DEPTH];
         Self {
             count,
             reach_m,
-            setbacks: 0,
-            usual: None,
-            began: Self::NONE,
+            restarts: 0,
+            reference_size: None,
+            start: Self::NONE,
             last: None,
-            known,
+            basis,
             len: 0,
         }
     }
 
-    /// A sweep begins with these impulses.
+    /// Records the impulses at the start of a sweep.
     #[inline]
-    pub(super) fn begin(&mut self, contacts: &[BlockContact], turning: &Turning) {
-        self.began = self.gathered(contacts, turning);
-        self.usual.get_or_insert(largest(&self.began, self.count));
+    pub(super) fn begin(&mut self, contacts: &[BlockContact], rolling: &RollingImpulse) {
+        self.start = self.collect_impulses(contacts, rolling);
+        self.reference_size.get_or_insert(largest(&self.start, self.count));
     }
 
-    fn gathered(&self, contacts: &[BlockContact], turning: &Turning) -> ContactImpulses<M> {
+    fn collect_impulses(
+        &self,
+        contacts: &[BlockContact],
+        rolling: &RollingImpulse,
+    ) -> ContactImpulses<M> {
         let mut all = Self::NONE;
         for (one, contact) in all.iter_mut().zip(contacts) {
             *one = contact.impulse;
         }
-        all[contacts.len()] = turning.impulse / self.reach_m;
+        all[contacts.len()] = rolling.impulse / self.reach_m;
         all
     }
 
-    /// After a sweep that has not settled: contacts and rolling friction take the impulses that the next begins with; the change of
-    /// velocity and spin.
+    /// After a sweep that has not converged: sets the impulses with which the next one starts;
+    /// returns the change of velocity and spin.
     pub(super) fn mix(
         &mut self,
         mass: &Mass,
-        (contacts, turning): (&mut [BlockContact], &mut Turning),
+        (contacts, rolling): (&mut [BlockContact], &mut RollingImpulse),
     ) -> (Vec3, Vec3) {
         let mut change = (Vec3::zeros(), Vec3::zeros());
-        if self.setbacks >= SETBACKS {
+        if self.restarts >= MOST_RESTARTS {
             return change;
         }
-        let Some(next) = self.next(self.gathered(contacts, turning)) else { return change };
-        if turning.is_on() {
+        let Some(next) = self.next(self.collect_impulses(contacts, rolling)) else { return change };
+        if rolling.is_on() {
             let next = next[contacts.len()] * self.reach_m;
-            change.1 += mass.inverse * (next - turning.impulse);
-            turning.impulse = next;
+            change.1 += mass.inverse * (next - rolling.impulse);
+            rolling.impulse = next;
         }
         for (contact, next) in contacts.iter_mut().zip(&next) {
-            // none pulls
+            // no contact may pull
             if contact.n.dot(next) < 0.0 {
                 continue;
             }
-            let (dv, dw) = mass.change(contact, &(next - contact.impulse));
+            let (dv, dw) = mass.velocity_change(contact, &(next - contact.impulse));
             change = (change.0 + dv, change.1 + dw);
             contact.impulse = *next;
         }
         change
     }
 
-    /// The impulses with which the next sweep begins; `None` = those with which this one ended.
-    fn next(&mut self, ended: ContactImpulses<M>) -> Option<ContactImpulses<M>> {
+    /// The impulses with which the next sweep starts; `None` for those with which this one ended.
+    fn next(&mut self, end: ContactImpulses<M>) -> Option<ContactImpulses<M>> {
         let count = self.count;
-        let left = less(&ended, &self.began, count);
+        let left = difference(&end, &self.start, count);
         let size2 = dot(&left, &left, count);
-        let (last_left, last_ended, last_size2) = self.last.replace((left, ended, size2))?;
-        if size2 > GROWS * GROWS * last_size2 {
-            return self.set_back();
+        let (last_left, last_ended, last_size2) = self.last.replace((left, end, size2))?;
+        if size2 > RESTART_GROWTH * RESTART_GROWTH * last_size2 {
+            return self.restart();
         }
-        self.learn(less(&left, &last_left, count), less(&ended, &last_ended, count));
-        let (mut rest, mut next) = (left, ended);
-        for (own, end) in &self.known[..self.len] {
-            let share = dot(own, &rest, count);
-            take(&mut rest, own, share, count);
-            take(&mut next, end, share, count);
+        self.add_difference(
+            difference(&left, &last_left, count),
+            difference(&end, &last_ended, count),
+        );
+        let (mut rest, mut next) = (left, end);
+        for (residual, end) in &self.basis[..self.len] {
+            let share = dot(residual, &rest, count);
+            subtract(&mut rest, residual, share, count);
+            subtract(&mut next, end, share, count);
         }
-        // not than those of this sweep: a hundred times, again and again, is without bound
-        if self.usual.is_none_or(|usual| largest(&next, count) > WILD * usual) {
-            return self.set_back();
+        // compared with the plain sweeps, not with this sweep: a factor of a hundred, again and
+        // again, is no bound
+        if self.reference_size.is_none_or(|reference_size| {
+            largest(&next, count) > MOST_IMPULSE_GROWTH * reference_size
+        }) {
+            return self.restart();
         }
         Some(next)
     }
 
-    /// Forgets the differences: the next sweep begins with what this one ended with.
-    fn set_back(&mut self) -> Option<ContactImpulses<M>> {
-        (self.len, self.setbacks) = (0, self.setbacks + 1);
+    /// Discards the differences: the next sweep starts with the end of this one.
+    fn restart(&mut self) -> Option<ContactImpulses<M>> {
+        (self.len, self.restarts) = (0, self.restarts + 1);
         None
     }
 
-    /// Learns a difference of what sweeps changed, and of where they ended.
-    fn learn(&mut self, mut own: ContactImpulses<M>, mut end: ContactImpulses<M>) {
+    /// Adds a difference of residuals, and the corresponding difference of ends.
+    fn add_difference(&mut self, mut residual: ContactImpulses<M>, mut end: ContactImpulses<M>) {
         let count = self.count;
-        if self.len == KEPT {
-            // the oldest belongs to other directions of friction; those after it are square to it, so what is lost is its part alone
-            self.known.rotate_left(1);
+        if self.len == DEPTH {
+            // the oldest belongs to other friction directions; the later ones are orthogonal to it,
+            // so that only its part is lost
+            self.basis.rotate_left(1);
             self.len -= 1;
         }
-        let whole = dot(&own, &own, count).sqrt();
-        for (known, known_end) in &self.known[..self.len] {
-            let share = dot(known, &own, count);
-            take(&mut own, known, share, count);
-            take(&mut end, known_end, share, count);
+        let whole = dot(&residual, &residual, count).sqrt();
+        for (basis, known_end) in &self.basis[..self.len] {
+            let share = dot(basis, &residual, count);
+            subtract(&mut residual, basis, share, count);
+            subtract(&mut end, known_end, share, count);
         }
-        let size = dot(&own, &own, count).sqrt();
-        if size > NOTHING_NEW * whole && size > 0.0 {
+        let size = dot(&residual, &residual, count).sqrt();
+        if size > LINEARLY_DEPENDENT * whole && size > 0.0 {
             for k in 0..count {
-                own[k] /= size;
+                residual[k] /= size;
                 end[k] /= size;
             }
-            self.known[self.len] = (own, end);
+            self.basis[self.len] = (residual, end);
             self.len += 1;
         }
     }

@@ -1,4 +1,5 @@
-//! A contact that slides: what it answers in the frame of its normal, and its impulse on the rim of Coulomb's cone.
+//! A sliding contact: its matrix in the frame of its normal, and its impulse on the surface of
+//! Coulomb's cone.
 
 use super::BlockContact;
 use crate::rock::Vec3;
@@ -6,99 +7,107 @@ use crate::solver::contact_frame::ContactFrame;
 use crate::solver::law::clamp_norm;
 use nalgebra::{Matrix2, Matrix3, Vector2};
 
-/// Turns of the direction of friction, at most, and the widest of them (rad).
-const TURNS: u32 = 20;
+/// Newton steps for the direction of friction, at most, and the largest turn of a step (rad).
+const ANGLE_STEPS: u32 = 20;
 const WIDEST_TURN: f64 = 0.8;
-/// A turn (rad) no wider than this is the last: its square is below rounding.
+/// A turn (rad) up to this is the last: its square is below rounding.
 const LAST_TURN: f64 = 1e-8;
-/// Passes over the impulse of one contact that slides, at most.
+/// Iterations for the impulse of one sliding contact, at most.
 const PASSES: u32 = 100;
-/// Change of it below which they have settled (–).
-const NEAR: f64 = 1e-13;
+/// Relative change of the impulse below which they have converged (–).
+const CONVERGED: f64 = 1e-13;
 
-/// What a contact that slides is solved with: a matrix (1/kg) in the frame of the normal.
+/// The matrix (1/kg) of a sliding contact in the frame of its normal.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct SlidingAnswer {
-    /// Directions along the surface.
+pub(super) struct SlidingMatrix {
+    /// Tangents.
     pub(super) first: Vec3,
     pub(super) second: Vec3,
-    /// Along the normal for a push along it, and along the surface for the same; the same along the normal for a drag.
-    pub(super) own: f64,
-    pub(super) lift: Vector2<f64>,
-    /// Along the surface for a drag.
-    pub(super) across: Matrix2<f64>,
+    /// Normal response to a normal impulse, and tangential response to a normal impulse; by
+    /// symmetry also the normal response to a tangential one.
+    pub(super) nn: f64,
+    pub(super) tn: Vector2<f64>,
+    /// Tangential response to a tangential impulse.
+    pub(super) tt: Matrix2<f64>,
 }
 
-impl SlidingAnswer {
+impl SlidingMatrix {
     pub(super) fn of(n: &Vec3, whole: &Matrix3<f64>) -> Self {
         let frame = ContactFrame::of(n);
         let (first, second) = (frame.out_along([1.0, 0.0]), frame.out_along([0.0, 1.0]));
-        let flat = |x: &Vec3| Vector2::new(first.dot(x), second.dot(x));
+        let tangential = |x: &Vec3| Vector2::new(first.dot(x), second.dot(x));
         let to_n = whole * n;
-        let across = Matrix2::from_columns(&[flat(&(whole * first)), flat(&(whole * second))]);
-        Self { first, second, own: n.dot(&to_n), lift: flat(&to_n), across }
+        let tt =
+            Matrix2::from_columns(&[tangential(&(whole * first)), tangential(&(whole * second))]);
+        Self { first, second, nn: n.dot(&to_n), tn: tangential(&to_n), tt }
     }
 
-    pub(super) fn flat(&self, x: &Vec3) -> Vector2<f64> {
+    pub(super) fn tangential(&self, x: &Vec3) -> Vector2<f64> {
         Vector2::new(self.first.dot(x), self.second.dot(x))
     }
 }
 
 impl BlockContact {
-    /// The impulse on the rim of Coulomb's cone, `p (n + μ d)` with a direction `d` along the surface against the slip that it leaves: one
-    /// equation for the angle of `d`, by Newton's method from a first guess. `None` where it does not settle on a slip that friction
-    /// opposes.
-    pub(super) fn on_rim(
+    /// The impulse on the surface of Coulomb's cone, `p (n + μ d)`, with the unit tangent `d`
+    /// against the slip that it leaves: one equation for the angle of `d`, solved by Newton's
+    /// method from a first guess. `None` if it does not converge to a slip that friction opposes.
+    pub(super) fn sliding_impulse(
         &self,
         (up, slip): (f64, Vector2<f64>),
         mut d: Vector2<f64>,
-        rim: &SlidingAnswer,
+        matrix: &SlidingMatrix,
     ) -> Option<Vec3> {
         let friction = self.friction;
-        for _ in 0..TURNS {
-            let aside = Vector2::new(-d.y, d.x);
-            let own = rim.own + friction * rim.lift.dot(&d);
-            let push = -up / own;
-            let answer = rim.lift + rim.across * d * friction;
-            let left = slip + answer * push;
-            let push_turns = -push * friction * rim.lift.dot(&aside) / own;
-            let turns = aside.dot(&(answer * push_turns + rim.across * aside * (friction * push)))
-                - d.dot(&left);
-            let turn = -aside.dot(&left) / turns;
+        for _ in 0..ANGLE_STEPS {
+            let perpendicular = Vector2::new(-d.y, d.x);
+            let own = matrix.nn + friction * matrix.tn.dot(&d);
+            let normal_impulse = -up / own;
+            let answer = matrix.tn + matrix.tt * d * friction;
+            let left = slip + answer * normal_impulse;
+            let push_turns = -normal_impulse * friction * matrix.tn.dot(&perpendicular) / own;
+            let turns = perpendicular.dot(
+                &(answer * push_turns + matrix.tt * perpendicular * (friction * normal_impulse)),
+            ) - d.dot(&left);
+            let turn = -perpendicular.dot(&left) / turns;
             if own <= 0.0 || !turn.is_finite() {
                 return None;
             }
-            d = (d + aside * turn.clamp(-WIDEST_TURN, WIDEST_TURN)).normalize();
-            // Newton's method squares what is left to turn
+            d = (d + perpendicular * turn.clamp(-WIDEST_TURN, WIDEST_TURN)).normalize();
+            // Newton's method squares the remaining turn
             if turn.abs() <= LAST_TURN {
-                let push = -up / (rim.own + friction * rim.lift.dot(&d));
-                let opposes = d.dot(&left) <= 0.0 && push > 0.0;
-                let drag = rim.first * d.x + rim.second * d.y;
-                return opposes.then(|| (self.n + drag * friction) * push);
+                let normal_impulse = -up / (matrix.nn + friction * matrix.tn.dot(&d));
+                let opposes = d.dot(&left) <= 0.0 && normal_impulse > 0.0;
+                let tangent = matrix.first * d.x + matrix.second * d.y;
+                return opposes.then(|| (self.n + tangent * friction) * normal_impulse);
             }
         }
         None
     }
 
-    /// The same by passes over drag and push, slowly. Also where no rigid solution exists (Painlevé): then the last pass, which obeys the
-    /// cone and pushes.
-    pub(super) fn sliding(&self, u: &Vec3, (mut drag, whole): (Vec3, &Matrix3<f64>)) -> Vec3 {
+    /// The same by fixed-point iteration over friction and normal impulse, which is slow. It also
+    /// serves where no rigid solution exists (Painlevé): then the last iterate is taken, which
+    /// obeys the cone and pushes.
+    pub(super) fn sliding_impulse_by_iteration(
+        &self,
+        u: &Vec3,
+        (mut friction_impulse, whole): (Vec3, &Matrix3<f64>),
+    ) -> Vec3 {
         let n = &self.n;
         let along = |x: &Vec3| x - n * n.dot(x);
         let to_n = whole * n;
         let (own, rate) = (n.dot(&to_n), 1.0 / (whole.trace() - n.dot(&to_n)));
-        let mut push = 0.0;
+        let mut normal_impulse = 0.0;
         for _ in 0..PASSES {
-            let asked = -(n.dot(u) + to_n.dot(&drag)) / own;
-            push = asked.max(0.0);
-            let slip = along(&(u + whole * drag + to_n * push));
-            let next = clamp_norm(drag - slip * rate, self.friction * push);
-            let change = (next - drag).norm();
-            drag = next;
-            if change <= NEAR * push {
+            let asked = -(n.dot(u) + to_n.dot(&friction_impulse)) / own;
+            normal_impulse = asked.max(0.0);
+            let slip = along(&(u + whole * friction_impulse + to_n * normal_impulse));
+            let next = clamp_norm(friction_impulse - slip * rate, self.friction * normal_impulse);
+            let change = (next - friction_impulse).norm();
+            friction_impulse = next;
+            if change <= CONVERGED * normal_impulse {
                 break;
             }
         }
-        n * push + drag
+        n * normal_impulse + friction_impulse
     }
 }

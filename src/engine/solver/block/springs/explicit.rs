@@ -1,59 +1,61 @@
-//! An impact of a block, followed in its own time.
+//! Explicit integration of an impact of a block.
 //!
-//! As for spheres (`solver::explicit_impact`): while a contact rebounds it lasts about `π/ω`, and in units of `1/ω` nothing is stiff, so
-//! that an explicit pair of order five follows it in a handful of steps, where each implicit stage would cost passes over geometry and
-//! contacts. The error is controlled relative to the speed of the impact; a step is cut where friction begins to slip or to stick, where a
-//! contact lets go, and where a further one begins.
+//! As for spheres (`solver::explicit_impact`): a rebound lasts about `π/ω`, and in units of `1/ω`
+//! nothing is stiff. An explicit pair of order five needs a handful of steps, whereas each implicit
+//! stage would iterate over geometry and contacts. The error is controlled relative to the speed of
+//! the impact. A step is cut where friction changes between slipping and sticking, where a contact
+//! opens, and where a further one begins.
 //!
-//! Impacts with more contacts than there is room for, and those that last too long or come too slowly to rebound, go by the implicit
-//! stages.
+//! Impacts with more contacts than there is room for, and those that last too long or are too slow
+//! to rebound, are integrated by the implicit stages.
 
 mod flow;
 
-use super::super::{Footing, Moving, Stepped, TOUCH, orthonormal};
+use super::super::{BlockContactState, BlockState, BlockStepOutcome, TOUCH, orthonormal};
 use super::impact_energy::gained_j;
 use crate::body::Block;
 use crate::contact::block::{BlockContactPoint, BlockContactPoints};
 use crate::contact::pair::IMPACT_DURATION_RAD;
 use crate::ground::Law;
 use crate::solver::environment::ContactEnvironment;
-use crate::solver::explicit_impact::{FIRST, LONGEST_RAD, SHORTEST_RAD, judge};
-use crate::solver::impact::LOCAL;
+use crate::solver::explicit_impact::{FIRST, LONGEST_RAD, SHORTEST_RAD, control_error};
+use crate::solver::impact::LOCAL_ERROR;
 use crate::solver::impact::dormand_prince::{Attempt, Flow, Stages};
 use crate::solver::loss::Loss;
 use crate::solver::step_control::{Control, StepError};
 use flow::{BlockFlow, ErrorScale, LOSSES};
 
-/// A contact that lets go is left behind in this times the time that its speed takes (–).
-const LETS_GO: f64 = 1.2;
-/// Penetration that is rounding of places (–, relative to the radius of the sphere of equal volume).
+/// A block flies clear of an open contact for this multiple of the time that its speed needs (–).
+const RELEASE_MARGIN: f64 = 1.2;
+/// Penetration that is rounding of positions (–, relative to the radius of the sphere of equal
+/// volume).
 pub(super) const ROUNDING_OF_PLACE: f64 = 1e-11;
-/// Tries that are cut where a contact begins, at most; after them it presses from where it is found.
-const ONSETS: u32 = 6;
-/// Contacts with room of their own: the usual case, and the most that are followed here.
-const FEW_PRESS: usize = 2;
-const MOST_PRESS: usize = 6;
+/// Trial steps cut where a contact begins, at most; after them it presses from where it is found.
+const MOST_ONSET_CUTS: u32 = 6;
+/// Room for contacts: of the usual case, and the most that are integrated here.
+const FEW_CONTACTS: usize = 2;
+const MOST_CONTACTS: usize = 6;
 
-/// How far a step may go, and how exactly.
+/// Bounds of a step, and its error scale.
 #[derive(Debug, Clone, Copy)]
 struct ImpactBounds {
     scale: ErrorScale,
-    /// Longest step that cannot jump over a feature (s), and longest step asked for (s).
+    /// Longest step that cannot miss a feature (s), and longest step requested (s).
     limit: f64,
     h_max: f64,
 }
 
 /// An accepted step.
 struct ExplicitStep {
-    end: Moving,
+    end: BlockState,
     dt: f64,
-    /// What it took, what springs store counted in.
+    /// Loss of the step, with the energy that springs store counted in.
     loss: Loss,
 }
 
-impl Footing {
-    /// Whether the present contacts are those of an impact whose energy is kept account of: it is followed in its own time, or has too many
-    /// contacts for that.
+impl BlockContactState {
+    /// Whether the present contacts are those of an impact whose energy is accounted for: it is
+    /// integrated explicitly, or has too many contacts for that.
     pub(super) fn is_accounted(&self, world: &ContactEnvironment, control: &Control) -> bool {
         let springs = &self.springs;
         let least_m_s = world.least_impact_m_s();
@@ -63,41 +65,42 @@ impl Footing {
             && springs.histories.iter().any(|one| {
                 one.closed
                     && !one.captured
-                    && one.gone_rad < IMPACT_DURATION_RAD
+                    && one.age_rad < IMPACT_DURATION_RAD
                     && one.approach_m_s > least_m_s
             })
             // a shear spring without a dashpot has a stretch, not a rate, of its own
             && springs.histories.iter().all(|one| !one.law.shear.is_on() || one.law.shear.is_damped())
     }
 
-    /// Whether there is room to follow the present contacts in their own time.
+    /// Whether there is room to integrate the present contacts explicitly.
     pub(super) fn has_room(&self) -> bool {
-        self.springs.histories.len() <= MOST_PRESS
+        self.springs.histories.len() <= MOST_CONTACTS
     }
 
-    /// One accepted step of an impact of at most `most_s`, and the tries thrown away; `None` if there is no room for its contacts.
+    /// One accepted step of an impact of at most `most_s`, and the number of rejected trial steps;
+    /// `None` if there is no room for its contacts.
     ///
     /// # Errors
-    /// [`StepError`] if the motion is no longer finite, or a spring is pressed in too far.
+    /// [`StepError`] if the motion is no longer finite, or a penetration is too large.
     pub(super) fn explicit_step(
         &mut self,
         world: &ContactEnvironment,
-        (block, moving): (&Block, &mut Moving),
+        (block, state): (&Block, &mut BlockState),
         (control, most_s, limit): (&Control, f64, f64),
-    ) -> Result<Option<(Stepped, u64)>, StepError> {
+    ) -> Result<Option<(BlockStepOutcome, u64)>, StepError> {
         let omega = self.springs.stiffest(world);
-        let allowed = LOCAL * control.impact * self.springs.impact_m_s;
-        let begins_m = (allowed / omega).max(ROUNDING_OF_PLACE * block.radius_m);
-        let scale = ErrorScale { omega, allowed, begins_m };
+        let allowed = LOCAL_ERROR * control.impact * self.springs.impact_m_s;
+        let onset_m = (allowed / omega).max(ROUNDING_OF_PLACE * block.radius_m);
+        let scale = ErrorScale { omega, allowed, onset_m };
         let bounds = ImpactBounds { scale, limit: limit.min(LONGEST_RAD / omega), h_max: most_s };
         if self.springs.is_new() {
             self.springs.h = FIRST / omega;
         }
-        let start = moving.clone();
+        let start = state.clone();
         let mut rejected = 0;
         let mut step = None;
-        if self.springs.histories.len() <= FEW_PRESS {
-            step = self.step_among::<FEW_PRESS, { 12 + 3 * FEW_PRESS }, { LOSSES + FEW_PRESS }, { 2 * FEW_PRESS }>(
+        if self.springs.histories.len() <= FEW_CONTACTS {
+            step = self.try_steps::<FEW_CONTACTS, { 12 + 3 * FEW_CONTACTS }, { LOSSES + FEW_CONTACTS }, { 2 * FEW_CONTACTS }>(
                 world,
                 (block, &start),
                 &bounds,
@@ -105,7 +108,7 @@ impl Footing {
             )?;
         }
         if step.is_none() {
-            step = self.step_among::<MOST_PRESS, { 12 + 3 * MOST_PRESS }, { LOSSES + MOST_PRESS }, { 2 * MOST_PRESS }>(
+            step = self.try_steps::<MOST_CONTACTS, { 12 + 3 * MOST_CONTACTS }, { LOSSES + MOST_CONTACTS }, { 2 * MOST_CONTACTS }>(
                 world,
                 (block, &start),
                 &bounds,
@@ -113,61 +116,64 @@ impl Footing {
             )?;
         }
         let Some(step) = step else { return Ok(None) };
-        *moving = step.end;
-        self.keep((block, moving), 0.0);
-        self.springs.grow_old(step.dt);
+        *state = step.end;
+        self.store_contacts((block, state), 0.0);
+        self.springs.advance_ages(step.dt);
         let held_j = self.springs.stored_j;
-        self.springs.stored_j = self.springs.placed(world).sum();
-        self.springs.refresh();
-        self.springs.seen = self.sees_the_same(block);
-        // what springs store is counted among the losses until they give it back
-        let gained_j = gained_j(world, block, (&start, moving)) + step.loss.sum();
+        self.springs.stored_j = self.springs.stored_by_contacts(world).sum();
+        self.springs.invalidate_rates();
+        self.springs.touches_are_current = self.touches_unchanged(block);
+        // the energy that springs store is counted as lost until they return it
+        let gained_j = gained_j(world, block, (&start, state)) + step.loss.sum();
         self.springs.account((gained_j, step.loss.sum()), held_j);
-        let mut done = Stepped { dt: step.dt, loss: step.loss, ..Stepped::default() };
+        let mut done =
+            BlockStepOutcome { dt: step.dt, loss: step.loss, ..BlockStepOutcome::default() };
         done.slides = self.springs.histories.iter().any(|history| history.slides);
         let left_s = most_s - step.dt;
-        done.dt += self.let_go(world, (block, moving), left_s.min(limit));
+        done.dt += self.fly_clear(world, (block, state), left_s.min(limit));
         done.is_free = self.springs.is_free();
         if done.is_free {
-            done.loss.damping += self.balance(block, moving);
+            done.loss.damping += self.balance(block, state);
         }
         self.check_depth(block)?;
         Ok(Some((done, rejected)))
     }
 
-    /// Tries steps with room for `C` contacts until one is accurate; `None` if there are more of them.
+    /// Tries steps with room for `C` contacts until one is accurate; `None` if there are more
+    /// contacts.
     ///
-    /// A try that is cut at a kink or where a contact begins is shorter, not wrong.
-    fn step_among<const C: usize, const N: usize, const Q: usize, const P: usize>(
+    /// A trial step that is cut where a slider switches or a contact begins is shorter, not
+    /// rejected for its error.
+    fn try_steps<const C: usize, const N: usize, const Q: usize, const P: usize>(
         &mut self,
         world: &ContactEnvironment,
-        on: (&Block, &Moving),
+        on: (&Block, &BlockState),
         bounds: &ImpactBounds,
         rejected: &mut u64,
     ) -> Result<Option<ExplicitStep>, StepError> {
         let ImpactBounds { scale, limit, h_max } = *bounds;
         let mut h = self.springs.h;
         let mut flow = BlockFlow::<C>::new(world, self, on, scale);
-        let y = flow.begin::<N>();
+        let y = flow.initial_state::<N>();
         let mut stages = Stages::<N, Q, P>::NONE;
         flow.rates(0, &y, stages.first());
-        flow.settle_contacts();
-        let (mut onsets, mut is_open) = (0, false);
+        flow.fix_contacts();
+        let (mut onsets, mut admits_new) = (0, false);
         loop {
             let wished = h.min(limit);
             let dt = wished.min(h_max);
             let is_short = dt * scale.omega < SHORTEST_RAD;
-            flow.begin_try(dt, is_open || is_short);
+            flow.begin_try(dt, admits_new || is_short);
             let felt = (!is_short).then_some(scale.allowed);
             let attempt = stages.step(&mut flow, &y, dt, felt);
-            if flow.is_crowded {
-                flow.footing.springs.histories.truncate(flow.footing.springs.known);
+            if flow.exceeds_room {
+                flow.contact_state.springs.histories.truncate(flow.contact_state.springs.known);
                 return Ok(None);
             }
             *rejected += 1;
             if let Some(share) = flow.onset {
                 onsets += 1;
-                is_open = share <= 0.0 || onsets >= ONSETS;
+                admits_new = share <= 0.0 || onsets >= MOST_ONSET_CUTS;
                 h = if share > 0.0 { dt * share } else { dt };
                 continue;
             }
@@ -178,12 +184,13 @@ impl Footing {
                     continue;
                 }
             };
-            let (accepted, next_h) = judge((dt, wished), (tried.error2, flow.is_smooth), is_short)?;
+            let (accepted, next_h) =
+                control_error((dt, wished), (tried.error2, flow.is_smooth), is_short)?;
             h = next_h;
             if accepted {
                 *rejected -= 1;
-                let loss = flow.taken(&tried.q);
-                let mut end = flow.moving;
+                let loss = flow.loss(&tried.q);
+                let mut end = flow.state;
                 self.springs.h = h;
                 end.pose.attitude = orthonormal(&end.pose.attitude);
                 return Ok(Some(ExplicitStep { end, dt, loss }));
@@ -191,28 +198,30 @@ impl Footing {
         }
     }
 
-    /// Whether the contacts found at the step's end are those that a look would find now, as the pairs that press have changed.
-    fn sees_the_same(&self, block: &Block) -> bool {
+    /// Whether a detection now would find the contacts of the step's end, although the pressing
+    /// pairs may have changed.
+    fn touches_unchanged(&self, block: &Block) -> bool {
         let BlockContactPoints { found, active: held, .. } = &self.touches;
         let holds = |touch: &BlockContactPoint| held.contains(&(touch.part, touch.feature));
         found.iter().all(|touch| block.core.is_corner(touch.part) || holds(touch))
     }
 
-    /// Flies out of contacts that push no more, if that takes no longer than `longest_s` and nothing else is in the way there; how long it
-    /// took (s). What still hangs on the contacts has no force, so that the motion is that of a free body.
-    fn let_go(
+    /// Flies clear of open contacts if that takes at most `longest_s` and no other contact is met;
+    /// returns the flight time (s). The remaining contacts exert no force, so that the motion is
+    /// free.
+    fn fly_clear(
         &mut self,
         world: &ContactEnvironment,
-        (block, moving): (&Block, &mut Moving),
+        (block, state): (&Block, &mut BlockState),
         longest_s: f64,
     ) -> f64 {
         let (gravity, clear_m) = (world.body.gravity, 2.0 * TOUCH * block.radius_m);
         let mut out_s: f64 = 0.0;
         for (contact, touch) in self.springs.contacts.iter().zip(&self.touches.found) {
-            let up_m_s = contact.n.dot(&moving.at(block, &contact.lever));
+            let up_m_s = contact.n.dot(&state.velocity_at(block, &contact.lever));
             let weight = contact.n.dot(&gravity).min(0.0);
-            // weight takes less than half of the speed by then
-            let own_s = LETS_GO * (clear_m - touch.gap_m).max(0.0) / up_m_s;
+            // weight reduces the speed by less than half in this time
+            let own_s = RELEASE_MARGIN * (clear_m - touch.gap_m).max(0.0) / up_m_s;
             let leaves = contact.normal_force <= 0.0
                 && up_m_s > 0.0
                 && contact.law.stays_open(up_m_s, 2.0 * weight, own_s);
@@ -224,25 +233,27 @@ impl Footing {
         if out_s <= 0.0 || out_s > longest_s {
             return 0.0;
         }
-        let mut out = moving.clone();
+        let mut out = state.clone();
         out.drift(block, out_s);
         out.pose.centre += gravity * (0.5 * out_s * out_s);
         out.v += gravity * out_s;
-        self.look_at_all(world, (block, &out.pose), TOUCH * block.radius_m);
+        self.detect_all(world, (block, &out.pose), TOUCH * block.radius_m);
         if !self.touches.found.is_empty() {
-            self.look_at_all(world, (block, &moving.pose), TOUCH * block.radius_m);
+            self.detect_all(world, (block, &state.pose), TOUCH * block.radius_m);
             return 0.0;
         }
-        *moving = out;
+        *state = out;
         self.springs.histories.clear();
         out_s
     }
 }
 
 impl super::SpringContact {
-    /// Where it opens and where it slips, for an explicit pair: what is asked of its normal element, squared, and what that would pull with, and
-    /// the same of shear. Both in units of acceleration for a mass (kg), so that times a step they are speeds.
-    pub(super) fn kinks(&self, (pulls, asked2): (f64, f64), mass_kg: f64) -> [[f64; 2]; 2] {
+    /// Switching functions of the explicit pair, for the opening of the contact and for slip: the
+    /// squared trial value and the cap of the normal element, whose "cap" is the tension that it
+    /// would exert, and those of shear. Both are accelerations of a mass (kg), so that times a step
+    /// they are velocities.
+    pub(super) fn switching(&self, (pulls, asked2): (f64, f64), mass_kg: f64) -> [[f64; 2]; 2] {
         let (by_mass, pushes) = (1.0 / mass_kg, self.normal_force);
         let cap = self.law.shear.cap(pushes);
         [
@@ -253,16 +264,16 @@ impl super::SpringContact {
 }
 
 impl super::Springs {
-    /// Whether the impact that goes on has just begun.
+    /// Whether the current impact has just begun.
     fn is_new(&self) -> bool {
         let mut impacts = self.histories.iter().filter(|one| one.closed && !one.captured);
-        impacts.all(|one| one.gone_rad <= 0.0)
+        impacts.all(|one| one.age_rad <= 0.0)
     }
 
-    /// The contacts have gone on for `dt` (s).
-    pub(super) fn grow_old(&mut self, dt: f64) {
+    /// Advances the ages of the contacts by `dt` (s).
+    pub(super) fn advance_ages(&mut self, dt: f64) {
         for history in &mut self.histories {
-            history.gone_rad += dt * Law::omega_rad_s(&history.law);
+            history.age_rad += dt * Law::omega_rad_s(&history.law);
         }
     }
 }

@@ -1,45 +1,46 @@
-//! Where the energy of an impact has gone.
+//! Energy account of an impact.
 //!
-//! Every step has an error, of which restitution and spin know; what contacts have taken is known better. So the motion is balanced where the
-//! impact is over: it has what came in less what the contacts took.
+//! Every step has an error, which affects restitution and spin; the losses of the contacts are
+//! known more accurately. So the motion is corrected at the end of the impact to the initial energy
+//! less the losses of the contacts.
 
-use super::super::energy::{ActingAlong, PartOfMotion};
-use super::{Footing, Moving, SpringContact, Springs};
+use super::super::energy::{ContactDirections, MotionComponent};
+use super::{BlockContactState, BlockState, SpringContact, Springs};
 use crate::body::Block;
 use crate::rock::Vec3;
 use crate::solver::environment::ContactEnvironment;
 use crate::solver::explicit_impact::BALANCED;
 use crate::solver::loss::Loss;
 
-/// What becomes of the energy in an impact.
+/// Energy account of an impact.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ImpactEnergy {
-    /// What the steps have gained by themselves (J).
+    /// Energy gained by the errors of the steps (J).
     gained_j: f64,
-    /// What contacts have taken, with what their springs held before it (J).
+    /// Energy taken by the contacts, with the energy of their springs before the impact (J).
     taken_j: f64,
-    /// What its contacts have acted along.
-    along: ActingAlong,
+    /// Directions in which its contacts have acted.
+    along: ContactDirections,
 }
 
-/// How much more energy of motion and height a block has at the end of a step than at its start (J).
+/// Increase of the kinetic and potential energy of a block over a step (J).
 pub(super) fn gained_j(
     world: &ContactEnvironment,
     block: &Block,
-    (start, end): (&Moving, &Moving),
+    (start, end): (&BlockState, &BlockState),
 ) -> f64 {
     let lifted_m = end.pose.centre - start.pose.centre;
     end.motion_j(block) + world.body.lifted_j(&lifted_m) - start.motion_j(block)
 }
 
 impl SpringContact {
-    /// Whether its normal spring gives back all that it takes up from a mass (kg).
+    /// Whether its normal spring returns all that it stores, for a mass (kg).
     pub(super) fn is_elastic(&self, mass_kg: f64) -> bool {
         !self.law.normal(self.captured).is_damped(mass_kg)
     }
 
-    /// Power that goes into it (W) at a velocity `u` of the contact point (m/s), but for a normal spring without a dashpot: what that takes up is known at the
-    /// ends of a step.
+    /// Power into it (W) at a velocity `u` of the contact point (m/s), except that of a normal
+    /// spring without a dashpot, whose energy is known at the ends of a step.
     pub(super) fn power_of_stage(
         &self,
         world: &ContactEnvironment,
@@ -54,9 +55,11 @@ impl SpringContact {
 }
 
 impl Springs {
-    /// Takes a step of an impact to account: what it has gained by itself and what contacts have taken in it, and what springs held before (J).
+    /// Adds a step of an impact to the account: the energy that it gained by its error, the energy
+    /// that contacts took in it, and the spring energy before it (J).
     pub(super) fn account(&mut self, (gained_j, taken_j): (f64, f64), held_j: f64) {
-        let began = ImpactEnergy { gained_j: 0.0, taken_j: held_j, along: ActingAlong::default() };
+        let began =
+            ImpactEnergy { gained_j: 0.0, taken_j: held_j, along: ContactDirections::default() };
         let energy = self.energy.get_or_insert(began);
         energy.along = energy.along.and_springs(&self.contacts);
         energy.gained_j += gained_j;
@@ -64,13 +67,14 @@ impl Springs {
     }
 }
 
-impl Footing {
-    /// What normal springs without dashpots have taken up in a step whose last stage is `way_s` (s) long and ends at `end`: they are known at both ends of
-    /// it, whatever features came and went between, where sums over its stages are off by its error.
-    pub(super) fn taken_up(
+impl BlockContactState {
+    /// Energy stored by normal springs without dashpots in a step whose last stage is `way_s` (s)
+    /// long and ends at `end`. It is known at both ends of the step, whatever features came and
+    /// went in between, whereas quadrature over the stages has the error of the step.
+    pub(super) fn elastic_uptake(
         &self,
         world: &ContactEnvironment,
-        (block, end): (&Block, &Moving),
+        (block, end): (&Block, &BlockState),
         way_s: f64,
     ) -> Loss {
         let mut taken = Loss::default();
@@ -85,30 +89,33 @@ impl Footing {
         }
         for contact in &self.springs.contacts {
             if contact.is_elastic(block.mass_kg) {
-                let pressed_m = contact.pen_at(&end.at(block, &contact.lever), way_s);
+                let pressed_m =
+                    contact.penetration_after(&end.velocity_at(block, &contact.lever), way_s);
                 add(contact.normal_j(pressed_m), contact.triangle);
             }
         }
         taken
     }
 
-    /// Gives motion back what the steps of the impact have lost by themselves, or takes what they have gained: what is left of the energy is
-    /// what came in less what the contacts took. What they act along is scaled by one factor, so that the direction of a
-    /// rebound with friction stays. What springs would have given beyond what they had (J) is none: contacts have taken that much more.
-    pub(super) fn balance(&mut self, block: &Block, moving: &mut Moving) -> f64 {
+    /// Corrects the motion by the energy that the errors of the steps of the impact have gained or
+    /// lost: the remaining energy is the initial energy less the losses of the contacts. The part
+    /// of the motion that contacts can change is scaled by one factor, so that the direction of a
+    /// rebound with friction is kept. Springs cannot return more than they had (J): the excess
+    /// counts as an additional loss of the contacts and is returned.
+    pub(super) fn balance(&mut self, block: &Block, state: &mut BlockState) -> f64 {
         let Some(energy) = self.springs.energy.take() else { return 0.0 };
         let beyond_j = (self.springs.stored_j - energy.taken_j).max(0.0);
         let gained_j = energy.gained_j + beyond_j;
         if gained_j == 0.0 {
             return 0.0;
         }
-        // where there is hardly any motion along contacts, all of it answers for them
-        let ways = [energy.along, ActingAlong::EVERYTHING].into_iter();
-        let mut parts = ways.map(|along| moving.part(block, &along));
-        let answers = |part: &PartOfMotion| gained_j.abs() < BALANCED * part.energy_j();
-        let Some(part) = parts.find(answers) else { return 0.0 };
-        moving.pay(&part, gained_j);
-        self.springs.refresh();
+        // if the contact directions hold hardly any motion, the whole motion is scaled
+        let ways = [energy.along, ContactDirections::ALL].into_iter();
+        let mut parts = ways.map(|along| state.motion_component(block, &along));
+        let suffices = |part: &MotionComponent| gained_j.abs() < BALANCED * part.energy_j();
+        let Some(part) = parts.find(suffices) else { return 0.0 };
+        state.take_energy_from(&part, gained_j);
+        self.springs.invalidate_rates();
         beyond_j
     }
 }

@@ -1,12 +1,12 @@
-//! The rolling spring of a block: one for all its contacts, as they turn one body.
+//! The rolling spring of a block: one for all contacts, because they rotate one body.
 //!
-//! Spring and dashpot are those of the first ground with rolling friction that the block has met in an episode of contact; what the
-//! slider bears is that of each contact.
+//! Spring and dashpot are those of the first ground with rolling friction that the block has met in
+//! an episode of contact; the slider's capacity is the sum over the contacts.
 
 use super::SpringContact;
 use crate::ground::{FrictionElement, SliderForce};
 use crate::rock::Vec3;
-use crate::solver::block::rolling::Turning;
+use crate::solver::block::rolling::RollingImpulse;
 use crate::solver::block::solve::first_guess;
 use crate::solver::environment::ContactEnvironment;
 use crate::solver::loss::Loss;
@@ -14,48 +14,51 @@ use crate::solver::loss::Loss;
 /// The rolling spring of a block, and its moment.
 #[derive(Debug, Default)]
 pub(super) struct RollingSpring {
-    /// Spring and dashpot; none as long as no ground has rolling friction.
+    /// Spring and dashpot; none until a ground with rolling friction is met.
     element: Option<FrictionElement>,
-    /// Its stretch at the step's start, and at the base of the stage in hand (rad).
+    /// Its stretch at the step's start, and at the base of the current stage (rad).
     pub(super) stretch: Vec3,
     base: Vec3,
-    /// The moment that it takes from the block (N m).
+    /// Its moment against the spin of the block (N m).
     moment: Vec3,
-    /// Impulse on the block of the last solve (N m s): where the next begins.
+    /// Impulse on the block of the last solve (N m s): the next initial guess.
     impulse: Vec3,
 }
 
 impl RollingSpring {
-    /// Takes up the element of the first of these contacts that has one.
-    pub(super) fn take_up(&mut self, contacts: &[SpringContact]) {
+    /// Adopts the element of the first of these contacts that has one.
+    pub(super) fn adopt_element(&mut self, contacts: &[SpringContact]) {
         if self.element.is_none() {
             let elements = contacts.iter().map(|contact| contact.law.rolling);
             self.element = elements.into_iter().find(FrictionElement::is_on);
         }
     }
 
-    /// Whether a contact has brought rolling friction.
+    /// Whether there is rolling friction.
     pub(super) fn is_on(&self) -> bool {
         self.element.is_some()
     }
 
-    /// It over a stage in which it acts for `a` and the block turns for `b` (s), from a stretch at its base (rad).
-    pub(super) fn over(&mut self, base: &Vec3, times_s: (f64, f64)) -> Turning {
+    /// Its impulse over a stage in which it acts for `a` and the block turns for `b` (s), from a
+    /// stretch at its base (rad).
+    pub(super) fn stage_compliance(&mut self, base: &Vec3, times_s: (f64, f64)) -> RollingImpulse {
         self.base = *base;
         match &self.element {
-            Some(element) => Turning::over(element, base, times_s).guessed(self.impulse),
-            None => Turning::NONE,
+            Some(element) => {
+                RollingImpulse::of_stage(element, base, times_s).with_guess(self.impulse)
+            }
+            None => RollingImpulse::NONE,
         }
     }
 
-    /// Takes the moment from an impulse that has acted for `a` (s).
-    pub(super) fn take(&mut self, turning: &Turning, a: f64) {
-        self.moment = turning.impulse / -a;
-        self.impulse = first_guess(turning.impulse);
+    /// Sets the moment from an impulse that has acted for `a` (s).
+    pub(super) fn set_moment(&mut self, rolling: &RollingImpulse, a: f64) {
+        self.moment = rolling.impulse / -a;
+        self.impulse = first_guess(rolling.impulse);
     }
 
-    /// Takes the moment that it has where the block turns with `w` (rad/s), pressed as its contacts are.
-    pub(super) fn press(&mut self, contacts: &[SpringContact], w: &Vec3) -> SliderForce {
+    /// Sets the moment at the spin `w` (rad/s), for the present normal forces of its contacts.
+    pub(super) fn update_moment(&mut self, contacts: &[SpringContact], w: &Vec3) -> SliderForce {
         self.base = self.stretch;
         let Some(element) = &self.element else { return SliderForce::default() };
         let pressed = element.at_rate(self.stretch, *w, limit_n_m(contacts));
@@ -63,7 +66,7 @@ impl RollingSpring {
         pressed
     }
 
-    /// Rate of the stretch (rad/s) in the mean of a stage in which the block has turned for `b` (s).
+    /// Mean rate of the stretch (rad/s) over a stage in which the block has turned for `b` (s).
     pub(super) fn rate_over(&self, b: f64) -> Vec3 {
         (self.stretch_after(b) - self.base) / b
     }
@@ -74,28 +77,28 @@ impl RollingSpring {
         self.element.as_ref().map_or_else(Vec3::zeros, after)
     }
 
-    /// Keeps the stretch of the end of a stage.
+    /// Sets the stretch to that of the end of a stage.
     pub(super) fn keep(&mut self, b: f64) {
         self.stretch = self.stretch_after(b);
     }
 
     /// Energy in it at the step's start (J).
-    pub(super) fn holds_j(&self) -> f64 {
-        self.stored_j(&self.stretch)
+    pub(super) fn stored_j(&self) -> f64 {
+        self.energy_at(&self.stretch)
     }
 
     /// Energy in it at the end of a stage (J).
-    pub(super) fn will_hold_j(&self, b: f64) -> f64 {
-        self.stored_j(&self.stretch_after(b))
+    pub(super) fn stored_after_j(&self, b: f64) -> f64 {
+        self.energy_at(&self.stretch_after(b))
     }
 
-    fn stored_j(&self, stretch: &Vec3) -> f64 {
+    fn energy_at(&self, stretch: &Vec3) -> f64 {
         self.element
             .as_ref()
             .map_or(0.0, |element| 0.5 * element.spring_force(*stretch).dot(stretch))
     }
 
-    /// Power that goes into it (W) at a spin (rad/s), what it stores counted in, by the contacts that bear it.
+    /// Power into it (W) at a spin (rad/s), stored power included, distributed over its contacts.
     pub(super) fn power(
         &self,
         world: &ContactEnvironment,
@@ -105,9 +108,10 @@ impl RollingSpring {
         self.borne_by(world, contacts, self.moment.dot(w))
     }
 
-    /// What slider and dashpot take (J) where the block turns with `w` (rad/s) for `b` (s), by the contacts that bear it: the spring takes, at
-    /// the stretch of the end, what it was stretched by.
-    pub(super) fn taken(
+    /// Energy (J) that slider and dashpot dissipate where the block turns with `w` (rad/s) for `b`
+    /// (s), distributed over its contacts. The spring stores its moment at the end times its change
+    /// of stretch.
+    pub(super) fn dissipated(
         &self,
         world: &ContactEnvironment,
         contacts: &[SpringContact],
@@ -119,7 +123,7 @@ impl RollingSpring {
         self.borne_by(world, contacts, self.moment.dot(w) * b - sprung_j)
     }
 
-    /// An amount (W or J) that goes into it, by the contacts that bear it.
+    /// An amount (W or J), distributed over its contacts by their capacities.
     fn borne_by(
         &self,
         world: &ContactEnvironment,
@@ -139,7 +143,7 @@ impl RollingSpring {
     }
 }
 
-/// Largest moment that contacts bear together (N m).
+/// Largest moment of the contacts together (N m).
 fn limit_n_m(contacts: &[SpringContact]) -> f64 {
     contacts.iter().map(|contact| contact.law.rolling.cap(contact.normal_force)).sum()
 }

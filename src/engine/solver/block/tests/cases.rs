@@ -1,4 +1,5 @@
-//! Exact cases of rounded bodies: a sphere as one ball, a capsule, bounces run backwards, meshes that are planes.
+//! Exact cases of rounded bodies: a sphere as one ball, a capsule, bounces run backwards, meshes
+//! that are planes.
 
 use super::*;
 use crate::body::Core;
@@ -11,8 +12,8 @@ pub(super) fn balls(corners: Vec<Vec3>, ball_m: f64, (mass_kg, moments): (f64, [
     Block { core, ball_m, mass_kg, inertia_kg_m2: moments, bound_m, radius_m }
 }
 
-/// A capsule of two balls of 0.3 m, 0.8 m apart, rolls across 20° without slipping on both balls: with I/(m r²) = 7/15 about its axis
-/// a = g sin 20°/(1 + 7/15) = 2.287648367744 m/s², straight on.
+/// A capsule of two balls of 0.3 m, 0.8 m apart, rolls across 20° without slipping on both balls:
+/// with I/(m r²) = 7/15 about its axis a = g sin 20°/(1 + 7/15) = 2.287648367744 m/s², straight on.
 #[test]
 fn a_capsule_rolls_on_both_of_its_balls() {
     let angle = 20_f64.to_radians();
@@ -22,17 +23,17 @@ fn a_capsule_rolls_on_both_of_its_balls() {
         balls(vec![Vec3::y() * half, Vec3::y() * -half], r, (mass, [2.0 * own, own, 2.0 * own]));
     let mut case = BlockRun::new(slope(angle, 100.0), body, (1.0, 0.0));
     let (along, up) = axes(angle);
-    let mut moving = case.start(tilted(angle), still(up * r - along * 40.0));
-    let start = moving.pose.centre;
-    case.follow(&mut moving, 4.0, |_, _| ());
+    let mut state = case.start(tilted(angle), still(up * r - along * 40.0));
+    let start = state.pose.centre;
+    case.follow(&mut state, 4.0, |_, _| ());
     let a = G * sin(angle) / (1.0 + 7.0 / 15.0);
     assert!((a - 2.287_648_367_744).abs() < 1e-12);
-    let way = moving.pose.centre - start;
-    println!("{} {}", moving.v.dot(&along) / (4.0 * a) - 1.0, way.dot(&along) / (8.0 * a) - 1.0);
-    assert!((moving.v.dot(&along) / (4.0 * a) - 1.0).abs() < 1e-6, "{}", moving.v.dot(&along));
+    let way = state.pose.centre - start;
+    println!("{} {}", state.v.dot(&along) / (4.0 * a) - 1.0, way.dot(&along) / (8.0 * a) - 1.0);
+    assert!((state.v.dot(&along) / (4.0 * a) - 1.0).abs() < 1e-6, "{}", state.v.dot(&along));
     assert!((way.dot(&along) / (8.0 * a) - 1.0).abs() < 1e-6, "{}", way.dot(&along));
-    let spin = moving.spin(&case.block);
-    assert!((spin.y * r / moving.v.dot(&along) - 1.0).abs() < 1e-6, "{spin}");
+    let spin = state.spin(&case.block);
+    assert!((spin.y * r / state.v.dot(&along) - 1.0).abs() < 1e-6, "{spin}");
     assert!(way.y.abs() < 1e-9 && spin.x.abs() + spin.z.abs() < 1e-9, "{way} {spin}");
 }
 
@@ -44,15 +45,15 @@ fn one_ball_rolls_as_a_sphere_does() {
     let body = balls(vec![Vec3::zeros()], r, (mass, [own; 3]));
     let mut case = BlockRun::new(slope(angle, 100.0), body, (1.0, 0.0));
     let (along, up) = axes(angle);
-    let mut moving = case.start(tilted(angle), still(up * r - along * 40.0));
-    case.follow(&mut moving, 4.0, |_, _| ());
+    let mut state = case.start(tilted(angle), still(up * r - along * 40.0));
+    case.follow(&mut state, 4.0, |_, _| ());
     let speed = 5.0 / 7.0 * G * sin(angle) * 4.0;
-    assert!((moving.v.dot(&along) / speed - 1.0).abs() < 1e-6, "{}", moving.v.dot(&along) / speed);
+    assert!((state.v.dot(&along) / speed - 1.0).abs() < 1e-6, "{}", state.v.dot(&along) / speed);
 }
 
-/// Bounces with e = 1 and without friction, then all velocities turned round: the block comes back to its start. A tumbling box is
-/// chaotic: each bounce multiplies the gap of 1e-10 R at which a touch is one. So the way back is held to what a twin tells that starts
-/// 1e-8 m higher.
+/// Bounces with e = 1 and without friction, then all velocities reversed: the block returns to its
+/// start. A tumbling box is chaotic: each bounce multiplies the touching tolerance of 1e-10 R. So
+/// the error of the return is compared with that of a twin that starts 1e-8 m higher.
 #[test]
 fn elastic_bounces_run_backwards() {
     run_backwards(elastic_box(), &[2, 10], 1e-9);
@@ -64,34 +65,35 @@ pub(super) fn elastic_box() -> BlockRun {
     BlockRun::new(slope(0.0, 1e3), body, (0.0, 1.0))
 }
 
-/// Goes on for so many bounces and back again; `near` is how near it comes, for a twin that has not been driven away.
+/// Simulates this number of bounces and the return; `near` is the closest approach to the start,
+/// for a twin that has not diverged.
 pub(super) fn run_backwards(mut case: BlockRun, bounces: &[usize], near: f64) {
     let start = [Vec3::z() * 3.0, Vec3::new(1.0, 0.5, 0.0), Vec3::new(0.3, -0.7, 0.4)];
     let begun = case.start(Rotation3::identity(), start);
     for &asked in bounces {
-        let (mut moving, mut longest) = (begun.clone(), 0.0);
-        // the time that so many bounces take is not known before
+        let (mut state, mut longest) = (begun.clone(), 0.0);
+        // the time of this number of bounces is not known in advance
         while case.impacts < asked {
-            (moving, case.impacts) = (begun.clone(), 0);
+            (state, case.impacts) = (begun.clone(), 0);
             longest += 0.25;
-            case.follow(&mut moving, longest, |_, _| ());
+            case.follow(&mut state, longest, |_, _| ());
         }
         let bounces = case.impacts;
         let mut twin = begun.clone();
         twin.pose.centre.z += 1e-8;
         case.follow(&mut twin, longest, |_, _| ());
         let apart = [
-            (twin.pose.centre - moving.pose.centre).norm(),
-            (twin.pose.attitude.matrix() - moving.pose.attitude.matrix()).norm(),
-            (twin.v - moving.v).norm(),
+            (twin.pose.centre - state.pose.centre).norm(),
+            (twin.pose.attitude.matrix() - state.pose.attitude.matrix()).norm(),
+            (twin.v - state.v).norm(),
         ];
         let growth = (apart.into_iter().fold(0.0, f64::max) / 1e-8).max(1.0);
-        (moving.v, moving.momentum, case.impacts) = (-moving.v, -moving.momentum, 0);
-        case.follow(&mut moving, longest, |_, _| ());
+        (state.v, state.momentum, case.impacts) = (-state.v, -state.momentum, 0);
+        case.follow(&mut state, longest, |_, _| ());
         assert_eq!(case.impacts, bounces);
-        let off = (moving.pose.centre - begun.pose.centre).norm();
-        let turned = (moving.pose.attitude.matrix() - begun.pose.attitude.matrix()).norm();
-        let v = (moving.v + begun.v).norm();
+        let off = (state.pose.centre - begun.pose.centre).norm();
+        let turned = (state.pose.attitude.matrix() - begun.pose.attitude.matrix()).norm();
+        let v = (state.v + begun.v).norm();
         println!("{bounces} bounces: {off:e} m, {turned:e}, {v:e} m/s; growth {growth:e}");
         assert!(off.max(turned).max(v) < near * growth, "{off:e} {turned:e} {v:e} {growth:e}");
         case.impacts = 0;
@@ -112,7 +114,8 @@ pub(super) fn finely(angle: f64, rows: u32) -> Terrain {
     terrain(all.collect())
 }
 
-/// A block whose face lies on a plane of many small triangles slides 50 m as on two large ones: nothing throws it up.
+/// A block whose face lies on a plane of many small triangles slides 50 m as on two large ones:
+/// nothing throws it up.
 #[test]
 fn a_face_slides_over_any_triangulation() {
     let angle = 40_f64.to_radians();
@@ -120,16 +123,16 @@ fn a_face_slides_over_any_triangulation() {
     let body = block(&box_surface([1.0, 0.9, 0.5]), 0.05);
     let ends = [slope(angle, 100.0), finely(angle, 200)].map(|mesh| {
         let mut case = BlockRun::new(mesh, body.clone(), (0.5, 0.4));
-        let mut moving = case.start(tilted(angle), still(up * 0.25));
-        let start = moving.pose.centre;
+        let mut state = case.start(tilted(angle), still(up * 0.25));
+        let start = state.pose.centre;
         let (mut worst, mut way) = (0.0f64, 0.0);
-        case.follow(&mut moving, 6.4, |_, moving| {
-            worst = worst.max(moving.v.dot(&up).abs());
-            way = (moving.pose.centre - start).dot(&along);
+        case.follow(&mut state, 6.4, |_, state| {
+            worst = worst.max(state.v.dot(&up).abs());
+            way = (state.pose.centre - start).dot(&along);
         });
         println!("{way} m, {worst:e} m/s, {} steps, {} impacts", case.steps, case.impacts);
         assert!(way > 50.0 && worst < 1e-8, "{way} {worst:e}");
-        (way, moving.v)
+        (way, state.v)
     });
     assert!(
         (ends[0].0 - ends[1].0).abs() < 1e-6 && (ends[0].1 - ends[1].1).norm() < 1e-7,
@@ -137,28 +140,30 @@ fn a_face_slides_over_any_triangulation() {
     );
 }
 
-/// How many of three slabs of 2.5 x 3 x 1 m that roll down 27° with rough friction, e = 0 (Leine 2014, 5.2), as `made` for a scheme, come
-/// to turn about the axis of largest inertia within 60 s. They begin a thousandth of a radian apart: that is enough for times between 7 and
-/// 60 s, with every scheme, and one of ten takes longer.
+/// Number of slabs out of three, 2.5 x 3 x 1 m, that roll down 27° with rough friction, e = 0
+/// (Leine 2014, 5.2), as `made` for a scheme, and come to rotate about the axis of largest inertia
+/// within 60 s. They start a thousandth of a radian apart, which is enough for times between 7 and
+/// 60 s with every scheme; one of ten takes longer.
 pub(super) fn rolling_slabs(made: impl Fn(BlockRun) -> BlockRun) -> usize {
     [0.2, 0.201, 0.202].into_iter().filter(|tilt| rolling_slab(*tilt, &made).is_some()).count()
 }
 
-/// When (s) that axis first carries 95 % of the energy of the spin of one that leans sideways so much at first (rad).
+/// Time (s) at which that axis first carries 95 % of the rotational energy of a slab that leans
+/// sideways by this angle at first (rad).
 fn rolling_slab(tilt: f64, made: impl Fn(BlockRun) -> BlockRun) -> Option<f64> {
     let angle = 27_f64.to_radians();
     let body = block(&box_surface([2.5, 3.0, 1.0]), 0.05);
     let mut case = made(BlockRun::new(slope(angle, 4e3), body, (10.0, 0.0)));
     let (along, up) = axes(angle);
     let start = [up * 2.5 - along * 3000.0, along * 28.0, Vec3::y() * 20.8];
-    let mut moving = case.start(tilted(angle) * turn(&Vec3::x_axis(), tilt), start);
+    let mut state = case.start(tilted(angle) * turn(&Vec3::x_axis(), tilt), start);
     let own = case.block.clone();
     let widest =
         (0..3).max_by(|&i, &j| own.inertia_kg_m2[i].total_cmp(&own.inertia_kg_m2[j])).unwrap();
     let mut first = None;
     for begun_s in [0.0, 10.0, 20.0, 30.0, 40.0, 50.0] {
-        case.follow(&mut moving, 10.0, |now, moving| {
-            let spin = moving.pose.attitude.inverse_transform_vector(&moving.spin(&own));
+        case.follow(&mut state, 10.0, |now, state| {
+            let spin = state.pose.attitude.inverse_transform_vector(&state.spin(&own));
             let parts: Vec<f64> =
                 (0..3).map(|k| own.inertia_kg_m2[k] * spin[k] * spin[k]).collect();
             if parts[widest] > 0.95 * parts.iter().sum::<f64>() {
@@ -188,10 +193,10 @@ fn restitution_of_a_block_falls_with_speed() {
             BlockRun::new(slope(0.0, 50.0), block(&box_surface([1.0; 3]), 0.05), (0.5, 0.6));
         case.law.restitution_half_m_s = 9.0;
         let start = [Vec3::z() * 0.5, Vec3::z() * -speed, Vec3::zeros()];
-        let mut moving = case.start(Rotation3::identity(), start);
-        case.follow(&mut moving, 1e-3, |_, _| ());
+        let mut state = case.start(Rotation3::identity(), start);
+        case.follow(&mut state, 1e-3, |_, _| ());
         let up = 0.6 / (1.0 + (speed / 9.0_f64).powi(2)) * speed;
-        assert!((moving.v.z + G * 1e-3 - up).abs() < 1e-9, "{} {up}", moving.v.z);
+        assert!((state.v.z + G * 1e-3 - up).abs() < 1e-9, "{} {up}", state.v.z);
     }
 }
 
@@ -210,7 +215,8 @@ pub(super) fn peak() -> Terrain {
     terrain(vec![[tip, a, b], [tip, b, c], [tip, c, a]])
 }
 
-/// An edge of a block across a ridge: one contact, and a plate over a peak: one contact, pushing with the weight.
+/// An edge of a block across a ridge: one contact, and a plate over a peak: one contact, pushing
+/// with the weight.
 #[test]
 fn edges_and_faces_meet_edges_and_peaks() {
     // on its edge across the ridge; its face over the peak
@@ -231,9 +237,13 @@ fn edges_and_faces_meet_edges_and_peaks() {
         };
         let top = Top::new(body.inertia_kg_m2, attitude, Vec3::zeros());
         let tumble = BlockFlight { block: &body, top, path };
-        let mut footing = Footing::default();
-        let landing =
-            first_touch(&case.terrain, &tumble, 10.0, (&mut footing.near, &mut footing.window));
+        let mut contact_state = BlockContactState::default();
+        let landing = first_touch(
+            &case.terrain,
+            &tumble,
+            10.0,
+            (&mut contact_state.near, &mut contact_state.window),
+        );
         let FlightEnd::Touch(t) = landing else { panic!("{landing:?}") };
         assert!((t - (0.6_f64 / G).sqrt()).abs() < 1e-6, "{t}");
         let laws = [case.law];
@@ -242,21 +252,22 @@ fn edges_and_faces_meet_edges_and_peaks() {
             body: Body::of_block(&body, G),
             laws: &laws,
         };
-        let mut moving = above.clone();
-        (moving.pose, moving.v) = (tumble.pose(t), path.velocity(t));
-        let pose = moving.pose;
-        footing.look(&world, &body, &pose, body.ball_m);
-        assert_eq!(footing.touching(&body).count(), 1, "{:?}", footing.touches);
-        assert!((footing.touches.found[0].normal - Vec3::z()).norm() < 1e-7);
+        let mut state = above.clone();
+        (state.pose, state.v) = (tumble.pose(t), path.velocity(t));
+        let pose = state.pose;
+        contact_state.detect(&world, &body, &pose, body.ball_m);
+        assert_eq!(contact_state.touching(&body).count(), 1, "{:?}", contact_state.touches);
+        assert!((contact_state.touches.found[0].normal - Vec3::z()).norm() < 1e-7);
         // a balanced fall on one point stops dead
-        footing.strike(&world, &body, &mut moving).unwrap();
-        assert!(moving.v.norm() < 1e-7 && moving.spin(&body).norm() < 1e-7, "{}", moving.v);
+        contact_state.strike(&world, &body, &mut state).unwrap();
+        assert!(state.v.norm() < 1e-7 && state.spin(&body).norm() < 1e-7, "{}", state.v);
         case.impacts += 1;
     }
 }
 
-/// A block is let out with a tenth of `√(g R)` of the scene's gravity at most, on the moon as on Jupiter, and from less than a hundredth of its
-/// radius in proportion to the depth: slower and slower.
+/// Penetration of a block is recovered with at most a tenth of `√(g R)` of the scene's gravity, on
+/// the moon as on Jupiter, and below a hundredth of its radius in proportion to the depth: ever
+/// more slowly.
 #[test]
 fn what_is_pressed_in_is_let_out_as_gravity_has_it() {
     let case = BlockRun::new(slope(0.0, 50.0), block(&box_surface([1.0; 3]), 0.05), (0.5, 0.4));
@@ -266,12 +277,12 @@ fn what_is_pressed_in_is_let_out_as_gravity_has_it() {
         let body = Body::of_block(&own, gravity);
         let world = ContactEnvironment { terrain: &case.terrain, body, laws: &laws };
         for (deep_m, share) in [(0.02, 1.0), (0.001, 0.001 / (0.01 * own.radius_m))] {
-            let mut footing = Footing::default();
-            let mut moving = case.start(Rotation3::identity(), still(Vec3::z() * (0.5 - deep_m)));
-            footing.step(&world, &own, &mut moving, (1e-4, CORNER_WAY));
+            let mut contact_state = BlockContactState::default();
+            let mut state = case.start(Rotation3::identity(), still(Vec3::z() * (0.5 - deep_m)));
+            contact_state.step(&world, &own, &mut state, (1e-4, CORNER_WAY));
             let right = share * 0.1 * (gravity * own.radius_m).sqrt();
-            assert!(!footing.contacts.is_empty());
-            for contact in &footing.contacts {
+            assert!(!contact_state.contacts.is_empty());
+            for contact in &contact_state.contacts {
                 let out = contact.goal.dot(&contact.n);
                 assert!((out / right - 1.0).abs() < 2e-3, "{gravity}, {deep_m}: {out} {right}");
             }
@@ -279,18 +290,19 @@ fn what_is_pressed_in_is_let_out_as_gravity_has_it() {
     }
 }
 
-/// What of its energy of motion a block has lost that tips over its rear edge, without slip, when its front edge strikes the level (–).
+/// Share of its kinetic energy that a block has lost (–) that tips over its rear edge, without
+/// slip, when its front edge strikes the level.
 fn lost_by_tipping(sides: [f64; 3], ball: f64, (tilt, step_s): (f64, f64)) -> f64 {
     let body = block(&box_surface(sides), ball);
     let mut case = BlockRun::new(slope(0.0, 50.0), body, (10.0, 0.5));
     case.step_s = step_s;
     let attitude = tilted(-tilt);
     let low = attitude * Vec3::new(ball - 0.5 * sides[0], 0.0, ball - 0.5 * sides[2]);
-    let mut moving = case.start(attitude, still(Vec3::z() * (ball - low.z)));
-    let (own, had_j) = (case.block.clone(), case.energy_j(&moving));
-    let energy_j = |now: &Moving| now.motion_j(&own) + own.mass_kg * G * now.pose.centre.z;
+    let mut state = case.start(attitude, still(Vec3::z() * (ball - low.z)));
+    let (own, had_j) = (case.block.clone(), case.energy_j(&state));
+    let energy_j = |now: &BlockState| now.motion_j(&own) + own.mass_kg * G * now.pose.centre.z;
     let (mut last_j, mut fastest, mut lost_j) = (had_j, 0.0f64, None);
-    case.follow(&mut moving, 2.0, |_, now| {
+    case.follow(&mut state, 2.0, |_, now| {
         let w = now.spin(&own).norm();
         if lost_j.is_none() && w < 0.9 * fastest {
             lost_j = Some(had_j - last_j);
@@ -300,7 +312,8 @@ fn lost_by_tipping(sides: [f64; 3], ball: f64, (tilt, step_s): (f64, f64)) -> f6
     lost_j.unwrap() / (had_j - own.mass_kg * G * 0.5 * sides[2])
 }
 
-/// A step that ends where the front edge closes takes nothing of what weight adds in it: what is left is the steps' own error, of second order.
+/// A step that ends where the front edge closes does not dissipate the work of the weight in it:
+/// only the steps' own error remains, of second order.
 #[test]
 fn a_tipping_block_strikes_as_fast_as_it_has_fallen() {
     for (sides, ball) in [([2.0, 1.0, 0.2], 0.01), ([2.0, 1.0, 0.2], 0.08), ([0.6, 1.0, 0.5], 0.08)]

@@ -1,11 +1,12 @@
-//! A block that slides down a slope and strikes the level at its foot: contacts that last take part in the blow of the one that comes.
+//! A block that slides down a slope and strikes the level at its foot: lasting contacts take part
+//! in the impact of the new one.
 
 use super::springs::{FINEST, on_springs};
 use super::*;
 
 const ANGLE: f64 = 0.61;
 const SPEED_M_S: f64 = 20.0;
-/// A blow is over so long after it has begun (s): many times that of the springs here.
+/// Time after which an impact is over (s): many times that of the springs here.
 const OVER_S: f64 = 1e-3;
 
 /// A slope that falls along x to a level at the origin.
@@ -21,8 +22,8 @@ fn foot() -> Terrain {
     terrain(facets.concat())
 }
 
-/// What of its energy of motion a plate loses (–) that slides flat on the slope, turned by `yaw` (rad) about its normal, when its first corner strikes the
-/// level.
+/// Share of its kinetic energy (–) that a plate loses that slides flat on the slope, rotated by
+/// `yaw` (rad) about its normal, when its first corner strikes the level.
 fn lost(yaw: f64, (friction, e): (f64, f64), made: impl Fn(BlockRun) -> BlockRun) -> f64 {
     let plate = block(&box_surface([1.0, 0.8, 0.3]), 0.05);
     let mut case = made(BlockRun::new(foot(), plate, (friction, e)));
@@ -31,13 +32,13 @@ fn lost(yaw: f64, (friction, e): (f64, f64), made: impl Fn(BlockRun) -> BlockRun
     let reaches = |own: &Vec3| (attitude * own).dot(&along);
     let reach_m = case.block.core.corners.iter().map(reaches).fold(0.0, f64::max);
     let centre = up * 0.15 - along * (reach_m + 0.3);
-    let mut moving = case.start(attitude, [centre, along * SPEED_M_S, Vec3::zeros()]);
+    let mut state = case.start(attitude, [centre, along * SPEED_M_S, Vec3::zeros()]);
     let (own, weight_n) = (case.block.clone(), case.block.mass_kg * G);
     let (mut had_j, mut struck_s, mut left_j) = ([0.0; 2], None, None);
-    case.follow(&mut moving, 0.1, |now, moving| {
-        let motion_j = moving.motion_j(&own);
-        let energy_j = motion_j + weight_n * moving.pose.centre.z;
-        if (moving.v - along * moving.v.dot(&along)).norm() < 0.05 {
+    case.follow(&mut state, 0.1, |now, state| {
+        let motion_j = state.motion_j(&own);
+        let energy_j = motion_j + weight_n * state.pose.centre.z;
+        if (state.v - along * state.v.dot(&along)).norm() < 0.05 {
             had_j = [motion_j, energy_j];
         } else if *struck_s.get_or_insert(now) + OVER_S < now {
             left_j.get_or_insert(energy_j);
@@ -46,8 +47,9 @@ fn lost(yaw: f64, (friction, e): (f64, f64), made: impl Fn(BlockRun) -> BlockRun
     (had_j[1] - left_j.unwrap()) / had_j[0]
 }
 
-/// Springs that are pressed while others rebound, and that lasted before, are damped and press still. With `rigid` rounding made some of these new contacts, that
-/// gave back what theirs would not, and without friction none was damped.
+/// Springs of lasting contacts that are loaded while others rebound keep their damping and still
+/// press. With `rigid`, rounding made some of them new contacts, which rebounded although their
+/// springs would not, and without friction none was damped.
 #[test]
 fn what_lasts_takes_part_in_a_blow() {
     for (friction, e) in [(0.0, 0.4), (0.2, 0.4), (0.2, 0.0), (0.6, 0.4)] {

@@ -1,10 +1,11 @@
-//! Compact blocks that roll down slopes hardly steep enough to keep them rolling: every joule that a step loses stops one.
+//! Compact blocks on slopes hardly steep enough to keep them rolling: any energy that a step loses
+//! stops one.
 
 use super::springs::{SCHEMES, on_springs};
 use super::*;
 use std::f64::consts::TAU;
 
-/// Blocks that are released.
+/// Number of blocks.
 const BLOCKS: u32 = 24;
 /// How long they roll (s).
 const ROLLS_S: f64 = 15.0;
@@ -18,7 +19,7 @@ fn gentle_slope() -> BlockRun {
     case
 }
 
-/// How far (m) they come in [`ROLLS_S`] in the mean, from 1.5 m/s, and how many roll then.
+/// Mean distance (m) that they travel in [`ROLLS_S`], from 1.5 m/s, and how many roll then.
 fn roll(made: impl Fn(BlockRun) -> BlockRun) -> (f64, u32) {
     let (along, up) = axes(2.8_f64.to_radians());
     let (mut way_m, mut rolling) = (0.0, 0);
@@ -27,16 +28,17 @@ fn roll(made: impl Fn(BlockRun) -> BlockRun) -> (f64, u32) {
         let x = f64::from(k) / f64::from(BLOCKS);
         let attitude = turn(&Vec3::x_axis(), TAU * x) * turn(&Vec3::z_axis(), 5.0 * TAU * x);
         let start = [up * 0.45, along * 1.5, Vec3::new(x - 0.5, 3.7, 0.0)];
-        let mut moving = case.start(attitude, start);
-        case.follow(&mut moving, ROLLS_S, |_, _| ());
-        way_m += moving.pose.centre.dot(&along) / f64::from(BLOCKS);
-        rolling += u32::from(moving.v.norm() > 0.02);
+        let mut state = case.start(attitude, start);
+        case.follow(&mut state, ROLLS_S, |_, _| ());
+        way_m += state.pose.centre.dot(&along) / f64::from(BLOCKS);
+        rolling += u32::from(state.v.norm() > 0.02);
     }
     (way_m, rolling)
 }
 
-/// They roll on with `rigid` as with springs. Corners that came in too slowly to rebound were let out within one step, and so thrown up: a
-/// block rocked from one of the two on which it rolled to the other, until hardly any had energy to come over the next edge.
+/// They continue to roll with `rigid` as with springs. When the penetration of corners that were
+/// too slow to rebound was recovered within one step, they were thrown up: a block rocked between
+/// the two corners on which it rolled, until hardly any had the energy to pass the next edge.
 #[test]
 fn compact_blocks_roll_on_down_a_gentle_slope() {
     let [rigid, fine] = [0.01, 0.002].map(|step_s| roll(|case| BlockRun { step_s, ..case }));

@@ -1,33 +1,34 @@
-//! A hexagonal prism that rolls down with plastic slaps.
+//! A hexagonal prism that rolls down with plastic impacts of its edges.
 
 use super::*;
 
-/// Spin of a hexagonal prism of side 1 m that rolls down, as `made` for a scheme: before its last slap, and where it was slowest after it;
-/// and what it is before a slap in its limit cycle.
+/// Spin of a hexagonal prism of side 1 m that rolls down, as `made` for a scheme: before its last
+/// edge impact, its minimum after it, and the spin before an impact in its limit cycle.
 pub(super) fn rolling_prism(
     degrees: f64,
     made: impl Fn(BlockRun) -> BlockRun,
 ) -> ((f64, f64), f64) {
     let angle = degrees.to_radians();
     let mut case = made(prism_run(angle));
-    let mut moving = prism_start(&case, angle);
-    // a slap takes a third of the spin, and the way up over the edge some more
-    let (mut slap, mut fastest, mut slowest, mut fell) = ((0.0, 0.0), 0.0, f64::INFINITY, None);
+    let mut state = prism_start(&case, angle);
+    // an edge impact takes a third of the spin, and the climb over the edge some more
+    let (mut edge_impact, mut fastest, mut slowest, mut fell) =
+        ((0.0, 0.0), 0.0, f64::INFINITY, None);
     let own = case.block.clone();
-    case.follow(&mut moving, 12.0, |now, moving| {
-        let spin = moving.spin(&own).y;
+    case.follow(&mut state, 12.0, |now, state| {
+        let spin = state.spin(&own).y;
         match fell {
             None if spin < 0.9 * fastest => fell = Some(now),
             None => fastest = spin.max(fastest),
             Some(_) if spin > 1.5 * slowest => {
-                slap = (fastest, slowest);
+                edge_impact = (fastest, slowest);
                 (fastest, slowest, fell) = (spin, f64::INFINITY, None);
             }
-            // what springs do to the spin in the slap itself is over soon
+            // the effect of the springs on the spin during the impact itself is soon over
             Some(begun) => slowest = if now > begun + 0.05 { spin.min(slowest) } else { slowest },
         }
     });
-    (slap, prism_cycle(angle).0)
+    (edge_impact, prism_cycle(angle).0)
 }
 
 /// Radius of its balls (m).
@@ -39,16 +40,17 @@ fn prism_run(angle: f64) -> BlockRun {
 }
 
 /// It turns about its rear edge with 1.7 rad/s.
-fn prism_start(case: &BlockRun, angle: f64) -> Moving {
+fn prism_start(case: &BlockRun, angle: f64) -> BlockState {
     let (along, up) = axes(angle);
     let (height, spin) = (0.75_f64.sqrt(), Vec3::y() * 1.7);
     let arm = up * height - along * 0.5;
     case.start(tilted(angle), [up * (height + 1e-7) - along * 100.0, spin.cross(&arm), spin])
 }
 
-/// Spin before a slap in its limit cycle (rad/s), and the share that a slap leaves (–): edges a little inside, and arcs between them.
+/// Spin before an edge impact in its limit cycle (rad/s), and the share that the impact leaves (–):
+/// edges a little inside, and arcs between them.
 fn prism_cycle(angle: f64) -> (f64, f64) {
-    // half a face, height, what a slap keeps and how far it takes the prism
+    // half a face, height, the share that an impact keeps, and the rotation between impacts
     let s = 0.5 - PRISM_BALL_M * crate::math::tan(std::f64::consts::FRAC_PI_6);
     let (h2, inertia) = (0.75, 5.0 / 12.0);
     let eta = (inertia + h2 - s * s) / (inertia + h2 + s * s);
@@ -57,10 +59,12 @@ fn prism_cycle(angle: f64) -> (f64, f64) {
     (square.sqrt(), eta)
 }
 
-/// A blow of the ground that gives nothing back throws the prism up by so little that it is back after this (s).
+/// An impact on plastic ground throws the prism up by so little that it is back after this time
+/// (s).
 const SETTLED_S: f64 = 0.05;
 
-/// A hexagonal prism of side 1 m rolls down with plastic slaps: its spin settles where a slap takes what a sixth of a turn gives.
+/// A hexagonal prism of side 1 m rolls down with plastic edge impacts: its spin converges to the
+/// one at which an impact takes what a sixth of a turn gives.
 #[test]
 fn a_hexagonal_prism_rolls_into_its_limit_cycle() {
     for (degrees, before, after) in
@@ -68,29 +72,35 @@ fn a_hexagonal_prism_rolls_into_its_limit_cycle() {
     {
         let angle = degrees.to_radians();
         let mut case = prism_run(angle);
-        let mut moving = prism_start(&case, angle);
-        // the last slap: the spin before it, and what is left once the weight has brought the prism to rest on its front edge, about which
-        // it turns without loss
-        let (mut slap, mut known, mut fell) = ((0.0, 0.0), 1.7, (0.0, 0.0));
+        let mut state = prism_start(&case, angle);
+        // the last edge impact: the spin before it, and the spin left once the weight has brought
+        // the prism to rest on its front edge, about which it rotates without loss
+        let (mut edge_impact, mut known, mut fell) = ((0.0, 0.0), 1.7, (0.0, 0.0));
         let own = case.block.clone();
         let s = 0.5 - PRISM_BALL_M * crate::math::tan(std::f64::consts::FRAC_PI_6);
         let about_edge = 5.0 / 12.0 + 0.75 + s * s;
-        case.follow(&mut moving, 12.0, |t, moving| {
-            let (spin, z) = (moving.spin(&own).y, moving.pose.centre.z);
+        case.follow(&mut state, 12.0, |t, state| {
+            let (spin, z) = (state.spin(&own).y, state.pose.centre.z);
             if spin < 0.9 * known && t > fell.0 + SETTLED_S {
-                (slap.0, fell) = (known, (t, z));
+                (edge_impact.0, fell) = (known, (t, z));
             }
             if t < fell.0 + SETTLED_S {
-                let motion = moving.motion_j(&own) / own.mass_kg + G * (z - fell.1);
-                slap.1 = (2.0 * motion / about_edge).sqrt();
+                let motion = state.motion_j(&own) / own.mass_kg + G * (z - fell.1);
+                edge_impact.1 = (2.0 * motion / about_edge).sqrt();
             }
             known = spin;
         });
         let (cycle, eta) = prism_cycle(angle);
-        assert!((slap.0 / cycle - 1.0).abs() < 5e-4, "{degrees}: {slap:?} {cycle}");
-        assert!((slap.1 / slap.0 / eta - 1.0).abs() < 5e-4, "{degrees}: {slap:?} {eta}");
+        assert!((edge_impact.0 / cycle - 1.0).abs() < 5e-4, "{degrees}: {edge_impact:?} {cycle}");
+        assert!(
+            (edge_impact.1 / edge_impact.0 / eta - 1.0).abs() < 5e-4,
+            "{degrees}: {edge_impact:?} {eta}"
+        );
         // and near the sharp prism's digits
-        assert!((slap.0 / before - 1.0).abs() < 0.015, "{degrees}: {slap:?} {before}");
-        assert!((slap.1 / after - 1.0).abs() < 0.03, "{degrees}: {slap:?} {after}");
+        assert!(
+            (edge_impact.0 / before - 1.0).abs() < 0.015,
+            "{degrees}: {edge_impact:?} {before}"
+        );
+        assert!((edge_impact.1 / after - 1.0).abs() < 0.03, "{degrees}: {edge_impact:?} {after}");
     }
 }

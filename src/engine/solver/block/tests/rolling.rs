@@ -1,4 +1,5 @@
-//! Rolling friction of blocks: a moment of up to ρ N R against the spin, R of the sphere of equal volume, in every scheme.
+//! Rolling friction of blocks: a moment of up to ρ N R against the spin, R of the sphere of equal
+//! volume, in every scheme.
 
 use super::cases::balls;
 use super::springs::{SCHEMES, every_scheme, on_springs};
@@ -38,7 +39,8 @@ fn tolerance(scheme: Scheme) -> f64 {
     if scheme.has_springs() { 2e-3 } else { 1e-6 }
 }
 
-/// A capsule rolls across 20°: a = g (sin 20° − ρ R/r cos 20°)/(1 + 7/15), and rolling friction takes ρ R N for every radian.
+/// A capsule rolls across 20°: a = g (sin 20° − ρ R/r cos 20°)/(1 + 7/15), and rolling friction
+/// takes ρ R N for every radian.
 #[test]
 fn a_capsule_is_held_back_by_rolling_friction() {
     let (angle, rho, r) = (20_f64.to_radians(), 0.1, 0.3);
@@ -47,11 +49,11 @@ fn a_capsule_is_held_back_by_rolling_friction() {
         let case = BlockRun::new(slope(angle, 100.0), capsule(), (1.0, 0.0));
         let mut case = with_rolling(case, scheme, rho);
         let (along, up) = axes(angle);
-        let mut moving = case.start(tilted(angle), still(up * r - along * 40.0));
-        let start = moving.pose.centre;
-        case.follow(&mut moving, 2.0, |_, _| ());
+        let mut state = case.start(tilted(angle), still(up * r - along * 40.0));
+        let start = state.pose.centre;
+        case.follow(&mut state, 2.0, |_, _| ());
         let a = G * (sin(angle) - lever_m / r * cos(angle)) / (1.0 + 7.0 / 15.0);
-        let (way, speed) = ((moving.pose.centre - start).dot(&along), moving.v.dot(&along));
+        let (way, speed) = ((state.pose.centre - start).dot(&along), state.v.dot(&along));
         let taken_j = lever_m * 1000.0 * G * cos(angle) * way / r;
         let off = [speed / (2.0 * a), way / (2.0 * a), case.lost.rolling / taken_j];
         println!("{scheme:?} {off:?}");
@@ -61,7 +63,8 @@ fn a_capsule_is_held_back_by_rolling_friction() {
     }
 }
 
-/// On a level a capsule that rolls at 2 m/s stops after v² (1 + 7/15) r/(2 ρ R g), and stays where it is.
+/// On a level a capsule that rolls at 2 m/s stops after v² (1 + 7/15) r/(2 ρ R g), and stays where
+/// it is.
 #[test]
 fn a_capsule_stops_where_rolling_friction_has_its_energy() {
     let (rho, r, v) = (0.15, 0.3, 2.0);
@@ -69,27 +72,27 @@ fn a_capsule_stops_where_rolling_friction_has_its_energy() {
         let case = BlockRun::new(slope(0.0, 100.0), capsule(), (1.0, 0.0));
         let mut case = with_rolling(case, scheme, rho);
         let start = [Vec3::z() * r, Vec3::x() * v, Vec3::y() * (v / r)];
-        let mut moving = case.start(Rotation3::identity(), start);
+        let mut state = case.start(Rotation3::identity(), start);
         let own = case.block.clone();
         let a = G * rho * own.radius_m / r / (1.0 + 7.0 / 15.0);
-        let mut most_j = f64::INFINITY;
-        case.follow(&mut moving, 1.2 * v / a, |_, moving| {
-            let motion_j = moving.motion_j(&own);
+        let mut available_j = f64::INFINITY;
+        case.follow(&mut state, 1.2 * v / a, |_, state| {
+            let motion_j = state.motion_j(&own);
             // what springs hold comes back as motion
-            assert!(motion_j <= most_j + 1.0, "{scheme:?} {motion_j} {most_j}");
-            most_j = most_j.min(motion_j);
+            assert!(motion_j <= available_j + 1.0, "{scheme:?} {motion_j} {available_j}");
+            available_j = available_j.min(motion_j);
         });
-        let way = moving.pose.centre.x / (v * v / (2.0 * a));
-        println!("{scheme:?} {way} {:e} m/s, {:?}", moving.v.norm(), case.lost);
+        let way = state.pose.centre.x / (v * v / (2.0 * a));
+        println!("{scheme:?} {way} {:e} m/s, {:?}", state.v.norm(), case.lost);
         // steps end where they do, not where the capsule stops
         assert!((way - 1.0).abs() < 1e-4, "{scheme:?} {way}");
-        assert!(moving.v.norm() < 1e-4 && moving.spin(&own).norm() < 1e-4, "{scheme:?}");
+        assert!(state.v.norm() < 1e-4 && state.spin(&own).norm() < 1e-4, "{scheme:?}");
         let had_j = 0.5 * 1000.0 * v * v * (1.0 + 7.0 / 15.0);
         assert!((case.lost.rolling / had_j - 1.0).abs() < 5e-3, "{scheme:?} {:?}", case.lost);
     }
 }
 
-/// A ball stays on 10° where rolling friction bears tan 10°, and rolls where it bears less.
+/// A ball stays on 10° if the capacity of rolling friction is tan 10°, and rolls if it is less.
 #[test]
 fn a_ball_rests_below_the_slope_that_rolling_friction_holds() {
     let (angle, r) = (10_f64.to_radians(), 0.5);
@@ -99,20 +102,21 @@ fn a_ball_rests_below_the_slope_that_rolling_friction_holds() {
             let case = BlockRun::new(slope(angle, 100.0), ball(r), (1.0, 0.0));
             let mut case = with_rolling(case, scheme, part * held);
             let (along, up) = axes(angle);
-            let mut moving = case.start(tilted(angle), still(up * r));
-            case.follow(&mut moving, 2.0, |_, _| ());
-            let speed = moving.v.dot(&along);
+            let mut state = case.start(tilted(angle), still(up * r));
+            case.follow(&mut state, 2.0, |_, _| ());
+            let speed = state.v.dot(&along);
             let rolls = 5.0 / 7.0 * G * sin(angle) * 0.05 * 2.0;
             println!("{scheme:?} {part} {speed:e} m/s of {rolls}");
             let known = if stays { 0.0 } else { rolls };
-            // the spring must be wound up before it bears all it can
+            // the spring must be stretched before it reaches its capacity
             let share = if scheme.has_springs() { 0.05 } else { 1e-3 };
             assert!((speed - known).abs() < share * rolls, "{scheme:?} {part}: {speed} {known}");
         }
     }
 }
 
-/// One ball at the centre with rolling friction bounces and rolls on as the sphere of the same scheme does.
+/// One ball at the centre with rolling friction bounces and rolls on as the sphere of the same
+/// scheme does.
 #[test]
 fn one_ball_with_rolling_friction_is_a_sphere() {
     let (angle, r) = (20_f64.to_radians(), 0.5);
@@ -121,30 +125,31 @@ fn one_ball_with_rolling_friction_is_a_sphere() {
     for scheme in SCHEMES {
         let case = BlockRun::new(slope(angle, 50.0), ball(r), (0.6, 0.0));
         let mut case = with_rolling(case, scheme, 0.2);
-        let mut moving = case.start(tilted(angle), start);
-        case.follow(&mut moving, 0.5, |_, _| ());
+        let mut state = case.start(tilted(angle), start);
+        case.follow(&mut state, 0.5, |_, _| ());
         let laws = [case.law];
         let own = Body::of_block(&case.block, G);
         let own = Body { radius: r, inertia: 0.4 * own.mass * r * r, ..own };
         let world = ContactEnvironment { terrain: &case.terrain, body: own, laws: &laws };
-        let mut state = crate::solver::contact_state::ContactState::default();
-        state.begin(&world, start[0] - case.terrain.origin_m, start[1], start[2]);
+        let mut sphere = crate::solver::contact_state::ContactState::default();
+        sphere.begin(&world, start[0] - case.terrain.origin_m, start[1], start[2]);
         let settings = case.springs.unwrap();
-        let mut stepper = crate::solver::Stepper::new(&settings, &world, &mut state);
+        let mut stepper = crate::solver::Stepper::new(&settings, &world, &mut sphere);
         let mut gone = 0.0;
         while gone < 0.5 {
             gone +=
-                crate::solver::advance(&mut stepper, &world, &mut state, 0.5 - gone).unwrap().dt;
-            assert!(!state.is_free(), "{scheme:?} {gone}");
+                crate::solver::advance(&mut stepper, &world, &mut sphere, 0.5 - gone).unwrap().dt;
+            assert!(!sphere.is_free(), "{scheme:?} {gone}");
         }
-        let off = (moving.v - state.v).norm() / state.v.norm();
-        let turned = (moving.spin(&case.block) - state.w).norm() / state.w.norm();
-        println!("{scheme:?} {gone} {off:e} {turned:e} {} {}", moving.v, state.v);
+        let off = (state.v - sphere.v).norm() / sphere.v.norm();
+        let turned = (state.spin(&case.block) - sphere.w).norm() / sphere.w.norm();
+        println!("{scheme:?} {gone} {off:e} {turned:e} {} {}", state.v, sphere.v);
         assert!(off.max(turned) < 2e-3, "{scheme:?} {off:e} {turned:e}");
     }
 }
 
-/// A tumbling slab with rolling friction: no impact and no step gains energy, and rolling friction takes some of it.
+/// A tumbling slab with rolling friction: no impact and no step gains energy, and rolling friction
+/// takes some of it.
 #[test]
 fn a_tumbling_slab_gains_nothing_by_rolling_friction() {
     let angle = 30_f64.to_radians();
@@ -154,26 +159,27 @@ fn a_tumbling_slab_gains_nothing_by_rolling_friction() {
         let mut case = with_rolling(case, scheme, 0.2);
         let (along, up) = axes(angle);
         let start = [up - along * 150.0, along * 5.0, Vec3::new(1.0, 9.0, -2.0)];
-        let mut moving = case.start(turn(&Vec3::x_axis(), 0.4), start);
+        let mut state = case.start(turn(&Vec3::x_axis(), 0.4), start);
         let (own, mass) = (case.block.clone(), case.block.mass_kg);
-        let total_j = |moving: &Moving| moving.motion_j(&own) + mass * G * moving.pose.centre.z;
+        let total_j = |state: &BlockState| state.motion_j(&own) + mass * G * state.pose.centre.z;
         let mut before_j = f64::INFINITY;
         // springs give back what they have stored; the rigid limit has none
         let given_j = if scheme.has_springs() { f64::INFINITY } else { 0.0 };
         let longest_s = if scheme.has_fixed_step() { 1.0 } else { 3.0 };
-        let begun_j = total_j(&moving);
-        case.follow(&mut moving, longest_s, |_, moving| {
-            let now_j = total_j(moving);
+        let begun_j = total_j(&state);
+        case.follow(&mut state, longest_s, |_, state| {
+            let now_j = total_j(state);
             assert!(now_j <= before_j + given_j + 1e-9 * begun_j.abs(), "{scheme:?} {now_j}");
             before_j = now_j;
         });
-        let balance = (begun_j - total_j(&moving) - case.lost.sum()) / case.lost.sum();
+        let balance = (begun_j - total_j(&state) - case.lost.sum()) / case.lost.sum();
         println!("{scheme:?} {:?}, {balance:e} left", case.lost);
-        assert!(case.lost.rolling > 0.0 && total_j(&moving) < begun_j, "{scheme:?}");
+        assert!(case.lost.rolling > 0.0 && total_j(&state) < begun_j, "{scheme:?}");
     }
 }
 
-/// The impulse of turning is at its limit against what the spin and the spring ask for, or leaves no spin.
+/// The angular impulse is at its limit against the trial value of spin and spring, or leaves no
+/// spin.
 #[test]
 fn turning_acts_against_the_spin() {
     let inverse = Matrix3::from_diagonal(&Vec3::new(1.0, 0.4, 0.25));
@@ -188,16 +194,16 @@ fn turning_acts_against_the_spin() {
             BlockContact::new(&mass, (Vec3::z(), -Vec3::z()), (1.0, 0), Vec3::zeros())
                 .rolling(law(rho).limits());
         contact.impulse = Vec3::z() * 4.0;
-        let (mut turning, bears) = (rigid_turning(&[contact]), contact.turning_limit());
-        let after = w + turning.turn(&mass.inverse, &w, bears);
-        let again = turning.turn(&mass.inverse, &after, bears);
+        let (mut rolling, capacity) = (rigid_rolling(&[contact]), contact.rolling_limit());
+        let after = w + rolling.update(&mass.inverse, &w, capacity);
+        let again = rolling.update(&mass.inverse, &after, capacity);
         assert!(again.norm() < 1e-12, "{rho}: {again}");
         if stops {
             assert!(after.norm() < 1e-12, "{after}");
         } else {
-            let (size, limit) = (turning.impulse.norm(), rho * 0.5 * 4.0);
+            let (size, limit) = (rolling.impulse.norm(), rho * 0.5 * 4.0);
             assert!((size / limit - 1.0).abs() < 1e-12, "{rho}: {size} {limit}");
-            let along = -turning.impulse.dot(&after) / (size * after.norm());
+            let along = -rolling.impulse.dot(&after) / (size * after.norm());
             assert!((along - 1.0).abs() < 1e-12, "{rho}: {along}");
         }
     }

@@ -4,8 +4,9 @@ use super::springs::{every_scheme, on_springs, with_long_steps};
 use super::*;
 use crate::ground::SlipFriction;
 
-/// Leine's square block on 45°, with μ = 0.2 + (2/π) 1.1 atan(0.7 s), slides on its face with the speed that the closed integral
-/// of friction leaves it, 3.49176205 m/s where μ = 1 after 3.12813509 m; there it tips over its lower edge.
+/// Leine's square block on 45°, with μ = 0.2 + (2/π) 1.1 atan(0.7 s), slides on its face with the
+/// speed that the closed integral of friction leaves it, 3.49176205 m/s where μ = 1 after
+/// 3.12813509 m; there it tips over its lower edge.
 #[test]
 fn friction_that_grows_with_slip_tips_a_block() {
     let angle = 45_f64.to_radians();
@@ -27,15 +28,15 @@ fn friction_that_grows_with_slip_tips_a_block() {
             case = with_long_steps(on_springs(case, scheme, 1e9));
         }
         case.ground.slip_friction = Some(soil);
-        let mut moving = case.start(tilted(angle), still(up * 0.5));
-        let (block, start) = (case.block.clone(), moving.pose.centre);
+        let mut state = case.start(tilted(angle), still(up * 0.5));
+        let (block, start) = (case.block.clone(), state.pose.centre);
         let (mut worst, mut tipped) = (0.0f64, 0.0f64);
-        case.follow(&mut moving, 2.4, |_, moving| {
-            let way = (moving.pose.centre - start).dot(&along);
-            let spin = moving.spin(&block).norm();
+        case.follow(&mut state, 2.4, |_, state| {
+            let way = (state.pose.centre - start).dot(&along);
+            let spin = state.spin(&block).norm();
             // with its edges rounded it tips a little earlier
             if (1.0..2.7).contains(&way) {
-                worst = worst.max((moving.v.dot(&along) / exact(way) - 1.0).abs()).max(spin);
+                worst = worst.max((state.v.dot(&along) / exact(way) - 1.0).abs()).max(spin);
             }
             tipped = tipped.max(spin);
         });

@@ -1,11 +1,12 @@
-//! The exact cases with springs: `adaptive`, `reference` and `dda` come to what the rigid limit does as their springs get stiff.
+//! The exact cases with springs: `adaptive`, `reference` and `dda` converge to the rigid limit as
+//! their springs get stiff.
 
 use super::cases::{balls, elastic_box, run_backwards};
 use super::*;
 use crate::solver::Scheme;
 use nalgebra::Unit;
 
-/// The one whose own error is least.
+/// The scheme with the least error of its own.
 pub(super) const FINEST: Scheme = Scheme::Reference;
 pub(super) const SCHEMES: [Scheme; 3] = [Scheme::Adaptive, Scheme::Reference, Scheme::Dda];
 
@@ -54,22 +55,24 @@ fn a_cube_rests_on_its_springs() {
     for scheme in SCHEMES {
         let mut case = on_springs(cube(angle, (1.0, 0.4)), scheme, 1e8);
         let (along, up) = axes(angle);
-        let mut moving = case.start(tilted(angle), still(up * 0.5));
-        let start = moving.pose.centre;
+        let mut state = case.start(tilted(angle), still(up * 0.5));
+        let start = state.pose.centre;
         let longest_s = if scheme == Scheme::Dda { 2.0 } else { 100.0 };
-        case.follow(&mut moving, longest_s, |_, _| ());
-        let way = moving.pose.centre - start;
+        case.follow(&mut state, longest_s, |_, _| ());
+        let way = state.pose.centre - start;
         let weight = case.block.mass_kg * G;
-        // four springs along the normal and four along the surface, which also let the cube lean: its centre is 0.5 m up
+        // four springs along the normal and four along the surface, which also let the cube lean:
+        // its centre is 0.5 m up
         let (pressed, sheared) = (weight * cos(angle) / 4e8, weight * sin(angle) / 1e8);
         let lean = weight * sin(angle) * 0.25 / (4e8 * 0.45 * 0.45);
         assert!((way.dot(&up) / -pressed - 1.0).abs() < 1e-3, "{scheme:?} {way}");
         assert!((way.dot(&along) / (sheared + lean) - 1.0).abs() < 0.02, "{scheme:?} {way}");
-        assert!(moving.v.norm() < 1e-8, "{scheme:?} {}", moving.v);
+        assert!(state.v.norm() < 1e-8, "{scheme:?} {}", state.v);
     }
 }
 
-/// A cube slides on its face with a = g (sin 40° − 0.5 cos 40°) and does not turn; it has sunk into its springs before.
+/// A cube slides on its face with a = g (sin 40° − 0.5 cos 40°) and does not turn; it has sunk into
+/// its springs before.
 #[test]
 fn a_cube_slides_on_its_springs() {
     let angle = 40_f64.to_radians();
@@ -77,47 +80,49 @@ fn a_cube_slides_on_its_springs() {
     for scheme in SCHEMES {
         let mut case = on_springs(cube(angle, (0.5, 0.4)), scheme, 1e9);
         let (along, up) = axes(angle);
-        let mut moving = case.start(tilted(angle), still(up * 0.5));
+        let mut state = case.start(tilted(angle), still(up * 0.5));
         let mut early = None;
-        case.follow(&mut moving, 1.5, |t, moving| {
+        case.follow(&mut state, 1.5, |t, state| {
             if early.is_none() && t > 0.5 {
-                early = Some((t, moving.v.dot(&along)));
+                early = Some((t, state.v.dot(&along)));
             }
         });
         let (t, v) = early.unwrap();
-        let found = (moving.v.dot(&along) - v) / (1.5 - t);
+        let found = (state.v.dot(&along) - v) / (1.5 - t);
         assert!((found / a - 1.0).abs() < 1e-6, "{scheme:?} {found} {a}");
-        let spin = moving.spin(&case.block).norm();
+        let spin = state.spin(&case.block).norm();
         assert!(spin < 1e-6, "{scheme:?} {spin}");
     }
 }
 
-/// Motion of a bar that has struck with its lower corners, at `friction` and e = 0.5: velocity and spin.
-fn thrown(case: &mut BlockRun) -> (Vec3, Vec3) {
+/// Motion of a bar that has struck with its lower corners, at `friction` and e = 0.5: velocity and
+/// spin.
+fn rebounded(case: &mut BlockRun) -> (Vec3, Vec3) {
     let attitude = tilted(30_f64.to_radians());
     let low = attitude * Vec3::new(0.98, 0.08, -0.08);
     let start = [Vec3::z() * (0.02 - low.z + 1e-9), Vec3::new(0.5, 0.2, -3.0), Vec3::zeros()];
-    let mut moving = case.start(attitude, start);
+    let mut state = case.start(attitude, start);
     let own = case.block.clone();
     let mut out = None;
-    case.follow(&mut moving, 5e-3, |_, moving| {
-        if out.is_none() && moving.spin(&own).norm() > 1.0 {
+    case.follow(&mut state, 5e-3, |_, state| {
+        if out.is_none() && state.spin(&own).norm() > 1.0 {
             out = Some(());
         }
     });
-    (moving.v + Vec3::z() * (G * 5e-3), moving.spin(&own))
+    (state.v + Vec3::z() * (G * 5e-3), state.spin(&own))
 }
 
-/// Case S6: the tilted bar is thrown by its corners as the rigid impact says, to 1e-4 at 1e12 N/m, and the nearer the stiffer.
+/// Case S6: the tilted bar rebounds from its corners as in the rigid impact, to 1e-4 at 1e12 N/m,
+/// and the more exactly the stiffer.
 #[test]
 fn a_tilted_bar_is_thrown_as_in_the_rigid_limit() {
     let bar =
         || BlockRun::new(slope(0.0, 50.0), block(&box_surface([2.0, 0.2, 0.2]), 0.02), (0.0, 0.5));
-    let (v, w) = thrown(&mut bar());
+    let (v, w) = rebounded(&mut bar());
     for (scheme, most) in [(Scheme::Adaptive, 1e-3), (Scheme::Reference, 1e-4), (Scheme::Dda, 2e-2)]
     {
         let off = [1e9, 1e12].map(|p_n| {
-            let (own_v, own_w) = thrown(&mut on_springs(bar(), scheme, p_n));
+            let (own_v, own_w) = rebounded(&mut on_springs(bar(), scheme, p_n));
             ((own_v - v).norm() / v.norm()).max((own_w - w).norm() / w.norm())
         });
         println!("{scheme:?} {off:?}");
@@ -125,7 +130,8 @@ fn a_tilted_bar_is_thrown_as_in_the_rigid_limit() {
     }
 }
 
-/// One ball at the centre is a sphere: oblique impacts with friction leave it as the sphere's own scheme does.
+/// One ball at the centre is a sphere: oblique impacts with friction leave it as the sphere's own
+/// scheme does.
 #[test]
 fn one_ball_bounces_as_a_sphere_does() {
     let (r, mass) = (0.5, 2700.0 * 4.0 / 3.0 * std::f64::consts::PI * 0.125);
@@ -135,28 +141,28 @@ fn one_ball_bounces_as_a_sphere_does() {
     for (scheme, most) in [(Scheme::Adaptive, 2e-3), (Scheme::Reference, 1e-6), (Scheme::Dda, 2e-2)]
     {
         let mut case = run(scheme);
-        let mut moving = case.start(Rotation3::identity(), start);
-        case.follow(&mut moving, 0.05, |_, _| ());
+        let mut state = case.start(Rotation3::identity(), start);
+        case.follow(&mut state, 0.05, |_, _| ());
         // the sphere
         let laws = [case.law];
         let own = Body { mass, inertia: 0.4 * mass * r * r, radius: r, gravity: Vec3::z() * -G };
         let world = ContactEnvironment { terrain: &case.terrain, body: own, laws: &laws };
-        let mut state = crate::solver::contact_state::ContactState::default();
+        let mut sphere = crate::solver::contact_state::ContactState::default();
         let centre = Vec3::z() * (r * (1.0 - 1e-12)) - case.terrain.origin_m;
-        state.begin(&world, centre, start[1], start[2]);
+        sphere.begin(&world, centre, start[1], start[2]);
         let settings = Settings { scheme: Scheme::Reference, ..case.springs.unwrap() };
-        let mut stepper = crate::solver::Stepper::new(&settings, &world, &mut state);
+        let mut stepper = crate::solver::Stepper::new(&settings, &world, &mut sphere);
         let mut gone = 0.0;
         loop {
             let left = 0.05 - gone;
-            gone += crate::solver::advance(&mut stepper, &world, &mut state, left).unwrap().dt;
-            if state.is_free() {
+            gone += crate::solver::advance(&mut stepper, &world, &mut sphere, left).unwrap().dt;
+            if sphere.is_free() {
                 break;
             }
         }
-        let v = state.v - Vec3::z() * (G * (0.05 - gone));
-        let off = (moving.v - v).norm() / v.norm();
-        let turned = (moving.spin(&case.block) - state.w).norm() / state.w.norm();
+        let v = sphere.v - Vec3::z() * (G * (0.05 - gone));
+        let off = (state.v - v).norm() / v.norm();
+        let turned = (state.spin(&case.block) - sphere.w).norm() / sphere.w.norm();
         println!("{scheme:?} {off:e} {turned:e}");
         assert!(off.max(turned) < most, "{scheme:?} {off:e} {turned:e}");
     }
@@ -175,16 +181,17 @@ fn a_capsule_rolls_on_springs() {
         let mut case =
             on_springs(BlockRun::new(slope(angle, 100.0), body, (1.0, 0.0)), scheme, 1e9);
         let (along, up) = axes(angle);
-        let mut moving = case.start(tilted(angle), still(up * r - along * 40.0));
-        case.follow(&mut moving, 2.0, |_, _| ());
-        let speed = moving.v.dot(&along) / (2.0 * a);
+        let mut state = case.start(tilted(angle), still(up * r - along * 40.0));
+        case.follow(&mut state, 2.0, |_, _| ());
+        let speed = state.v.dot(&along) / (2.0 * a);
         assert!((speed - 1.0).abs() < 1e-3, "{scheme:?} {speed}");
-        let spin = moving.spin(&case.block);
-        assert!(spin.x.abs() + spin.z.abs() < 1e-6 && moving.v.y.abs() < 1e-6, "{scheme:?} {spin}");
+        let spin = state.spin(&case.block);
+        assert!(spin.x.abs() + spin.z.abs() < 1e-6 && state.v.y.abs() < 1e-6, "{scheme:?} {spin}");
     }
 }
 
-/// Elastic bounces backwards on springs of the finest scheme, whose local error is 1e-9 of an impact.
+/// Elastic bounces backwards on springs of the finest scheme, whose local error is 1e-9 of an
+/// impact.
 #[test]
 fn elastic_bounces_on_springs_run_backwards() {
     run_backwards(on_springs(elastic_box(), Scheme::Reference, 1e9), &[2, 5], 1e-7);
@@ -204,8 +211,8 @@ fn folds(cells: i32, most_m: f64) -> Terrain {
     terrain((0..cells).flat_map(|i| (0..cells).map(move |j| (i, j))).flat_map(cell).collect())
 }
 
-/// e = 1 without friction on folds that the block is larger than: nothing gains energy, whatever touches, and the finer scheme keeps
-/// it.
+/// e = 1 without friction on folds that the block is larger than: nothing gains energy, whatever
+/// touches, and the finer scheme keeps it.
 #[test]
 fn elastic_blocks_keep_their_energy_over_folds() {
     for (scheme, most) in [(Scheme::Adaptive, 0.05), (Scheme::Reference, 1e-5), (Scheme::Dda, 1.0)]
@@ -215,14 +222,14 @@ fn elastic_blocks_keep_their_energy_over_folds() {
             let case = BlockRun::new(folds(80, 0.03), body, (0.0, 1.0));
             let mut case = on_springs(case, scheme, 1e9);
             let start = [Vec3::z() * 1.5, Vec3::new(0.4, 0.3, 0.0), Vec3::new(0.5, -1.0, 0.8)];
-            let mut moving = case.start(Rotation3::identity(), start);
-            let before = case.energy_j(&moving);
+            let mut state = case.start(Rotation3::identity(), start);
+            let before = case.energy_j(&state);
             let own = case.block.clone();
             let energy =
-                |moving: &Moving| moving.motion_j(&own) + own.mass_kg * G * moving.pose.centre.z;
+                |state: &BlockState| state.motion_j(&own) + own.mass_kg * G * state.pose.centre.z;
             let mut highest = before;
-            case.follow(&mut moving, 5.0, |_, moving| highest = highest.max(energy(moving)));
-            let lost = 1.0 - case.energy_j(&moving) / before;
+            case.follow(&mut state, 5.0, |_, state| highest = highest.max(energy(state)));
+            let lost = 1.0 - case.energy_j(&state) / before;
             println!(
                 "{scheme:?} {sides:?}: lost {lost:e}, rose {:e}, {} steps",
                 highest / before - 1.0,
@@ -235,24 +242,26 @@ fn elastic_blocks_keep_their_energy_over_folds() {
     }
 }
 
-/// Motion of a block after its first episode of contact: velocity without what weight has added since its start, and spin.
+/// Motion of a block after its first episode of contact: velocity without the effect of weight
+/// since its start, and spin.
 fn after_first_contact(case: &mut BlockRun, attitude: Rotation3<f64>) -> (Vec3, Vec3) {
     let start = [Vec3::z() * 2.0, Vec3::new(2.0, 1.0, -6.0), Vec3::new(1.0, -2.0, 1.5)];
-    let mut moving = case.start(attitude, start);
+    let mut state = case.start(attitude, start);
     let own = case.block.clone();
     // steps are short, flights are not
-    let (mut flights, mut last) = (0, (0.0, moving.clone()));
-    case.follow(&mut moving, 0.4, |t, moving| {
+    let (mut flights, mut last) = (0, (0.0, state.clone()));
+    case.follow(&mut state, 0.4, |t, state| {
         flights += usize::from(t - last.0 > 2e-3);
         if flights < 2 {
-            last = (t, moving.clone());
+            last = (t, state.clone());
         }
     });
     (last.1.v + Vec3::z() * (G * last.0), last.1.spin(&own))
 }
 
-/// Impacts by explicit stages in their own time come out as the implicit stages have them, the nearer the finer those are: corners and
-/// edges on a plane and on folds, with friction, each turned otherwise, against the finest scheme.
+/// Explicitly integrated impacts agree with the implicit stages, the more closely the finer those
+/// are: corners and edges on a plane and on folds, with friction, each with another attitude,
+/// against the finest scheme.
 #[test]
 fn explicit_impacts_are_the_implicit_ones() {
     let surfaces = [box_surface([1.4, 0.9, 0.35]), prism_surface(6, 0.7)];
@@ -286,7 +295,8 @@ fn explicit_impacts_are_the_implicit_ones() {
     assert!(2.0 * explicit < implicit, "{explicit} {implicit}");
 }
 
-/// A contact that a step of `dda` runs into begins with the stretch that its memory holds, or, as printed in the paper, with none.
+/// A contact that a step of `dda` runs into begins with the stretch of its history or, as printed
+/// in the paper, with none.
 #[test]
 fn what_a_step_runs_into_is_without_memory_as_printed() {
     let case = on_springs(cube(0.0, (0.5, 0.4)), Scheme::Dda, 1e9);
@@ -295,16 +305,16 @@ fn what_a_step_runs_into_is_without_memory_as_printed() {
         ContactEnvironment { terrain: &case.terrain, body: Body::of_block(&own, G), laws: &laws };
     let end = case.start(Rotation3::identity(), still(Vec3::z() * 0.499));
     for remembers in [true, false] {
-        let mut footing = Footing::default();
-        footing.begin_springs(&world, &case.springs.unwrap(), (&own, &end));
-        assert_eq!(footing.springs.histories.len(), 4);
-        footing.springs.histories.iter_mut().for_each(|history| history.shear.x = 1e-3);
-        footing.touches.found.clear();
-        let stretch = |footing: &Footing, k: usize| {
-            if remembers { footing.springs.histories[k].shear } else { Vec3::zeros() }
+        let mut contact_state = BlockContactState::default();
+        contact_state.begin_springs(&world, &case.springs.unwrap(), (&own, &end));
+        assert_eq!(contact_state.springs.histories.len(), 4);
+        contact_state.springs.histories.iter_mut().for_each(|history| history.shear.x = 1e-3);
+        contact_state.touches.found.clear();
+        let stretch = |contact_state: &BlockContactState, k: usize| {
+            if remembers { contact_state.springs.histories[k].shear } else { Vec3::zeros() }
         };
-        footing.run_into(&world, (&own, &end, &end), 1e-5, &stretch);
-        let known: Vec<f64> = footing.springs.stretches_m().collect();
+        contact_state.add_new_contacts(&world, (&own, &end, &end), 1e-5, &stretch);
+        let known: Vec<f64> = contact_state.springs.stretches_m().collect();
         let expected = if remembers { 1e-3 } else { 0.0 };
         assert!(
             known.len() == 4 && known.iter().all(|x| (x - expected).abs() < 1e-12),

@@ -1,9 +1,10 @@
-//! The way of a rock through an impact on a plane, from the touch or from any place within it.
+//! The motion of a rock through an impact on a plane, from first contact or from any state within
+//! it.
 //!
-//! The normal motion is a closed form whatever it begins with: how long the impact still lasts, how deep the rock may get and how
-//! fast it leaves are known before anything is followed along the plane.
+//! The normal motion is a closed form for any initial state: the remaining time of the impact, the
+//! largest penetration and the exit speed are known before the tangential motion is integrated.
 
-use super::{Plane, Rebound, SMOOTH, Start};
+use super::{ImpactStart, Plane, Rebound, SMOOTH};
 use crate::math;
 use crate::rock::Vec3;
 use crate::solver::contact_frame::{ContactFrame, Local};
@@ -11,9 +12,9 @@ use crate::solver::impact::ImpactEffort;
 use crate::solver::impact::normal_motion::Exit;
 use crate::solver::loss::Loss;
 
-/// How far a rock is in a plane, and what the springs of its contact hold.
+/// Penetration of a rock into a plane, and the stretches of the springs of its contact.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct PressedIn {
+pub(crate) struct InitialDeformation {
     /// Penetration (m).
     pub(crate) depth_m: f64,
     /// Stretch of the shear spring (m) and of the rolling spring (rad).
@@ -21,23 +22,24 @@ pub(crate) struct PressedIn {
     pub(crate) roll_rad: Vec3,
 }
 
-impl PressedIn {
-    /// Not yet: it has just touched.
-    pub(crate) const NOT: Self = Self {
+impl InitialDeformation {
+    /// At first contact.
+    pub(crate) const NONE: Self = Self {
         depth_m: 0.0,
         shear_m: Vec3::new(0.0, 0.0, 0.0),
         roll_rad: Vec3::new(0.0, 0.0, 0.0),
     };
 }
 
-/// The normal motion until the penetration is zero again, or for a part of that time, in units of a speed and of `1/ω`.
+/// The normal motion until the penetration is zero again, or for a part of that time, in units of a
+/// speed and of `1/ω`.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct NormalPassage {
     frame: ContactFrame,
     omega: f64,
     /// The unit of speed (m/s).
     speed: f64,
-    /// Gravity, against the normal the last.
+    /// Gravity; the last component is against the normal.
     gravity: Local,
     /// Penetration and speed into the plane.
     depth: f64,
@@ -46,35 +48,36 @@ pub(crate) struct NormalPassage {
     begin: [f64; 2],
     exit: Exit,
     /// Penetration at the end.
-    left: f64,
+    end_depth: f64,
     deepest: f64,
 }
 
 impl NormalPassage {
-    /// How long it takes (s).
+    /// Duration (s).
     pub(crate) fn time_s(&self) -> f64 {
-        (self.exit.lift + self.exit.out) / self.omega
+        (self.exit.lift_off + self.exit.clearing) / self.omega
     }
 
-    /// Whether the rock is out at its end.
+    /// Whether the penetration is zero at its end.
     pub(crate) fn leaves(&self) -> bool {
-        self.left == 0.0
+        self.end_depth == 0.0
     }
 
-    /// Penetration that is not passed (m).
+    /// Upper bound of the penetration (m).
     pub(crate) fn deepest_m(&self) -> f64 {
         self.deepest * self.speed / self.omega
     }
 
     /// Normal impulse over the mass (m/s).
     pub(crate) fn blow_m_s(&self) -> f64 {
-        (self.inwards + self.exit.speed + self.gravity[2].max(0.0) * self.exit.lift) * self.speed
+        (self.inwards + self.exit.speed + self.gravity[2].max(0.0) * self.exit.lift_off)
+            * self.speed
     }
 }
 
 impl Plane {
-    /// The way of a rock with velocity `v` (m/s) through the plane with unit normal `n`, into which it is pressed by `depth_m`; `None` if
-    /// gravity keeps it, or nothing pushes it any more.
+    /// The normal motion of a rock with velocity `v` (m/s) in the plane with unit normal `n` and
+    /// the penetration `depth_m`; `None` if gravity keeps it, or nothing pushes it any more.
     pub(crate) fn passage(&self, n: &Vec3, v: &Vec3, depth_m: f64) -> Option<NormalPassage> {
         let frame = ContactFrame::of(n);
         let inwards_m_s = -n.dot(v);
@@ -84,16 +87,16 @@ impl Plane {
         let (over, over_force) = (1.0 / speed, 1.0 / (self.omega * speed));
         // gravity in units of acceleration ω times the speed
         let [gx, gy, gn] = frame.local(&self.body.gravity).map(|g| g * over_force);
-        let (gamma, swing) = (-gn, &self.swing);
+        let (gamma, oscillator) = (-gn, &self.oscillator);
         let (depth, inwards) =
             if is_touch { (0.0, 1.0) } else { (depth_m * self.omega * over, inwards_m_s * over) };
         let (begin, exit, deepest) = if is_touch {
-            (swing.onset(gamma), swing.exit(gamma)?, swing.deepest(gamma))
+            (oscillator.onset(gamma), oscillator.exit(gamma)?, oscillator.deepest(gamma))
         } else {
-            let begin = swing.force_at((depth, inwards), gamma);
-            // about the place where gravity is balanced the swing gets no wider
+            let begin = oscillator.force_at((depth, inwards), gamma);
+            // about the equilibrium with gravity the amplitude of the oscillation does not grow
             let deepest = gamma + math::hypot(depth - gamma, inwards);
-            (begin, swing.exit_from(begin, gamma)?, deepest)
+            (begin, oscillator.exit_from(begin, gamma)?, deepest)
         };
         let gravity = [gx, gy, gamma];
         Some(NormalPassage {
@@ -105,26 +108,33 @@ impl Plane {
             inwards,
             begin,
             exit,
-            left: 0.0,
+            end_depth: 0.0,
             deepest,
         })
     }
 
-    /// The first part of a passage, a `share` of the time until the rock lifts off.
+    /// The first part of a passage, for a `share` of the time until lift-off.
     pub(crate) fn part(&self, passage: &NormalPassage, share: f64) -> NormalPassage {
-        let lift = share * passage.exit.lift;
-        let (left, inwards) = self.swing.place_at((passage.begin, passage.gravity[2]), lift);
-        NormalPassage { exit: Exit { lift, out: 0.0, speed: -inwards }, left, ..*passage }
+        let lift_off = share * passage.exit.lift_off;
+        let (end_depth, inwards) =
+            self.oscillator.state_at((passage.begin, passage.gravity[2]), lift_off);
+        NormalPassage {
+            exit: Exit { lift_off, clearing: 0.0, speed: -inwards },
+            end_depth,
+            ..*passage
+        }
     }
 
-    /// Follows what happens along the plane to a rock with velocity `v` (m/s) and spin `w` (rad/s) on its `passage`.
+    /// Integrates the tangential motion of a rock with velocity `v` (m/s) and spin `w` (rad/s) on
+    /// its `passage`.
     ///
-    /// Losses are what motion and height lose: what springs give back is taken off, as it was counted among them when it went in.
+    /// Losses are those of the kinetic and potential energy: energy that springs return is
+    /// subtracted, as it was counted among them when it was stored.
     pub(crate) fn pass(
         &self,
         passage: &NormalPassage,
         (v, w): (&Vec3, &Vec3),
-        pressed: &PressedIn,
+        pressed: &InitialDeformation,
     ) -> Rebound {
         let NormalPassage {
             frame,
@@ -133,13 +143,13 @@ impl Plane {
             depth,
             inwards,
             exit,
-            left,
+            end_depth,
             ..
         } = *passage;
         let (over, radius) = (1.0 / speed, self.body.radius);
         let (stretch, turn) = (self.omega * over, self.omega * over * radius);
         let (shear, roll) = (frame.along(&pressed.shear_m), frame.local(&pressed.roll_rad));
-        let start = Start {
+        let start = ImpactStart {
             v: frame.along(v).map(|v| v * over),
             w: frame.local(w).map(|w| w * (over * radius)),
             shear: self.shear.stretched(shear.map(|x| x * stretch)),
@@ -148,17 +158,18 @@ impl Plane {
             gamma,
             begin: passage.begin,
             leaves: passage.leaves(),
-            // a rock that stands still at its deepest has the speed that its springs give it
+            // at the largest penetration a rock without velocity has the speed that its springs
+            // will give it
             allowed: SMOOTH * self.tolerance * v.norm().max(speed) * over,
         };
         let mut effort = ImpactEffort::default();
-        let along = self.along(&start, &exit, &mut effort);
+        let along = self.tangential_motion(&start, &exit, &mut effort);
         let unit_j = self.body.mass * speed * speed;
-        // normal energy: dashpot, and weight over the way out
-        let held = 0.5 * (depth * depth - left * left);
+        // normal energy: dashpot, and weight over the exit
+        let held = 0.5 * (depth * depth - end_depth * end_depth);
         let motion = 0.5 * (inwards * inwards - exit.speed * exit.speed);
-        let damped = motion + held - gamma * (depth - left);
-        // in units of what weight alone would press in
+        let damped = motion + held - gamma * (depth - end_depth);
+        // in units of the penetration by weight alone
         debug_assert!(
             damped >= -1e-9 * (1.0 + gamma * gamma),
             "a spring that gives energy: {passage:?}"
@@ -167,19 +178,19 @@ impl Plane {
         let [held_shear, held_roll] = self.given_back((&start.shear, &start.roll), &along);
         let [friction, shear, rolling] = along.lost;
         let lost = [friction, damped - held + shear - held_shear, rolling - held_roll];
-        let rubs = self.shear.is_on() || self.rolling.is_on();
+        let has_sliders = self.shear.is_on() || self.rolling.is_on();
         let (scale, spin) = (speed / self.omega, speed / radius);
         let [x, y] = along.way.map(|x| x * scale);
-        let after = PressedIn {
-            depth_m: left * scale,
+        let after = InitialDeformation {
+            depth_m: end_depth * scale,
             shear_m: frame.out_along(self.shear.stretch(along.shear).map(|x| x / stretch)),
             roll_rad: frame.out_local(self.rolling.stretch(along.roll).map(|x| x / turn)),
         };
         Rebound {
             time_s: passage.time_s(),
-            shift_m: frame.out_local([x, y, (depth - left) * scale]),
+            shift_m: frame.out_local([x, y, (depth - end_depth) * scale]),
             velocity_m_s: frame.out_local([along.v[0], along.v[1], exit.speed].map(|v| v * speed)),
-            spin_rad_s: if rubs { frame.out_local(along.w.map(|w| w * spin)) } else { *w },
+            spin_rad_s: if has_sliders { frame.out_local(along.w.map(|w| w * spin)) } else { *w },
             loss: Loss::on_slope(lost.map(|lost| lost * unit_j)),
             pressed: (!start.leaves).then_some(after),
             effort,

@@ -1,11 +1,15 @@
-//! Several bodies that touch each other and the mesh at the instant of a blow: springs in a row, and every contact answers.
+//! Impacts of several bodies that touch each other and the mesh: springs in series, with all
+//! contacts coupled.
 //!
-//! What runs through a column, a row or a cradle of rocks takes the time of their springs. In the limit of stiff springs it takes
-//! none, but its course is the same: it is followed in its own time as the impact of one rock among several contacts is, with the same
-//! rates. Impulses act on both ends of a contact at one point, so momentum and angular momentum are kept to rounding.
+//! The wave through a column, a row or a cradle of rocks takes the time of their springs. In the
+//! limit of stiff springs it takes no time, but its course is the same. It is integrated in its own
+//! time with the same rates as the impact of one rock on several contacts. Impulses act on both
+//! bodies of a contact at one point, so momentum and angular momentum are conserved to rounding.
 
-use super::contacts::{AfterImpact, Contacts, REST};
-use super::{ContactEnds, FrozenBody, FrozenContact, ImpactRun, LONGEST_STEP, MOST_STEPS, Settled};
+use super::contacts::{AfterImpact, ImpactContacts, REST};
+use super::{
+    ContactEnds, FrozenBody, FrozenContact, ImpactOutcome, ImpactRun, LONGEST_STEP, MOST_STEPS,
+};
 use crate::rock::Vec3;
 use crate::solver::body::{STILL, Twist};
 use crate::solver::loss::Loss;
@@ -14,20 +18,23 @@ use std::f64::consts::PI;
 /// Most bodies and contacts of one impact.
 pub(crate) const BODIES: usize = 16;
 pub(crate) const CONTACTS: usize = 48;
-/// Half swings of the heaviest body on the softest contact for which there must be steps: a stiff spring, or a light stone between heavy ones, swings thousands
-/// of times meanwhile, and a blow that is not followed to its end would stop what still moves.
-const SWINGS: f64 = 4.0;
-/// Rounds over the contacts in which what gives nothing back is brought to rest, at most.
+/// Half periods of the heaviest body on the softest contact for which there must be steps. A stiff
+/// spring, or a light stone between heavy ones, oscillates thousands of times meanwhile, and an
+/// impact that is not integrated to its end would stop bodies that still move.
+const HALF_PERIODS: f64 = 4.0;
+/// Sweeps over the contacts in which captured contacts are brought to rest, at most.
 const ROUNDS: usize = 1000;
 
-/// Largest ratio of masses times that of stiffnesses (–) with which a blow of several bodies is followed, where no contact has more than a damping ratio (–).
-pub(crate) fn most_unlike(damping_ratio: f64) -> f64 {
-    slowest_followed(LONGEST_STEP / (2.0 * damping_ratio).max(1.0)).powi(-2)
+/// Largest ratio of masses times ratio of stiffnesses (–) up to which an impact of several bodies
+/// is integrated, if no contact has more than this damping ratio (–).
+pub(crate) fn largest_followed_ratio(damping_ratio: f64) -> f64 {
+    lowest_followed_frequency(LONGEST_STEP / (2.0 * damping_ratio).max(1.0)).powi(-2)
 }
 
-/// Slowest swing that there are steps for (rad of the stiffest contact), with steps of at most `longest`.
-fn slowest_followed(longest: f64) -> f64 {
-    SWINGS * PI / (longest * f64::from(MOST_STEPS))
+/// Lowest frequency that the number of steps covers (rad of the stiffest contact), with steps of at
+/// most `longest`.
+fn lowest_followed_frequency(longest: f64) -> f64 {
+    HALF_PERIODS * PI / (longest * f64::from(MOST_STEPS))
 }
 
 /// Motions after a frozen impact of several bodies.
@@ -35,14 +42,15 @@ fn slowest_followed(longest: f64) -> f64 {
 pub(crate) struct FrozenCollision {
     /// Velocity (m/s) and spin (rad/s) of every body.
     pub(crate) motions: [Twist; BODIES],
-    /// Energy lost (J) by contact and kind, each ≥ 0: together exactly the energy before less that after.
+    /// Energy lost (J) by contact and kind, each ≥ 0: together exactly the energy before less that
+    /// after.
     pub(crate) loss: [Loss; CONTACTS],
-    /// Fastest approach to each contact (m/s), 0 where it was not pressed.
+    /// Fastest approach at each contact (m/s), 0 where it was not closed.
     pub(crate) fastest_m_s: [f64; CONTACTS],
 }
 
 impl FrozenCollision {
-    /// Bodies that stand still, and contacts that have taken nothing.
+    /// Bodies at rest, and contacts without loss.
     pub(crate) const STILL: Self = Self {
         motions: [STILL; BODIES],
         loss: [Loss::on_slope([0.0; 3]); CONTACTS],
@@ -50,46 +58,51 @@ impl FrozenCollision {
     };
 }
 
-/// Follows up to [`BODIES`] bodies through an impact on up to [`CONTACTS`] contacts at once, each of them at penetration zero or at its gap;
-/// `None` if nothing comes nearer, or where there are too many of them or their frequencies lie too far apart to be followed to the end. `tolerance` is relative
-/// to the fastest motion at a contact (–).
+/// Integrates the impact of up to [`BODIES`] bodies with up to [`CONTACTS`] contacts at once, each
+/// of them at penetration zero or at its gap. `None` if no contact closes, if there are too many of
+/// them, or if their frequencies differ too much to be integrated to the end. `tolerance` is
+/// relative to the largest relative velocity at a contact (–).
 ///
-/// A contact that is pressed together slower than what is captured gives nothing back, whatever it gave in between.
-pub(crate) fn collide(
+/// A contact that is closed more slowly than its capture speed does not rebound, whatever it
+/// returned in between.
+pub(crate) fn frozen_collision(
     bodies: &[FrozenBody],
     contacts: &[FrozenContact],
     tolerance: f64,
 ) -> Option<FrozenCollision> {
     let case = (bodies, contacts);
     match (bodies.len(), contacts.len()) {
-        (..=3, ..=6) => followed::<3, 6, 63, 24, 18>(case, tolerance),
-        (..=8, ..=20) => followed::<8, 20, 192, 80, 60>(case, tolerance),
-        (..=BODIES, ..=CONTACTS) => followed::<BODIES, CONTACTS, 432, 192, 144>(case, tolerance),
+        (..=3, ..=6) => follow_bodies::<3, 6, 63, 24, 18>(case, tolerance),
+        (..=8, ..=20) => follow_bodies::<8, 20, 192, 80, 60>(case, tolerance),
+        (..=BODIES, ..=CONTACTS) => {
+            follow_bodies::<BODIES, CONTACTS, 432, 192, 144>(case, tolerance)
+        }
         _ => None,
     }
 }
 
-fn followed<const B: usize, const K: usize, const N: usize, const Q: usize, const P: usize>(
+fn follow_bodies<const B: usize, const K: usize, const N: usize, const Q: usize, const P: usize>(
     (bodies, contacts): (&[FrozenBody], &[FrozenContact]),
     tolerance: f64,
 ) -> Option<FrozenCollision> {
     let speed = fastest_m_s(bodies, contacts)?;
     let mut run = ImpactRun::<B, K, N, Q, P>::new((bodies, contacts), speed, tolerance);
-    if run.flow.contacts.slowest_swing() < slowest_followed(run.flow.longest) {
+    if run.flow.contacts.lowest_frequency() < lowest_followed_frequency(run.flow.longest) {
         return None;
     }
     let start = run.motions();
     let unit_j = run.flow.contacts.mass_kg * speed * speed;
     run.flow.contacts.capture(contacts, speed);
     let settled = run.follow(tolerance);
-    let nothing = run.flow.nothing();
+    let negligible = run.flow.negligible();
     let contacts = &run.flow.contacts;
     let is_over = |k: usize| {
-        run.flow.is_apart(k, &run.y) || (settled == Settled::Free && run.flow.comes_back(k, &run.y))
+        run.flow.is_apart(k, &run.y)
+            || (settled == ImpactOutcome::Free && run.flow.approaches_again(k, &run.y))
     };
     let meets: [bool; K] = std::array::from_fn(|k| k < contacts.list().len() && !is_over(k));
     let AfterImpact { motions: together, plastic } =
-        contacts.part_or_stay((run.motions(), meets), nothing);
+        contacts.project_velocities((run.motions(), meets), negligible);
     let (motions, lost) = contacts.balanced((&start, &together), plastic.iter().sum());
     let loss_j = run.loss_j(lost.max(0.0) * unit_j, plastic);
     let mut end = FrozenCollision::STILL;
@@ -103,33 +116,35 @@ fn followed<const B: usize, const K: usize, const N: usize, const Q: usize, cons
     Some(end)
 }
 
-/// Largest speed of two ends of a contact past each other (m/s); `None` if none comes nearer.
+/// Largest relative velocity of the two ends of a contact (m/s); `None` if no contact closes.
 fn fastest_m_s(bodies: &[FrozenBody], contacts: &[FrozenContact]) -> Option<f64> {
     let velocity = |k: usize| bodies[k].motion.0;
     let apart = contacts.iter().map(|FrozenContact { normal, ends, .. }| {
         let v = velocity(ends.first) - ends.second.map_or_else(Vec3::zeros, velocity);
         (v.norm(), normal.dot(&v) < 0.0)
     });
-    let (fastest, comes) =
-        apart.fold((0.0f64, false), |(most, any), (speed, comes)| (most.max(speed), any || comes));
-    comes.then_some(fastest)
+    let (fastest, closes) = apart
+        .fold((0.0f64, false), |(most, any), (speed, closes)| (most.max(speed), any || closes));
+    closes.then_some(fastest)
 }
 
-impl<const B: usize, const K: usize> Contacts<B, K> {
-    /// Brings to rest what gives nothing back, and every approach that is left: the closest motions in which no contact comes nearer, and
-    /// those that hold do not part either. Closest in the sense of energy, which is the one that loses least.
+impl<const B: usize, const K: usize> ImpactContacts<B, K> {
+    /// Removes the rebound of captured contacts and every remaining approach speed: the closest
+    /// motions in which no contact closes and the held ones do not separate either. Closest in the
+    /// norm of the kinetic energy, which is the choice of least loss.
     ///
-    /// Projected Gauss–Seidel over the normal impulses of what `meets`.
-    fn part_or_stay(
+    /// Projected Gauss–Seidel over the normal impulses of the contacts in `meets`.
+    fn project_velocities(
         &self,
         (mut motions, meets): ([Twist; B], [bool; K]),
-        nothing: f64,
+        negligible: f64,
     ) -> AfterImpact<B, K> {
-        let parting = |motions: &[Twist; B], k: usize| self.parting(k, |k| motions[k].0);
-        let held: [bool; K] =
-            std::array::from_fn(|k| meets[k] && self.holds(k, parting(&motions, k), nothing));
+        let separation = |motions: &[Twist; B], k: usize| self.separation(k, |k| motions[k].0);
+        let held: [bool; K] = std::array::from_fn(|k| {
+            meets[k] && self.is_held(k, separation(&motions, k), negligible)
+        });
         let speeds: [f64; K] = std::array::from_fn(|k| {
-            let speed = if meets[k] { parting(&motions, k) } else { 0.0 };
+            let speed = if meets[k] { separation(&motions, k) } else { 0.0 };
             if speed < 0.0 || held[k] { speed } else { 0.0 }
         });
         let before = self.energies(&motions);
@@ -139,7 +154,7 @@ impl<const B: usize, const K: usize> Contacts<B, K> {
         AfterImpact { motions, plastic }
     }
 
-    /// Impulses along the normals until no contact comes nearer, and those that are held do not part either.
+    /// Normal impulses until no contact closes and the held ones do not separate either.
     fn sweep(&self, motions: &mut [Twist; B], (meets, held): ([bool; K], [bool; K])) {
         let mut impulses = [0.0; K];
         for _ in 0..ROUNDS {
@@ -148,7 +163,7 @@ impl<const B: usize, const K: usize> Contacts<B, K> {
                 let ContactEnds { first, second, .. } = contact.ends;
                 let lightness = |end: usize| self.bodies[end].lightness;
                 let (one, other) = (lightness(first), second.map_or(0.0, lightness));
-                let wanted = impulses[k] - self.parting(k, |k| motions[k].0) / (one + other);
+                let wanted = impulses[k] - self.separation(k, |k| motions[k].0) / (one + other);
                 let next = if held[k] { wanted } else { wanted.max(0.0) };
                 let change = next - impulses[k];
                 impulses[k] = next;
@@ -168,8 +183,9 @@ impl<const B: usize, const K: usize> Contacts<B, K> {
         motions.iter().enumerate().map(|(k, motion)| self.energy(k, *motion)).sum()
     }
 
-    /// Motions after the impact that hold no more energy than before, exactly as much where nothing in the contacts takes any, and what is
-    /// lost. All impulses are made smaller or larger by one factor, so that momentum is kept.
+    /// Motions after the impact with no more energy than before, with exactly as much if no contact
+    /// dissipates, and the loss. All impulses are scaled by one factor, so that momentum is
+    /// conserved.
     ///
     /// `E(s) = E₀ + s a + s² b` of the motions `x₀ + s (x₁ − x₀)`.
     fn balanced(
@@ -180,7 +196,7 @@ impl<const B: usize, const K: usize> Contacts<B, K> {
         let change: [Twist; B] =
             std::array::from_fn(|k| (after[k].0 - before[k].0, after[k].1 - before[k].1));
         let (was, is, b) = (self.energies(before), self.energies(after), self.energies(&change));
-        let is_exact = self.conserve() && plastic <= REST;
+        let is_exact = self.is_conservative() && plastic <= REST;
         if !(is_exact || is > was) || b <= 0.0 {
             return (*after, was - is);
         }

@@ -1,4 +1,5 @@
-//! The contacts of a frozen impact, in units of mass, radius, speed and the stiffest contact's `1/ω`.
+//! The contacts of a frozen impact, in units of mass, radius, speed and the stiffest contact's
+//! `1/ω`.
 //!
 //! In these units a contact's stiffness is `p_N |a|²/p_N,max`, its dashpot `c_N |a|/√(p_N,max m)`,
 //! spin is `R ω/|v|`.
@@ -7,16 +8,16 @@ use super::{ContactEnds, FrozenBody, FrozenContact};
 use crate::ground::restitution;
 use crate::rock::Vec3;
 use crate::solver::body::{Body, Twist};
-use crate::solver::impact::normal_motion::NONE;
+use crate::solver::impact::normal_motion::UNDAMPED;
 use crate::solver::impact::sliders::SliderElement;
 use crate::solver::law::capture_m_s;
 
-/// A speed along a normal that is none, in impact speeds (–).
+/// A normal velocity up to this is zero, in impact speeds (–).
 pub(super) const REST: f64 = 1e-9;
-/// What a captured contact throws back by its own spring may be so much more than its restitution says (–).
+/// A captured contact may rebound by its own spring at this multiple of its restitution (–).
 const ALLOWANCE: f64 = 1.05;
 
-/// One of them.
+/// A contact of a frozen impact.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ImpactContact {
     pub(super) n: Vec3,
@@ -29,13 +30,13 @@ pub(super) struct ImpactContact {
     /// Gap at the start.
     pub(super) gap: f64,
     captured: bool,
-    /// Approach below which it gives nothing back, whether it is captured or not.
-    slowest: f64,
+    /// Approach speed below which it does not rebound, whether it is captured or not.
+    capture_speed: f64,
     /// Its restitution when alone (–).
-    kept: f64,
+    restitution: f64,
 }
 
-/// One of the bodies, in units of the mass `m₀`.
+/// A body of a frozen impact, in units of the mass `m₀`.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ImpactBody {
     /// `m₀/m` (–).
@@ -46,23 +47,22 @@ pub(super) struct ImpactBody {
 
 /// Up to `K` contacts of `B` bodies.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Contacts<const B: usize, const K: usize> {
+pub(super) struct ImpactContacts<const B: usize, const K: usize> {
     list: [ImpactContact; K],
     len: usize,
     pub(super) bodies: [ImpactBody; B],
-    /// Unit of mass `m₀` (kg): the least that a contact moves.
+    /// Unit of mass `m₀` (kg): the least effective mass of a contact.
     pub(super) mass_kg: f64,
-    /// Frequency of the softest.
-    /// In units of the stiffest's: `√(k_min/k_max)`, at most 1.
+    /// Frequency of the softest contact, in units of the stiffest's: `√(k_min/k_max)`, at most 1.
     pub(super) softest: f64,
-    /// Fastest approach to each so far.
+    /// Fastest approach at each contact so far.
     pub(super) fastest: [f64; K],
 }
 
-/// Where in a step a contact opens or closes.
+/// Time in a step at which a contact opens or closes.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum SwitchTime {
-    /// At its start: the contacts that are pressed have been changed, the step must be tried anew.
+    /// At its start: the set of closed contacts has been changed, and the step must be tried anew.
     Now,
     /// At this share of it.
     At(f64),
@@ -73,16 +73,16 @@ pub(super) enum SwitchTime {
 pub(super) struct AfterImpact<const B: usize, const K: usize> {
     /// Velocity, and spin times radius, of every body.
     pub(super) motions: [Twist; B],
-    /// What contacts without rebound have taken at last.
+    /// Energy absorbed at the end by contacts without rebound.
     pub(super) plastic: [f64; K],
 }
 
-impl<const B: usize, const K: usize> Contacts<B, K> {
+impl<const B: usize, const K: usize> ImpactContacts<B, K> {
     pub(super) fn new(bodies: &[FrozenBody], struck: &[FrozenContact], speed: f64) -> Self {
         let normal = |struck: &FrozenContact| struck.law.normal(struck.captured);
         let stiffness =
             |struck: &FrozenContact| normal(struck).stiffness_n_m(struck.stiffness_scale);
-        let moved = |struck: &FrozenContact| struck.ends.moved_kg(bodies);
+        let moved = |struck: &FrozenContact| struck.ends.effective_mass_kg(bodies);
         let stiffest = struck.iter().map(stiffness).fold(0.0, f64::max);
         let mass_kg = struck.iter().map(moved).fold(f64::INFINITY, f64::min);
         let momentum = (stiffest * mass_kg).sqrt();
@@ -98,13 +98,13 @@ impl<const B: usize, const K: usize> Contacts<B, K> {
                 n: struck.normal,
                 ends: struck.ends,
                 stiffness: stiffness(struck) / stiffest,
-                damping: if damping > NONE { damping } else { 0.0 },
+                damping: if damping > UNDAMPED { damping } else { 0.0 },
                 shear: SliderElement::shear(&unit, law, stiffest),
                 rolling: if rolls { rolling } else { SliderElement::NONE },
                 gap: if struck.gap_m > 0.0 { struck.gap_m / way_m } else { 0.0 },
                 captured: struck.captured,
-                slowest: 0.0,
-                kept: restitution(normal(struck).damping_ratio(moved(struck))),
+                capture_speed: 0.0,
+                restitution: restitution(normal(struck).damping_ratio(moved(struck))),
             }
         };
         let slowness = |struck: &FrozenContact| stiffness(struck) * (mass_kg / moved(struck));
@@ -128,8 +128,9 @@ impl<const B: usize, const K: usize> Contacts<B, K> {
         &self.list[..self.len]
     }
 
-    /// Frequency of the heaviest body on the softest contact: that of a boulder on a stone is far below the stone's.
-    pub(super) fn slowest_swing(&self) -> f64 {
+    /// Frequency of the heaviest body on the softest contact: that of a boulder on a stone is far
+    /// below the stone's.
+    pub(super) fn lowest_frequency(&self) -> f64 {
         self.softest * self.bodies.iter().fold(1.0, |least, one| one.lightness.min(least)).sqrt()
     }
 
@@ -140,9 +141,10 @@ impl<const B: usize, const K: usize> Contacts<B, K> {
         0.5 * (v.norm_squared() / lightness + w.norm_squared() / turns)
     }
 
-    /// Speed at which the ends of contact `k` part along its normal.
+    /// Normal velocity at which the two ends of contact `k` separate; of displacements, their
+    /// separation.
     #[inline]
-    pub(super) fn parting(&self, k: usize, v: impl Fn(usize) -> Vec3) -> f64 {
+    pub(super) fn separation(&self, k: usize, v: impl Fn(usize) -> Vec3) -> f64 {
         let ContactEnds { first, second, .. } = self.list[k].ends;
         let apart = if B > 1
             && let Some(second) = second
@@ -154,31 +156,34 @@ impl<const B: usize, const K: usize> Contacts<B, K> {
         self.list[k].n.dot(&apart)
     }
 
-    /// Whether a captured contact has not been thrown open by others: what it parts with at the end is its own spring's.
-    pub(super) fn holds(&self, k: usize, parting: f64, nothing: f64) -> bool {
-        let own = ALLOWANCE * self.list[k].kept * self.fastest[k] + nothing;
-        let captured = self.list[k].captured || self.fastest[k] < self.list[k].slowest;
-        captured && parting <= own
+    /// Whether a captured contact has not been opened by others: its separation speed at the end is
+    /// that of its own spring.
+    pub(super) fn is_held(&self, k: usize, separation: f64, negligible: f64) -> bool {
+        let own = ALLOWANCE * self.list[k].restitution * self.fastest[k] + negligible;
+        let captured = self.list[k].captured || self.fastest[k] < self.list[k].capture_speed;
+        captured && separation <= own
     }
 
-    /// From now on nothing is given back by what is pressed together slower than its capture speed, in units of `speed` (m/s).
+    /// From now on contacts that are closed more slowly than their capture speed do not rebound;
+    /// `speed` (m/s) is the unit.
     pub(super) fn capture(&mut self, struck: &[FrozenContact], speed: f64) {
         for (contact, struck) in self.list.iter_mut().zip(struck) {
-            contact.slowest = capture_m_s(struck.law) / speed;
+            contact.capture_speed = capture_m_s(struck.law) / speed;
         }
     }
 
-    /// Whether nothing in them takes energy.
-    /// Then the limit is exactly elastic, and so must be the result.
-    pub(super) fn conserve(&self) -> bool {
+    /// Whether no contact dissipates energy. Then the limit is exactly elastic, and so must be the
+    /// result.
+    pub(super) fn is_conservative(&self) -> bool {
         self.list().iter().all(|contact| {
             contact.damping == 0.0 && !contact.shear.is_on() && !contact.rolling.is_on()
         })
     }
 
-    /// Books energy that ended in the contacts to those that stopped something, by the speeds along their normals that had to go.
+    /// Distributes energy that was absorbed at the end over the contacts that stopped something, by
+    /// their normal velocities.
     pub(super) fn share_plastic(taken: f64, stopped: [f64; K], plastic: &mut [f64; K]) {
-        // squares of speeds: the energies that they stood for
+        // squares of velocities: the energies that they stood for
         let sum: f64 = stopped.iter().map(|speed| speed * speed).sum();
         for (plastic, stopped) in plastic.iter_mut().zip(stopped) {
             let own = stopped * stopped;
@@ -187,25 +192,26 @@ impl<const B: usize, const K: usize> Contacts<B, K> {
     }
 }
 
-impl<const K: usize> Contacts<1, K> {
-    /// Takes out of the motion what captured contacts gave back of themselves and every approach that is left, and sees to it
-    /// that the energy is not more than it was: exactly the same where nothing in the contacts takes any.
+impl<const K: usize> ImpactContacts<1, K> {
+    /// Removes from the motion the rebound of captured contacts by their own springs and every
+    /// remaining approach speed, and limits the energy to that before: exactly the same if no
+    /// contact dissipates.
     ///
-    /// Captured contacts have a spring too, and would throw the rock back by their own restitution;
-    /// that much is taken from them, not what other contacts threw at the rock.
-    pub(super) fn come_to_an_end(
+    /// Captured contacts have a spring too and would make the rock rebound by their own
+    /// restitution. That part is removed, but not what other contacts have thrown at the rock.
+    pub(super) fn finish(
         &self,
         before: Twist,
         (mut v, mut w): Twist,
-        nothing: f64,
+        negligible: f64,
     ) -> AfterImpact<1, K> {
         let mut plastic = [0.0; K];
-        // each round may press the rock against a contact it had left: at most one more for each
-        // contact
+        // each pass may press the rock against a contact that it had left: at most one more pass
+        // for each contact
         for _ in 0..=self.len {
             let up = |k: usize| self.list[k].n.dot(&v);
             let held: [bool; K] =
-                std::array::from_fn(|k| k < self.len && self.holds(k, up(k), nothing));
+                std::array::from_fn(|k| k < self.len && self.is_held(k, up(k), negligible));
             let next = self.nearest_allowed(&v, held);
             if next == v {
                 break;
@@ -217,8 +223,8 @@ impl<const K: usize> Contacts<1, K> {
             v = next;
         }
         let (was, is) = (self.energy(0, before), self.energy(0, (v, w)));
-        if self.conserve() && plastic.iter().all(|taken| *taken <= nothing * nothing) {
-            // Only rounding can have turned the spin.
+        if self.is_conservative() && plastic.iter().all(|taken| *taken <= negligible * negligible) {
+            // Only rounding can have changed the spin.
             w = before.1;
             v *= before.0.norm() / v.norm();
         } else if is > was {
@@ -228,8 +234,9 @@ impl<const K: usize> Contacts<1, K> {
         AfterImpact { motions: [(v, w)], plastic }
     }
 
-    /// Closest velocity to `v` that comes nearer to no contact and neither nears nor leaves those that are `held`. In three
-    /// dimensions it is `v` itself, lies in one contact's plane, along the line of two, or is zero: each is tried.
+    /// Closest velocity to `v` that closes no contact and neither closes nor opens the `held` ones.
+    /// In three dimensions it is `v` itself, lies in one contact's plane, along the line of two, or
+    /// is zero: each is tried.
     ///
     /// A projection on a convex cone; in the sense of energy the closest is the one that loses
     /// least.

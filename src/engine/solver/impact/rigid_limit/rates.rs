@@ -1,58 +1,58 @@
-//! Rates of a rock among several frozen contacts, and the moments at which contacts open and close.
+//! Rates of a rock with several frozen contacts, and the times at which contacts open and close.
 //!
-//! A contact is pressed from the moment its penetration is 0 and rising until its force would pull;
-//! where that changes the dashpots are shared anew, so steps end there and rates are smooth in
-//! between.
+//! A contact is closed from the time at which its penetration is 0 and growing until its force
+//! would become tensile. Where that changes the dashpots are shared anew, so steps end there and
+//! rates are smooth in between.
 
-use super::contacts::{Contacts, ImpactContact, SwitchTime};
-use super::{ContactEnds, FrozenBody, FrozenContact, LONGEST_STEP, LONGEST_WAIT, NOTHING};
+use super::contacts::{ImpactContact, ImpactContacts, SwitchTime};
+use super::{ContactEnds, FrozenBody, FrozenContact, LONGEST_STEP, LONGEST_WAIT, NEGLIGIBLE};
 use crate::math;
 use crate::rock::Vec3;
 use crate::solver::body::Twist;
-use crate::solver::impact::dormand_prince::{Flow, Rates, put, three};
+use crate::solver::impact::dormand_prince::{Flow, Rates, put_vec3, vec3_at};
 
-/// Where the ways of the centres begin among the numbers that change, body by body; velocities, spins times radius and the springs
-/// follow.
-const WAY: usize = 0;
+/// Offset of the displacements of the centres, body by body; velocities, spins times radius and the
+/// springs follow.
+const DISPLACEMENT: usize = 0;
 
 /// Velocity of body `k` of `B`.
-pub(super) fn speed_of<const B: usize, const N: usize>(y: &[f64; N], k: usize) -> Vec3 {
-    three(y, 3 * (B + k))
+pub(super) fn velocity_of<const B: usize, const N: usize>(y: &[f64; N], k: usize) -> Vec3 {
+    vec3_at(y, 3 * (B + k))
 }
 
 /// Its spin times radius.
 pub(super) fn spin_of<const B: usize, const N: usize>(y: &[f64; N], k: usize) -> Vec3 {
-    three(y, 3 * (2 * B + k))
+    vec3_at(y, 3 * (2 * B + k))
 }
 
-/// The numbers at the start of an impact.
-pub(super) fn begun<const B: usize, const N: usize>(motions: &[Twist; B]) -> [f64; N] {
+/// The state at the start of an impact.
+pub(super) fn initial_state<const B: usize, const N: usize>(motions: &[Twist; B]) -> [f64; N] {
     let mut y = [0.0; N];
     for (k, (v, w)) in motions.iter().enumerate() {
-        put(&mut y, 3 * (B + k), v);
-        put(&mut y, 3 * (2 * B + k), w);
+        put_vec3(&mut y, 3 * (B + k), v);
+        put_vec3(&mut y, 3 * (2 * B + k), w);
     }
     y
 }
 
-/// Up to `K` contacts of `B` bodies and which of them are pressed.
-/// `K` is the room for contacts; `N = 9 B + 3 K` numbers without rolling, `9 B + 6 K` with.
+/// Up to `K` contacts of `B` bodies, and which of them are closed. `K` is the room for contacts;
+/// the state has `N = 9 B + 3 K` variables without rolling, `9 B + 6 K` with.
 pub(super) struct ContactRates<const B: usize, const K: usize> {
-    pub(super) contacts: Contacts<B, K>,
+    pub(super) contacts: ImpactContacts<B, K>,
     pub(super) pressed: [bool; K],
-    /// Normal damping of each among those pressed now.
+    /// Normal damping of each with the present closed contacts.
     damping: [f64; K],
     /// Longest step.
     ///
-    /// In radians of the stiffest contact, shorter where a dashpot is so strong that it, and not
-    /// the spring, sets the fastest rate; among several bodies longer where only soft ones are pressed.
+    /// In radians of the stiffest contact; shorter if a dashpot is so strong that it, and not the
+    /// spring, sets the fastest rate; for several bodies longer if only soft contacts are closed.
     pub(super) longest: f64,
     /// Local error allowed.
     pub(super) allowed: f64,
 }
 
 impl<const B: usize, const K: usize> ContactRates<B, K> {
-    /// Where the springs begin: shear of all `K` contacts, then rolling of all, each with three numbers.
+    /// Offset of the springs: shear of all `K` contacts, then rolling of all, three variables each.
     const SPRINGS: usize = 9 * B;
 
     /// `speed` (m/s) is the unit of speed.
@@ -61,12 +61,12 @@ impl<const B: usize, const K: usize> ContactRates<B, K> {
         speed: f64,
         allowed: f64,
     ) -> Self {
-        let contacts = Contacts::new(bodies, struck, speed);
+        let contacts = ImpactContacts::new(bodies, struck, speed);
         let fastest =
             contacts.list().iter().fold(1.0f64, |rate, contact| rate.max(contact.damping));
         Self {
             contacts,
-            // All of them at penetration zero: those that come nearer press at once.
+            // All of them at penetration zero: those that close act at once.
             pressed: [false; K],
             damping: [0.0; K],
             longest: LONGEST_STEP / fastest,
@@ -74,55 +74,56 @@ impl<const B: usize, const K: usize> ContactRates<B, K> {
         }
     }
 
-    /// Speed, and way, that is nothing.
-    /// Far below the error allowed: what is less is neither a touch nor a parting.
-    pub(super) fn nothing(&self) -> f64 {
-        NOTHING * self.allowed
+    /// Speed, and length, that counts as zero. It is far below the allowed error: anything less is
+    /// neither a contact nor a separation.
+    pub(super) fn negligible(&self) -> f64 {
+        NEGLIGIBLE * self.allowed
     }
 
     /// Penetration of contact `k` and its rate.
-    /// `x = −n·way − gap`, `x' = −n·v`: at the touch the way is 0.
+    /// `x = −n·way − gap`, `x' = −n·v`: at first contact the displacement is 0.
     fn depth<const N: usize>(&self, k: usize, y: &[f64; N]) -> [f64; 2] {
-        let way = |k: usize| three(y, WAY + 3 * k);
+        let way = |k: usize| vec3_at(y, DISPLACEMENT + 3 * k);
         let gap = if B > 1 { self.contacts.list()[k].gap } else { 0.0 };
         [
-            -self.contacts.parting(k, way) - gap,
-            -self.contacts.parting(k, |k| speed_of::<B, N>(y, k)),
+            -self.contacts.separation(k, way) - gap,
+            -self.contacts.separation(k, |k| velocity_of::<B, N>(y, k)),
         ]
     }
 
-    /// Whether contact `k` is open and comes nearer: where the impact has ended before it is touched again it is touched in the next one.
-    pub(super) fn comes_back<const N: usize>(&self, k: usize, y: &[f64; N]) -> bool {
+    /// Whether contact `k` is open and closes: if the impact ends before it closes, that contact
+    /// belongs to the next impact.
+    pub(super) fn approaches_again<const N: usize>(&self, k: usize, y: &[f64; N]) -> bool {
         let [x, rate] = self.depth(k, y);
-        x < -self.nothing() && rate > self.nothing()
+        x < -self.negligible() && rate > self.negligible()
     }
 
-    /// Whether contact `k` had a gap, and has one: what comes nearer there does so beyond this impact.
+    /// Whether contact `k` had a gap and still has one: its closing is beyond this impact.
     pub(super) fn is_apart<const N: usize>(&self, k: usize, y: &[f64; N]) -> bool {
         let has_gap = B > 1 && self.contacts.list()[k].gap > 0.0;
-        has_gap && self.depth(k, y)[0] < -self.nothing()
+        has_gap && self.depth(k, y)[0] < -self.negligible()
     }
 
-    /// Finds which contacts are pressed and shares the dashpots among them; springs of those that have opened are at rest.
-    /// Whether anything has changed.
-    pub(super) fn press<const N: usize>(&mut self, y: &mut [f64; N]) -> bool {
-        let (nothing, mut changed) = (self.nothing(), false);
+    /// Updates which contacts are closed and shares the dashpots among them; springs of contacts
+    /// that have opened are unloaded. Returns whether anything has changed.
+    pub(super) fn update_pressed<const N: usize>(&mut self, y: &mut [f64; N]) -> bool {
+        let (negligible, mut changed) = (self.negligible(), false);
         for k in 0..self.contacts.list().len() {
             let [x, rate] = self.depth(k, y);
-            // in, or at the surface and not leaving: a tolerance on both sides keeps rounding from
-            // opening and closing it without end
-            let pressed = x > nothing || (x >= -nothing && rate > -nothing);
+            // penetrating, or at the surface and not separating: a tolerance on both sides keeps
+            // rounding from opening and closing it without end
+            let pressed = x > negligible || (x >= -negligible && rate > -negligible);
             changed |= pressed != self.pressed[k];
-            self.set(k, pressed, y);
+            self.set_pressed(k, pressed, y);
         }
         if changed {
-            self.share();
+            self.share_dashpots();
         }
         changed
     }
 
-    /// A contact that opens lets its springs go slack: what they held was lost when it opened.
-    fn set<const N: usize>(&mut self, k: usize, pressed: bool, y: &mut [f64; N]) {
+    /// A contact that opens unloads its springs: their energy was lost when it opened.
+    fn set_pressed<const N: usize>(&mut self, k: usize, pressed: bool, y: &mut [f64; N]) {
         self.pressed[k] = pressed;
         if !pressed {
             y[Self::SPRINGS + 3 * k..Self::SPRINGS + 3 * k + 3].fill(0.0);
@@ -133,14 +134,14 @@ impl<const B: usize, const K: usize> ContactRates<B, K> {
         }
     }
 
-    /// `c_i = c_N/√Σ max(0, n_i·n_j)²` over the contacts pressed of one body with the mesh.
-    fn share(&mut self) {
+    /// `c_i = c_N/√Σ max(0, n_i·n_j)²` over the closed contacts of one body with the mesh.
+    fn share_dashpots(&mut self) {
         let list = self.contacts.list();
         for (k, contact) in list.iter().enumerate() {
             let others = list.iter().zip(self.pressed).filter(|(other, pressed)| {
                 *pressed && (B == 1 || contact.ends.shares_with(&other.ends))
             });
-            // itself included, where it is pressed: a contact alone keeps its dashpot
+            // itself included if it is closed: a single contact keeps its dashpot
             let sum: f64 = others.map(|(other, _)| contact.n.dot(&other.n).max(0.0).powi(2)).sum();
             self.damping[k] = contact.damping / sum.max(1.0).sqrt();
         }
@@ -149,74 +150,76 @@ impl<const B: usize, const K: usize> ContactRates<B, K> {
         }
     }
 
-    /// Fastest rate of what is pressed (rad of the stiffest contact): a stiff contact that is open holds up nothing.
+    /// Fastest rate of the closed contacts (rad of the stiffest contact): a stiff contact that is
+    /// open does not limit the step.
     fn fastest_rate(&self) -> f64 {
         let pressed = self.contacts.list().iter().zip(self.pressed).filter(|(_, pressed)| *pressed);
         let rates = pressed.map(|(contact, _)| contact.stiffness.sqrt().max(contact.damping));
         rates.reduce(f64::max).unwrap_or(1.0)
     }
 
-    /// Normal force of contact `k`, if it could pull.
+    /// Normal force of contact `k` without the limit to compression.
     #[inline]
-    fn asked<const N: usize>(&self, k: usize, y: &[f64; N]) -> f64 {
+    fn signed_force<const N: usize>(&self, k: usize, y: &[f64; N]) -> f64 {
         let [x, rate] = self.depth(k, y);
         self.contacts.list()[k].stiffness * x + self.damping[k] * rate
     }
 
     /// Whether no contact pushes.
     pub(super) fn is_free<const N: usize>(&self, y: &[f64; N]) -> bool {
-        let nothing = self.nothing() * self.nothing();
-        // open, or its force would pull and it is leaving, or it is just at the surface and still
+        let negligible = self.negligible() * self.negligible();
+        // open, or separating with a force that would pull, or at rest at the surface
         (0..self.contacts.list().len()).all(|k| {
             let [x, rate] = self.depth(k, y);
             !self.pressed[k]
-                || (self.asked(k, y) <= nothing && rate <= 0.0)
-                || (x.abs() <= self.nothing() && rate.abs() <= self.nothing())
+                || (self.signed_force(k, y) <= negligible && rate <= 0.0)
+                || (x.abs() <= self.negligible() && rate.abs() <= self.negligible())
         })
     }
 
-    /// Time until a rock that nothing pushes touches again, if it does; beside a gap that stays open for longer than the softest spring is pressed the impact
-    /// is over before that.
-    /// Without weight a free rock moves straight: `−x/x'`.
+    /// Time until a free rock touches again, if it does; next to a gap that stays open for longer
+    /// than the softest spring is compressed the impact is over before that. Without weight a free
+    /// rock moves on a straight line: `−x/x'`.
     pub(super) fn next_touch<const N: usize>(&self, y: &[f64; N]) -> Option<f64> {
-        let nothing = self.nothing();
+        let negligible = self.negligible();
         let waits = (0..self.contacts.list().len()).filter_map(|k| {
             let [x, rate] = self.depth(k, y);
-            (rate > nothing).then(|| ((-x / rate).max(0.0), k))
+            (rate > negligible).then(|| ((-x / rate).max(0.0), k))
         });
         let (wait, k) = waits.min_by(|one, other| one.0.total_cmp(&other.0))?;
         (!self.is_apart(k, y) || wait <= LONGEST_WAIT / self.contacts.softest).then_some(wait)
     }
 
-    /// Lets a free rock fly on for `wait`.
-    /// Springs are at rest in flight; which contacts press at the end is found anew.
+    /// Moves a free rock for `wait`. Springs are unloaded in flight; which contacts are closed at
+    /// the end is found anew.
     pub(super) fn drift<const N: usize>(&mut self, y: &mut [f64; N], wait: f64) {
         for k in 0..3 * B {
-            y[WAY + k] += wait * y[3 * B + k];
+            y[DISPLACEMENT + k] += wait * y[3 * B + k];
         }
         y[Self::SPRINGS..].fill(0.0);
-        self.press(y);
+        self.update_pressed(y);
     }
 
-    /// Where in the step from `y` to `end` of length `h` the first contact opens or closes, if one does.
+    /// Time in the step from `y` to `end` of length `h` at which the first contact opens or closes,
+    /// if one does.
     pub(super) fn crossing<const N: usize>(
         &mut self,
         y: &[f64; N],
         end: &[f64; N],
         h: f64,
     ) -> Option<SwitchTime> {
-        let nothing = self.nothing();
+        let negligible = self.negligible();
         let mut first: Option<(f64, usize)> = None;
         for k in 0..self.contacts.list().len() {
             let ([x, rate], [x1, rate1]) = (self.depth(k, y), self.depth(k, end));
-            // a pressed contact that ends apart, or an open one that ends pressed in
-            let is_crossed = if self.pressed[k] { x1 < -nothing } else { x1 > nothing };
+            // a closed contact that ends open, or an open one that ends closed
+            let is_crossed = if self.pressed[k] { x1 < -negligible } else { x1 > negligible };
             if !is_crossed {
                 continue;
             }
-            // at the surface and hardly moving: the crossing is at the start, and only the mode is
-            // wrong
-            let slow = self.pressed[k] && x <= nothing && rate <= nothing;
+            // at the surface and hardly moving: the crossing is at the start, and only the state of
+            // the contact is wrong
+            let slow = self.pressed[k] && x <= negligible && rate <= negligible;
             let at = if slow {
                 0.0
             } else {
@@ -231,11 +234,11 @@ impl<const B: usize, const K: usize> ContactRates<B, K> {
             return Some(SwitchTime::At(at));
         }
         self.pressed[k] = !self.pressed[k];
-        self.share();
+        self.share_dashpots();
         Some(SwitchTime::Now)
     }
 
-    /// Writes the rates of everything over `rates`.
+    /// Writes all rates into `rates`.
     #[inline]
     pub(super) fn rates_of<const N: usize, const Q: usize, const P: usize>(
         &self,
@@ -244,7 +247,7 @@ impl<const B: usize, const K: usize> ContactRates<B, K> {
     ) {
         *rates = Rates::NONE;
         let rolls = N > Self::SPRINGS + 3 * K;
-        // unit mass; dw is that of spin times radius, so moments enter times m R²/I
+        // unit mass; dw is the rate of spin times radius, so moments are multiplied by m R²/I
         let mut gained = [(Vec3::zeros(), Vec3::zeros()); B];
         for (k, contact) in self.contacts.list().iter().enumerate().take(K) {
             if !self.pressed[k] {
@@ -252,56 +255,58 @@ impl<const B: usize, const K: usize> ContactRates<B, K> {
             }
             let (n, at) = (&contact.n, Self::SPRINGS + 3 * k);
             let ContactEnds { first, second, levers } = contact.ends;
-            let asked = self.asked(k, y);
-            let normal_force = asked.max(0.0);
-            // a contact that opens is a kink too: its "cap" is what it would pull with
-            rates.kinks[3 * k] = [normal_force * normal_force, (-asked).max(0.0)];
-            let (mut v, w) = (speed_of::<B, N>(y, first), spin_of::<B, N>(y, first));
+            let trial = self.signed_force(k, y);
+            let normal_force = trial.max(0.0);
+            // opening is a switching point too: the "cap" is the tension that the contact would
+            // exert
+            rates.switching[3 * k] = [normal_force * normal_force, (-trial).max(0.0)];
+            let (mut v, w) = (velocity_of::<B, N>(y, first), spin_of::<B, N>(y, first));
             let mut turning = w;
             if B > 1
                 && let Some(second) = second
             {
-                v -= speed_of::<B, N>(y, second);
+                v -= velocity_of::<B, N>(y, second);
                 turning = w * levers[0] + spin_of::<B, N>(y, second) * levers[1];
             }
             let approach = -n.dot(&v);
             let slip = v + n * approach + n.cross(&turning);
-            // s of the shear element (`sliders`): the speed at which its dashpot would hold what
-            // its spring holds
-            let held = three(y, at);
-            let asked = slip + held;
-            let (share, slips, cap) = contact.shear.share(asked.norm_squared(), normal_force);
-            let p = asked * share;
+            // s of the shear element (`sliders`): the velocity at which its dashpot has the force
+            // of its spring
+            let held = vec3_at(y, at);
+            let trial = slip + held;
+            let (share, slips, cap) = contact.shear.share(trial.norm_squared(), normal_force);
+            let p = trial * share;
             let shear_force = p * contact.shear.damping;
-            put(&mut rates.y, at, &((p - held) * contact.shear.rate));
+            put_vec3(&mut rates.y, at, &((p - held) * contact.shear.rate));
             let (force, turn) = (n * normal_force - shear_force, n.cross(&shear_force));
             self.push(&mut gained, contact, (&force, &turn));
             rates.q[4 * k] = contact.shear.damping * cap * slips;
             rates.q[4 * k + 1] = shear_force.dot(&slip);
             rates.q[4 * k + 3] = normal_force * approach;
-            rates.kinks[3 * k + 1] = [asked.norm_squared(), cap];
+            rates.switching[3 * k + 1] = [trial.norm_squared(), cap];
             if rolls {
                 let at = Self::SPRINGS + 3 * (K + k);
-                // the same of the rolling element, over all three components of the spin
-                let wound = three(y, at);
-                let asked = w + wound;
-                let (share, _, cap) = contact.rolling.share(asked.norm_squared(), normal_force);
-                rates.kinks[3 * k + 2] = [asked.norm_squared(), cap];
-                let p = asked * share;
+                // the same for the rolling element, over all three components of the spin
+                let spring_spin = vec3_at(y, at);
+                let trial = w + spring_spin;
+                let (share, _, cap) = contact.rolling.share(trial.norm_squared(), normal_force);
+                rates.switching[3 * k + 2] = [trial.norm_squared(), cap];
+                let p = trial * share;
                 let rolling_moment = p * contact.rolling.damping;
-                put(&mut rates.y, at, &((p - wound) * contact.rolling.rate));
+                put_vec3(&mut rates.y, at, &((p - spring_spin) * contact.rolling.rate));
                 gained[first].1 -= rolling_moment * self.contacts.bodies[first].turns;
                 rates.q[4 * k + 2] = rolling_moment.dot(&w);
             }
         }
         for (k, (dv, dw)) in gained.iter().enumerate() {
-            put(&mut rates.y, WAY + 3 * k, &speed_of::<B, N>(y, k));
-            put(&mut rates.y, 3 * (B + k), dv);
-            put(&mut rates.y, 3 * (2 * B + k), dw);
+            put_vec3(&mut rates.y, DISPLACEMENT + 3 * k, &velocity_of::<B, N>(y, k));
+            put_vec3(&mut rates.y, 3 * (B + k), dv);
+            put_vec3(&mut rates.y, 3 * (2 * B + k), dw);
         }
     }
 
-    /// Adds a force at a contact, and the moment that goes with it at a lever of one radius, to what its ends gain.
+    /// Adds a force at a contact, and its moment at a lever of one radius, to the accelerations of
+    /// its ends.
     #[inline]
     fn push(
         &self,
@@ -335,13 +340,13 @@ impl<const B: usize, const K: usize, const N: usize, const Q: usize, const P: us
 
     #[inline]
     fn size2(&self, off: &[f64; N]) -> f64 {
-        // way, velocity and spin have one unit here; a spring's error counts as the stretch it
-        // means
+        // displacement, velocity and spin have one unit here; a spring's error counts as the
+        // stretch that it stands for
         let mut sum: f64 = off[..Self::SPRINGS].iter().map(|x| x * x).sum();
         for (k, contact) in self.contacts.list().iter().enumerate() {
             let mut add = |at: usize, rate: f64| {
                 if rate > 0.0 {
-                    sum += three(off, at).norm_squared() / (rate * rate);
+                    sum += vec3_at(off, at).norm_squared() / (rate * rate);
                 }
             };
             add(Self::SPRINGS + 3 * k, contact.shear.rate);

@@ -1,5 +1,5 @@
-//! The same law written as it is printed, in SI units and world vectors, followed by a fixed classical step that is far too
-//! short: slow and independent.
+//! The same law as printed, in SI units and world vectors, integrated by a fixed classical step
+//! that is far too short: slow and independent.
 
 use crate::math;
 use crate::rock::Vec3;
@@ -7,7 +7,7 @@ use crate::solver::body::Body;
 use crate::solver::impact::FrozenContact;
 use crate::solver::law::clamp_norm;
 
-/// Motion and memory; `way` is that of the centre.
+/// Motion and history; `way` is the displacement of the centre.
 #[derive(Debug, Clone)]
 pub(super) struct OracleState {
     pub(super) way: Vec3,
@@ -43,7 +43,7 @@ fn depth(touch: &FrozenContact, at: &OracleState) -> f64 {
     -touch.normal.dot(&at.way)
 }
 
-/// Normal force of every contact (N); `pressed` are those that hold the rock.
+/// Normal force of every contact (N); `pressed` are the closed ones.
 pub(super) fn pushes(touches: &[FrozenContact], pressed: &[bool], at: &OracleState) -> Vec<f64> {
     let share = |k: usize| -> f64 {
         let cosine = |j: usize| touches[k].normal.dot(&touches[j].normal).max(0.0);
@@ -107,8 +107,8 @@ fn step(
     end
 }
 
-/// Follows an impact with `per_radian` steps until no contact pushes and none comes nearer, then out of the slab of the one
-/// contact if there is but one; returns the end and its time (s).
+/// Integrates an impact with `per_radian` steps until no contact pushes and none closes, then until
+/// the penetration is zero if there is but one contact; returns the end and its time (s).
 pub(super) fn follow(
     body: &Body,
     touches: &[FrozenContact],

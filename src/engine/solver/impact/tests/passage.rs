@@ -1,13 +1,14 @@
-//! An impact on a plane that is taken up from any place within it.
+//! An impact on a plane, continued from any state within it.
 
 use super::{G, case, ground, motion_j, uniforms};
 use crate::ground::Law;
 use crate::rock::Vec3;
 use crate::solver::body::Body;
-use crate::solver::impact::{Plane, PressedIn};
+use crate::solver::impact::{InitialDeformation, Plane};
 use nalgebra::Rotation3;
 
-/// Rocks, grounds and motions of all kinds: restitution from 0.05 to 1, with and without friction and rolling friction, weight aslant.
+/// Rocks, grounds and motions of all kinds: restitution from 0.05 to 1, with and without friction
+/// and rolling friction, weight aslant.
 fn cases() -> impl Iterator<Item = ((Body, Law), [Vec3; 2])> {
     let mut uniform = uniforms(7);
     (0..60).map(move |k| {
@@ -28,18 +29,19 @@ fn cases() -> impl Iterator<Item = ((Body, Law), [Vec3; 2])> {
     })
 }
 
-/// In two or three parts it goes the way that it goes at once, takes the same, and each part takes what motion and height lose.
+/// In two or three parts the motion is that of the whole, with the same losses, and each part loses
+/// what its kinetic and potential energy lose.
 #[test]
 fn an_impact_in_parts_is_that_at_once() {
     let n = Vec3::z();
     for ((body, law), [v, w]) in cases() {
         let plane = Plane::new(&body, &law, 1e-9);
         let Some(whole) = plane.passage(&n, &v, 0.0) else { continue };
-        let at_once = plane.pass(&whole, (&v, &w), &PressedIn::NOT);
+        let at_once = plane.pass(&whole, (&v, &w), &InitialDeformation::NONE);
         let unit_j = motion_j(&body, &v, &w);
         for shares in [&[0.03][..], &[0.5], &[0.97], &[0.3, 0.6]] {
             let (mut motion, mut pressed, mut shift, mut time_s) =
-                ((v, w), PressedIn::NOT, Vec3::zeros(), 0.0);
+                ((v, w), InitialDeformation::NONE, Vec3::zeros(), 0.0);
             let mut lost = [0.0; 3];
             for share in shares.iter().copied().chain([1.0]) {
                 let rest = plane.passage(&n, &motion.0, pressed.depth_m);
@@ -55,7 +57,7 @@ fn an_impact_in_parts_is_that_at_once() {
                 let gone_j = before_j + height_j - motion_j(&body, &motion.0, &motion.1);
                 assert!((gone_j - out.loss.sum()).abs() < 1e-12 * unit_j);
                 assert_eq!(out.pressed.is_some(), share < 1.0);
-                pressed = out.pressed.unwrap_or(PressedIn::NOT);
+                pressed = out.pressed.unwrap_or(InitialDeformation::NONE);
                 assert!((pressed.depth_m + (shift + out.shift_m).z).abs() < 1e-15);
                 shift += out.shift_m;
                 time_s += out.time_s;
@@ -77,8 +79,9 @@ fn an_impact_in_parts_is_that_at_once() {
     }
 }
 
-/// A rock lifts off where the force first falls to zero, wherever it is taken up and however long gravity holds it; where it never does so, no
-/// passage is told. One that ends too early makes energy of what the spring still holds.
+/// A rock lifts off where the force first falls to zero, from whatever state it is continued and
+/// however long gravity holds it; if that never happens, there is no passage. One that ends too
+/// early gains the energy still in the spring.
 #[test]
 fn a_rock_lifts_off_where_the_force_first_falls_to_zero() {
     let mut uniform = uniforms(3);
@@ -88,12 +91,12 @@ fn a_rock_lifts_off_where_the_force_first_falls_to_zero() {
         let ground = ground(1e6 * 10f64.powf(3.0 * uniform()), restitution, 0.0);
         let (body, law) = case(&ground, 0.1 + 2.0 * uniform(), G);
         let plane = Plane::new(&body, &law, 1e-4);
-        // from what weight presses in to many times that, on the way in or out
+        // from the penetration of the weight to many times that, inwards or outwards
         let weight_m = G / law.omega_rad_s().powi(2);
         let depth_m = weight_m * 10f64.powf(3.5 * uniform() - 1.0);
         let speed = depth_m * law.omega_rad_s() * 2.0 * uniform();
         let v = Vec3::z() * if uniform() < 0.3 { speed } else { -speed };
-        let pressed = PressedIn { depth_m, ..PressedIn::NOT };
+        let pressed = InitialDeformation { depth_m, ..InitialDeformation::NONE };
         let Some(whole) = plane.passage(&Vec3::z(), &v, depth_m) else {
             stays += 1;
             continue;

@@ -46,7 +46,8 @@ const MOTIONS: [[[f64; 3]; 2]; 10] = [
     [[30.0, 0.0, -0.5], [5.0, 5.0, 5.0]],
 ];
 
-/// `e(ζ)` of the force that never pulls (numerics 2.1), by closed form: to rounding, and bisection for ζ.
+/// `e(ζ)` of the force that never pulls (numerics 2.1), by closed form: to rounding, and bisection
+/// for ζ.
 #[test]
 fn without_weight_restitution_is_the_one_asked_for() {
     for e in [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.99, 1.0] {
@@ -59,8 +60,8 @@ fn without_weight_restitution_is_the_one_asked_for() {
     }
 }
 
-/// The table of numerics 2.1: `e_eff` falls with `p = v ω/g` (five digits); and the other closed form of this program, to
-/// rounding, from just above the capture speed to heavy impacts.
+/// The table of numerics 2.1: `e_eff` falls with `p = v ω/g` (five digits); and the other closed
+/// form of this program, to rounding, from just above the capture speed to heavy impacts.
 #[test]
 fn weight_lowers_restitution() {
     let of = |e: f64, p: f64| {
@@ -83,7 +84,8 @@ fn weight_lowers_restitution() {
     }
 }
 
-/// A2, A3: lift-off, restitution and largest penetration of the first two impacts after a drop from 1 m (14 digits).
+/// A2, A3: lift-off, restitution and largest penetration of the first two impacts after a drop from
+/// 1 m (14 digits).
 #[test]
 fn a_dropped_rock_bounces_as_the_closed_form_says() {
     for (p_n, first, second, deep) in [
@@ -107,7 +109,8 @@ fn a_dropped_rock_bounces_as_the_closed_form_says() {
     }
 }
 
-/// Just below `p*` gravity keeps the rock, just above it does not; for every restitution, also overdamped.
+/// Just below `p*` gravity keeps the rock, just above it does not; for every restitution, also
+/// overdamped.
 #[test]
 fn gravity_keeps_what_is_too_slow() {
     for e in [0.005, 0.1, 0.2, 0.3, 0.5, 0.9, 1.0] {
@@ -128,8 +131,8 @@ fn gravity_keeps_what_is_too_slow() {
     }
 }
 
-/// Against the law as it is printed, with 4000 classical steps a radian: the kinks cost it up to 1e-8 or so, the kernel about
-/// its tolerance.
+/// Against the law as printed, with 4000 classical steps a radian: switching points cost those up
+/// to 1e-8 or so, the kernel about its tolerance.
 #[test]
 fn it_is_the_law_as_printed() {
     for (rolling, e) in [(0.0, 0.5), (0.3, 0.5), (0.3, 1.0), (0.0, 0.2), (0.3, 0.2)] {
@@ -182,7 +185,8 @@ fn an_oblique_impact_on_springs() {
     assert!((out.spin_rad_s.y - 2.259_206_5).abs() < 1e-7, "{}", out.spin_rad_s.y);
 }
 
-/// Errors shrink with the tolerance: over 300 impacts the largest is below four of it at most, and half are below one.
+/// Errors shrink with the tolerance: over 300 impacts the largest is below four of it at most, and
+/// half are below one.
 #[test]
 fn errors_follow_the_tolerance() {
     for rolling in ROLLING {
@@ -235,7 +239,8 @@ fn a_turned_scene_gives_the_turned_answer() {
     }
 }
 
-/// Without friction and rolling friction the spin keeps its bits and velocity along the plane only what gravity adds.
+/// Without friction and rolling friction the spin keeps its bits and velocity along the plane only
+/// what gravity adds.
 #[test]
 fn a_smooth_ground_touches_nothing_but_the_normal() {
     let mut smooth = ground(1e9, 0.7, 0.0);
@@ -269,8 +274,8 @@ fn spin_about_the_normal_is_for_rolling_friction_alone() {
 }
 
 proptest! {
-    /// Any rock, ground, motion and gravity: the losses add up to what is gone, height included, to rounding; none is negative;
-    /// all is finite.
+    /// Any rock, ground, motion and gravity: the losses add up to what is gone, height included, to
+    /// rounding; none is negative; all is finite.
     #[test]
     fn energy_is_accounted_for(
         radius in -1.3f64..0.7, p_n in 7.0f64..12.0, e in 0.02f64..1.0, rolling in 0.0f64..0.5, ratio in 0.05f64..2.0,

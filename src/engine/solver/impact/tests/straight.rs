@@ -1,4 +1,4 @@
-//! Blows along one line against those in two directions.
+//! Impacts along one line compared with those in two directions.
 
 use super::{G, case, ground, motion_j, uniforms};
 use crate::ground::Law;
@@ -9,8 +9,9 @@ use crate::solver::impact::{BlowTable, Plane, blow_along_a_line};
 /// Tolerance that leaves rounding and little more (–).
 const FINE: f64 = 1e-10;
 
-/// Impulses over the mass, along the normal and against the slip (m/s), of an impact in two directions. A weight along the surface
-/// that no number feels keeps it from being followed along its line.
+/// Impulses over the mass, along the normal and against the slip (m/s), of an impact in two
+/// directions. A weight along the surface too small to change any result prevents the integration
+/// along a line.
 fn in_two_directions(
     (body, law): (&Body, &Law),
     captured: bool,
@@ -26,7 +27,8 @@ fn in_two_directions(
     [kept + approach, slip - along.dot(&after)]
 }
 
-/// Largest difference of the impulses over the speed (–) from those in two directions, by the tolerance of the blow.
+/// Largest difference of the impulses over the speed (–) from those in two directions, by the
+/// tolerance of the blow.
 fn difference(tolerance: f64) -> f64 {
     let mut uniform = uniforms(7);
     let mut largest = 0.0f64;
@@ -41,7 +43,7 @@ fn difference(tolerance: f64) -> f64 {
         assert!((found[0] - exact[0]).abs() < 1e-12 * speeds[0], "{found:?} {exact:?}");
         let off = (found[1] - exact[1]).abs() / speeds[0].hypot(speeds[1]);
         largest = largest.max(off);
-        // no blow gives energy: the impulses on a rock at rest beside them
+        // no impact gains energy: the impulses on a rock at rest beside them
         let v = Vec3::new(speeds[1] - found[1], 0.0, found[0] - speeds[0]);
         let w = Vec3::y() * (body.mass * body.radius * found[1] / body.inertia);
         let before = motion_j(&body, &Vec3::new(speeds[1], 0.0, -speeds[0]), &Vec3::zeros());
@@ -50,8 +52,9 @@ fn difference(tolerance: f64) -> f64 {
     largest
 }
 
-/// Slip that nothing turns stays on its line: the same impulses, with a third of the numbers. Both err by their tolerance: at that of blows
-/// in a large island (1e-3) by 3.7e-4 of the speed, a thirtieth or less of what sustained contact may leave, 3e-2 of a rock's speed.
+/// Slip that nothing deflects stays on its line: the same impulses, with a third of the variables.
+/// Both err by their tolerance: at that of impacts in a large island (1e-3) by 3.7e-4 of the speed,
+/// a thirtieth or less of the error allowed to sustained contact, 3e-2 of a rock's speed.
 #[test]
 fn a_blow_along_a_line_is_that_in_two_directions() {
     for (tolerance, allowed) in [(FINE, 1e-8), (1e-3, 1e-3)] {
@@ -60,8 +63,9 @@ fn a_blow_along_a_line_is_that_in_two_directions() {
     }
 }
 
-/// Spheres of one material rebound by one table, whatever their mass: its impulse of friction is off by less than a blow that is followed to
-/// 2e-5 of its speed, the rebound is the closed form, and no blow gives energy. Another material has another.
+/// Spheres of one material rebound by one table, whatever their mass: its friction impulse has a
+/// smaller error than an impact integrated to 2e-5 of its speed, the rebound is the closed form,
+/// and no impact gains energy. Another material has another table.
 #[test]
 fn a_table_is_that_of_all_spheres_of_a_material() {
     let mut uniform = uniforms(11);

@@ -18,7 +18,7 @@ use crate::contact::ContactPoint;
 use crate::contact::pair::normal_and_distance;
 use crate::rock::Vec3;
 use crate::solver::impact::{
-    BODIES, CONTACTS, ContactEnds, FrozenBody, FrozenCollision, FrozenContact, collide,
+    BODIES, CONTACTS, ContactEnds, FrozenBody, FrozenCollision, FrozenContact, frozen_collision,
 };
 use crate::solver::island::body::IslandBody;
 use crate::solver::joint_blow::Breakage;
@@ -170,7 +170,7 @@ impl RigidIsland {
         };
         let bodies: ArrayVec<_, BODIES> = touching.rocks.iter().zip(rocks).map(frozen).collect();
         let whole = || {
-            let after = collide(&bodies, contacts, self.impact_tolerance())?;
+            let after = frozen_collision(&bodies, contacts, self.impact_tolerance())?;
             Some(Breakage { after, stems: ArrayVec::new() })
         };
         scene.broken_by(&touching.rocks, &bodies, contacts).or_else(whole)

@@ -17,7 +17,7 @@ use crate::contact::pair::{PairHistory, normal_and_distance};
 use crate::rock::Vec3;
 use crate::solver::body::Twist;
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
-use crate::solver::impact::throw;
+use crate::solver::impact::frozen_impact;
 use crate::solver::island::outcome::BlowInStep;
 use crate::solver::loss::{EnergyGiven, Loss};
 use crate::solver::rigid::{HELD, IMPACT, frozen, is_fast};
@@ -286,7 +286,7 @@ fn rebound_from(
     for contact in &mut struck {
         contact.captured |= dead;
     }
-    let thrown = throw(&world.body, &struck, (&met, &spin), tolerance);
+    let thrown = frozen_impact(&world.body, &struck, (&met, &spin), tolerance);
     for (loss, other) in thrown.loss.iter().zip(touches) {
         let is_struck = other.feature == touch.feature || is_fast(world, other, &met);
         let approach_m_s = is_struck.then(|| -other.normal.dot(&met));
