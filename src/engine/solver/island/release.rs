@@ -1,9 +1,11 @@
-//! Contacts that came up too slowly to rebound, and are struck through by a blow.
+//! Captured contacts that rebound after all, because a blow is transmitted through them.
 //!
-//! Rocks that lie on each other and on the ground have come there slowly: their contacts are captured, and damped so that nothing
-//! flutters. A blow that runs through them is no slow approach. They are a part of it as soon as it presses them together faster
-//! than what is captured, as are those that were a hair open when it came. Without that a blow on a heap, a row or a cradle of rocks
-//! lost most of its energy, with restitution 1 too, or nothing, by a rounding of the gaps.
+//! Rocks that lie on each other and on the ground have come there slowly: their contacts are
+//! captured, and damped so that nothing flutters. A blow through these contacts is no slow
+//! approach. They become part of it as soon as it presses them together faster than the capture
+//! speed, as do those that were slightly open when it came. Without that a blow on a heap, a row or
+//! a cradle of rocks lost most of its energy, with restitution 1 too, or none, by a rounding of the
+//! gaps.
 
 use super::assembly::Island;
 use super::body::IslandBody;
@@ -11,8 +13,8 @@ use crate::contact::pair::{PairHistory, between};
 use crate::terrain::Terrain;
 
 impl Island<'_> {
-    /// Lets captured contacts rebound that are pressed together too fast for it: those of two rocks, and those of rocks that touch
-    /// others with the mesh. Whether there were any.
+    /// Lets captured contacts rebound that are pressed together too fast for capture: those of two
+    /// rocks, and those with the mesh of rocks that touch others. Whether there were any.
     pub(super) fn release_struck(&mut self) -> bool {
         let Self { terrain, members, pair_histories, .. } = self;
         let mut is_any = false;
@@ -34,7 +36,7 @@ impl Island<'_> {
 }
 
 impl IslandBody {
-    /// The same of its contacts with the mesh.
+    /// The same for its contacts with the mesh.
     fn release_ground(&mut self, terrain: &Terrain) -> bool {
         let (world, state) = self.with_environment(terrain);
         let mut is_any = false;
