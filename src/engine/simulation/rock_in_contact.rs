@@ -52,7 +52,7 @@ impl RockInContact<'_, '_> {
         // The rock is turned instead of the mesh: contact itself stays as it is. What is captured is turned too: the facet
         // takes what it takes.
         if let Some((turn, _)) = facet {
-            self.state.turn_against(&self.world, turn, until_s);
+            self.state.rotate_onto_facet(&self.world, turn, until_s);
             self.recorder.now.turn(&turn.inverse());
         }
     }
@@ -225,7 +225,7 @@ impl RockInContact<'_, '_> {
 
     /// Turns the rock back, if it is turned.
     pub(super) fn leave_facet(&mut self) {
-        if let Some(turn) = self.state.turn_back(&self.world) {
+        if let Some(turn) = self.state.rotate_back(&self.world) {
             // a rebound into the mean surface is the next impact
             self.recorder.impacts.forget_last();
             // turned, not taken from the state: a step that is not noted yet has changed its speed

@@ -78,12 +78,13 @@ fn sweeps_and_newton_steps(
         }
         // after a singular system the sweeps go on
         let solution = if round == 0 {
-            let motion = solved(body, contacts, (&free, h), |one| one.linearised(body, &now, h));
+            let motion =
+                solve_linear(body, contacts, (&free, h), |one| one.linearised(body, &now, h));
             motion.map(|motion| (motion, STILL))
         } else {
             let free_change = (free.0 - now.0, free.1 - now.1);
             let change = |one: &StageContact| one.linearised_in_changes(body, &now, h);
-            solved(body, contacts, (&free_change, h), change).map(|change| (now, change))
+            solve_linear(body, contacts, (&free_change, h), change).map(|change| (now, change))
         };
         if let Some((motion, change)) = solution {
             for contact in contacts.iter_mut() {
@@ -125,7 +126,7 @@ fn sweep(
 /// Solves the linear system of inertia, with `free` as the motion without contacts, and of the
 /// linearised `forces`. Friction grows with the normal force, which makes the matrix unsymmetric:
 /// LU, not Cholesky.
-fn solved(
+fn solve_linear(
     body: &Body,
     contacts: &[StageContact],
     (free, h): (&Twist, f64),

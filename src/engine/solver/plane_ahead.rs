@@ -18,7 +18,7 @@ const LONGEST: f64 = 2.0;
 /// A longer travel is checked only if it is this many times that of steps elsewhere (–) …
 const WORTH: f64 = 1.5;
 /// … and not again within this distance of where none was clear (–, relative to R).
-const RETRY: f64 = 0.3;
+const RETRY_DISTANCE: f64 = 0.3;
 /// Assumed deviation of the path from the straight line (–, relative to its length).
 const PATH_OFFSET: f64 = 0.05;
 
@@ -106,7 +106,7 @@ impl ContactState {
         let to_facet = self.facets.distance_to_facet_m(&self.c);
         let most = wished_m.min(self.plane.reach * radius).min(to_facet);
         let is_too_soon =
-            (self.c - self.plane.blocked_at).norm_squared() < (RETRY * radius).powi(2);
+            (self.c - self.plane.blocked_at).norm_squared() < (RETRY_DISTANCE * radius).powi(2);
         if most < WORTH * least || speed == 0.0 || is_too_soon || self.plane.ploughs {
             return least;
         }

@@ -25,7 +25,7 @@ use std::f64::consts::TAU;
 /// Slower approaches do not count as facets (–, relative to `√(g R)`, the speed of a rock that
 /// falls by half its radius): they take less than a ten-thousandth of that energy, whatever the
 /// springs.
-const LEAST: f64 = 1e-2;
+const LEAST_APPROACH: f64 = 1e-2;
 /// Share of the roughness length within which a facet met late counts from where it was due (–).
 const PAST_DUE: f64 = 0.5;
 /// Most draws of a facet: at least one in three is accepted where the rock approaches the surface,
@@ -34,7 +34,7 @@ const DRAWS: u32 = 1000;
 
 /// Slowest approach to a facet (m/s).
 pub(super) fn least_m_s(world: &ContactEnvironment) -> f64 {
-    LEAST * world.body.fall_speed_m_s()
+    LEAST_APPROACH * world.body.fall_speed_m_s()
 }
 
 /// The facets of one rock.

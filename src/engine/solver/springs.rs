@@ -23,8 +23,10 @@ impl ContactState {
     pub fn stored_j(&self, world: &ContactEnvironment) -> Loss {
         let mut stored = Loss::default();
         for touch in self.touches.iter() {
-            let memory = self.histories.iter().find(|history| history.feature == touch.feature);
-            let law = world.law(memory.map_or(touch.triangle, |history| history.springs_of));
+            let contact_history =
+                self.histories.iter().find(|history| history.feature == touch.feature);
+            let law =
+                world.law(contact_history.map_or(touch.triangle, |history| history.springs_of));
             let pressed = pressed_j(world, touch, law);
             stored.add(&Loss::on_slope([0.0, pressed, 0.0]).on(world, touch.triangle), 1.0);
         }
@@ -95,8 +97,9 @@ impl ContactState {
         // including new contacts: the dashpot takes most at first
         self.near.touches(terrain, &c, world.body.radius * (1.0 + TOUCH), &mut self.touches);
         for (k, touch) in self.touches.iter().enumerate() {
-            let memory = self.histories.iter().find(|history| history.feature == touch.feature);
-            if let Some(history) = memory.filter(|_| terrain.is_tree(touch.triangle)) {
+            let contact_history =
+                self.histories.iter().find(|history| history.feature == touch.feature);
+            if let Some(history) = contact_history.filter(|_| terrain.is_tree(touch.triangle)) {
                 let law = world.law_of(history, &self.touches, k);
                 let (held_j, weight) = self.normal_energy_and_power(world, (history, touch), &law);
                 let stem = stems.of_triangle(touch.triangle);

@@ -19,7 +19,7 @@ use super::contact_state::{ContactEnvironment, ContactState};
 use super::joint_blow::{Breakage, JointContact, JointContacts, JointEnd, joint_blow};
 use super::loss::Loss;
 use super::rigid::STRUCK_TOGETHER;
-use super::stem_load::{APART_RAD, PressedTrees};
+use super::stem_load::{PressedTrees, SEVERAL_TREES_RAD};
 use super::yielding::yielding_impact;
 use crate::contact::history::ContactHistory;
 use crate::contact::{ContactPoint, MOST};
@@ -49,7 +49,7 @@ impl ContactState {
         let mut may_yield =
             self.stem_load.needs_energy_by_tree(stems, &self.stem_load.pressed, motion_j);
         let mut longest_s =
-            if may_yield { APART_RAD / self.stiffest_rad_s(world) } else { f64::INFINITY };
+            if may_yield { SEVERAL_TREES_RAD / self.stiffest_rad_s(world) } else { f64::INFINITY };
         for stem in self.stem_load.pressed.iter().filter_map(|tree| tree.stem) {
             // a stem that the rock's kinetic energy cannot break does not limit the step
             if self.stem_load.may_yield(stems, stem, motion_j) {

@@ -37,7 +37,7 @@ impl Roll<'_> {
     pub(super) fn end_contact(&mut self) {
         if self.has_springs() {
             self.recorder.end_all_impacts();
-            self.turn_back();
+            self.rotate_back();
         }
     }
 
@@ -75,7 +75,7 @@ impl Roll<'_> {
         (self.footing.blows, self.footing.begun) = (blows, begun);
         // what is captured is turned too: the facet takes what it takes
         if let Some((turn, _)) = facet {
-            self.footing.turn_against(self.block, &mut self.moving, (turn, until_s));
+            self.footing.rotate_onto_facet(self.block, &mut self.moving, (turn, until_s));
         }
     }
 
@@ -90,7 +90,7 @@ impl Roll<'_> {
         if !self.footing.facets.meets_new_facet(&self.world, &self.meeting(triangle, n, point)) {
             return None;
         }
-        self.turn_back();
+        self.rotate_back();
         let at = self.meeting(triangle, n, point);
         let turn = self.footing.facets.draw_facet(&self.world, &at)?;
         Some((turn, at.approach_m_s(&turn)))
@@ -174,7 +174,7 @@ impl Roll<'_> {
         }
         let now_s = self.recorder.now.time_s;
         if self.footing.facets.is_tilt_over(self.footing.springs.is_free(), now_s) {
-            self.turn_back();
+            self.rotate_back();
         }
         self.footing.springs.capture(now_s);
     }
@@ -187,8 +187,8 @@ impl Roll<'_> {
     }
 
     /// Turns the block back, if it is turned.
-    fn turn_back(&mut self) {
-        if self.footing.turn_back(self.block, &mut self.moving) {
+    fn rotate_back(&mut self) {
+        if self.footing.rotate_back(self.block, &mut self.moving) {
             // a rebound into the mean surface is the next impact
             self.recorder.impacts.forget_last();
             self.recorder.now.velocity_m_s = self.moving.v;

@@ -84,7 +84,7 @@ impl Footing {
     }
 
     /// Turns the block against a facet until it is turned back, at `until_s` (s) at the latest.
-    pub(crate) fn turn_against(
+    pub(crate) fn rotate_onto_facet(
         &mut self,
         block: &Block,
         moving: &mut Moving,
@@ -96,7 +96,7 @@ impl Footing {
     }
 
     /// Turns the block back if it is turned; whether it was.
-    pub(crate) fn turn_back(&mut self, block: &Block, moving: &mut Moving) -> bool {
+    pub(crate) fn rotate_back(&mut self, block: &Block, moving: &mut Moving) -> bool {
         let Some(Tilt { turn, .. }) = self.facets.tilt.take() else { return false };
         moving.redirect(block, &turn);
         self.springs.refresh();

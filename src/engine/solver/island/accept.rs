@@ -118,9 +118,8 @@ impl Island<'_> {
     /// contacts than between its rocks. `None` where it touches the mesh, or nothing at all: then
     /// there is nothing to conserve.
     fn free_angular_momentum(&self) -> Option<Vec3> {
-        let alone =
-            self.members.iter().all(|m| m.state.histories.iter().all(|history| !history.closed))
-                && self.pair_histories.iter().any(PairHistory::is_held);
+        let alone = self.members.iter().all(|member| member.state.is_free())
+            && self.pair_histories.iter().any(PairHistory::is_held);
         alone.then(|| self.angular_momentum())
     }
 
@@ -151,7 +150,7 @@ impl Island<'_> {
     /// neither the velocity of the centre of mass nor the relative normal speed of any two rocks.
     fn restore_angular_momentum(&mut self, before: Option<Vec3>) {
         let Some(before) = before else { return };
-        if self.members.iter().any(|m| m.state.histories.iter().any(|history| history.closed)) {
+        if !self.members.iter().all(|member| member.state.is_free()) {
             return;
         }
         let lost = before - self.angular_momentum();

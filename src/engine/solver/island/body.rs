@@ -9,7 +9,7 @@ use crate::contact::history::ContactHistory;
 use crate::contact::pair::PairHistory;
 use crate::ground::Law;
 use crate::rock::Vec3;
-use crate::solver::body::{Body, Twist};
+use crate::solver::body::{Body, STILL, Twist};
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
 use crate::solver::impact_progress::ImpactProgress;
 use crate::solver::law::StageContact;
@@ -111,7 +111,6 @@ impl DerefMut for BodySlot {
 impl IslandBody {
     /// A rock in flight at `(c, v, w)`.
     pub fn new(body: Body, laws: Vec<Law>, (c, v, w): (Vec3, Vec3, Vec3)) -> Self {
-        let zero = (Vec3::zeros(), Vec3::zeros());
         let end = StageMotion { c, v, w };
         let state = ContactState { c, v, w, ..ContactState::unused() };
         Self {
@@ -127,7 +126,7 @@ impl IslandBody {
             max_touched_count: 0,
             base: end,
             guess: c,
-            free: zero,
+            free: STILL,
             end,
             last_forces: Vec::new(),
             given: [EnergyGiven::default(); STAGES],
@@ -213,7 +212,7 @@ impl IslandBody {
     }
 
     pub(super) fn contacts(&self) -> &[StageContact] {
-        &self.state.contacts[..self.state.contact_count]
+        self.state.stage_contacts()
     }
 
     /// Speed that the springs of its contacts with the mesh can give it (m/s): `Σ F/(m ω)`.
@@ -260,8 +259,9 @@ impl IslandBody {
         tableau: &Tableau,
         (i, h): (usize, f64),
     ) {
-        let world = ContactEnvironment { terrain, body: self.body, laws: &self.laws };
-        self.state.place_contacts(&world, tableau, (i, h), (&self.base, &self.guess));
+        let (base, guess) = (self.base, self.guess);
+        let (world, state) = self.with_environment(terrain);
+        state.place_contacts(&world, tableau, (i, h), (&base, &guess));
         for contact in &mut self.state.contacts[..self.state.contact_count] {
             // the forces on the same feature are the best initial guess
             let kept = self.last_forces.iter().find(|kept| kept.0 == contact.feature);
@@ -275,13 +275,13 @@ impl IslandBody {
     /// Stores the solution of stage `i`, velocity and spin with its forces, as rates, and the
     /// forces as the next initial guess.
     pub(super) fn store(&mut self, terrain: &Terrain, (v, w): Twist, (i, hh): (usize, f64)) {
-        let world = ContactEnvironment { terrain, body: self.body, laws: &self.laws };
-        let c = self.base.c + v * hh;
-        self.end = StageMotion { c, v, w };
-        let (base, end) = (self.base, self.end);
-        self.state.store(&world, &base, &end, (i, hh));
+        let base = self.base;
+        let end = StageMotion { c: base.c + v * hh, v, w };
+        self.end = end;
+        let (world, state) = self.with_environment(terrain);
+        state.store(&world, &base, &end, (i, hh));
         self.last_forces.clear();
-        let contacts = &self.state.contacts[..self.state.contact_count];
+        let contacts = self.state.stage_contacts();
         self.last_forces.extend(
             contacts.iter().map(|s| (s.feature, s.normal_force, s.shear_force, s.rolling_moment)),
         );

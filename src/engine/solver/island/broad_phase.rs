@@ -82,7 +82,7 @@ fn level(ball: &Ball) -> i32 {
 }
 
 /// A finer grid with more than this times the balls of the next coarser one is worth its cost (–).
-const RARE: usize = 8;
+const FINER_GRID_FACTOR: usize = 8;
 
 /// Octaves that have a grid of their own: one that is slightly finer than a grid with many balls
 /// has none.
@@ -97,7 +97,8 @@ impl Grids {
         let mut shared: Option<(i32, usize)> = None;
         for chunk in levels.chunk_by(|a, b| a == b).rev() {
             let (own, count) = (chunk[0], chunk.len());
-            let joins = shared.filter(|(grid, balls)| grid - own == 1 && RARE * balls >= count);
+            let joins = shared
+                .filter(|(grid, balls)| grid - own == 1 && FINER_GRID_FACTOR * balls >= count);
             let (grid, balls) = joins.unwrap_or((own, 0));
             shared = Some((grid, balls + count));
             grids.push((own, grid));

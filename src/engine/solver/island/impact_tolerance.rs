@@ -41,12 +41,12 @@ const TRANSMITS: f64 = 0.1;
 /// Local error allowed for two bonded rocks (–), relative to the speed at which their springs would
 /// reach the strength of the bond, and to that of their vibration: a blow ends in a vibration, and
 /// the failure of the bond is decided swings later, by the accumulated error.
-const BONDED: f64 = 1e-3;
+const BOND_ERROR: f64 = 1e-3;
 /// Lower bound of it for bonds that any load breaks (–, relative to the local error in sustained
 /// contact) …
-const WEAKEST: f64 = 1e-3;
+const LEAST_BOND_ERROR: f64 = 1e-3;
 /// … and for vibrations that are negligibly slow.
-const SLOWEST: f64 = 0.02;
+const LEAST_VIBRATION_ERROR: f64 = 0.02;
 
 impl Island<'_> {
     /// The control of the next step: the errors allowed for the rocks, and the method.
@@ -82,8 +82,9 @@ impl Island<'_> {
             for end in ends {
                 let member = &mut *self.members[end];
                 let usual_m_s = sustained_tolerance_m_s(settings, &member.body);
-                let of_strength_m_s = (BONDED * breaks_m_s).max(WEAKEST * usual_m_s);
-                let of_vibration_m_s = (BONDED * vibrates_m_s).max(SLOWEST * usual_m_s);
+                let of_strength_m_s = (BOND_ERROR * breaks_m_s).max(LEAST_BOND_ERROR * usual_m_s);
+                let of_vibration_m_s =
+                    (BOND_ERROR * vibrates_m_s).max(LEAST_VIBRATION_ERROR * usual_m_s);
                 let bonded_m_s = of_strength_m_s.min(of_vibration_m_s);
                 is_limited |= bonded_m_s < usual_m_s;
                 member.sustained_tolerance_m_s = member.sustained_tolerance_m_s.min(bonded_m_s);

@@ -19,7 +19,7 @@ use crate::contact::submatrix::{Mat3x6, Mat6, Vec6};
 use crate::ground::{LinearFriction, NormalLine};
 use crate::rock::Vec3;
 use crate::solver::block_factor::{Below, Blocks, Factor};
-use crate::solver::body::Twist;
+use crate::solver::body::{STILL, Twist};
 use crate::solver::linear_forces::LinearForces;
 use nalgebra::{DMatrix, DVector, Matrix3};
 
@@ -99,9 +99,8 @@ impl LinearContact {
         } else {
             (pair.line(h), law.shear.left(h, (&pair.shear_force, pair.normal_force)))
         };
-        let at_rest = (Vec3::zeros(), Vec3::zeros());
         // only ends that are unknowns enter here: the others are in the constants
-        let sought = [0, 1].map(|k| if place[pair.ends[k]].is_some() { ends[k] } else { &at_rest });
+        let sought = [0, 1].map(|k| if place[pair.ends[k]].is_some() { ends[k] } else { &STILL });
         let own = pair.speed(sought);
         Self {
             // an end that does not take part has a fixed motion: its share of the normal speed

@@ -1,7 +1,6 @@
 //! The contact of two rocks in an implicit stage: the law of
 //! [`StageContact`](crate::solver::law::StageContact) with a second body.
 
-pub(super) use crate::contact::TOUCH;
 use crate::contact::pair::{Bond, PairHistory, PairImpact, between};
 use crate::ground::{Law, NormalElement, NormalLine};
 use crate::rock::Vec3;
@@ -50,7 +49,7 @@ pub(super) struct PairContact {
 impl PairContact {
     /// The contact of a pair for centres at `at`, if their gap is at most `slack` (m); without
     /// stretch and shear force.
-    pub(super) fn over(
+    pub(super) fn of_pair(
         pair_history: &PairHistory,
         bodies: [&Body; 2],
         at: [&Vec3; 2],

@@ -17,21 +17,21 @@ impl Island<'_> {
     /// rocks, and those with the mesh of rocks that touch others. Whether there were any.
     pub(super) fn release_struck(&mut self) -> bool {
         let Self { terrain, members, pair_histories, .. } = self;
-        let mut is_any = false;
+        let mut any_released = false;
         let mut touches_others = vec![false; members.len()];
         for pair_history in pair_histories.iter_mut().filter(|pair| PairHistory::is_held(pair)) {
             let ends = [pair_history.a, pair_history.b].map(|k| k as usize);
             let [a, b] = ends.map(|k| &members[k].state);
             let (n, _) = between(&a.c, &b.c);
-            is_any |= pair_history.release(-n.dot(&(a.v - b.v)));
+            any_released |= pair_history.release(-n.dot(&(a.v - b.v)));
             for k in ends {
                 touches_others[k] = true;
             }
         }
         for (member, _) in members.iter_mut().zip(touches_others).filter(|(_, touches)| *touches) {
-            is_any |= member.release_ground(terrain);
+            any_released |= member.release_ground(terrain);
         }
-        is_any
+        any_released
     }
 }
 
@@ -39,16 +39,16 @@ impl IslandBody {
     /// The same for its contacts with the mesh.
     fn release_ground(&mut self, terrain: &Terrain) -> bool {
         let (world, state) = self.with_environment(terrain);
-        let mut is_any = false;
+        let mut any_released = false;
         for history in state.histories.iter_mut().filter(|one| one.captured && one.closed) {
             let approach_m_s = -history.n.dot(&state.v);
             let law = world.springs_of(history);
             if law.is_struck_through(history.normal_force, approach_m_s) {
                 history.captured = false;
                 state.impact.add_contact(approach_m_s, world.least_impact_m_s());
-                is_any = true;
+                any_released = true;
             }
         }
-        is_any
+        any_released
     }
 }

@@ -11,7 +11,7 @@
 
 use super::assembly::Island;
 use super::pair_contact::PairContact;
-use super::pair_contact::TOUCH;
+use crate::contact::TOUCH;
 use crate::contact::history::carry;
 use crate::rock::Vec3;
 use crate::solver::loss::EnergyGiven;
@@ -99,7 +99,7 @@ impl Island<'_> {
             let slack = PAIR_GAP * a.body.radius.min(b.body.radius) + 2.0 * passes_m;
             let bodies = [&a.body, &b.body];
             let Some(mut pair) =
-                PairContact::over(pair_history, bodies, [&a.guess, &b.guess], slack)
+                PairContact::of_pair(pair_history, bodies, [&a.guess, &b.guess], slack)
             else {
                 continue;
             };
@@ -180,7 +180,7 @@ impl Island<'_> {
             let touch = TOUCH * (a.body.radius + b.body.radius);
             let at = [&a.state.c, &b.state.c];
             // pairs that do not touch at the start have no force
-            let Some(mut pair) = PairContact::over(pair_history, [&a.body, &b.body], at, touch)
+            let Some(mut pair) = PairContact::of_pair(pair_history, [&a.body, &b.body], at, touch)
             else {
                 continue;
             };

@@ -20,7 +20,7 @@ use crate::solver::step_control::{
 /// impact speed): 4e-4 of the energy, of which the step that passes the kink misses a part.
 const RELEASED: f64 = 0.02;
 /// Speed error after a kink that is tolerated (–, relative to the local error allowed).
-const MISSED: f64 = 0.3;
+const SPEED_ERROR: f64 = 0.3;
 /// Most cuts of a step for contacts that open within it.
 const MOST_CUTS: u32 = 4;
 /// Shortest part of a try to which an opening contact cuts it (–): the time follows from linear
@@ -220,7 +220,7 @@ impl OpeningContact {
         // mean force after the kink, over the rest of the try
         let missed_m_s = -0.5 * after * self.inv_m * self.dt * (1.0 - share);
         let is_relevant = after < 0.0 && released_m_s > RELEASED * impact_m_s;
-        if is_relevant && missed_m_s > MISSED * allowed_m_s { share } else { 1.0 }
+        if is_relevant && missed_m_s > SPEED_ERROR * allowed_m_s { share } else { 1.0 }
     }
 }
 

@@ -17,12 +17,12 @@ use crate::solver::plane_ahead::PlaneStep;
 use crate::solver::step_control::Advance;
 
 /// Longest step on a plane over the longest elsewhere (–).
-const LONGER: f64 = 10.0;
+const LONGEST_FACTOR: f64 = 10.0;
 /// A longer step is tried only if it exceeds the usual one by this factor (–) …
 const WORTH: f64 = 2.0;
 /// … and the travel is at least this (–, relative to R): a slow rock must be checked for rest after
 /// every step.
-const LEAST_WAY: f64 = 0.05;
+const LEAST_TRAVEL: f64 = 0.05;
 /// Growth of the next step, after one that was accepted and after one that was not tried (–).
 const GROWTH: (f64, f64) = (2.0, 1.5);
 /// Difference allowed between a step as a whole and in halves, of velocities and of positions (–,
@@ -128,8 +128,8 @@ impl ContactState {
     ) -> bool {
         let (speed, body) = (self.v.norm(), &world.body);
         let least = WORTH * usual;
-        let wished = self.plane.wished_s.min(LONGER * longest).min(h_max);
-        if wished < least || speed * wished < LEAST_WAY * body.radius {
+        let wished = self.plane.wished_s.min(LONGEST_FACTOR * longest).min(h_max);
+        if wished < least || speed * wished < LEAST_TRAVEL * body.radius {
             self.plane.wished_s *= GROWTH.1;
             return false;
         }
