@@ -185,8 +185,8 @@ impl RoughFacets {
 /// Draws a facet as the rotation from the surface to it, tilted by `most` (rad) at most and
 /// approached at `least` (m/s) or faster.
 ///
-/// Rejection sampling: tilt and direction uniform, accepted with the probability `max(0,
-/// −v·n')/fastest`. Three numbers of the rock's own stream a try.
+/// Rejection sampling: tilt and direction uniform, accepted with the probability
+/// `max(0, −v·n')/fastest`. Three numbers of the rock's own stream a try.
 fn draw(
     random: &mut RandomStream,
     at: &SurfaceApproach,

@@ -285,8 +285,8 @@ pub(crate) fn energies_j(
     [state.motion_j(body) + state.stored, motion + lifted + springs_at_end_j(state, end, hh)]
 }
 
-/// Energy in the springs of the contacts that are closed at the end of the step (J): `Σ (p_N pen² +
-/// p_s ξ² + k_r θ²)/2`.
+/// Energy in the springs of the contacts that are closed at the end of the step (J):
+/// `Σ (p_N pen² + p_s ξ² + k_r θ²)/2`.
 fn springs_at_end_j(state: &ContactState, end: &StageMotion, hh: f64) -> f64 {
     let closed = state.stage_contacts().iter().filter(|contact| contact.is_closed(&end.v, hh));
     let stored = closed.map(|contact| {

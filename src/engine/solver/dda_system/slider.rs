@@ -76,8 +76,9 @@ impl DdaSlider {
     /// little about its direction.
     ///
     /// `displacement + last_force · compliance` is the displacement of the contact point without
-    /// any force of this element; from there the sticking force is `(k ξ + k_eff Δ₀)/(1 + k_eff ·
-    /// compliance)`, `k_eff = k + c/Δt`: the element's own force reduces the displacement.
+    /// any force of this element; from there the sticking force is
+    /// `(k ξ + k_eff Δ₀)/(1 + k_eff · compliance)`, `k_eff = k + c/Δt`: the element's own force
+    /// reduces the displacement.
     pub(crate) fn update_state(
         &mut self,
         displacement: &Vec3,

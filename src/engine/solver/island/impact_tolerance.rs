@@ -98,9 +98,9 @@ impl Island<'_> {
     pub(super) fn note_impacts(&mut self, tried: bool) {
         for member in self.members.iter_mut().map(|slot| &mut **slot) {
             let state = &member.state;
-            let begun_m_s = if tried { state.new_contact_approach_m_s() } else { 0.0 };
-            let known_m_s = if state.is_rebounding() { state.impact.speed_m_s } else { 0.0 };
-            member.impact_m_s = known_m_s.max(begun_m_s);
+            let new_m_s = if tried { state.new_contact_approach_m_s() } else { 0.0 };
+            let running_m_s = if state.is_rebounding() { state.impact.speed_m_s } else { 0.0 };
+            member.impact_m_s = running_m_s.max(new_m_s);
             (member.touched_count, member.max_touched_count) = (0, 0);
         }
         let Self { members, pair_histories, pairs, .. } = self;

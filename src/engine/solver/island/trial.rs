@@ -46,8 +46,8 @@ impl IslandTrial<'_, '_> {
         let Some(error) = self.island.attempt(self.control, dt) else {
             return TryOutcome::NotConverged;
         };
-        let is_reached = self.island.has_reached_onset();
-        if is_reached {
+        let has_onset = self.island.has_reached_onset();
+        if has_onset {
             let first_onset = FirstOnset::within(dt, self.omega);
             let first_onset = self.island.first_onset(first_onset, hh, self.control.impact);
             if let Some(share) = self.onsets.cut(&first_onset, rad) {
@@ -64,7 +64,7 @@ impl IslandTrial<'_, '_> {
         }
         // a step that resolves the springs well cannot gain more than its error, and a contact that
         // has just begun stores less: only coarse steps are checked
-        if !is_reached && rad > step_control::RESOLVED && self.island.gains_energy(hh) {
+        if !has_onset && rad > step_control::RESOLVED && self.island.gains_energy(hh) {
             return TryOutcome::EnergyGain;
         }
         TryOutcome::Error(error)
@@ -128,8 +128,8 @@ impl Island<'_> {
     /// impact of two bodies alone (–).
     fn first_onset(&self, mut first_onset: FirstOnset, hh: f64, relative: f64) -> FirstOnset {
         for member in self.members.iter().map(|slot| &**slot) {
-            let how = (member.allowed_share(relative), member.body.radius);
-            member.state.add_onsets(&mut first_onset, (&member.end, hh), how);
+            let scales = (member.allowed_share(relative), member.body.radius);
+            member.state.add_onsets(&mut first_onset, (&member.end, hh), scales);
         }
         for pair in self.pairs.iter().filter(|pair| pair.deferred) {
             let [a, b] = pair.ends.map(|end| &self.members[end]);
