@@ -94,7 +94,7 @@ impl ContactState {
     /// spring energy and the motion supply the potential energy. Returns the released energy, which
     /// was counted as loss when the spring was compressed.
     ///
-    /// Without it the depth from the soft ground would blunt the folds ahead: ramps of 2 to 4° on
+    /// Without the lift the depth from the soft ground would blunt the folds ahead: ramps of 2 to 4° on
     /// hard ground formed one patch with the face before, without an impact.
     pub(super) fn lift_onto_stiffer(&mut self, world: &ContactEnvironment) -> Option<Loss> {
         let [one] = &self.histories[..] else { return None };

@@ -83,8 +83,8 @@ impl ContactState {
         let end = if has_springs { self.pressed_trees(world) } else { PressedTrees::default() };
         let broken = self.stem_load.distribute_until(stems, &end, standing_j);
         for &(stem, beyond_j) in &broken {
-            let push = self.push_of(stems, stem);
-            self.v += given_back(world.body.mass, &self.v, beyond_j, &push);
+            let direction = self.normal_force_direction(stems, stem);
+            self.v += given_back(world.body.mass, &self.v, beyond_j, &direction);
             loss.trees -= beyond_j;
             self.remove_stem(stems, stem);
         }
@@ -93,7 +93,7 @@ impl ContactState {
 
     /// Direction of the total normal force of all contacts with a stem, of their normals if forces
     /// are unknown.
-    fn push_of(&self, stems: &Stems, stem: u32) -> Vec3 {
+    fn normal_force_direction(&self, stems: &Stems, stem: u32) -> Vec3 {
         let of_stem = |history: &&ContactHistory| stems.of_triangle(history.triangle) == Some(stem);
         let histories = || self.histories.iter().filter(of_stem);
         let push: Vec3 = histories().map(|history| history.n * history.normal_force).sum();

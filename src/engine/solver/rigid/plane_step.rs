@@ -128,14 +128,14 @@ impl ContactState {
     ) -> bool {
         let (speed, body) = (self.v.norm(), &world.body);
         let least = WORTH * usual;
-        let wished = self.plane.wished_s.min(LONGEST_FACTOR * longest).min(h_max);
-        if wished < least || speed * wished < LEAST_TRAVEL * body.radius {
-            self.plane.wished_s *= GROWTH.1;
+        let proposed = self.plane.proposed_s.min(LONGEST_FACTOR * longest).min(h_max);
+        if proposed < least || speed * proposed < LEAST_TRAVEL * body.radius {
+            self.plane.proposed_s *= GROWTH.1;
             return false;
         }
         let Some(contact) = self.plane_contact(world) else { return false };
         let face = contact.touch.feature.id;
-        let clear = self.longest_on_plane_s(world, face, (wished, usual * speed));
+        let clear = self.longest_on_plane_s(world, face, (proposed, usual * speed));
         let from = Slide {
             c: self.c,
             v: self.v,
@@ -145,7 +145,7 @@ impl ContactState {
             mode: SlipState::default(),
         };
         let step = PlaneStep { face, n: contact.touch.normal, start: self.c };
-        let (tried, mut is_cut) = (wished.min(clear), false);
+        let (tried, mut is_cut) = (proposed.min(clear), false);
         let mut dt = tried;
         while dt >= least || is_cut {
             self.sweeps += 3;
@@ -154,7 +154,7 @@ impl ContactState {
                     let moved = (&(end.c - from.c), &(end.v - from.v));
                     if step.touches_plane_only((world, &self.near), moved, dt) {
                         self.slide_to(world, (&end, contact.touch.triangle), dt, done);
-                        self.plane.wished_s = if is_cut { tried } else { GROWTH.0 * dt };
+                        self.plane.proposed_s = if is_cut { tried } else { GROWTH.0 * dt };
                         return true;
                     }
                     is_cut = false;
@@ -166,7 +166,7 @@ impl ContactState {
             }
             done.rejected += 1;
         }
-        self.plane.wished_s = usual;
+        self.plane.proposed_s = usual;
         false
     }
 
