@@ -30,7 +30,7 @@ const SWEEPS: u32 = 4;
 /// Rounds of sweeps after which a stage is given up; the step is then shortened.
 const ROUNDS: u32 = 12;
 /// Change of a force, relative to the largest, at which the sweeps have converged (–).
-const CONVERGED: f64 = 1e-9;
+const FORCES_CONVERGED: f64 = 1e-9;
 
 /// Solves all contacts of one stage from `free`, velocity and spin without contact forces (gravity included).
 ///
@@ -111,11 +111,12 @@ fn sweep(
     let count = contacts.len();
     for contact in contacts.iter_mut() {
         let change2 = contact.relax(body, now, h);
-        *converged_count = if change2 <= (CONVERGED * scale.max(contact.normal_force)).powi(2) {
-            *converged_count + 1
-        } else {
-            1
-        };
+        *converged_count =
+            if change2 <= (FORCES_CONVERGED * scale.max(contact.normal_force)).powi(2) {
+                *converged_count + 1
+            } else {
+                1
+            };
         if *converged_count >= count {
             return true;
         }
