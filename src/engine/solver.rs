@@ -1,7 +1,7 @@
 //! One implicit step of a rock in contact.
 //!
-//! Four schemes, one law. What they share: contacts found by `contact`, the law of `law.rs`, states
-//! and memories of `contact_state.rs`.
+//! Four schemes, one law. They share contact detection (`contact`), the law of `law.rs`, and states
+//! and contact histories (`contact_state.rs`).
 //!
 //! ```text
 //! dda        Newmark β = 1/2, γ = 1 at a fixed step, open–close iteration             dda, dda_system
@@ -11,8 +11,8 @@
 //! ```
 //!
 //! One plane has kernels of its own (`plane_kernel`, `plane_impact`): the same sums over fewer
-//! numbers. Rocks that touch each other are solved together (`island`); blocks that are no balls
-//! have their own step (`block`).
+//! numbers. Rocks that touch each other are solved together (`island`); non-spherical blocks have
+//! their own step (`block`).
 
 pub(crate) mod block;
 pub mod body;
@@ -59,18 +59,20 @@ use step_control::{Advance, Control, StepError};
 /// The usual longest step of the scheme `rigid` (s).
 pub const RIGID_STEP_S: f64 = 0.01;
 
-/// Most rocks that hold each other and have springs yet, where heaps go on in the rigid limit.
+/// Most rocks in sustained contact with each other that still have springs, where heaps continue in
+/// the rigid limit.
 pub(crate) const MOST_WITH_SPRINGS: usize = 8;
 
-/// A block in the rigid limit misses no more than this in a step (–, relative to `√(g R)`) …
+/// A block in the rigid limit misses contacts by no more than this in a step (–, relative to `√(g
+/// R)`) …
 const MISSED: f64 = 0.1;
-/// … and a blow is told from such a miss from this share of it on (–).
+/// … and from this share of it on a blow is distinguished from such a miss (–).
 const TOLD: f64 = 0.1;
 
 /// The usual [`Settings::corner_way`] (–).
 pub const CORNER_WAY: f64 = 0.3;
 
-/// Settings of the step, all in force (defaults already filled in by the plan).
+/// Settings of the step in force (defaults already filled in by the plan).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
     /// Scheme in force.
@@ -81,37 +83,43 @@ pub struct Settings {
     pub step_s: f64,
     /// `dda`: whether the shear spring remembers its stretch (false = as printed in the paper).
     pub shear_memory: bool,
-    /// Whether impacts have kernels of their own: those of spheres on one plane are followed as a whole, those of blocks by explicit stages;
-    /// if not, step by step like any other, and by implicit stages (`adaptive`, `reference`).
+    /// Whether impacts have kernels of their own: those of spheres on one plane are solved as a
+    /// whole, those of blocks by explicit stages. If not, they are stepped like any other contact,
+    /// blocks by implicit stages (`adaptive`, `reference`).
     pub impact_kernels: bool,
-    /// Whether heaps of many rocks that touch go on in the rigid limit (`adaptive`, without bonds).
+    /// Whether heaps of many touching rocks continue in the rigid limit (`adaptive`, without
+    /// bonds).
     pub rigid_heaps: bool,
-    /// Blocks: longest way of a corner in one step over the radius of its rounding (–); a block turns no further than a tenth of it (rad).
-    /// In the rigid limit three times as far while every corner skids over one triangle.
+    /// Blocks: longest travel of a corner in one step over the radius of its rounding (–); a block
+    /// rotates no further than a tenth of it (rad). In the rigid limit three times as much while
+    /// every corner slides on one triangle.
     pub corner_way: f64,
-    /// Impacts slower than this do not rebound (m/s); `None` = the speed that numerics and ground ask for.
+    /// Impacts slower than this do not rebound (m/s); `None` = the speed that numerics and ground
+    /// require.
     pub capture_speed_m_s: Option<f64>,
 }
 
 impl Settings {
-    /// Error of a speed (m/s): slower rebounds than half of it mean nothing. Blocks in the rigid limit, of `block_radius_m` (m), miss contacts for
-    /// a step, and what falls meanwhile comes back as a blow, which must not rebound from there on and on: twice a share of what gravity gives in the
-    /// longest step. Blocks so small that they take shorter ones miss a small part of `√(g R)`.
+    /// Error of a speed (m/s): a rebound slower than half of it is meaningless. Blocks in the rigid
+    /// limit, of `block_radius_m` (m), miss contacts for a step; the speed that they gain meanwhile
+    /// becomes an impact, which must not rebound again and again: twice a share of the change by
+    /// gravity in the longest step. Blocks so small that they take shorter steps miss contacts by a
+    /// small part of `√(g R)`.
     pub fn speed_error_m_s(&self, gravity_m_s2: f64, block_radius_m: Option<f64>) -> f64 {
         let radius_m = block_radius_m.filter(|_| !self.scheme.has_springs()).unwrap_or(0.0);
         let missed_m_s = MISSED * (gravity_m_s2 * radius_m).sqrt();
         self.tolerance_m_s.max(2.0 * TOLD * missed_m_s.min(gravity_m_s2 * self.step_s))
     }
 
-    /// The same in the limit of stiff springs, with its usual longest step.
+    /// These settings in the limit of stiff springs, with its usual longest step.
     #[must_use]
     pub const fn in_rigid_limit(self) -> Self {
         Self { scheme: self.scheme.limit(), step_s: RIGID_STEP_S, ..self }
     }
 }
 
-/// The stepping of one contact episode.
-/// Made anew for each episode: a flight, however short, leaves no step size worth keeping.
+/// The stepping method within one contact episode, made anew for each: after a flight, however
+/// short, no step size is worth keeping.
 #[derive(Debug)]
 pub enum Stepper {
     /// `adaptive` and `reference`, with the step to try next (s).
@@ -142,8 +150,8 @@ impl Stepper {
 /// # Errors
 /// [`StepError`] if no step, however short, settles.
 ///
-/// What it moved, lost and cost comes back as an [`Advance`]; position, velocity, spin and memories
-/// are in `state`.
+/// Length, losses and effort come back as an [`Advance`]; position, velocity, spin and contact
+/// histories are in `state`.
 pub fn advance(
     stepper: &mut Stepper,
     world: &ContactEnvironment,

@@ -52,7 +52,7 @@ impl RockInContact<'_, '_> {
         // The rock is rotated instead of the mesh, so that contact detection stays as it is. A
         // captured rock is rotated too: the facet takes its share of the energy.
         if let Some((turn, _)) = facet {
-            self.state.turn_against(&self.world, turn, until_s);
+            self.state.rotate_onto_facet(&self.world, turn, until_s);
             self.recorder.now.turn(&turn.inverse());
         }
     }
@@ -234,7 +234,7 @@ impl RockInContact<'_, '_> {
 
     /// Undoes the rotation of a facet, if there is one.
     pub(super) fn leave_facet(&mut self) {
-        if let Some(turn) = self.state.turn_back(&self.world) {
+        if let Some(turn) = self.state.rotate_back(&self.world) {
             // a contact with the mean surface after the rebound is the next impact
             self.recorder.impacts.forget_ended();
             // rotated, not copied from the state: a step that is not recorded yet has changed its

@@ -67,8 +67,7 @@ impl StateRates {
 /// Onsets of impacts within a try of an implicit step: see `step_control::onset`.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Onset {
-    /// Whether new contacts that may rebound exert no force in this try, which is cut where they
-    /// begin.
+    /// Whether new contacts that may rebound exert no force: the try is cut where they begin.
     pub(super) deferred: bool,
     /// Whether a deferred contact is closed at the end of a stage of this try.
     pub(super) is_reached: bool,
@@ -113,8 +112,7 @@ pub struct ContactState {
     pub(crate) facets: RoughFacets,
     /// Energies that it has put into stems.
     pub(crate) stem_load: StemLoad,
-    /// Whether a touched stem may break, or several trees are touched: then it is stepped, not
-    /// resolved as a whole impact.
+    /// Whether a touched stem may break, or several trees are touched: then it is stepped.
     pub may_yield: bool,
     /// Whether the current blow has been announced (`rigid`).
     pub(crate) impact_announced: bool,
@@ -136,14 +134,12 @@ pub(super) const AHEAD: f64 = 0.17;
 const LEAST_MARGIN: f64 = 0.06;
 /// … which lasts about so many contact times `π/ω` (–).
 const IMPACT_TRAVEL: f64 = 1.3;
-/// Contact points are found up to this distance beyond the radius (–), so that a stage knows what
-/// it may reach.
+/// Contact points are found up to this distance beyond the radius (–), the range of a stage.
 const SLACK: f64 = 0.1;
 
 impl Default for ContactState {
     fn default() -> Self {
-        // allocated for the usual number of features, so that the first rock of a thread need not
-        // allocate
+        // allocated for the usual number of features before the first rock of a thread
         let near = Neighbours::default();
         Self { near, ..Self::unused() }
     }
@@ -187,8 +183,7 @@ impl ContactState {
         self.begin_within(world, (c, v, w), TOUCH);
     }
 
-    /// Begins a contact episode with all contact points within `simultaneous` (–, relative to R) as
-    /// touched.
+    /// Begins an episode with all contact points within `simultaneous` (–, relative to R) touched.
     pub(crate) fn begin_within(
         &mut self,
         world: &ContactEnvironment,
@@ -231,8 +226,7 @@ impl ContactState {
         }
     }
 
-    /// Collects the features around `c` and ahead along the velocity, as most of them are still to
-    /// come.
+    /// Collects the features around `c` and ahead along the velocity, where most are to come.
     pub(crate) fn collect(&mut self, world: &ContactEnvironment, c: &Vec3) {
         let r = world.body.radius;
         self.collect_within(world, &(c + self.v.cap_magnitude(AHEAD * r)), MARGIN * r);
@@ -245,9 +239,9 @@ impl ContactState {
         centre: &Vec3,
         margin: f64,
     ) {
-        let (r, begun) = (world.body.radius, self.stopwatches.now());
+        let (r, start) = (world.body.radius, self.stopwatches.now());
         self.near.collect(world.terrain, centre, r, margin, SLACK * r);
-        self.stopwatches.stop(TimedPiece::Geometry, begun);
+        self.stopwatches.stop(TimedPiece::Geometry, start);
     }
 
     /// Travel during an impact (m), bounded on both sides. A smaller region holds fewer features,
@@ -298,8 +292,7 @@ impl ContactState {
         }
     }
 
-    /// Offset of `c` from where contact points were found last (m); they are found anew if it
-    /// exceeds `way` (m).
+    /// Offset of `c` from where contact points were found; they are found anew beyond `way` (m).
     #[inline]
     pub(super) fn contact_points_ahead_near(
         &mut self,

@@ -5,9 +5,9 @@
 //! are those of the step's start, with their normals; open–close iteration finds whether they are
 //! open, sliding or sticking.
 //!
-//! It is solved for `E = D − D₀`, the effect of contacts on the free displacement `D₀ = V₀ Δt + g
-//! Δt²/2`: `(2M/Δt² + K) E = F − K D₀`. The equation is the same, and a motion without contacts is
-//! not rounded.
+//! It is solved for `E = D − D₀`, the effect of contacts on the free displacement
+//! `D₀ = V₀ Δt + g Δt²/2`: `(2M/Δt² + K) E = F − K D₀`. The equation is the same, and a motion
+//! without contacts is not rounded.
 //!
 //! Work equals the change of kinetic energy exactly, `(V₁² − V₀²) M/2 = (F + m g)·D`, and all
 //! forces but gravity are those of springs at the step's end or against the step's displacement:
@@ -56,15 +56,15 @@ pub const SINGLE_STEP_PHASE: f64 = 2.0;
 
 /// Normal restitution (–) that the step leaves of an undamped impact at `ω Δt` = `phase` (rad, > 0), without gravity.
 ///
-/// The impact begins at the contact, where the flight ends. The step shrinks the oscillation by `ρ
-/// = (1+q)^(−1/2)` while
-/// its phase turns by `θ = acos((2−q)/(2 √(1+q)))`, `q = phase²/2`; the rock is out after `N = ⌈π/θ⌉ − 1` steps, with
-/// `e = −ρᴺ (cos Nθ − √(q/(8−q)) sin Nθ)`, about `exp(−π phase/4)` while the step resolves the impact. From phase 2 on
-/// one step turns it round, with `e = (q−1)/(q+1)`. An impact that begins within a step, on another contact, keeps
+/// The impact begins at the contact, where the flight ends. The step shrinks the oscillation by
+/// `ρ = (1+q)^(−1/2)` while its phase turns by `θ = acos((2−q)/(2 √(1+q)))`, `q = phase²/2`; the
+/// rock is out after `N = ⌈π/θ⌉ − 1` steps, with `e = −ρᴺ (cos Nθ − √(q/(8−q)) sin Nθ)`, about
+/// `exp(−π phase/4)` while the step resolves the impact. From phase 2 on one step reverses it,
+/// with `e = (q−1)/(q+1)`. An impact that begins within a step, on another contact, keeps
 /// `(1+q)^(−π/(2θ))` on average below phase 4 and anything less than the above beyond.
 ///
-/// For Table 1 of the paper (1e9 N/m, 1e-5 s) and a block of 0.5 m the phase is 0.0084 and `e =
-/// 0.993`.
+/// For Table 1 of the paper (1e9 N/m, 1e-5 s) and a block of 0.5 m the phase is 0.0084 and
+/// `e = 0.993`.
 pub fn own_restitution(phase: f64) -> f64 {
     let q = 0.5 * phase * phase;
     if phase >= SINGLE_STEP_PHASE {

@@ -219,9 +219,9 @@ impl FrictionRolling<'_> {
         (q, [y[1], -y[0], self.d[2] * rolling_factor])
     }
 
-    /// The moment at its cap while shear sticks: `M_t = μ G_t`, `M_n = λ G_n` with `λ = μ/(1 +
-    /// μs)`. `|M|²` grows with `μ`, and Newton's method finds the `μ` of the cap. Returns `μ`, `λ`
-    /// and the moment.
+    /// The moment at its cap while shear sticks: `M_t = μ G_t`, `M_n = λ G_n` with
+    /// `λ = μ/(1 + μs)`. `|M|²` grows with `μ`, and Newton's method finds the `μ` of the cap.
+    /// Returns `μ`, `λ` and the moment.
     #[inline]
     fn rolling_alone(&self, guess: Option<f64>) -> (f64, f64, Local) {
         let y = cross_n(self.a);
@@ -261,9 +261,9 @@ impl FrictionRolling<'_> {
     }
 
     /// Both at their caps: only directions are unknown. With `M = κ/C (d + E R n × q)` the part of
-    /// `M` that is parallel to `n × q` does not turn `q`: `q ∥ a − κ n × d`, and `κ |n × d − E R q,
-    /// d_n|` is `C` times the moment's cap. It grows with `κ`, which Newton's method finds. Returns
-    /// `κ`, force and moment.
+    /// `M` that is parallel to `n × q` does not turn `q`: `q ∥ a − κ n × d`, and
+    /// `κ |n × d − E R q, d_n|` is `C` times the moment's cap. It grows with `κ`, which Newton's
+    /// method finds. Returns `κ`, force and moment.
     fn both_slip(&self, guess: Option<f64>) -> (f64, Along, Local) {
         let (cap_q, cap_m) = self.caps;
         let nd = cross_n([self.d[0], self.d[1]]);
@@ -308,7 +308,8 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// Whatever case is tried first, the result is the fixed point of both shortenings, to 1e-11 of the caps.
+        /// Whichever case is tried first, the result is the fixed point of both projections, to
+        /// 1e-11 of the caps.
         #[test]
         fn shear_and_rolling_solve_their_equations(
             a in prop::array::uniform2(-1.0f64..1.0), d in prop::array::uniform3(-1.0f64..1.0),

@@ -56,7 +56,7 @@ struct LiftOntoStiffer {
     /// History of its contact with the new springs.
     after: ContactHistory,
     /// Displacement of the lift (m).
-    way: Vec3,
+    displacement: Vec3,
     /// Potential energy gained, and the part of it released by the softer spring (J).
     lifted_j: f64,
     from_spring_j: f64,
@@ -94,7 +94,7 @@ impl ContactState {
     /// spring energy and the motion supply the potential energy. Returns the released energy, which
     /// was counted as loss when the spring was compressed.
     ///
-    /// Without it the depth from the soft ground would blunt the folds ahead: ramps of 2 to 4° on
+    /// Without the lift the depth from the soft ground would blunt the folds ahead: ramps of 2 to 4° on
     /// hard ground formed one patch with the face before, without an impact.
     pub(super) fn lift_onto_stiffer(&mut self, world: &ContactEnvironment) -> Option<Loss> {
         let [one] = &self.histories[..] else { return None };
@@ -103,14 +103,15 @@ impl ContactState {
         if has_own_springs || self.is_rebounding() || !is_on_face(world, self) {
             return None;
         }
-        let LiftOntoStiffer { after, way, lifted_j, from_spring_j } = self.lift(world)?;
+        let LiftOntoStiffer { after, displacement, lifted_j, from_spring_j } = self.lift(world)?;
         let (motion_j, from_motion_j) = (self.motion_j(&world.body), lifted_j - from_spring_j);
-        if from_motion_j > MAX_LOSS * motion_j || !self.is_alone_at(world, &(self.c + way)) {
+        if from_motion_j > MAX_LOSS * motion_j || !self.is_alone_at(world, &(self.c + displacement))
+        {
             return None;
         }
         self.leave_plane(world);
         let kept = (1.0 - from_motion_j / motion_j).sqrt();
-        (self.c, self.v, self.w) = (self.c + way, self.v * kept, self.w * kept);
+        (self.c, self.v, self.w) = (self.c + displacement, self.v * kept, self.w * kept);
         self.histories[0] = after;
         self.fresh = false;
         Some(Loss::on_slope([0.0, -from_spring_j, 0.0]).on(world, after.triangle))
@@ -123,15 +124,15 @@ impl ContactState {
         let (soft, stiff) = (world.springs_of(&before), world.springs_of(&after));
         let [normal, shear, roll] = stiff.stretch_ratios_to(&soft);
         (after.shear, after.roll) = (before.shear * shear, before.roll * roll);
-        let way = before.n * (pressed_m * (1.0 - normal));
-        let lifted_j = world.body.lifted_j(&way);
+        let displacement = before.n * (pressed_m * (1.0 - normal));
+        let lifted_j = world.body.lifted_j(&displacement);
         let released_j =
             soft.stored_j(pressed_m, 0.0, 0.0) - stiff.stored_j(pressed_m * normal, 0.0, 0.0);
         let rises = lifted_j > 0.0 && released_j > 0.0;
         // a spring that unloads anyway does not lift the rock
         rises.then(|| LiftOntoStiffer {
             after,
-            way,
+            displacement,
             lifted_j,
             from_spring_j: released_j.min(lifted_j),
         })

@@ -1,17 +1,17 @@
 //! The step for rocks that touch each other: islands, force sweeps, block systems.
 //!
-//! Rocks that may touch within a short while form an island; islands know nothing of each other. An island takes the
-//! step of a single rock for all of its rocks at once; only the contact forces are sought together.
-//!
+//! Rocks that may touch within a short time form an island; islands are independent of each other.
+//! The step of an island is that of a single rock, taken for all of its rocks at once; only the
+//! contact forces are solved together.
 //! ```text
-//! adaptive, reference   stage, sweeps, newton_step     forces by nonlinear Gauss–Seidel, helped by Newton jumps
+//! adaptive, reference   stage, sweeps, newton_step     forces by nonlinear Gauss–Seidel, accelerated by Newton steps
 //! dda                   dda_step, and dda beside       the paper's global system, Eq. (4), and open–close iteration
 //! rigid                 rigid/                         impulses at velocity level, impacts in the order of their times
 //! ```
 //!
-//! Lists of rocks and pairs stand in the order of their numbers, sums are taken in that order, and
-//! one thread works on an island: the bytes of a world do not depend on how many threads share its
-//! islands.
+//! Lists of rocks and pairs are in the order of their numbers, sums are taken in that order, and
+//! one thread works on an island: the results of a world, to the byte, do not depend on how many
+//! threads share its islands.
 
 mod accept;
 mod pair_contact;

@@ -169,7 +169,7 @@ impl StageContact {
     }
 
     /// Writes the contact into its history, with its stretches and whether it is closed.
-    pub(crate) fn remember(
+    pub(crate) fn write_history(
         &self,
         (shear, roll): (Vec3, Vec3),
         closed: bool,

@@ -30,7 +30,7 @@ const SWEEPS: u32 = 4;
 /// Rounds of sweeps after which a stage is given up; the step is then shortened.
 const ROUNDS: u32 = 12;
 /// Change of a force, relative to the largest, at which the sweeps have converged (–).
-const CONVERGED: f64 = 1e-9;
+const FORCES_CONVERGED: f64 = 1e-9;
 
 /// Solves all contacts of one stage from `free`, velocity and spin without contact forces (gravity included).
 ///
@@ -78,12 +78,13 @@ fn sweeps_and_newton_steps(
         }
         // after a singular system the sweeps go on
         let solution = if round == 0 {
-            let motion = solved(body, contacts, (&free, h), |one| one.linearised(body, &now, h));
+            let motion =
+                solve_linear(body, contacts, (&free, h), |one| one.linearised(body, &now, h));
             motion.map(|motion| (motion, STILL))
         } else {
             let free_change = (free.0 - now.0, free.1 - now.1);
             let change = |one: &StageContact| one.linearised_in_changes(body, &now, h);
-            solved(body, contacts, (&free_change, h), change).map(|change| (now, change))
+            solve_linear(body, contacts, (&free_change, h), change).map(|change| (now, change))
         };
         if let Some((motion, change)) = solution {
             for contact in contacts.iter_mut() {
@@ -110,11 +111,12 @@ fn sweep(
     let count = contacts.len();
     for contact in contacts.iter_mut() {
         let change2 = contact.relax(body, now, h);
-        *converged_count = if change2 <= (CONVERGED * scale.max(contact.normal_force)).powi(2) {
-            *converged_count + 1
-        } else {
-            1
-        };
+        *converged_count =
+            if change2 <= (FORCES_CONVERGED * scale.max(contact.normal_force)).powi(2) {
+                *converged_count + 1
+            } else {
+                1
+            };
         if *converged_count >= count {
             return true;
         }
@@ -125,7 +127,7 @@ fn sweep(
 /// Solves the linear system of inertia, with `free` as the motion without contacts, and of the
 /// linearised `forces`. Friction grows with the normal force, which makes the matrix unsymmetric:
 /// LU, not Cholesky.
-fn solved(
+fn solve_linear(
     body: &Body,
     contacts: &[StageContact],
     (free, h): (&Twist, f64),

@@ -18,7 +18,7 @@ const LONGEST: f64 = 2.0;
 /// A longer travel is checked only if it is this many times that of steps elsewhere (–) …
 const WORTH: f64 = 1.5;
 /// … and not again within this distance of where none was clear (–, relative to R).
-const RETRY: f64 = 0.3;
+const RETRY_DISTANCE: f64 = 0.3;
 /// Assumed deviation of the path from the straight line (–, relative to its length).
 const PATH_OFFSET: f64 = 0.05;
 
@@ -49,9 +49,9 @@ impl PlaneStep {
         if near.plane() == Some(self.face) {
             return true;
         }
-        let sunk_m = (-self.n.dot(shift)).max(0.0);
+        let penetration_m = (-self.n.dot(shift)).max(0.0);
         let change_m_s = PressedPath::tangent(&self.n, change).norm();
-        let path = PressedPath::of(&self.n, self.start, (shift, change_m_s), dt, sunk_m);
+        let path = PressedPath::of(&self.n, self.start, (shift, change_m_s), dt, penetration_m);
         let is_alike = |triangle| world.ground_of(triangle) == world.ground_of(self.face);
         near.meets_only_plane(self.face, &path) && near.is_foot_on_plane(self.face, &end, is_alike)
     }
@@ -80,34 +80,34 @@ impl ContactState {
         self.collect_within(world, &centre, ahead + (MARGIN - AHEAD) * r);
     }
 
-    /// Longest step on the plane of `face` (s), about `wished_s` at most where it exceeds that of
+    /// Longest step on the plane of `face` (s), about `proposed_s` at most where it exceeds that of
     /// the travel `least` (m), which is allowed everywhere.
     pub(super) fn longest_on_plane_s(
         &mut self,
         world: &ContactEnvironment,
         face: u32,
-        (wished_s, least): (f64, f64),
+        (proposed_s, least): (f64, f64),
     ) -> f64 {
         let (body, speed) = (&world.body, self.v.norm());
-        let wished_m = (speed + 0.5 * body.gravity.norm() * wished_s) * wished_s;
-        longest_step(body, speed, self.clear_way_m(world, face, (wished_m, least)))
+        let proposed_m = (speed + 0.5 * body.gravity.norm() * proposed_s) * proposed_s;
+        longest_step(body, speed, self.clear_way_m(world, face, (proposed_m, least)))
     }
 
-    /// Longest travel on the plane of `face` in one step (m), `wished` at most; `least` is allowed
+    /// Longest travel on the plane of `face` in one step (m), `proposed` at most; `least` is allowed
     /// everywhere.
     fn clear_way_m(
         &mut self,
         world: &ContactEnvironment,
         face: u32,
-        (wished_m, least): (f64, f64),
+        (proposed_m, least): (f64, f64),
     ) -> f64 {
         let (radius, speed) = (world.body.radius, self.v.norm());
         // the next facet limits the step
         let to_facet = self.facets.distance_to_facet_m(&self.c);
-        let most = wished_m.min(self.plane.reach * radius).min(to_facet);
-        let is_too_soon =
-            (self.c - self.plane.blocked_at).norm_squared() < (RETRY * radius).powi(2);
-        if most < WORTH * least || speed == 0.0 || is_too_soon || self.plane.ploughs {
+        let most = proposed_m.min(self.plane.reach * radius).min(to_facet);
+        let is_too_near =
+            (self.c - self.plane.blocked_at).norm_squared() < (RETRY_DISTANCE * radius).powi(2);
+        if most < WORTH * least || speed == 0.0 || is_too_near || self.plane.ploughs {
             return least;
         }
         let direction = self.v / speed;

@@ -72,8 +72,8 @@ impl ContactState {
             return None;
         }
         let (history, depth_m) = (self.histories[0], self.plane_penetration_m(world));
-        let is_sunk = depth_m > 2.0 * TOUCH * world.body.radius;
-        match (history.closed, is_sunk) {
+        let is_penetrating = depth_m > 2.0 * TOUCH * world.body.radius;
+        match (history.closed, is_penetrating) {
             _ if history.captured => None,
             // just begun: the closed form starts at penetration 0
             (false, false) => Some((history, InitialDeformation::NONE)),

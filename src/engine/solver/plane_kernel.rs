@@ -60,9 +60,9 @@ impl ContactState {
         }
         // the features ahead must be known before the face can be certified as the only one touched
         let history = self.histories[0];
-        let (wished_s, usual_m) = (h.min(h_max), TRAVEL * world.body.radius);
-        let limit = self.longest_on_plane_s(world, history.feature.id, (wished_s, usual_m));
-        self.collect_along(world, &(self.v * wished_s).cap_magnitude(usual_m));
+        let (proposed_s, usual_m) = (h.min(h_max), TRAVEL * world.body.radius);
+        let limit = self.longest_on_plane_s(world, history.feature.id, (proposed_s, usual_m));
+        self.collect_along(world, &(self.v * proposed_s).cap_magnitude(usual_m));
         let usual_s = longest_step(&world.body, self.v.norm(), usual_m);
         let law = &world.springs_of(&history);
         let normal = law.normal(history.captured);

@@ -137,7 +137,7 @@ pub struct PlaneState {
     /// Power that goes into friction, damping and rolling at each stage (W).
     pub(super) losses: [Local; STAGES],
     /// `rigid`: the step to try next (s).
-    pub(super) wished_s: f64,
+    pub(super) proposed_s: f64,
     /// Travel to check next (–, relative to R), and the position where the last one short enough
     /// was not clear (m).
     pub(super) reach: f64,
@@ -154,7 +154,7 @@ impl Default for PlaneState {
             state: [0.0; SIZE],
             rates: [[0.0; SIZE]; STAGES],
             losses: [[0.0; 3]; STAGES],
-            wished_s: f64::INFINITY,
+            proposed_s: f64::INFINITY,
             reach: FIRST_REACH,
             blocked_at: Vec3::repeat(f64::INFINITY),
             ploughs: false,
@@ -165,7 +165,7 @@ impl Default for PlaneState {
 impl PlaneState {
     /// Invalidates the state (before the next contact).
     pub(crate) fn forget(&mut self) {
-        (self.on, self.wished_s) = (false, f64::INFINITY);
+        (self.on, self.proposed_s) = (false, f64::INFINITY);
         (self.reach, self.blocked_at) = (FIRST_REACH, Vec3::repeat(f64::INFINITY));
     }
 

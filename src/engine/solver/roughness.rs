@@ -26,7 +26,7 @@ use std::f64::consts::TAU;
 /// Slower approaches do not count as facets (–, relative to `√(g R)`, the speed of a rock that
 /// falls by half its radius): they take less than a ten-thousandth of that energy, whatever the
 /// springs.
-const LEAST: f64 = 1e-2;
+const LEAST_APPROACH: f64 = 1e-2;
 /// Share of the roughness length within which a facet met late counts from where it was due (–).
 const PAST_DUE: f64 = 0.5;
 /// Most draws of a facet: at least one in three is accepted where the rock approaches the surface,
@@ -35,7 +35,7 @@ const DRAWS: u32 = 1000;
 
 /// Slowest approach to a facet (m/s).
 pub(super) fn least_m_s(world: &ContactEnvironment) -> f64 {
-    LEAST * world.body.fall_speed_m_s()
+    LEAST_APPROACH * world.body.fall_speed_m_s()
 }
 
 /// The facets of one rock.
@@ -198,8 +198,8 @@ impl RoughFacets {
 /// Draws a facet as the rotation from the surface to it, tilted by `most` (rad) at most and
 /// approached at `least` (m/s) or faster.
 ///
-/// Rejection sampling: tilt and direction uniform, accepted with the probability `max(0,
-/// −v·n')/fastest`. Three numbers of the rock's own stream a try.
+/// Rejection sampling: tilt and direction uniform, accepted with the probability
+/// `max(0, −v·n')/fastest`. Three numbers of the rock's own stream a try.
 fn draw(
     random: &mut RandomStream,
     at: &SurfaceApproach,

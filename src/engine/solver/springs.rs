@@ -23,8 +23,8 @@ impl ContactState {
     pub fn stored_j(&self, world: &ContactEnvironment) -> Loss {
         let mut stored = Loss::default();
         for touch in self.touches.iter() {
-            let memory = self.histories.iter().find(|history| history.feature == touch.feature);
-            let law = world.law(memory.map_or(touch.triangle, |history| history.springs_of));
+            let history = self.history_at(touch);
+            let law = world.law(history.map_or(touch.triangle, |history| history.springs_of));
             let pressed = pressed_j(world, touch, law);
             stored.add(&Loss::on_slope([0.0, pressed, 0.0]).on(world, touch.triangle), 1.0);
         }
@@ -32,6 +32,11 @@ impl ContactState {
             stored.add(&stretched_j(world, history), 1.0);
         }
         stored
+    }
+
+    /// The contact history on the feature of a contact point, if there is one.
+    fn history_at(&self, touch: &ContactPoint) -> Option<&ContactHistory> {
+        self.histories.iter().find(|history| history.feature == touch.feature)
     }
 
     /// Energy in the springs of one contact (J), whose point is among those found last.
@@ -54,7 +59,7 @@ impl ContactState {
         let c = self.c;
         self.find_contact_points(world, &c, world.body.radius);
         let of_touch = |touch: &ContactPoint| {
-            let history = self.histories.iter().find(|one| one.feature == touch.feature)?;
+            let history = self.history_at(touch)?;
             let energy_j = pressed_j(world, touch, &world.springs_of(history));
             (!history.captured).then_some((touch.normal, touch.triangle, energy_j))
         };
@@ -93,8 +98,8 @@ impl ContactState {
         // including new contacts: the dashpot takes most at first
         self.collect_contact_points(world, &c, world.body.radius * (1.0 + TOUCH));
         for (k, touch) in self.touches.iter().enumerate() {
-            let memory = self.histories.iter().find(|history| history.feature == touch.feature);
-            if let Some(history) = memory.filter(|_| terrain.is_tree(touch.triangle)) {
+            let history = self.history_at(touch);
+            if let Some(history) = history.filter(|_| terrain.is_tree(touch.triangle)) {
                 let law = world.law_of(history, &self.touches, k);
                 let (held_j, weight) = self.normal_energy_and_power(world, (history, touch), &law);
                 let stem = stems.of_triangle(touch.triangle);

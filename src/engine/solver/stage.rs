@@ -145,13 +145,15 @@ impl ContactState {
         for k in 0..self.contact_count {
             let history = self.history_of(world, k, taken, &base.v);
             taken |= 1 << history;
-            let (memory, rates) = (&self.histories[history], &self.rates);
-            let shear = tableau.base((i, h), (memory.shear, rates), |rate| rate.shear[history]);
-            let roll = tableau.base((i, h), (memory.roll, rates), |rate| rate.roll[history]);
+            let (contact_history, rates) = (&self.histories[history], &self.rates);
+            let shear =
+                tableau.base((i, h), (contact_history.shear, rates), |rate| rate.shear[history]);
+            let roll =
+                tableau.base((i, h), (contact_history.roll, rates), |rate| rate.roll[history]);
             let mut contact = self.contact_of(world, k, history, (shear, roll));
             contact.penetration =
                 world.body.radius - self.touches[k].distance_m - contact.n.dot(&(base.c - at));
-            if self.onset.deferred && memory.onset_m_s > 0.0 {
+            if self.onset.deferred && contact_history.onset_m_s > 0.0 {
                 contact.normal = NormalElement::NONE;
             }
             self.contacts[k] = contact;
@@ -167,19 +169,19 @@ impl ContactState {
         history: usize,
         (shear, roll): (Vec3, Vec3),
     ) -> StageContact {
-        let (touch, memory) = (&self.touches[k], &self.histories[history]);
-        let law = world.law_of(memory, &self.touches, k);
+        let (touch, contact_history) = (&self.touches[k], &self.histories[history]);
+        let law = world.law_of(contact_history, &self.touches, k);
         StageContact {
             history,
             feature: touch.feature,
             triangle: touch.triangle,
-            normal: law.normal(memory.captured),
+            normal: law.normal(contact_history.captured),
             n: touch.normal,
             penetration: 0.0,
             // turned with the normal, keeping its length
-            shear: transport(shear, &memory.n, &touch.normal),
+            shear: transport(shear, &contact_history.n, &touch.normal),
             roll,
-            normal_force: memory.normal_force,
+            normal_force: contact_history.normal_force,
             shear_force: Vec3::zeros(),
             rolling_moment: Vec3::zeros(),
             // an initial guess only: the solver finds the mode itself
@@ -200,9 +202,7 @@ impl ContactState {
         // slopes of the stage, from base to end
         (rate.c, rate.v, rate.w) = (end.v, (end.v - base.v) / hh, (end.w - base.w) / hh);
         rate.loss = Loss::default();
-        for k in 0..self.histories.len() {
-            (rate.shear[k], rate.roll[k]) = (Vec3::zeros(), Vec3::zeros());
-        }
+        rate.clear(self.histories.len());
         for contact in &self.contacts[..self.contact_count] {
             let (shear, roll) = contact.stretches(hh);
             let (shear_rate, roll_rate) =
@@ -228,8 +228,9 @@ impl ContactState {
         for k in 0..self.touches.len() {
             let history = self.history_of(world, k, taken, &v);
             taken |= 1 << history;
-            let memory = &self.histories[history];
-            let mut contact = self.contact_of(world, k, history, (memory.shear, memory.roll));
+            let contact_history = &self.histories[history];
+            let mut contact =
+                self.contact_of(world, k, history, (contact_history.shear, contact_history.roll));
             contact.penetration = (body.radius - self.touches[k].distance_m).max(0.0);
             let (shear_rate, roll_rate) = contact.set_forces_now(world, &v, &w);
             let back = self.histories[history].n;

@@ -14,7 +14,7 @@ const AT_LIMIT: f64 = 1e-6;
 
 /// Longest step while several trees are pressed (rad of the stiffest contact): their shares are
 /// evaluated at both ends of a step.
-pub(super) const APART_RAD: f64 = 0.1;
+pub(super) const SEVERAL_TREES_RAD: f64 = 0.1;
 
 /// A stem with more than this times the kinetic energy left (–) cannot break. The tenth on top
 /// covers the work of weight during the contact.

@@ -19,7 +19,7 @@ use super::contact_state::{ContactEnvironment, ContactState};
 use super::joint_blow::{Breakage, JointContact, JointContacts, JointEnd, joint_blow};
 use super::loss::Loss;
 use super::rigid::STRUCK_TOGETHER;
-use super::stem_load::{APART_RAD, PressedTrees};
+use super::stem_load::{PressedTrees, SEVERAL_TREES_RAD};
 use super::yielding::yielding_impact;
 use crate::contact::history::ContactHistory;
 use crate::contact::{ContactPoint, MAX_CONTACTS};
@@ -49,7 +49,7 @@ impl ContactState {
         let mut may_yield =
             self.stem_load.needs_energy_by_tree(stems, &self.stem_load.pressed, motion_j);
         let mut longest_s =
-            if may_yield { APART_RAD / self.stiffest_rad_s(world) } else { f64::INFINITY };
+            if may_yield { SEVERAL_TREES_RAD / self.stiffest_rad_s(world) } else { f64::INFINITY };
         for stem in self.stem_load.pressed.iter().filter_map(|tree| tree.stem) {
             // a stem that the rock's kinetic energy cannot break does not limit the step
             if self.stem_load.may_yield(stems, stem, motion_j) {
@@ -83,8 +83,8 @@ impl ContactState {
         let end = if has_springs { self.pressed_trees(world) } else { PressedTrees::default() };
         let broken = self.stem_load.distribute_until(stems, &end, standing_j);
         for &(stem, beyond_j) in &broken {
-            let push = self.push_of(stems, stem);
-            self.v += given_back(world.body.mass, &self.v, beyond_j, &push);
+            let direction = self.normal_force_direction(stems, stem);
+            self.v += given_back(world.body.mass, &self.v, beyond_j, &direction);
             loss.trees -= beyond_j;
             self.remove_stem(stems, stem);
         }
@@ -93,7 +93,7 @@ impl ContactState {
 
     /// Direction of the total normal force of all contacts with a stem, of their normals if forces
     /// are unknown.
-    fn push_of(&self, stems: &Stems, stem: u32) -> Vec3 {
+    fn normal_force_direction(&self, stems: &Stems, stem: u32) -> Vec3 {
         let of_stem = |history: &&ContactHistory| stems.of_triangle(history.triangle) == Some(stem);
         let histories = || self.histories.iter().filter(of_stem);
         let push: Vec3 = histories().map(|history| history.n * history.normal_force).sum();

@@ -99,7 +99,7 @@ pub const COARSEST_M_S: f64 = IMPACT.1 / IMPACT.0;
 pub const IMPACT_OF_REFERENCE: f64 = 1e-10;
 /// Upper bound of the local error allowed in sustained contact (–, relative to √(g R), the speed of
 /// a rock that tips over an edge).
-const PIVOT: f64 = 0.02;
+const SUSTAINED_TOLERANCE: f64 = 0.02;
 
 impl Control {
     /// The control of a rock in `world`.
@@ -119,13 +119,13 @@ impl Control {
 /// its weight).
 const WEDGED: f64 = 3e-3;
 /// Faces wedge a rock where the cosine between their normals is below this (–).
-const UNLIKE: f64 = 0.97;
+const WEDGING_COSINE: f64 = 0.97;
 
 /// Local error allowed to a rock in sustained contact (m/s): the smaller one of the tolerance of
 /// the run and a share of `√(g R)`.
 pub(crate) fn sustained_tolerance_m_s(settings: &Settings, body: &Body) -> f64 {
     let own = body.fall_speed_m_s();
-    let relative = if own > 0.0 { PIVOT * own } else { f64::INFINITY };
+    let relative = if own > 0.0 { SUSTAINED_TOLERANCE * own } else { f64::INFINITY };
     settings.tolerance_m_s.min(relative)
 }
 
@@ -285,8 +285,8 @@ pub(crate) fn energies_j(
     [state.motion_j(body) + state.stored, motion + lifted + springs_at_end_j(state, end, hh)]
 }
 
-/// Energy in the springs of the contacts that are closed at the end of the step (J): `Σ (p_N pen² +
-/// p_s ξ² + k_r θ²)/2`.
+/// Energy in the springs of the contacts that are closed at the end of the step (J):
+/// `Σ (p_N pen² + p_s ξ² + k_r θ²)/2`.
 fn springs_at_end_j(state: &ContactState, end: &StageMotion, hh: f64) -> f64 {
     let closed = state.stage_contacts().iter().filter(|contact| contact.is_closed(&end.v, hh));
     let stored = closed.map(|contact| {
@@ -349,7 +349,7 @@ fn rolls_wedged(contacts: &[StageContact]) -> bool {
         && contacts
             .iter()
             .enumerate()
-            .any(|(k, one)| contacts[..k].iter().any(|other| one.n.dot(&other.n) < UNLIKE))
+            .any(|(k, one)| contacts[..k].iter().any(|other| one.n.dot(&other.n) < WEDGING_COSINE))
 }
 
 /// Accepts the step: motion, contact histories, losses. A step changes the state only here; a
@@ -379,7 +379,7 @@ pub(crate) fn accept(
         let history = &mut state.histories[contact.history];
         next.shear[contact.history] =
             transport(next.shear[contact.history], &history.n, &contact.n);
-        contact.remember(contact.stretches(hh), contact.is_closed(&end.v, hh), history);
+        contact.write_history(contact.stretches(hh), contact.is_closed(&end.v, hh), history);
     }
     state.fresh = !state.merge_lost(world);
     let next = &mut state.rates[0];

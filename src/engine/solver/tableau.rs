@@ -58,8 +58,8 @@ impl Tableau {
         rates.iter().zip(self.a[i]).fold(x, |sum, (rate, a)| sum + part(rate) * (h * a))
     }
 
-    /// Difference of the two methods in a `part` of the rates, over the step length: `Σ (b_i −
-    /// b̂_i) f_i`.
+    /// Difference of the two methods in a `part` of the rates, over the step length:
+    /// `Σ (b_i − b̂_i) f_i`.
     #[inline]
     pub(super) fn embedded_difference<R>(&self, rates: &[R], part: impl Fn(&R) -> Vec3) -> Vec3 {
         let weighted = rates[..self.stages].iter().zip(self.error);
@@ -194,8 +194,9 @@ mod tests {
         (rates.iter().map(|rate| rate[1] + weight).collect(), up)
     }
 
-    /// Under a contact that slides, friction takes what the normal impulse lets it take, and that the motion knows: `m Δu + m g h`. In a
-    /// step of 30 rad the forces of the stages swing; the finer weights alone made half as much again of them.
+    /// Under a sliding contact friction takes energy in proportion to the normal impulse, which
+    /// follows from the motion: `m Δu + m g h`. In a step of 30 rad the forces of the stages
+    /// oscillate; the finer weights alone would give half as much again.
     #[test]
     fn work_under_a_stiff_contact_is_that_of_its_impulse() {
         let tableau = &TR_BDF2;

@@ -16,7 +16,7 @@
 //! millimetres is left. It is dropped as soon as neither the mesh nor another rock notices.
 
 use super::contact_state::{ContactEnvironment, ContactState};
-use super::rigid::way_out;
+use super::rigid::penetration_correction;
 use super::roughness::Tilt;
 use crate::contact::TOUCH;
 use crate::rock::Vec3;
@@ -64,7 +64,7 @@ impl ContactState {
 
     /// Rotates the motion onto a facet until `until_s` (s) at the latest; a rotation keeps the
     /// energy.
-    pub(crate) fn turn_against(
+    pub(crate) fn rotate_onto_facet(
         &mut self,
         world: &ContactEnvironment,
         turn: Rotation3<f64>,
@@ -77,7 +77,7 @@ impl ContactState {
 
     /// Ends the impact on a facet; returns the rotation of the motion that this takes, if there is
     /// an impact.
-    pub(crate) fn turn_back(&mut self, world: &ContactEnvironment) -> Option<Rotation3<f64>> {
+    pub(crate) fn rotate_back(&mut self, world: &ContactEnvironment) -> Option<Rotation3<f64>> {
         let Tilt { turn, .. } = self.facets.tilt.take()?;
         if self.facets.mesh.is_none() {
             self.redirect(world, turn * self.v, turn * self.w);
@@ -147,7 +147,7 @@ impl ContactState {
         self.update_neighbours(world, &c);
         self.points_found_at = None;
         self.near.touches(world.terrain, &c, radius, &mut self.touches);
-        let out = way_out(&self.touches, radius, &Vec3::zeros());
+        let out = penetration_correction(&self.touches, radius, &Vec3::zeros());
         if out.norm() > TOUCH * radius { c + out } else { c }
     }
 

@@ -19,7 +19,7 @@ impl BlockSimulation<'_> {
     pub(super) fn end_springs(&mut self) {
         if self.has_springs() {
             self.recorder.end_all_impacts();
-            self.turn_back();
+            self.rotate_back();
         }
     }
 
@@ -58,7 +58,7 @@ impl BlockSimulation<'_> {
         (self.footing.blows, self.footing.begun) = (blows, begun);
         // a captured block is rotated too: the facet takes its share of the energy
         if let Some((turn, _)) = facet {
-            self.footing.turn_against(self.block, &mut self.moving, (turn, until_s));
+            self.footing.rotate_onto_facet(self.block, &mut self.moving, (turn, until_s));
         }
     }
 
@@ -74,7 +74,7 @@ impl BlockSimulation<'_> {
         if !self.footing.facets.meets_new_facet(&self.world, &self.meeting(triangle, n, point)) {
             return None;
         }
-        self.turn_back();
+        self.rotate_back();
         let at = self.meeting(triangle, n, point);
         let turn = self.footing.facets.draw_facet(&self.world, &at)?;
         Some((turn, at.approach_m_s(&turn)))
@@ -164,7 +164,7 @@ impl BlockSimulation<'_> {
         }
         let now_s = self.recorder.now.time_s;
         if self.footing.facets.is_tilt_over(self.footing.springs.is_free(), now_s) {
-            self.turn_back();
+            self.rotate_back();
         }
         self.footing.springs.capture(now_s);
     }
@@ -177,8 +177,8 @@ impl BlockSimulation<'_> {
     }
 
     /// Undoes the rotation of a facet, if there is one.
-    fn turn_back(&mut self) {
-        if self.footing.turn_back(self.block, &mut self.moving) {
+    fn rotate_back(&mut self) {
+        if self.footing.rotate_back(self.block, &mut self.moving) {
             // a contact with the mean surface after the rebound is the next impact
             self.recorder.impacts.forget_ended();
             self.recorder.now.velocity_m_s = self.moving.v;

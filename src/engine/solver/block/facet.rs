@@ -87,7 +87,7 @@ impl BlockContactState {
     }
 
     /// Rotates the motion against a facet; it is rotated back at `until_s` (s) at the latest.
-    pub(crate) fn turn_against(
+    pub(crate) fn rotate_onto_facet(
         &mut self,
         block: &Block,
         state: &mut BlockState,
@@ -99,7 +99,7 @@ impl BlockContactState {
     }
 
     /// Rotates the motion back if it is rotated; returns whether it was.
-    pub(crate) fn turn_back(&mut self, block: &Block, state: &mut BlockState) -> bool {
+    pub(crate) fn rotate_back(&mut self, block: &Block, state: &mut BlockState) -> bool {
         let Some(Tilt { turn, .. }) = self.facets.tilt.take() else { return false };
         state.rotate(block, &turn);
         self.springs.invalidate_rates();

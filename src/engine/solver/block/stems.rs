@@ -19,7 +19,7 @@ use crate::solver::joint_blow::{
 };
 use crate::solver::law::capture_m_s;
 use crate::solver::loss::Loss;
-use crate::solver::stem_load::{APART_RAD, PressedTree, PressedTrees};
+use crate::solver::stem_load::{PressedTree, PressedTrees, SEVERAL_TREES_RAD};
 use crate::solver::stems::given_back;
 use crate::terrain::stems::Stems;
 use arrayvec::ArrayVec;
@@ -215,7 +215,7 @@ impl BlockContactState {
         if !self.stem_load.needs_energy_by_tree(stems, &pressed, state.motion_j(block)) {
             return f64::INFINITY;
         }
-        APART_RAD / self.springs.stiffest(world)
+        SEVERAL_TREES_RAD / self.springs.stiffest(world)
     }
 
     /// The trees that springs load, with the stored energies and the power of their dashpots and of

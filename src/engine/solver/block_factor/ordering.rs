@@ -66,8 +66,8 @@ fn places(rocks: usize, pairs: &[(usize, usize)]) -> Vec<usize> {
     let graph = SymbolicSparseColMatRef::new_checked(rocks, rocks, &starts, None, &rows);
     let (mut order, mut place) = (vec![0; rocks], vec![0; rocks]);
     let need = amd::order_maybe_unsorted_scratch::<usize>(rocks, rows.len());
-    let mut memory = MemBuffer::new(need);
-    let stack = MemStack::new(&mut memory);
+    let mut contact_history = MemBuffer::new(need);
+    let stack = MemStack::new(&mut contact_history);
     let control = amd::Control::default();
     match amd::order_maybe_unsorted(&mut order, &mut place, graph, control, stack) {
         Ok(_) => place,

@@ -66,9 +66,9 @@ impl<'a> DdaBody<'a> {
         let v = state.v;
         let history = state.history_of(world, k, state.scratch.used_histories, &v);
         let touch = ContactPoint { distance_m, ..state.touches[k] };
-        let memory = &state.histories[history];
-        let law = world.law_of(memory, &state.touches, k);
-        state.scratch.add(&law, &touch, (history, memory));
+        let contact_history = &state.histories[history];
+        let law = world.law_of(contact_history, &state.touches, k);
+        state.scratch.add(&law, &touch, (history, contact_history));
     }
 
     /// Adds contacts that closed during the step; whether there are any. The contact points are
@@ -112,7 +112,7 @@ impl<'a> DdaBody<'a> {
                 return Err(StepError::SankIn);
             }
             loss.add(&contact.loss(&relative).on(world, contact.triangle), 1.0);
-            contact.remember(&relative, &mut histories[contact.history]);
+            contact.write_history(&relative, &mut histories[contact.history]);
         }
         let (d, dt) = (*d, scratch.step.dt);
         let velocity_change = scratch.added * (2.0 / dt);

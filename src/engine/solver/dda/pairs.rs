@@ -27,13 +27,13 @@ pub(in crate::solver) struct DdaPairs {
 impl DdaPairs {
     /// Begins the step with the contacts that are closed or may close within it.
     pub(super) fn begin_step(&mut self, bodies: &[DdaBody], pair_histories: &[PairHistory]) {
-        let over = |(k, pair_history): (usize, &PairHistory)| {
+        let of_pair = |(k, pair_history): (usize, &PairHistory)| {
             let ends = [pair_history.a, pair_history.b].map(|end| &bodies[end as usize]);
             let steps = ends.map(|end| &end.state.scratch.step);
-            DdaPairContact::over((k, pair_history), steps, ends.map(|end| &end.state.c))
+            DdaPairContact::of_pair((k, pair_history), steps, ends.map(|end| &end.state.c))
         };
         self.pairs.clear();
-        self.pairs.extend(pair_histories.iter().enumerate().filter_map(over));
+        self.pairs.extend(pair_histories.iter().enumerate().filter_map(of_pair));
         self.places.clear();
         if !self.pairs.is_empty() {
             self.places.resize(bodies.len(), None);
@@ -98,8 +98,9 @@ impl DdaPairs {
     /// Updates the contact states by the displacements found; the largest change.
     pub(super) fn update_state(&mut self, bodies: &[DdaBody]) -> Change {
         let pairs = self.pairs.iter_mut();
-        let changes = pairs
-            .map(|pair| pair.contact.update_state(&pair.relative_displacement(d(pair, bodies))));
+        let changes = pairs.map(|pair| {
+            pair.contact.update_state(&pair.relative_displacement(displacements(pair, bodies)))
+        });
         changes.max().unwrap_or(Change::None)
     }
 
@@ -112,7 +113,8 @@ impl DdaPairs {
     pub(super) fn open_or_close_one_apart(&mut self, bodies: &[DdaBody]) -> bool {
         let mut pairs = self.pairs.iter_mut().rev();
         pairs.any(|pair| {
-            pair.contact.open_or_close_apart(&pair.relative_displacement(d(pair, bodies)))
+            pair.contact
+                .open_or_close_apart(&pair.relative_displacement(displacements(pair, bodies)))
         })
     }
 
@@ -132,12 +134,12 @@ impl DdaPairs {
         pair_histories.iter_mut().for_each(PairHistory::separate);
         let mut broken = 0;
         for pair in &self.pairs {
-            let d = d(pair, bodies);
+            let d = displacements(pair, bodies);
             if pair.relative_displacement(d).depth > DEEPEST * pair.contact.radius {
                 return Err(StepError::SankIn);
             }
             let (given, lost) = (EnergyGiven::of_ends(pair.given_j(d)), 0.5 * pair.taken_j(d));
-            broken += u64::from(pair.remember(d, &mut pair_histories[pair.contact.history]));
+            broken += u64::from(pair.write_history(d, &mut pair_histories[pair.contact.history]));
             for (end, given) in pair.ends.into_iter().zip(given) {
                 bodies[end].given.add(&EnergyGiven { lost, ..given }, 1.0);
             }
@@ -147,6 +149,6 @@ impl DdaPairs {
 }
 
 /// Displacements of a pair's ends.
-fn d<'b>(pair: &DdaPairContact, bodies: &'b [DdaBody]) -> [&'b Vec6; 2] {
+fn displacements<'b>(pair: &DdaPairContact, bodies: &'b [DdaBody]) -> [&'b Vec6; 2] {
     pair.ends.map(|end| &bodies[end].state.scratch.d)
 }

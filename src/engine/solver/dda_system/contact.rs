@@ -346,7 +346,11 @@ impl DdaContact {
     }
 
     /// Writes the step's end into its history.
-    pub(crate) fn remember(&self, relative: &RelativeDisplacement, history: &mut ContactHistory) {
+    pub(crate) fn write_history(
+        &self,
+        relative: &RelativeDisplacement,
+        history: &mut ContactHistory,
+    ) {
         (history.feature, history.triangle, history.n) = (self.feature, self.triangle, -self.v);
         (history.closed, history.slides, history.shear) = self.end_state(relative);
         history.normal_force = self.normal_force;

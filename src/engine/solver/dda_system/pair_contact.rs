@@ -34,7 +34,7 @@ pub(crate) struct DdaPairContact {
 
 impl DdaPairContact {
     /// The contact of pair `k` whose rocks are `at` (m), if they are bonded, or closed, or may close within the step.
-    pub(crate) fn over(
+    pub(crate) fn of_pair(
         (k, pair_history): (usize, &PairHistory),
         steps: [&StepConstants; 2],
         at: [&Vec3; 2],
@@ -124,7 +124,7 @@ impl DdaPairContact {
     }
 
     /// Writes the step's end into its history; whether a bond broke.
-    pub(crate) fn remember(&self, d: [&Vec6; 2], pair_history: &mut PairHistory) -> bool {
+    pub(crate) fn write_history(&self, d: [&Vec6; 2], pair_history: &mut PairHistory) -> bool {
         let (contact, relative) = (&self.contact, self.relative_displacement(d));
         let (closed, slides, stretch) = contact.end_state(&relative);
         pair_history.n = -contact.v;

@@ -75,9 +75,10 @@ impl DdaSlider {
     /// first, which makes the iteration converge: the slip that is left by friction itself says
     /// little about its direction.
     ///
-    /// `displacement + last_force · compliance` is what the contact point would move without any force of this
-    /// element; from there the force that holds it is `(k ξ + k_eff Δ₀)/(1 + k_eff · compliance)`, `k_eff = k + c/Δt`: the element's own
-    /// force shortens the way.
+    /// `displacement + last_force · compliance` is the displacement of the contact point without
+    /// any force of this element; from there the sticking force is
+    /// `(k ξ + k_eff Δ₀)/(1 + k_eff · compliance)`, `k_eff = k + c/Δt`: the element's own force
+    /// reduces the displacement.
     pub(crate) fn update_state(
         &mut self,
         displacement: &Vec3,

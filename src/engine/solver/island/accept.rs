@@ -1,9 +1,11 @@
-//! The end of an accepted step: memories, bonds, angular momentum.
+//! The end of an accepted step: contact histories, bonds, angular momentum.
 //!
-//! Until here a step may be tried again with another length; only this part changes what the island remembers.
+//! Until here a step may be tried again with another length; only this part changes the histories
+//! of the island.
 //!
-//! Bonds: checked at the end of accepted steps only, by the forces there. A bond that breaks leaves
-//! friction, with its stretch cut back to Coulomb's cone, so that nothing it held becomes motion.
+//! Bonds are checked only at the end of accepted steps, by the forces there. A bond that breaks
+//! leaves friction, with its stretch reduced to Coulomb's cone, so that nothing it stored becomes
+//! motion.
 
 use super::assembly::Island;
 use super::body::note_flights;
@@ -18,7 +20,7 @@ use crate::solver::tableau::Tableau;
 use nalgebra::Matrix3;
 
 impl Island<'_> {
-    /// Takes over the step's end.
+    /// Accepts the end of the step.
     pub(super) fn accept(&mut self, tableau: &Tableau, dt: f64) -> IslandAdvance {
         let mut done = IslandAdvance { dt, ..IslandAdvance::default() };
         let before = self.free_angular_momentum();
@@ -27,16 +29,16 @@ impl Island<'_> {
             let omegas_dt = member.omega(self.terrain) * dt;
             let end = member.end;
             let (world, state) = member.with_environment(self.terrain);
-            // what has begun as the step ends has all its time before it
+            // an impact that begins as the step ends has all of its time ahead
             state.impact.elapse(omegas_dt);
             step_control::accept(&world, tableau, state, (&end, dt), &mut loss);
-            // a merged contact acts otherwise than its rates say
+            // a merged contact acts differently than its rates say
             self.fresh &= state.fresh;
             done.losses.push(loss);
             let mut given = EnergyGiven::default();
             for k in 0..tableau.stages {
-                // work through contacts: the power of the stages, summed with the weights of the finer method of the
-                // pair
+                // work through contacts: the power of the stages, summed with the weights of the
+                // finer method
                 given.add(&member.given[k], dt * tableau.work_weight(k));
             }
             done.given.push(given);
@@ -49,7 +51,8 @@ impl Island<'_> {
         done
     }
 
-    /// Takes over memory and forces of the pairs, and breaks overloaded bonds; how many broke.
+    /// Accepts histories and forces of the pairs, and breaks overloaded bonds; the number of broken
+    /// bonds.
     ///
     /// Pairs and histories are both in ascending order: one pass over both, O(n).
     fn accept_pairs(&mut self, tableau: &Tableau, dt: f64) -> u64 {
@@ -67,8 +70,8 @@ impl Island<'_> {
             let from = if pair_history.is_held() { pair_history.n } else { pair.n };
             let rate = transport(self.pair_rates[k][last], &from, &pair.n);
             let stretch = pair.stretch(hh);
-            // The spring turns with the two rocks about their line.
-            // half the common spin about the normal, over the step: ξ' += ((ω_a + ω_b)·n/2) n × ξ
+            // the spring turns with the two rocks about their line of centres, by half the common
+            // spin about the normal, over the step: ξ' += ((ω_a + ω_b)·n/2) n × ξ
             let turn = 0.5 * dt * (a.state.w + b.state.w).dot(&pair.n);
             let turned = |x: Vec3| x * math::cos(turn) + pair.n.cross(&x) * math::sin(turn);
             (pair_history.normal_force, pair_history.shear_force, pair_history.n) =
@@ -76,14 +79,14 @@ impl Island<'_> {
             pair_history.captured = pair.captured;
             pair_history.closed =
                 pair.normal_force > 0.0 || distance < a.body.radius + b.body.radius;
-            let gone_rad = pair_history.law.omega_rad_s() * dt;
+            let elapsed_rad = pair_history.law.omega_rad_s() * dt;
             pair_history.impact = match (pair_history.closed, pair.deferred) {
-                // it has begun as the step ends
+                // it begins as the step ends
                 (true, true) => pair.impact,
-                (true, false) => pair.impact.after(gone_rad),
+                (true, false) => pair.impact.after(elapsed_rad),
                 (false, _) => PairImpact::default(),
             };
-            // a contact that opens forgets its stretch, a bond does not
+            // a contact that opens loses its stretch, a bond does not
             pair_history.shear = if pair_history.closed || pair_history.bond.is_some() {
                 turned(stretch)
             } else {
@@ -91,13 +94,13 @@ impl Island<'_> {
             };
             self.pair_rates[k][0] =
                 if pair_history.is_held() { turned(rate) } else { Vec3::zeros() };
-            // at its cap but for rounding: the contact slips
+            // at its cap to rounding: the contact slips
             pair_history.slides = pair_history.bond.is_none()
                 && pair_history
                     .law
                     .shear
                     .slides(pair_history.shear_force.norm(), pair_history.normal_force);
-            // forces jump as a bond lets go: the next step must begin with rates of its own
+            // forces jump when a bond breaks: the next step must begin with new rates
             if pair_history.overload() > 0.0 {
                 pair_history.break_bond();
                 self.pair_forces[k] = (pair_history.normal_force, pair_history.shear_force);
@@ -111,12 +114,12 @@ impl Island<'_> {
 }
 
 impl Island<'_> {
-    /// Angular momentum about the common centre of mass (kg m²/s) of an island that touches nothing but itself.
-    /// `None` where the mesh, or nothing at all, acts: there is nothing to keep then.
+    /// Angular momentum about the common centre of mass (kg m²/s) of an island without other
+    /// contacts than between its rocks. `None` where it touches the mesh, or nothing at all: then
+    /// there is nothing to conserve.
     fn free_angular_momentum(&self) -> Option<Vec3> {
-        let alone =
-            self.members.iter().all(|m| m.state.histories.iter().all(|history| !history.closed))
-                && self.pair_histories.iter().any(PairHistory::is_held);
+        let alone = self.members.iter().all(|member| member.state.is_free())
+            && self.pair_histories.iter().any(PairHistory::is_held);
         alone.then(|| self.angular_momentum())
     }
 
@@ -140,15 +143,14 @@ impl Island<'_> {
         })
     }
 
-    /// Gives back the angular momentum that the step's own error took from a free island, by a turn of the whole:
-    /// far less than the tolerance, but a free collision keeps it to rounding.
+    /// Restores the angular momentum that the step's error took from a free island, by a rigid
+    /// rotation: far less than the tolerance, but so a free collision conserves it to rounding.
     ///
-    /// `Δω = I⁻¹ (L₀ − L)` about the centre of mass, as a rigid turn of all rocks: it changes
-    /// neither the velocity of the centre of mass nor
-    /// the speed at which any two rocks near each other.
+    /// `Δω = I⁻¹ (L₀ − L)` about the centre of mass, as a rigid rotation of all rocks: it changes
+    /// neither the velocity of the centre of mass nor the relative normal speed of any two rocks.
     fn restore_angular_momentum(&mut self, before: Option<Vec3>) {
         let Some(before) = before else { return };
-        if self.members.iter().any(|m| m.state.histories.iter().any(|history| history.closed)) {
+        if !self.members.iter().all(|member| member.state.is_free()) {
             return;
         }
         let lost = before - self.angular_momentum();
@@ -157,11 +159,12 @@ impl Island<'_> {
         let mut inertia = Matrix3::zeros();
         for member in &self.members {
             let d = member.state.c - c;
-            // without friction nothing may change spins: the turn then moves centres only
+            // without friction spins are constant: the rotation then moves centres only
             let (m, own) = (member.body.mass, if spins { member.body.inertia } else { 0.0 });
             inertia += Matrix3::identity() * (own + m * d.norm_squared()) - d * d.transpose() * m;
         }
-        // two rocks without spins have no inertia about their line: the pseudo-inverse turns about the others only
+        // two rocks without spins have no inertia about their line of centres: the pseudo-inverse
+        // rotates about the other axes only
         let Ok(turn) = inertia.pseudo_inverse(1e-9 * inertia.norm()).map(|inverse| inverse * lost)
         else {
             return;

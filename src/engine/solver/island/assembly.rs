@@ -1,8 +1,9 @@
 //! An island of rocks that may touch each other, and its adaptive step.
 //!
-//! All rocks of an island that are in contact take one step of a stiffly accurate Runge–Kutta method together. A
-//! stage is a nonlinear system in the six velocities of each rock; its contacts are solved by sweeps and Newton
-//! jumps. The step is accepted if the embedded error is within the tolerance and the island's energy has not risen.
+//! All rocks of an island that are in contact take one step of a stiffly accurate Runge–Kutta
+//! method together. A stage is a nonlinear system in the six velocities of each rock; its contacts
+//! are solved by sweeps and Newton steps. The step is accepted if the embedded error is within the
+//! tolerance and the island's energy has not risen.
 
 use super::active_set::ActiveSet;
 use super::body::{BodySlot, IslandBody};
@@ -20,10 +21,10 @@ use crate::solver::step_control::{self, Control, ONSET, StepError};
 use crate::solver::tableau::{STAGES, TR_BDF2};
 use crate::terrain::Terrain;
 
-/// Overload at which a bond does not simply break: the step is cut to find the moment.
+/// Overload beyond which a bond does not simply break: the step is shortened to resolve the moment.
 const OVERLOAD: f64 = 0.05;
 
-/// An island: rocks, and a history for every two of them that may touch.
+/// An island: rocks, and a history for each pair that may touch.
 #[derive(Debug)]
 pub struct Island<'a> {
     /// The mesh.
@@ -36,17 +37,17 @@ pub struct Island<'a> {
     pub h: f64,
     /// Sweeps over the contacts so far.
     pub sweeps: u64,
-    /// Systems solved by factorisation so far.
+    /// Newton steps so far: systems solved by factorisation.
     pub newton_steps: u64,
     /// Whether the first rates belong to the present state.
     pub fresh: bool,
     pub(super) pairs: Vec<PairContact>,
-    /// Velocity and spin of every rock at the stage's end, with the forces found so far. They stand apart from the rocks because
-    /// sweeps ask for little else.
+    /// Velocity and spin of every rock at the stage's end, with the present forces. They are kept
+    /// apart from the rocks because sweeps need little else.
     pub(super) motions: Vec<Twist>,
     pub(super) active: ActiveSet,
     pub(super) tolerance: f64,
-    /// Impacts of two rocks that a step runs into; those on the mesh are with the rocks.
+    /// Onsets of impacts of two rocks in the present try; those on the mesh are with the rocks.
     pub(super) onset: Onset,
     /// Rates of the shear springs at each stage.
     pub(super) pair_rates: Vec<[Vec3; STAGES]>,
@@ -109,12 +110,12 @@ impl<'a> Island<'a> {
             });
         }
         if self.release_struck() {
-            // other dashpots from now on, and the blow must be resolved
+            // the dashpots have changed, and the impact must be resolved
             self.fresh = false;
             self.h = self.h.min(ONSET / self.omega());
         }
         let control = &self.control(settings);
-        // a rock that was turned against a facet, or whose stem has given way, has other rates
+        // a rock rotated onto a facet, or whose stem has broken, has other rates
         if !self.fresh || self.members.iter().any(|member| !member.state.fresh) {
             self.rates_now();
             self.accept_new_contacts();
@@ -126,7 +127,7 @@ impl<'a> Island<'a> {
         self.members
             .iter_mut()
             .for_each(|member| member.histories_at_start = member.state.histories.len());
-        // as long as error, energy and bonds allow it, and to where impacts begin and end
+        // as long as error, energy and bonds allow, and cut at the onsets and ends of impacts
         let (dt, rejected) = self.find_accepted_step(control, omega, h_max)?;
         let done = self.accept(control.tableau, dt);
         self.begin_deferred_impacts();
@@ -152,14 +153,17 @@ impl<'a> Island<'a> {
         done
     }
 
-    /// Whether motion, height and springs of the whole island together hold more at the step's end than at its start.
+    /// Whether kinetic energy, height and springs of the whole island together have more energy at
+    /// the step's end than at its start.
     pub(super) fn gains_energy(&self, hh: f64) -> bool {
-        // `unknown`: energy that rounding of the places alone may make, weight and normal forces times a length
-        let (mut before, mut after, mut unknown) = (0.0, 0.0, 0.0);
+        // `rounding_j`: energy within the rounding of positions, weight and normal forces times a
+        // length
+        let (mut before, mut after, mut rounding_j) = (0.0, 0.0, 0.0);
         for IslandBody { state, body, end, .. } in self.members.iter().map(|member| &**member) {
             let [own_before, own_after] = step_control::energies_j(body, state, (end, hh));
             (before, after) = (before + own_before, after + own_after);
-            unknown += step_control::PLACE_ROUNDING * body.radius * body.mass * body.gravity.norm();
+            rounding_j +=
+                step_control::PLACE_ROUNDING * body.radius * body.mass * body.gravity.norm();
         }
         for pair_history in self.pair_histories.iter().filter(|pair_history| pair_history.is_held())
         {
@@ -169,7 +173,7 @@ impl<'a> Island<'a> {
         }
         for pair in &self.pairs {
             let ends = pair.ends.map(|k| (self.members[k].end.v, self.members[k].end.w));
-            // at the end of the stage: the base's penetration less what the normal speed takes of it
+            // at the end of the stage: the base's penetration less the normal displacement
             let mut penetration = pair.penetration_at(pair.speed([&ends[0], &ends[1]]), hh);
             if pair.bond.is_none() {
                 penetration = penetration.max(0.0);
@@ -179,12 +183,12 @@ impl<'a> Island<'a> {
                 after += pair.law.stored_j(penetration, shear.norm_squared(), 0.0);
             }
             let least = pair.levers[0].min(pair.levers[1]);
-            unknown += step_control::PLACE_ROUNDING * least * pair.normal_force.abs();
+            rounding_j += step_control::PLACE_ROUNDING * least * pair.normal_force.abs();
         }
-        after > before + step_control::ROUNDING * before + unknown
+        after > before + step_control::ROUNDING * before + rounding_j
     }
 
-    /// Largest `√(p_N/m)` among the contacts there are or may be (rad/s).
+    /// Largest `√(p_N/m)` among present contacts, or among possible ones without any (rad/s).
     pub(super) fn omega(&self) -> f64 {
         let pair_histories = self
             .pair_histories
@@ -197,8 +201,8 @@ impl<'a> Island<'a> {
         if omega > 0.0 { omega } else { all.fold(1.0, f64::max) }
     }
 
-    /// Longest step in which no rock goes further than `travel` (–, relative to R) and nothing jumps over a feature or another
-    /// rock (s).
+    /// Longest step in which the travel of no rock exceeds `travel` (–, relative to R) and no
+    /// feature or other rock is missed (s).
     pub(super) fn travel_limit(&mut self, travel: f64) -> f64 {
         let mut limit = f64::INFINITY;
         for member in self.members.iter_mut().filter(|member| !member.flying) {
@@ -210,7 +214,7 @@ impl<'a> Island<'a> {
             if a.flying && b.flying && !pair_history.is_held() {
                 continue;
             }
-            // two rocks may close their gap and press in by a part of the smaller radius, no more
+            // two rocks may close their gap and then penetrate by a part of the smaller radius
             let gap = (a.state.c - b.state.c).norm() - a.body.radius - b.body.radius;
             let room = travel * a.body.radius.min(b.body.radius) + gap.max(0.0);
             let speed = (a.state.v - b.state.v).norm();
@@ -221,8 +225,9 @@ impl<'a> Island<'a> {
         limit
     }
 
-    /// One step to its last stage; its error relative to the tolerance, `None` if a stage does not settle.
-    /// All implicit stages in turn; the last one is the step's end, because the tableau is stiffly accurate.
+    /// One try of a step; its error relative to the tolerance, `None` if a stage does not converge.
+    /// The implicit stages follow each other; the last one is the step's end, because the tableau
+    /// is stiffly accurate.
     pub(super) fn attempt(&mut self, control: &Control, dt: f64) -> Option<f64> {
         let tableau = control.tableau;
         for i in 1..tableau.stages {
@@ -235,8 +240,8 @@ impl<'a> Island<'a> {
         Some(dt * self.error(control))
     }
 
-    /// Whether a bond is loaded far beyond its strength in the present stage, which a shorter step would have found out: its largest pull may
-    /// lie within a step.
+    /// Whether a bond is loaded far beyond its strength in the present stage. A shorter step would
+    /// have found that earlier: the largest tension may lie within a step.
     fn overloads_bond(&self) -> bool {
         self.h * self.omega() > 1e-6
             && self.pairs.iter().any(|pair| {
@@ -244,13 +249,13 @@ impl<'a> Island<'a> {
                     bond.overload(&pair.law, pair.normal_force, pair.shear_force.norm())
                 };
                 let pair_history = &self.pair_histories[pair.pair_history];
-                // One that is overloaded from the start breaks at once: no shorter step changes that.
+                // a bond overloaded from the start breaks at once: no shorter step changes that
                 pair.bond.as_ref().is_some_and(|bond| used(bond) > OVERLOAD)
                     && pair_history.overload() <= 0.0
             })
     }
 
-    /// Largest error of the embedded method over what is allowed to the rock (1/s).
+    /// Largest error of the embedded method relative to what is allowed for the rock (1/s).
     fn error(&self, control: &Control) -> f64 {
         let tableau = control.tableau;
         let allowed_m_s: Vec<f64> =

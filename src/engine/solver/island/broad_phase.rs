@@ -1,13 +1,14 @@
-//! Which rocks are near each other: grids of several sizes, one for each octave of radii.
+//! Broad phase: pairs of rocks near each other, by grids of several sizes, one for each octave of
+//! radii.
 //!
-//! Why not a tree: rocks move in every window, and a sorted list of cells is made anew in O(n log
-//! n) with no memory of its own; why several sizes: in one grid a single boulder makes every cell
-//! as large as itself, and a thousand pebbles fall into one of them.
+//! No tree: rocks move in every window, and a sorted list of cells is rebuilt in O(n log n) without
+//! persistent memory. Several sizes: in a single grid one boulder would make every cell as large as
+//! itself, with a thousand pebbles in one of them.
 
 use crate::math;
 use crate::rock::Vec3;
 
-/// A ball that holds a rock wherever it may go for a while.
+/// A ball that contains a rock at all positions possible for a while.
 #[derive(Debug, Clone, Copy)]
 pub struct Ball {
     /// Centre (m).
@@ -19,15 +20,16 @@ pub struct Ball {
 /// One ball in its cell: the octave of the cell, the cell, the ball's number.
 type CellEntry = (i32, [i64; 3], u32);
 
-/// Of the columns of cells around one, those that come after it; of its own, the cells from it upwards. Two balls see each
-/// other once that way.
+/// Offsets of the neighbouring columns of cells that follow in the order of cells. Of its own
+/// column a cell uses the cells from itself upwards. So each pair of balls is visited once.
 const NEXT_COLUMNS: [[i64; 2]; 5] = [[0, 0], [0, 1], [1, -1], [1, 0], [1, 1]];
 
 /// All pairs `(a, b)`, `a < b`, of balls that overlap or touch, in ascending order.
 ///
-/// Each ball lies in one cell of the grid whose cells are between one and two of its diameters wide, and is compared
-/// with its neighbours there and in coarser grids: the work is near-linear in the number of balls, whatever their sizes.
-/// Pairs come out sorted, so what is built on them does not depend on how the grids lie.
+/// Each ball lies in one cell of the grid whose cells are between one and two of its diameters
+/// wide, and is compared with its neighbours there and in coarser grids: the work is nearly linear
+/// in the number of balls, whatever their sizes. The result is sorted, so it does not depend on the
+/// position of the grids.
 pub fn overlapping(balls: &[Ball]) -> Vec<(u32, u32)> {
     let grids = Grids::of(balls);
     let mut entries: Vec<CellEntry> =
@@ -53,7 +55,8 @@ pub fn overlapping(balls: &[Ball]) -> Vec<(u32, u32)> {
     sorted_pairs(&pairs, balls.len())
 }
 
-/// Pairs in ascending order: laid down by their first balls, as these are counted, then the few of each by their second.
+/// Pairs in ascending order: a counting sort by the first ball, then a sort of the few pairs of
+/// each by the second.
 fn sorted_pairs(pairs: &[(u32, u32)], balls: usize) -> Vec<(u32, u32)> {
     let mut ends = vec![0; balls + 1];
     for (a, _) in pairs {
@@ -72,16 +75,17 @@ fn sorted_pairs(pairs: &[(u32, u32)], balls: usize) -> Vec<(u32, u32)> {
     sorted
 }
 
-/// Octave of the cells a ball lies in: they are at least as wide as the ball.
-/// `⌈log₂ 2r⌉`: two balls of one octave that overlap lie in neighbouring cells.
+/// Octave of the cells in which a ball lies, at least as wide as the ball: `⌈log₂ 2r⌉`. Two balls
+/// of one octave that overlap lie in neighbouring cells.
 fn level(ball: &Ball) -> i32 {
     math::log2(2.0 * ball.radius).ceil() as i32
 }
 
-/// A grid in which fewer than this share of the balls of the next coarser one lie is worth more than it costs (–).
-const RARE: usize = 8;
+/// A finer grid with more than this times the balls of the next coarser one is worth its cost (–).
+const FINER_GRID_FACTOR: usize = 8;
 
-/// Which octaves have a grid of their own: one that is not much finer than one with many balls has none.
+/// Octaves that have a grid of their own: one that is slightly finer than a grid with many balls
+/// has none.
 struct Grids(Vec<(i32, i32)>);
 
 impl Grids {
@@ -89,11 +93,12 @@ impl Grids {
         let mut levels: Vec<i32> = balls.iter().map(level).collect();
         levels.sort_unstable();
         let mut grids: Vec<(i32, i32)> = Vec::new();
-        // from the coarsest down: the level, the grid it shares, and how many balls that has
+        // from the coarsest down: the level, the grid it shares, and the number of balls in it
         let mut shared: Option<(i32, usize)> = None;
         for chunk in levels.chunk_by(|a, b| a == b).rev() {
             let (own, count) = (chunk[0], chunk.len());
-            let joins = shared.filter(|(grid, balls)| grid - own == 1 && RARE * balls >= count);
+            let joins = shared
+                .filter(|(grid, balls)| grid - own == 1 && FINER_GRID_FACTOR * balls >= count);
             let (grid, balls) = joins.unwrap_or((own, 0));
             shared = Some((grid, balls + count));
             grids.push((own, grid));
@@ -107,17 +112,19 @@ impl Grids {
     }
 }
 
-/// Cell numbers are integers, so a point near an edge falls on one side of it for all that ask.
+/// The cell of a ball. Cell numbers are integers, so a point near an edge is on the same side of it
+/// for every query.
 fn entry(ball: &Ball, level: i32, k: u32) -> CellEntry {
     let cell = 2.0f64.powi(level);
     let [x, y, z]: [f64; 3] = (ball.centre / cell).into();
     (level, [x.floor() as i64, y.floor() as i64, z.floor() as i64], k)
 }
 
-/// Calls `visit` with every two balls in cells of the same size next to each other. Balls are gone through in the order of
-/// their cells, and so are the first of each column beside them: nothing need be searched.
+/// Calls `visit` for every two balls in neighbouring cells of the same size. Balls are visited in
+/// the order of their cells, and so are the first ones of each neighbouring column: no search is
+/// needed.
 fn visit_own(entries: &[CellEntry], visit: &mut impl FnMut(u32, u32)) {
-    // one cursor for each of the columns ahead: together they go through the list once
+    // one cursor per neighbouring column: together they pass the list once
     let mut first = [0; NEXT_COLUMNS.len()];
     for (place, &(level, [x, y, z], k)) in entries.iter().enumerate() {
         for (first, [dx, dy]) in first.iter_mut().zip(NEXT_COLUMNS) {
@@ -133,7 +140,8 @@ fn visit_own(entries: &[CellEntry], visit: &mut impl FnMut(u32, u32)) {
     }
 }
 
-/// Calls `visit` with all balls in the 27 cells around `home`; the three above each other are one stretch of the list.
+/// Calls `visit` for all balls in the 27 cells around `home`; three cells above each other are
+/// contiguous in the list.
 fn visit_coarser(
     entries: &[CellEntry],
     (level, home): (i32, [i64; 3]),
@@ -155,7 +163,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// Nothing but the comparison of all with all defines the answer; radii span a factor of 1000.
+        /// The reference is the comparison of all with all; radii span a factor of 1000.
         #[test]
         fn the_grids_find_every_pair(
             list in proptest::collection::vec(

@@ -17,7 +17,7 @@ impl Island<'_> {
         settings: &Settings,
         h_max: f64,
     ) -> Result<IslandAdvance, StepError> {
-        // the fixed step, cut only at events and where a rock would pass what has been looked for
+        // the fixed step, limited only by events and by the travel for which features are known
         let dt = settings.step_s.min(h_max).min(self.travel_limit(TRAVEL));
         self.release_struck();
         let Self { terrain, members, pair_histories, dda_pairs: pairs, .. } = self;

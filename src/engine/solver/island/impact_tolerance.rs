@@ -1,14 +1,18 @@
-//! How exactly an island steps: relative to the speed of the impacts that go on, as for a rock alone.
+//! Error tolerance of an island: relative to the speed of the impacts under way, as for a rock
+//! alone.
 //!
-//! An absolute local error is a small one for a block that falls from a wall and a large one for a pebble. While a rock of the
-//! island is struck, by the mesh or by another, its own error is therefore held to a share of the speed of its fastest impact.
-//! Lasting contact knows `√(g R)`, the speed of a rock that tips over an edge. The stages of an impact are those of order four:
-//! at such errors they are the cheaper ones.
+//! An absolute local error that is small for a block falling from a wall is large for a pebble.
+//! While a rock of the island is in an impact, with the mesh or another rock, its own error is
+//! therefore limited to a share of the speed of its fastest impact. The scale of sustained contact
+//! is `√(g R)`, the speed of a rock that tips over an edge. The stages of an impact are those of
+//! order four: at such errors they are cheaper.
 //!
-//! What a bond holds together vibrates after a blow, with the stages of order four as well: those of order two damp a vibration that nothing damps.
+//! Bonded rocks vibrate after a blow. They are stepped with the stages of order four as well: those
+//! of order two would damp an undamped vibration.
 //!
-//! Two bodies that strike each other and touch nothing else are as accurate as a rock alone. Where a blow runs through several
-//! contacts at once, as in a heap, its outcome hangs on gaps far smaller than any that is known: a larger share is enough there.
+//! An impact of two bodies without other contacts is as accurate as that of a rock alone. Where a
+//! blow is transmitted through several contacts at once, as in a heap, its outcome depends on gaps
+//! far below any known precision: a larger share is enough there.
 
 use super::assembly::Island;
 use super::body::IslandBody;
@@ -20,28 +24,32 @@ use crate::solver::impact::LOCAL_ERROR;
 use crate::solver::step_control::{Control, sustained_tolerance_m_s};
 use crate::solver::tableau::{ESDIRK4, TR_BDF2};
 
-/// Local error allowed in an impact (–, relative to its speed) by 1 m/s of that in lasting contact, and at most: that of a rock
-/// alone at the usual tolerance.
+/// Local error allowed in an impact (–, relative to its speed): per 1 m/s of the tolerance of
+/// sustained contact, and at most, as for a rock alone at the usual tolerance.
 const IMPACT: (f64, f64) = (1.0, 2e-4);
-/// The same where the rock that is struck, or what strikes it, touches others as well, in units of that (–): at the usual tolerance
-/// 1 % of the speed of the blow.
+/// Factor on it where one of the two bodies also touches others (–): at the usual tolerance 1 % of
+/// the speed of the blow.
 const IN_HEAP: f64 = 150.0;
-/// The same where the blow runs through one contact more and no farther: its outcome hangs on that one gap.
+/// Factor on it where the blow is transmitted through one further contact only (–): its outcome
+/// depends on that one gap.
 const THROUGH_ONE: f64 = 30.0;
 
-/// Cosine between two contacts of a rock from which a blow on the one runs on through the other (–).
+/// Cosine between two contacts of a rock from which a blow on one is transmitted through the other
+/// (–).
 const TRANSMITS: f64 = 0.1;
 
-/// Local error allowed to two that are bonded, of the speed (–) from which their springs would pull as hard as the bond bears, and of that of
-/// their vibration: a blow ends in a vibration, and whether the bond bears it is decided swings later, by all errors until then together.
-const BONDED: f64 = 1e-3;
-/// That of bonds so weak that any load breaks them, of the local error in lasting contact, at least (–) …
-const WEAKEST: f64 = 1e-3;
-/// … and of a vibration so slow that it is none.
-const SLOWEST: f64 = 0.02;
+/// Local error allowed for two bonded rocks (–), relative to the speed at which their springs would
+/// reach the strength of the bond, and to that of their vibration: a blow ends in a vibration, and
+/// the failure of the bond is decided swings later, by the accumulated error.
+const BOND_ERROR: f64 = 1e-3;
+/// Lower bound of it for bonds that any load breaks (–, relative to the local error in sustained
+/// contact) …
+const LEAST_BOND_ERROR: f64 = 1e-3;
+/// … and for vibrations that are negligibly slow.
+const LEAST_VIBRATION_ERROR: f64 = 0.02;
 
 impl Island<'_> {
-    /// The control of the next step: what the rocks may be wrong by, and by which method.
+    /// The control of the next step: the errors allowed for the rocks, and the method.
     pub(super) fn control(&mut self, settings: &Settings) -> Control {
         let usual = settings.scheme.tableau().unwrap_or(&TR_BDF2);
         let relative = LOCAL_ERROR * (IMPACT.0 * settings.tolerance_m_s).min(IMPACT.1);
@@ -62,7 +70,8 @@ impl Island<'_> {
         }
     }
 
-    /// Holds the error of bonded rocks to what their bonds notice; whether that is less than lasting contact asks for.
+    /// Limits the error of bonded rocks by strength and vibration of their bonds; whether that is
+    /// less than sustained contact allows.
     fn limit_bond_errors(&mut self, settings: &Settings) -> bool {
         let mut is_limited = false;
         for pair_history in &self.pair_histories {
@@ -73,8 +82,10 @@ impl Island<'_> {
             for end in ends {
                 let member = &mut *self.members[end];
                 let usual_m_s = sustained_tolerance_m_s(settings, &member.body);
-                let of_strength_m_s = (BONDED * breaking_speed_m_s).max(WEAKEST * usual_m_s);
-                let of_vibration_m_s = (BONDED * vibration_speed_m_s).max(SLOWEST * usual_m_s);
+                let of_strength_m_s =
+                    (BOND_ERROR * breaking_speed_m_s).max(LEAST_BOND_ERROR * usual_m_s);
+                let of_vibration_m_s =
+                    (BOND_ERROR * vibration_speed_m_s).max(LEAST_VIBRATION_ERROR * usual_m_s);
                 let bonded_m_s = of_strength_m_s.min(of_vibration_m_s);
                 is_limited |= bonded_m_s < usual_m_s;
                 member.sustained_tolerance_m_s = member.sustained_tolerance_m_s.min(bonded_m_s);
@@ -83,14 +94,14 @@ impl Island<'_> {
         is_limited
     }
 
-    /// Notes how fast each rock is struck (m/s) and whether it touches others that touch more, also by what it has only met in
-    /// the present try.
+    /// Notes the impact speed of each rock (m/s) and the numbers of bodies in contact, with new
+    /// contacts of the present try if it has been `tried`.
     pub(super) fn note_impacts(&mut self, tried: bool) {
         for member in self.members.iter_mut().map(|slot| &mut **slot) {
             let state = &member.state;
-            let begun_m_s = if tried { state.new_contact_approach_m_s() } else { 0.0 };
-            let known_m_s = if state.is_rebounding() { state.impact.speed_m_s } else { 0.0 };
-            member.impact_m_s = known_m_s.max(begun_m_s);
+            let new_m_s = if tried { state.new_contact_approach_m_s() } else { 0.0 };
+            let running_m_s = if state.is_rebounding() { state.impact.speed_m_s } else { 0.0 };
+            member.impact_m_s = running_m_s.max(new_m_s);
             (member.touched_count, member.max_touched_count) = (0, 0);
         }
         let Self { members, pair_histories, pairs, .. } = self;
@@ -122,19 +133,21 @@ impl Island<'_> {
 }
 
 impl IslandBody {
-    /// How many others it touches, with the mesh if the contact along `n`, which points at its centre, presses it on that: a blow along the
-    /// ground does not run through the ground.
+    /// Number of bodies in contact with it. The mesh counts if the contact along `n`, which points
+    /// at its centre, presses it against that: a blow along the ground is not transmitted through
+    /// the ground.
     fn touching_through(&self, n: &Vec3) -> u32 {
         let presses = |history: &ContactHistory| history.n.dot(n) < -TRANSMITS;
         self.touched_count + u32::from(self.state.histories.iter().any(presses))
     }
 
-    /// Whether it, or one that it touches, touches more than one.
+    /// Whether it, or a rock in contact with it, has more than one contact.
     fn is_in_heap(&self) -> bool {
         self.max_touched_count > 1
     }
 
-    /// Local error allowed to it in an impact (–, relative to its speed), where `relative` is that of two bodies alone.
+    /// Local error allowed for it in an impact (–, relative to its speed), where `relative` is that
+    /// of two bodies alone.
     pub(super) fn allowed_share(&self, relative: f64) -> f64 {
         let times = match self.max_touched_count {
             0..=1 => 1.0,
@@ -144,7 +157,7 @@ impl IslandBody {
         times * relative
     }
 
-    /// Local error allowed to it (m/s), `relative` to the speed of an impact (–).
+    /// Local error allowed for it (m/s), `relative` to the speed of an impact (–).
     pub(super) fn allowed_m_s(&self, relative: f64) -> f64 {
         if self.impact_m_s > 0.0 {
             self.sustained_tolerance_m_s.min(self.allowed_share(relative) * self.impact_m_s)

@@ -3,10 +3,10 @@
 //! The paper's global system of 6×6 blocks, Eq. (4), with the change of friction with the normal force, which makes it
 //! unsymmetric.
 //!
-//! Gauss–Seidel sweeps over the contacts find quickly which contacts press, stick or slip, but converge slowly in
-//! heaps: a load travels one contact a sweep. With these modes fixed the stage is smooth, and one linear solve over
-//! all rocks that take part replaces many sweeps. The sweeps then check the modes again.
-//!
+//! Gauss–Seidel sweeps over the contacts find quickly which contacts press, stick or slip, but
+//! converge slowly in heaps: a load travels one contact a sweep. With these modes fixed the stage
+//! is smooth, and one linear solve over all rocks that take part replaces many sweeps. The sweeps
+//! then check the modes again.
 //! ```text
 //! normal:  F = a − b s,  s = n·(v_1 − v_2)              (open contacts are left out)
 //! shear:   q = q0 + J (u − u0) + μ e (F − F0)           sticking: J = κ 1;  sliding: J = κ cap/|trial| (1 − e eᵀ)
@@ -19,25 +19,25 @@ use crate::contact::submatrix::{Mat3x6, Mat6, Vec6};
 use crate::ground::{LinearFriction, NormalLine};
 use crate::rock::Vec3;
 use crate::solver::block_factor::{BlockFactor, BlockSystem, LowerBlock};
-use crate::solver::body::Twist;
+use crate::solver::body::{STILL, Twist};
 use crate::solver::linear_forces::LinearForces;
 use nalgebra::{DMatrix, DVector, Matrix3};
 
-/// Most rocks for which a dense matrix with full pivoting by columns is as cheap.
+/// Most rocks for which a dense matrix with column pivoting is as cheap.
 const DENSE: usize = 8;
 
-/// One contact, linear around the present motion.
+/// A contact linearised around the present motion.
 struct LinearContact {
-    /// Normal force (N) as a line in the normal speed.
+    /// Normal force (N) as a linear function of the normal speed.
     normal: NormalLine,
     /// Shear force (N) linearised in slip (m/s) and normal force.
     shear: LinearFriction,
-    /// Slip and normal speed there, as far as they come from the ends that are sought.
+    /// Slip and normal speed there, by the ends that are unknowns.
     slip: Vec3,
     speed: f64,
     /// Unit normal, from the second body (or the mesh) to the first.
     n: Vec3,
-    /// Its ends that are sought: place, sign of the first or second body, lever.
+    /// Its ends that are unknowns: place, sign of the first or second body, lever.
     ends: [Option<(usize, f64, f64)>; 2],
 }
 
@@ -45,7 +45,7 @@ struct LinearContact {
 struct NewtonSystem {
     /// `K_kk`: inertia over `h`, and the contacts of rock `k` with mesh and others (kg/s, kg m²/s).
     diagonal: Vec<Mat6>,
-    /// Blocks that join two rocks: the one below the diagonal, and the one opposite.
+    /// Blocks that couple two rocks: the one below the diagonal, and the one opposite.
     off_diagonal: Vec<(LowerBlock, Mat6)>,
     /// Right side: impulse rates of free motion and of the constant parts of contacts (N, N m), six a rock.
     load: Vec<f64>,
@@ -68,7 +68,7 @@ pub(super) fn solve_linearised(
             part.then(|| rocks - 1)
         })
         .collect();
-    // rows are numbered over the rocks that take part only; others enter through the load
+    // rows are numbered over the rocks that take part; others enter through the load
     let (diagonal, load) = (vec![Mat6::zeros(); rocks], vec![0.0; 6 * rocks]);
     let mut system = NewtonSystem { diagonal, off_diagonal: Vec::with_capacity(pairs.len()), load };
     for ((member, motion), place) in members.iter().zip(motions).zip(&place) {
@@ -76,7 +76,7 @@ pub(super) fn solve_linearised(
         let own = &mut (&mut system.diagonal[k], &mut system.load[6 * k..6 * k + 6]);
         LinearForces::of_inertia(&member.body, &member.free, h).add_to(own.0, own.1);
         for contact in member.contacts().iter().filter(|contact| contact.normal_force > 0.0) {
-            // the mesh is an end that does not move, so only `K_kk` changes
+            // the mesh is an end that does not move: only `K_kk` changes
             contact.linearised(&member.body, motion, h).add_to(own.0, own.1);
         }
     }
@@ -99,13 +99,12 @@ impl LinearContact {
         } else {
             (pair.line(h), law.shear.stage_slider(h, (&pair.shear_force, pair.normal_force)))
         };
-        let still = (Vec3::zeros(), Vec3::zeros());
-        // only ends that are sought count in the unknowns: the others stand in the constants
-        let sought = [0, 1].map(|k| if place[pair.ends[k]].is_some() { ends[k] } else { &still });
+        // only ends that are unknowns enter here: the others are in the constants
+        let sought = [0, 1].map(|k| if place[pair.ends[k]].is_some() { ends[k] } else { &STILL });
         let own = pair.speed(sought);
         Self {
-            // an end that does not take part has a fixed motion: its share of the normal speed goes
-            // into the constant
+            // an end that does not take part has a fixed motion: its share of the normal speed
+            // belongs to the constant
             normal: NormalLine { a: normal.a - normal.b * (speed - own), ..normal },
             shear: slider.at(trial, normal.at(speed)),
             slip: pair.slip(sought),
@@ -137,7 +136,7 @@ impl NewtonSystem {
             }
         }
         if let [Some((k, one)), Some((l, two))] = &rows {
-            // K_kl ≠ K_lkᵀ: friction follows the normal force of both
+            // K_kl ≠ K_lkᵀ: friction depends on the normal force, and that on both ends
             let (below, above) = (block(one, two), block(two, one));
             self.off_diagonal.push(if k > l {
                 ((*k, *l, below), above)
@@ -147,8 +146,8 @@ impl NewtonSystem {
         }
     }
 
-    /// The motions, or `None` if the matrix is singular. Few rocks: dense LU with pivots, O(n³); more: block factors
-    /// in the order of least fill.
+    /// The motions, or `None` if the matrix is singular. Few rocks: dense LU with pivots, O(n³);
+    /// more: block factors in an order of least fill.
     fn solve(mut self) -> Option<Vec<Twist>> {
         self.off_diagonal.sort_by_key(|((row, column, _), _)| (*column, *row));
         let x =
@@ -175,7 +174,7 @@ impl NewtonSystem {
         matrix.lu().solve_mut(&mut load).then(|| load.data.into())
     }
 
-    /// Blocks where rocks touch, and nothing elsewhere.
+    /// Sparse factorisation with blocks only where rocks touch.
     fn solve_sparse(self) -> Option<Vec<f64>> {
         let (below, above): (Vec<LowerBlock>, Vec<Mat6>) = self.off_diagonal.into_iter().unzip();
         let blocks = BlockSystem { diagonal: &self.diagonal, below: &below, above: Some(&above) };

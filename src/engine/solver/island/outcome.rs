@@ -1,25 +1,27 @@
-//! What a step of an island did.
+//! Result of a step of an island.
 
 use crate::rock::Motion;
 use crate::solver::impact_point::ImpactPoint;
 use crate::solver::loss::{EnergyGiven, Loss};
 
-/// What one step did.
+/// Result of one step.
 #[derive(Debug, Clone, Default)]
 pub struct IslandAdvance {
-    /// Time gone (s).
+    /// Length of the step (s).
     pub dt: f64,
     /// Energy lost to the ground, for each rock (J).
     pub losses: Vec<Loss>,
     /// Energy given to other rocks, for each rock (J).
     pub given: Vec<EnergyGiven>,
-    /// Steps tried and thrown away.
+    /// Rejected steps.
     pub rejected: u64,
-    /// Impacts on the mesh, rock by rock and blow by blow (`rigid`; with the others the memory of a contact tells).
+    /// Impacts on the mesh, rock by rock and blow by blow (`rigid`; the other schemes find them in
+    /// the contact histories).
     pub hits: Vec<MeshImpact>,
-    /// Blows within the step, rock by rock (`rigid`; with the others blows take time, and steps).
+    /// Blows within the step, rock by rock (`rigid`; in the other schemes blows last for several
+    /// steps).
     pub blows: Vec<BlowInStep>,
-    /// Whether contact states did not settle (`dda`, `rigid`).
+    /// Whether contact states did not converge (`dda`, `rigid`).
     pub unsettled: bool,
     /// Bonds that broke.
     pub broken: u64,
@@ -30,7 +32,7 @@ pub struct IslandAdvance {
 pub struct MeshImpact {
     /// The rock, as a place in the island.
     pub rock: usize,
-    /// What it strikes.
+    /// Where it strikes.
     pub struck: ImpactPoint,
 }
 
@@ -41,6 +43,6 @@ pub struct BlowInStep {
     pub rock: usize,
     /// Its motion before and after it; times count from the end of the step (s, 0 or less).
     pub motions: [Motion; 2],
-    /// How many of the impacts on the mesh are its own.
+    /// Number of its own impacts on the mesh.
     pub hits: usize,
 }

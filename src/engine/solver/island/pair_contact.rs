@@ -1,28 +1,28 @@
-//! The contact of two rocks inside one implicit stage: the law of [`StageContact`](crate::solver::law::StageContact) with a second body.
+//! The contact of two rocks in an implicit stage: the law of
+//! [`StageContact`](crate::solver::law::StageContact) with a second body.
 
-pub(super) use crate::contact::TOUCH;
 use crate::contact::pair::{Bond, PairHistory, PairImpact, normal_and_distance};
 use crate::ground::{Law, NormalElement, NormalLine};
 use crate::rock::Vec3;
 use crate::solver::body::{Body, Twist};
 
-/// One contact of two rocks: its state at the stage's base and the forces that are sought.
+/// A contact of two rocks: its state at the stage's base and the unknown forces.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PairContact {
-    /// Which pair of rocks it belongs to.
+    /// Place of its pair among the pairs of the island.
     pub(super) pair_history: usize,
     /// The two rocks, as places in the island.
     pub(super) ends: [usize; 2],
     pub(super) law: Law,
     /// Normal spring and dashpot in force.
     pub(super) normal: NormalElement,
-    /// Too slow to rebound.
+    /// Whether it is too slow to rebound.
     pub(super) captured: bool,
-    /// The impact that goes on.
+    /// The impact under way.
     pub(super) impact: PairImpact,
-    /// Whether an impact begins with it that presses nothing in the present try.
+    /// Whether it begins an impact that is deferred: it exerts no force in the present try.
     pub(super) deferred: bool,
-    /// Holds in tension too.
+    /// Bond that also acts in tension.
     pub(super) bond: Option<Bond>,
     /// Unit normal from the second to the first.
     pub(super) n: Vec3,
@@ -30,24 +30,26 @@ pub(super) struct PairContact {
     pub(super) penetration: f64,
     /// Stretch of the shear spring at the base (m).
     pub(super) shear: Vec3,
-    /// Distances from the centres to the common point that is touched (m): forces with one line of action keep the
-    /// angular momentum.
+    /// Distances from the centres to the common contact point (m): forces with one line of action
+    /// conserve the angular momentum.
     pub(super) levers: [f64; 2],
     /// Normal force (N), negative only in a bond.
     pub(super) normal_force: f64,
-    /// Shear force: the first rock feels `−q`, the second `q` (N).
+    /// Shear force `q`: `−q` acts on the first rock, `q` on the second (N).
     pub(super) shear_force: Vec3,
     /// Masses (kg) and moments of inertia (kg m²) of the two rocks.
     pub(super) inertia: [(f64, f64); 2],
     /// `1/m_a + 1/m_b` (1/kg).
     pub(super) inv_m: f64,
-    /// The same for the touched point along the surface, `+ L_a²/I_a + L_b²/I_b` (1/kg).
+    /// Inverse effective mass of the contact point along the surface, `+ L_a²/I_a + L_b²/I_b`
+    /// (1/kg).
     pub(super) inv_t: f64,
 }
 
 impl PairContact {
-    /// The contact of a pair for centres at `at`, if they are near enough; no stretch and no forces yet.
-    pub(super) fn over(
+    /// The contact of a pair for centres at `at`, if their gap is at most `slack` (m); without
+    /// stretch and shear force.
+    pub(super) fn of_pair(
         pair_history: &PairHistory,
         bodies: [&Body; 2],
         at: [&Vec3; 2],
@@ -82,8 +84,9 @@ impl PairContact {
         })
     }
 
-    /// Begins as bodies come together at a speed (m/s): too slow to rebound, or an impact. What begins while one of them is struck
-    /// at a speed (m/s, 0 if none is) is a part of that impact, however slow it is.
+    /// Begins the contact of bodies that approach at a speed (m/s): too slow to rebound, or an
+    /// impact. During an impact of one of them, at a speed (m/s, 0 if none), it is part of that
+    /// impact, however slow it is.
     pub(super) fn begin(&mut self, approach_m_s: f64, impact_m_s: f64) {
         let fastest_m_s = approach_m_s.max(impact_m_s);
         self.captured = fastest_m_s < self.law.capture_m_s;
@@ -93,7 +96,7 @@ impl PairContact {
         }
     }
 
-    /// Begins in a try in which impacts that come up wait for its end.
+    /// Begins the contact in a try in which onsets of impacts are deferred to its end.
     pub(super) fn defer_impact(&mut self, approach_m_s: f64) {
         self.deferred = !self.captured && approach_m_s >= self.law.capture_m_s;
         if self.deferred {
@@ -101,37 +104,37 @@ impl PairContact {
         }
     }
 
-    /// Penetration at the end of a stage of length `h`, where the normal speed apart is `vn` (m).
+    /// Penetration (m) at the end of a stage of length `h` with the normal separation speed `vn`.
     #[inline]
     pub(super) fn penetration_at(&self, vn: f64, h: f64) -> f64 {
         self.penetration - h * vn
     }
 
-    /// Whether it holds any force.
+    /// Whether it exerts any force.
     #[inline]
     pub(super) fn has_force(&self) -> bool {
         self.normal_force != 0.0 || self.bond.is_some()
     }
 
-    /// Normal speed apart (m/s).
+    /// Normal separation speed (m/s).
     #[inline]
     pub(super) fn speed(&self, [a, b]: [&Twist; 2]) -> f64 {
         self.n.dot(&(a.0 - b.0))
     }
 
-    /// Slip of the first rock over the second at the touched point (m/s).
+    /// Slip of the first rock over the second at the contact point (m/s).
     pub(super) fn slip(&self, [a, b]: [&Twist; 2]) -> Vec3 {
         let u = a.0 - b.0;
         u - self.n * self.n.dot(&u) + self.n.cross(&(a.1 * self.levers[0] + b.1 * self.levers[1]))
     }
 
-    /// What the shear spring would hold if it did not slide (N).
+    /// Trial shear force: that without sliding (N).
     pub(super) fn trial(&self, ends: [&Twist; 2], h: f64) -> Vec3 {
         self.law.shear.spring_force(self.shear)
             + self.slip(ends) * self.law.shear.stage_stiffness(h)
     }
 
-    /// Forces for motions without this contact's own effect, over a stage of length `h`.
+    /// Solves the forces for motions without this contact's own effect, over a stage of length `h`.
     pub(super) fn solve(&mut self, ends: [&Twist; 2], h: f64) {
         let vn = self.speed(ends);
         if self.bond.is_none() {
@@ -151,7 +154,7 @@ impl PairContact {
         self.shear_force = self.law.shear.capped(free, self.normal_force);
     }
 
-    /// Sets its forces to what its law gives at the motions of both rocks.
+    /// Sets the forces to those of the law at the motions of both rocks.
     pub(super) fn set_forces_at(&mut self, ends: [&Twist; 2], h: f64) {
         let (speed, stick) = (self.speed(ends), self.trial(ends, h));
         if self.bond.is_some() {
@@ -163,7 +166,8 @@ impl PairContact {
         }
     }
 
-    /// Forces at the present state, for the explicit first stage; gives the rate of the shear spring.
+    /// Sets the forces to those of the present state, for the explicit first stage; returns the
+    /// rate of the shear spring.
     pub(super) fn set_forces_now(&mut self, ends: [&Twist; 2]) -> Vec3 {
         let (penetration, vn) = (self.penetration, self.speed(ends));
         let held = self.law.shear.spring_force(self.shear);
@@ -178,7 +182,7 @@ impl PairContact {
         self.law.shear.stretch_rate(self.shear_force, held)
     }
 
-    /// Its normal force as a line, in the mode that it is in.
+    /// Normal force linearised in its present mode.
     pub(super) fn line(&self, h: f64) -> NormalLine {
         self.normal.line((self.penetration, self.normal_force), 1.0 / self.inv_m, h)
     }
@@ -191,7 +195,7 @@ impl PairContact {
         (if k == 0 { force } else { -force }, torque)
     }
 
-    /// Adds `times` the effect over `h` on end `k` to its motion.
+    /// Adds the effect of its load on end `k` over `times_h` (s) to that end's motion.
     #[inline]
     pub(super) fn apply_effect(&self, k: usize, times_h: f64, (v, w): &mut Twist) {
         let (force, torque) = self.load(k);

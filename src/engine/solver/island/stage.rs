@@ -1,57 +1,61 @@
 //! One implicit stage of an island, and the rates at its start.
 //!
-//! Stage `i` ends at `x_i = x_base + h γ f(x_i)` with `x_base = x + h Σ a_ij f_j` of the stages before. Normals and
-//! penetrations are those at the end of the stage, so geometry and forces depend on each other: forces are solved
-//! with the geometry of a guess, the guess is moved to where they lead, and this is repeated until both agree. On
-//! planes one pass suffices; around corners and between spheres a few.
+//! Stage `i` ends at `x_i = x_base + h γ f(x_i)` with `x_base = x + h Σ a_ij f_j` of the stages
+//! before. Normals and penetrations are those at the end of the stage, so geometry and forces
+//! depend on each other. A fixed-point iteration solves the forces with the geometry of a guess and
+//! moves the guess to the resulting positions, until both agree. On planes one pass suffices,
+//! around corners and between spheres a few.
 //!
-//! The equations of one rock are those of `solver::stage`; what is new is that forces between rocks
-//! act on two of them with opposite sign, and that all must agree before any goes on.
+//! The equations of one rock are those of `solver::stage`. In addition forces between rocks act on
+//! two of them with opposite signs, and all rocks must converge before the next stage begins.
 
 use super::assembly::Island;
 use super::pair_contact::PairContact;
-use super::pair_contact::TOUCH;
+use crate::contact::TOUCH;
 use crate::contact::history::transport;
 use crate::rock::Vec3;
 use crate::solver::loss::EnergyGiven;
 use crate::solver::stage::{PASSES, SHIFT_CONVERGED};
 use crate::solver::tableau::{STAGES, Tableau};
 
-/// Gap below which two rocks may press each other whatever their motion (–, relative to the smaller radius): far more than the
-/// passes of a stage leave open.
+/// Gap below which two rocks are in potential contact whatever their motion (–, relative to the
+/// smaller radius): far more than the error that the passes of a stage leave.
 const PAIR_GAP: f64 = 1e-6;
 
-/// Change of a centre (–, relative to the radius) up to which geometry and forces may agree in an island of more than a few rocks …
+/// Change of a centre (–, relative to the radius) at which the iteration has converged in an island
+/// of more than a few rocks …
 const SHIFT_CONVERGED_OF_MANY: f64 = 1e-6;
-/// … if what the turn of the normals by it does to a velocity is no more than this (–, relative to the local error allowed).
+/// … if the effect of the resulting rotation of normals on a velocity is at most this (–, relative
+/// to the local error allowed).
 const TURN_EFFECT: f64 = 1e-2;
 
 impl Island<'_> {
     /// Solves implicit stage `i` of a step of length `h` and stores its rates.
     ///
-    /// Outer loop: geometry; inner: forces (`converge`). A step that fails in either is tried again,
-    /// shorter.
+    /// Outer loop: geometry; inner: forces (`converge`). A step in which either fails is tried
+    /// again, shorter.
     pub(super) fn stage(&mut self, tableau: &Tableau, i: usize, h: f64) -> Option<()> {
         // γ h, the same for all stages: contacts keep their effective stiffness through the step
         let hh = tableau.diagonal * h;
         for member in &mut self.members {
-            // the guess goes on with velocity and acceleration of the stage before
+            // the guess extrapolates with velocity and acceleration of the stage before
             let before = &member.state.rates[i - 1];
             let (ahead_c, ahead_v) = (before.c, before.v);
             member.base = member.state.base(tableau, i, h);
             member.guess = member.base.c + (ahead_c + ahead_v * hh) * hh;
-            // what the rock would do in the stage without contacts: weight changes velocity,
-            // negligible changes spin
+            // motion in the stage without contacts: weight changes the velocity, the spin is
+            // constant
             member.free = (member.base.v + member.body.gravity * hh, member.base.w);
             member.find_contact_points(self.terrain);
         }
-        // without agreement within so many passes the step is too long: it is tried again, shorter
+        // without convergence within so many passes the step is too long: it is tried again,
+        // shorter
         for _ in 0..PASSES {
             for member in &mut self.members {
                 member.place_contacts(self.terrain, tableau, (i, h));
             }
             self.place_pairs(tableau, (i, h));
-            // sweeps and jumps over all contacts of the island
+            // sweeps and Newton steps over all contacts of the island
             if !self.converge(hh) {
                 return None;
             }
@@ -59,11 +63,12 @@ impl Island<'_> {
             for (member, motion) in self.members.iter_mut().zip(&self.motions) {
                 // the stage's end with the forces just found
                 let c = member.base.c + motion.0 * hh;
-                // every rock must agree: a contact of one decides the forces on its neighbours
+                // every rock must converge: its contacts decide the forces on its neighbours
                 let allowed = if self.active.is_small() {
                     SHIFT_CONVERGED
                 } else {
-                    // normals turn by the change over the radius, and with them what contacts have given
+                    // normals rotate by the change over the radius, and with them the velocity that
+                    // contacts have given
                     let pushed_m_s = (motion.0 - member.free.0).norm().max(f64::MIN_POSITIVE);
                     (TURN_EFFECT * self.tolerance / pushed_m_s)
                         .clamp(SHIFT_CONVERGED, SHIFT_CONVERGED_OF_MANY)
@@ -80,10 +85,11 @@ impl Island<'_> {
         None
     }
 
-    /// Makes contacts of the pairs of rocks that are near, based at the stage's base.
+    /// Makes contacts of the pairs of rocks in potential contact, based at the stage's base.
     ///
-    /// A pair is a candidate if it may close within the stage by the motion with which that begins; whether it presses is found by
-    /// the solution. What is set in motion by others meanwhile is found in the next pass, with the guess that it has moved.
+    /// A pair is a candidate if it may close within the stage by its relative velocity at the base;
+    /// the solution decides whether it closes. Pairs that close because others set them in motion
+    /// are found in the next pass, from the new guess.
     fn place_pairs(&mut self, tableau: &Tableau, (i, h): (usize, f64)) {
         let hh = tableau.diagonal * h;
         self.pairs.clear();
@@ -93,7 +99,7 @@ impl Island<'_> {
             let slack = PAIR_GAP * a.body.radius.min(b.body.radius) + 2.0 * passes_m;
             let bodies = [&a.body, &b.body];
             let Some(mut pair) =
-                PairContact::over(pair_history, bodies, [&a.guess, &b.guess], slack)
+                PairContact::of_pair(pair_history, bodies, [&a.guess, &b.guess], slack)
             else {
                 continue;
             };
@@ -110,9 +116,9 @@ impl Island<'_> {
                     pair.defer_impact(approach_m_s);
                 }
             }
-            // the remembered stretch is turned with the normal: the spring stays in the tangent plane
+            // the stored stretch is rotated with the normal: the spring stays in the tangent plane
             let from = if pair_history.is_held() { pair_history.n } else { pair.n };
-            // base of the stretch: as for places, the state and the earlier stages
+            // base of the stretch: as for positions, from the state and the earlier stages
             let from_rates = (pair_history.shear, &self.pair_rates[k][..]);
             let shear = tableau.base((i, h), from_rates, |rate| *rate);
             pair.shear = transport(shear, &from, &pair.n);
@@ -121,8 +127,8 @@ impl Island<'_> {
         }
     }
 
-    /// Keeps what stage `i` found: rates of all springs, forces, and the power that each end gets through its contacts
-    /// (W).
+    /// Stores the results of stage `i`: rates of all springs, forces, and the power that each end
+    /// gives through its contacts (W).
     fn store(&mut self, i: usize, hh: f64) {
         for member in &mut self.members {
             member.given[i] = EnergyGiven::default();
@@ -134,7 +140,7 @@ impl Island<'_> {
         for pair in &self.pairs {
             let pair_history = &self.pair_histories[pair.pair_history];
             let from = if pair_history.is_held() { pair_history.n } else { pair.n };
-            // of the stage, as for place and velocity: the slope that leads from its base to its end
+            // slope of the stage from its base to its end, as for position and velocity
             let rate = (pair.stretch(hh) - pair.shear) / hh;
             self.pair_rates[pair.pair_history][i] = transport(rate, &pair.n, &from);
             self.pair_forces[pair.pair_history] = (pair.normal_force, pair.shear_force);
@@ -158,7 +164,7 @@ impl Island<'_> {
 
     /// Rates at the present state, for the explicit first stage.
     ///
-    /// Nothing is solved: forces follow from places, velocities and stretches as they are
+    /// Nothing is solved: forces follow from positions, velocities and stretches as they are
     /// (`set_forces_now`).
     pub(super) fn rates_now(&mut self) {
         for member in &mut self.members {
@@ -173,8 +179,8 @@ impl Island<'_> {
             let [a, b] = ends.map(|k| &self.members[k]);
             let touch = TOUCH * (a.body.radius + b.body.radius);
             let at = [&a.state.c, &b.state.c];
-            // pairs that do not touch at the start act nothing
-            let Some(mut pair) = PairContact::over(pair_history, [&a.body, &b.body], at, touch)
+            // pairs that do not touch at the start have no force
+            let Some(mut pair) = PairContact::of_pair(pair_history, [&a.body, &b.body], at, touch)
             else {
                 continue;
             };

@@ -93,8 +93,7 @@ impl Island<'_> {
         self.motions.clear();
         for member in &self.members {
             let IslandBody { state, body, free, .. } = &**member;
-            let contacts = &state.contacts[..state.contact_count];
-            self.motions.push(motion_under(body, contacts, *free, h));
+            self.motions.push(motion_under(body, state.stage_contacts(), *free, h));
         }
         for pair in self.pairs.iter().filter(|pair| pair.has_force()) {
             for k in 0..2 {

@@ -1,8 +1,10 @@
-//! A step of an island, tried with any length, and the impacts that begin and end within it.
+//! A trial step of an island, and the impacts that begin and end within it.
 //!
-//! An impact that begins within a step waits for its end, as that of a rock alone does ([`step_control`]). One that ends within it is a kink,
-//! of which the error estimate sees too little: from a radian before its end on, a step that passes it takes away several per cent of
-//! its energy. So what still presses a rock with a part of the impact is not let go within a step, which ends where it opens.
+//! The onset of an impact within a step is deferred to its end, as for a rock alone
+//! ([`step_control`]). The end of an impact within a step is a kink of the force, which the error
+//! estimate hardly sees: a step that passes it, from a radian before it on, takes several per cent
+//! of the energy of the impact. So a contact that still carries a part of its impact must not open
+//! within a step: the step is cut where it opens.
 
 use super::assembly::Island;
 use super::body::IslandBody;
@@ -14,37 +16,38 @@ use crate::solver::step_control::{
     self, Control, FirstOnset, ONSET, OnsetSearch, StepError, TRAVEL, TrialStep, TryOutcome,
 };
 
-/// Speed that a spring may still give a rock as its contact opens within a step (–, relative to that of its impact): 4e-4 of
-/// the energy, and the step that passes the kink misses a part of that.
+/// Speed that a spring may still give a rock as its contact opens within a step (–, relative to the
+/// impact speed): 4e-4 of the energy, of which the step that passes the kink misses a part.
 const RELEASED: f64 = 0.02;
-/// Speed missed behind a kink that is left as it is (–, relative to the local error allowed).
-const MISSED: f64 = 0.3;
+/// Speed error after a kink that is tolerated (–, relative to the local error allowed).
+const SPEED_ERROR: f64 = 0.3;
 /// Most cuts of a step for contacts that open within it.
 const MOST_CUTS: u32 = 4;
-/// Shortest part of a try to which one that opens cuts it (–): it is found by a straight line from force to force.
+/// Shortest part of a try to which an opening contact cuts it (–): the time follows from linear
+/// interpolation of the force.
 const LEAST_CUT: f64 = 0.05;
 
-/// A step of the island, tried with any length.
+/// A step of the island that can be tried with any length.
 struct IslandTrial<'i, 'a> {
     island: &'i mut Island<'a>,
     control: &'i Control,
-    /// The stiffest contact at the step's start (rad/s).
+    /// Frequency of the stiffest contact at the step's start (rad/s).
     omega: f64,
     onsets: OnsetSearch,
-    /// Cuts for contacts that open.
+    /// Number of cuts for contacts that open.
     cuts: u32,
 }
 
 impl IslandTrial<'_, '_> {
-    /// What a try of `dt` (s) comes to.
+    /// Outcome of a try of `dt` (s).
     fn outcome(&mut self, dt: f64) -> TryOutcome {
         let (rad, hh) = (dt * self.omega, self.control.tableau.diagonal * dt);
         self.island.defer_impacts(self.onsets.defers(rad));
         let Some(error) = self.island.attempt(self.control, dt) else {
             return TryOutcome::NotConverged;
         };
-        let is_reached = self.island.has_reached_onset();
-        if is_reached {
+        let has_onset = self.island.has_reached_onset();
+        if has_onset {
             let first_onset = FirstOnset::within(dt, self.omega);
             let first_onset = self.island.first_onset(first_onset, hh, self.control.impact);
             if let Some(share) = self.onsets.cut(&first_onset, rad) {
@@ -59,9 +62,9 @@ impl IslandTrial<'_, '_> {
             self.cuts += 1;
             return TryOutcome::Cut(first_opening.max(LEAST_CUT));
         }
-        // a step that resolves the springs by far cannot gain more than its error, and what has just begun stores less: only coarse
-        // ones are asked
-        if !is_reached && rad > step_control::RESOLVED && self.island.gains_energy(hh) {
+        // a step that resolves the springs well cannot gain more than its error, and a contact that
+        // has just begun stores less: only coarse steps are checked
+        if !has_onset && rad > step_control::RESOLVED && self.island.gains_energy(hh) {
             return TryOutcome::EnergyGain;
         }
         TryOutcome::Error(error)
@@ -81,7 +84,7 @@ impl TrialStep for IslandTrial<'_, '_> {
     fn try_step(&mut self, dt: f64) -> TryOutcome {
         let outcome = self.outcome(dt);
         if !matches!(outcome, TryOutcome::Error(error) if error <= 1.0) {
-            // memories that came up in a try that failed have never been
+            // histories that a rejected try has added are discarded
             for member in self.island.members.iter_mut().map(|slot| &mut **slot) {
                 member.state.histories.truncate(member.histories_at_start);
             }
@@ -91,8 +94,8 @@ impl TrialStep for IslandTrial<'_, '_> {
 }
 
 impl Island<'_> {
-    /// Tries steps of at most `h_max` (s) in contacts of at most `omega` (rad/s) until one is accurate: its length (s), and how many
-    /// were thrown away.
+    /// Tries steps of at most `h_max` (s), with a stiffest contact of `omega` (rad/s), until one is
+    /// accurate; its length (s), and the number of rejected tries.
     ///
     /// # Errors
     /// [`StepError`] if the step had to become too short to matter.
@@ -110,23 +113,23 @@ impl Island<'_> {
         Ok((dt, rejected))
     }
 
-    /// Says whether impacts that come up in the next try wait for its end.
+    /// Sets whether impacts that begin in the next try are deferred to its end.
     fn defer_impacts(&mut self, deferred: bool) {
         self.onset = Onset { deferred, is_reached: false };
         self.members.iter_mut().for_each(|member| member.state.onset = self.onset);
     }
 
-    /// Whether the present try has run into an impact.
+    /// Whether the present try contains the onset of an impact.
     fn has_reached_onset(&self) -> bool {
         self.onset.is_reached || self.members.iter().any(|member| member.state.onset.is_reached)
     }
 
-    /// Where in the present try the first impact begins that it runs into; `relative` is the local error allowed to one of two bodies
-    /// alone (–).
+    /// The first onset of an impact in the present try; `relative` is the local error allowed in an
+    /// impact of two bodies alone (–).
     fn first_onset(&self, mut first_onset: FirstOnset, hh: f64, relative: f64) -> FirstOnset {
         for member in self.members.iter().map(|slot| &**slot) {
-            let how = (member.allowed_share(relative), member.body.radius);
-            member.state.add_onsets(&mut first_onset, (&member.end, hh), how);
+            let scales = (member.allowed_share(relative), member.body.radius);
+            member.state.add_onsets(&mut first_onset, (&member.end, hh), scales);
         }
         for pair in self.pairs.iter().filter(|pair| pair.deferred) {
             let [a, b] = pair.ends.map(|end| &self.members[end]);
@@ -141,14 +144,15 @@ impl Island<'_> {
         first_onset
     }
 
-    /// Normal speed apart at the try's end (m/s).
+    /// Normal separation speed at the try's end (m/s).
     fn separation_m_s(&self, pair: &PairContact) -> f64 {
         let ends = pair.ends.map(|end| (self.members[end].end.v, self.members[end].end.w));
         pair.speed([&ends[0], &ends[1]])
     }
 
-    /// The share (–) of the present try of `dt` (s) after which the first contact opens that still presses with a part of its impact; 1
-    /// if none does. `relative` is the local error allowed in an impact (–).
+    /// Share (–) of the present try of `dt` (s) at which the first contact opens that still carries
+    /// a part of its impact; 1 if none does. `relative` is the local error allowed in an impact
+    /// (–).
     fn first_opening(&self, (dt, hh): (f64, f64), relative: f64) -> f64 {
         let rocks = self.members.iter().map(|member| member.first_opening((dt, hh), relative));
         let rocks = rocks.fold(1.0, f64::min);
@@ -159,13 +163,13 @@ impl Island<'_> {
                 return 1.0;
             }
             let ends = [history.a, history.b].map(|k| &self.members[k as usize]);
-            let pulls = |pair: &PairContact| {
+            let force_at_end = |pair: &PairContact| {
                 let separation_m_s = self.separation_m_s(pair);
                 pair.normal.bilateral_force(pair.penetration_at(separation_m_s, hh), separation_m_s)
             };
             let before = history.normal_force;
-            // rocks that are so far apart that they are not asked have been let go halfway
-            let after = pair.map_or(-before, pulls);
+            // pairs too far apart to be candidates have opened halfway
+            let after = pair.map_or(-before, force_at_end);
             let inv_m = ends.map(|end| 1.0 / end.body.mass).iter().sum::<f64>();
             let allowed_m_s = ends.map(|end| end.allowed_m_s(relative));
             let omega = history.law.omega_rad_s();
@@ -175,7 +179,7 @@ impl Island<'_> {
         self.pair_histories.iter().enumerate().map(of_pair).fold(rocks, f64::min)
     }
 
-    /// What the present place touches is met whatever becomes of the tries.
+    /// Accepts the new contacts at the present position, independently of the following tries.
     pub(super) fn accept_new_contacts(&mut self) {
         for member in self.members.iter_mut().map(|slot| &mut **slot) {
             let (world, state) = member.with_environment(self.terrain);
@@ -183,7 +187,8 @@ impl Island<'_> {
         }
     }
 
-    /// After an accepted step: the impacts at whose beginning it ended press from now on, and the next step resolves them.
+    /// After an accepted step: deferred impacts that begin at its end act from now on, and the next
+    /// step resolves them.
     pub(super) fn begin_deferred_impacts(&mut self) {
         if self.has_reached_onset() {
             self.fresh = false;
@@ -193,11 +198,11 @@ impl Island<'_> {
     }
 }
 
-/// A contact over a try of `dt` (s) within which it may open.
+/// A contact that may open within a try of `dt` (s).
 struct OpeningContact {
-    /// Its force before the try and, negative if it could pull, after it (N).
+    /// Its force before the try, and after it; negative if it would pull (N).
     forces: (f64, f64),
-    /// One over the mass that it moves (1/kg).
+    /// Inverse effective mass (1/kg).
     inv_m: f64,
     /// Its frequency (rad/s).
     omega: f64,
@@ -205,21 +210,22 @@ struct OpeningContact {
 }
 
 impl OpeningContact {
-    /// The share (–) of the try after which it opens; 1 if it does not, if its spring gives little of an impact of `impact_m_s`, or so
-    /// late in the try that what the step misses behind the kink is less than is `allowed_m_s`.
+    /// Share (–) of the try at which it opens; 1 if it does not, if its spring gives little of an
+    /// impact of `impact_m_s`, or so late that the speed error after the kink is less than a part
+    /// of `allowed_m_s`.
     fn share(&self, impact_m_s: f64, allowed_m_s: f64) -> f64 {
         let (before, after) = self.forces;
         let share = before / (before - after);
-        let gives_m_s = before * self.inv_m / self.omega;
-        // the force behind the kink on the mean, over the part of the try that is left
+        let released_m_s = before * self.inv_m / self.omega;
+        // mean force after the kink, over the rest of the try
         let missed_m_s = -0.5 * after * self.inv_m * self.dt * (1.0 - share);
-        let is_late = after < 0.0 && gives_m_s > RELEASED * impact_m_s;
-        if is_late && missed_m_s > MISSED * allowed_m_s { share } else { 1.0 }
+        let is_relevant = after < 0.0 && released_m_s > RELEASED * impact_m_s;
+        if is_relevant && missed_m_s > SPEED_ERROR * allowed_m_s { share } else { 1.0 }
     }
 }
 
 impl IslandBody {
-    /// The same of its contacts with the mesh.
+    /// The same for its contacts with the mesh.
     fn first_opening(&self, (dt, hh): (f64, f64), relative: f64) -> f64 {
         let (state, end) = (&self.state, &self.end);
         if !state.is_rebounding() {

@@ -1,8 +1,10 @@
-//! Unloading springs: what they hold goes into motion, so that contact may go on in the limit of stiff springs.
+//! Unloading of springs: their energy becomes motion, so that contact may continue in the limit of
+//! stiff springs.
 //!
-//! A spring of an impact under way gives back what it holds along its normal: where the contact still comes in, the impact begins anew
-//! with what it had come with; where it goes out, it is over. What lasting contact and shear springs hold is lost, as it would be where
-//! the contact opens: weight presses in little.
+//! The spring of an impact under way returns its energy along its normal. If the contact still
+//! approaches, the impact begins anew with its initial speed; if it separates, the impact is over.
+//! The energy of sustained contact and of shear springs is lost, as it would be where the contact
+//! opens: that of weight is small.
 
 use super::body::IslandBody;
 use crate::contact::pair::{PairHistory, normal_and_distance};
@@ -10,15 +12,15 @@ use crate::rock::Vec3;
 use crate::solver::loss::{EnergyGiven, Loss};
 use crate::terrain::Terrain;
 
-/// Impulse along the normal (N s) by which a contact of effective mass `mass` (kg) with the normal speed apart `speed` (m/s) gets
-/// `energy_j` of motion: it goes on the way it goes.
+/// Normal impulse (N s) by which a contact of effective mass `mass` (kg) and normal separation
+/// speed `speed` (m/s) gains the kinetic energy `energy_j` (J), in the direction of its motion.
 fn impulse(mass: f64, speed: f64, energy_j: f64) -> f64 {
     let after = (speed * speed + 2.0 * energy_j / mass).sqrt();
     mass * (if speed < 0.0 { -after } else { after } - speed)
 }
 
 impl IslandBody {
-    /// Unloads its contacts with the mesh; what that takes (J) is negative.
+    /// Unloads its contacts with the mesh; the loss (J) is negative.
     pub fn unload(&mut self, terrain: &Terrain) -> Loss {
         let (world, state) = self.with_environment(terrain);
         let mut loss = Loss::default();
@@ -31,7 +33,7 @@ impl IslandBody {
         loss
     }
 
-    /// Contacts go on with springs at rest.
+    /// Continues its contacts with springs at rest.
     pub fn reset_springs(&mut self) {
         let state = &mut self.state;
         for history in state.histories.iter_mut() {
@@ -47,7 +49,7 @@ impl IslandBody {
     }
 }
 
-/// Unloads the contact of two rocks; what each gives (J).
+/// Unloads the contact of two rocks; the energy that each gives (J).
 pub fn unload_pair(pair: &mut PairHistory, [a, b]: [&mut IslandBody; 2]) -> [EnergyGiven; 2] {
     let (n, distance) = normal_and_distance(&a.state.c, &b.state.c);
     let depth_m = (a.body.radius + b.body.radius - distance).max(0.0);
@@ -59,7 +61,7 @@ pub fn unload_pair(pair: &mut PairHistory, [a, b]: [&mut IslandBody; 2]) -> [Ene
     let work = |one: &mut IslandBody, push: Vec3| {
         let before = one.state.v;
         one.state.v += push / one.body.mass;
-        // the work of the impulse on the rock, by the mean velocity
+        // work of the impulse on the rock, by the mean velocity
         -0.5 * push.dot(&(before + one.state.v))
     };
     EnergyGiven::of_ends([work(a, push), work(b, -push)])

@@ -4,8 +4,8 @@
 //! in the frame of two tangents and the normal. Normal force and friction follow in closed form
 //! (`stage_force`, `FrictionRolling::solve`), so a stage iterates only over the two sliders.
 //!
-//! Equations of a stage, with `x*` the state at its base, `h` its length (`γ Δt`) and `v_f = v* + h
-//! g`:
+//! Equations of a stage, with `x*` the state at its base, `h` its length (`γ Δt`) and
+//! `v_f = v* + h g`:
 //!
 //! ```text
 //! F  = max(0, (p_N (pen* − h v_fn) − c_N v_fn)/(1 + (p_N h² + c_N h)/m)), set-valued at penetration 0

@@ -119,9 +119,8 @@ impl GroundContact {
 
     /// Energy taken by the impulses (J), at mean velocity and spin.
     ///
-    /// The work of an impulse is that with the mean of the velocities before and after: `J·(v₀ +
-    /// v₁)/2` is the
-    /// change of kinetic energy exactly.
+    /// The work of an impulse is that with the mean of the velocities before and after:
+    /// `J·(v₀ + v₁)/2` is the change of kinetic energy exactly.
     pub(crate) fn loss(&self, body: &Body, (v, w): &Twist) -> Loss {
         let friction = -self.shear_impulse.dot(&body.slip(self.n(), v, w));
         let damping = -self.normal_impulse * self.n().dot(v);

@@ -17,12 +17,12 @@ use crate::solver::plane_ahead::PlaneStep;
 use crate::solver::step_control::Advance;
 
 /// Longest step on a plane over the longest elsewhere (–).
-const LONGER: f64 = 10.0;
+const LONGEST_FACTOR: f64 = 10.0;
 /// A longer step is tried only if it exceeds the usual one by this factor (–) …
 const WORTH: f64 = 2.0;
 /// … and the travel is at least this (–, relative to R): a slow rock must be checked for rest after
 /// every step.
-const LEAST_WAY: f64 = 0.05;
+const LEAST_TRAVEL: f64 = 0.05;
 /// Growth of the next step, after one that was accepted and after one that was not tried (–).
 const GROWTH: (f64, f64) = (2.0, 1.5);
 /// Difference allowed between a step as a whole and in halves, of velocities and of positions (–,
@@ -128,14 +128,14 @@ impl ContactState {
     ) -> bool {
         let (speed, body) = (self.v.norm(), &world.body);
         let least = WORTH * usual;
-        let wished = self.plane.wished_s.min(LONGER * longest).min(h_max);
-        if wished < least || speed * wished < LEAST_WAY * body.radius {
-            self.plane.wished_s *= GROWTH.1;
+        let proposed = self.plane.proposed_s.min(LONGEST_FACTOR * longest).min(h_max);
+        if proposed < least || speed * proposed < LEAST_TRAVEL * body.radius {
+            self.plane.proposed_s *= GROWTH.1;
             return false;
         }
         let Some(contact) = self.plane_contact(world) else { return false };
         let face = contact.touch.feature.id;
-        let clear = self.longest_on_plane_s(world, face, (wished, usual * speed));
+        let clear = self.longest_on_plane_s(world, face, (proposed, usual * speed));
         let from = Slide {
             c: self.c,
             v: self.v,
@@ -145,7 +145,7 @@ impl ContactState {
             mode: SlipState::default(),
         };
         let step = PlaneStep { face, n: contact.touch.normal, start: self.c };
-        let (tried, mut is_cut) = (wished.min(clear), false);
+        let (tried, mut is_cut) = (proposed.min(clear), false);
         let mut dt = tried;
         while dt >= least || is_cut {
             self.sweeps += 3;
@@ -154,7 +154,7 @@ impl ContactState {
                     let moved = (&(end.c - from.c), &(end.v - from.v));
                     if step.touches_plane_only((world, &self.near), moved, dt) {
                         self.slide_to(world, (&end, contact.touch.triangle), dt, done);
-                        self.plane.wished_s = if is_cut { tried } else { GROWTH.0 * dt };
+                        self.plane.proposed_s = if is_cut { tried } else { GROWTH.0 * dt };
                         return true;
                     }
                     is_cut = false;
@@ -166,7 +166,7 @@ impl ContactState {
             }
             done.rejected += 1;
         }
-        self.plane.wished_s = usual;
+        self.plane.proposed_s = usual;
         false
     }
 

@@ -43,7 +43,7 @@ pub(super) fn step(
         tried.solve(world, state, contact_s);
     }
     let before = (state.v, state.w);
-    let mean = book((world, state), &tried.contacts, [&before, &tried.after], done);
+    let mean = book_losses((world, state), &tried.contacts, [&before, &tried.after], done);
     (state.v, state.w) = tried.after;
     // mean of both velocities: the parabola under weight alone is exact
     state.c += mean.0 * tried.dt;
@@ -65,12 +65,12 @@ pub(super) fn capture(world: &ContactEnvironment, state: &mut ContactState, done
     let mut contacts: ArrayVec<GroundContact, MAX_CONTACTS> = touches().map(held).collect();
     let before = (state.v, state.w);
     let after = converge(&mut contacts, &world.body, before, &mut state.sweeps);
-    book((world, state), &contacts, [&before, &after], done);
+    book_losses((world, state), &contacts, [&before, &after], done);
     (state.v, state.w) = after;
 }
 
 /// Books the energy that contacts took between two motions; returns the mean motion.
-fn book(
+fn book_losses(
     (world, state): (&ContactEnvironment, &mut ContactState),
     contacts: &[GroundContact],
     [before, after]: [&Twist; 2],
@@ -156,7 +156,11 @@ fn time_to_contact_s(
 
 /// Displacement (m) that moves a rock of a radius (m) out of all that it touches, at `off` (m) from
 /// where that was found.
-pub(in crate::solver) fn way_out(touches: &[ContactPoint], radius_m: f64, off: &Vec3) -> Vec3 {
+pub(in crate::solver) fn penetration_correction(
+    touches: &[ContactPoint],
+    radius_m: f64,
+    off: &Vec3,
+) -> Vec3 {
     // each normal adds what the previous ones have not corrected
     touches.iter().fold(Vec3::zeros(), |sum, touch| {
         let missing_m = radius_m - touch.distance_m - (sum + off).dot(&touch.normal);
@@ -174,7 +178,7 @@ pub(super) fn push_out(world: &ContactEnvironment, state: &mut ContactState) {
     for _ in 0..4 {
         let c = state.c;
         state.update_contact_points_ahead(world, &c);
-        let out = way_out(&state.touches, r, &Vec3::zeros());
+        let out = penetration_correction(&state.touches, r, &Vec3::zeros());
         if out.norm() <= TOUCH * r {
             break;
         }

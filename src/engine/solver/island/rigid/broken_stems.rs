@@ -1,6 +1,6 @@
 //! Stems that give way in a blow of several rocks.
 //!
-//! A rock that is_useful on a stem is pressed against it by all that strikes it. The stem gives way within that blow, and what has not yet run
+//! A rock that leans on a stem is pressed against it by all that strikes it. The stem gives way within that blow, and what has not yet run
 //! through the row by then finds it gone: the blow is followed with all its rocks until the stem has taken all it can, and goes on from there.
 
 use super::contacts::ImpactScene;

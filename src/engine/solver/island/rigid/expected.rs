@@ -6,11 +6,11 @@
 
 use super::RigidIsland;
 use super::contacts::{ImpactScene, OnMesh, StepBody};
+use crate::contact::TOUCH;
 use crate::contact::pair::normal_and_distance;
 use crate::flight::{FlightEnd, Parabola, time_of_impact_without};
 use crate::rock::Vec3;
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
-use crate::solver::island::pair_contact::TOUCH;
 use crate::solver::law::capture_m_s;
 use crate::solver::rigid::{HELD, is_fast};
 use crate::solver::roughness::SurfaceApproach;

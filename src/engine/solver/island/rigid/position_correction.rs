@@ -9,7 +9,7 @@ use crate::contact::TOUCH;
 use crate::contact::pair::{PairHistory, normal_and_distance};
 use crate::rock::Vec3;
 use crate::solver::loss::EnergyGiven;
-use crate::solver::rigid::way_out;
+use crate::solver::rigid::penetration_correction;
 
 /// Overlap of two rocks that is not corrected: the static penetration of their springs, within bounds (–, relative to the
 /// smaller radius).
@@ -133,7 +133,7 @@ impl RigidIsland {
         if state.touches.is_empty() {
             return false;
         }
-        let out = way_out(&state.touches, world.body.radius, &off);
+        let out = penetration_correction(&state.touches, world.body.radius, &off);
         ball.c += out;
         if out != Vec3::zeros() {
             ball.shifted = sweep;
