@@ -321,6 +321,16 @@ impl std::ops::Deref for ContactPoints {
     }
 }
 
+/// Displacement (m) that moves a rock of a radius (m) out of all that it touches, at `off` (m) from
+/// where that was found.
+pub(crate) fn penetration_correction(touches: &[ContactPoint], radius_m: f64, off: &Vec3) -> Vec3 {
+    // each normal adds what the previous ones have not corrected
+    touches.iter().fold(Vec3::zeros(), |sum, touch| {
+        let missing_m = radius_m - touch.distance_m - (sum + off).dot(&touch.normal);
+        sum + touch.normal * missing_m.max(0.0)
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -283,7 +283,7 @@ impl LedgerSums {
 
 #[cfg(test)]
 mod tests {
-    use super::{Largest, Totals};
+    use super::{Largest, Sum, Totals};
 
     /// A gain of 1e-3 of what a rock releases is a fault of a rock alone and the local error of rocks that strike each other; one of 1e-2 is a fault
     /// of both.
@@ -293,7 +293,7 @@ mod tests {
         totals.released_j.add(20_000.0);
         let mut said = |rise_j: f64, passed_on_j: f64| {
             totals.largest_energy_rise_j = Some(Largest { release: 3, value: rise_j });
-            totals.ledger.passed_on_j = Default::default();
+            totals.ledger.passed_on_j = Sum::default();
             totals.ledger.passed_on_j.add(passed_on_j);
             totals.warnings(2, 0.0).iter().filter(|one| one.contains("rose by")).count()
         };

@@ -91,7 +91,7 @@ fn schemes_agree_on_facets_under_two_rocks() {
         });
         let [adaptive, rigid] = [0, 2].map(|k| farthest(&thrown[k], &thrown[1]));
         let mean = sideways(&thrown[1]);
-        assert!(mean > 0.5 && adaptive < 0.1 && rigid < 0.35, "{mean} {adaptive} {rigid}");
+        assert!(mean > 0.5 && adaptive < 0.2 && rigid < 0.35, "{mean} {adaptive} {rigid}");
     }
 }
 

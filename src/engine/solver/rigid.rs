@@ -36,7 +36,6 @@ use crate::contact::{ContactPoint, MAX_CONTACTS};
 use crate::rock::Vec3;
 use arrayvec::ArrayVec;
 pub(super) use contact::{GroundContact, converge, sustained_m_s};
-pub(super) use sustained::penetration_correction;
 
 /// Contact points no further away than this still hold the rock (–, relative to R).
 pub(crate) const HELD: f64 = 1e-4;

@@ -14,7 +14,6 @@
 //! neither speed nor spin rate.
 
 use super::environment::ContactEnvironment;
-use super::tilted_mesh::TiltedMesh;
 use crate::contact::history::SAME_CONTACT_COSINE;
 use crate::ground::Law;
 use crate::math;
@@ -65,6 +64,34 @@ pub(super) struct Tilt {
     pub(super) turn: Rotation3<f64>,
     /// Latest end of the impact (s).
     pub(super) until_s: f64,
+}
+
+/// The mesh as a rock among others meets it that is on a facet, or was (`tilted_mesh`).
+#[derive(Debug, Clone)]
+pub(crate) struct TiltedMesh {
+    /// Rotation from the surface to the facet; the identity once the impact is over.
+    turn: Rotation3<f64>,
+    /// Centre of the rock as it was rotated (m) …
+    centre: Vec3,
+    /// … and the centre for which contact points were found there (m).
+    on_mesh: Vec3,
+}
+
+impl TiltedMesh {
+    /// A mesh rotated by `turn`, with the rock at `centre` and found for `on_mesh` (m).
+    pub(super) fn new(turn: Rotation3<f64>, centre: Vec3, on_mesh: Vec3) -> Self {
+        Self { turn, centre, on_mesh }
+    }
+
+    /// Rotation from the surface to the facet.
+    pub(super) fn turn(&self) -> &Rotation3<f64> {
+        &self.turn
+    }
+
+    /// The centre for which contact points of a rock with its centre at `c` are found (m).
+    pub(super) fn centre_on_mesh(&self, c: &Vec3) -> Vec3 {
+        self.on_mesh + self.turn.inverse() * (c - self.centre)
+    }
 }
 
 /// A rock that approaches a surface.

@@ -16,34 +16,10 @@
 //! millimetres is left. It is dropped as soon as neither the mesh nor another rock notices.
 
 use super::contact_state::{ContactEnvironment, ContactState};
-use super::rigid::penetration_correction;
-use super::roughness::Tilt;
-use crate::contact::TOUCH;
+use super::roughness::{Tilt, TiltedMesh};
+use crate::contact::{TOUCH, penetration_correction};
 use crate::rock::Vec3;
 use nalgebra::Rotation3;
-
-/// The mesh as a rock meets it that is on a facet, or was.
-#[derive(Debug, Clone)]
-pub(crate) struct TiltedMesh {
-    /// Rotation from the surface to the facet; the identity once the impact is over.
-    turn: Rotation3<f64>,
-    /// Centre of the rock as it was rotated (m) …
-    centre: Vec3,
-    /// … and the centre for which contact points were found there (m).
-    on_mesh: Vec3,
-}
-
-impl TiltedMesh {
-    /// Rotation from the surface to the facet.
-    pub(super) fn turn(&self) -> &Rotation3<f64> {
-        &self.turn
-    }
-
-    /// The centre for which contact points of a rock with its centre at `c` are found (m).
-    fn centre_on_mesh(&self, c: &Vec3) -> Vec3 {
-        self.on_mesh + self.turn.inverse() * (c - self.centre)
-    }
-}
 
 impl ContactState {
     /// The centre for which contact points of the rock are found when it is at `c` (m).
@@ -98,7 +74,7 @@ impl ContactState {
     ) -> Option<Rotation3<f64>> {
         let tilt = self.facets.tilt.as_mut()?;
         let turn = tilt.turn;
-        if self.facets.mesh.as_ref().is_some_and(|mesh| mesh.turn == turn) {
+        if self.facets.mesh.as_ref().is_some_and(|mesh| *mesh.turn() == turn) {
             return None;
         }
         tilt.until_s = now_s + longer * (tilt.until_s - now_s);
@@ -119,9 +95,10 @@ impl ContactState {
 
     /// Rotates the mesh about the rock's centre, with all that the contacts remember.
     fn turn_mesh(&mut self, turn: Rotation3<f64>) {
-        let before = self.facets.mesh.as_ref().map_or_else(Rotation3::identity, |mesh| mesh.turn);
+        let before =
+            self.facets.mesh.as_ref().map_or_else(Rotation3::identity, |mesh| *mesh.turn());
         let on_mesh = self.centre_on_mesh();
-        self.facets.mesh = Some(TiltedMesh { turn: turn * before, centre: self.c, on_mesh });
+        self.facets.mesh = Some(TiltedMesh::new(turn * before, self.c, on_mesh));
         for history in self.histories.iter_mut() {
             history.n = turn * history.n;
             history.shear = turn * history.shear;

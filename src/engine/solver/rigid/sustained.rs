@@ -3,7 +3,7 @@
 
 use super::contact::{GroundContact, converge, sustained_m_s};
 use super::{is_approaching, update_histories};
-use crate::contact::{ContactPoint, MAX_CONTACTS, TOUCH};
+use crate::contact::{ContactPoint, MAX_CONTACTS, TOUCH, penetration_correction};
 use crate::rock::Vec3;
 use crate::solver::body::Twist;
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
@@ -152,20 +152,6 @@ fn time_to_contact_s(
         })
     });
     times_s.reduce(f64::min)
-}
-
-/// Displacement (m) that moves a rock of a radius (m) out of all that it touches, at `off` (m) from
-/// where that was found.
-pub(in crate::solver) fn penetration_correction(
-    touches: &[ContactPoint],
-    radius_m: f64,
-    off: &Vec3,
-) -> Vec3 {
-    // each normal adds what the previous ones have not corrected
-    touches.iter().fold(Vec3::zeros(), |sum, touch| {
-        let missing_m = radius_m - touch.distance_m - (sum + off).dot(&touch.normal);
-        sum + touch.normal * missing_m.max(0.0)
-    })
 }
 
 /// Moves a rock out of the mesh along the normals; the potential energy gained is taken from its

@@ -19,6 +19,9 @@ pub(super) struct StepBody {
     pub(super) v: Vec3,
     pub(super) w: Vec3,
     pub(super) body: Body,
+    /// Its acceleration over the step (m/s²): that of its weight, or what sustained contact with the
+    /// mesh leaves of it.
+    pub(super) acceleration: Vec3,
     /// Velocity and spin at the start of the step.
     pub(super) before: Twist,
     /// `1/m` (1/kg) and `1/I` (1/(kg m²)).
@@ -63,6 +66,7 @@ impl StepBody {
             v,
             w,
             body: *body,
+            acceleration: body.gravity,
             before: (v, w),
             inv,
             allowed_m_s: 0.0,
@@ -91,10 +95,10 @@ impl StepBody {
         self.c += impulse.0 * (self.inv.0 * s);
     }
 
-    /// Centre and velocity `s` (s) before the end of the step, on its parabola.
+    /// Centre and velocity `s` (s) before the end of the step, at its constant acceleration.
     pub(super) fn before_end(&self, s: f64) -> (Vec3, Vec3) {
-        let gravity = self.body.gravity;
-        (self.c - (self.v - gravity * (0.5 * s)) * s, self.v - gravity * s)
+        let a = self.acceleration;
+        (self.c - (self.v - a * (0.5 * s)) * s, self.v - a * s)
     }
 
     /// The same with its spin, at a time counted from the end of the step.

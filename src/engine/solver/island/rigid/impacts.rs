@@ -20,7 +20,7 @@ use crate::solver::contact_state::{ContactEnvironment, ContactState};
 use crate::solver::impact::frozen_impact;
 use crate::solver::island::outcome::BlowInStep;
 use crate::solver::loss::{EnergyGiven, Loss};
-use crate::solver::rigid::{HELD, IMPACT, frozen, is_fast};
+use crate::solver::rigid::{HELD, IMPACT, STRUCK_TOGETHER, frozen, is_fast};
 use crate::solver::roughness::SurfaceApproach;
 use nalgebra::Rotation3;
 use std::cmp::Reverse;
@@ -211,10 +211,18 @@ impl RigidIsland {
         let meeting = SurfaceApproach { n: touch.normal, triangle: touch.triangle, c: at, v };
         let turn = state.facets.draw_facet(&world, &meeting);
         let approach_m_s = -touch.normal.dot(&v);
-        let found = state.touches.clone();
+        let mut found = state.touches.clone();
         let blow = BlowStart { pair: None, turn, touches_m, approach_m_s, lasts_s };
         if !self.blow_together(scene, &blow, s) {
-            scene.members[k].state.touches = found;
+            // as of a rock alone: what it does not hold and has not come to yet is the next impact
+            let member = &mut *scene.members[k];
+            let radius = member.body.radius;
+            found.retain(|touch| {
+                let is_held = member.last_forces.iter().any(|(held, ..)| *held == touch.feature);
+                let room = if is_held { HELD } else { STRUCK_TOGETHER };
+                touch.distance_m <= touches_m + room * radius
+            });
+            member.state.touches = found;
             self.rebound(scene, (k, &touch), (&at, &v), (turn, s));
         }
     }
@@ -297,5 +305,5 @@ fn rebound_from(
 
 /// Mean motion in an impact `s` (s) before the end of the step, from the motions at the end without and with it.
 fn mean_motion_earlier(ball: &StepBody, before: &(Vec3, Vec3), s: f64) -> (Vec3, Vec3) {
-    ((before.0 + ball.v) * 0.5 - ball.body.gravity * s, (before.1 + ball.w) * 0.5)
+    ((before.0 + ball.v) * 0.5 - ball.acceleration * s, (before.1 + ball.w) * 0.5)
 }

@@ -5,11 +5,10 @@
 
 use super::RigidIsland;
 use super::contacts::{ImpactScene, StepBody};
-use crate::contact::TOUCH;
 use crate::contact::pair::{PairHistory, normal_and_distance};
+use crate::contact::{TOUCH, penetration_correction};
 use crate::rock::Vec3;
 use crate::solver::loss::EnergyGiven;
-use crate::solver::rigid::penetration_correction;
 
 /// Overlap of two rocks that is not corrected: the static penetration of their springs, within bounds (–, relative to the
 /// smaller radius).
