@@ -115,7 +115,7 @@ mod tests {
         for is_open in [false, true] {
             let computed = ways(&[(1.0, false), (2.0, false), (3.0, false), (9.0, is_open)]);
             let found = RunoutDistances::of(&measured(), &computed).unwrap();
-            assert_eq!(found.ks, [0.25; 2], "{is_open}");
+            assert!(found.ks.iter().all(|ks| (ks - 0.25).abs() < 1e-15), "{is_open}: {found:?}");
             assert!((found.area_m - 1.25).abs() < 1e-15, "{found:?}");
         }
     }
