@@ -11,6 +11,7 @@ mod beside;
 mod computed;
 mod finalists;
 mod fitted;
+mod open;
 mod own;
 mod parts;
 mod redraw;
@@ -131,8 +132,9 @@ pub fn calibrate(
     // by the rocks that assess the fits, so that the difference is that of the values
     let before = search.trial(&before, (Ends::All, CalibrationStage::Assessment))?;
     // first, so that the interval is that of the grids of this fit
-    let FoundFit { trial: whole, trials, finalists } = search.best(Ends::All, tried)?;
+    let FoundFit { trial: whole, trials, finalists, unclear } = search.best(Ends::All, tried)?;
     let (told, measures, ends) = search.worth(&whole.values, scenes[0].seed)?;
+    search.refuse_unclear(&whole, unclear.as_ref(), ends.1)?;
     let mut held_out = Vec::new();
     for part in 0..parts {
         held_out.push(search.best(Ends::Without(part), tried)?.trial);
@@ -157,7 +159,8 @@ pub fn calibrate(
             .collect(),
         ends,
     };
-    found.warnings.extend(found.doubts(vary));
+    found.warnings.extend(open::warning(&found.whole.all));
+    found.warnings.extend(found.doubts(vary, unclear.as_ref()));
     Ok(found)
 }
 
@@ -338,22 +341,38 @@ impl Calibration {
         // before, and fitted on all, there is nothing apart
         let parts = parts.into_iter().filter(|_| trial.fitted.measured < trial.all.measured);
         parts.chain([("all ends", &trial.all)]).try_for_each(|(what, of)| {
+            let least = if of.open() > 0 { ">= " } else { "" };
             if of.computed == 0 {
                 return writeln!(to, "  {what:<14} no computed end, {} not compared", of.stayed);
             }
             writeln!(
                 to,
-                "  {what:<14} runout {:.1} m (measured {:.1}), KS {:.3} (limit {:.3}), area {:.1} m, side {:.1} m (measured {:.1}){}{}",
+                "  {what:<14} runout {least}{:.1} m (measured {:.1}), KS {:.3}{} (limit {:.3}), area {least}{:.1} m, side {:.1} m (measured {:.1}){}{}",
                 of.computed_mean_m,
                 of.measured_mean_m,
                 of.ks,
+                of.ks_most.map_or_else(String::new, |most| format!(" to {most:.3}")),
                 self.independent_ks_limit(of),
                 of.area_m,
                 of.computed_side_m,
                 of.measured_side_m,
-                of.ends_m.map_or_else(String::new, |ends_m| format!(", energy distance {ends_m:.2} m")),
-                if of.stayed > 0 { format!(", {} not compared", of.stayed) } else { String::new() },
+                energy_distance(of),
+                counts(of),
             )
         })
     }
+}
+
+/// The energy distance of a trial, as it is said; nothing where a fit is not scored by it.
+fn energy_distance(of: &Agreement) -> String {
+    let most = of.ends_most_m.map_or_else(String::new, |most_m| format!(" to {most_m:.2}"));
+    of.ends_m.map_or_else(String::new, |ends_m| format!(", energy distance {ends_m:.2}{most} m"))
+}
+
+/// Computed rocks of a trial that are not compared, or that had not ended, as they are said.
+fn counts(of: &Agreement) -> String {
+    let said = |count: usize, what: &str| {
+        if count > 0 { format!(", {count} {what}") } else { String::new() }
+    };
+    said(of.stayed, "not compared") + &said(of.open(), "had not ended")
 }

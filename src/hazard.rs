@@ -45,8 +45,8 @@ pub use lines::{
 };
 pub use maps::{INTENSITY_J, Layer, MapFrame, MapState, Maps};
 pub use observed::{
-    Agreement, EndDistances, EndSpread, KOLMOGOROV_95, ObservedPath, Weighted, distances,
-    effective, ks_limit, mean_95, rank, runouts,
+    Agreement, EndDistances, EndSpread, KOLMOGOROV_95, ObservedPath, OpenEnds, RunoutDistances,
+    Weighted, effective, ks_limit, mean_95, rank, runouts,
 };
 pub use open::{OpenRock, OpenRocks};
 pub use profile::{Profile, ProfilePoint, StretchStatistic};

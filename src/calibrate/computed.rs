@@ -14,8 +14,8 @@ pub(super) struct Computed {
     pub(super) stayed: Vec<usize>,
     /// Its releases, and how many classes they take in turn: places of release that measured ends have too, or strata of size and source.
     pub(super) releases: (usize, usize),
-    /// How far the ends lie from the measured ones; only where a fit is scored by it.
-    pub(super) apart: Option<EndDistances>,
+    /// How far the ends lie from the measured ones, for each way in which open rocks may have ended; only where a fit is scored by it.
+    pub(super) apart: Vec<EndDistances>,
 }
 
 impl Computed {
@@ -23,11 +23,12 @@ impl Computed {
     pub(super) fn again(&self, times: &[usize]) -> Self {
         let each = self.ways.iter().map(|(index, _)| times[*index]);
         let ways = self.ways.iter().zip(each.clone());
+        let each: Vec<usize> = each.collect();
         Self {
             ways: ways.flat_map(|(way, times)| std::iter::repeat_n(*way, times)).collect(),
             stayed: Vec::new(),
             releases: self.releases,
-            apart: self.apart.as_ref().map(|apart| apart.again(&each.collect::<Vec<_>>())),
+            apart: self.apart.iter().map(|apart| apart.again(&each)).collect(),
         }
     }
 }

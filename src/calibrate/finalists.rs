@@ -105,7 +105,8 @@ mod tests {
     use crate::hazard::{Agreement, ObservedPath};
 
     fn trial(value: f64, off_m: f64) -> CalibrationTrial {
-        let way = |runout_m: f64| ObservedPath { start_m: [0.0; 2], end_m: [runout_m, 0.0] };
+        let way =
+            |runout_m: f64| ObservedPath { start_m: [0.0; 2], end_m: [runout_m, 0.0], open: None };
         let measured = [1.0, 2.0, 3.0, 4.0].map(way);
         let agreement = Agreement::of(&measured, &measured.map(|m| way(m.runout_m() + off_m)));
         let all = agreement.unwrap();

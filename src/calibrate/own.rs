@@ -85,7 +85,7 @@ mod tests {
     /// Three ends from one place and one from another, which the scene releases from evenly, and from a third.
     #[test]
     fn ends_are_compared_from_their_own_places() {
-        let way = |x: f64, y: f64| ObservedPath { start_m: [x, 0.0], end_m: [x, y] };
+        let way = |x: f64, y: f64| ObservedPath { start_m: [x, 0.0], end_m: [x, y], open: None };
         let measured = [way(0.0, 1.0), way(5.0, 2.0), way(0.05, 3.0), way(0.0, 4.0)];
         let places = [[0.0, 0.0], [5.0, 0.0], [9.0, 0.0]].map(|at| (at, None));
         let own = OwnPlaces::of(&measured, &[], &places).unwrap();

@@ -62,6 +62,8 @@ pub(super) struct FoundFit {
     pub(super) trial: CalibrationTrial,
     pub(super) trials: usize,
     pub(super) finalists: usize,
+    /// Of it and those of the search that open rocks leave unclear, the one that may lie nearest.
+    pub(super) unclear: Option<CalibrationTrial>,
 }
 
 /// The search over one set of ends after the other.
@@ -108,7 +110,8 @@ impl<'a> ParameterSearch<'a> {
     ) -> Result<FoundFit> {
         let trials = self.search(ends, tried)?;
         let (trial, finalists) = self.select(&trials, ends, tried)?;
-        Ok(FoundFit { trial, trials: trials.len(), finalists })
+        let count = trials.len();
+        Ok(FoundFit { unclear: unclear(trials, &trial), trial, trials: count, finalists })
     }
 
     /// All trials of the search.
@@ -169,7 +172,7 @@ impl<'a> ParameterSearch<'a> {
         if stage == 1 {
             return Some(widened(best.iter().map(|best| [*best; 2]), &self.step, self.vary));
         }
-        let open = self.left_open(ends, REDRAWS, TAIL);
+        let open = self.left_open(ends, REDRAWS, TAIL).ranges;
         let mut axes = ranges.iter().zip(&open).zip(&self.step).zip(self.vary);
         let is_resolved = axes.all(|(((range, open), step), vary)| {
             let is_inside = range[0] <= open[0] && open[1] <= range[1];
@@ -259,13 +262,24 @@ impl<'a> ParameterSearch<'a> {
 }
 
 /// Whose fitted ends lie nearer, those of one trial (less) or of another: by their energy distance where a fit is scored by it, else by their
-/// runouts.
+/// runouts; by the most that these can be, however open rocks would have ended.
 pub(super) fn nearer(one: &CalibrationTrial, other: &CalibrationTrial) -> Ordering {
     let (one, other) = (&one.fitted, &other.fitted);
     // 0 where it is not known, on both sides
-    let [one_m, other_m] = [one, other].map(|of| of.ends_m.unwrap_or(0.0));
-    let by_runout = || one.ks.total_cmp(&other.ks).then(one.area_m.total_cmp(&other.area_m));
+    let [one_m, other_m] = [one, other].map(|of| of.ends_at_most_m().unwrap_or(0.0));
+    let [one_ks, other_ks] = [one, other].map(Agreement::ks_at_most);
+    let by_runout = || one_ks.total_cmp(&other_ks).then(one.area_m.total_cmp(&other.area_m));
     one_m.total_cmp(&other_m).then_with(by_runout)
+}
+
+/// Of trials that open rocks leave unclear the one whose runouts may lie nearest; none where they leave none so.
+fn unclear(
+    searched: Vec<CalibrationTrial>,
+    selected: &CalibrationTrial,
+) -> Option<CalibrationTrial> {
+    let all = searched.into_iter().chain([selected.clone()]);
+    let unclear = all.filter(|trial| trial.fitted.ks_most.is_some());
+    unclear.min_by(|one, other| one.fitted.ks.total_cmp(&other.fitted.ks))
 }
 
 /// All combinations of `steps` even values of each range, ends included.

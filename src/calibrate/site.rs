@@ -8,7 +8,8 @@ use super::{CalibrationStage, Ends, put_all, refuse_weights};
 use crate::ensemble::Ensemble;
 use crate::error::Result;
 use crate::hazard::{
-    Agreement, EndDistances, ObservedPath, Row, Weighted, distances, effective, rank, runouts,
+    Agreement, EndDistances, ObservedPath, OpenEnds, Row, RunoutDistances, Weighted, effective,
+    rank,
 };
 use crate::plan::{Part, Plan};
 use crate::random::RandomStream;
@@ -170,12 +171,23 @@ impl CalibrationSite {
         plan.releases.shapes().clone_into(&mut self.shapes);
         let releases = (plan.count, self.classes(&plan));
         self.terrain = Some(plan.terrain);
-        let mut computed = Computed { ways, stayed, releases, apart: None };
+        let mut computed = Computed { ways, stayed, releases, apart: Vec::new() };
         if self.score == CalibrationScore::Ends {
-            let beside = |rows: &[usize]| self.weighted(&computed, rows);
-            computed.apart = Some(EndDistances::of(&self.measured, &self.groups, beside));
+            computed.apart = self.apart(&computed);
         }
         Ok(computed)
+    }
+
+    /// How far the computed ends lie from the measured ones, for each way in which open rocks may have ended.
+    fn apart(&self, computed: &Computed) -> Vec<EndDistances> {
+        let is_open = computed.ways.iter().any(|(_, way)| way.open.is_some());
+        let ways = if is_open { &OpenEnds::ALL[..] } else { &[OpenEnds::Seen] };
+        let one = |how: &OpenEnds| {
+            let beside =
+                |rows: &[usize]| how.placed(&self.ends(rows), self.weighted(computed, rows));
+            EndDistances::of(&self.measured, &self.groups, beside)
+        };
+        ways.iter().map(one).collect()
     }
 
     /// How many classes the releases take in turn: common places of release, or strata of size and source.
@@ -187,13 +199,16 @@ impl CalibrationSite {
         self.own.as_ref().map_or_else(strata, OwnPlaces::in_turn).max(1)
     }
 
-    /// Energy distance of some measured ends from the computed ones (m), beyond all numbers where nothing was computed beside one of them;
-    /// none where a fit is not scored by it.
-    fn ends_m(&self, computed: &Computed, rows: &[usize]) -> Option<f64> {
-        let apart = computed.apart.as_ref()?;
-        let ends_m = apart.energy_m(&self.measured, &self.groups, rows);
-        // what is no number may have any sign, and would count as the nearest
-        Some(if ends_m.is_nan() { f64::INFINITY } else { ends_m })
+    /// Energy distance of some measured ends from the computed ones (m), the least and the most of the ways in which open rocks may have ended; beyond
+    /// all numbers where nothing was computed beside one of them. None where a fit is not scored by it.
+    fn ends_m(&self, computed: &Computed, rows: &[usize]) -> Option<[f64; 2]> {
+        let each = computed.apart.iter().map(|apart| {
+            let ends_m = apart.energy_m(&self.measured, &self.groups, rows);
+            // what is no number may have any sign, and would count as the nearest
+            if ends_m.is_nan() { f64::INFINITY } else { ends_m }
+        });
+        let least = each.clone().reduce(f64::min)?;
+        Some([least, each.fold(least, f64::max)])
     }
 
     /// Compares some of the ends, of which there must be one.
@@ -202,7 +217,9 @@ impl CalibrationSite {
         let found = Agreement::of_weighted(&self.ends(&rows), &self.weighted(computed, &rows))
             .unwrap_or_else(|| Agreement::of_nothing(&self.ends(&rows)));
         let stayed = self.stayed(computed, &rows);
-        Agreement { stayed, ends_m: self.ends_m(computed, &rows), ..found }
+        let ends_m = self.ends_m(computed, &rows);
+        let most_m = ends_m.filter(|[least, most]| least < most).map(|[_, most]| most);
+        Agreement { stayed, ends_m: ends_m.map(|[least, _]| least), ends_most_m: most_m, ..found }
     }
 
     /// Rocks that would stand beside some of the ends, had they run.
@@ -243,15 +260,15 @@ impl CalibrationSite {
     }
 
     /// Distance of some measured ends from the computed ones, times their number: the energy distance (m), or that of
-    /// the distributions of runout after Kolmogorov and Smirnov (–), which is 1 where nothing was computed.
-    pub(super) fn distance(&self, computed: &Computed, rows: &[usize]) -> f64 {
-        if let Some(ends_m) = self.ends_m(computed, rows) {
-            return rows.len() as f64 * ends_m;
-        }
+    /// the distributions of runout after Kolmogorov and Smirnov (–), which is 1 where nothing was computed. The least and the most that it may be, as
+    /// open rocks have ended.
+    pub(super) fn distance(&self, computed: &Computed, rows: &[usize]) -> [f64; 2] {
         let measured: Vec<Weighted> = rows.iter().map(|&row| (self.measured[row], 1.0)).collect();
-        let computed = runouts(&self.weighted(computed, rows));
-        let far = || distances(&runouts(&measured), &computed).0;
-        rows.len() as f64 * if computed.is_empty() { 1.0 } else { far() }
+        let ks = || {
+            let found = RunoutDistances::of(&measured, &self.weighted(computed, rows));
+            found.map_or([1.0; 2], |found| found.ks)
+        };
+        self.ends_m(computed, rows).unwrap_or_else(ks).map(|far| rows.len() as f64 * far)
     }
 
     /// Where some measured ends lie among the computed ones of their own places: mean rank, which is 0.5 where they are

@@ -16,6 +16,9 @@ use std::fmt;
 /// How far the ranks of measured ends are from even ones.
 const UNEVEN: &str = "largest distance of these ranks from even ones (–)";
 
+/// Where the measured ends lie among the computed ones.
+const RANK: &str = "mean rank among computed ends of the same place (–)";
+
 /// Most blocks that are told one by one.
 const MOST_BLOCKS: usize = 12;
 
@@ -28,7 +31,7 @@ pub struct SiteMeasure {
     pub what: String,
     /// Of the measured ends.
     pub measured: f64,
-    /// Of the computed ends.
+    /// Of the computed ends; of rocks that had not ended as they were last seen.
     pub computed: f64,
     /// 95 % interval of computed less measured, from measured ends and computed rocks drawn again, of measured standard deviations from their
     /// kurtosis: lower end.
@@ -36,6 +39,30 @@ pub struct SiteMeasure {
     pub low_95: Option<f64>,
     /// Its upper end.
     pub high_95: Option<f64>,
+    /// Whether rocks that had not ended make the computed figure, and its difference from the measured one, the least that they can be: then the interval has no upper
+    /// end. What they make neither least nor most has no interval.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub censored: bool,
+}
+
+impl SiteMeasure {
+    fn of(
+        (scene, what): (String, String),
+        [measured, computed]: [f64; 2],
+        [low_95, high_95]: [Option<f64>; 2],
+    ) -> Self {
+        Self { scene, what, measured, computed, low_95, high_95, censored: false }
+    }
+
+    /// The same where rocks had not ended: of the difference a lower bound is known or nothing. A rank is of measured ends, among computed ones.
+    fn left_open(self, is_least: bool) -> Self {
+        Self {
+            low_95: self.low_95.filter(|_| is_least),
+            high_95: None,
+            censored: is_least && self.what != RANK,
+            ..self
+        }
+    }
 }
 
 /// Values, figures, and the number of ends with what they are worth.
@@ -74,12 +101,12 @@ impl CalibrationSite {
         let again: Vec<_> =
             drawn.iter().map(|(rows, computed)| self.figures(computed, rows)).collect();
         let (worth, rocks) = (self.effective(), computed.releases.0 as f64);
+        let is_open = self.has_open(computed, &all);
         let one = |(at, (what, measured, own)): (usize, (&'static str, f64, f64))| {
             let scene = self.title();
             if let Some(most) = self.by_chance(what, computed, &drawn) {
                 let what = what.replace(" (", &format!(", by chance up to {most:.2} ("));
-                let (low_95, high_95) = (None, None);
-                return SiteMeasure { scene, what, measured, computed: own, low_95, high_95 };
+                return SiteMeasure::of((scene, what), [measured, own], [None; 2]);
             }
             let of = |tail: f64, figure: &dyn Fn(&(&'static str, f64, f64)) -> f64| {
                 middle(again.iter().map(|figures| figure(&figures[at])).collect(), tail)
@@ -90,9 +117,15 @@ impl CalibrationSite {
                 || off().map(Some),
                 |ends| less_95((own, of(tail_of(rocks), &|(_, _, own)| *own)), (measured, ends)),
             );
-            SiteMeasure { scene, what: what.to_owned(), measured, computed: own, low_95, high_95 }
+            SiteMeasure::of((scene, what.to_owned()), [measured, own], [low_95, high_95])
         };
-        self.figures(computed, &all).into_iter().enumerate().map(one).collect()
+        let left_open = |(at, figure): (usize, (&'static str, f64, f64))| {
+            // what rises with every runout
+            let is_least = [EndSpread::MEAN, EndSpread::BEYOND, RANK].contains(&figure.0);
+            let measure = one((at, figure));
+            if is_open { measure.left_open(is_least) } else { measure }
+        };
+        self.figures(computed, &all).into_iter().enumerate().map(left_open).collect()
     }
 
     /// Measured ends and computed rocks drawn again.
@@ -125,6 +158,12 @@ impl CalibrationSite {
         }
     }
 
+    /// Whether some of the computed rocks beside some measured ends had not ended.
+    fn has_open(&self, computed: &Computed, rows: &[usize]) -> bool {
+        let beside = self.weighted(computed, rows);
+        beside.iter().any(|(way, weight)| *weight > 0.0 && way.open.is_some())
+    }
+
     /// Computed ends of equal weight that those beside some measured ends are worth (Kish 1965).
     fn rocks_beside(&self, computed: &Computed, rows: &[usize]) -> f64 {
         Sample::weighted(runouts(&self.weighted(computed, rows))).effective_rocks()
@@ -134,7 +173,7 @@ impl CalibrationSite {
     fn figures(&self, computed: &Computed, rows: &[usize]) -> Vec<(&'static str, f64, f64)> {
         let mut figures = EndSpread::figures(&self.ends(rows), &self.weighted(computed, rows));
         if let Some([mean, off]) = self.ranks(computed, rows) {
-            figures.push(("mean rank among computed ends of the same place (–)", mean, 0.5));
+            figures.push((RANK, mean, 0.5));
             figures.push((UNEVEN, off, 0.0));
         }
         figures
@@ -170,8 +209,10 @@ impl CalibrationSite {
             let off =
                 again.iter().map(|means| of(means)).map(|[measured, computed]| computed - measured);
             let [low_95, high_95] = middle(off.collect(), tail_of(fewest(rows))).map(Some);
-            let [measured, computed] = of(&found);
-            SiteMeasure { scene: self.title(), what, measured, computed, low_95, high_95 }
+            let measure = SiteMeasure::of((self.title(), what), of(&found), [low_95, high_95]);
+            let is_open = rows.iter().any(|at| self.has_open(computed, &blocks[*at].1));
+            // a difference of two blocks is open on both sides
+            if is_open { measure.left_open(rows.len() == 1) } else { measure }
         };
         let first = blocks[0].0;
         let own = blocks.iter().enumerate().map(|(at, (name, _))| {
@@ -214,13 +255,17 @@ fn beyond_95(measured: f64, computed: f64) -> f64 {
 
 impl fmt::Display for SiteMeasure {
     fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { scene, what, measured, computed, low_95, high_95 } = self;
+        let Self { scene, what, measured, computed, low_95, high_95, censored } = self;
         let [measured, computed] = [measured, computed].map(|value| plain(*value));
-        write!(to, "{scene}: {what} measured {measured}, computed {computed}")?;
-        if let (Some(low), Some(high)) = (low_95, high_95) {
-            write!(to, " (difference, 95 %: {} to {})", plain(*low), plain(*high))?;
+        let least = if *censored { ">= " } else { "" };
+        write!(to, "{scene}: {what} measured {measured}, computed {least}{computed}")?;
+        match (low_95, high_95) {
+            (Some(low), Some(high)) => {
+                write!(to, " (difference, 95 %: {} to {})", plain(*low), plain(*high))
+            }
+            (Some(low), None) => write!(to, " (difference, 95 %: {} or more)", plain(*low)),
+            _ => Ok(()),
         }
-        Ok(())
     }
 }
 

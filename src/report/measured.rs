@@ -5,12 +5,12 @@ use super::canvas::{Canvas, Label, NORMAL, Pen, paint};
 use super::colour::{BLUE, GREY, INK, VERMILLION};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
-use super::model::{Estimate, Observed, Report};
+use super::model::{Estimate, Is, Observed, Report};
 use super::panel::{FOOT_PX, Panel};
 use super::plan_view::ground;
 use super::svg::path::{PaperFrame, Spot};
 use super::words::{Words, fill};
-use crate::hazard::{Agreement, ObservedPath, Sample, Weighted, mean_95, runouts};
+use crate::hazard::{Agreement, ObservedPath, Open, Sample, Weighted, mean_95, runouts};
 use crate::math;
 
 const TOP_PX: f64 = 26.0;
@@ -67,7 +67,7 @@ pub(super) fn draw(report: &Report, observed: &Observed) -> Drawing {
     let number = |value: f64| format::significant(math::rounded(value, 2), 2);
     let mean = mean_of(observed).map(|mean| {
         let [value, low, high] = format::with_interval([mean.value, mean.low, mean.high]);
-        format!("{value} ({})", words.interval(&low, &high))
+        format!("{}{value} ({})", format::sign(mean.is), words.interval(&low, &high))
     });
     let caption = fill(
         words.measured_caption,
@@ -76,14 +76,17 @@ pub(super) fn draw(report: &Report, observed: &Observed) -> Drawing {
             ("computed", &format::decimal(at.computed as f64, 0)),
             ("mean_measured", &mean[0]),
             ("mean_computed", &mean[1]),
-            ("ks", &number(at.ks)),
+            (
+                "ks",
+                &(format::sign(Is::at_least_if(at.ks_most.is_some())).to_owned() + &number(at.ks)),
+            ),
             ("limit", &number(at.ks_limit)),
             ("side_measured", &number(at.measured_side_m)),
             ("side_computed", &number(at.computed_side_m)),
         ],
     );
     let more = worth(observed, words) + &weighing(observed, words);
-    Drawing { svg, caption: caption + &more + &not_compared(&at, words) }
+    Drawing { svg, caption: caption + &more + &not_compared(&at, words) + &not_ended(&at, words) }
 }
 
 /// Mean runouts, measured and computed, with their intervals (m).
@@ -93,15 +96,14 @@ pub(super) fn mean_of(observed: &Observed) -> [Estimate; 2] {
     let [low, high] = mean_95(&measured, observed.worth).unwrap_or([f64::NAN; 2]);
     let even = vec![1.0; observed.computed.len()];
     let weights = observed.weights.as_ref().unwrap_or(&even);
-    let ways: Vec<Weighted> =
-        observed.computed.iter().copied().zip(weights.iter().copied()).collect();
-    let mean = Sample::weighted(runouts(&ways)).mean();
+    let ways = observed.computed.iter().zip(weights).filter(|(_, weight)| **weight > 0.0);
+    let seen = ways.map(|(way, weight)| (way.runout_m(), *weight, way.open.is_some()));
+    let mean = Sample::censored(seen, Open::Above).mean();
     let end = |end: Option<f64>| end.unwrap_or(f64::NAN);
     let ends = mean.map_or([f64::NAN; 2], |mean| [mean.low_95, mean.high_95].map(end));
-    [
-        Estimate::new(at.measured_mean_m, low, high),
-        Estimate::new(at.computed_mean_m, ends[0], ends[1]),
-    ]
+    let computed = Estimate::new(at.computed_mean_m, ends[0], ends[1]);
+    let is = Is::at_least_if(at.open() > 0);
+    [Estimate::new(at.measured_mean_m, low, high), Estimate { is, ..computed }]
 }
 
 /// For how many independent ends the limit is, and that it is no test of values fitted to these ends.
@@ -126,6 +128,27 @@ pub(super) fn not_compared(agreement: &Agreement, words: &Words) -> String {
     let count = agreement.stayed;
     let said = fill(NOT_COMPARED, &[("n", &format::decimal(count as f64, 0))]);
     if count > 0 { format!(" {}", words.say(&said)) } else { String::new() }
+}
+
+/// What is said more where computed rocks would have gone on; else nothing.
+pub(super) fn not_ended(agreement: &Agreement, words: &Words) -> String {
+    let (open, of) = (agreement.open(), agreement.computed);
+    if open == 0 {
+        return String::new();
+    }
+    let count = |n: usize| format::decimal(n as f64, 0);
+    let places = [open, of, agreement.left_terrain, agreement.still_moving].map(count);
+    let share = format::percent_of_part(open as f64 / of as f64, 0);
+    fill(
+        words.open().at_ends,
+        &[
+            ("n", &places[0]),
+            ("of", &places[1]),
+            ("left", &places[2]),
+            ("moving", &places[3]),
+            ("share", &share),
+        ],
+    )
 }
 
 fn head(canvas: &Canvas<'_>, panel: &Panel, words: &str) {

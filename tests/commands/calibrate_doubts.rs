@@ -19,7 +19,7 @@ const HEAD: &str = "release_x_m,release_y_m,x_m,y_m";
 
 fn put_ends(dir: &Path, ends: &[ObservedPath]) {
     let mut table = format!("{HEAD}\n");
-    for ObservedPath { start_m: [from_x, from_y], end_m: [x, y] } in ends {
+    for ObservedPath { start_m: [from_x, from_y], end_m: [x, y], .. } in ends {
         writeln!(table, "{from_x},{from_y},{x},{y}").unwrap();
     }
     fs::write(dir.join("ends.csv"), table).unwrap();
@@ -182,7 +182,7 @@ fn blanks_in_a_table_of_ends_are_none_of_it() {
     let file = dir.path().join("ends.csv");
     let ends = rockfall::scene::MeasuredEnds { file: file.clone(), least_runout_m: None };
     let found = ObservedPath::read(&ends).unwrap();
-    assert_eq!(found[0], ObservedPath { start_m: [1.0, 2.5], end_m: [3.0, 4.0] });
+    assert_eq!(found[0], ObservedPath { start_m: [1.0, 2.5], end_m: [3.0, 4.0], open: None });
     assert_eq!(found.len(), 3);
     assert_eq!(ObservedPath::read_blocks(&file).unwrap(), ["a", "b", "a"]);
 }

@@ -58,7 +58,7 @@ pub(super) fn ways(file: &Path, seed: u64, releases: usize) -> Vec<ObservedPath>
     let way = |index| {
         let fall = simulate_release(&plan, index, None, &mut scratch).unwrap();
         let place_m = |of: &Motion| (of.position_m + plan.terrain.origin_m).xy().into();
-        ObservedPath { start_m: place_m(&fall.start), end_m: place_m(&fall.end) }
+        ObservedPath { start_m: place_m(&fall.start), end_m: place_m(&fall.end), open: None }
     };
     (0..releases).map(way).collect()
 }
@@ -91,7 +91,7 @@ fn ends_beside_the_terrain_are_told() {
 fn fit(dir: &Path, seed: u64, held_out: f64) -> (Vec<ObservedPath>, Calibration) {
     let measured = ways(&rough(dir, 0, ""), 100 + seed, 40);
     let mut text = "release_x_m,release_y_m,x_m,y_m\n".to_owned();
-    for ObservedPath { start_m, end_m } in &measured {
+    for ObservedPath { start_m, end_m, .. } in &measured {
         writeln!(text, "{},{},{},{}", start_m[0], start_m[1], end_m[0], end_m[1]).unwrap();
     }
     fs::write(dir.join("ends.csv"), text).unwrap();
@@ -193,7 +193,7 @@ fn intervals_of_the_spread_hold_the_difference() {
     let more = format!("[calibrate]\ndeposits = \"ends.csv\"\nheld_out = 0.0\n{vary}");
     let measured = ways(&rough(dir.path(), 7, ""), 7, 24);
     let mut table = "release_x_m,release_y_m,x_m,y_m\n".to_owned();
-    for ObservedPath { start_m: [from_x, from_y], end_m: [x, y] } in measured {
+    for ObservedPath { start_m: [from_x, from_y], end_m: [x, y], .. } in measured {
         writeln!(table, "{from_x},{from_y},{x},{y}").unwrap();
     }
     fs::write(dir.path().join("ends.csv"), table).unwrap();
@@ -219,7 +219,7 @@ fn intervals_of_the_spread_hold_the_difference() {
 fn an_interval_ends_half_a_step_beyond_values_tried() {
     let dir = tempfile::tempdir().unwrap();
     let mut table = "release_x_m,release_y_m,x_m,y_m\n".to_owned();
-    for ObservedPath { start_m: [from_x, from_y], end_m: [x, y] } in
+    for ObservedPath { start_m: [from_x, from_y], end_m: [x, y], .. } in
         ways(&rough(dir.path(), 1, ""), 31, 20)
     {
         writeln!(table, "{from_x},{from_y},{x},{y}").unwrap();

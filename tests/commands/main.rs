@@ -30,6 +30,7 @@ mod bounded_worlds;
 mod calibrate;
 mod calibrate_blocks;
 mod calibrate_doubts;
+mod calibrate_open;
 mod calibrate_selection;
 mod catalogue;
 mod compare;

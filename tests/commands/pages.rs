@@ -181,6 +181,7 @@ fn sources_and_first_warnings_are_said_in_every_language() {
         "written in the scene; measured ends ([calibrate]) stand beside it and are not fitted",
         "calibrated on measured ends ([calibrate] fitted of the scene)",
         "the computed ends are not distributed like the measured ones: KS distance 0.957, 5 % limit 0.184. The ground values do not hold for this slope",
+        "whether the computed ends are distributed like the measured ones cannot be told: 590 of 600 computed rocks had not ended, and the KS distance is anything from 0.012 to 1.000, 5 % limit 0.133. Give a longer [solver] longest_s or terrain that reaches farther",
         "400 of 1000 releases tried out lie over the object “road” before they move: they hit it at once, with the energy of the release. Draw the object or the release elsewhere",
         "the weights of zones.geojson are not used: every class of size and source gets the same number of rocks, and each rock stands for its part of the frequency of its zone",
     ];
@@ -192,7 +193,7 @@ fn sources_and_first_warnings_are_said_in_every_language() {
 }
 
 /// What plan and run warn of, one of each that no other test makes: said whole in every language.
-const WARNED: [&str; 34] = [
+const WARNED: [&str; 37] = [
     "rocks differ up to 1000 times in mass and contacts up to 100000 times in stiffness: where the product is more than 2e6 blows through several contacts are taken one by one, and a boulder on a light stone comes off too slowly; write stiffnesses that are nearer to each other, or scheme = \"adaptive\"",
     "[grounds.r] lies under no mesh",
     "[grounds.r] has breaks_above_j, but no tree: only trees give way",
@@ -226,6 +227,9 @@ const WARNED: [&str; 34] = [
     "A, B: the rocks of one world meet each other, but all intervals take them for independent and are too narrow for what they share: a change that is clear here may be chance. Run several seeds of each scene and compare.",
     "g.rolling_friction: the values that fit best reach the lower end of the range tried, 0.25, and better ones may lie below it; write a smaller from in vary",
     "g.restitution: the values that fit best reach the upper end of the range tried, 0.3, and better ones may lie above it; write a larger to in vary",
+    "in the fit on all 136 of 800 computed rocks (17.0 %) had not ended, 46 had left the terrain, 90 were still moving: mean runouts and shares are at least what is said, KS distances and intervals hold however these rocks would have ended; write a longer longest_s and a larger terrain",
+    "g.rolling_friction: rocks that had not ended leave open which values fit best, as far as to the lower end of the range tried, 0.25; write a longer longest_s or a larger terrain before a smaller from in vary",
+    "g.restitution: rocks that had not ended leave open which values fit best, as far as to the upper end of the range tried, 0.3; write a longer longest_s or a larger terrain before a larger to in vary",
     "the values tried do not explain the measured ends: KS distance 0.812 of the fit on all, 5 % limit 0.188; write wider ranges in vary, vary other values, or look at terrain, rocks and releases",
 ];
 

@@ -121,7 +121,7 @@ mod tests {
     use super::*;
 
     fn way(x: f64, y: f64) -> ObservedPath {
-        ObservedPath { start_m: [7.0, 3.0], end_m: [7.0 + x, 3.0 + y] }
+        ObservedPath { start_m: [7.0, 3.0], end_m: [7.0 + x, 3.0 + y], open: None }
     }
 
     /// By hand: ends at 0 and 2 m beside computed ones 3 m to the side. Across: (3 + √13)/2; among each: 1.

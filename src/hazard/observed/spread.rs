@@ -14,6 +14,8 @@ pub struct EndSpread {
 }
 
 impl EndSpread {
+    /// Mean distance from release to end.
+    pub const MEAN: &str = "mean runout (m)";
     /// Distance between the middles of measured and computed ends.
     pub const OFFSET: &str = "offset of the centroid (m)";
     /// How much of the computed lies farther than all that was measured.
@@ -40,7 +42,7 @@ impl EndSpread {
         let farthest_m = near.last().map_or(f64::NAN, |(runout, _)| *runout);
         let beyond = &far[far.partition_point(|(runout, _)| *runout <= farthest_m)..];
         vec![
-            ("mean runout (m)", mean(&near), mean(&far)),
+            (Self::MEAN, mean(&near), mean(&far)),
             (Self::OFFSET, 0.0, offset_m),
             (Self::DEVIATIONS[0], one.sd_m[0], two.sd_m[0]),
             (Self::DEVIATIONS[1], one.sd_m[1], two.sd_m[1]),
@@ -238,7 +240,11 @@ mod tests {
     /// By hand: ends at 10 and 20 m north, computed 3 m further east and 4 m further north, one of them beyond.
     #[test]
     fn figures_are_those_found_by_hand() {
-        let way = |x: f64, y: f64| ObservedPath { start_m: [1.0, 1.0], end_m: [1.0 + x, 1.0 + y] };
+        let way = |x: f64, y: f64| ObservedPath {
+            start_m: [1.0, 1.0],
+            end_m: [1.0 + x, 1.0 + y],
+            open: None,
+        };
         let figures = EndSpread::figures(
             &[way(0.0, 10.0), way(0.0, 20.0)],
             &[(way(3.0, 14.0), 1.0), (way(3.0, 24.0), 1.0)],

@@ -1,8 +1,8 @@
 //! Measured ends and calibration, gathered from summary, releases and `calibration.json`.
 
 use super::super::format;
-use super::super::measured::{mean_of, not_compared, weighing, worth};
-use super::super::model::{About, Estimate, EstimateTable, Observed};
+use super::super::measured::{mean_of, not_compared, not_ended, weighing, worth};
+use super::super::model::{About, Estimate, EstimateTable, Is, Observed};
 use super::super::words::{Words, fill};
 use super::estimate;
 use crate::calibrate::{
@@ -92,9 +92,21 @@ fn own_weights(
     (off > SAME_WEIGHT || off.is_nan()).then_some(weights)
 }
 
-/// What must be known before anything else where the computed ends are not those that were measured.
+/// What must be known before anything else where the computed ends are not those that were measured, or where that cannot be told, as too many rocks had
+/// not ended.
 pub(super) fn off(observed: &Observed, words: &Words) -> Option<String> {
     let at = &observed.agreement;
+    if at.ks <= at.ks_limit && at.ks_at_most() > at.ks_limit {
+        let said = format!(
+            "whether the computed ends are distributed like the measured ones cannot be told: {} of {} computed rocks had not ended, and the KS distance is anything from {:.3} to {:.3}, 5 % limit {:.3}. Give a longer [solver] longest_s or terrain that reaches farther",
+            at.open(),
+            at.computed,
+            at.ks,
+            at.ks_at_most(),
+            at.ks_limit
+        );
+        return Some(words.say(&said));
+    }
     let said = format!(
         "the computed ends are not distributed like the measured ones: KS distance {:.3}, 5 % limit {:.3}. The ground values do not hold for this slope",
         at.ks, at.ks_limit
@@ -117,7 +129,8 @@ pub(super) fn tables(results: &Results, words: &Words) -> Result<Vec<EstimateTab
             note: note
                 + &worth(&observed, words)
                 + &weighing(&observed, words)
-                + &not_compared(agreement, words),
+                + &not_compared(agreement, words)
+                + &not_ended(agreement, words),
             columns: columns(words),
             rows: vec![(words.this_run.to_owned(), known(&observed))],
             ..EstimateTable::default()
@@ -148,7 +161,9 @@ fn calibration(found: &Calibration, words: &Words) -> EstimateTable {
     EstimateTable {
         about: About::Measured,
         title: words.calibration_title.to_owned(),
-        note: effort(found, words) + &not_compared(&found.whole.all, words),
+        note: effort(found, words)
+            + &not_compared(&found.whole.all, words)
+            + &not_ended(&found.whole.all, words),
         columns: columns(words),
         rows,
         ..EstimateTable::default()
@@ -215,7 +230,13 @@ fn spread(found: &Calibration, words: &Words) -> EstimateTable {
         let difference =
             estimate(measure.computed - measure.measured, measure.low_95, measure.high_95);
         let plain = |value: f64| Some(estimate(value, None, None));
-        let cells = vec![plain(measure.measured), plain(measure.computed), Some(difference)];
+        let least = |of: Estimate, is: bool| Some(Estimate { is: Is::at_least_if(is), ..of });
+        let is_open = measure.low_95.is_some() && measure.high_95.is_none();
+        let cells = vec![
+            plain(measure.measured),
+            least(Estimate::plain(measure.computed), measure.censored),
+            least(difference, measure.censored || is_open),
+        ];
         (format!("{}: {}", measure.scene, measure.what), cells)
     };
     EstimateTable {
@@ -238,7 +259,15 @@ fn cells(of: &Agreement, found: &Calibration) -> Vec<Option<Estimate>> {
         of.measured_side_m,
         of.computed_side_m,
     ];
-    numbers.map(|value| Some(Estimate::plain(value))).into()
+    bounded(numbers.map(Estimate::plain), of)
+}
+
+/// The cells of a row, those marked that open rocks make lower bounds: mean runout and area, and the KS distance where they decide it.
+fn bounded(mut cells: [Estimate; 7], of: &Agreement) -> Vec<Option<Estimate>> {
+    for (at, is_bound) in [(1, of.open() > 0), (2, of.ks_most.is_some()), (4, of.open() > 0)] {
+        cells[at].is = Is::at_least_if(is_bound);
+    }
+    cells.map(Some).into()
 }
 
 /// The same of one run, each with its interval, or with no more than two digits where it has none.
@@ -255,6 +284,8 @@ fn known(observed: &Observed) -> Vec<Option<Estimate>> {
         }
     };
     let computed = match &observed.weights {
+        // of places where rocks were last seen
+        _ if of.open() > 0 => rounded(of.computed_side_m),
         None => side(&observed.computed, of.computed_side_m, of.computed as f64),
         // of rocks from their own places that weigh nearly alike, by as many as know as much
         Some(weights) if observed.from_own_places => {
@@ -276,7 +307,7 @@ fn known(observed: &Observed) -> Vec<Option<Estimate>> {
         side(&observed.measured, of.measured_side_m, observed.worth),
         computed,
     ];
-    cells.map(Some).into()
+    bounded(cells, of)
 }
 
 #[cfg(test)]

@@ -8,6 +8,7 @@ words_of! {
     OpenWords:
     some_rocks, censored, largest_left, largest_open, have_left, remedy_left, remedy_holes, have_no_time, remedy_time, have_failed, have_no_budget,
     remedy_budget, at_line, on_maps, median, no_sampling,
+    at_ends,
 }
 
 /// So many of the rocks, beside a place or map where they are missing: `text` is one of the texts for it; nothing of none.
@@ -36,6 +37,7 @@ const EN: OpenWords = OpenWords {
     on_maps: " Rocks that ended on the map and would have gone on: {n} ({share}); their time or work was up, the computation failed, or they left the terrain away from the edge of the map. Further on they are missing, and probabilities and percentiles may be too low.",
     median: "The median is at most {median}°: rocks that would have gone on leave open how much less it is.",
     no_sampling: "no sampling error: only a bound, {n} of {of} rocks would have gone on",
+    at_ends: " Of {of} computed rocks {n} ({share}) had not ended: {left} left the terrain, {moving} {moving|was|were} still moving. They are taken as far as they were seen: however they would have ended, mean runout, KS and area are at least what is said (≥), and the scatter is that of these places.",
 };
 
 const DE: OpenWords = OpenWords {
@@ -55,6 +57,7 @@ const DE: OpenWords = OpenWords {
     on_maps: " Blöcke, die auf der Karte endeten und weitergelaufen wären: {n} ({share}); ihre Zeit oder ihr Rechenaufwand war erschöpft, die Rechnung schlug fehl, oder sie verließen das Gelände abseits vom Kartenrand. Weiter unten fehlen sie, und Wahrscheinlichkeiten und Perzentile können zu niedrig sein.",
     median: "Der Median ist höchstens {median}°: Blöcke, die weitergelaufen wären, lassen offen, um wie viel er kleiner ist.",
     no_sampling: "kein Stichprobenfehler: nur eine Schranke, {n} von {of} Blöcken wären weitergelaufen",
+    at_ends: " Von {of} berechneten Blöcken {n|war|waren} {n} ({share}) nicht am Ende: {left} {left|hat|haben} das Gelände verlassen, {moving} {moving|bewegte|bewegten} sich noch. Sie gelten, soweit sie gesehen wurden: wie auch immer sie geendet hätten, sind mittlere Auslaufstrecke, KS und Fläche mindestens die genannten (≥), und die Streuung ist die dieser Orte.",
 };
 
 const FR: OpenWords = OpenWords {
@@ -74,6 +77,7 @@ const FR: OpenWords = OpenWords {
     on_maps: " Blocs arrêtés sur la carte qui auraient continué\u{a0}: {n} ({share})\u{a0}; leur temps ou leur budget de calcul était épuisé, le calcul a échoué, ou ils ont quitté le terrain loin du bord de la carte. Plus loin ils manquent, et probabilités et centiles peuvent être trop faibles.",
     median: "La médiane est d’au plus {median}°\u{a0}: les blocs qui auraient continué laissent ouvert de combien elle est inférieure.",
     no_sampling: "pas d’erreur d’échantillonnage\u{a0}: seulement une borne, {n} blocs sur {of} auraient continué",
+    at_ends: " Sur {of} blocs calculés, {n} ({share}) {n|n’était pas arrivé|n’étaient pas arrivés}\u{a0}: {left} {left|est sorti|sont sortis} du terrain, {moving} {moving|bougeait|bougeaient} encore. Ils comptent là où ils ont été vus\u{a0}: quel qu’eût été leur arrêt, distance moyenne, KS et aire valent au moins ce qui est dit (≥), et la dispersion est celle de ces lieux.",
 };
 
 const IT: OpenWords = OpenWords {
@@ -93,6 +97,7 @@ const IT: OpenWords = OpenWords {
     on_maps: " Massi finiti sulla carta che avrebbero proseguito: {n} ({share}); il loro tempo o lo sforzo di calcolo era esaurito, il calcolo è fallito, o hanno lasciato il terreno lontano dal bordo della carta. Più oltre mancano, e probabilità e percentili possono essere troppo bassi.",
     median: "La mediana è al più {median}°: i massi che avrebbero proseguito lasciano aperto di quanto sia inferiore.",
     no_sampling: "nessun errore di campionamento: solo un limite, {n} massi su {of} avrebbero proseguito",
+    at_ends: " Di {of} massi calcolati, {n} ({share}) non {n|era giunto|erano giunti} alla fine: {left} {left|è uscito|sono usciti} dal terreno, {moving} {moving|era|erano} ancora in moto. Valgono fin dove sono stati visti: comunque fossero finiti, distanza media, KS e area sono almeno quanto detto (≥), e la dispersione è quella di questi luoghi.",
 };
 
 #[cfg(test)]

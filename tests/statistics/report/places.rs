@@ -144,6 +144,7 @@ fn observed() -> Observed {
     let way = |k: u32| ObservedPath {
         start_m: [EAST_M + 70.0, NORTH_M + 190.0],
         end_m: [EAST_M + 30.0 + f64::from(k * 7 % 80), NORTH_M + 10.0 + f64::from(k * 13 % 90)],
+        open: None,
     };
     let (measured, computed): (Vec<ObservedPath>, Vec<ObservedPath>) =
         ((0..40).map(way).collect(), (5..300).map(way).collect());

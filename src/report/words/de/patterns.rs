@@ -148,6 +148,10 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "in der Szene geschrieben; gemessene Endpunkte ([calibrate]) stehen daneben, angepasst ist nichts",
     ),
     (
+        "whether the computed ends are distributed like the measured ones cannot be told: {n} of {of} computed rocks had not ended, and the KS distance is anything from {low} to {high}, 5 % limit {limit}. Give a longer [solver] longest_s or terrain that reaches farther",
+        "Ob die berechneten Endpunkte so verteilt sind wie die gemessenen, ist nicht zu sagen: {n} von {of} berechneten Blöcken waren nicht am Ende, und der KS-Abstand liegt irgendwo zwischen {low} und {high}, 5-%-Schranke {limit}. Ein längeres [solver] longest_s oder weiter reichendes Gelände angeben",
+    ),
+    (
         "the computed ends are not distributed like the measured ones: KS distance {ks}, 5 % limit {limit}. The ground values do not hold for this slope",
         "Die gerechneten Endpunkte sind nicht verteilt wie die gemessenen: KS-Abstand {ks}, Grenze bei 5 % {limit}. Die Bodenkennwerte gelten für diesen Hang nicht",
     ),

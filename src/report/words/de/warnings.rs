@@ -47,6 +47,21 @@ pub(super) const WARNINGS: &[(&str, &str)] = &[
         "{file} sagt, wie groß die Blöcke seiner Zonen sind, was nicht verwendet wird: Größen sind die der Szene; wo jede Zone auch sagt, wie oft, und [frequency] kein eigenes Gesetz hat, hat jede ihre eigenen",
     ),
     (
+        "in the fit on all {n} of {of} computed rocks ({share} %) had not ended, {left} had left the terrain, {moving} were still moving: mean runouts and shares are at least what is said, KS distances and intervals hold however these rocks would have ended; write {what}",
+        "in der Anpassung an alle waren {n} von {of} berechneten Blöcken ({share} %) nicht am Ende, {left} hatten das Gelände verlassen, {moving} bewegten sich noch: mittlere Auslaufstrecken und Anteile sind mindestens die genannten, KS-Abstände und Intervalle gelten, wie auch immer diese Blöcke geendet hätten; in der Szene anzugeben: {what}",
+    ),
+    (
+        "{name}: rocks that had not ended leave open which values fit best, as far as to the lower end of the range tried, {a}; write a longer longest_s or a larger terrain before a smaller from in vary",
+        "{name}: Blöcke, die nicht am Ende waren, lassen offen, welche Werte am besten passen, bis zum unteren Ende des versuchten Bereichs, {a}; zuerst ein längeres longest_s oder größeres Gelände angeben, dann erst in vary ein kleineres from",
+    ),
+    (
+        "{name}: rocks that had not ended leave open which values fit best, as far as to the upper end of the range tried, {a}; write a longer longest_s or a larger terrain before a larger to in vary",
+        "{name}: Blöcke, die nicht am Ende waren, lassen offen, welche Werte am besten passen, bis zum oberen Ende des versuchten Bereichs, {a}; zuerst ein längeres longest_s oder größeres Gelände angeben, dann erst in vary ein größeres to",
+    ),
+    ("a larger terrain", "ein größeres Gelände"),
+    ("a longer longest_s", "ein längeres longest_s"),
+    ("a longer longest_s and a larger terrain", "ein längeres longest_s und ein größeres Gelände"),
+    (
         "{name}: the values that fit best reach the lower end of the range tried, {a}, and better ones may lie below it; write a smaller from in vary",
         "{name}: die am besten passenden Werte reichen bis ans untere Ende des versuchten Bereichs, {a}, bessere können darunter liegen; in vary ein kleineres from schreiben",
     ),

@@ -148,6 +148,10 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "écrites dans la scène\u{a0}; des arrêts mesurés ([calibrate]) figurent à côté, rien n’est calé sur eux",
     ),
     (
+        "whether the computed ends are distributed like the measured ones cannot be told: {n} of {of} computed rocks had not ended, and the KS distance is anything from {low} to {high}, 5 % limit {limit}. Give a longer [solver] longest_s or terrain that reaches farther",
+        "On ne peut dire si les arrêts calculés sont distribués comme les arrêts mesurés\u{a0}: {n} blocs calculés sur {of} n’étaient pas arrivés, et la distance KS est quelque part entre {low} et {high}, limite à 5 % {limit}. Donner un [solver] longest_s plus long ou un terrain plus étendu",
+    ),
+    (
         "the computed ends are not distributed like the measured ones: KS distance {ks}, 5 % limit {limit}. The ground values do not hold for this slope",
         "Les arrêts calculés ne sont pas distribués comme les arrêts mesurés\u{a0}: distance KS {ks}, limite à 5 % {limit}. Les valeurs des sols ne sont pas valables pour ce versant",
     ),

@@ -47,6 +47,21 @@ pub(super) const WARNINGS: &[(&str, &str)] = &[
         "{file} dit la taille des blocs de ses zones, qui n’est pas utilisée\u{a0}: les tailles sont celles de la scène\u{a0}; si chaque zone dit aussi la fréquence et que [frequency] n’a pas de loi propre, chacune a les siennes",
     ),
     (
+        "in the fit on all {n} of {of} computed rocks ({share} %) had not ended, {left} had left the terrain, {moving} were still moving: mean runouts and shares are at least what is said, KS distances and intervals hold however these rocks would have ended; write {what}",
+        "dans le calage sur tous, {n} blocs calculés sur {of} ({share} %) n’étaient pas arrivés, {left} étaient sortis du terrain, {moving} bougeaient encore\u{a0}: les distances moyennes et les parts valent au moins ce qui est dit, les distances KS et les intervalles valent quel qu’eût été l’arrêt de ces blocs\u{a0}; écrire {what}",
+    ),
+    (
+        "{name}: rocks that had not ended leave open which values fit best, as far as to the lower end of the range tried, {a}; write a longer longest_s or a larger terrain before a smaller from in vary",
+        "{name}\u{a0}: des blocs qui n’étaient pas arrivés laissent ouvert quelles valeurs conviennent le mieux, jusqu’au bas de l’intervalle essayé, {a}\u{a0}; écrire un longest_s plus long ou un terrain plus étendu avant d’écrire dans vary un from plus petit",
+    ),
+    (
+        "{name}: rocks that had not ended leave open which values fit best, as far as to the upper end of the range tried, {a}; write a longer longest_s or a larger terrain before a larger to in vary",
+        "{name}\u{a0}: des blocs qui n’étaient pas arrivés laissent ouvert quelles valeurs conviennent le mieux, jusqu’au haut de l’intervalle essayé, {a}\u{a0}; écrire un longest_s plus long ou un terrain plus étendu avant d’écrire dans vary un to plus grand",
+    ),
+    ("a larger terrain", "un terrain plus étendu"),
+    ("a longer longest_s", "un longest_s plus long"),
+    ("a longer longest_s and a larger terrain", "un longest_s plus long et un terrain plus étendu"),
+    (
         "{name}: the values that fit best reach the lower end of the range tried, {a}, and better ones may lie below it; write a smaller from in vary",
         "{name}\u{a0}: les valeurs qui conviennent le mieux atteignent le bas de l’intervalle essayé, {a}, et de meilleures peuvent se trouver au-dessous\u{a0}; écrire dans vary un from plus petit",
     ),

@@ -148,6 +148,10 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "scritti nella scena; gli arresti misurati ([calibrate]) vi stanno accanto, nulla è calibrato su di essi",
     ),
     (
+        "whether the computed ends are distributed like the measured ones cannot be told: {n} of {of} computed rocks had not ended, and the KS distance is anything from {low} to {high}, 5 % limit {limit}. Give a longer [solver] longest_s or terrain that reaches farther",
+        "Non si può dire se gli arresti calcolati siano distribuiti come quelli misurati: {n} massi calcolati su {of} non erano giunti alla fine, e la distanza KS è tra {low} e {high}, limite al 5 % {limit}. Dare un [solver] longest_s più lungo o un terreno più esteso",
+    ),
+    (
         "the computed ends are not distributed like the measured ones: KS distance {ks}, 5 % limit {limit}. The ground values do not hold for this slope",
         "Gli arresti calcolati non sono distribuiti come quelli misurati: distanza KS {ks}, limite al 5 % {limit}. I valori del terreno non valgono per questo versante",
     ),

@@ -47,6 +47,21 @@ pub(super) const WARNINGS: &[(&str, &str)] = &[
         "{file} dice quanto sono grandi i massi delle sue zone, e non è usato: le dimensioni sono quelle della scena; dove ogni zona dice anche quanto spesso, e [frequency] non ha una legge propria, ognuna ha le sue",
     ),
     (
+        "in the fit on all {n} of {of} computed rocks ({share} %) had not ended, {left} had left the terrain, {moving} were still moving: mean runouts and shares are at least what is said, KS distances and intervals hold however these rocks would have ended; write {what}",
+        "nella calibrazione su tutti, {n} massi calcolati su {of} ({share} %) non erano giunti alla fine, {left} erano usciti dal terreno, {moving} erano ancora in moto: le distanze medie e le quote valgono almeno quanto detto, le distanze KS e gli intervalli valgono comunque questi massi fossero finiti; scrivere {what}",
+    ),
+    (
+        "{name}: rocks that had not ended leave open which values fit best, as far as to the lower end of the range tried, {a}; write a longer longest_s or a larger terrain before a smaller from in vary",
+        "{name}: massi non giunti alla fine lasciano aperto quali valori si adattino meglio, fino all’estremo inferiore dell’intervallo provato, {a}; scrivere un longest_s più lungo o un terreno più esteso prima di un from più piccolo in vary",
+    ),
+    (
+        "{name}: rocks that had not ended leave open which values fit best, as far as to the upper end of the range tried, {a}; write a longer longest_s or a larger terrain before a larger to in vary",
+        "{name}: massi non giunti alla fine lasciano aperto quali valori si adattino meglio, fino all’estremo superiore dell’intervallo provato, {a}; scrivere un longest_s più lungo o un terreno più esteso prima di un to più grande in vary",
+    ),
+    ("a larger terrain", "un terreno più esteso"),
+    ("a longer longest_s", "un longest_s più lungo"),
+    ("a longer longest_s and a larger terrain", "un longest_s più lungo e un terreno più esteso"),
+    (
         "{name}: the values that fit best reach the lower end of the range tried, {a}, and better ones may lie below it; write a smaller from in vary",
         "{name}: i valori che si adattano meglio arrivano all’estremo inferiore dell’intervallo provato, {a}, e valori migliori possono trovarsi al di sotto; scrivere in vary un from più piccolo",
     ),
