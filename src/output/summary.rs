@@ -42,7 +42,7 @@ const DEFINITIONS: [(&str, &str); 13] = [
     ),
     (
         "intervals",
-        "95 %: of percentiles by order statistics, whatever the distribution (low_95 and high_95 two-sided, upper_95 one-sided); of means the outer ends of Student's and Hall's, normal for their logarithm where that would reach below 0, none where all values are equal; of shares Clopper and Pearson, 1 − 0.05^(1/n) (one-sided) where none or all were seen. Conditional on release; numbers a year stand under annual only. With sources that sample sizes by importance rocks weigh what they stand for: ratios of sums, intervals by the delta method, of percentiles Woodruff's",
+        "95 %: of percentiles by order statistics, whatever the distribution (low_95 and high_95 two-sided, upper_95 one-sided); of means the outer ends of Student's and Hall's, normal for the logarithm of how far they lie above it where that would reach below what is possible (0; of heights of blocks at lines, where some are below 0, minus the mean of half their own heights), none where all values are equal; of shares Clopper and Pearson, 1 − 0.05^(1/n) (one-sided) where none or all were seen. Conditional on release; numbers a year stand under annual only. With sources that sample sizes by importance rocks weigh what they stand for: ratios of sums, intervals by the delta method, of percentiles Woodruff's",
     ),
     (
         "lines",
