@@ -26,6 +26,7 @@ pub(super) fn site(plan: &Plan) -> Site {
         further_releases,
         release_names: if is_named { release_names } else { Vec::new() },
         fast_warnings: plan.fast_warnings.clone(),
+        floor: floors::of_terrain(plan),
     }
 }
 
