@@ -37,7 +37,7 @@ pub use barriers::{
     Arrivals, AtPlace, Barrier, BarrierSummary, Elsewhere, arrivals, barrier_warnings, judge,
     stopping,
 };
-pub use design::{Design, Rule};
+pub use design::{Design, DesignBlock, Rule};
 pub use difference::{Difference, Reading, Values, WeightedCount};
 pub use lines::{
     ClassReach, CrossingRow, Line, LineFloor, LineInfo, LineQuantity, LineSummary, SilentClasses,

@@ -142,6 +142,11 @@ impl Releases {
         Ok(releases)
     }
 
+    /// Density of the rocks (kg/m³).
+    pub fn density_kg_m3(&self) -> f64 {
+        self.density_kg_m3
+    }
+
     /// The zone from which release `index` starts, by its place in [`Zones::list`]; none where the scene has no zones.
     pub fn zone_of(&self, index: usize) -> Option<usize> {
         self.draw_zone(&mut stream(self.seed, Purpose::Place, index), index)
