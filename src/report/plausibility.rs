@@ -92,7 +92,7 @@ pub fn fast_rocks(results: &Results) -> Result<Option<String>> {
     let share = share_of(&hazard.weights_or_equal(), fast.into_iter()).share;
     Ok((share > FEW).then(|| {
         format!(
-            "the fastest rock has {} m/s, and {} of them are faster than {FAST_M_S} m/s, which single blocks seldom are: check terrain, friction and restitution",
+            "the fastest rock has {} m/s, and {} of the rocks are faster than {FAST_M_S} m/s, which single blocks seldom are: check terrain, friction and restitution",
             format::significant(fastest, 3),
             told(share)
         )
