@@ -37,7 +37,7 @@ pub use barriers::{
     Arrivals, AtPlace, Barrier, BarrierSummary, Elsewhere, arrivals, barrier_warnings, judge,
     stopping,
 };
-pub use design::{Design, Rule};
+pub use design::{Design, DesignBlock, Rule};
 pub use difference::{Difference, Reading, Values, WeightedCount};
 pub use lines::{
     ClassReach, CrossingRow, Line, LineFloor, LineInfo, LineQuantity, LineSummary, SilentClasses,
@@ -48,7 +48,7 @@ pub use observed::{
     Agreement, EndDistances, EndSpread, KOLMOGOROV_95, ObservedPath, OpenEnds, RunoutDistances,
     Weighted, effective, ks_limit, mean_95, rank, runouts,
 };
-pub use open::{OpenRock, OpenRocks};
+pub use open::{OpenRock, OpenRocks, RowBounds};
 pub use profile::{Profile, ProfilePoint, StretchStatistic};
 pub use proportion::Proportion;
 pub(crate) use proportion::student_95;
@@ -72,13 +72,15 @@ pub const PERCENTS: [u8; 5] = [50, 90, 95, 98, 99];
 ///
 /// The statistics are over all rocks that were released. One that left the terrain, ran out of time or work, or failed counts
 /// with what it had done until then; its runout is a lower bound, and so is every percentile of runout that such rocks decide. So are
-/// the largest values of one that ran out of time or work, or failed.
+/// the largest values of one that ran out of time or work, or failed, where it could come to [larger](RowBounds::of).
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Hazard {
     stops: BTreeMap<StopKind, EndCounts>,
     values: [Vec<f64>; Quantity::ALL.len()],
-    /// How each rock ended, in the order of the values.
-    ended: Vec<StopKind>,
+    /// Which values of each rock are only bounds, in the order of the values.
+    bounds: Vec<RowBounds>,
+    /// The lowest ground of the terrain; none where rocks push each other.
+    floor: Option<LineFloor>,
     /// Those that would have gone on, by rising release.
     open: Vec<OpenRock>,
     largest: [Option<Largest>; Quantity::ALL.len()],
@@ -138,6 +140,12 @@ impl Hazard {
     #[must_use]
     pub fn weighing(self, frequency: Option<Frequency>) -> Self {
         Self { frequency, ..self }
+    }
+
+    /// The same, over terrain whose lowest ground is known: a rock that would have gone on gets no more energy than its fall to it gives.
+    #[must_use]
+    pub fn over(self, floor: Option<LineFloor>) -> Self {
+        Self { floor, ..self }
     }
 
     /// What each rock stands for; none where all weigh the same.
@@ -212,7 +220,7 @@ impl Hazard {
             self.not_released.push(row.index);
             return;
         }
-        self.ended.push(row.stop);
+        self.bounds.push(RowBounds::of(row, self.floor));
         for (slot, quantity) in Quantity::ALL.into_iter().enumerate() {
             let value = quantity.of(row);
             // a failed rock may have left no number; infinite, two equal runs stay equal
@@ -234,6 +242,12 @@ impl Hazard {
     /// Rocks that would have gone on, by rising release.
     pub fn open_rocks(&self) -> &[OpenRock] {
         &self.open
+    }
+
+    /// Whether some rock that would have gone on could come to a larger speed, energy or height than it had.
+    pub fn leaves_largest_open(&self) -> bool {
+        let is_open = |of: &RowBounds| RowBounds::LARGEST.iter().any(|one| of.has(*one));
+        self.bounds.iter().any(is_open)
     }
 
     /// Rocks that ended on the map and would have gone on: they are missing in its cells further on. None of none.
@@ -277,9 +291,8 @@ impl Hazard {
     /// All values of one quantity, sorted: for curves and histograms.
     pub fn sample(&self, quantity: Quantity) -> Sample {
         let weights = self.weights_or_equal();
-        let seen = self.of_releases(quantity).zip(&self.ended);
-        let each =
-            seen.map(|((value, release), stop)| (value, release, quantity.is_bound_after(*stop)));
+        let seen = self.of_releases(quantity).zip(&self.bounds);
+        let each = seen.map(|((value, release), bounds)| (value, release, bounds.has(quantity)));
         Sample::censored_of_releases(each, &weights, quantity.open())
     }
 

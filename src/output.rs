@@ -189,7 +189,8 @@ impl Output {
         }
         let maps = open_maps(dir, &info, found.as_ref())?;
         let seconds_before = found.as_ref().map_or(0.0, |found| found.seconds);
-        let mut hazard = Hazard::default().weighing(info.asked.frequency.clone());
+        let hazard = Hazard::default().weighing(info.asked.frequency.clone());
+        let mut hazard = hazard.over(info.site.floor);
         // finished results are whole: nothing is marked, and what follows changes none of their rows
         let mut is_marked = false;
         if let Some(found) = found {

@@ -51,6 +51,7 @@ pub mod words;
 
 pub use answers::answers;
 pub use from_results::first::{LeftAtHoles, untouched_ground, untouched_trees};
+pub use plausibility::fast_rocks;
 
 use crate::body::Shape;
 use crate::error::{Error, Result};

@@ -143,6 +143,11 @@ impl Releases {
         Ok(releases)
     }
 
+    /// Density of the rocks (kg/m³).
+    pub fn density_kg_m3(&self) -> f64 {
+        self.density_kg_m3
+    }
+
     /// The zone from which release `index` starts, by its position in [`Zones::list`]; `None` if
     /// the scene has no zones.
     pub fn zone_of(&self, index: usize) -> Option<usize> {

@@ -12,6 +12,8 @@ pub struct Arrival {
     pub top_m: f64,
     /// Total energy (J).
     pub total_j: f64,
+    /// Speed of the centre (m/s).
+    pub speed_m_s: f64,
 }
 
 /// Values of rocks, each with what the rock stands for.

@@ -206,7 +206,8 @@ impl Arrival {
     pub(super) fn of(row: &CrossingRow) -> Self {
         // where there is no ground below, nothing says how high it is: it is let through
         let top_m = if row.height_m.is_nan() { f64::INFINITY } else { row.highest_m() };
-        Self { release: row.index, top_m, total_j: row.total_j() }
+        let total_j = row.total_j();
+        Self { release: row.index, top_m, total_j, speed_m_s: row.speed_m_s }
     }
 
     /// Whether a barrier of this height (m) and capacity (J) stops it.
@@ -309,6 +310,8 @@ mod tests {
             height_factors,
             free_height_m: 0.5,
             free_distance_m: None,
+            block: None,
+            capacity_factor: None,
         });
         upper.elsewhere = vec![Elsewhere { offset_m: -5.0, line: "upper -5 m".to_owned() }];
         let barriers = [upper, barrier("lower", 2.0, 200.0)];

@@ -1,8 +1,11 @@
 //! What all rocks say at one evaluation line.
 
 mod by_class;
+mod quantity;
 
 pub use by_class::{ClassReach, SilentClasses};
+use quantity::HEIGHTS;
+pub use quantity::LineQuantity;
 
 use super::proportion::Proportion;
 use super::rate::{share_if_any, share_up_to};
@@ -172,64 +175,6 @@ pub fn by_rock<E>(
     Ok(())
 }
 
-/// A quantity at a line.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum LineQuantity {
-    /// Speed of the centre (m/s).
-    Speed,
-    /// Translational energy (J).
-    Translational,
-    /// Rotational energy (J).
-    Rotational,
-    /// Sum of both (J).
-    Total,
-    /// Vertical height of the lowest point over the ground (m).
-    Height,
-    /// Height along the normal of the slope (m).
-    HeightNormal,
-    /// Slope of the path against the horizontal (degrees).
-    Descent,
-}
-
-impl LineQuantity {
-    /// All of them, in the order of tables.
-    pub const ALL: [Self; 7] = [
-        Self::Speed,
-        Self::Translational,
-        Self::Rotational,
-        Self::Total,
-        Self::Height,
-        Self::HeightNormal,
-        Self::Descent,
-    ];
-
-    /// Its name in `summary.json`, the column of `crossings.csv` where there is one.
-    pub fn column(self) -> &'static str {
-        match self {
-            Self::Speed => "speed_m_s",
-            Self::Translational => "translational_j",
-            Self::Rotational => "rotational_j",
-            Self::Total => "total_j",
-            Self::Height => "height_m",
-            Self::HeightNormal => "height_normal_m",
-            Self::Descent => "descent_deg",
-        }
-    }
-
-    /// Its value at one crossing.
-    pub fn of(self, row: &CrossingRow) -> f64 {
-        match self {
-            Self::Speed => row.speed_m_s,
-            Self::Translational => row.translational_j,
-            Self::Rotational => row.rotational_j,
-            Self::Total => row.total_j(),
-            Self::Height => row.height_m,
-            Self::HeightNormal => row.height_normal_m,
-            Self::Descent => row.descent_deg,
-        }
-    }
-}
-
 /// All first crossings of one line.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Line {
@@ -238,6 +183,8 @@ pub struct Line {
     crossings: usize,
     repeated: usize,
     values: [Vec<f64>; LineQuantity::ALL.len()],
+    /// What each of the [`HEIGHTS`] of these rocks can never lie below (m).
+    least_m: [Vec<f64>; HEIGHTS.len()],
     largest: [Option<Largest>; LineQuantity::ALL.len()],
     /// Release numbers, in the order of the values; kept only where rocks may weigh differently.
     releases: Vec<u32>,
@@ -274,6 +221,7 @@ impl Line {
             crossings: 0,
             repeated: 0,
             values: Default::default(),
+            least_m: Default::default(),
             largest: Default::default(),
             releases: Vec::new(),
             weights: None,
@@ -309,6 +257,9 @@ impl Line {
             self.values[slot].push(value);
             Largest::update(&mut self.largest[slot], row.index, value);
         }
+        for (of, least_m) in self.least_m.iter_mut().zip(LineQuantity::least_heights_m(row)) {
+            of.push(least_m);
+        }
     }
 
     /// Rocks that cross it, as a share of so many released; where rocks weigh differently, of all events.
@@ -337,7 +288,17 @@ impl Line {
 
     /// All values of one quantity, sorted.
     pub fn sample(&self, quantity: LineQuantity) -> Sample {
-        let values = self.values[quantity as usize].iter().copied();
+        let sample = self.sample_of(&self.values[quantity as usize]);
+        let Some(at) = HEIGHTS.iter().position(|height| *height == quantity) else { return sample };
+        match self.sample_of(&self.least_m[at]).mean() {
+            Some(least) => sample.not_below(least.value),
+            None => sample,
+        }
+    }
+
+    /// Values in the order of the rocks that crossed, each with what its rock stands for.
+    fn sample_of(&self, values: &[f64]) -> Sample {
+        let values = values.iter().copied();
         match &self.weights {
             None => Sample::of(values),
             Some(weights) => {

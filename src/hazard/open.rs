@@ -6,6 +6,10 @@
 //! energy lifts it: whatever the terrain beyond, nothing gives a rock energy but its fall. Shares and rates take none of them as
 //! arriving, and the upper ends of their intervals all (worst-case bounds, Manski 1990).
 
+mod bounds;
+
+pub use bounds::RowBounds;
+
 use super::lines::{CrossingRow, LineFloor, LineInfo, by_rock};
 use super::maps::MapFrame;
 use super::row::{Row, StopKind};

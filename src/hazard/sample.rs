@@ -17,6 +17,8 @@ pub struct Sample {
     strata: Option<Strata>,
     /// The same with censored values (bounds only) at the far end of their possible range; none when no value is censored.
     far: Option<(Box<Sample>, Open)>,
+    /// What the mean of such values can never lie below, where that is known.
+    floor: Option<f64>,
 }
 
 /// A mean with its 95 % interval, see [`Sample::mean`].
@@ -65,7 +67,7 @@ impl Sample {
     pub fn of(values: impl IntoIterator<Item = f64>) -> Self {
         let mut sorted: Vec<f64> = values.into_iter().filter(|value| value.is_finite()).collect();
         sorted.sort_unstable_by(f64::total_cmp);
-        Self { sorted, weights: None, strata: None, far: None }
+        Self { sorted, weights: None, strata: None, far: None, floor: None }
     }
 
     /// Sorts values, each with what it weighs (0 or more).
@@ -90,7 +92,7 @@ impl Sample {
         if are_equal {
             let mut sorted: Vec<f64> = rows.into_iter().map(|(value, ..)| value).collect();
             sorted.sort_unstable_by(f64::total_cmp);
-            return Self { sorted, weights: None, strata: None, far: None };
+            return Self { sorted, weights: None, strata: None, far: None, floor: None };
         }
         rows.sort_by(|one, other| {
             let by = [one.0.total_cmp(&other.0), one.1.total_cmp(&other.1)];
@@ -101,7 +103,7 @@ impl Sample {
             rocks: Strata::rocks_of(weights),
         });
         let (sorted, weights) = rows.into_iter().map(|(value, weighs, _)| (value, weighs)).unzip();
-        Self { sorted, weights: Some(weights), strata, far: None }
+        Self { sorted, weights: Some(weights), strata, far: None, floor: None }
     }
 
     /// Sorts values, each with what it weighs, of which some are only bounds (true): the rock was seen in part. The truth
@@ -144,6 +146,18 @@ impl Sample {
         Self { far, ..Self::sorted(finite.collect(), weights) }
     }
 
+    /// The same, of values whose mean can never lie below `floor`; without it 0 is taken where no value is below 0.
+    #[must_use]
+    pub fn not_below(self, floor: f64) -> Self {
+        Self { floor: Some(floor), ..self }
+    }
+
+    /// What their mean can never lie below: 0 where no value is below that.
+    fn floor(&self) -> Option<f64> {
+        let is_positive = self.sorted.first().is_some_and(|least| *least >= 0.0);
+        if is_positive { Some(0.0) } else { self.floor }
+    }
+
     /// How many of the values are only bounds.
     pub fn bounds(&self) -> usize {
         let of =
@@ -172,7 +186,8 @@ impl Sample {
     /// Mean with its interval; none of nothing. The ends are the outer ones of Student's interval and of Hall's (1992), which knows that values
     /// are skewed: few rocks of a long tail tell that the mean lies far above rather than below.
     ///
-    /// Where the lower end would be below 0 although no value is, it is `mean · exp(−half/mean)`, normal for the logarithm of the mean.
+    /// Where the lower end would be below what is possible, 0 where no value is below it or the floor `f` of the [values](Self::not_below), it is
+    /// `f + (mean − f) · exp(−half/(mean − f))`, normal for the logarithm of how far the mean lies above.
     /// Summed in ascending order, so the same values give the same bits however they arrived. Weighted values: ratio of
     /// sums, with the variance `Σ w² (x − mean)² / (Σ w)²` of its linearisation (delta method), of releases stratum by stratum.
     pub fn mean(&self) -> Option<Mean> {
@@ -184,12 +199,7 @@ impl Sample {
             }
         };
         let (value, below, above) = (spread.mean, spread.below(), spread.above());
-        let is_positive = self.sorted.first().is_some_and(|least| *least >= 0.0) && value > 0.0;
-        let low = if is_positive && below > value {
-            value * math::exp(-below / value)
-        } else {
-            value - below
-        };
+        let low = self.floor().map_or(value - below, |floor| low_above(floor, value, below));
         // equal values say nothing of how far another may lie: none of ten seen to jump is no height of exactly zero
         let differ = self.sorted.first() < self.sorted.last();
         let ends = |end: f64| differ.then_some(end);
@@ -291,6 +301,18 @@ struct Spread {
     skewness: f64,
     /// Half width of Student's interval, in standard errors (–).
     student: f64,
+}
+
+/// Lower end of the interval of a mean that reaches so far below it, where nothing below the floor is possible. Rounding may put the mean itself there.
+fn low_above(floor: f64, mean: f64, below: f64) -> f64 {
+    let over = mean - floor;
+    if below <= over {
+        mean - below
+    } else if over > 0.0 {
+        floor + over * math::exp(-below / over)
+    } else {
+        mean
+    }
 }
 
 /// A skewness of the mean below this is none (–).

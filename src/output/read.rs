@@ -68,7 +68,8 @@ pub fn read(dir: &Path) -> Result<Results> {
         }
     };
     let asked = &summary.asked;
-    let mut hazard = Hazard::with(summary.totals.clone()).weighing(asked.frequency.clone());
+    let hazard = Hazard::with(summary.totals.clone()).weighing(asked.frequency.clone());
+    let mut hazard = hazard.over(summary.site.floor);
     recall(dir, &summary.identity, summary.identity.releases, &mut hazard)?;
     let infos: Vec<LineInfo> = summary.lines.iter().map(|line| line.info.clone()).collect();
     let mut lines = self::lines(&infos, asked, summary.identity.releases);

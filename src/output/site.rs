@@ -1,5 +1,6 @@
 //! Where things stand on the map, and what is said only once rocks have fallen.
 
+use crate::hazard::LineFloor;
 use crate::plan::FastWarning;
 use serde::{Deserialize, Serialize};
 
@@ -19,6 +20,9 @@ pub struct Site {
     /// What the user should know if rocks come so fast.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub fast_warnings: Vec<FastWarning>,
+    /// The lowest ground of the terrain; none where rocks push each other.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub floor: Option<LineFloor>,
 }
 
 impl Site {

@@ -30,11 +30,11 @@ const DEFINITIONS: [(&str, &str); 13] = [
     ),
     (
         "barriers",
-        "a barrier stops a rock whose highest point is not above its edge (height_m + 2 radius) and whose total energy it can take; it changes no rock's way, but what it stops does not arrive at the barriers behind it; design energy = percentile x speed factors squared x mass factors, design height = percentile of the highest point x height factors + free height; none where fewer rocks arrive than bound the percentile, design_lacks says how many are missing; energy_95_j and height_95_m are the intervals of the percentile with the same factors, open where they are",
+        "a barrier stops a rock whose highest point is not above its edge (height_m + 2 radius) and whose total energy it can take; it changes no rock's way, but what it stops does not arrive at the barriers behind it; design energy = percentile x speed factors squared x mass factors, or with a design block (block) half its mass x mass factors x (speed_percentile_m_s x speed factors) squared; capacity_j = design energy x capacity_factor, design height = percentile of the highest point x height factors + free height; none where fewer rocks arrive than bound the percentile, design_lacks says how many are missing; energy_95_j and height_95_m are the intervals of the percentile with the same factors, open where they are",
     ),
     (
         "censored",
-        "the value is a bound only: rocks that left the terrain, ran out of time or failed decide it. Runout, drop and time are then at least, reach angle at most what is written; largest values and impacts of rocks that ran out of time or failed are at least that, those of rocks that left the terrain are those on it. Shares and numbers a year of rocks that come to a line are at least that too, where such rocks may still come to it; the interval is open on that side, or its upper end takes those rocks as arriving; censored counts those rocks",
+        "the value is a bound only: rocks that left the terrain, ran out of time or failed decide it. Runout, drop and time are then at least, reach angle at most what is written; largest values and impacts of rocks that ran out of time or failed are at least that, but for speeds, energies and heights that no fall to the lowest ground of the terrain (site.floor) could make larger; those of rocks that left the terrain are those on it. Shares and numbers a year of rocks that come to a line are at least that too, where such rocks may still come to it; the interval is open on that side, or its upper end takes those rocks as arriving; censored counts those rocks",
     ),
     (
         "energy_balance_error",
@@ -42,7 +42,7 @@ const DEFINITIONS: [(&str, &str); 13] = [
     ),
     (
         "intervals",
-        "95 %: of percentiles by order statistics, whatever the distribution (low_95 and high_95 two-sided, upper_95 one-sided); of means the outer ends of Student's and Hall's, normal for their logarithm where that would reach below 0, none where all values are equal; of shares Clopper and Pearson, 1 − 0.05^(1/n) (one-sided) where none or all were seen. Conditional on release; numbers a year stand under annual only. With sources that sample sizes by importance rocks weigh what they stand for: ratios of sums, intervals by the delta method, of percentiles Woodruff's",
+        "95 %: of percentiles by order statistics, whatever the distribution (low_95 and high_95 two-sided, upper_95 one-sided); of means the outer ends of Student's and Hall's, normal for the logarithm of how far they lie above it where that would reach below what is possible (0; of heights of blocks at lines, where some are below 0, minus the mean of half their own heights), none where all values are equal; of shares Clopper and Pearson, 1 − 0.05^(1/n) (one-sided) where none or all were seen. Conditional on release; numbers a year stand under annual only. With sources that sample sizes by importance rocks weigh what they stand for: ratios of sums, intervals by the delta method, of percentiles Woodruff's",
     ),
     (
         "lines",
@@ -167,6 +167,12 @@ pub struct RunTimes {
 }
 
 impl Summary {
+    /// Whether the run had no trees, as far as its plan says.
+    pub fn has_no_trees(&self) -> bool {
+        let trees = self.plan_entries.iter().find(|entry| entry.name == "trees");
+        trees.is_some_and(|entry| entry.said.starts_with("left out"))
+    }
+
     /// The summary of a finished run that took so long.
     pub(super) fn new(info: RunInfo, (hazard, lines): (&Hazard, &[Line]), seconds: f64) -> Self {
         let frequency = info.asked.frequency.as_ref();

@@ -144,7 +144,7 @@ fn draw_reach(report: &Report, maps: &CellMap, ground: Option<&Shaded>) -> Drawi
     let svg = draw_layers("maps", words.maps_alt, (report, maps, ground), &layers);
     let share = |count: usize| {
         let all: usize = maps.intensity_cells.iter().sum();
-        format::percent(count as f64 / all.max(1) as f64, 0)
+        format::percent_of_part(count as f64 / all.max(1) as f64, 0)
     };
     let [weak, medium, strong] = maps.intensity_cells.map(share);
     let caption = fill(
@@ -164,7 +164,7 @@ fn draw_reach(report: &Report, maps: &CellMap, ground: Option<&Shaded>) -> Drawi
 /// What a 95th percentile of few rocks is worth, and which rocks are missing; nothing where nothing lacks.
 fn lacks(report: &Report, maps: &CellMap) -> String {
     let all: usize = maps.intensity_cells.iter().sum();
-    let share = format::percent(maps.few_cells as f64 / all.max(1) as f64, 0);
+    let share = format::percent_of_part(maps.few_cells as f64 / all.max(1) as f64, 0);
     let few = fill(report.words().maps_few, &[("share", &share), ("needs", &NEEDS)]);
     let few = if maps.few_cells == 0 { String::new() } else { few };
     few + &open(report, maps)

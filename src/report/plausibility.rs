@@ -5,7 +5,8 @@ use super::raster::GroundRaster;
 use super::words::fill;
 use super::{by_frequency, format};
 use super::{reach_angle, runout};
-use crate::hazard::Sample;
+use crate::error::Result;
+use crate::hazard::{Quantity, Sample, share_of};
 use crate::output::Results;
 use crate::simulation::Stop;
 use std::cmp::Reverse;
@@ -71,6 +72,41 @@ fn reach(report: &Report) -> Option<Check> {
     Some(if is == Is::AtMost { not_judged(report, check) } else { check })
 }
 
+/// Says in the terminal that more rocks are faster than single blocks are than a few wild ones.
+///
+/// # Errors
+/// When the rows of the releases cannot be read.
+pub fn fast_rocks(results: &Results) -> Result<Option<String>> {
+    let hazard = &results.hazard;
+    let speeds = hazard.values(Quantity::MaxSpeed);
+    let fastest = speeds.iter().copied().filter(|v| v.is_finite()).fold(0.0, f64::max);
+    if fastest <= FAST_M_S || hazard.released() < ENOUGH {
+        return Ok(None);
+    }
+    let mut fast = Vec::new();
+    for row in results.rows()? {
+        let row = row?;
+        let is_fast = row.max_speed_m_s.is_finite() && row.max_speed_m_s > FAST_M_S;
+        fast.extend((row.stop.is_released() && is_fast).then_some(row.index));
+    }
+    let share = share_of(&hazard.weights_or_equal(), fast.into_iter()).share;
+    Ok((share > FEW).then(|| {
+        format!(
+            "the fastest rock has {} m/s, and {} of the rocks are faster than {FAST_M_S} m/s, which single blocks seldom are: check terrain, friction and restitution",
+            format::significant(fastest, 3),
+            told(share)
+        )
+    }))
+}
+
+/// A share with two digits; one of nearly all rocks does not look like all of them.
+fn told(share: f64) -> String {
+    if share > 0.99 {
+        return format::percent_of_part(share, 0);
+    }
+    format!("{}\u{2009}%", format::significant(100.0 * share, 2))
+}
+
 fn speed(report: &Report) -> Option<Check> {
     let is_fast =
         |fall: &&ReleaseEnd| fall.max_speed_m_s.is_finite() && fall.max_speed_m_s > FAST_M_S;
@@ -90,7 +126,7 @@ fn speed(report: &Report) -> Option<Check> {
             ("v", &format::significant(fastest, 3)),
             ("n", &count(fast.len())),
             ("of", &count(report.released())),
-            ("share", &format!("{}\u{2009}%", format::significant(100.0 * share, 2))),
+            ("share", &told(share)),
             ("limit", &FAST_M_S),
         ],
     );

@@ -25,6 +25,14 @@ pub(super) fn floor(plan: &Plan, line: &EvaluationLine) -> Option<LineFloor> {
     Some(LineFloor { ground_m, gravity_m_s2: plan.gravity_m_s2 })
 }
 
+/// The lowest ground of the whole terrain; none where rocks can push each other.
+pub(super) fn of_terrain(plan: &Plan) -> Option<LineFloor> {
+    let (low, _) = plan.terrain.index.bounds();
+    let ground_m = low.z + plan.terrain.origin_m.z;
+    let is_known = !plan.rock_against_rock.is_kept() && ground_m.is_finite();
+    is_known.then_some(LineFloor { ground_m, gravity_m_s2: plan.gravity_m_s2 })
+}
+
 /// The lowest of some; none if one is not known.
 fn lowest_m(places: Vec<[Corner; 2]>, of: impl Fn([Corner; 2]) -> Option<f64>) -> Option<f64> {
     places.into_iter().try_fold(f64::INFINITY, |lowest, place| Some(of(place)?.min(lowest)))

@@ -3,7 +3,7 @@
 use super::floors;
 use crate::error::{Error, Result};
 use crate::frequency::Frequency;
-use crate::hazard::{Barrier, Elsewhere, LineInfo, MapFrame, Rule};
+use crate::hazard::{Barrier, DesignBlock, Elsewhere, LineInfo, MapFrame, Rule};
 use crate::output::{ReleaseZone, Site};
 use crate::plan::{self, EvaluationLine, Plan};
 use crate::release::ReleasePlace;
@@ -26,6 +26,7 @@ pub(super) fn site(plan: &Plan) -> Site {
         further_releases,
         release_names: if is_named { release_names } else { Vec::new() },
         fast_warnings: plan.fast_warnings.clone(),
+        floor: floors::of_terrain(plan),
     }
 }
 
@@ -81,6 +82,11 @@ pub(super) fn barriers(plan: &Plan) -> Vec<Barrier> {
         height_factors: rule.height_factors(),
         free_height_m: rule.free_height_m,
         free_distance_m: rule.free_distance_m(),
+        block: rule.block_volume_m3.map(|volume_m3| DesignBlock {
+            volume_m3,
+            mass_kg: volume_m3 * plan.releases.density_kg_m3(),
+        }),
+        capacity_factor: rule.capacity_factor,
     };
     let barrier = |table: &BarrierTable| Barrier {
         name: table.name.clone(),

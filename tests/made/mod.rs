@@ -39,6 +39,7 @@ pub fn info(releases: usize) -> RunInfo {
             further_releases: Vec::new(),
             release_names: Vec::new(),
             fast_warnings: vec![],
+            floor: None,
         },
         ground_of_sheet: vec!["rock".to_owned(), "trunk, \"old\"".to_owned()],
         lines: [("road", 40.0), ("fence, \"upper\"", 35.5)]

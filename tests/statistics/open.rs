@@ -7,7 +7,7 @@ use made::{fall, info};
 use rockfall::frequency::{Frequency, FrequencyLaw, RockSource};
 use rockfall::hazard::{
     CrossingRow, Hazard, Line, LineFloor, LineInfo, MapFrame, OpenRock, OpenRocks, Proportion,
-    Quantity, Row, StopKind, YearSums,
+    Quantity, Row, RowBounds, StopKind, YearSums,
 };
 use rockfall::rock::Vec3;
 use rockfall::study::target_precision::TargetPrecision;
@@ -341,4 +341,47 @@ fn the_worst_rock_is_none_that_stood_still() {
     hazard.add(&fell);
     let worst = hazard.largest_balance_error().unwrap();
     assert_eq!((worst.release, worst.value.to_bits()), (1, 1e-3_f64.to_bits()));
+}
+
+/// By hand, a rock of 1000 kg with g = 10 m/s² that creeps at 1 m/s, 2 m over the lowest ground: 500 J and 20 kJ of fall are all that it may still have, 6.4 m/s
+/// at most, 2.05 m of height. It had 30 kJ, of which 25 kJ without spin, and 5 m of height: these stay its largest, its spin of 5 kJ may not.
+#[test]
+fn what_a_creeping_rock_had_is_its_largest_where_no_fall_gives_it_more() {
+    let floor = Some(LineFloor { ground_m: 100.0, gravity_m_s2: 10.0 });
+    let row = |stop: StopKind, height_m: f64| Row {
+        stop,
+        mass_kg: 1000.0,
+        end_m: [0.0, 0.0, 100.0 + height_m],
+        end_velocity_m_s: [1.0, 0.0, 0.0],
+        end_spin_rad_s: [0.0; 3],
+        springs_j: 0.0,
+        max_speed_m_s: 7.0,
+        max_translational_j: 25e3,
+        max_rotational_j: 5e3,
+        max_total_j: 30e3,
+        max_height_m: 5.0,
+        shape: None,
+        ..Row::of(&fall(1), Vec3::zeros())
+    };
+    let open = |row: &Row, floor| {
+        let bounds = RowBounds::of(row, floor);
+        let largest = [Quantity::MaxSpeed, Quantity::MaxTranslational, Quantity::MaxRotational];
+        [&largest[..], &[Quantity::MaxTotal, Quantity::MaxHeight, Quantity::Impacts]]
+            .concat()
+            .into_iter()
+            .map(|quantity| bounds.has(quantity))
+            .collect::<Vec<_>>()
+    };
+    let creeps = row(StopKind::TimeUp, 2.0);
+    assert_eq!(open(&creeps, floor), [false, false, true, false, false, true]);
+    assert_eq!(open(&creeps, None), [true; 6]);
+    // from 2.9 m up its fall gives 29.5 kJ: less than it had in all, more than without spin, and 7.7 m/s
+    let higher = row(StopKind::OverBudget, 2.9);
+    assert_eq!(open(&higher, floor), [true, true, true, false, false, true]);
+    assert_eq!(open(&row(StopKind::Failed, 2.0), floor), [true; 6]);
+    assert_eq!(open(&row(StopKind::AtRest, 2.0), floor), [false; 6]);
+    let mut hazard = Hazard::default().over(floor);
+    hazard.add(&creeps);
+    let statistic = hazard.statistic(Quantity::MaxTotal);
+    assert_eq!((statistic.censored, hazard.statistic(Quantity::Impacts).censored), (0, 1));
 }

@@ -14,6 +14,9 @@ const POINT: f64 = 220.0;
 const TURNED_POINT: f64 = 280.0;
 const VTK_POINT: f64 = 130.0;
 const GEOJSON_POINT: f64 = 98.0;
+/// The same in `view.glb`, of spheres and of blocks, which have attitudes too.
+const GLB_POINT: f64 = 19.0;
+const GLB_TURNED_POINT: f64 = 42.0;
 /// An end in `maps/ends.geojson` (bytes).
 const END: f64 = 330.0;
 /// A triangle in `maps/terrain.vtk` (bytes).
@@ -107,8 +110,12 @@ impl Plan {
     fn path_files(&self, paths: Paths, releases: f64) -> Vec<FileSize> {
         let points = |time_s: f64| releases.min(paths.first as f64) * (time_s / paths.step_s + 2.0);
         let [about, most] = [self.time_of_fall_s(), self.longest_s].map(points);
-        let point = if self.releases.has_blocks() { TURNED_POINT } else { POINT };
-        let mut files = vec![("paths.csv", point)];
+        let [point, of_view] = if self.releases.has_blocks() {
+            [TURNED_POINT, GLB_TURNED_POINT]
+        } else {
+            [POINT, GLB_POINT]
+        };
+        let mut files = vec![("paths.csv", point), ("view.glb", of_view)];
         if self.maps.is_kept() {
             files.extend([("maps/paths.vtk", VTK_POINT), ("maps/paths.geojson", GEOJSON_POINT)]);
         }

@@ -1,5 +1,7 @@
 //! Numbers that look like another unit: allowed, but most likely a slip.
 
+mod unlikely;
+
 use crate::frequency::volume_m3;
 use crate::math;
 use crate::scene::{BarrierTable, GroundTable, Scene};
@@ -54,6 +56,7 @@ pub(super) fn of(scene: &Scene, mesh_epsg: Option<u32>) -> Vec<String> {
     found.extend(asked.and_then(limit));
     found.extend(scene.grounds.iter().filter_map(|(name, ground)| stems(name, ground)));
     found.extend(scene.epsg.or(mesh_epsg).and_then(epsg));
+    found.extend(unlikely::of(scene));
     found
 }
 

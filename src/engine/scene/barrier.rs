@@ -78,12 +78,18 @@ pub struct DesignTable {
     pub free_height_m: f64,
     /// Elongation of the barrier at its design energy (m): the standard says what must be free behind it.
     pub elongation_m: Option<f64>,
+    /// Volume of the design block (m³), positive: the design energy is that of its mass and the percentile of speed.
+    pub block_volume_m3: Option<f64>,
+    /// How many times the design energy the capacity must be (–), 1 or more.
+    pub capacity_factor: Option<f64>,
 }
 
 /// Percentile of UNI 11211-4 unless the scene writes another (per cent).
 const UNI_PERCENTILE: f64 = 95.0;
 /// Least free height of UNI 11211-4 (m).
 const UNI_FREE_HEIGHT_M: f64 = 0.5;
+/// Largest factor on a capacity that makes sense (–).
+const MOST_FACTOR: f64 = 10.0;
 /// Percentiles of ONR 24810 (per cent).
 const ONR_PERCENTILES: [f64; 2] = [95.0, 99.0];
 
@@ -116,6 +122,12 @@ impl DesignTable {
     fn check(&self) -> Checked {
         number("free_height_m", self.free_height_m, Allowed::NotNegative, "")?;
         optional("elongation_m", self.elongation_m, Allowed::Positive, "")?;
+        optional("block_volume_m3", self.block_volume_m3, Allowed::Positive, "")?;
+        if self.capacity_factor.is_some_and(|factor| !(1.0..=MOST_FACTOR).contains(&factor)) {
+            let remedy =
+                "write a factor of 1 to 10, by which the capacity must exceed the design energy";
+            return Err(Complaint::about("capacity_factor", remedy));
+        }
         if self.percentile.is_some_and(|percent| !(percent > 0.0 && percent < 100.0)) {
             return Err(Complaint::about("percentile", "write a number above 0 and below 100"));
         }
@@ -217,6 +229,10 @@ impl DesignTable {
             } else {
                 complaint
             });
+        }
+        if self.block_volume_m3.is_some() {
+            let remedy = "remove it, or write rule = \"uni-11211-4\" or none: the energy of this rule is a percentile of energy";
+            return Err(Complaint::about("block_volume_m3", remedy));
         }
         self.check_no_uni()
     }

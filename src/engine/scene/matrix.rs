@@ -143,6 +143,10 @@ impl MatrixTable {
             );
             return Err(Complaint::about("levels", remedy));
         }
+        if self.levels.iter().any(|row| row.windows(2).any(|pair| pair[0] > pair[1])) {
+            let remedy = "write levels that do not fall with rising energy: each row goes from the weakest class to the strongest";
+            return Err(Complaint::about("levels", remedy));
+        }
         Ok(())
     }
 }

@@ -40,6 +40,9 @@ pub struct VehiclesTable {
     pub own_per_day: Option<f64>,
 }
 
+/// Way in a day at 1 km/h (m).
+const METRES_A_DAY_OF_A_KM_H: f64 = 24e3;
+
 impl ObjectTable {
     pub(super) fn check(&self) -> Checked {
         match (&self.points_m, &self.polygon_m, self.width_m) {
@@ -104,6 +107,23 @@ impl VehiclesTable {
         number("per_day", self.per_day, Allowed::Positive, "")?;
         number("speed_km_h", self.speed_km_h, Allowed::Positive, "")?;
         number("length_m", self.length_m, Allowed::Positive, "a car is near 4.5")?;
-        optional("own_per_day", self.own_per_day, Allowed::Positive, "")
+        optional("own_per_day", self.own_per_day, Allowed::Positive, "")?;
+        if self.own_per_day.is_some_and(|own| own > self.per_day) {
+            let remedy = format!(
+                "write at most {}, as per_day counts them too: passages a day of one person",
+                self.per_day
+            );
+            return Err(Complaint::about("own_per_day", remedy));
+        }
+        // so many stand bumper to bumper along the road that passes in a day
+        let most = METRES_A_DAY_OF_A_KM_H * self.speed_km_h / self.length_m;
+        if self.per_day > most {
+            let remedy = format!(
+                "write at most {most:.0}: vehicles of {} m at {} km/h would be nearer than their own length; is it of a year?",
+                self.length_m, self.speed_km_h
+            );
+            return Err(Complaint::about("per_day", remedy));
+        }
+        Ok(())
     }
 }

@@ -2,7 +2,7 @@
 
 use super::populations::{ComparedQuantity, CountedShare, Population};
 use crate::frequency::Weights;
-use crate::hazard::{self, Difference, Open, Percentile, StopKind, Values};
+use crate::hazard::{self, Difference, Open, Percentile, Quantity, StopKind, Values};
 use crate::report::bound::Is;
 use crate::report::format;
 
@@ -44,7 +44,8 @@ impl RunBound {
             return Self { is: Is::Lacking(rocks), farther: [0.0; 2] };
         }
         let ComparedQuantity::Whole(quantity) = measure else { return Self::default() };
-        if of.open.is_empty() {
+        let is_never = of.has_no_trees && quantity == Quantity::TreeImpacts;
+        if of.open.is_empty() || is_never {
             return Self::default();
         }
         let side = quantity.open();
@@ -118,8 +119,8 @@ pub(super) fn censored(pair: &[Population; 2]) -> Option<String> {
         format!(
             "{} of the rocks of A and {} of B left the terrain, were still moving at the end or failed: all differences are of \
              the ways as far as they were followed, and those of runout and reach angle are of bounds, those of largest values too for rocks still on the terrain.",
-            format::percent(a, 1),
-            format::percent(b, 1)
+            format::percent_of_part(a, 1),
+            format::percent_of_part(b, 1)
         )
     })
 }

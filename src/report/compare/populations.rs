@@ -3,7 +3,8 @@
 use super::weighing::{self, CountedReleases};
 use crate::error::Result;
 use crate::hazard::{
-    self, Barrier, CrossingRow, Quantity, Reading, Row, Sample, StopKind, Values, WeightedCount,
+    self, Barrier, CrossingRow, Quantity, Reading, Row, RowBounds, Sample, StopKind, Values,
+    WeightedCount,
 };
 use crate::output::Results;
 use std::ops::Range;
@@ -21,8 +22,10 @@ pub(super) struct Population {
     pub(super) shares: Vec<CountedShare>,
     /// Quantities: what, and its value for each release that has one.
     pub(super) values: Vec<(ComparedQuantity, Values)>,
-    /// Releases that would have gone on, of whole ways, and how they ended: values of theirs are bounds.
-    pub(super) open: Vec<(usize, StopKind)>,
+    /// Releases that would have gone on, of whole ways, and which values of theirs are bounds.
+    pub(super) open: Vec<(usize, RowBounds)>,
+    /// Whether they are of a run without trees: none touches one, however far it goes on.
+    pub(super) has_no_trees: bool,
 }
 
 /// A share of some releases of a run.
@@ -103,7 +106,7 @@ impl Population {
     /// The same where those of rocks that would have gone on are bounds: the truth lies on that side. A rock that has left no number is one
     /// of which nothing is known.
     pub(super) fn censored_sample(&self, values: &Values, quantity: Quantity) -> Sample {
-        let bounds = self.open.iter().filter(|(_, stop)| quantity.is_bound_after(*stop));
+        let bounds = self.open.iter().filter(|(_, bounds)| bounds.has(quantity));
         let open: Vec<usize> = bounds.map(|of| of.0).collect();
         let is_open = |release: usize| open.binary_search(&release).is_ok();
         let has_none = |release: &&usize| values.binary_search_by_key(*release, |of| of.0).is_err();
@@ -247,6 +250,7 @@ fn all(
         shares: StopKind::ALL.map(share).into(),
         values: WHOLE.map(|quantity| (ComparedQuantity::Whole(quantity), Values::new())).into(),
         open: Vec::new(),
+        has_no_trees: run.summary.has_no_trees(),
     };
     for row in run.rows()? {
         let row: Row = row?;
@@ -256,7 +260,8 @@ fn all(
         let stop = StopKind::ALL.iter().position(|stop| *stop == row.stop).unwrap_or(0);
         found.shares[stop].releases.push(row.index);
         if among.contains(row.index) {
-            found.open.extend(row.stop.is_open().then_some((row.index, row.stop)));
+            let bounds = RowBounds::of(&row, run.summary.site.floor);
+            found.open.extend(row.stop.is_open().then_some((row.index, bounds)));
             for ((_, values), quantity) in found.values.iter_mut().zip(WHOLE) {
                 // a failed rock may have left no number
                 let value = Some(quantity.of(&row)).filter(|value| value.is_finite());
@@ -326,15 +331,14 @@ fn crossing(
     let cross = own().map(|row| row.index).collect();
     Population {
         name: format!("{what} “{name}”, barriers left aside"),
-        is_behind_barriers: false,
         among: Arc::clone(among.0),
         shares: vec![at_place(come, cross, (among, true))],
-        open: Vec::new(),
         values: vec![
             (ComparedQuantity::Energy, values(CrossingRow::total_j)),
             (ComparedQuantity::Height, values(|row| row.height_m)),
             (ComparedQuantity::Speed, values(|row| row.speed_m_s)),
         ],
+        ..Population::default()
     }
 }
 
@@ -360,11 +364,11 @@ fn arriving(
         is_behind_barriers: true,
         among: Arc::clone(among.0),
         shares,
-        open: Vec::new(),
         values: vec![
             (ComparedQuantity::Energy, values(|rock| rock.total_j)),
             (ComparedQuantity::Top, values(|rock| rock.top_m)),
         ],
+        ..Population::default()
     }
 }
 

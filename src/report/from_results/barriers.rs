@@ -9,7 +9,7 @@ use super::super::model::{
 use super::super::raster::GroundRaster;
 use super::super::words::open::missing as missing_rocks;
 use super::super::words::{Words, fill};
-use super::design::{design, design_view, with_design_if_any};
+use super::design::{design, design_view, energy_in_words, with_design_if_any};
 use super::{energy_unit_of, estimate, of_percentile, statistics};
 use crate::error::Result;
 use crate::frequency::Weights;
@@ -216,7 +216,7 @@ fn in_words(one: &BarrierSummary, words: &Words) -> Option<String> {
             ("free", &rule.free_height_m),
         ],
     );
-    Some(said + &distance)
+    Some(said + &energy_in_words((rule, design), words) + &distance)
 }
 
 /// The percentile of a rule over a unit, with as many digits as in the table of what arrives.
@@ -372,7 +372,9 @@ mod tests {
     fn design_energies_have_the_unit_of_their_size() {
         let design = |energy_j: f64| Design {
             energy_percentile_j: energy_j,
+            speed_percentile_m_s: None,
             energy_j,
+            capacity_j: None,
             energy_95_j: [None; 2],
             height_percentile_m: 1.0,
             height_m: 1.0,

@@ -1,8 +1,10 @@
 //! What the rules of barriers ask for.
 
-use super::super::model::{DesignView, Estimate, EstimateTable};
+use super::super::format::significant;
+use super::super::model::{DesignView, Estimate, EstimateTable, energy_unit};
+use super::super::words::Words;
 use super::estimate;
-use crate::hazard::{BarrierSummary, Design};
+use crate::hazard::{BarrierSummary, Design, Rule};
 
 /// Values of a design.
 pub(super) fn design_view(design: &Design) -> DesignView {
@@ -41,4 +43,41 @@ pub(super) fn with_design_if_any(
         cells.truncate(kept);
     }
     table
+}
+
+/// The standard whose design energy is that of a design block.
+const OF_A_BLOCK: &str = "UNI 11211-4";
+
+/// Where the design energy comes from, and what its rule asks of the capacity; nothing where it is a percentile and no standard has it otherwise.
+pub(super) fn energy_in_words((rule, design): (&Rule, &Design), words: &Words) -> String {
+    let (unit, size) = energy_unit(design.energy_j);
+    let energy = significant(design.energy_j / size, 3);
+    let is_uni = rule.standard.as_deref() == Some(OF_A_BLOCK);
+    let mut said = Vec::new();
+    if let (Some(block), Some(speed_m_s)) = (rule.block, design.speed_percentile_m_s) {
+        said.push(format!(
+            "The design energy {energy} {unit} is that of the design block of {} m³ ({} kg without factors) at P{} of speed, {} m/s without factors.",
+            significant(block.volume_m3, 3),
+            significant(block.mass_kg, 4),
+            rule.percentile,
+            significant(speed_m_s, 3)
+        ));
+    } else if is_uni {
+        said.push(format!(
+            "The design energy is P{} of total energy with the squares of the factors on speed; the standard has that of its design block at P{} of speed, which block_volume_m3 asks for.",
+            rule.percentile, rule.percentile
+        ));
+    }
+    match (rule.capacity_factor, design.capacity_j) {
+        (Some(factor), Some(capacity_j)) => said.push(format!(
+            "The capacity must be {factor} times that, {} {unit}.",
+            significant(capacity_j / size, 3)
+        )),
+        _ if is_uni => said.push(
+            "The standard's factor on the energy of the barrier is not applied: its value is yours, capacity_factor takes it.".to_owned(),
+        ),
+        _ => {}
+    }
+    let each = said.iter().map(|one| words.say(one));
+    std::iter::once(String::new()).chain(each).collect::<Vec<_>>().join(" ")
 }

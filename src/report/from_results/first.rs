@@ -84,7 +84,11 @@ pub(in crate::report) fn warnings_first(
         let (n, of) = (count(share.count), count(share.of));
         let rocks = fill(&some_rocks, &[("n", &n), ("of", &of), ("share", &percent)]);
         let has_left = kind == StopKind::LeftTerrain;
-        let largest = if has_left { own.largest_left } else { own.largest_open };
+        let largest = match (has_left, hazard.leaves_largest_open()) {
+            (true, _) => own.largest_left,
+            (false, true) => own.largest_open,
+            (false, false) => own.largest_closed,
+        };
         // what the rocks have done: a share is of several
         let is_share = hazard.weights().is_some();
         let what = fill(what, &[("n", if is_share { &format::NO_NUMBER } else { &n })]);

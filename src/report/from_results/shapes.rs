@@ -5,7 +5,7 @@ use super::super::words::{Words, fill};
 use super::percentile_of;
 use crate::body::ShapeKind;
 use crate::error::Result;
-use crate::hazard::{Quantity, Row, Sample};
+use crate::hazard::{Quantity, Row, RowBounds, Sample};
 use crate::output::Results;
 use std::collections::BTreeMap;
 
@@ -18,7 +18,7 @@ const TOLD: [(Quantity, f64); 4] = [
 ];
 
 /// Rocks of one kind, each with what it weighs.
-type Weighed = Vec<(f64, Row)>;
+type Weighed = Vec<(f64, Row, RowBounds)>;
 
 /// Rocks by the kind of their shape, in the order of scenes; empty where all are spheres of old.
 fn by_kind(results: &Results) -> Result<BTreeMap<ShapeKind, Weighed>> {
@@ -28,7 +28,8 @@ fn by_kind(results: &Results) -> Result<BTreeMap<ShapeKind, Weighed>> {
         let row = row?;
         let Some(shape) = row.shape else { return Ok(kinds) };
         let weighs = weights.as_ref().map_or(1.0, |all| all.of_release(row.index));
-        kinds.entry(shape.kind).or_default().push((weighs, row));
+        let bounds = RowBounds::of(&row, results.summary.site.floor);
+        kinds.entry(shape.kind).or_default().push((weighs, row, bounds));
     }
     Ok(kinds)
 }
@@ -76,8 +77,8 @@ fn table(kinds: &BTreeMap<ShapeKind, Weighed>, words: &Words) -> EstimateTable {
 }
 
 fn estimate(rocks: &Weighed, quantity: Quantity, p: f64) -> Option<Estimate> {
-    let counted = rocks.iter().filter(|(_, row)| row.stop.is_released());
+    let counted = rocks.iter().filter(|(_, row, _)| row.stop.is_released());
     let values =
-        counted.map(|(weighs, row)| (quantity.of(row), *weighs, quantity.is_bound_after(row.stop)));
+        counted.map(|(weighs, row, bounds)| (quantity.of(row), *weighs, bounds.has(quantity)));
     percentile_of(&Sample::censored(values, quantity.open()), p, Some(quantity.open()))
 }

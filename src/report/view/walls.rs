@@ -39,7 +39,7 @@ fn wall(
     ground: &GroundRaster,
 ) -> Wall {
     let barrier = barriers.iter().find(|one| one.barrier.name == line.info.name);
-    let percent = |share: &Proportion| format::percent(share.share, 1);
+    let percent = |share: &Proportion| format::percent_of_part(share.share, 1);
     let reached = if is_weighted {
         fill(by_frequency::WALL, &[("share", &percent(&line.reach))])
     } else {

@@ -346,7 +346,7 @@ pub(super) static WORDS: Words = Words {
     check_deposits_found: "{n} von {of} ruhenden Blöcken ({share}) liegen in abflusslosen Mulden des Dreiecksnetzes, tiefer als {depth} m; die Hälfte aller liegt auf {half} der {all} m², die alle aufnehmen",
     check_pits: ": Gruben und Knicke des Geländemodells, sofern es sie am Hang nicht gibt; sie verkürzen die Auslaufstrecke",
     check_mesh: "Dreiecksnetz",
-    check_mesh_found: "mittlere Kantenlänge der Dreiecke {edge} m, das {times}-Fache des Durchmessers des mittleren Blocks ({diameter} m)",
+    check_mesh_found: "Median der Kantenlängen der Dreiecke {edge} m, das {times}-Fache des Median-Durchmessers der Blöcke ({diameter} m)",
     check_coarse: ": Stufen, Felsblöcke und Rinnen, die solche Blöcke aufhielten oder würfen, fehlen darin; dafür steht roughness_deg oder eine feinere Aufnahme",
     // A year
     year_title: "Jährliche Häufigkeit bei {name}",

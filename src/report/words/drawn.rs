@@ -43,7 +43,7 @@ const DE: DrawnWords = DrawnWords {
     aside: " {n} dieser Bahnen {n|führt|führen} um mehr als {degrees}° von dieser Richtung weg: von dieser Seite gesehen {n|ist sie verkürzt und wirkt steiler, als sie ist|sind sie verkürzt und wirken steiler, als sie sind}.",
     sources: " Alle Quellen ({n}) stehen in einer Ansicht und in einer Farbe; der Lageplan hält sie auseinander.",
     reach_open: " {n} {n|Block verließ|Blöcke verließen} das Gelände, {n|bewegte|bewegten} sich noch oder {n|schlug|schlugen} fehl und {n|wäre|wären} weitergelaufen: {n|sein|ihr} Wert ist eine obere Schranke.",
-    profile_marks: " Linien und Werke stehen im mittleren Abstand (Median), in dem Blöcke sie queren.",
+    profile_marks: " Linien und Werke stehen im Median der Abstände, in denen Blöcke sie queren.",
     beyond: " „+n →“: so viele Blöcke liegen jenseits der Achse.",
     ends_worth: " Die Grenze gilt für {worth} unabhängige Endpunkte: Würfe desselben Blocks gleichen sich, und die {ends} gemessenen Endpunkte sind nicht mehr wert.",
     ends_no_test: " Wo Werte der Szene an eben diese Endpunkte angepasst wurden, prüft sie diese nicht.",

@@ -60,7 +60,7 @@ pub(super) const DE: Glossary = [
     ),
     (
         "Bemessungsenergie, Bemessungshöhe",
-        "Ein Perzentil über die ankommenden Blöcke mal die einzeln angegebenen Teilsicherheitsbeiwerte, bei der Höhe zuzüglich Freibord. Beiwerte auf die Geschwindigkeit gehen im Quadrat in die Energie ein. P95 braucht 59 Blöcke, P99 299: mit weniger gibt es keinen Wert. Das Intervall ist das des Perzentils.",
+        "Ein Perzentil über die ankommenden Blöcke mal die einzeln angegebenen Teilsicherheitsbeiwerte, bei der Höhe zuzüglich Freibord. Beiwerte auf die Geschwindigkeit gehen im Quadrat in die Energie ein. Mit einem Bemessungsblock ist die Energie seine halbe Masse mal das Quadrat des Perzentils der Geschwindigkeit. P95 braucht 59 Blöcke, P99 299: mit weniger gibt es keinen Wert. Das Intervall ist das des Perzentils.",
     ),
     (
         "Intensität",
@@ -147,7 +147,7 @@ pub(super) const FR: Glossary = [
     ),
     (
         "Énergie et hauteur de dimensionnement",
-        "Un centile sur les blocs qui arrivent, fois les facteurs partiels indiqués un à un, plus la hauteur libre pour la hauteur. Les facteurs sur la vitesse entrent au carré dans l’énergie. P95 exige 59 blocs, P99 299\u{a0}: avec moins il n’y en a pas. L’intervalle est celui du centile.",
+        "Un centile sur les blocs qui arrivent, fois les facteurs partiels indiqués un à un, plus la hauteur libre pour la hauteur. Les facteurs sur la vitesse entrent au carré dans l’énergie. Avec un bloc de projet, l’énergie est la moitié de sa masse fois le carré du centile de la vitesse. P95 exige 59 blocs, P99 299\u{a0}: avec moins il n’y en a pas. L’intervalle est celui du centile.",
     ),
     (
         "Intensité",
@@ -237,7 +237,7 @@ pub(super) const IT: Glossary = [
     ),
     (
         "Energia e altezza di progetto",
-        "Un percentile sui massi in arrivo, per i coefficienti parziali indicati uno a uno, e per l’altezza più il franco. I coefficienti sulla velocità entrano al quadrato nell’energia. P95 richiede 59 massi, P99 299: con meno non c’è alcun valore. L’intervallo è quello del percentile.",
+        "Un percentile sui massi in arrivo, per i coefficienti parziali indicati uno a uno, e per l’altezza più il franco. I coefficienti sulla velocità entrano al quadrato nell’energia. Con un blocco di progetto l’energia è metà della sua massa per il quadrato del percentile della velocità. P95 richiede 59 massi, P99 299: con meno non c’è alcun valore. L’intervallo è quello del percentile.",
     ),
     (
         "Intensità",
@@ -327,7 +327,7 @@ pub(super) const EN: Glossary = [
     ),
     (
         "Design energy, design height",
-        "A percentile over the rocks that arrive, times the partial factors that are printed one by one, and for the height plus the free height. Factors on the speed enter the energy squared. P95 needs 59 rocks, P99 299: with fewer there is none. The interval is that of the percentile.",
+        "A percentile over the rocks that arrive, times the partial factors that are printed one by one, and for the height plus the free height. Factors on the speed enter the energy squared. With a design block the energy is half its mass times the square of the percentile of speed. P95 needs 59 rocks, P99 299: with fewer there is none. The interval is that of the percentile.",
     ),
     (
         "Intensity",

@@ -6,7 +6,7 @@ use crate::hazard::Proportion;
 
 words_of! {
     OpenWords:
-    some_rocks, censored, largest_left, largest_open, have_left, remedy_left, remedy_holes, have_no_time, remedy_time, have_failed, have_no_budget,
+    some_rocks, censored, largest_left, largest_open, largest_closed, have_left, remedy_left, remedy_holes, have_no_time, remedy_time, have_failed, have_no_budget,
     remedy_budget, at_line, on_maps, median, no_sampling,
     at_ends,
 }
@@ -25,6 +25,7 @@ const EN: OpenWords = OpenWords {
     censored: "{rocks} {what}: their runout is a lower and their reach angle an upper bound, and so is every percentile that they decide (≥, ≤; its interval holds however they would have gone on, and has no end on that side where they are too many). Shares and frequencies at lines that they may still come to are lower bounds too; the upper ends of their intervals count these rocks as arriving. {largest} {remedy}",
     largest_left: "Their largest energies, speeds and heights and their impacts are those on the terrain.",
     largest_open: "Their largest energies, speeds and heights and their impacts are lower bounds too.",
+    largest_closed: "What they have left of energy, their fall to the lowest ground with it, makes none of their largest energies, speeds and heights larger; their impacts are lower bounds.",
     have_left: "left the terrain",
     remedy_left: "Give terrain that reaches farther if they matter.",
     remedy_holes: "At holes in the mesh {n} of them left, most near ({x}, {y}): fill the holes.",
@@ -45,6 +46,7 @@ const DE: OpenWords = OpenWords {
     censored: "{rocks} {what}: ihre Auslaufstrecke ist eine untere und ihr Pauschalgefälle eine obere Schranke, ebenso jedes Perzentil, das von ihnen abhängt (≥, ≤; sein Intervall gilt, wie auch immer sie weitergelaufen wären, und hat auf dieser Seite kein Ende, wenn es zu viele sind). Auch Anteile und Häufigkeiten an Linien, zu denen sie noch kommen können, sind untere Schranken; die oberen Enden der Intervalle zählen diese Blöcke als angekommen. {largest} {remedy}",
     largest_left: "Ihre größten Energien, Geschwindigkeiten und Höhen und ihre Aufpralle sind die auf dem Gelände.",
     largest_open: "Auch ihre größten Energien, Geschwindigkeiten und Höhen und ihre Aufpralle sind untere Schranken.",
+    largest_closed: "Was sie noch an Energie haben, mit ihrem Fall bis zum tiefsten Boden, vergrößert keine ihrer größten Energien, Geschwindigkeiten und Höhen; ihre Aufpralle sind untere Schranken.",
     have_left: "{n|hat|haben} das Gelände verlassen",
     remedy_left: "Weiter reichendes Gelände angeben, falls sie zählen.",
     remedy_holes: "An Löchern im Netz {n|verließ|verließen} {n} von ihnen das Gelände, die meisten bei ({x}, {y}): die Löcher füllen.",
@@ -65,6 +67,7 @@ const FR: OpenWords = OpenWords {
     censored: "{rocks} {what}\u{a0}: leur distance est une borne inférieure et leur angle d’énergie une borne supérieure, comme tout centile qui en dépend (≥, ≤\u{a0}; son intervalle vaut quelle qu’eût été leur suite, et n’a pas de fin de ce côté s’ils sont trop nombreux). Les parts et les fréquences aux lignes qu’ils peuvent encore atteindre sont aussi des bornes inférieures\u{a0}; le haut de leurs intervalles compte ces blocs comme arrivés. {largest} {remedy}",
     largest_left: "Leurs énergies, vitesses et hauteurs maximales et leurs impacts sont ceux sur le terrain.",
     largest_open: "Leurs énergies, vitesses et hauteurs maximales et leurs impacts sont aussi des bornes inférieures.",
+    largest_closed: "Ce qui leur reste d’énergie, avec leur chute jusqu’au sol le plus bas, n’augmente aucune de leurs énergies, vitesses et hauteurs maximales\u{a0}; leurs impacts sont des bornes inférieures.",
     have_left: "{n|est sorti|sont sortis} du terrain",
     remedy_left: "Donner un terrain plus étendu s’ils importent.",
     remedy_holes: "Aux trous du maillage, {n} d’entre eux {n|est sorti|sont sortis}, la plupart près de ({x}, {y})\u{a0}: combler les trous.",
@@ -85,6 +88,7 @@ const IT: OpenWords = OpenWords {
     censored: "{rocks} {what}: la loro distanza è un limite inferiore e il loro angolo un limite superiore, come ogni percentile che ne dipende (≥, ≤; il suo intervallo vale comunque avessero proseguito, e non ha estremo da quel lato se sono troppi). Anche percentuali e frequenze alle linee che possono ancora raggiungere sono limiti inferiori; l’estremo superiore dei loro intervalli conta questi massi come arrivati. {largest} {remedy}",
     largest_left: "Le loro energie, velocità e altezze massime e i loro impatti sono quelli sul terreno.",
     largest_open: "Anche le loro energie, velocità e altezze massime e i loro impatti sono limiti inferiori.",
+    largest_closed: "L’energia che resta loro, con la caduta fino al suolo più basso, non aumenta nessuna delle loro energie, velocità e altezze massime; i loro impatti sono limiti inferiori.",
     have_left: "{n|è uscito|sono usciti} dal terreno",
     remedy_left: "Fornire un terreno più esteso se contano.",
     remedy_holes: "Ai buchi della maglia {n} di essi {n|è uscito|sono usciti}, la maggior parte presso ({x}, {y}): chiudere i buchi.",

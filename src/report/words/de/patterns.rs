@@ -137,7 +137,7 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
     ),
     (
         "median edge of the triangles {edge} m, {times} times the diameter of the median rock by frequency ({diameter} m)",
-        "mittlere Kantenlänge der Dreiecke {edge} m, das {times}-Fache des Durchmessers des nach Häufigkeit mittleren Blocks ({diameter} m)",
+        "Median der Kantenlängen der Dreiecke {edge} m, das {times}-Fache des nach Häufigkeit gewichteten Median-Durchmessers der Blöcke ({diameter} m)",
     ),
     (
         "calibrated on measured ends ([calibrate] fitted of the scene)",

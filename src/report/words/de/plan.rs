@@ -168,7 +168,7 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ),
     (
         "{x} m/s on {name}, for the median rock: slower impacts do not rebound",
-        "{x} m/s auf {name}, für den mittleren Block: langsamere Aufpralle prallen nicht zurück",
+        "{x} m/s auf {name}, für den Block vom Median der Größen: langsamere Aufpralle prallen nicht zurück",
     ),
     (
         "{x} m/s on {name}, given: slower impacts do not rebound",
@@ -284,7 +284,7 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ),
     (
         "{name}: the median rock that falls on it at {v} m/s digs in {d} m and loses {x} % of its speed on the way",
-        "{name}: der mittlere Block, der mit {v} m/s senkrecht auftrifft, gräbt sich {d} m tief ein und verliert auf dem Weg {x} % seiner Geschwindigkeit",
+        "{name}: der Block vom Median der Größen, der mit {v} m/s senkrecht auftrifft, gräbt sich {d} m tief ein und verliert auf dem Weg {x} % seiner Geschwindigkeit",
     ),
     (
         "{name}: half of the restitution is left at {v} m/s",

@@ -67,4 +67,20 @@ pub(super) const SAMPLES: &[(&str, &str)] = &[
         "Direktoratet for byggkvalitet, Byggteknisk forskrift (TEK17) § 7-3, table of the second paragraph: largest nominal annual probability S1 1/100, S2 1/1000, S3 1/5000",
         "Direktoratet for byggkvalitet, Byggteknisk forskrift (TEK17) § 7-3, Tabelle des zweiten Absatzes: größte nominelle Jahreswahrscheinlichkeit S1 1/100, S2 1/1000, S3 1/5000",
     ),
+    (
+        "The design energy {e} {unit} is that of the design block of {v} m³ ({m} kg without factors) at P{p} of speed, {s} m/s without factors.",
+        "Die Bemessungsenergie {e} {unit} ist die des Bemessungsblocks von {v} m³ ({m} kg ohne Faktoren) bei P{p} der Geschwindigkeit, {s} m/s ohne Faktoren.",
+    ),
+    (
+        "The design energy is P{p} of total energy with the squares of the factors on speed; the standard has that of its design block at P{q} of speed, which block_volume_m3 asks for.",
+        "Die Bemessungsenergie ist P{p} der Gesamtenergie mit den Quadraten der Faktoren auf die Geschwindigkeit; die Norm nimmt die ihres Bemessungsblocks bei P{q} der Geschwindigkeit, die block_volume_m3 verlangt.",
+    ),
+    (
+        "The capacity must be {f} times that, {e} {unit}.",
+        "Die Aufnahmefähigkeit muss das {f}-Fache davon sein, {e} {unit}.",
+    ),
+    (
+        "The standard's factor on the energy of the barrier is not applied: its value is yours, capacity_factor takes it.",
+        "Der Faktor der Norm auf die Energie des Bauwerks ist nicht angewandt: sein Wert ist Sache der Planung, capacity_factor nimmt ihn auf.",
+    ),
 ];

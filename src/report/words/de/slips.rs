@@ -54,4 +54,28 @@ pub(super) const SLIPS: &[(&str, &str)] = &[
         "{file}: {n} of {all} cells are exactly 0 m high and all others above {low} m: cells without data? then declare 0 as no data (gdal_translate -a_nodata 0)",
         "{file}: {n} von {all} Zellen sind genau 0 m hoch und alle anderen über {low} m: Zellen ohne Daten? dann 0 als „keine Daten“ erklären (gdal_translate -a_nodata 0)",
     ),
+    (
+        "[[barriers]] \"{name}\" height_m = {a} is lower than any net or dam; write metres",
+        "[[barriers]] \"{name}\" height_m = {a} ist niedriger als jedes Netz und jeder Damm; Meter schreiben",
+    ),
+    (
+        "[[barriers]] \"{name}\" design.free_height_m = {a} is more than half of any block; is it in cm? write {b}",
+        "[[barriers]] \"{name}\" design.free_height_m = {a} ist mehr als die Hälfte jedes Blocks; in cm? {b} schreiben",
+    ),
+    (
+        "[[barriers]] \"{name}\" design.elongation_m = {a} is more than any net stretches; is it in cm? write {b}",
+        "[[barriers]] \"{name}\" design.elongation_m = {a} ist mehr, als sich irgendein Netz dehnt; in cm? {b} schreiben",
+    ),
+    (
+        "gravity_m_s2 = {a}: on Earth it is 9.76 to 9.84",
+        "gravity_m_s2 = {a}: auf der Erde sind es 9.76 bis 9.84",
+    ),
+    (
+        "[release] velocity_m_s reaches {a} m/s, faster than rocks fall; is it in km/h? write {b}",
+        "[release] velocity_m_s reicht bis {a} m/s, schneller als Blöcke fallen; in km/h? {b} schreiben",
+    ),
+    (
+        "[[objects]] \"{name}\" vehicles.per_day = {a}: on one lane, with two seconds from one to the next, {b} pass; is it of a year, or of several lanes?",
+        "[[objects]] \"{name}\" vehicles.per_day = {a}: auf einer Spur fahren, mit zwei Sekunden von einem zum nächsten, {b}; im Jahr, oder auf mehreren Spuren?",
+    ),
 ];

@@ -83,11 +83,11 @@ pub(super) const WARNINGS: &[(&str, &str)] = &[
     ),
     (
         "{file}: its map coordinates are written in steps of {a}, {b} % of the median edge {c}, and {n} of its {m} facets have no area: where they were rounded, slopes are wrong; export it with three decimals or more, or with a map origin subtracted and origin_m in the scene",
-        "{file}: ihre Kartenkoordinaten sind in Schritten von {a} geschrieben, {b} % der mittleren Kante {c}, und {n} ihrer {m} Dreiecke haben keine Fläche: wo gerundet wurde, stimmen die Neigungen nicht; mit drei oder mehr Nachkommastellen ausgeben, oder mit abgezogenem Ursprung und origin_m in der Szene",
+        "{file}: ihre Kartenkoordinaten sind in Schritten von {a} geschrieben, {b} % des Medians der Kantenlängen {c}, und {n} ihrer {m} Dreiecke haben keine Fläche: wo gerundet wurde, stimmen die Neigungen nicht; mit drei oder mehr Nachkommastellen ausgeben, oder mit abgezogenem Ursprung und origin_m in der Szene",
     ),
     (
         "{file}: its map coordinates are written in steps of {a}, {b} % of the median edge {c}: where they were rounded, slopes are wrong; export it with three decimals or more, or with a map origin subtracted and origin_m in the scene",
-        "{file}: ihre Kartenkoordinaten sind in Schritten von {a} geschrieben, {b} % der mittleren Kante {c}: wo gerundet wurde, stimmen die Neigungen nicht; mit drei oder mehr Nachkommastellen ausgeben, oder mit abgezogenem Ursprung und origin_m in der Szene",
+        "{file}: ihre Kartenkoordinaten sind in Schritten von {a} geschrieben, {b} % des Medians der Kantenlängen {c}: wo gerundet wurde, stimmen die Neigungen nicht; mit drei oder mehr Nachkommastellen ausgeben, oder mit abgezogenem Ursprung und origin_m in der Szene",
     ),
     (
         "{n} of {all} triangles have no area and are left out: what is left is hardly the terrain; does the file have too few digits?",

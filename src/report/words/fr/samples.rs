@@ -70,4 +70,20 @@ pub(super) const SAMPLES: &[(&str, &str)] = &[
         "Direktoratet for byggkvalitet, Byggteknisk forskrift (TEK17) § 7-3, table of the second paragraph: largest nominal annual probability S1 1/100, S2 1/1000, S3 1/5000",
         "Direktoratet for byggkvalitet, Byggteknisk forskrift (TEK17) § 7-3, tableau du deuxième alinéa\u{a0}: plus grande probabilité annuelle nominale S1 1/100, S2 1/1000, S3 1/5000",
     ),
+    (
+        "The design energy {e} {unit} is that of the design block of {v} m³ ({m} kg without factors) at P{p} of speed, {s} m/s without factors.",
+        "L’énergie de dimensionnement {e} {unit} est celle du bloc de projet de {v} m³ ({m} kg sans facteurs) au P{p} de la vitesse, {s} m/s sans facteurs.",
+    ),
+    (
+        "The design energy is P{p} of total energy with the squares of the factors on speed; the standard has that of its design block at P{q} of speed, which block_volume_m3 asks for.",
+        "L’énergie de dimensionnement est le P{p} de l’énergie totale avec les carrés des facteurs sur la vitesse\u{a0}; la norme prend celle de son bloc de projet au P{q} de la vitesse, que demande block_volume_m3.",
+    ),
+    (
+        "The capacity must be {f} times that, {e} {unit}.",
+        "La capacité doit en être {f} fois, {e} {unit}.",
+    ),
+    (
+        "The standard's factor on the energy of the barrier is not applied: its value is yours, capacity_factor takes it.",
+        "Le facteur de la norme sur l’énergie de l’ouvrage n’est pas appliqué\u{a0}: sa valeur revient au projeteur, capacity_factor la reçoit.",
+    ),
 ];

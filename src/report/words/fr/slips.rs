@@ -54,4 +54,28 @@ pub(super) const SLIPS: &[(&str, &str)] = &[
         "{file}: {n} of {all} cells are exactly 0 m high and all others above {low} m: cells without data? then declare 0 as no data (gdal_translate -a_nodata 0)",
         "{file}\u{a0}: {n} mailles sur {all} sont à 0 m exactement et toutes les autres au-dessus de {low} m\u{a0}: des mailles sans données\u{a0}? alors déclarer 0 comme absence de données (gdal_translate -a_nodata 0)",
     ),
+    (
+        "[[barriers]] \"{name}\" height_m = {a} is lower than any net or dam; write metres",
+        "[[barriers]] \"{name}\" height_m = {a} est plus bas que tout filet ou digue\u{a0}; écrire des mètres",
+    ),
+    (
+        "[[barriers]] \"{name}\" design.free_height_m = {a} is more than half of any block; is it in cm? write {b}",
+        "[[barriers]] \"{name}\" design.free_height_m = {a} dépasse la moitié de tout bloc\u{a0}; en cm\u{a0}? écrire {b}",
+    ),
+    (
+        "[[barriers]] \"{name}\" design.elongation_m = {a} is more than any net stretches; is it in cm? write {b}",
+        "[[barriers]] \"{name}\" design.elongation_m = {a} dépasse l’allongement de tout filet\u{a0}; en cm\u{a0}? écrire {b}",
+    ),
+    (
+        "gravity_m_s2 = {a}: on Earth it is 9.76 to 9.84",
+        "gravity_m_s2 = {a}\u{a0}: sur Terre, de 9.76 à 9.84",
+    ),
+    (
+        "[release] velocity_m_s reaches {a} m/s, faster than rocks fall; is it in km/h? write {b}",
+        "[release] velocity_m_s va jusqu’à {a} m/s, plus vite que ne tombent les blocs\u{a0}; en km/h\u{a0}? écrire {b}",
+    ),
+    (
+        "[[objects]] \"{name}\" vehicles.per_day = {a}: on one lane, with two seconds from one to the next, {b} pass; is it of a year, or of several lanes?",
+        "[[objects]] \"{name}\" vehicles.per_day = {a}\u{a0}: sur une voie, à deux secondes l’un de l’autre, il en passe {b}\u{a0}; par an, ou sur plusieurs voies\u{a0}?",
+    ),
 ];

@@ -70,4 +70,20 @@ pub(super) const SAMPLES: &[(&str, &str)] = &[
         "Direktoratet for byggkvalitet, Byggteknisk forskrift (TEK17) § 7-3, table of the second paragraph: largest nominal annual probability S1 1/100, S2 1/1000, S3 1/5000",
         "Direktoratet for byggkvalitet, Byggteknisk forskrift (TEK17) § 7-3, tabella del secondo comma: massima probabilità annua nominale S1 1/100, S2 1/1000, S3 1/5000",
     ),
+    (
+        "The design energy {e} {unit} is that of the design block of {v} m³ ({m} kg without factors) at P{p} of speed, {s} m/s without factors.",
+        "L’energia di progetto {e} {unit} è quella del blocco di progetto di {v} m³ ({m} kg senza fattori) al P{p} della velocità, {s} m/s senza fattori.",
+    ),
+    (
+        "The design energy is P{p} of total energy with the squares of the factors on speed; the standard has that of its design block at P{q} of speed, which block_volume_m3 asks for.",
+        "L’energia di progetto è il P{p} dell’energia totale con i quadrati dei fattori sulla velocità; la norma prende quella del suo blocco di progetto al P{q} della velocità, che block_volume_m3 richiede.",
+    ),
+    (
+        "The capacity must be {f} times that, {e} {unit}.",
+        "La capacità deve esserne {f} volte, {e} {unit}.",
+    ),
+    (
+        "The standard's factor on the energy of the barrier is not applied: its value is yours, capacity_factor takes it.",
+        "Il fattore della norma sull’energia della barriera non è applicato: il suo valore spetta al progettista, capacity_factor lo riceve.",
+    ),
 ];

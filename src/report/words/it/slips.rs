@@ -54,4 +54,28 @@ pub(super) const SLIPS: &[(&str, &str)] = &[
         "{file}: {n} of {all} cells are exactly 0 m high and all others above {low} m: cells without data? then declare 0 as no data (gdal_translate -a_nodata 0)",
         "{file}: {n} celle su {all} sono esattamente a 0 m e tutte le altre sopra {low} m: celle senza dati? allora dichiarare 0 come dato mancante (gdal_translate -a_nodata 0)",
     ),
+    (
+        "[[barriers]] \"{name}\" height_m = {a} is lower than any net or dam; write metres",
+        "[[barriers]] \"{name}\" height_m = {a} è più basso di ogni rete o rilevato; scrivere metri",
+    ),
+    (
+        "[[barriers]] \"{name}\" design.free_height_m = {a} is more than half of any block; is it in cm? write {b}",
+        "[[barriers]] \"{name}\" design.free_height_m = {a} è più della metà di ogni blocco; in cm? scrivere {b}",
+    ),
+    (
+        "[[barriers]] \"{name}\" design.elongation_m = {a} is more than any net stretches; is it in cm? write {b}",
+        "[[barriers]] \"{name}\" design.elongation_m = {a} è più di quanto si allunghi qualsiasi rete; in cm? scrivere {b}",
+    ),
+    (
+        "gravity_m_s2 = {a}: on Earth it is 9.76 to 9.84",
+        "gravity_m_s2 = {a}: sulla Terra va da 9.76 a 9.84",
+    ),
+    (
+        "[release] velocity_m_s reaches {a} m/s, faster than rocks fall; is it in km/h? write {b}",
+        "[release] velocity_m_s arriva a {a} m/s, più veloce di quanto cadano i massi; in km/h? scrivere {b}",
+    ),
+    (
+        "[[objects]] \"{name}\" vehicles.per_day = {a}: on one lane, with two seconds from one to the next, {b} pass; is it of a year, or of several lanes?",
+        "[[objects]] \"{name}\" vehicles.per_day = {a}: su una corsia, a due secondi l’uno dall’altro, ne passano {b}; all’anno, o su più corsie?",
+    ),
 ];
