@@ -152,8 +152,8 @@ mod tests {
         (1..=count).map(rock).collect()
     }
 
-    /// By hand, as UNI 11211-4 has it: of 1000 rocks from 0.02 to 20 m/s P95 is at 19.001 m/s (rank 950.05); with 1.02 · 1.10 on it v_d = 21.3191 m/s. A block of 2 m³ of 2700 kg/m³ weighs
-    /// 5400 kg, with 1.02 on its volume 5508 kg: E_d = 5508 · 21.3191²/2 = 1 251 707 J; the capacity 1.2 times that.
+    /// By hand, as UNI 11211-4 has it: of 1000 rocks from 0.02 to 20 m/s P95 is at 19.001 m/s (rank 950.05); with 1.02 · 1.10 on it `v_d = 21.3191 m/s`. A block of 2 m³ of 2700 kg/m³ weighs
+    /// 5400 kg, with 1.02 on its volume 5508 kg: `E_d = 5508 · 21.3191²/2 = 1 251 707 J`; the capacity 1.2 times that.
     #[test]
     fn the_energy_of_a_design_block_is_that_of_its_mass_and_the_percentile_of_speed() {
         let mut uni = rule();

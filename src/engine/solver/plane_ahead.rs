@@ -131,10 +131,8 @@ impl ContactState {
         }
         let (start, into, deviation_m) = (self.c, Vec3::zeros(), PATH_OFFSET * way.norm());
         let reach_m = way.norm() + deviation_m;
-        self.near.meets_only_plane(
-            face,
-            &PressedPath { start, along: *way, into, deviation_m: deviation_m, reach_m: reach_m },
-        )
+        self.near
+            .meets_only_plane(face, &PressedPath { start, along: *way, into, deviation_m, reach_m })
     }
 }
 
