@@ -25,7 +25,6 @@ pub mod submatrix;
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
 use arrayvec::ArrayVec;
-use nalgebra::Rotation3;
 use serde::{Deserialize, Serialize};
 
 /// Most contacts of one rock at a time.
@@ -236,13 +235,6 @@ impl ContactPoints {
     /// The contacts that are nearer than `reach` (m).
     pub(crate) fn nearer(&self, reach: f64) -> Self {
         Self(self.0.iter().filter(|touch| touch.distance_m < reach).copied().collect())
-    }
-
-    /// Rotates all normals, as those of a mesh that is rotated about the ball's centre.
-    pub(crate) fn rotate(&mut self, turn: &Rotation3<f64>) {
-        for touch in &mut self.0 {
-            touch.normal = turn * touch.normal;
-        }
     }
 
     /// Keeps the contacts that a ball of this radius (m) touches, and those it approaches with

@@ -47,7 +47,7 @@ mod springs;
 pub mod impact_point;
 pub(crate) mod stems;
 pub(crate) mod roughness;
-pub(crate) mod tilted_mesh;
+mod facet_motion;
 pub(crate) mod scar;
 pub(crate) mod slip;
 pub(crate) mod yielding;

@@ -147,8 +147,7 @@ fn a_stone_that_rebounds_meets_what_follows_it() {
     }
 }
 
-/// On rough ground a stone is on its facet for as long as it touches the ground, however hard others press it on. With springs it left the facet
-/// as soon as anything else touched it, and the boulder came off 0.5 m/s faster.
+/// On rough ground the motion of a stone is rotated against the facet that it strikes, and back, whatever presses it on.
 #[test]
 fn a_boulder_on_a_stone_on_rough_ground_comes_off_as_springs_throw_it() {
     let (mut sums, count) = ([0.0; 2], 24);

@@ -1,11 +1,10 @@
-//! Rough ground under rocks that touch each other: a facet tilts the ground for the rock that meets
-//! it, and the others meet that rock with its true motion.
+//! Rough ground under rocks that touch each other: a rock is rotated against its facet, as alone,
+//! whatever touches it.
 
 use crate::common;
 
 use common::GROUND;
 use common::together::{self, Sphere, World, energy_j, plane};
-use rockfall::contact::pair::BondStrength;
 use rockfall::ground::Ground;
 use rockfall::rock::Vec3;
 use rockfall::simulation::Trajectory;
@@ -106,13 +105,4 @@ fn facets_keep_the_energy_of_rocks_that_touch() {
             assert!((after / before - 1.0).abs() < part, "{scheme:?} {gap_m}: {}", after / before);
         }
     }
-}
-
-/// Rocks that are bonded meet facets too: a pair that falls on end is thrown sideways.
-#[test]
-fn bonded_rocks_meet_facets() {
-    let strength = BondStrength { tensile_pa: 1e9, cohesion_pa: 1e9 };
-    let bonded = World { strength, ..world(Scheme::Adaptive, (0.4, 0.5)) };
-    let falls = bonded.falls(&plane(), &groups([0.4, 0.4], (0.0, 0.0)), 0.05);
-    assert!(sideways(&lower(&falls)) > 0.3, "{}", sideways(&lower(&falls)));
 }

@@ -61,11 +61,8 @@ impl RockInContact<'_, '_> {
     /// this is a new facet. A facet relative to which the rock is rotated belongs to the place
     /// before: that rotation is undone first.
     fn next_facet(&mut self, blow: &Blow) -> Option<(Rotation3<f64>, f64)> {
-        let (n, triangle) = (self.state.along_mesh(&blow.n), blow.triangle);
-        let at = |state: &ContactState| {
-            let v = state.along_mesh(&state.v);
-            SurfaceApproach { n, triangle, c: state.c, v }
-        };
+        let Blow { n, triangle, .. } = *blow;
+        let at = |state: &ContactState| SurfaceApproach { n, triangle, c: state.c, v: state.v };
         if !self.state.facets.meets_new_facet(&self.world, &at(self.state)) {
             return None;
         }
@@ -95,8 +92,7 @@ impl RockInContact<'_, '_> {
         (until_s, held_j): (f64, &MeshEnergy),
     ) {
         let Self { world, state, recorder, .. } = self;
-        let on_mesh = state.centre_on_mesh();
-        let ContactState { histories, upcoming_impacts, blows, facets, .. } = &mut **state;
+        let ContactState { c, histories, upcoming_impacts, blows, .. } = &mut **state;
         // in the rigid limit contacts of an impact that is still to be solved have a list of their
         // own
         for history in histories.iter_mut().chain(upcoming_impacts.iter_mut()) {
@@ -115,8 +111,8 @@ impl RockInContact<'_, '_> {
                 0
             } else {
                 let place = (history.feature, history.triangle);
-                let (ball, normal) = ((&on_mesh, world.body.radius), facets.along_mesh(&history.n));
-                let struck = ImpactPoint::by_ball(ball, &normal, place, approach_m_s);
+                let struck =
+                    ImpactPoint::by_ball((c, world.body.radius), &history.n, place, approach_m_s);
                 recorder.begin_impact(&struck, until_s, held_j)
             };
         }

@@ -81,6 +81,8 @@ struct WorldBody<'a> {
     /// Speed that the compressed springs may give it (m/s). `Σ F/(m ω)`: a spring with force F
     /// gives a mass no more than this when it relaxes.
     spring_dv_m_s: f64,
+    /// Whether a bond joins it to another rock of its island.
+    is_bonded: bool,
     /// Mechanical energy, and the energy given to others, at the start of the contact episode (J).
     episode_start_j: (f64, f64),
     /// Whether its contacts have no springs: in the rigid limit, and in heaps.
@@ -215,6 +217,7 @@ fn new_body<'a>(
         deviation: (Vec3::zeros(), 0.0),
         predicted_dv_m_s: 0.0,
         spring_dv_m_s: 0.0,
+        is_bonded: false,
         is_unloaded: !settings.step.scheme.has_springs(),
         episode_start_j: (0.0, 0.0),
         step_start: None,

@@ -47,22 +47,14 @@ impl Body {
         -self.mass * self.gravity.dot(way)
     }
 
-    /// Takes energy (J) out of the motion, at most all of it, or adds it where that is negative; a
-    /// rock at rest gets none.
-    pub(crate) fn exchange(&self, (v, w): (&mut Vec3, &mut Vec3), lost_j: f64) {
-        let motion_j = self.motion_j((v, w));
-        if motion_j > 0.0 {
-            let kept = ((motion_j - lost_j) / motion_j).max(0.0).sqrt();
-            *v *= kept;
-            *w *= kept;
-        }
-    }
-
     /// Takes energy (J) out of the motion, at most all of it: velocity and spin keep their
     /// directions and their ratio.
     pub(crate) fn slow_down(&self, (v, w): (&mut Vec3, &mut Vec3), lost_j: f64) {
-        if lost_j > 0.0 {
-            self.exchange((v, w), lost_j);
+        let motion_j = self.motion_j((v, w));
+        if motion_j > 0.0 && lost_j > 0.0 {
+            let kept = ((motion_j - lost_j) / motion_j).max(0.0).sqrt();
+            *v *= kept;
+            *w *= kept;
         }
     }
 

@@ -269,12 +269,8 @@ impl ContactState {
         c: &Vec3,
         reach: f64,
     ) {
-        let on_mesh = self.on_mesh(c);
-        self.update_neighbours(world, &on_mesh);
-        self.near.touches(world.terrain, &on_mesh, reach, &mut self.touches);
-        if let Some(mesh) = &self.facets.mesh {
-            self.touches.rotate(mesh.turn());
-        }
+        self.update_neighbours(world, c);
+        self.near.touches(world.terrain, c, reach, &mut self.touches);
     }
 
     /// Finds the contact points at `c` that a stage must know.

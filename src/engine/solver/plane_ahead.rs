@@ -61,7 +61,7 @@ impl ContactState {
     /// Longest step in which the rock misses no feature (s). On one plane its centre stays where
     /// features are known; among several its travel is at most `travel` (–, relative to R).
     pub fn longest_step(&mut self, world: &ContactEnvironment, travel: f64) -> f64 {
-        let (c, way) = (self.centre_on_mesh(), travel * world.body.radius);
+        let (c, way) = (self.c, travel * world.body.radius);
         self.update_neighbours(world, &c);
         let is_plane = self.near.plane().is_some();
         let room = if is_plane { self.near.margin_left_m(&c).max(way) } else { way };

@@ -43,8 +43,6 @@ pub(crate) struct RoughFacets {
     random: Option<RandomStream>,
     last: Option<TiltedFacet>,
     pub(super) tilt: Option<Tilt>,
-    /// The mesh, if it is rotated or off its place for the rock.
-    pub(super) mesh: Option<TiltedMesh>,
 }
 
 /// A facet that was met.
@@ -64,34 +62,6 @@ pub(super) struct Tilt {
     pub(super) turn: Rotation3<f64>,
     /// Latest end of the impact (s).
     pub(super) until_s: f64,
-}
-
-/// The mesh as a rock among others meets it that is on a facet, or was (`tilted_mesh`).
-#[derive(Debug, Clone)]
-pub(crate) struct TiltedMesh {
-    /// Rotation from the surface to the facet; the identity once the impact is over.
-    turn: Rotation3<f64>,
-    /// Centre of the rock as it was rotated (m) …
-    centre: Vec3,
-    /// … and the centre for which contact points were found there (m).
-    on_mesh: Vec3,
-}
-
-impl TiltedMesh {
-    /// A mesh rotated by `turn`, with the rock at `centre` and found for `on_mesh` (m).
-    pub(super) fn new(turn: Rotation3<f64>, centre: Vec3, on_mesh: Vec3) -> Self {
-        Self { turn, centre, on_mesh }
-    }
-
-    /// Rotation from the surface to the facet.
-    pub(super) fn turn(&self) -> &Rotation3<f64> {
-        &self.turn
-    }
-
-    /// The centre for which contact points of a rock with its centre at `c` are found (m).
-    pub(super) fn centre_on_mesh(&self, c: &Vec3) -> Vec3 {
-        self.on_mesh + self.turn.inverse() * (c - self.centre)
-    }
 }
 
 /// A rock that approaches a surface.
@@ -204,16 +174,6 @@ impl RoughFacets {
     /// `now_s` (s).
     pub(crate) fn is_tilt_over(&self, is_free: bool, now_s: f64) -> bool {
         self.tilt.as_ref().is_some_and(|tilt| is_free || now_s >= tilt.until_s)
-    }
-
-    /// Whether the mesh is rotated or off its place for the rock.
-    pub(crate) fn has_rotated_mesh(&self) -> bool {
-        self.mesh.is_some()
-    }
-
-    /// A direction in the frame of the mesh.
-    pub(crate) fn along_mesh(&self, x: &Vec3) -> Vec3 {
-        self.mesh.as_ref().map_or(*x, |mesh| mesh.turn().inverse() * x)
     }
 
     /// Whether the rock is in an impact on a facet.

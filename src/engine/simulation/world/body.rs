@@ -191,8 +191,13 @@ impl<'a> WorldBody<'a> {
             return;
         }
         let was_flying = self.flight_end.is_some();
+        let is_held_by_bonds = self.is_bonded && given != EnergyGiven::default();
         let mut rock = self.in_contact(settings);
         rock.begin_impacts();
+        // a bond would pull at the rotation
+        if is_held_by_bonds {
+            rock.leave_facet();
+        }
         // stems that the step has overloaded take their part of the energy now
         rock.state.load_stems(&rock.world, true, &mut loss);
         let to = self.motion_at(time_s);

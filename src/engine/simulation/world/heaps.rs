@@ -111,11 +111,6 @@ impl WorldBody<'_> {
     /// Unloads its contacts with the mesh.
     fn unload(&mut self, settings: &RunSettings) {
         self.in_contact(settings).leave_facet();
-        // the rigid limit moves rocks apart that overlap
-        if self.member.state.is_off_mesh() {
-            let to = self.member.state.centre_on_mesh();
-            self.move_to(settings, to);
-        }
         let loss = self.member.unload(settings.terrain);
         self.recorder.book_losses(&loss);
         self.continue_unloaded(&EnergyGiven::default());

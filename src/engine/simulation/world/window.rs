@@ -10,7 +10,6 @@
 //! (`begin_contacts`), the contact system is stepped until the next event (`step_until`), and so on
 //! to the end of the window.
 
-mod facets;
 mod held_together;
 mod rigid;
 
@@ -283,10 +282,21 @@ impl<'a> IslandWindow<'a> {
                 island.h = island.h.min(ONSET / member.omega(self.settings.terrain));
             }
         }
-        if self.settings.step.scheme.has_springs() {
-            self.rotate_meshes(island);
-        }
         longest_s
+    }
+
+    /// Does something with a rock of the island, whose state the solver has.
+    fn with_rock<T>(
+        &mut self,
+        island: &mut Island<'a>,
+        k: usize,
+        act: impl FnOnce(&mut WorldBody<'a>, &RunSettings<'a>) -> T,
+    ) -> T {
+        let (body, member) = (&mut self.bodies[k], &mut island.members[k]);
+        std::mem::swap(&mut body.member, member);
+        let done = act(body, self.settings);
+        std::mem::swap(&mut body.member, member);
+        done
     }
 
     /// Lends the rocks and pairs of the island to the solver.
@@ -297,6 +307,12 @@ impl<'a> IslandWindow<'a> {
         // the solver borrows the state of the rocks; their records stay here
         let members = self.bodies.iter_mut().map(|body| body.member.lend()).collect();
         let pair_histories = std::mem::take(&mut self.pair_histories);
+        self.bodies.iter_mut().for_each(|body| body.is_bonded = false);
+        for pair in pair_histories.iter().filter(|pair| pair.bond.is_some()) {
+            for end in [pair.a, pair.b] {
+                self.bodies[end as usize].is_bonded = true;
+            }
+        }
         let mut island = Island::new(self.settings.terrain, members, pair_histories);
         island.rigid = std::mem::take(&mut self.rigid);
         island.h = h;

@@ -291,7 +291,7 @@ impl IslandBody {
 /// Notes which rocks fly: those in contact with neither the mesh nor another rock.
 pub(super) fn note_flights(members: &mut [BodySlot], pair_histories: &[PairHistory]) {
     for member in &mut *members {
-        member.flying = member.state.is_free() && !member.state.facets.has_rotated_mesh();
+        member.flying = member.state.is_free();
     }
     for pair_history in pair_histories.iter().filter(|pair_history| pair_history.is_held()) {
         for k in [pair_history.a, pair_history.b] {

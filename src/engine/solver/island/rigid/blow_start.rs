@@ -1,7 +1,6 @@
 //! What a blow begins with, and which gaps close while it lasts.
 
 use crate::ground::Law;
-use crate::rock::Vec3;
 use crate::solver::rigid::HELD;
 use nalgebra::Rotation3;
 use std::f64::consts::PI;
@@ -48,12 +47,6 @@ impl BlowStart {
     /// Whether rock `k` of the blow is the one that comes to the mesh.
     pub(super) fn is_struck(&self, k: usize) -> bool {
         self.pair.is_none() && k == 0
-    }
-
-    /// The normal of a contact of rock `k` with the mesh, which on the rock that comes to rough
-    /// ground is rotated to its facet: others meet that rock with its true motion.
-    pub(super) fn normal(&self, k: usize, n: &Vec3) -> Vec3 {
-        self.turn.filter(|_| self.is_struck(k)).map_or(*n, |turn| turn * n)
     }
 
     /// Distance (m) at which rock `k` of the blow, of this radius (m), touches the mesh.

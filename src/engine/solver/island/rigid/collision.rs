@@ -17,6 +17,7 @@ use super::contacts::{ImpactScene, REBOUNDS_IN_STEP, hit_of};
 use crate::contact::ContactPoint;
 use crate::contact::pair::normal_and_distance;
 use crate::rock::Vec3;
+use crate::solver::body::Twist;
 use crate::solver::impact::{
     BODIES, CONTACTS, ContactEnds, FrozenBody, FrozenCollision, FrozenContact, frozen_collision,
 };
@@ -25,6 +26,7 @@ use crate::solver::joint_blow::Breakage;
 use crate::solver::law::capture_m_s;
 use crate::solver::rigid::HELD;
 use arrayvec::ArrayVec;
+use nalgebra::Rotation3;
 
 /// Most rocks that a blow is followed with in an island of more than [`BODIES`]: a light one on the mesh, and a heavy one that strikes it.
 const TOGETHER_IN_HEAP: usize = 2;
@@ -142,7 +144,7 @@ impl RigidIsland {
         if contacts.len() == 1 {
             return Followed::No;
         }
-        let thrown = self.thrown(scene, &struck, &contacts);
+        let thrown = self.thrown(scene, &struck, &contacts, blow);
         let Some(Breakage { after, stems }) = thrown else {
             return if has_gaps { Followed::NotSoWide } else { Followed::No };
         };
@@ -163,17 +165,28 @@ impl RigidIsland {
         scene: &ImpactScene,
         StruckRocks { touching, rocks }: &StruckRocks,
         contacts: &[FrozenContact],
+        blow: &BlowStart,
     ) -> Option<Breakage> {
         let frozen = |(rock, at): (&usize, &StruckRock)| {
             let ball = &self.balls[*rock];
             FrozenBody { body: ball.body, motion: (at.v, ball.w) }
         };
-        let bodies: ArrayVec<_, BODIES> = touching.rocks.iter().zip(rocks).map(frozen).collect();
+        let mut bodies: ArrayVec<_, BODIES> =
+            touching.rocks.iter().zip(rocks).map(frozen).collect();
+        // as a rock alone, the one that comes to a facet is rotated against it, and back
+        let rotated = |turn: Rotation3<f64>, (v, w): Twist| (turn * v, turn * w);
+        if let Some(turn) = &blow.turn {
+            bodies[0].motion = rotated(turn.inverse(), bodies[0].motion);
+        }
         let whole = || {
             let after = frozen_collision(&bodies, contacts, self.impact_tolerance())?;
             Some(Breakage { after, stems: ArrayVec::new() })
         };
-        scene.broken_by(&touching.rocks, &bodies, contacts).or_else(whole)
+        let mut thrown = scene.broken_by(&touching.rocks, &bodies, contacts).or_else(whole)?;
+        if let Some(turn) = blow.turn {
+            thrown.after.motions[0] = rotated(turn, thrown.after.motions[0]);
+        }
+        Some(thrown)
     }
 
     /// Books what the contacts of a blow took; what each rock lost in its contacts (J), and what trees took.
@@ -339,7 +352,7 @@ impl RigidIsland {
                 let gap_m =
                     blow.gap_m(touch.distance_m - blow.reach_m(first, radius), radius, is_held);
                 add(FrozenContact {
-                    normal: blow.normal(first, &touch.normal),
+                    normal: touch.normal,
                     law: world.law(touch.triangle),
                     stiffness_scale: touch.gain2,
                     gap_m,

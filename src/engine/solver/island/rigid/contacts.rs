@@ -19,9 +19,6 @@ pub(super) struct StepBody {
     pub(super) v: Vec3,
     pub(super) w: Vec3,
     pub(super) body: Body,
-    /// Its acceleration over the step (m/s²): that of its weight, or what sustained contact with the
-    /// mesh leaves of it.
-    pub(super) acceleration: Vec3,
     /// Velocity and spin at the start of the step.
     pub(super) before: Twist,
     /// `1/m` (1/kg) and `1/I` (1/(kg m²)).
@@ -66,7 +63,6 @@ impl StepBody {
             v,
             w,
             body: *body,
-            acceleration: body.gravity,
             before: (v, w),
             inv,
             allowed_m_s: 0.0,
@@ -95,9 +91,9 @@ impl StepBody {
         self.c += impulse.0 * (self.inv.0 * s);
     }
 
-    /// Centre and velocity `s` (s) before the end of the step, at its constant acceleration.
+    /// Centre and velocity `s` (s) before the end of the step, on its parabola.
     pub(super) fn before_end(&self, s: f64) -> (Vec3, Vec3) {
-        let a = self.acceleration;
+        let a = self.body.gravity;
         (self.c - (self.v - a * (0.5 * s)) * s, self.v - a * s)
     }
 

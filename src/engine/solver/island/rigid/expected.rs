@@ -144,7 +144,7 @@ fn meets_facet(world: &ContactEnvironment, state: &ContactState, ball: &StepBody
 /// parabola.
 fn time_of_touch(ball: &StepBody, n: &Vec3, penetration: f64) -> Option<f64> {
     let speed = -n.dot(&ball.v);
-    let root2 = speed * speed + 2.0 * n.dot(&ball.acceleration) * penetration.max(0.0);
+    let root2 = speed * speed + 2.0 * n.dot(&ball.body.gravity) * penetration.max(0.0);
     let touches = penetration >= -TOUCH * ball.body.radius && speed > 0.0 && root2 > 0.0;
     touches.then(|| (2.0 * penetration.max(0.0) / (speed + root2.sqrt())).min(ball.since_s))
 }

@@ -219,7 +219,8 @@ impl RigidIsland {
             let radius = member.body.radius;
             found.retain(|touch| {
                 let is_held = member.last_forces.iter().any(|(held, ..)| *held == touch.feature);
-                let room = if is_held { HELD } else { STRUCK_TOGETHER };
+                let comes = -touch.normal.dot(&v) > 0.0;
+                let room = if is_held || comes { HELD } else { STRUCK_TOGETHER };
                 touch.distance_m <= touches_m + room * radius
             });
             member.state.touches = found;
@@ -305,5 +306,5 @@ fn rebound_from(
 
 /// Mean motion in an impact `s` (s) before the end of the step, from the motions at the end without and with it.
 fn mean_motion_earlier(ball: &StepBody, before: &(Vec3, Vec3), s: f64) -> (Vec3, Vec3) {
-    ((before.0 + ball.v) * 0.5 - ball.acceleration * s, (before.1 + ball.w) * 0.5)
+    ((before.0 + ball.v) * 0.5 - ball.body.gravity * s, (before.1 + ball.w) * 0.5)
 }

@@ -202,11 +202,6 @@ impl RigidIsland {
         {
             let ball = &mut self.balls[ground_contact.rock];
             (ball.pushed, ball.on_mesh) = (true, OnMesh::Held);
-            // what strikes it within the step meets it with its true velocity, not with one that its
-            // weight gives it
-            if dt > 0.0 {
-                ball.acceleration = (ball.v - ball.before.0) / dt;
-            }
         }
         for ball in &mut self.balls {
             ball.c += mean(ball).0 * dt;
