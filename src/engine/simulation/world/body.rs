@@ -191,18 +191,17 @@ impl<'a> WorldBody<'a> {
             return;
         }
         let was_flying = self.flight_end.is_some();
-        let is_held_by_bonds = self.is_bonded && given != EnergyGiven::default();
+        // a bond would pull at the rotation of a facet
+        let leaves_facet = self.is_bonded && given != EnergyGiven::default();
         let mut rock = self.in_contact(settings);
         rock.begin_impacts();
-        // a bond would pull at the rotation
-        if is_held_by_bonds {
+        if leaves_facet {
             rock.leave_facet();
         }
         // stems that the step has overloaded take their part of the energy now
         rock.state.load_stems(&rock.world, true, &mut loss);
         let to = self.motion_at(time_s);
-        // a rock may be hit and released within one step and then fly on another path; here neither
-        // the mesh nor another rock took or gave anything in this step
+        // a rock may be hit and released within one step: then it flies on another path
         let is_untouched = given == EnergyGiven::default() && loss == Loss::default();
         if was_flying && self.member.flying && is_untouched {
             self.recorder.record_step_as(to, PathState::Flight, true);
