@@ -43,7 +43,9 @@ fn each_measured_end_stands_beside_the_rocks_of_its_own_place() {
     let own = (10.0 * high + 2.0 * low) / 12.0;
     let page = fs::read_to_string(out.join("report.html")).unwrap();
     let said = page.split(" m measured, ").nth(1).and_then(|rest| rest.split(" (").next());
-    let found: f64 = said.and_then(|said| said.parse().ok()).unwrap();
+    // some rocks have left the terrain: the mean is a lower bound, and marked so
+    let number = said.map(|said| said.trim_start_matches(|c: char| !c.is_ascii_digit()));
+    let found: f64 = number.and_then(|said| said.parse().ok()).unwrap();
     assert!((high - low).abs() > 5.0, "the places must be unlike: {high} {low}");
     assert!((found - own).abs() <= 0.5 + 1e-9, "{found} for {own}: {high} and {low}");
     assert!(page.contains("from its own place of release"));

@@ -247,7 +247,9 @@ fn computed_ends_weigh_beside_measured_ones() {
     let page = fs::read_to_string(out.join("report.html")).unwrap();
     // with as many digits as its interval leaves
     let said = page.split(" m measured, ").nth(1).and_then(|rest| rest.split(" (").next());
-    let found: f64 = said.and_then(|said| said.parse().ok()).unwrap();
+    // some rocks have left the terrain: the mean is a lower bound, and marked so
+    let number = said.map(|said| said.trim_start_matches(|c: char| !c.is_ascii_digit()));
+    let found: f64 = number.and_then(|said| said.parse().ok()).unwrap();
     assert!((found - mean).abs() <= 0.5 + 1e-9, "{found} for {mean}");
     assert!(page.contains("Computed rocks weigh what they stand for"));
     let scene = dir.path().join("measured.toml");

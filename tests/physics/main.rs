@@ -10,6 +10,7 @@ mod bonds;
 mod chant_sura;
 mod closing_gaps;
 mod contact;
+mod crevices;
 mod damped_folds;
 mod dda;
 mod dda_energy;
