@@ -230,7 +230,7 @@ fn run(args: &RunArgs) -> Result<ExitCode> {
                 let mut warnings = barrier_warnings(&results.summary.barriers);
                 warnings.extend(report::untouched_trees(&results));
                 warnings.extend(report::untouched_ground(&results));
-                warnings.extend(report::fast_rocks(&results)?);
+                warnings.extend(report::fast_rocks(&results.hazard));
                 let warnings = warnings.iter().map(|warning| format!("warning: {warning}"));
                 let said = report::headline(&results.hazard, at_holes.as_ref())
                     .into_iter()

@@ -309,6 +309,13 @@ impl Hazard {
         self.values(quantity).iter().copied().zip(released)
     }
 
+    /// Share of the rocks whose value of a quantity `is_one`; a rock that left no number is none.
+    pub fn share_with(&self, quantity: Quantity, is_one: impl Fn(f64) -> bool) -> Proportion {
+        let some =
+            self.of_releases(quantity).filter(|(value, _)| value.is_finite() && is_one(*value));
+        share_of(&self.weights_or_equal(), some.map(|(_, release)| release))
+    }
+
     /// The values of one quantity in the order of releases (rocks that were never released have none); infinite where a
     /// failed rock left no number.
     pub fn values(&self, quantity: Quantity) -> &[f64] {

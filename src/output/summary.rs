@@ -167,12 +167,6 @@ pub struct RunTimes {
 }
 
 impl Summary {
-    /// Whether the run had no trees, as far as its plan says.
-    pub fn has_no_trees(&self) -> bool {
-        let trees = self.plan_entries.iter().find(|entry| entry.name == "trees");
-        trees.is_some_and(|entry| entry.said.starts_with("left out"))
-    }
-
     /// The summary of a finished run that took so long.
     pub(super) fn new(info: RunInfo, (hazard, lines): (&Hazard, &[Line]), seconds: f64) -> Self {
         let frequency = info.asked.frequency.as_ref();

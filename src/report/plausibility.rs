@@ -5,8 +5,7 @@ use super::raster::GroundRaster;
 use super::words::fill;
 use super::{by_frequency, format};
 use super::{reach_angle, runout};
-use crate::error::Result;
-use crate::hazard::{Quantity, Sample, share_of};
+use crate::hazard::{Hazard, Quantity, Sample};
 use crate::output::Results;
 use crate::simulation::Stop;
 use std::cmp::Reverse;
@@ -73,30 +72,20 @@ fn reach(report: &Report) -> Option<Check> {
 }
 
 /// Says in the terminal that more rocks are faster than single blocks are than a few wild ones.
-///
-/// # Errors
-/// When the rows of the releases cannot be read.
-pub fn fast_rocks(results: &Results) -> Result<Option<String>> {
-    let hazard = &results.hazard;
+pub fn fast_rocks(hazard: &Hazard) -> Option<String> {
     let speeds = hazard.values(Quantity::MaxSpeed);
     let fastest = speeds.iter().copied().filter(|v| v.is_finite()).fold(0.0, f64::max);
     if fastest <= FAST_M_S || hazard.released() < ENOUGH {
-        return Ok(None);
+        return None;
     }
-    let mut fast = Vec::new();
-    for row in results.rows()? {
-        let row = row?;
-        let is_fast = row.max_speed_m_s.is_finite() && row.max_speed_m_s > FAST_M_S;
-        fast.extend((row.stop.is_released() && is_fast).then_some(row.index));
-    }
-    let share = share_of(&hazard.weights_or_equal(), fast.into_iter()).share;
-    Ok((share > FEW).then(|| {
+    let share = hazard.share_with(Quantity::MaxSpeed, |v| v > FAST_M_S).share;
+    (share > FEW).then(|| {
         format!(
             "the fastest rock has {} m/s, and {} of the rocks are faster than {FAST_M_S} m/s, which single blocks seldom are: check terrain, friction and restitution",
             format::significant(fastest, 3),
             told(share)
         )
-    }))
+    })
 }
 
 /// A share with two digits; one of nearly all rocks does not look like all of them.

@@ -7,6 +7,7 @@ use crate::hazard::{
     WeightedCount,
 };
 use crate::output::Results;
+use crate::report::planned;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -103,8 +104,7 @@ impl Population {
         }
     }
 
-    /// The same where those of rocks that would have gone on are bounds: the truth lies on that side. A rock that has left no number is one
-    /// of which nothing is known.
+    /// The same where those of rocks that would have gone on are bounds on that side; of a rock that has left no number nothing is known.
     pub(super) fn censored_sample(&self, values: &Values, quantity: Quantity) -> Sample {
         let bounds = self.open.iter().filter(|(_, bounds)| bounds.has(quantity));
         let open: Vec<usize> = bounds.map(|of| of.0).collect();
@@ -250,7 +250,7 @@ fn all(
         shares: StopKind::ALL.map(share).into(),
         values: WHOLE.map(|quantity| (ComparedQuantity::Whole(quantity), Values::new())).into(),
         open: Vec::new(),
-        has_no_trees: run.summary.has_no_trees(),
+        has_no_trees: planned::is_left_out(&run.summary.plan_entries, "trees"),
     };
     for row in run.rows()? {
         let row: Row = row?;

@@ -270,33 +270,19 @@ impl<'a> IslandWindow<'a> {
         // most scenes have neither stems nor rough ground: nothing to do before a step
         let mut longest_s = f64::INFINITY;
         let has_stems = self.settings.terrain.stems.is_some();
-        for k in 0..island.members.len() {
-            let facets = &island.members[k].state.facets;
-            if !has_stems && !facets.are_rough() {
+        for (body, member) in self.bodies.iter_mut().zip(&mut island.members) {
+            if !has_stems && !member.state.facets.are_rough() {
                 continue;
             }
-            let met = facets.is_tilted();
-            longest_s = longest_s.min(self.with_rock(island, k, WorldBody::before_step));
-            let member = &island.members[k];
+            let met = member.state.facets.is_tilted();
+            std::mem::swap(&mut body.member, member);
+            longest_s = longest_s.min(body.before_step(self.settings));
+            std::mem::swap(&mut body.member, member);
             if met != member.state.facets.is_tilted() {
                 island.h = island.h.min(ONSET / member.omega(self.settings.terrain));
             }
         }
         longest_s
-    }
-
-    /// Does something with a rock of the island, whose state the solver has.
-    fn with_rock<T>(
-        &mut self,
-        island: &mut Island<'a>,
-        k: usize,
-        act: impl FnOnce(&mut WorldBody<'a>, &RunSettings<'a>) -> T,
-    ) -> T {
-        let (body, member) = (&mut self.bodies[k], &mut island.members[k]);
-        std::mem::swap(&mut body.member, member);
-        let done = act(body, self.settings);
-        std::mem::swap(&mut body.member, member);
-        done
     }
 
     /// Lends the rocks and pairs of the island to the solver.

@@ -237,6 +237,11 @@ impl IslandBody {
             || self.state.touches.iter().any(|touch| touch.distance_m <= reach)
     }
 
+    /// Whether a feature of the mesh pressed on it at the end of the last step.
+    pub(super) fn is_held_on(&self, feature: Feature) -> bool {
+        self.last_forces.iter().any(|(held, ..)| *held == feature)
+    }
+
     /// Frequency of its stiffest contact with the mesh (rad/s), 0 if there is none.
     pub fn omega(&self, terrain: &Terrain) -> f64 {
         self.state.stiffest_rad_s(&self.environment(terrain))

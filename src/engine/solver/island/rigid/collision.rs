@@ -345,10 +345,7 @@ impl RigidIsland {
             let world = scene.members[*rock].environment(scene.terrain);
             let (state, radius) = (&scene.members[*rock].state, world.body.radius);
             for touch in state.touches.iter() {
-                let is_held = scene.members[*rock]
-                    .last_forces
-                    .iter()
-                    .any(|(held, ..)| *held == touch.feature);
+                let is_held = scene.members[*rock].is_held_on(touch.feature);
                 let gap_m =
                     blow.gap_m(touch.distance_m - blow.reach_m(first, radius), radius, is_held);
                 add(FrozenContact {

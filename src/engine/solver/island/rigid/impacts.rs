@@ -214,13 +214,12 @@ impl RigidIsland {
         let mut found = state.touches.clone();
         let blow = BlowStart { pair: None, turn, touches_m, approach_m_s, lasts_s };
         if !self.blow_together(scene, &blow, s) {
-            // as of a rock alone: what it does not hold and has not come to yet is the next impact
+            // as of a rock alone: a flank near by that neither holds it nor is approached takes no part
             let member = &mut *scene.members[k];
             let radius = member.body.radius;
             found.retain(|touch| {
-                let is_held = member.last_forces.iter().any(|(held, ..)| *held == touch.feature);
-                let comes = -touch.normal.dot(&v) > 0.0;
-                let room = if is_held || comes { HELD } else { STRUCK_TOGETHER };
+                let takes_part = member.is_held_on(touch.feature) || touch.normal.dot(&v) < 0.0;
+                let room = if takes_part { HELD } else { STRUCK_TOGETHER };
                 touch.distance_m <= touches_m + room * radius
             });
             member.state.touches = found;
